@@ -1,0 +1,99 @@
+// How are the few linear equations of a linkage solved, and how many of them are independent?
+#include "base/dense.h"
+
+#include <math.h>
+
+static const double SINGULAR = 1e-14; // a hundred roundings below the largest entry
+
+static void swap_rows(double *a, size_t columns, size_t first, size_t second)
+{
+    for (size_t j = 0; j < columns; j++) {
+        const double kept = a[first * columns + j];
+        a[first * columns + j] = a[second * columns + j];
+        a[second * columns + j] = kept;
+    }
+}
+
+static double largest_entry(size_t count, const double *a)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        largest = fmax(largest, fabs(a[i]));
+    }
+    return largest;
+}
+
+bool dense_solve(size_t n, double *a, double *b)
+{
+    const double threshold = SINGULAR * largest_entry(n * n, a);
+    for (size_t k = 0; k < n; k++) {
+        // the largest entry left in the column becomes the pivot
+        size_t pivot = k;
+        for (size_t i = k + 1; i < n; i++) {
+            if (fabs(a[i * n + k]) > fabs(a[pivot * n + k])) {
+                pivot = i;
+            }
+        }
+        if (!(fabs(a[pivot * n + k]) > threshold)) {
+            return false;
+        }
+        swap_rows(a, n, k, pivot);
+        swap_rows(b, 1, k, pivot);
+        for (size_t i = k + 1; i < n; i++) {
+            const double factor = a[i * n + k] / a[k * n + k];
+            for (size_t j = k; j < n; j++) {
+                a[i * n + j] -= factor * a[k * n + j];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    for (size_t k = n; k-- > 0;) {
+        for (size_t j = k + 1; j < n; j++) {
+            b[k] -= a[k * n + j] * b[j];
+        }
+        b[k] /= a[k * n + k];
+    }
+    return true;
+}
+
+// Brings the largest entry of the rows and columns from `step` on to place (step, step).
+static double pivot_completely(size_t rows, size_t columns, double *a, size_t step)
+{
+    size_t row = step;
+    size_t column = step;
+    for (size_t i = step; i < rows; i++) {
+        for (size_t j = step; j < columns; j++) {
+            if (fabs(a[i * columns + j]) > fabs(a[row * columns + column])) {
+                row = i;
+                column = j;
+            }
+        }
+    }
+    swap_rows(a, columns, step, row);
+    for (size_t i = 0; i < rows; i++) {
+        const double kept = a[i * columns + step];
+        a[i * columns + step] = a[i * columns + column];
+        a[i * columns + column] = kept;
+    }
+    return fabs(a[step * columns + step]);
+}
+
+size_t dense_rank(size_t rows, size_t columns, double *a, double tolerance)
+{
+    const size_t most = rows < columns ? rows : columns;
+    double first = 0.0;
+    for (size_t k = 0; k < most; k++) {
+        const double pivot = pivot_completely(rows, columns, a, k);
+        first = k == 0 ? pivot : first;
+        if (!(pivot > tolerance * first)) {
+            return k;
+        }
+        for (size_t i = k + 1; i < rows; i++) {
+            const double factor = a[i * columns + k] / a[k * columns + k];
+            for (size_t j = k; j < columns; j++) {
+                a[i * columns + j] -= factor * a[k * columns + j];
+            }
+        }
+    }
+    return most;
+}

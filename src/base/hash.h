@@ -1,0 +1,16 @@
+// A 64-bit fingerprint of a stream of numbers: equal bits in equal order give an equal hash.
+#pragma once
+
+#include <stdint.h>
+#include <string.h>
+
+static const uint64_t HASH_START = 0x9e3779b97f4a7c15u; // the golden ratio's bits: any odd constant
+
+// Mixes the bits of one number into the hash (one round of a multiply-xorshift permutation).
+static inline uint64_t hash_number(uint64_t hash, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
+    return hash ^ (hash >> 32);
+}

@@ -1,0 +1,106 @@
+// How is text put together, and which word may have been meant?
+#include "base/text.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TEXT_FIRST_CAPACITY = 256, TEXT_WORD_MAX = 64 };
+
+void text_init(Text *text)
+{
+    text->data = calloc(1, TEXT_FIRST_CAPACITY);
+    assert(text->data != NULL);
+    text->length = 0;
+    text->capacity = TEXT_FIRST_CAPACITY;
+}
+
+void text_finish(Text *text)
+{
+    if (text == NULL) {
+        return;
+    }
+    free(text->data);
+    *text = (Text){0};
+}
+
+static void text_reserve(Text *text, size_t extra)
+{
+    size_t capacity = text->capacity;
+    while (text->length + extra + 1 > capacity) {
+        capacity *= 2;
+    }
+    if (capacity != text->capacity) {
+        text->data = realloc(text->data, capacity);
+        assert(text->data != NULL);
+        text->capacity = capacity;
+    }
+}
+
+void text_append(Text *text, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    va_list again;
+    va_copy(again, arguments);
+    const int needed = vsnprintf(NULL, 0, format, arguments);
+    va_end(arguments);
+    assert(needed >= 0);
+    text_reserve(text, (size_t)needed);
+    vsnprintf(text->data + text->length, (size_t)needed + 1, format, again);
+    va_end(again);
+    text->length += (size_t)needed;
+}
+
+void text_copy(char *target, size_t size, const char *source)
+{
+    snprintf(target, size, "%s", source);
+}
+
+static size_t smallest(size_t a, size_t b, size_t c)
+{
+    const size_t ab = a < b ? a : b;
+    return ab < c ? ab : c;
+}
+
+size_t text_distance(const char *a, const char *b)
+{
+    size_t row[3][TEXT_WORD_MAX + 1];
+    const size_t rows = strlen(a) < TEXT_WORD_MAX ? strlen(a) : TEXT_WORD_MAX;
+    const size_t columns = strlen(b) < TEXT_WORD_MAX ? strlen(b) : TEXT_WORD_MAX;
+    for (size_t j = 0; j <= columns; j++) {
+        row[0][j] = j;
+    }
+    for (size_t i = 1; i <= rows; i++) {
+        size_t *now = row[i % 3];
+        const size_t *last = row[(i + 2) % 3];
+        const size_t *before = row[(i + 1) % 3];
+        now[0] = i;
+        for (size_t j = 1; j <= columns; j++) {
+            const size_t same = a[i - 1] == b[j - 1] ? 0 : 1;
+            now[j] = smallest(last[j] + 1, now[j - 1] + 1, last[j - 1] + same);
+            // two neighbours swapped count as one slip of the finger
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
+                before[j - 2] + 1 < now[j]) {
+                now[j] = before[j - 2] + 1;
+            }
+        }
+    }
+    return row[rows % 3][columns];
+}
+
+const char *text_nearest(const char *word, const char *const *choices, size_t count)
+{
+    const char *best = NULL;
+    size_t best_distance = strlen(word) / 3 + 1;
+    for (size_t i = 0; i < count; i++) {
+        const size_t distance = text_distance(word, choices[i]);
+        if (distance < best_distance) {
+            best_distance = distance;
+            best = choices[i];
+        }
+    }
+    return best;
+}

@@ -1,0 +1,25 @@
+// Growing text, and the small questions about words that messages need.
+#pragma once
+
+#include <stddef.h>
+
+typedef struct Text {
+    char *data; // ends in a zero; never NULL after text_init
+    size_t length;
+    size_t capacity;
+} Text;
+
+void text_init(Text *text);
+void text_finish(Text *text);
+void text_append(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// Copies a name into a fixed buffer, cut if it is too long.
+void text_copy(char *target, size_t size, const char *source);
+
+// The smallest number of insertions, deletions, replacements and swaps of neighbours that turn
+// one word into the other.
+size_t text_distance(const char *a, const char *b);
+
+// The choice nearest to the word, or NULL where none is near enough to be meant
+// (at most a third of the word's letters differ).
+const char *text_nearest(const char *word, const char *const *choices, size_t count);

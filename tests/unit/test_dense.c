@@ -1,0 +1,103 @@
+// Are small systems solved, and is a dependent row noticed?
+#include "base/dense.h"
+
+// cmocka.h needs these before it
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+
+static void a_system_that_needs_a_swap_is_solved(void **state)
+{
+    (void)state;
+    // the first pivot is zero
+    double a[9] = {0.0, 2.0, 1.0, 1.0, 1.0, 1.0, 2.0, 0.0, -1.0};
+    double b[3] = {7.0, 6.0, -1.0};
+    assert_true(dense_solve(3, a, b));
+    assert_true(fabs(b[0] - 1.0) <= 1e-14);
+    assert_true(fabs(b[1] - 2.0) <= 1e-14);
+    assert_true(fabs(b[2] - 3.0) <= 1e-14);
+}
+
+static void the_answer_fits_the_system(void **state)
+{
+    (void)state;
+    enum { N = 12 };
+    double a[N * N];
+    double kept[N * N];
+    double x[N];
+    for (int i = 0; i < N * N; i++) {
+        // numbers without a pattern, between -1 and 1
+        a[i] = sin(1.7 * i * i + 0.3);
+        kept[i] = a[i];
+    }
+    for (int i = 0; i < N; i++) {
+        x[i] = cos(i);
+    }
+    assert_true(dense_solve(N, a, x));
+    for (int i = 0; i < N; i++) {
+        double sum = 0.0;
+        for (int j = 0; j < N; j++) {
+            sum += kept[i * N + j] * x[j];
+        }
+        assert_true(fabs(sum - cos(i)) <= 1e-12);
+    }
+}
+
+static void a_singular_system_is_refused(void **state)
+{
+    (void)state;
+    double a[4] = {1.0, 2.0, 2.0, 4.0};
+    double b[2] = {1.0, 2.0};
+    assert_false(dense_solve(2, a, b));
+    double zero[4] = {0.0};
+    assert_false(dense_solve(2, zero, b));
+}
+
+static void a_matrix_that_is_not_finite_is_refused(void **state)
+{
+    (void)state;
+    double a[4] = {NAN, 2.0, 2.0, NAN};
+    double b[2] = {1.0, 2.0};
+    assert_false(dense_solve(2, a, b));
+}
+
+static void the_rank_counts_independent_rows(void **state)
+{
+    (void)state;
+    double full[6] = {1.0, 0.0, 2.0, 0.0, 3.0, 1.0};
+    assert_int_equal(dense_rank(2, 3, full, 1e-9), 2);
+    // the third row is the sum of the others
+    double dependent[9] = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 5.0, 7.0, 9.0};
+    assert_int_equal(dense_rank(3, 3, dependent, 1e-9), 2);
+    double tall[6] = {1.0, 0.0, 0.0, 1.0, 1.0, 1.0};
+    assert_int_equal(dense_rank(3, 2, tall, 1e-9), 2);
+    double zero[4] = {0.0};
+    assert_int_equal(dense_rank(2, 2, zero, 1e-9), 0);
+}
+
+static void a_row_that_differs_by_less_than_the_tolerance_does_not_count(void **state)
+{
+    (void)state;
+    double near[4] = {1.0, 2.0, 1.0, 2.0 + 1e-12};
+    assert_int_equal(dense_rank(2, 2, near, 1e-9), 1);
+    // the control: well above the tolerance it does count
+    double apart[4] = {1.0, 2.0, 1.0, 2.0 + 1e-6};
+    assert_int_equal(dense_rank(2, 2, apart, 1e-9), 2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_system_that_needs_a_swap_is_solved),
+        cmocka_unit_test(the_answer_fits_the_system),
+        cmocka_unit_test(a_singular_system_is_refused),
+        cmocka_unit_test(a_matrix_that_is_not_finite_is_refused),
+        cmocka_unit_test(the_rank_counts_independent_rows),
+        cmocka_unit_test(a_row_that_differs_by_less_than_the_tolerance_does_not_count),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
