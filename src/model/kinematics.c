@@ -1,0 +1,194 @@
+// Where are the bodies of a linkage with ideal joints, and how fast do they move?
+//
+// For a joint between bodies a and b with anchors s_a, s_b (body frames), R(phi) the rotation:
+//     Phi = r_b + R(phi_b) s_b - r_a - R(phi_a) s_a = 0          two rows a joint
+//     Phi_drive = phi_crank - (start + speed t) = 0               one row
+// Positions by Newton's method on Phi = 0; velocities from J qdot = -dPhi/dt; accelerations from
+//     J qddot = gamma,   gamma = sum over bodies of  +-omega^2 R s   (the centripetal terms).
+// q = (x, y, phi) per body; J = dPhi/dq. Source: E. J. Haug, Computer Aided Kinematics and Dynamics
+// of Mechanical Systems, 1989, chapter 3.
+#include "model/kinematics.h"
+
+#include "base/dense.h"
+
+#include <string.h>
+
+// Newton doubles the number of right digits: from 1e-2 of a length to rounding takes about 5
+enum { ITERATION_MAX = 50 };
+
+// rounding leaves some 1e-16 m on lengths of a metre; a closed linkage is a thousand times above it
+static const double CLOSED = 1e-13;
+
+// pivots of a linkage that moves freely are above 1e-3 of the largest; below this it is stuck
+static const double INDEPENDENT = 1e-9;
+
+static void fill_body(Jacobian *jacobian, size_t row, const Motion *motions, int body, Vec2 local,
+                      double sign)
+{
+    if (body == LINKAGE_GROUND) {
+        return;
+    }
+    const Vec2 arm = vec2_rotate(motions[body].angle, local);
+    double *x_row = jacobian->entries + row * jacobian->columns + 3 * (size_t)body;
+    double *y_row = x_row + jacobian->columns;
+    x_row[0] = sign;
+    x_row[2] = -sign * arm.y;
+    y_row[1] = sign;
+    y_row[2] = sign * arm.x;
+}
+
+void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bool *include,
+                         bool with_driver, Jacobian *jacobian)
+{
+    jacobian->rows = 0;
+    jacobian->columns = 3 * linkage->body_count;
+    memset(jacobian->entries, 0, sizeof jacobian->entries);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (include[i]) {
+            fill_body(jacobian, jacobian->rows, motions, joint->body_a, joint->anchor_a, -1.0);
+            fill_body(jacobian, jacobian->rows, motions, joint->body_b, joint->anchor_b, 1.0);
+            jacobian->rows += 2;
+        }
+    }
+    if (with_driver && linkage->driver.is_present) {
+        const size_t column = 3 * (size_t)linkage_driven_body(linkage) + 2;
+        jacobian->entries[jacobian->rows * jacobian->columns + column] = 1.0;
+        jacobian->rows++;
+    }
+}
+
+size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool ideal_only)
+{
+    bool include[LINKAGE_JOINT_MAX];
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        include[i] = !ideal_only || linkage->joints[i].kind == JOINT_REVOLUTE;
+    }
+    Jacobian jacobian;
+    kinematics_jacobian(linkage, motions, include, false, &jacobian);
+    const size_t rank = dense_rank(jacobian.rows, jacobian.columns, jacobian.entries, INDEPENDENT);
+    return jacobian.columns - rank;
+}
+
+double kinematics_closure_error(const Linkage *linkage, const Motion *motions)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const Vec2 a = linkage_point(motions, joint->body_a, joint->anchor_a);
+        const Vec2 b = linkage_point(motions, joint->body_b, joint->anchor_b);
+        largest = fmax(largest, vec2_length(vec2_sub(b, a)));
+    }
+    return largest;
+}
+
+// Solves J u = right hand side for every joint and the driver; u has three entries a body.
+static bool solve_rows(const Linkage *linkage, const Motion *motions, double *right)
+{
+    bool include[LINKAGE_JOINT_MAX];
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        include[i] = true;
+    }
+    Jacobian jacobian;
+    kinematics_jacobian(linkage, motions, include, true, &jacobian);
+    return jacobian.rows == jacobian.columns &&
+           dense_solve(jacobian.columns, jacobian.entries, right);
+}
+
+static bool newton(const Linkage *linkage, double crank_angle, Motion *motions)
+{
+    for (int iteration = 0; iteration < ITERATION_MAX; iteration++) {
+        double residual[KINEMATICS_ROW_MAX] = {0.0};
+        for (size_t i = 0; i < linkage->joint_count; i++) {
+            const Joint *joint = &linkage->joints[i];
+            const Vec2 a = linkage_point(motions, joint->body_a, joint->anchor_a);
+            const Vec2 b = linkage_point(motions, joint->body_b, joint->anchor_b);
+            residual[2 * i] = a.x - b.x;
+            residual[2 * i + 1] = a.y - b.y;
+        }
+        const int crank = linkage_driven_body(linkage);
+        residual[2 * linkage->joint_count] = crank_angle - motions[crank].angle;
+        const bool is_closed = kinematics_closure_error(linkage, motions) <= CLOSED &&
+                               fabs(residual[2 * linkage->joint_count]) <= CLOSED;
+        if (is_closed) {
+            return true;
+        }
+        if (!solve_rows(linkage, motions, residual)) {
+            return false;
+        }
+        for (size_t i = 0; i < linkage->body_count; i++) {
+            motions[i].position.x += residual[3 * i];
+            motions[i].position.y += residual[3 * i + 1];
+            motions[i].angle += residual[3 * i + 2];
+        }
+    }
+    return false;
+}
+
+static bool solve_velocities(const Linkage *linkage, Motion *motions)
+{
+    double rates[KINEMATICS_ROW_MAX] = {0.0};
+    rates[2 * linkage->joint_count] = linkage->driver.speed;
+    if (!solve_rows(linkage, motions, rates)) {
+        return false;
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i].velocity = (Vec2){rates[3 * i], rates[3 * i + 1]};
+        motions[i].omega = rates[3 * i + 2];
+    }
+    return true;
+}
+
+static Vec2 centripetal(const Motion *motions, int body, Vec2 local)
+{
+    if (body == LINKAGE_GROUND) {
+        return (Vec2){0.0, 0.0};
+    }
+    const double omega = motions[body].omega;
+    return vec2_scale(omega * omega, vec2_rotate(motions[body].angle, local));
+}
+
+static bool solve_accelerations(const Linkage *linkage, Motion *motions)
+{
+    double rates[KINEMATICS_ROW_MAX] = {0.0};
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const Vec2 gamma = vec2_sub(centripetal(motions, joint->body_b, joint->anchor_b),
+                                    centripetal(motions, joint->body_a, joint->anchor_a));
+        rates[2 * i] = gamma.x;
+        rates[2 * i + 1] = gamma.y;
+    }
+    if (!solve_rows(linkage, motions, rates)) {
+        return false;
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i].acceleration = (Vec2){rates[3 * i], rates[3 * i + 1]};
+        motions[i].alpha = rates[3 * i + 2];
+    }
+    return true;
+}
+
+bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err)
+{
+    if (!linkage->driver.is_present || 2 * linkage->joint_count + 1 != 3 * linkage->body_count) {
+        return err_set(err, ERR_SOLVER,
+                       "the motion of this linkage does not follow from its driver alone: %zu "
+                       "bodies, %zu joints%s",
+                       linkage->body_count, linkage->joint_count,
+                       linkage->driver.is_present ? "" : ", no driver");
+    }
+    Motion solved[LINKAGE_BODY_MAX];
+    memcpy(solved, motions, linkage->body_count * sizeof *motions);
+    if (!newton(linkage, crank_angle, solved)) {
+        return err_set(err, ERR_SOLVER, "the linkage does not close at a crank angle of %.6g deg",
+                       crank_angle * 180.0 / M_PI);
+    }
+    if (!solve_velocities(linkage, solved) || !solve_accelerations(linkage, solved)) {
+        return err_set(err, ERR_SOLVER,
+                       "the linkage is at a dead centre at a crank angle of %.6g deg: its "
+                       "velocities are not determined",
+                       crank_angle * 180.0 / M_PI);
+    }
+    memcpy(motions, solved, linkage->body_count * sizeof *motions);
+    return true;
+}

@@ -1,0 +1,35 @@
+// Positions, velocities and accelerations of any planar linkage whose joints are taken as ideal,
+// by Newton's method and linear solves. The motion of the driver is given; everything else follows.
+#pragma once
+
+#include "model/linkage.h"
+
+// One row per scalar constraint, three columns (x, y, angle) per body, row by row.
+enum {
+    KINEMATICS_COLUMN_MAX = 3 * LINKAGE_BODY_MAX,
+    KINEMATICS_ROW_MAX = 2 * LINKAGE_JOINT_MAX + 1,
+};
+
+typedef struct Jacobian {
+    size_t rows;
+    size_t columns;
+    double entries[KINEMATICS_ROW_MAX * KINEMATICS_COLUMN_MAX];
+} Jacobian;
+
+// The constraint Jacobian: two rows a joint for which `include` is true, then one row for the
+// driver if there is one and `with_driver` is set.
+void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bool *include,
+                         bool with_driver, Jacobian *jacobian);
+
+// The freedoms left with the driver free: three a body less the independent constraint rows.
+// With `ideal_only`, joints with clearance are left open (two freedoms more each).
+size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool ideal_only);
+
+// Moves the bodies so that every joint closes and the driver stands at the angle given, starting
+// from the motions given; then sets velocities and accelerations for the driver's constant speed.
+// Fails with ERR_SOLVER where the linkage does not close, is at a dead centre, or has not exactly
+// one freedom; the motions are then untouched.
+bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err);
+
+// The largest distance between the two anchors of any joint, m.
+double kinematics_closure_error(const Linkage *linkage, const Motion *motions);

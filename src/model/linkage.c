@@ -1,0 +1,158 @@
+// Which bodies are joined where, and is that a linkage at all?
+#include "model/linkage.h"
+
+#include <string.h>
+
+double linkage_radial_clearance(const Joint *joint)
+{
+    return joint->clearance.hole_radius - joint->clearance.pin_radius;
+}
+
+int linkage_driven_body(const Linkage *linkage)
+{
+    return linkage->driver.is_present ? linkage->joints[linkage->driver.joint].body_b
+                                      : LINKAGE_GROUND;
+}
+
+double linkage_crank_angle(const Linkage *linkage, double time_s)
+{
+    const Driver *driver = &linkage->driver;
+    return driver->is_present ? driver->start + driver->speed * time_s : 0.0;
+}
+
+double linkage_period(const Linkage *linkage)
+{
+    const Driver *driver = &linkage->driver;
+    return driver->is_present ? 2.0 * M_PI / fabs(driver->speed) : 0.0;
+}
+
+int linkage_find_body(const Linkage *linkage, const char *name)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if (strcmp(linkage->bodies[i].name, name) == 0) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+int linkage_find_joint(const Linkage *linkage, const char *name)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (strcmp(linkage->joints[i].name, name) == 0) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+Vec2 linkage_point(const Motion *motions, int body, Vec2 local)
+{
+    if (body == LINKAGE_GROUND) {
+        return local;
+    }
+    return vec2_add(motions[body].position, vec2_rotate(motions[body].angle, local));
+}
+
+Vec2 linkage_point_velocity(const Motion *motions, int body, Vec2 local)
+{
+    if (body == LINKAGE_GROUND) {
+        return (Vec2){0.0, 0.0};
+    }
+    const Motion *motion = &motions[body];
+    const Vec2 arm = vec2_rotate(motion->angle, local);
+    return vec2_add(motion->velocity, vec2_scale(motion->omega, vec2_perp(arm)));
+}
+
+static bool check_bodies(const Linkage *linkage, Err *err)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Body *body = &linkage->bodies[i];
+        if (!(body->mass > 0.0) || !isfinite(body->mass)) {
+            return err_set(err, ERR_CASE, "body '%s': mass %g kg, allowed: above 0", body->name,
+                           body->mass);
+        }
+        if (!(body->inertia > 0.0) || !isfinite(body->inertia)) {
+            return err_set(err, ERR_CASE, "body '%s': inertia %g kg m^2, allowed: above 0",
+                           body->name, body->inertia);
+        }
+        if (linkage_find_body(linkage, body->name) != (int)i) {
+            return err_set(err, ERR_CASE, "two bodies are named '%s'", body->name);
+        }
+    }
+    return true;
+}
+
+static bool check_joint(const Linkage *linkage, size_t number, Err *err)
+{
+    const Joint *joint = &linkage->joints[number];
+    const int count = (int)linkage->body_count;
+    if (linkage_find_joint(linkage, joint->name) != (int)number) {
+        return err_set(err, ERR_CASE, "two joints are named '%s'", joint->name);
+    }
+    if (joint->body_a < LINKAGE_GROUND || joint->body_a >= count ||
+        joint->body_b < LINKAGE_GROUND || joint->body_b >= count ||
+        joint->body_a == joint->body_b) {
+        return err_set(err, ERR_CASE, "joint '%s' must join two different bodies of the linkage",
+                       joint->name);
+    }
+    if (joint->kind == JOINT_REVOLUTE) {
+        return true;
+    }
+    const Clearance *clearance = &joint->clearance;
+    if (!(clearance->pin_radius > 0.0) || !(clearance->hole_radius > clearance->pin_radius)) {
+        return err_set(err, ERR_CASE,
+                       "joint '%s': pin radius %.9g m and hole radius %.9g m, allowed: a pin above "
+                       "0 and smaller than its hole",
+                       joint->name, clearance->pin_radius, clearance->hole_radius);
+    }
+    if (!(vec2_length(clearance->start) <= linkage_radial_clearance(joint))) {
+        return err_set(err, ERR_CASE,
+                       "joint '%s': start eccentricity %.9g m, allowed: up to the radial "
+                       "clearance %.9g m",
+                       joint->name, vec2_length(clearance->start), linkage_radial_clearance(joint));
+    }
+    return true;
+}
+
+static bool check_driver(const Linkage *linkage, Err *err)
+{
+    const Driver *driver = &linkage->driver;
+    if (!driver->is_present) {
+        return true;
+    }
+    if (driver->joint < 0 || driver->joint >= (int)linkage->joint_count) {
+        return err_set(err, ERR_CASE, "the driver's joint does not exist");
+    }
+    const Joint *joint = &linkage->joints[driver->joint];
+    if (joint->kind != JOINT_REVOLUTE || joint->body_a != LINKAGE_GROUND) {
+        return err_set(err, ERR_CASE,
+                       "the driver turns a body about joint '%s', which must be an ideal joint "
+                       "with the ground",
+                       joint->name);
+    }
+    if (!(driver->speed != 0.0) || !isfinite(driver->speed) || !isfinite(driver->start)) {
+        return err_set(err, ERR_CASE, "drive speed %g rad/s, allowed: any speed but 0",
+                       driver->speed);
+    }
+    return true;
+}
+
+bool linkage_check(const Linkage *linkage, Err *err)
+{
+    if (linkage->body_count == 0 || linkage->body_count > LINKAGE_BODY_MAX ||
+        linkage->joint_count > LINKAGE_JOINT_MAX) {
+        return err_set(err, ERR_CASE, "%zu bodies and %zu joints, allowed: 1 to %d and 0 to %d",
+                       linkage->body_count, linkage->joint_count, LINKAGE_BODY_MAX,
+                       LINKAGE_JOINT_MAX);
+    }
+    if (!check_bodies(linkage, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (!check_joint(linkage, i, err)) {
+            return false;
+        }
+    }
+    return check_driver(linkage, err);
+}

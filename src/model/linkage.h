@@ -1,0 +1,99 @@
+// A planar linkage as data: rigid bodies with mass properties, the joints between them, one driver.
+//
+// Coordinates: a body's frame has its origin at the centre of mass; its x axis runs along the link.
+// The ground is no body; it has the number LINKAGE_GROUND and the fixed frame of the world, y up.
+#pragma once
+
+#include "base/err.h"
+#include "base/vec2.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum {
+    LINKAGE_GROUND = -1,
+    LINKAGE_BODY_MAX = 16,
+    LINKAGE_JOINT_MAX = 24,
+    LINKAGE_NAME_SIZE = 48,
+};
+
+// How a body moves at one instant, in the world's frame.
+typedef struct Motion {
+    Vec2 position;     // of the centre of mass, m
+    double angle;      // rad, counter-clockwise, not wrapped
+    Vec2 velocity;     // m/s
+    double omega;      // rad/s
+    Vec2 acceleration; // m/s^2
+    double alpha;      // rad/s^2
+} Motion;
+
+typedef struct Body {
+    char name[LINKAGE_NAME_SIZE];
+    double mass;    // kg
+    double inertia; // kg m^2, about the centre of mass, about the axis normal to the plane
+    Motion start;   // at time zero, with every joint ideal unless the case says otherwise
+} Body;
+
+typedef enum JointKind {
+    JOINT_REVOLUTE,  // ideal: the two anchors coincide
+    JOINT_CLEARANCE, // a pin on body b in a hole of body a, with play between them
+} JointKind;
+
+// The sizes of a pin in its hole.
+typedef struct Clearance {
+    double hole_radius; // m
+    double pin_radius;  // m
+    double width;       // m, the length over which pin and hole touch
+    Vec2 start;         // eccentricity at time zero: pin centre minus hole centre, m, world frame
+} Clearance;
+
+typedef struct Joint {
+    char name[LINKAGE_NAME_SIZE];
+    JointKind kind;
+    int body_a;          // carries the hole; number of a body or LINKAGE_GROUND
+    int body_b;          // carries the pin
+    Vec2 anchor_a;       // hole centre in body a's frame, m
+    Vec2 anchor_b;       // pin centre in body b's frame, m
+    Clearance clearance; // of a JOINT_CLEARANCE
+} Joint;
+
+// Turns one body at constant speed about its joint with the ground.
+typedef struct Driver {
+    bool is_present;
+    int joint;    // number of the driven joint, which is ideal; its body_a is the ground
+    double speed; // rad/s, counter-clockwise positive
+    double start; // angle of the driven body at time zero, rad
+} Driver;
+
+typedef struct Linkage {
+    size_t body_count;
+    Body bodies[LINKAGE_BODY_MAX];
+    size_t joint_count;
+    Joint joints[LINKAGE_JOINT_MAX];
+    Driver driver;
+} Linkage;
+
+// The centre distance at which pin and hole touch: hole radius minus pin radius, m.
+double linkage_radial_clearance(const Joint *joint);
+
+// The number of the driven body, or LINKAGE_GROUND where there is no driver.
+int linkage_driven_body(const Linkage *linkage);
+
+// Angle of the driven body at a time, rad; 0 where there is no driver.
+double linkage_crank_angle(const Linkage *linkage, double time_s);
+
+// Time of one turn of the driver, s; 0 where there is no driver.
+double linkage_period(const Linkage *linkage);
+
+// The number of a body or joint by its name, or -1.
+int linkage_find_body(const Linkage *linkage, const char *name);
+int linkage_find_joint(const Linkage *linkage, const char *name);
+
+// A point given in a body's frame (or the ground's), in the world's frame, and its velocity.
+Vec2 linkage_point(const Motion *motions, int body, Vec2 local);
+Vec2 linkage_point_velocity(const Motion *motions, int body, Vec2 local);
+
+// Checks what must hold for any linkage: mass and inertia positive and finite, names unique,
+// joints between two different existing bodies, pin smaller than hole, driver at an ideal joint
+// with the ground. Fails with ERR_CASE and the name of the offender.
+bool linkage_check(const Linkage *linkage, Err *err);

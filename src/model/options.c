@@ -1,0 +1,82 @@
+// What does the program do when nothing is said? Every default, and why it is that number.
+#include "model/options.h"
+
+const char *const OPTIONS_CONTACT_MODELS[] = {"impact", "poisson", NULL};
+const char *const OPTIONS_LAWS[] = {
+    "hertz-socket",          "johnson",       "radzimovsky",   "esdu-78035",
+    "dubowsky-freudenstein", "paper-table-2", "paper-table-3", NULL,
+};
+const char *const OPTIONS_DAMPINGS[] = {
+    "none",
+    "lankarani-nikravesh",
+    "hunt-crossley",
+    "flores",
+    "gonthier",
+    "hu-guo",
+    "exact",
+    "viscous",
+    NULL,
+};
+const char *const OPTIONS_ODE_SOLVERS[] = {"direct", "quick", NULL};
+const char *const OPTIONS_ODE_STEPPINGS[] = {"plain", NULL};
+const char *const OPTIONS_ODE_MAPS[] = {"textbook", "corrected", NULL};
+const char *const OPTIONS_ODE_COLLIDERS[] = {"pin-hole", NULL};
+const char *const OPTIONS_BACKENDS[] = {"analytic", "ode", NULL};
+
+MaterialOptions material_options_default(void)
+{
+    return (MaterialOptions){
+        .youngs_modulus = 2.07e11, // steel, as in the paper's Table V
+        .poisson_ratio = 0.29,     // likewise
+    };
+}
+
+ContactOptions contact_options_default(void)
+{
+    return (ContactOptions){
+        .model = CONTACT_IMPACT,
+        .law = LAW_HERTZ_SOCKET,
+        .stiffness = 0.0,
+        .exponent = 1.5,
+        .damping = DAMPING_LANKARANI_NIKRAVESH,
+        .viscous_coefficient = 0.0,
+        .restitution = 0.9, // hard steel on hard steel at about 1 m/s
+        .friction = 0.0,
+        // a pin that is let go a micron from the wall arrives at 4.4 mm/s; slower arrivals are
+        // contact that begins rather than an impact
+        .impact_speed_floor = 1e-3,
+        .penalty = 0.0,
+        .bounce_speed = 1e-3, // as the floor above
+    };
+}
+
+RunOptions run_options_default(void)
+{
+    return (RunOptions){
+        .revolutions = 1.0,
+        .duration = 0.06, // one revolution at 1000 rpm
+        .samples = 3600,  // a tenth of a degree
+        .step = 1e-6,     // some 50 steps to a steel contact
+        .backend_count = 2,
+        .backends = {BACKEND_ANALYTIC, BACKEND_ODE},
+    };
+}
+
+OdeOptions ode_options_default(void)
+{
+    return (OdeOptions){
+        .solver = ODE_DIRECT,
+        .stepping = ODE_PLAIN,
+        .map = ODE_MAP_TEXTBOOK,
+        .collider = ODE_COLLIDER_PIN_HOLE,
+        .erp = 0.2,      // ODE's own default, set and not inherited
+        .cfm = 0.0,      // no joint row is redundant, so none needs softening
+        // the paper's Eq. (2) has no term in the penetration, and at 0 the pin creeps into the
+        // wall, deeper than its play within a turn; ODE's own default holds it
+        .push_out = 0.2,
+        .iterations = 20,
+        .over_relaxation = 1.3,
+        .seed = 1,
+        .settle_steps = 100, // 0.8^100 = 2e-10 of the start's error is left at ERP 0.2
+    };
+}

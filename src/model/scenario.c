@@ -1,0 +1,74 @@
+// What is to be run, for how long, and how often is it looked at?
+#include "model/scenario.h"
+
+Scenario scenario_default(void)
+{
+    return (Scenario){
+        .gravity = 9.80665, // m/s^2, standard gravity
+        .material = material_options_default(),
+        .contact = contact_options_default(),
+        .run = run_options_default(),
+        .ode = ode_options_default(),
+    };
+}
+
+double scenario_duration(const Scenario *scenario)
+{
+    return scenario->linkage.driver.is_present
+               ? scenario->run.revolutions * linkage_period(&scenario->linkage)
+               : scenario->run.duration;
+}
+
+// Number of sample intervals in the run; a last, partial one is left out.
+static size_t interval_count(const Scenario *scenario)
+{
+    const double samples = (double)scenario->run.samples;
+    if (!scenario->linkage.driver.is_present) {
+        return scenario->run.samples;
+    }
+    // 1e-9 of an interval: a whole number of intervals stays whole in spite of rounding
+    return (size_t)floor(scenario->run.revolutions * samples + 1e-9);
+}
+
+size_t scenario_sample_count(const Scenario *scenario)
+{
+    return interval_count(scenario) + 1;
+}
+
+double scenario_sample_time(const Scenario *scenario, size_t sample)
+{
+    const double turn = scenario->linkage.driver.is_present ? linkage_period(&scenario->linkage)
+                                                            : scenario->run.duration;
+    return turn * (double)sample / (double)scenario->run.samples;
+}
+
+bool scenario_has_clearance(const Scenario *scenario)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        if (scenario->linkage.joints[i].kind == JOINT_CLEARANCE) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool scenario_check(const Scenario *scenario, Err *err)
+{
+    if (!linkage_check(&scenario->linkage, err)) {
+        return false;
+    }
+    const RunOptions *run = &scenario->run;
+    if (!(run->step > 0.0) || !isfinite(run->step)) {
+        return err_set(err, ERR_CASE, "step %g s, allowed: above 0", run->step);
+    }
+    if (run->samples == 0 || !(scenario_duration(scenario) > 0.0) ||
+        scenario_sample_count(scenario) < 2) {
+        return err_set(err, ERR_CASE, "the run holds no sample: %g s, %zu samples",
+                       scenario_duration(scenario), run->samples);
+    }
+    if (!isfinite(scenario->gravity)) {
+        return err_set(err, ERR_CASE, "gravity %g m/s^2, allowed: any finite number",
+                       scenario->gravity);
+    }
+    return true;
+}

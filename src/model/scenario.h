@@ -1,0 +1,46 @@
+// Everything a solver needs to know: the linkage, the world around it, the contact, the run.
+#pragma once
+
+#include "model/fourbar.h"
+#include "model/linkage.h"
+#include "model/options.h"
+
+enum { SCENARIO_TITLE_SIZE = 256, SCENARIO_PATH_SIZE = 4096, SCENARIO_POINT_MAX = 4 };
+
+// A point of a body whose path is written out.
+typedef struct TracedPoint {
+    char name[LINKAGE_NAME_SIZE];
+    int body;
+    Vec2 local; // in the body's frame, m
+} TracedPoint;
+
+typedef struct Scenario {
+    char title[SCENARIO_TITLE_SIZE];
+    char path[SCENARIO_PATH_SIZE]; // of the case file, as given; empty where there is none
+    Linkage linkage;
+    bool has_fourbar; // whether the case used the short form
+    FourBar fourbar;
+    size_t point_count;
+    TracedPoint points[SCENARIO_POINT_MAX];
+    double gravity; // m/s^2, along -y
+    MaterialOptions material;
+    ContactOptions contact;
+    RunOptions run;
+    OdeOptions ode;
+} Scenario;
+
+// A scenario with every option at its default and an empty linkage.
+Scenario scenario_default(void);
+
+// Length of the run, s, and the number of samples in it (both ends included).
+double scenario_duration(const Scenario *scenario);
+size_t scenario_sample_count(const Scenario *scenario);
+
+// Time of one sample: an exact multiple of the sample interval, s.
+double scenario_sample_time(const Scenario *scenario, size_t sample);
+
+// Whether any joint has play.
+bool scenario_has_clearance(const Scenario *scenario);
+
+// Checks what no single key can show: the linkage, the options' ranges, the size of the run.
+bool scenario_check(const Scenario *scenario, Err *err);

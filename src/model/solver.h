@@ -1,0 +1,47 @@
+// The interface every solver stands behind. A solver ends in one const Solver; run/ lists them.
+//
+// The caller opens it on a scenario, asks for steps until the time of the next sample is reached
+// or passed, observes the sample, and closes it. It looks at the record of each step in between,
+// so that nothing that lives shorter than a sample is lost. The first step comes before the first
+// sample, so that every sample stands in a step and has accelerations and forces.
+#pragma once
+
+#include "model/trajectory.h"
+
+// What happened in one step. The arrays hold as many entries as the linkage has bodies or joints
+// and stay valid until the next call.
+typedef struct StepRecord {
+    double start_s;
+    double end_s;
+    const double *omega;      // rad/s, of each body at end_s
+    const double *alpha;      // rad/s^2, of each body: mean over the step
+    const JointState *joints; // in the step: force its mean, gap as it was when the force arose
+    const double *approach;   // m/s, closing speed of each joint at the time of that gap
+} StepRecord;
+
+// What a solver built from the scenario, for people and for the record.
+typedef struct SolverModel {
+    char label[TRAJECTORY_LABEL_SIZE];
+    double step_s;          // 0 where it has no fixed step
+    size_t constraint_rows; // of the ideal joints
+    size_t contact_rows;    // most so far
+    size_t steps;           // taken so far
+} SolverModel;
+
+typedef struct Solver {
+    const char *name;    // as in a case's list of backends
+    const char *summary; // one line for people
+    // Makes the state at time zero. On failure *state stays NULL.
+    bool (*open)(const Scenario *scenario, void **state, Err *err);
+    // Takes one step of the solver's own choosing towards stop_s. It may end beyond stop_s only
+    // if observe can look back into the step. Fails with ERR_SOLVER, saying when and why.
+    bool (*step)(void *state, double stop_s, Err *err);
+    // The record of the last step; not called before the first.
+    StepRecord (*record)(const void *state);
+    // The state at a time in the last step, both ends included.
+    void (*observe)(const void *state, double time_s, Sample *sample);
+    SolverModel (*model)(const void *state);
+    // Optional: extremes known better than from steps (a closed form). NULL: taken from records.
+    void (*extremes)(const void *state, BodyExtremes *bodies);
+    void (*close)(void *state);
+} Solver;

@@ -1,0 +1,96 @@
+// What one solver made of one scenario: the state at every sample, and what happened in between.
+#pragma once
+
+#include "model/scenario.h"
+
+#include <stdint.h>
+
+enum { TRAJECTORY_LABEL_SIZE = 96, TRAJECTORY_SPIKE_MAX = 12 };
+
+// One joint at one instant.
+typedef struct JointState {
+    Vec2 eccentricity; // pin centre minus hole centre, m
+    double gap;        // radial clearance less eccentricity, m; negative inside the metal
+    double force;      // size of the force in the joint, N
+    bool is_touching;  // pin and hole overlap (an ideal joint always touches)
+} JointState;
+
+// A greatest or smallest value and when it stood.
+typedef struct Extreme {
+    double value;
+    double time_s;
+    double crank_rad; // not wrapped
+} Extreme;
+
+typedef struct BodyExtremes {
+    Extreme omega_max; // rad/s
+    Extreme omega_min;
+    Extreme alpha_max; // rad/s^2
+    Extreme alpha_min;
+} BodyExtremes;
+
+// One contact from its onset to its end.
+typedef struct Spike {
+    double onset_s;
+    double crank_rad; // at the onset, not wrapped
+    double duration_s;
+    double force_max;       // N
+    double impulse;         // N s
+    double penetration_max; // m
+    double approach_speed;  // m/s, closing speed at the onset
+} Spike;
+
+typedef struct JointExtremes {
+    size_t impacts;                     // contacts begun
+    Extreme force_max;                  // N
+    Extreme penetration_max;            // m
+    double impulse;                     // N s, over all contacts
+    double contact_time;                // s
+    size_t spike_count;                 // of those kept below
+    Spike spikes[TRAJECTORY_SPIKE_MAX]; // the strongest by force, strongest first
+} JointExtremes;
+
+// The state at one sample.
+typedef struct Sample {
+    double time_s;
+    double crank_rad;
+    Motion bodies[LINKAGE_BODY_MAX];
+    JointState joints[LINKAGE_JOINT_MAX];
+} Sample;
+
+typedef struct Trajectory {
+    char backend[LINKAGE_NAME_SIZE];
+    char label[TRAJECTORY_LABEL_SIZE]; // backend and scheme, e.g. "ode direct/plain/textbook"
+    bool is_complete;                  // false: the run failed, and only `message` is to be used
+    char message[ERR_TEXT_SIZE];       // why it failed
+    size_t body_count;
+    size_t joint_count;
+    int driven_body; // whose motion is prescribed, or LINKAGE_GROUND
+    size_t sample_count;
+    double *times;        // s, by sample; owned, like the three below
+    double *crank_angles; // rad, by sample, not wrapped
+    Motion *motions;      // [sample * body_count + body]
+    JointState *states;   // [sample * joint_count + joint]
+    BodyExtremes bodies[LINKAGE_BODY_MAX];
+    JointExtremes joints[LINKAGE_JOINT_MAX];
+    double duration_s;      // simulated
+    double step_s;          // 0 where the solver has no fixed step
+    size_t steps;           // every step taken, settling included
+    double wall_s;          // spent in the stepping loop
+    size_t constraint_rows; // of the ideal joints, where the solver builds rows
+    size_t contact_rows;    // most at any one step
+    uint64_t hash;          // of every step's velocities, accelerations and joint forces
+} Trajectory;
+
+Trajectory *trajectory_create(const Scenario *scenario, const char *backend);
+void trajectory_destroy(Trajectory *trajectory);
+
+// Puts a sample into its place in the trajectory.
+void trajectory_store(Trajectory *trajectory, size_t sample_index, const Sample *sample);
+
+// The state of one body or joint at one sample.
+const Motion *trajectory_motion(const Trajectory *trajectory, size_t sample, size_t body);
+const JointState *trajectory_state(const Trajectory *trajectory, size_t sample, size_t joint);
+
+// Largest |omega| of one body over the samples, rad/s.
+double trajectory_omega_scale(const Trajectory *trajectory, size_t body);

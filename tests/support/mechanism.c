@@ -1,0 +1,115 @@
+#include "mechanism.h"
+
+#include "model/kinematics.h"
+
+#include <assert.h>
+#include <stdio.h>
+
+static void add_body(Linkage *linkage, const char *name, double mass, double inertia, Vec2 position,
+                     double angle)
+{
+    Body *body = &linkage->bodies[linkage->body_count++];
+    snprintf(body->name, sizeof body->name, "%s", name);
+    body->mass = mass;
+    body->inertia = inertia;
+    body->start = (Motion){.position = position, .angle = angle};
+}
+
+static void add_joint(Linkage *linkage, const char *name, int a, Vec2 anchor_a, int b,
+                      Vec2 anchor_b)
+{
+    Joint *joint = &linkage->joints[linkage->joint_count++];
+    *joint = (Joint){.body_a = a, .body_b = b, .anchor_a = anchor_a, .anchor_b = anchor_b};
+    snprintf(joint->name, sizeof joint->name, "%s", name);
+}
+
+static void assemble(Scenario *scenario)
+{
+    Linkage *linkage = &scenario->linkage;
+    Motion motions[LINKAGE_BODY_MAX];
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i] = linkage->bodies[i].start;
+    }
+    Err err = {ERR_NONE, ""};
+    const bool is_closed = kinematics_solve(linkage, linkage->driver.start, motions, &err);
+    assert(is_closed);
+    (void)is_closed;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        linkage->bodies[i].start = motions[i];
+    }
+}
+
+Scenario mechanism_paper(void)
+{
+    Scenario scenario = scenario_default();
+    scenario.has_fourbar = true;
+    scenario.fourbar = (FourBar){
+        .ground = {0.254, -5e-4, 5e-4},
+        .crank = {0.108, -3e-4, 3e-4},
+        .coupler = {0.2794, -5e-4, 5e-4},
+        .follower = {0.2705, -5e-4, 5e-4},
+        .assembly = ASSEMBLY_OPEN,
+    };
+    Linkage *linkage = &scenario.linkage;
+    // guesses good enough for Newton's method to find the open assembly
+    add_body(linkage, "crank", 0.12, 173.92e-6, (Vec2){0.054, 0.0}, 0.0);
+    add_body(linkage, "coupler", 0.29, 2070.46e-6, (Vec2){0.19, 0.12}, 1.0);
+    add_body(linkage, "follower", 0.28, 1988.39e-6, (Vec2){0.27, 0.13}, 1.5);
+    add_joint(linkage, "ground-crank", LINKAGE_GROUND, (Vec2){0.0, 0.0}, 0, (Vec2){-0.054, 0.0});
+    add_joint(linkage, "crank-coupler", 0, (Vec2){0.054, 0.0}, 1, (Vec2){-0.1397, 0.0});
+    add_joint(linkage, "coupler-follower", 1, (Vec2){0.1397, 0.0}, 2, (Vec2){0.13525, 0.0});
+    add_joint(linkage, "follower-ground", 2, (Vec2){-0.13525, 0.0}, LINKAGE_GROUND,
+              (Vec2){0.254, 0.0});
+    linkage->driver = (Driver){true, 0, 1000.0 * 2.0 * M_PI / 60.0, 0.0};
+    assemble(&scenario);
+    return scenario;
+}
+
+void mechanism_loosen(Scenario *scenario, const char *joint)
+{
+    const int number = linkage_find_joint(&scenario->linkage, joint);
+    assert(number >= 0);
+    scenario->linkage.joints[number].kind = JOINT_CLEARANCE;
+    scenario->linkage.joints[number].clearance = (Clearance){
+        .hole_radius = 5.0075e-3,
+        .pin_radius = 4.993e-3,
+        .width = 13e-3,
+    };
+}
+
+Scenario mechanism_pin(double mass, double radial_clearance)
+{
+    Scenario scenario = scenario_default();
+    scenario.gravity = 0.0;
+    Linkage *linkage = &scenario.linkage;
+    add_body(linkage, "pin", mass, 1e-6, (Vec2){0.0, 0.0}, 0.0);
+    add_joint(linkage, "hole", LINKAGE_GROUND, (Vec2){0.0, 0.0}, 0, (Vec2){0.0, 0.0});
+    linkage->joints[0].kind = JOINT_CLEARANCE;
+    linkage->joints[0].clearance = (Clearance){
+        .hole_radius = 5e-3 + radial_clearance,
+        .pin_radius = 5e-3,
+        .width = 10e-3,
+    };
+    scenario.run.backend_count = 1;
+    scenario.run.backends[0] = BACKEND_ODE;
+    return scenario;
+}
+
+Scenario mechanism_parallelogram(void)
+{
+    Scenario scenario = scenario_default();
+    Linkage *linkage = &scenario.linkage;
+    add_body(linkage, "first", 1.0, 0.1, (Vec2){0.0, 0.5}, 0.5 * M_PI);
+    add_body(linkage, "second", 1.0, 0.1, (Vec2){1.0, 0.5}, 0.5 * M_PI);
+    add_body(linkage, "third", 1.0, 0.1, (Vec2){2.0, 0.5}, 0.5 * M_PI);
+    add_body(linkage, "bar", 1.0, 0.1, (Vec2){1.0, 1.0}, 0.0);
+    for (int i = 0; i < 3; i++) {
+        char name[LINKAGE_NAME_SIZE];
+        snprintf(name, sizeof name, "foot-%d", i);
+        add_joint(linkage, name, LINKAGE_GROUND, (Vec2){i, 0.0}, i, (Vec2){-0.5, 0.0});
+        snprintf(name, sizeof name, "head-%d", i);
+        add_joint(linkage, name, i, (Vec2){0.5, 0.0}, 3, (Vec2){i - 1.0, 0.0});
+    }
+    linkage->driver = (Driver){true, 0, 1.0, 0.5 * M_PI};
+    return scenario;
+}

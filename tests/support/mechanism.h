@@ -1,0 +1,18 @@
+// Mechanisms that the tests share, built from the model's data alone, without a case file.
+#pragma once
+
+#include "model/scenario.h"
+
+// The paper's crank-rocker at 1000 rpm, counter-clockwise, crank at 0 deg: nominal lengths with
+// the tolerances of its Table IV, defaults else. All joints ideal.
+Scenario mechanism_paper(void);
+
+// Gives the joint of that name the paper's play: hole 10.015 mm, pin 9.986 mm, width 13 mm.
+void mechanism_loosen(Scenario *scenario, const char *joint);
+
+// One body, a pin of radius 5 mm in a hole of the ground about the origin, with a radial clearance,
+// m, no gravity, no driver. The body starts concentric and at rest; its mass in kg.
+Scenario mechanism_pin(double mass, double radial_clearance);
+
+// A parallelogram with three parallel cranks, one of which is redundant; upright, driven.
+Scenario mechanism_parallelogram(void);
