@@ -1,0 +1,60 @@
+// The force between pin and hole as a function of penetration and its rate, ready for the inner
+// loop of every solver.
+//
+// Penetration is positive inside the metal, its rate positive while it grows; the force is the
+// pressing force along the normal and never negative.
+#pragma once
+
+#include <stdbool.h>
+
+typedef enum ForceLawFamily {
+    FORCE_LAW_POWER,       // F = K d^n
+    FORCE_LAW_LOGARITHMIC, // d = A F (B - ln F), F in N: cylinder in a hole
+} ForceLawFamily;
+
+typedef struct ForceLaw {
+    ForceLawFamily family;
+    double stiffness;          // K, N/m^n, of FORCE_LAW_POWER
+    double exponent;           // n, 1, of FORCE_LAW_POWER
+    double compliance;         // A, m/N, of FORCE_LAW_LOGARITHMIC
+    double offset;             // B, 1, of FORCE_LAW_LOGARITHMIC
+    double log_scale;          // B + ln(A / (m/N)), 1: set by force_law_logarithmic
+    double hysteresis;         // chi, 1: F = F_el (1 + chi d'/v0); 0 for none
+    double viscous;            // c, N s/m: F = F_el + c d'; 0 for none
+    double impact_speed_floor; // m/s, > 0: smallest v0 the hysteretic damping divides by
+} ForceLaw;
+
+// The two families, undamped, with an impact speed floor of 1 mm/s. Every number must be > 0
+// (B alone may be anything).
+ForceLaw force_law_power(double stiffness, double exponent);
+ForceLaw force_law_logarithmic(double compliance, double offset);
+
+// The deepest penetration the law can describe, m: A e^(B-1) of the logarithmic family, where
+// the force has no finite slope any more; infinite for the power family.
+double force_law_depth_limit(const ForceLaw *law);
+
+// Elastic force, N, at a penetration, m; 0 where it is not positive; NaN beyond the depth limit,
+// so that the run ends with a status.
+double force_law_elastic(const ForceLaw *law, double penetration);
+
+// Slope of the elastic force, N/m. At no penetration: 0 for n > 1, K for n = 1, infinite for
+// n < 1, 0 for the logarithmic family (its stiffness vanishes as 1 / ln d).
+double force_law_tangent(const ForceLaw *law, double penetration);
+
+// Elastic force over penetration, N/m: the spring that gives the exact force there. At no
+// penetration: its limit, as for the tangent.
+double force_law_secant(const ForceLaw *law, double penetration);
+
+// The damping coefficient c, N s/m, in F = F_el + c d' at a penetration, m, in a contact that
+// began with an impact speed, m/s (raised to the floor).
+double force_law_damping(const ForceLaw *law, double penetration, double impact_speed);
+
+// The whole force, N: elastic and damping, never below 0; 0 without penetration.
+double force_law_force(const ForceLaw *law, double penetration, double rate, double impact_speed);
+
+// Static penetration, m, under a force, N; 0 where the force is not positive; NaN above the force
+// at the depth limit.
+double force_law_penetration(const ForceLaw *law, double force);
+
+// Elastic energy stored at a penetration, J.
+double force_law_energy(const ForceLaw *law, double penetration);

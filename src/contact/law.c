@@ -1,0 +1,99 @@
+// Which force law do a pin, its hole, their material and the case's options make?
+#include "contact/law.h"
+
+#include "contact/damping.h"
+#include "contact/penalty.h"
+
+#include <math.h>
+
+// the speed at which the paper ran its mechanism: 1000 rpm, rad/s
+static const double PAPER_SPEED = 104.71975511965977;
+
+static const Law *const LAWS[] = {
+    [LAW_HERTZ_SOCKET] = &law_hertz_socket,
+    [LAW_JOHNSON] = &law_johnson,
+    [LAW_RADZIMOVSKY] = &law_radzimovsky,
+    [LAW_ESDU_78035] = &law_esdu_78035,
+    [LAW_DUBOWSKY_FREUDENSTEIN] = &law_dubowsky_freudenstein,
+    [LAW_PAPER_TABLE_2] = &law_paper_table_2,
+    [LAW_PAPER_TABLE_3] = &law_paper_table_3,
+};
+
+const Law *law_get(LawKind kind)
+{
+    return LAWS[kind];
+}
+
+double law_effective_modulus(const ContactPair *pair)
+{
+    const MaterialOptions material = {pair->youngs_modulus, pair->poisson_ratio};
+    return penalty_effective_modulus(&material);
+}
+
+static bool check_pair(const Law *law, const ContactPair *pair, Err *err)
+{
+    if (!(pair->pin_radius > 0.0 && pair->hole_radius > pair->pin_radius)) {
+        return err_set(err, ERR_CASE, "the contact law %s needs a pin smaller than its hole",
+                       law->name);
+    }
+    if (!(pair->youngs_modulus > 0.0) || !(fabs(pair->poisson_ratio) < 1.0)) {
+        return err_set(err, ERR_CASE,
+                       "the contact law %s needs a Young's modulus above 0 and a Poisson's ratio"
+                       " between -1 and 1",
+                       law->name);
+    }
+    if (law->needs_width && !(pair->width > 0.0)) {
+        return err_set(err, ERR_CASE, "the contact law %s needs the width of the joint", law->name);
+    }
+    if (law->needs_force && !(pair->reference_force > 0.0)) {
+        return err_set(err, ERR_CASE, "the contact law %s needs a reference force above 0",
+                       law->name);
+    }
+    return true;
+}
+
+bool law_make(LawKind kind, const ContactPair *pair, ForceLaw *law, Err *err)
+{
+    const Law *member = law_get(kind);
+    if (!check_pair(member, pair, err)) {
+        return false;
+    }
+    member->make(pair, law);
+    return true;
+}
+
+ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material, double speed)
+{
+    const PenaltyReading reading = penalty_reading_of_tables();
+    const double load_speed = speed == 0.0 ? PAPER_SPEED : speed;
+    return (ContactPair){
+        .hole_radius = clearance->hole_radius,
+        .pin_radius = clearance->pin_radius,
+        .width = clearance->width,
+        .youngs_modulus = material->youngs_modulus,
+        .poisson_ratio = material->poisson_ratio,
+        .reference_force = penalty_force(&reading, reading.alpha_at_1000, load_speed),
+    };
+}
+
+bool law_build(const ContactOptions *contact, const MaterialOptions *material,
+               const Clearance *clearance, double speed, ForceLaw *law, Err *err)
+{
+    ForceLaw built;
+    if (contact->stiffness > 0.0) {
+        built = force_law_power(contact->stiffness, contact->exponent);
+    } else {
+        const ContactPair pair = law_pair(clearance, material, speed);
+        if (!law_make(contact->law, &pair, &built, err)) {
+            return false;
+        }
+    }
+    built.impact_speed_floor = contact->impact_speed_floor;
+    if (contact->damping == DAMPING_VISCOUS) {
+        built.viscous = contact->viscous_coefficient;
+    } else {
+        built.hysteresis = damping_factor(contact->damping, contact->restitution);
+    }
+    *law = built;
+    return true;
+}

@@ -1,0 +1,55 @@
+// The family of elastic contact laws: what pin, hole and material give as a force law.
+#pragma once
+
+#include "base/err.h"
+#include "contact/force_law.h"
+#include "model/linkage.h"
+#include "model/options.h"
+
+// A pin in a hole, both of one material.
+typedef struct ContactPair {
+    double hole_radius;     // m
+    double pin_radius;      // m, smaller
+    double width;           // m, over which they touch; only the cylinder laws need it
+    double youngs_modulus;  // Pa
+    double poisson_ratio;   // 1
+    double reference_force; // N, at which a law whose stiffness depends on a load is taken:
+                            // paper-table-2, by the tangential force of the paper's Table I
+} ContactPair;
+
+typedef struct Law {
+    const char *name;    // as in a case
+    const char *summary; // one line for people
+    const char *source;  // where it stands
+    bool needs_width;    // whether the joint must have a width
+    bool needs_force;    // whether the reference force must be above 0
+    // Makes the undamped force law. The pair has been checked.
+    void (*make)(const ContactPair *pair, ForceLaw *law);
+} Law;
+
+const Law *law_get(LawKind kind);
+
+// Makes the undamped law of a pair. Fails with ERR_CASE, the law untouched, where radii, material
+// or (if needed) width or reference force are out of range.
+bool law_make(LawKind kind, const ContactPair *pair, ForceLaw *law, Err *err);
+
+// The pair of a joint. The reference force is the paper's for its crank-coupler pin at the
+// driver's speed, rad/s; 0 stands for 1000 rpm.
+ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material, double speed);
+
+// The whole law of a joint as the options say: given stiffness or law, damping, speed floor. Fails
+// as law_make does.
+bool law_build(const ContactOptions *contact, const MaterialOptions *material,
+               const Clearance *clearance, double speed, ForceLaw *law, Err *err);
+
+// E* = E / (2 (1 - nu^2)), Pa.
+double law_effective_modulus(const ContactPair *pair);
+
+// The members, for the registry.
+extern const Law law_hertz_socket;
+extern const Law law_johnson;
+extern const Law law_radzimovsky;
+extern const Law law_esdu_78035;
+extern const Law law_dubowsky_freudenstein;
+extern const Law law_paper_table_2;
+extern const Law law_paper_table_3;
