@@ -1,0 +1,69 @@
+// The closed-form motion of a four-bar with ideal joints, for one crank angle or a whole grid.
+#pragma once
+
+#include "model/fourbar.h"
+#include "model/linkage.h"
+
+#include <stddef.h>
+
+// The four lengths without their tolerances, m, and how the loop is closed.
+typedef struct FourBarLengths {
+    double ground;
+    double crank;
+    double coupler;
+    double follower;
+    Assembly assembly;
+} FourBarLengths;
+
+FourBarLengths fourbar_motion_nominal(const FourBar *fourbar);
+
+// Results over a grid of crank angles, each array of the grid's length or NULL where not wanted.
+typedef struct FourBarGrid {
+    double *coupler_angle;  // rad, in (-pi, pi]
+    double *follower_angle; // rad, in (-pi, pi], of the line from follower pivot to coupler pin
+    double *coupler_omega;  // rad/s
+    double *follower_omega; // rad/s
+    double *coupler_alpha;  // rad/s^2
+    double *follower_alpha; // rad/s^2
+} FourBarGrid;
+
+// Evaluates the motion at every crank angle of the grid for a crank turning at constant speed,
+// rad/s. Where the loop does not close or is at a dead centre, the results are NaN.
+void fourbar_motion_grid(const FourBarLengths *lengths, double speed, size_t count,
+                         const double *crank_angles, const FourBarGrid *grid);
+
+// The motion of the three bodies crank, coupler, follower, centres of mass at mid-link, at one
+// crank angle. Returns false, motions untouched, where the loop does not close there.
+bool fourbar_motion_bodies(const FourBarLengths *lengths, double speed, double crank_angle,
+                           Motion motions[3]);
+
+// The acute angle between coupler and follower, rad, at a crank angle.
+double fourbar_motion_transmission(const FourBarLengths *lengths, double crank_angle);
+
+// What can be extreme over a turn.
+typedef enum FourBarQuantity {
+    FOURBAR_COUPLER_OMEGA,
+    FOURBAR_FOLLOWER_OMEGA,
+    FOURBAR_COUPLER_ALPHA,
+    FOURBAR_FOLLOWER_ALPHA,
+    FOURBAR_FOLLOWER_ANGLE, // from 0 to 2 pi
+    FOURBAR_TRANSMISSION,
+    FOURBAR_QUANTITY_COUNT,
+} FourBarQuantity;
+
+typedef struct FourBarExtreme {
+    double low;       // smallest value in the interval
+    double low_angle; // rad, the crank angle where it stands
+    double high;
+    double high_angle;
+} FourBarExtreme;
+
+double fourbar_motion_quantity(const FourBarLengths *lengths, double speed,
+                               FourBarQuantity quantity, double crank_angle);
+
+// The extremes of one quantity for crank angles from first to last: a grid of half a degree, then
+// Brent's method between its neighbours, so the values are right to rounding for any curve with
+// no two extremes within a degree.
+FourBarExtreme fourbar_motion_extreme(const FourBarLengths *lengths, double speed,
+                                      FourBarQuantity quantity, double first_angle,
+                                      double last_angle);

@@ -1,0 +1,19 @@
+// The forces behind a known motion: drive torque and the reaction in every ideal joint.
+#pragma once
+
+#include "model/linkage.h"
+
+typedef struct Reactions {
+    Vec2 force_on_b[LINKAGE_JOINT_MAX]; // N, on body b of each joint; on body a its opposite
+    double drive_torque;                // N m, on the driven body
+} Reactions;
+
+// Solves the Newton-Euler equations of every body for the reactions. The motions hold position,
+// velocity and acceleration; every joint counts as ideal; gravity acts along -y, m/s^2.
+// Fails with ERR_SOLVER where the reactions are not determined.
+bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, double gravity,
+                            Reactions *reactions, Err *err);
+
+// Rate of change of the kinetic and potential energy of all bodies, W. In a linkage with ideal
+// joints it equals drive torque times crank speed.
+double inverse_dynamics_power(const Linkage *linkage, const Motion *motions, double gravity);
