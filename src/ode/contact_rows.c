@@ -1,0 +1,169 @@
+// What does a touching pin become inside ODE, and which force came of it?
+//
+// ODE's contact row, F >= 0, d penetration, v_out the separating speed after the step:
+//     v_out + CFM F = (ERP / h) d
+// IMPACT: (ERP, CFM) from the secant stiffness k and damping c of the force law at d, by the map
+// chosen, anew each step. POISSON: CFM = 1 / p and bounce e, the paper's Eq. (2) F = p dg/dt.
+#include "ode/contact_rows.h"
+
+#include "contact/law.h"
+#include "contact/penalty.h"
+#include "contact/pin_hole.h"
+
+#include <string.h>
+
+// the contact laws are for depths small against the radii; a tenth of the pin's is far outside
+// them, and steel has yielded long before: the step was too coarse to catch the wall
+static const double DEPTH_LIMIT = 0.1;
+
+bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world, Err *err)
+{
+    memset(rows, 0, sizeof *rows);
+    rows->scenario = scenario;
+    rows->world = world;
+    rows->map = map_get(scenario->ode.map);
+    rows->penalty = scenario->contact.penalty > 0.0
+                        ? scenario->contact.penalty
+                        : penalty_estimate(scenario->linkage.driver.speed, &scenario->material);
+    for (size_t i = 0; i < world->pair_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[world->pairs[i].joint];
+        rows->rows[i].radial_clearance = linkage_radial_clearance(joint);
+        if (!law_build(&scenario->contact, &scenario->material, &joint->clearance,
+                       scenario->linkage.driver.speed, &rows->rows[i].law, err)) {
+            err_prefix(err, joint->name);
+            return false;
+        }
+    }
+    rows->group = dJointGroupCreate(0);
+    return true;
+}
+
+void contact_rows_finish(ContactRows *rows)
+{
+    if (rows->group != NULL) {
+        dJointGroupDestroy(rows->group);
+    }
+    memset(rows, 0, sizeof *rows);
+}
+
+// Centre of a geom and the velocity of its body there.
+static void geom_centre(dGeomID geom, Vec2 *centre, Vec2 *velocity)
+{
+    const dReal *position = dGeomGetPosition(geom);
+    const dBodyID body = dGeomGetBody(geom);
+    *centre = (Vec2){position[0], position[1]};
+    *velocity = (Vec2){0.0, 0.0};
+    if (body != NULL) {
+        const dReal *at = dBodyGetPosition(body);
+        const dReal *speed = dBodyGetLinearVel(body);
+        const double omega = dBodyGetAngularVel(body)[2];
+        *velocity = (Vec2){speed[0] - omega * (position[1] - at[1]),
+                           speed[1] + omega * (position[0] - at[0])};
+    }
+}
+
+static PinHole pair_pose(const WorldPair *pair, double radial_clearance)
+{
+    Vec2 hole;
+    Vec2 pin;
+    Vec2 hole_velocity;
+    Vec2 pin_velocity;
+    geom_centre(pair->hole, &hole, &hole_velocity);
+    geom_centre(pair->pin, &pin, &pin_velocity);
+    return pin_hole_pose(hole, pin, vec2_sub(pin_velocity, hole_velocity), radial_clearance);
+}
+
+static dSurfaceParameters surface_of(const ContactRows *rows, const ContactRow *row, double step_s)
+{
+    const ContactOptions *options = &rows->scenario->contact;
+    // no friction: mu 0 makes one row, along the normal
+    dSurfaceParameters surface = {.mode = dContactSoftERP | dContactSoftCFM, .mu = 0.0};
+    if (options->model == CONTACT_POISSON) {
+        surface.mode |= dContactBounce;
+        surface.bounce = options->restitution;
+        surface.bounce_vel = options->bounce_speed;
+        surface.soft_erp = rows->scenario->ode.push_out;
+        surface.soft_cfm = map_poisson_cfm(rows->penalty);
+        return surface;
+    }
+    const double stiffness = force_law_secant(&row->law, row->depth);
+    const double damping = force_law_damping(&row->law, row->depth, row->impact_speed);
+    const ErpCfm soft = rows->map->convert(stiffness, damping, step_s);
+    surface.soft_erp = soft.erp;
+    surface.soft_cfm = soft.cfm;
+    return surface;
+}
+
+static void make_row(ContactRows *rows, size_t number, const dContactGeom *geom, double step_s)
+{
+    ContactRow *row = &rows->rows[number];
+    const dContact contact = {.surface = surface_of(rows, row, step_s), .geom = *geom};
+    const dJointID joint = dJointCreateContact(rows->world->id, rows->group, &contact);
+    const WorldPair *pair = &rows->world->pairs[number];
+    dJointAttach(joint, dGeomGetBody(pair->hole), dGeomGetBody(pair->pin));
+    dJointSetFeedback(joint, &row->feedback);
+}
+
+static bool check_depth(const ContactRows *rows, size_t number, Err *err)
+{
+    const ContactRow *row = &rows->rows[number];
+    const Joint *joint = &rows->scenario->linkage.joints[rows->world->pairs[number].joint];
+    const double allowed =
+        fmin(DEPTH_LIMIT * joint->clearance.pin_radius, force_law_depth_limit(&row->law));
+    if (row->depth <= allowed) {
+        return true;
+    }
+    return err_set(err, ERR_SOLVER,
+                   "the pin of %s is %.4g mm inside the wall of its hole; no contact law holds "
+                   "beyond %.4g mm",
+                   joint->name, 1e3 * row->depth, 1e3 * allowed);
+}
+
+bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
+                       Err *err)
+{
+    size_t row_count = 0;
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        const WorldPair *pair = &rows->world->pairs[i];
+        ContactRow *row = &rows->rows[i];
+        dContactGeom geom;
+        const bool was_touching = row->is_touching;
+        row->is_touching = dCollide(pair->hole, pair->pin, 1, &geom, sizeof geom) > 0;
+        const PinHole pose = pair_pose(pair, row->radial_clearance);
+        states[pair->joint] = (JointState){
+            .eccentricity = pose.eccentricity,
+            .gap = pose.gap,
+            .is_touching = row->is_touching,
+        };
+        approach[pair->joint] = pose.approach_speed;
+        if (!row->is_touching) {
+            continue;
+        }
+        row->depth = geom.depth;
+        row->impact_speed = was_touching ? row->impact_speed : pose.approach_speed;
+        if (!check_depth(rows, i, err)) {
+            return false;
+        }
+        make_row(rows, i, &geom, step_s);
+        row_count++;
+    }
+    rows->most_rows = row_count > rows->most_rows ? row_count : rows->most_rows;
+    return true;
+}
+
+void contact_rows_clear(ContactRows *rows, JointState *states)
+{
+    bool any = false;
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        const ContactRow *row = &rows->rows[i];
+        if (row->is_touching) {
+            const dReal *force = row->feedback.f1;
+            states[rows->world->pairs[i].joint].force =
+                sqrt(force[0] * force[0] + force[1] * force[1]);
+            any = true;
+        }
+    }
+    if (any) {
+        dJointGroupEmpty(rows->group);
+    }
+}

@@ -1,0 +1,40 @@
+// The contacts of the joints with play: looked for before each step, one row each while they last.
+#pragma once
+
+#include "contact/force_law.h"
+#include "contact/map.h"
+#include "model/trajectory.h"
+#include "ode/world.h"
+
+typedef struct ContactRow {
+    ForceLaw law;
+    double radial_clearance; // m
+    double impact_speed;     // m/s, closing speed when the present contact began
+    bool is_touching;        // whether the present step has a row
+    double depth;            // m, of the row
+    dJointFeedback feedback;
+} ContactRow;
+
+typedef struct ContactRows {
+    const Scenario *scenario;
+    World *world;
+    const Map *map;
+    double penalty; // N s/m, of CONTACT_POISSON: given, or the paper's estimate
+    dJointGroupID group;
+    ContactRow rows[LINKAGE_JOINT_MAX]; // by pair of the world
+    size_t most_rows;                   // at any step so far
+} ContactRows;
+
+// Prepares the laws of all pairs. Fails with ERR_CASE where a law does not fit a joint. The rows
+// must not be copied: ODE writes into them.
+bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world, Err *err);
+void contact_rows_finish(ContactRows *rows);
+
+// Looks for contacts where the bodies stand now and makes a row for each; fills the states (gap,
+// eccentricity, touching) and closing speeds of the joints with play, by joint. Fails with
+// ERR_SOLVER where a pin is deeper in its wall than any contact law holds.
+bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
+                       Err *err);
+
+// After the step: fills in the joints' forces and removes the rows.
+void contact_rows_clear(ContactRows *rows, JointState *states);

@@ -1,0 +1,223 @@
+// How is a planar linkage built in a three-dimensional engine with as few rows as it needs?
+//
+// Every centre of mass, anchor and force lies in the plane z = 0 and every axis along z. Then
+// nothing in the equations reaches z, omega_x or omega_y: they stay zero to the last bit, and no
+// row has to hold them. An ideal joint is a ball (3 rows, its z row idle), a driven body is
+// kinematic (no rows), and a joint with play is nothing but a contact row while it touches.
+// Four hinges in a loop would be 20 rows on 18 freedoms, which ODE cannot solve with CFM 0.
+//
+// Jacobian rows of a ball between bodies a and b, arm r from each centre to the anchor:
+//     x: v_x - w_z r_y,   y: v_y + w_z r_x,   z: v_z + w_x r_y - w_y r_x      (b minus a)
+#include "ode/world.h"
+
+#include "base/dense.h"
+#include "ode/engine.h"
+#include "ode/hole_geom.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { BALL_ROWS = 3, BODY_FREEDOMS = 6 };
+
+// rows that differ by less than this share are one row twice: rounding leaves 1e-15
+static const double INDEPENDENT = 1e-9;
+
+static void fill_block(double *row, size_t columns, int body, Vec2 arm, double sign)
+{
+    if (body < 0) {
+        return;
+    }
+    double *x = row + BODY_FREEDOMS * (size_t)body;
+    double *y = x + columns;
+    double *z = y + columns;
+    x[0] = sign;
+    x[5] = -sign * arm.y;
+    y[1] = sign;
+    y[5] = sign * arm.x;
+    z[2] = sign;
+    z[3] = sign * arm.y;
+    z[4] = -sign * arm.x;
+}
+
+static bool is_ball(const Scenario *scenario, size_t joint)
+{
+    const Driver *driver = &scenario->linkage.driver;
+    return scenario->linkage.joints[joint].kind == JOINT_REVOLUTE &&
+           !(driver->is_present && driver->joint == (int)joint);
+}
+
+// Counts the balls' rows and makes sure that none follows from the others.
+static bool check_rows(const Scenario *scenario, const Motion *motions, size_t *row_count, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const size_t columns = BODY_FREEDOMS * linkage->body_count;
+    const int driven = linkage_driven_body(linkage);
+    double *matrix = calloc(BALL_ROWS * linkage->joint_count * columns + 1, sizeof *matrix);
+    size_t rows = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (!is_ball(scenario, i)) {
+            continue;
+        }
+        const int ends[2] = {joint->body_a, joint->body_b};
+        const Vec2 anchors[2] = {joint->anchor_a, joint->anchor_b};
+        for (int k = 0; k < 2; k++) {
+            // a kinematic body gives way to nothing: it has no columns
+            const int body = ends[k] == driven ? LINKAGE_GROUND : ends[k];
+            const Vec2 arm = body < 0 ? anchors[k] : vec2_rotate(motions[body].angle, anchors[k]);
+            fill_block(matrix + rows * columns, columns, body, arm, k == 0 ? -1.0 : 1.0);
+        }
+        rows += BALL_ROWS;
+    }
+    const size_t rank = dense_rank(rows, columns, matrix, INDEPENDENT);
+    free(matrix);
+    if (rank != rows) {
+        return err_set(err, ERR_SOLVER,
+                       "%zu of the %zu rows of the ideal joints follow from the others; ODE "
+                       "cannot solve redundant rows: give one joint of the loop some play",
+                       rows - rank, rows);
+    }
+    *row_count = rows;
+    return true;
+}
+
+static void make_bodies(const Scenario *scenario, const Motion *motions, World *world)
+{
+    const Linkage *linkage = &scenario->linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Body *body = &linkage->bodies[i];
+        const dBodyID made = dBodyCreate(world->id);
+        // moments about x and y never enter; the one about z in all places is positive definite
+        dMass mass;
+        dMassSetParameters(&mass, body->mass, 0, 0, 0, body->inertia, body->inertia, body->inertia,
+                           0, 0, 0);
+        dBodySetMass(made, &mass);
+        // a rotation over a finite step, not its first order
+        dBodySetFiniteRotationMode(made, 1);
+        dBodySetGyroscopicMode(made, 0);
+        world->bodies[i] = made;
+        world_place(world, i, &motions[i]);
+    }
+    const int driven = linkage_driven_body(linkage);
+    if (driven >= 0) {
+        dBodySetKinematic(world->bodies[driven]);
+    }
+}
+
+static dBodyID body_of(const World *world, int body)
+{
+    return body == LINKAGE_GROUND ? 0 : world->bodies[body];
+}
+
+static void make_ball(const Linkage *linkage, const Motion *motions, size_t number,
+                      const OdeOptions *options, World *world)
+{
+    const Joint *joint = &linkage->joints[number];
+    const dJointID ball = dJointCreateBall(world->id, 0);
+    dJointAttach(ball, body_of(world, joint->body_a), body_of(world, joint->body_b));
+    const Vec2 anchor = linkage_point(motions, joint->body_a, joint->anchor_a);
+    dJointSetBallAnchor(ball, anchor.x, anchor.y, 0.0);
+    dJointSetBallParam(ball, dParamERP, options->erp);
+    dJointSetBallParam(ball, dParamCFM, options->cfm);
+    dJointSetFeedback(ball, &world->feedback[number]);
+}
+
+static void attach_geom(const World *world, dGeomID geom, int body, Vec2 anchor)
+{
+    if (body == LINKAGE_GROUND) {
+        dGeomSetPosition(geom, anchor.x, anchor.y, 0.0);
+        return;
+    }
+    dGeomSetBody(geom, world->bodies[body]);
+    dGeomSetOffsetPosition(geom, anchor.x, anchor.y, 0.0);
+}
+
+static void make_pair(const Joint *joint, int number, World *world)
+{
+    const Clearance *clearance = &joint->clearance;
+    WorldPair *pair = &world->pairs[world->pair_count++];
+    pair->joint = number;
+    pair->hole = hole_geom_create(clearance->hole_radius);
+    // the collider needs no width; ODE's cylinder wants one above zero
+    const double width = clearance->width > 0.0 ? clearance->width : clearance->pin_radius;
+    pair->pin = dCreateCylinder(0, clearance->pin_radius, width);
+    attach_geom(world, pair->hole, joint->body_a, joint->anchor_a);
+    attach_geom(world, pair->pin, joint->body_b, joint->anchor_b);
+}
+
+// Everything that ODE would otherwise take from its own defaults.
+static void set_world(const Scenario *scenario, dWorldID id)
+{
+    const OdeOptions *options = &scenario->ode;
+    dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);
+    dWorldSetERP(id, options->erp);
+    dWorldSetCFM(id, options->cfm);
+    dWorldSetAutoDisableFlag(id, 0);
+    dWorldSetLinearDamping(id, 0.0);
+    dWorldSetAngularDamping(id, 0.0);
+    dWorldSetMaxAngularSpeed(id, dInfinity);
+    dWorldSetContactSurfaceLayer(id, 0.0);
+    dWorldSetContactMaxCorrectingVel(id, dInfinity);
+    dWorldSetQuickStepNumIterations(id, (int)options->iterations);
+    dWorldSetQuickStepW(id, options->over_relaxation);
+}
+
+bool world_build(const Scenario *scenario, const Motion *motions, World *world, Err *err)
+{
+    memset(world, 0, sizeof *world);
+    size_t rows = 0;
+    if (!check_rows(scenario, motions, &rows, err)) {
+        return false;
+    }
+    engine_start();
+    engine_seed(scenario->ode.seed);
+    world->id = dWorldCreate();
+    world->constraint_rows = rows;
+    set_world(scenario, world->id);
+    make_bodies(scenario, motions, world);
+    const Linkage *linkage = &scenario->linkage;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (is_ball(scenario, i)) {
+            make_ball(linkage, motions, i, &scenario->ode, world);
+        } else if (linkage->joints[i].kind == JOINT_CLEARANCE) {
+            make_pair(&linkage->joints[i], (int)i, world);
+        }
+    }
+    return true;
+}
+
+void world_finish(World *world)
+{
+    for (size_t i = 0; i < world->pair_count; i++) {
+        dGeomDestroy(world->pairs[i].hole);
+        dGeomDestroy(world->pairs[i].pin);
+    }
+    if (world->id != NULL) {
+        dWorldDestroy(world->id);
+    }
+    memset(world, 0, sizeof *world);
+}
+
+void world_place(World *world, size_t body, const Motion *motion)
+{
+    const dBodyID id = world->bodies[body];
+    const dQuaternion turn = {cos(0.5 * motion->angle), 0.0, 0.0, sin(0.5 * motion->angle)};
+    dBodySetPosition(id, motion->position.x, motion->position.y, 0.0);
+    dBodySetQuaternion(id, turn);
+    dBodySetLinearVel(id, motion->velocity.x, motion->velocity.y, 0.0);
+    dBodySetAngularVel(id, 0.0, 0.0, motion->omega);
+}
+
+Snapshot world_snapshot(const World *world, size_t body)
+{
+    const dBodyID id = world->bodies[body];
+    const dReal *position = dBodyGetPosition(id);
+    const dReal *rotation = dBodyGetRotation(id);
+    const dReal *velocity = dBodyGetLinearVel(id);
+    return (Snapshot){
+        .position = {position[0], position[1]},
+        .direction = {rotation[0], rotation[4]},
+        .velocity = {velocity[0], velocity[1]},
+        .omega = dBodyGetAngularVel(id)[2],
+    };
+}

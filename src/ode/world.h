@@ -1,0 +1,42 @@
+// A linkage built in ODE: bodies, ideal joints, pins and holes. Only what the plane needs.
+#pragma once
+
+#include "model/scenario.h"
+
+#include <ode/ode.h>
+
+// One joint with play, as geometry: a cylinder on one body, a hole on the other.
+typedef struct WorldPair {
+    int joint; // number in the linkage
+    dGeomID hole;
+    dGeomID pin;
+} WorldPair;
+
+typedef struct World {
+    dWorldID id;
+    dBodyID bodies[LINKAGE_BODY_MAX];
+    dJointFeedback feedback[LINKAGE_JOINT_MAX]; // of the ideal joints
+    size_t pair_count;
+    WorldPair pairs[LINKAGE_JOINT_MAX];
+    size_t constraint_rows; // scalar rows of the ideal joints, all independent
+} World;
+
+// Builds the world of a scenario with its bodies in the motions given. Fails with ERR_SOLVER where
+// joint rows would be redundant. The world must not be copied: ODE keeps pointers into it.
+bool world_build(const Scenario *scenario, const Motion *motions, World *world, Err *err);
+
+// Destroys what was built; accepts a zeroed world.
+void world_finish(World *world);
+
+// Puts one body where a motion says, with its velocity.
+void world_place(World *world, size_t body, const Motion *motion);
+
+// The state of one body as the engine holds it, cheap enough to be kept at every step.
+typedef struct Snapshot {
+    Vec2 position;  // m
+    Vec2 direction; // unit: where the body's x axis points
+    Vec2 velocity;  // m/s
+    double omega;   // rad/s
+} Snapshot;
+
+Snapshot world_snapshot(const World *world, size_t body);

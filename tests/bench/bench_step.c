@@ -1,0 +1,93 @@
+// What does one step cost: bare dWorldStep, and the whole loop with contacts, records and samples?
+//
+// The paper's four-bar with play in the crank-coupler pin, one revolution at 1 us; for each row the
+// median over interleaved repetitions, and its ratio to the bare engine on the ideal mechanism.
+#include "mechanism.h"
+
+#include "ode/engine.h"
+#include "ode/world.h"
+#include "run/registry.h"
+#include "run/run.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+enum { REPETITIONS = 9, BARE_STEPS = 60000 };
+
+static double now_s(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// The engine alone: the crank placed, the world stepped, nothing read.
+static double bare_us(const Scenario *scenario)
+{
+    Motion motions[LINKAGE_BODY_MAX];
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        motions[i] = scenario->linkage.bodies[i].start;
+    }
+    World world;
+    Err err = {ERR_NONE, ""};
+    if (!world_build(scenario, motions, &world, &err)) {
+        fprintf(stderr, "%s\n", err.text);
+        exit(1);
+    }
+    const double start = now_s();
+    for (int i = 0; i < BARE_STEPS; i++) {
+        Motion crank = motions[0];
+        crank.angle = linkage_crank_angle(&scenario->linkage, 1e-6 * i);
+        crank.position = vec2_rotate(crank.angle, (Vec2){0.054, 0.0});
+        crank.velocity = vec2_scale(crank.omega, vec2_perp(crank.position));
+        world_place(&world, 0, &crank);
+        engine_step(world.id, 1e-6, false, &err);
+    }
+    const double us = 1e6 * (now_s() - start) / BARE_STEPS;
+    world_finish(&world);
+    return us;
+}
+
+static double run_us(const Scenario *scenario)
+{
+    Trajectory *trajectory =
+        run_scenario(scenario, registry_solver(BACKEND_ODE), (RunWatch){NULL, NULL});
+    const double us = 1e6 * trajectory->wall_s / (double)trajectory->steps;
+    trajectory_destroy(trajectory);
+    return us;
+}
+
+int main(void)
+{
+    Scenario ideal = mechanism_paper();
+    Scenario loose = mechanism_paper();
+    mechanism_loosen(&loose, "crank-coupler");
+    Scenario quick = loose;
+    quick.ode.solver = ODE_QUICK;
+    const char *const names[] = {"bare dWorldStep, ideal", "run, ideal", "run, play, direct",
+                                 "run, play, quick"};
+    double times[4][REPETITIONS];
+    for (int repetition = 0; repetition < REPETITIONS; repetition++) {
+        times[0][repetition] = bare_us(&ideal);
+        times[1][repetition] = run_us(&ideal);
+        times[2][repetition] = run_us(&loose);
+        times[3][repetition] = run_us(&quick);
+    }
+    printf("%-26s %12s %12s %10s\n", "", "us a step", "smallest", "ratio");
+    double first = 0.0;
+    for (int row = 0; row < 4; row++) {
+        qsort(times[row], REPETITIONS, sizeof *times[row], ascending);
+        const double median = times[row][REPETITIONS / 2];
+        first = row == 0 ? median : first;
+        printf("%-26s %12.3f %12.3f %10.2f\n", names[row], median, times[row][0], median / first);
+    }
+    return 0;
+}

@@ -1,0 +1,138 @@
+// Is nothing lost between samples, and is each contact counted once?
+#include "close.h"
+
+#include "mechanism.h"
+
+#include "run/recorder.h"
+
+typedef struct Steps {
+    double omega[3];
+    double alpha[3];
+    JointState joints[4];
+    double approach[4];
+} Steps;
+
+// One step of a microsecond in which the crank-coupler pin has a force and a gap.
+static void add_step(Recorder *recorder, Steps *steps, int index, double force, double gap)
+{
+    steps->joints[1] = (JointState){.force = force, .gap = gap, .is_touching = gap < 0.0};
+    const StepRecord record = {
+        .start_s = 1e-6 * index,
+        .end_s = 1e-6 * (index + 1),
+        .omega = steps->omega,
+        .alpha = steps->alpha,
+        .joints = steps->joints,
+        .approach = steps->approach,
+    };
+    recorder_add(recorder, &record);
+}
+
+static void contacts_are_counted_from_onset_to_end(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    Trajectory *trajectory = trajectory_create(&scenario, "test");
+    Recorder recorder = recorder_start(&scenario, trajectory);
+    Steps steps = {.approach = {0.0, 0.25, 0.0, 0.0}};
+    const double forces[] = {0.0, 10.0, 30.0, 20.0, 0.0, 0.0, 5.0, 0.0, 7.0};
+    const double gaps[] = {1e-6, -1e-7, -3e-7, -2e-7, 1e-6, 1e-6, -5e-8, 1e-6, -7e-8};
+    for (int i = 0; i < 9; i++) {
+        add_step(&recorder, &steps, i, forces[i], gaps[i]);
+    }
+    recorder_finish(&recorder);
+    const JointExtremes *joint = &trajectory->joints[1];
+    assert_int_equal(joint->impacts, 3);
+    assert_near(joint->force_max.value, 30.0, 0.0);
+    assert_near(joint->force_max.time_s, 2e-6, 1e-20);
+    assert_near(joint->penetration_max.value, 3e-7, 0.0);
+    assert_near(joint->impulse, 72e-6, 1e-18);
+    assert_near(joint->contact_time, 5e-6, 1e-18);
+    assert_int_equal(joint->spike_count, 3);
+    // strongest first; the one under way at the end is kept too
+    assert_near(joint->spikes[0].force_max, 30.0, 0.0);
+    assert_near(joint->spikes[0].onset_s, 1e-6, 0.0);
+    assert_near(joint->spikes[0].duration_s, 3e-6, 1e-18);
+    assert_near(joint->spikes[0].impulse, 60e-6, 1e-18);
+    assert_near(joint->spikes[0].approach_speed, 0.25, 0.0);
+    assert_near(joint->spikes[0].crank_rad, scenario.linkage.driver.speed * 1e-6, 1e-15);
+    assert_near(joint->spikes[1].force_max, 7.0, 0.0);
+    assert_near(joint->spikes[2].force_max, 5.0, 0.0);
+    trajectory_destroy(trajectory);
+}
+
+static void only_the_strongest_contacts_are_kept(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    Trajectory *trajectory = trajectory_create(&scenario, "test");
+    Recorder recorder = recorder_start(&scenario, trajectory);
+    Steps steps = {.approach = {0.0}};
+    // forty contacts of one step; their forces go up and down: 0, 7, 14, ... modulo 40
+    for (int i = 0; i < 40; i++) {
+        add_step(&recorder, &steps, 2 * i, (double)(7 * i % 40), -1e-7);
+        add_step(&recorder, &steps, 2 * i + 1, 0.0, 1e-7);
+    }
+    recorder_finish(&recorder);
+    const JointExtremes *joint = &trajectory->joints[1];
+    assert_int_equal(joint->impacts, 40);
+    assert_int_equal(joint->spike_count, TRAJECTORY_SPIKE_MAX);
+    for (int i = 0; i < TRAJECTORY_SPIKE_MAX; i++) {
+        assert_near(joint->spikes[i].force_max, 39.0 - i, 0.0);
+    }
+    trajectory_destroy(trajectory);
+}
+
+static void extremes_hold_a_single_step(void **state)
+{
+    (void)state;
+    const Scenario scenario = mechanism_paper();
+    Trajectory *trajectory = trajectory_create(&scenario, "test");
+    Recorder recorder = recorder_start(&scenario, trajectory);
+    Steps steps = {.approach = {0.0}};
+    for (int i = 0; i < 100; i++) {
+        steps.omega[1] = -10.0 - (i == 42 ? 5.0 : 0.0);
+        steps.alpha[1] = i == 43 ? 1e6 : -1.0;
+        add_step(&recorder, &steps, i, 0.0, 0.0);
+    }
+    recorder_finish(&recorder);
+    const BodyExtremes *body = &trajectory->bodies[1];
+    assert_near(body->omega_min.value, -15.0, 0.0);
+    assert_near(body->omega_min.time_s, 43e-6, 1e-18);
+    // all values negative: the largest is not the zero it began with
+    assert_near(body->omega_max.value, -10.0, 0.0);
+    assert_near(body->alpha_max.value, 1e6, 0.0);
+    assert_near(body->alpha_max.crank_rad, scenario.linkage.driver.speed * 44e-6, 1e-15);
+    trajectory_destroy(trajectory);
+}
+
+static void the_order_of_steps_is_part_of_the_hash(void **state)
+{
+    (void)state;
+    const Scenario scenario = mechanism_paper();
+    uint64_t hashes[2];
+    for (int order = 0; order < 2; order++) {
+        Trajectory *trajectory = trajectory_create(&scenario, "test");
+        Recorder recorder = recorder_start(&scenario, trajectory);
+        Steps steps = {.approach = {0.0}};
+        for (int i = 0; i < 2; i++) {
+            steps.omega[1] = i == order ? 1.0 : 2.0;
+            add_step(&recorder, &steps, i, 0.0, 0.0);
+        }
+        hashes[order] = trajectory->hash;
+        trajectory_destroy(trajectory);
+    }
+    assert_true(hashes[0] != hashes[1]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(contacts_are_counted_from_onset_to_end),
+        cmocka_unit_test(only_the_strongest_contacts_are_kept),
+        cmocka_unit_test(extremes_hold_a_single_step),
+        cmocka_unit_test(the_order_of_steps_is_part_of_the_hash),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
