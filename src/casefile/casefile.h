@@ -1,0 +1,51 @@
+// Case files: YAML in, a complete Scenario in SI out; and the words about them.
+#pragma once
+
+#include "base/text.h"
+#include "model/scenario.h"
+
+enum { CASEFILE_KEY_SIZE = 160, CASEFILE_UNIT_SIZE = 24, CASEFILE_TEXT_SIZE = 256 };
+
+// Reads a case file, applies the overrides (each KEY=VALUE, such as "run.step=2 us", with the
+// value as the case file would have it; of two for one key the later holds), checks everything
+// and builds the scenario, start motions included. An override of one of two keys that exclude
+// each other replaces the other.
+//
+// Fails with ERR_FILE where the file is missing or unreadable, with ERR_CASE where its content is
+// wrong (a directory, an empty, binary or huge file included), and with ERR_USAGE where the fault
+// lies in an override. The scenario is then untouched.
+bool casefile_load(const char *path, const char *const *overrides, size_t override_count,
+                   Scenario *scenario, Err *err);
+
+// The same from memory. The name stands in messages and in scenario->path.
+bool casefile_load_text(const char *name, const char *text, size_t size,
+                        const char *const *overrides, size_t override_count, Scenario *scenario,
+                        Err *err);
+
+// Appends the case format for people: in a terminal, and as the page docs/case-format.md.
+void casefile_describe(Text *text);
+void casefile_describe_markdown(Text *text);
+
+typedef enum CasefileKind {
+    CASEFILE_NUMBER,  // a quantity in SI
+    CASEFILE_INTEGER, // a whole number, in numbers[0]
+    CASEFILE_WORD,    // one of a list of words
+    CASEFILE_TEXT,    // free text, or words separated by ", "
+} CasefileKind;
+
+// One resolved setting of a scenario.
+typedef struct CasefileSetting {
+    char key[CASEFILE_KEY_SIZE]; // as in a case file: joints.crank-coupler.hole
+    CasefileKind kind;
+    size_t number_count; // of CASEFILE_NUMBER: 1; 2: a vector x, y; 3: nominal, lower and upper
+                         // limit of a length with a tolerance, the limits as deviations
+    double numbers[3];   // SI
+    char unit[CASEFILE_UNIT_SIZE]; // SI, empty for plain numbers
+    char text[CASEFILE_TEXT_SIZE]; // of CASEFILE_WORD and CASEFILE_TEXT
+    bool applies;                  // the scenario makes use of it
+} CasefileSetting;
+
+// The number of settings, the same for every scenario, and each of them in the schema's order.
+// casefile_setting returns false for an index beyond the last.
+size_t casefile_setting_count(void);
+bool casefile_setting(const Scenario *scenario, size_t index, CasefileSetting *setting);

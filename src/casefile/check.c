@@ -1,0 +1,229 @@
+// Do the values of a case fit together?
+#include "casefile/check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// A run of 1e9 steps takes some twenty minutes at 1.3 us a step; more is a slip of the pen.
+static const double STEPS_MAX = 1e9;
+// 1e7 samples of a four-bar fill some 4 GB.
+static const double SAMPLES_MAX = 1e7;
+
+enum { ALLOWED_SIZE = 192 };
+
+static bool has_rival(const Entries *entries, const SchemaRow *row, size_t index)
+{
+    for (size_t i = 0; i < entries->count; i++) {
+        const Entry *other = &entries->entries[i];
+        if (row->rivalry != SCHEMA_NO_RIVAL && other->row->rivalry == row->rivalry &&
+            other->row->side != row->side && other->index == index) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// The innermost group above the row that the case gives; the document itself is the outermost.
+static const EntryGroup *group_above(const Entries *entries, const SchemaRow *row, size_t index)
+{
+    char path[SCHEMA_PATH_SIZE];
+    text_copy(path, sizeof path, row->path);
+    for (char *dot = strrchr(path, '.'); dot != NULL; dot = strrchr(path, '.')) {
+        *dot = '\0';
+        const size_t group_index = strchr(path, '*') != NULL ? index : 0;
+        const EntryGroup *group = entries_group(entries, path, group_index);
+        if (group != NULL) {
+            return group;
+        }
+    }
+    return entries_group(entries, "", 0);
+}
+
+static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t index, Err *err)
+{
+    const EntryGroup *group = group_above(entries, row, index);
+    const Node *node = group->node;
+    const Span span = node->key != NULL ? node->key->span : node->span;
+    char path[SCHEMA_PATH_SIZE];
+    schema_path(row, entries_name(entries, row, index), path);
+    char allowed[ALLOWED_SIZE] = "";
+    if (row->rivalry == SCHEMA_SIZES) {
+        snprintf(allowed, sizeof allowed, "hole and pin, or radial-clearance");
+    } else if (row->words == NULL) {
+        snprintf(allowed, sizeof allowed, "%s such as %s", units_dimension_name(row->dimension),
+                 units_example(row->dimension));
+    } else {
+        snprintf(allowed, sizeof allowed, "one of the links crank, coupler, follower");
+    }
+    return source_error(group->source, span, allowed, err, "%s is missing", path);
+}
+
+bool check_required(const Entries *entries, Err *err)
+{
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        const SchemaRow *row = &SCHEMA_ROWS[i];
+        for (size_t index = 0; row->is_required && index < schema_family_size(row); index++) {
+            const bool is_wanted = row->family == SCHEMA_POINT ? index < entries->point_count
+                                   : row->family == SCHEMA_JOINT
+                                       ? entries_group(entries, "joints.*", index) != NULL
+                                       : true;
+            if (is_wanted && entries_find(entries, row->path, index) == NULL &&
+                !has_rival(entries, row, index)) {
+                return refuse_missing(entries, row, index, err);
+            }
+        }
+    }
+    return true;
+}
+
+// Whether the law's force depends on the length of the cylinders.
+static bool needs_width(const Scenario *scenario)
+{
+    const ContactOptions *contact = &scenario->contact;
+    const bool is_cylinder = contact->law == LAW_JOHNSON || contact->law == LAW_RADZIMOVSKY ||
+                             contact->law == LAW_ESDU_78035 ||
+                             contact->law == LAW_DUBOWSKY_FREUDENSTEIN;
+    return is_cylinder && contact->stiffness == 0.0 && contact->model == CONTACT_IMPACT;
+}
+
+static bool check_sizes(const Entries *entries, size_t index, const Joint *joint, Err *err)
+{
+    const Entry *hole = entries_find(entries, "joints.*.hole", index);
+    const Entry *pin = entries_find(entries, "joints.*.pin", index);
+    if (hole == NULL || pin == NULL || linkage_radial_clearance(joint) > 0.0) {
+        return true;
+    }
+    static const char *const SIZES[] = {"joints.*.pin", "joints.*.hole"};
+    const Entry *culprit = entries_blame(entries, SIZES, 2, index);
+    const bool hole_is_new = culprit == hole;
+    char allowed[ALLOWED_SIZE];
+    snprintf(allowed, sizeof allowed, hole_is_new ? "a hole above %.60s" : "a pin below %.60s",
+             hole_is_new ? pin->node->text : hole->node->text);
+    return source_error(culprit->source, culprit->node->span, allowed, err,
+                        "the pin (%.60s) must be smaller than the hole (%.60s)", pin->node->text,
+                        hole->node->text);
+}
+
+static bool refuse_without_width(const Entries *entries, const EntryGroup *group, size_t index,
+                                 LawKind law, Err *err)
+{
+    const Span joint = group->node->key != NULL ? group->node->key->span : group->node->span;
+    const Entry *chosen = entries_find(entries, "contact.law", 0);
+    const bool law_is_new = chosen != NULL && chosen->source->is_option;
+    return source_error(
+        law_is_new ? chosen->source : group->source, law_is_new ? chosen->node->span : joint,
+        "width: 13 mm, or a law without it", err, "the law %s needs the width of joint %s",
+        OPTIONS_LAWS[law], SCHEMA_JOINT_NAMES[index]);
+}
+
+static bool check_joint(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[index + 1];
+    const EntryGroup *group = entries_group(entries, "joints.*", index);
+    if (group == NULL) {
+        return true;
+    }
+    if (!check_sizes(entries, index, joint, err)) {
+        return false;
+    }
+    const double radial = linkage_radial_clearance(joint);
+    const double start = vec2_length(joint->clearance.start);
+    if (!(start <= radial)) {
+        static const char *const PLACES[] = {"joints.*.start", "joints.*.radial-clearance",
+                                             "joints.*.hole", "joints.*.pin"};
+        const Entry *entry = entries_blame(entries, PLACES, 4, index);
+        char allowed[ALLOWED_SIZE];
+        snprintf(allowed, sizeof allowed, "up to the radial clearance, %.6g um", 1e6 * radial);
+        return source_error(entry->source, entry->node->span, allowed, err,
+                            "the pin starts %.6g um off the centre, inside the metal", 1e6 * start);
+    }
+    if (needs_width(scenario) && joint->clearance.width == 0.0) {
+        return refuse_without_width(entries, group, index, scenario->contact.law, err);
+    }
+    return true;
+}
+
+static bool check_contact(const Entries *entries, const ContactOptions *contact, Err *err)
+{
+    const Entry *damping = entries_find(entries, "contact.damping", 0);
+    if (damping == NULL || contact->model != CONTACT_IMPACT) {
+        return true;
+    }
+    if (contact->damping == DAMPING_VISCOUS && contact->viscous_coefficient == 0.0) {
+        return source_error(damping->source, damping->node->span,
+                            "another damping, or contact.viscous-coefficient such as 100 N s/m",
+                            err, "damping viscous needs contact.viscous-coefficient");
+    }
+    // these factors have the restitution below a fraction line, or grow without bound towards 0
+    const bool divides = contact->damping == DAMPING_FLORES ||
+                         contact->damping == DAMPING_GONTHIER ||
+                         contact->damping == DAMPING_HU_GUO || contact->damping == DAMPING_EXACT;
+    static const char *const LOSSES[] = {"contact.restitution", "contact.damping"};
+    if (divides && contact->restitution == 0.0) {
+        const Entry *entry = entries_blame(entries, LOSSES, 2, 0);
+        return source_error(
+            entry->source, entry->node->span, "above 0 and up to 1, or another damping", err,
+            "damping %s has no finite factor at restitution 0", OPTIONS_DAMPINGS[contact->damping]);
+    }
+    return true;
+}
+
+static bool check_steps(const Entries *entries, const RunOptions *run, double duration, Err *err)
+{
+    static const char *const LENGTHS[] = {"run.step", "run.revolutions", "drive.speed"};
+    const Entry *entry = entries_blame(entries, LENGTHS, 3, 0);
+    const double steps = duration / run->step;
+    char allowed[ALLOWED_SIZE];
+    if (!(steps <= STEPS_MAX)) {
+        snprintf(allowed, sizeof allowed,
+                 "at most %g steps: here a step of %.3g s or more, or fewer revolutions", STEPS_MAX,
+                 duration / STEPS_MAX);
+        return source_error(entry->source, entry->node->span, allowed, err,
+                            "the run of %.4g s takes %.3g steps of %.3g s", duration, steps,
+                            run->step);
+    }
+    if (!(run->step <= duration)) {
+        snprintf(allowed, sizeof allowed, "a step of %.3g s or less", duration);
+        return source_error(entry->source, entry->node->span, allowed, err,
+                            "the step (%.3g s) is longer than the run", run->step);
+    }
+    return true;
+}
+
+static bool check_samples(const Entries *entries, const RunOptions *run, Err *err)
+{
+    static const char *const NUMBERS[] = {"run.samples", "run.revolutions"};
+    const double samples = run->revolutions * (double)run->samples;
+    if (samples <= SAMPLES_MAX && samples >= 1.0) {
+        return true;
+    }
+    // the defaults alone are sane, so that one of the two is given
+    const Entry *entry = entries_blame(entries, NUMBERS, 2, 0);
+    char allowed[ALLOWED_SIZE];
+    snprintf(allowed, sizeof allowed, "1 to %g samples in the whole run", SAMPLES_MAX);
+    return source_error(entry->source, entry->node->span, allowed, err,
+                        "the run holds %.3g samples (%g revolutions with %zu each)", samples,
+                        run->revolutions, run->samples);
+}
+
+static bool check_run(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    if (scenario->linkage.driver.speed == 0.0) {
+        const Entry *speed = entries_find(entries, "drive.speed", 0);
+        return source_error(speed->source, speed->node->span, "any speed but 0", err,
+                            "the crank does not turn");
+    }
+    return check_steps(entries, &scenario->run, scenario_duration(scenario), err) &&
+           check_samples(entries, &scenario->run, err);
+}
+
+bool check_values(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    for (size_t i = 0; i < SCHEMA_JOINT_COUNT; i++) {
+        if (!check_joint(entries, i, scenario, err)) {
+            return false;
+        }
+    }
+    return check_contact(entries, &scenario->contact, err) && check_run(entries, scenario, err);
+}

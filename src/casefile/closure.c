@@ -1,0 +1,163 @@
+// Does the four-bar close where it starts, and can the crank turn through the run?
+//
+// With a crank, b coupler, c follower, g ground, coupler and follower meet at the crank angle
+// theta when the diagonal d(theta) from crank pin to follower pivot satisfies
+//     |b - c| <= d <= b + c,    d^2 = a^2 + g^2 - 2 a g cos(theta),
+// so that cos(theta) must lie between the values for d = b + c and for d = |b - c|. Where one of
+// these is a cosine, its angle is a dead centre.
+#include "casefile/closure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { ALLOWED_SIZE = 192 };
+
+// Relative: as close as this to a dead centre, the accelerations are those of rounding errors.
+static const double MARGIN = 1e-9;
+
+static const double DEGREE = M_PI / 180.0;
+
+// Where a message points: at the first of these from the command line, else at the first given.
+enum { BLAMED_COUNT = 5 };
+static const char *const BLAMED_FOR_START[BLAMED_COUNT] = {
+    "drive.start",
+    "four-bar.crank.length",
+    "four-bar.ground.length",
+    "four-bar.coupler.length",
+    "four-bar.follower.length",
+};
+static const char *const BLAMED_FOR_TURN[BLAMED_COUNT] = {
+    "four-bar.crank.length",    "four-bar.ground.length", "four-bar.coupler.length",
+    "four-bar.follower.length", "run.revolutions",
+};
+
+// The cosines of the crank angles at which the loop just closes.
+typedef struct Reach {
+    double shortest; // m, |b - c|
+    double longest;  // m, b + c
+    double cos_low;  // at the longest diagonal
+    double cos_high; // at the shortest
+} Reach;
+
+static Reach find_reach(const FourBar *fourbar)
+{
+    Reach reach;
+    fourbar_diagonal_range(fourbar, &reach.shortest, &reach.longest);
+    const double a = fourbar->crank.nominal;
+    const double g = fourbar->ground.nominal;
+    const double squares = a * a + g * g;
+    reach.cos_low = (squares - reach.longest * reach.longest) / (2.0 * a * g);
+    reach.cos_high = (squares - reach.shortest * reach.shortest) / (2.0 * a * g);
+    return reach;
+}
+
+static const Entry *longest_link(const Entries *entries, const FourBar *fourbar, double *length)
+{
+    const double lengths[] = {fourbar->ground.nominal, fourbar->crank.nominal,
+                              fourbar->coupler.nominal, fourbar->follower.nominal};
+    const char *const paths[] = {"four-bar.ground.length", "four-bar.crank.length",
+                                 "four-bar.coupler.length", "four-bar.follower.length"};
+    size_t longest = 0;
+    for (size_t i = 1; i < sizeof lengths / sizeof lengths[0]; i++) {
+        longest = lengths[i] > lengths[longest] ? i : longest;
+    }
+    *length = lengths[longest];
+    return entries_find(entries, paths[longest], 0);
+}
+
+// The start angles that close, in words.
+static void describe_starts(const Reach *reach, char *text, size_t size)
+{
+    const double first = reach->cos_high < 1.0 ? acos(reach->cos_high) / DEGREE : 0.0;
+    const double last = reach->cos_low > -1.0 ? acos(reach->cos_low) / DEGREE : 180.0;
+    if (first == 0.0) {
+        snprintf(text, size, "a start between %.4g and %.4g deg", -last, last);
+    } else if (last == 180.0) {
+        snprintf(text, size, "a start between %.4g and %.4g deg", first, 360.0 - first);
+    } else {
+        snprintf(text, size, "a start between %.4g and %.4g deg or between %.4g and %.4g deg",
+                 first, last, -last, -first);
+    }
+}
+
+static bool check_start(const Entries *entries, const Scenario *scenario, const Reach *reach,
+                        Err *err)
+{
+    const FourBar *fourbar = &scenario->fourbar;
+    const double start = scenario->linkage.driver.start;
+    const double diagonal = fourbar_diagonal(fourbar, start);
+    const double margin = MARGIN * reach->longest;
+    double longest;
+    const Entry *link = longest_link(entries, fourbar, &longest);
+    if (reach->cos_low >= 1.0 || reach->cos_high <= -1.0) {
+        const double sum = fourbar->ground.nominal + fourbar->crank.nominal +
+                           fourbar->coupler.nominal + fourbar->follower.nominal;
+        char shorter[ALLOWED_SIZE];
+        snprintf(shorter, sizeof shorter, "less than the other three together, %.6g mm",
+                 1e3 * (sum - longest));
+        return source_error(link->source, link->node->span, shorter, err,
+                            "the mechanism closes at no crank angle: this link is too long");
+    }
+    if (diagonal > reach->shortest + margin && diagonal < reach->longest - margin) {
+        return true;
+    }
+    const Entry *blamed = entries_blame(entries, BLAMED_FOR_START, BLAMED_COUNT, 0);
+    // a start that nobody gave is not to blame: the longest link is
+    const bool is_at_home =
+        strcmp(blamed->row->path, "drive.start") != 0 && !blamed->source->is_option;
+    const Entry *entry = is_at_home ? link : blamed;
+    char allowed[ALLOWED_SIZE];
+    describe_starts(reach, allowed, sizeof allowed);
+    return source_error(entry->source, entry->node->span, allowed, err,
+                        "the mechanism does not close at the start, %.4g deg: crank pin and "
+                        "follower pivot are %.4g mm apart, coupler and follower join distances "
+                        "between %.4g and %.4g mm",
+                        start / DEGREE, 1e3 * diagonal, 1e3 * reach->shortest,
+                        1e3 * reach->longest);
+}
+
+// The angle the crank turns from its start until cos(theta) is the value given, rad.
+static double travel_to(double cosine, double start, double direction)
+{
+    // a change point has 1 or -1 here but for rounding
+    if (!(fabs(cosine) <= 1.0 + MARGIN)) {
+        return INFINITY;
+    }
+    const double angle = acos(fmin(fmax(cosine, -1.0), 1.0));
+    double travel = INFINITY;
+    for (int side = -1; side <= 1; side += 2) {
+        double turned = fmod(direction * (side * angle - start), 2.0 * M_PI);
+        turned += turned < 0.0 ? 2.0 * M_PI : 0.0;
+        travel = fmin(travel, turned);
+    }
+    return travel;
+}
+
+bool closure_check(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    const FourBar *fourbar = &scenario->fourbar;
+    const Driver *driver = &scenario->linkage.driver;
+    const Reach reach = find_reach(fourbar);
+    if (!check_start(entries, scenario, &reach, err)) {
+        return false;
+    }
+    const double direction = driver->speed < 0.0 ? -1.0 : 1.0;
+    const double travel = fmin(travel_to(reach.cos_low, driver->start, direction),
+                               travel_to(reach.cos_high, driver->start, direction));
+    const double turns = travel / (2.0 * M_PI);
+    if (!(turns <= scenario->run.revolutions)) {
+        return true;
+    }
+    const Entry *entry = entries_blame(entries, BLAMED_FOR_TURN, BLAMED_COUNT, 0);
+    char allowed[ALLOWED_SIZE];
+    snprintf(allowed, sizeof allowed,
+             "less than %.4g revolutions, or a crank that turns fully (crank or ground the "
+             "shortest link, and with the longest shorter than the other two together)",
+             turns);
+    return source_error(entry->source, entry->node->span, allowed, err,
+                        "the crank cannot turn through the run: from %.4g deg it reaches a dead "
+                        "centre at %.4g deg (the mechanism is a %s)",
+                        driver->start / DEGREE, (driver->start + direction * travel) / DEGREE,
+                        FOURBAR_GRASHOF_NAMES[fourbar_grashof(fourbar)]);
+}

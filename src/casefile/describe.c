@@ -1,0 +1,232 @@
+// What may stand in a case file, for people: in a terminal and as a page of the documentation.
+#include "casefile/casefile.h"
+
+#include "casefile/schema.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { DESCRIBE_WIDTH = 96, DESCRIBE_INDENT = 8 };
+
+static const char EXAMPLE[] =
+    "title: Crank-rocker at 1000 rpm with play in the crank-coupler pin\n"
+    "four-bar:\n"
+    "  ground:   {length: 254 mm}\n"
+    "  crank:    {length: 108 mm,   mass: 0.12 kg, inertia: 173.92 kg mm^2}\n"
+    "  coupler:  {length: 279.4 mm, mass: 0.29 kg, inertia: 2070.46 kg mm^2}\n"
+    "  follower: {length: 270.5 mm, mass: 0.28 kg, inertia: 1988.39 kg mm^2}\n"
+    "joints:\n"
+    "  crank-coupler: {hole: 10.015 mm, pin: 9.986 mm, width: 13 mm}\n"
+    "drive: {speed: 1000 rpm, start: 0 deg}\n"
+    "contact: {law: hertz-socket, damping: lankarani-nikravesh, restitution: 0.9}\n"
+    "run: {revolutions: 1, samples: 3600, step: 1 us, backends: [analytic, ode]}\n"
+    "ode: {solver: direct, map: textbook}\n";
+
+static const char *const RULES[] = {
+    "A case is one YAML document of at most 1 MiB. Every quantity carries its unit; numbers have a "
+    "decimal point.",
+    "Unknown and doubled keys are errors, as are anchors, aliases and tags.",
+    "On the command line, --set KEY=VALUE takes a key's whole path: --set run.step=2us. It "
+    "replaces what the file says about the key, and about a key that excludes it.",
+};
+
+enum { RULE_COUNT = sizeof RULES / sizeof RULES[0] };
+
+// The group a row is told in: what stands before the first dot, empty where there is none.
+static bool is_in_group(const SchemaRow *row, const char *group)
+{
+    const char *dot = strchr(row->path, '.');
+    const size_t length = dot != NULL ? (size_t)(dot - row->path) : 0;
+    return strlen(group) == length && strncmp(row->path, group, length) == 0;
+}
+
+// The path with a word in place of the star.
+static void describe_path(const SchemaRow *row, char path[SCHEMA_PATH_SIZE])
+{
+    schema_path(row, row->family == SCHEMA_JOINT ? "<joint>" : "<name>", path);
+}
+
+static void describe_words(const SchemaRow *row, Text *text)
+{
+    for (size_t i = 0; row->words[i] != NULL; i++) {
+        text_append(text, "%s%s", i > 0 ? ", " : "", row->words[i]);
+    }
+}
+
+// How the value is written.
+static void describe_value(const SchemaRow *row, Text *text)
+{
+    switch (row->type) {
+    case SCHEMA_TEXT:
+        text_append(text, "text");
+        break;
+    case SCHEMA_INTEGER:
+        text_append(text, "a whole number");
+        break;
+    case SCHEMA_CHOICE:
+        describe_words(row, text);
+        break;
+    case SCHEMA_BACKENDS:
+        text_append(text, "a list of ");
+        describe_words(row, text);
+        break;
+    case SCHEMA_ECCENTRICITY:
+        text_append(text, "centred, or two lengths");
+        break;
+    default:
+        text_append(text, "%s", units_dimension_name(row->dimension));
+        if (row->dimension != DIMENSION_NONE) {
+            text_append(text, " in ");
+            units_list(row->dimension, text);
+        }
+    }
+}
+
+// The range in SI; nothing where the value is no number.
+static void describe_range(const SchemaRow *row, Text *text)
+{
+    const bool is_number = row->words == NULL && row->type != SCHEMA_TEXT;
+    if (!is_number) {
+        return;
+    }
+    if (row->low == row->high) {
+        text_append(text, "only %g", row->low);
+        return;
+    }
+    const char *unit = units_si(row->dimension);
+    const int digits = row->type == SCHEMA_INTEGER ? 12 : 6;
+    text_append(text, row->low_is_open ? "above %.*g, up to %.*g%s%s" : "%.*g to %.*g%s%s", digits,
+                row->low, digits, row->high, unit[0] != '\0' ? " " : "", unit);
+}
+
+// The default, as the program's own default scenario has it.
+static void describe_default(size_t row_number, Text *text)
+{
+    const SchemaRow *row = &SCHEMA_ROWS[row_number];
+    if (row->is_required) {
+        text_append(text, row->rivalry == SCHEMA_SIZES ? "required without radial-clearance"
+                                                       : "required");
+        return;
+    }
+    if (row->default_words != NULL) {
+        text_append(text, "%s", row->default_words);
+        return;
+    }
+    const Scenario defaults = scenario_default();
+    char path[SCHEMA_PATH_SIZE];
+    schema_path(row, row->family == SCHEMA_JOINT ? SCHEMA_JOINT_NAMES[0] : "", path);
+    CasefileSetting setting;
+    for (size_t i = 0; casefile_setting(&defaults, i, &setting); i++) {
+        if (strcmp(setting.key, path) == 0) {
+            break;
+        }
+    }
+    if (setting.kind == CASEFILE_NUMBER || setting.kind == CASEFILE_INTEGER) {
+        const char *blank = setting.unit[0] != '\0' ? " " : "";
+        text_append(text, "%.6g%s%s", setting.numbers[0], blank, setting.unit);
+    } else {
+        text_append(text, "%s", setting.text);
+    }
+}
+
+// Appends words wrapped to the terminal's width, indented.
+static void append_wrapped(const char *words, int indent, Text *text)
+{
+    size_t column = 0;
+    while (*words != '\0') {
+        const size_t length = strcspn(words, " ");
+        if (column > 0 && column + 1 + length > DESCRIBE_WIDTH) {
+            text_append(text, "\n");
+            column = 0;
+        }
+        if (column == 0) {
+            text_append(text, "%*s%.*s", indent, "", (int)length, words);
+            column = (size_t)indent + length;
+        } else {
+            text_append(text, " %.*s", (int)length, words);
+            column += 1 + length;
+        }
+        words += length;
+        words += *words == ' ' ? 1 : 0;
+    }
+    text_append(text, "\n");
+}
+
+static void describe_row(size_t row_number, Text *text)
+{
+    const SchemaRow *row = &SCHEMA_ROWS[row_number];
+    char path[SCHEMA_PATH_SIZE];
+    describe_path(row, path);
+    Text words;
+    text_init(&words);
+    text_append(&words, "%s. ", row->doc);
+    describe_value(row, &words);
+    text_append(&words, "; ");
+    const size_t before = words.length;
+    describe_range(row, &words);
+    text_append(&words, "%s", words.length > before ? "; " : "");
+    if (!row->is_required) {
+        text_append(&words, "default: ");
+    }
+    describe_default(row_number, &words);
+    text_append(text, "    %s\n", path);
+    append_wrapped(words.data, DESCRIBE_INDENT, text);
+    text_finish(&words);
+}
+
+void casefile_describe(Text *text)
+{
+    text_append(text, "A case file\n\n");
+    for (size_t i = 0; i < RULE_COUNT; i++) {
+        append_wrapped(RULES[i], 0, text);
+    }
+    text_append(text, "\n%s", EXAMPLE);
+    for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
+        const SchemaGroup *group = &SCHEMA_GROUPS[g];
+        text_append(text, "\n%s\n", group->path[0] != '\0' ? group->path : "top level");
+        append_wrapped(group->doc, 2, text);
+        for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+            if (is_in_group(&SCHEMA_ROWS[i], group->path)) {
+                describe_row(i, text);
+            }
+        }
+    }
+}
+
+static void describe_row_markdown(size_t row_number, Text *text)
+{
+    const SchemaRow *row = &SCHEMA_ROWS[row_number];
+    char path[SCHEMA_PATH_SIZE];
+    describe_path(row, path);
+    text_append(text, "| `%s` | ", path);
+    describe_value(row, text);
+    text_append(text, " | ");
+    describe_range(row, text);
+    text_append(text, " | ");
+    describe_default(row_number, text);
+    text_append(text, " | %s |\n", row->doc);
+}
+
+void casefile_describe_markdown(Text *text)
+{
+    text_append(text, "# The case file\n\n");
+    text_append(text, "This page is generated from the program's own schema; a test holds it "
+                      "against the program.\n\n");
+    for (size_t i = 0; i < RULE_COUNT; i++) {
+        text_append(text, "- %s\n", RULES[i]);
+    }
+    text_append(text, "\n```yaml\n%s```\n", EXAMPLE);
+    for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
+        const SchemaGroup *group = &SCHEMA_GROUPS[g];
+        const bool is_top = group->path[0] == '\0';
+        text_append(text, is_top ? "\n## %s\n\n%s\n\n" : "\n## `%s`\n\n%s\n\n",
+                    is_top ? "Top level" : group->path, group->doc);
+        text_append(text, "| key | value | range, SI | default | meaning |\n");
+        text_append(text, "|---|---|---|---|---|\n");
+        for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+            if (is_in_group(&SCHEMA_ROWS[i], group->path)) {
+                describe_row_markdown(i, text);
+            }
+        }
+    }
+}

@@ -1,0 +1,333 @@
+// What number does a piece of text stand for?
+//
+//     number     = [+-] digits [. digits] [e [+-] digits]
+//     quantity   = number unit
+//     tolerated  = number [unit] [ (+- | +/- | PLUS-MINUS) number unit | +number/-number unit ]
+#include "casefile/quantity.h"
+
+#include <assert.h>
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SHOWN_MAX = 40 }; // so many bytes of a wrong value are quoted
+
+static const double INTEGER_MAX = 9007199254740992.0; // 2^53: every whole number up to it is exact
+static const double EXPONENT_MIN = 1.0;               // of a stiffness: a spring that softens
+static const double EXPONENT_MAX = 3.0;               // or hardens more is a slip of the pen
+
+__attribute__((format(printf, 2, 3))) static bool complain(Complaint *complaint, const char *format,
+                                                           ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(complaint->text, sizeof complaint->text, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+static void allow_dimension(Complaint *complaint, Dimension dimension)
+{
+    Text units;
+    text_init(&units);
+    units_list(dimension, &units);
+    snprintf(complaint->allowed, sizeof complaint->allowed, "%s such as %s%s%s%s",
+             units_dimension_name(dimension), units_example(dimension),
+             units.length > 0 ? " (in " : "", units.data, units.length > 0 ? ")" : "");
+    text_finish(&units);
+}
+
+static const char *skip_blanks(const char *text)
+{
+    while (*text == ' ' || *text == '\t') {
+        text++;
+    }
+    return text;
+}
+
+static const char *skip_digits(const char *text)
+{
+    while (isdigit((unsigned char)*text)) {
+        text++;
+    }
+    return text;
+}
+
+// The end of the number at the start of the text, or NULL where there is none.
+static const char *number_end(const char *text)
+{
+    if (*text == '+' || *text == '-') {
+        text++;
+    }
+    const char *whole = skip_digits(text);
+    const char *end = whole;
+    size_t digits = (size_t)(whole - text);
+    if (*whole == '.') {
+        end = skip_digits(whole + 1);
+        digits += (size_t)(end - whole - 1);
+    }
+    if (digits == 0) {
+        return NULL;
+    }
+    if (*end == 'e' || *end == 'E') {
+        const char *power = end + 1;
+        if (*power == '+' || *power == '-') {
+            power++;
+        }
+        if (isdigit((unsigned char)*power)) {
+            end = skip_digits(power);
+        }
+    }
+    return end;
+}
+
+// Reads the number at *text and moves *text behind it and the blanks that follow.
+static bool take_number(const char **text, Dimension dimension, double *value, Complaint *complaint)
+{
+    const char *start = skip_blanks(*text);
+    const char *end = number_end(start);
+    if (end == NULL) {
+        allow_dimension(complaint, dimension);
+        return complain(complaint, "'%.*s' is not a number", SHOWN_MAX, start);
+    }
+    char *read_end;
+    errno = 0;
+    const double read = strtod(start, &read_end);
+    // strtod also knows hexadecimal numbers; a case file does not
+    if (read_end != end) {
+        allow_dimension(complaint, dimension);
+        return complain(complaint, "'%.*s' is not a decimal number", SHOWN_MAX, start);
+    }
+    if (errno == ERANGE || !isfinite(read)) {
+        allow_dimension(complaint, dimension);
+        return complain(complaint, "'%.*s' is too large or too small for a number", SHOWN_MAX,
+                        start);
+    }
+    *value = read;
+    *text = skip_blanks(end);
+    return true;
+}
+
+bool quantity_number(const char *text, double *value, Complaint *complaint)
+{
+    complaint->allowed[0] = '\0';
+    double read;
+    if (!take_number(&text, DIMENSION_NONE, &read, complaint)) {
+        return false;
+    }
+    if (*text != '\0') {
+        allow_dimension(complaint, DIMENSION_NONE);
+        return complain(complaint, "expected a plain number; '%.*s' stands behind it", SHOWN_MAX,
+                        text);
+    }
+    *value = read;
+    return true;
+}
+
+bool quantity_integer(const char *text, size_t *value, Complaint *complaint)
+{
+    double read;
+    if (!quantity_number(text, &read, complaint)) {
+        return false;
+    }
+    if (!(read >= 0.0 && read <= INTEGER_MAX && read == floor(read))) {
+        snprintf(complaint->allowed, sizeof complaint->allowed, "a whole number, 0 or above");
+        return complain(complaint, "'%.*s' is not a whole number", SHOWN_MAX, text);
+    }
+    *value = (size_t)read;
+    return true;
+}
+
+// Finds the unit a text consists of.
+static const Unit *read_unit(const char *text, Dimension dimension, Complaint *complaint)
+{
+    char name[UNITS_NAME_SIZE];
+    units_normalise(text, name);
+    const Unit *unit = units_find(dimension, name);
+    if (unit != NULL && unit->dimension == dimension) {
+        return unit;
+    }
+    allow_dimension(complaint, dimension);
+    if (unit != NULL) {
+        complain(complaint, "expected %s such as %s; '%s' is %s", units_dimension_name(dimension),
+                 units_example(dimension), name, units_dimension_name(unit->dimension));
+        return NULL;
+    }
+    if (name[0] == ',') {
+        complain(complaint, "a number has a decimal point, not a comma");
+        return NULL;
+    }
+    const char *nearest = units_nearest(dimension, name);
+    complain(complaint,
+             nearest != NULL ? "unknown unit '%s'; did you mean '%s'?" : "unknown unit '%s'", name,
+             nearest);
+    return NULL;
+}
+
+bool quantity_parse(const char *text, Dimension dimension, double *si, Complaint *complaint)
+{
+    complaint->allowed[0] = '\0';
+    if (dimension == DIMENSION_NONE) {
+        return quantity_number(text, si, complaint);
+    }
+    const char *rest = text;
+    double value;
+    if (!take_number(&rest, dimension, &value, complaint)) {
+        return false;
+    }
+    if (*rest == '\0') {
+        allow_dimension(complaint, dimension);
+        return complain(complaint, "'%.*s' has no unit", SHOWN_MAX, text);
+    }
+    const Unit *unit = read_unit(rest, dimension, complaint);
+    if (unit == NULL) {
+        return false;
+    }
+    const double converted = value * unit->numerator / unit->denominator;
+    if (!isfinite(converted)) {
+        return complain(complaint, "'%.*s' is too large for a number", SHOWN_MAX, text);
+    }
+    *si = converted;
+    return true;
+}
+
+// Splits "108 mm +- 0.3 mm" into the length and what follows its tolerance sign. The sign is
+// looked for behind the first number, whose own sign and exponent are no tolerance.
+static const char *find_tolerance(const char *behind_number, bool *is_symmetric, size_t *sign_size)
+{
+    static const char *const SIGNS[] = {"+-", "+/-", "\u00b1"};
+    const char *plus = strchr(behind_number, '+');
+    const char *sign = strstr(behind_number, SIGNS[2]);
+    const char *found = sign != NULL ? sign : plus;
+    *is_symmetric = false;
+    *sign_size = 1;
+    for (size_t i = 0; found != NULL && i < sizeof SIGNS / sizeof SIGNS[0]; i++) {
+        if (strncmp(found, SIGNS[i], strlen(SIGNS[i])) == 0) {
+            *is_symmetric = true;
+            *sign_size = strlen(SIGNS[i]);
+        }
+    }
+    return found;
+}
+
+// Reads what stands behind the sign: `0.3 mm`, or `0.1/-0.2 mm` where it is not symmetric.
+static bool take_tolerance(const char *text, bool is_symmetric, ToleratedLength *length,
+                           const Unit **unit, Complaint *complaint)
+{
+    double upper;
+    double lower;
+    if (!take_number(&text, DIMENSION_LENGTH, &upper, complaint)) {
+        return false;
+    }
+    if (is_symmetric) {
+        lower = -upper;
+    } else if (*text == '/') {
+        text++;
+        if (!take_number(&text, DIMENSION_LENGTH, &lower, complaint)) {
+            return false;
+        }
+    } else {
+        return complain(complaint, "a one-sided tolerance has two limits");
+    }
+    if (!(upper >= 0.0 && lower <= 0.0)) {
+        return complain(complaint, "the upper limit must be 0 or above, the lower 0 or below");
+    }
+    if (*text == '\0') {
+        return complain(complaint, "the tolerance has no unit");
+    }
+    *unit = read_unit(text, DIMENSION_LENGTH, complaint);
+    if (*unit == NULL) {
+        return false;
+    }
+    length->upper = upper * (*unit)->numerator / (*unit)->denominator;
+    length->lower = lower * (*unit)->numerator / (*unit)->denominator;
+    return true;
+}
+
+bool quantity_tolerated(const char *text, ToleratedLength *length, Complaint *complaint)
+{
+    // the sign of a tolerance stands behind the first number
+    const char *behind = text;
+    double number;
+    complaint->allowed[0] = '\0';
+    if (!take_number(&behind, DIMENSION_LENGTH, &number, complaint)) {
+        return false;
+    }
+    bool is_symmetric;
+    size_t sign_size;
+    const char *sign = find_tolerance(behind, &is_symmetric, &sign_size);
+    ToleratedLength read = {0};
+    if (sign == NULL) {
+        if (!quantity_parse(text, DIMENSION_LENGTH, &read.nominal, complaint)) {
+            return false;
+        }
+        *length = read;
+        return true;
+    }
+
+    snprintf(complaint->allowed, sizeof complaint->allowed,
+             "a tolerance such as 108 +- 0.3 mm or 108 +0.1/-0.2 mm");
+    const Unit *unit = NULL;
+    if (!take_tolerance(sign + sign_size, is_symmetric, &read, &unit, complaint)) {
+        return false;
+    }
+    char own_unit[QUANTITY_TEXT_SIZE];
+    snprintf(own_unit, sizeof own_unit, "%.*s", (int)(sign - behind), behind);
+    if (own_unit[0] != '\0') {
+        unit = read_unit(own_unit, DIMENSION_LENGTH, complaint);
+        if (unit == NULL) {
+            return false;
+        }
+    }
+    read.nominal = number * unit->numerator / unit->denominator;
+    if (!(isfinite(read.nominal) && isfinite(read.upper) && isfinite(read.lower))) {
+        return complain(complaint, "'%.*s' is too large for a number", SHOWN_MAX, text);
+    }
+    *length = read;
+    return true;
+}
+
+bool quantity_stiffness(const char *text, double *stiffness, double *exponent, Complaint *complaint)
+{
+    complaint->allowed[0] = '\0';
+    const char *rest = text;
+    double value;
+    if (!take_number(&rest, DIMENSION_STIFFNESS, &value, complaint)) {
+        return false;
+    }
+    if (*rest == '\0') {
+        allow_dimension(complaint, DIMENSION_STIFFNESS);
+        return complain(complaint, "'%.*s' has no unit", SHOWN_MAX, text);
+    }
+    char name[UNITS_NAME_SIZE];
+    units_normalise(rest, name);
+    char *power = strchr(name, '^');
+    double read_exponent = 1.0;
+    if (power != NULL && strncmp(name, "N/m", 3) == 0 && strcmp(name, "N/mm^2") != 0) {
+        *power = '\0';
+        if (!quantity_number(power + 1, &read_exponent, complaint)) {
+            return false;
+        }
+    }
+    if (!(read_exponent >= EXPONENT_MIN && read_exponent <= EXPONENT_MAX)) {
+        snprintf(complaint->allowed, sizeof complaint->allowed, "an exponent from %g to %g",
+                 EXPONENT_MIN, EXPONENT_MAX);
+        return complain(complaint, "the exponent of the unit is %g", read_exponent);
+    }
+    const Unit *unit = read_unit(name, DIMENSION_STIFFNESS, complaint);
+    if (unit == NULL) {
+        return false;
+    }
+    const double si = value * pow(unit->numerator, read_exponent);
+    assert(unit->denominator == 1.0);
+    if (!isfinite(si)) {
+        return complain(complaint, "'%.*s' is too large for a number", SHOWN_MAX, text);
+    }
+    *stiffness = si;
+    *exponent = read_exponent;
+    return true;
+}

@@ -1,0 +1,35 @@
+// Numbers, and numbers with units, as a case file writes them.
+#pragma once
+
+#include "casefile/units.h"
+#include "model/fourbar.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { QUANTITY_TEXT_SIZE = 256 };
+
+// What is wrong with a value, and what would be right. It has no place yet: whoever knows the
+// node adds file, line and column.
+typedef struct Complaint {
+    char text[QUANTITY_TEXT_SIZE];
+    char allowed[QUANTITY_TEXT_SIZE]; // empty where the text says it already
+} Complaint;
+
+// A decimal number and nothing else: no unit, no hexadecimal, no nan, no inf. All functions here
+// leave their results untouched on failure and then fill the complaint.
+bool quantity_number(const char *text, double *value, Complaint *complaint);
+
+// A whole number from 0 to 2^53; 1e6 is one.
+bool quantity_integer(const char *text, size_t *value, Complaint *complaint);
+
+// A number with a unit of the dimension, in SI. DIMENSION_NONE takes a plain number.
+bool quantity_parse(const char *text, Dimension dimension, double *si, Complaint *complaint);
+
+// A length, bare or with a tolerance: `108 mm`, `108 +- 0.3 mm`, `108 mm +0.1/-0.2 mm`. A unit
+// that is missing in front is that of the tolerance.
+bool quantity_tolerated(const char *text, ToleratedLength *length, Complaint *complaint);
+
+// A stiffness in N/m^n or N/mm^n, and the exponent n that its unit gives (1 to 3).
+bool quantity_stiffness(const char *text, double *stiffness, double *exponent,
+                        Complaint *complaint);

@@ -1,0 +1,33 @@
+// A text that a case is read from, and messages that point into it.
+#pragma once
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+// A stretch of a text, in characters from its start (not bytes); `end` stands behind the last.
+typedef struct Span {
+    size_t start;
+    size_t end;
+} Span;
+
+// Borrows name and text, which must outlive it.
+typedef struct Source {
+    const char *name; // as messages print it: a file's path, or the option
+    const char *text; // valid UTF-8
+    size_t size;      // bytes
+    size_t shift;     // characters in front of the part that spans count from (the key of --set)
+    bool is_option;   // given on the command line: messages name no line and are ERR_USAGE
+} Source;
+
+// Sets the error to the sentence, with its place in front, and below it the line, a caret with a
+// tail under the span, and "allowed: ..." where `allowed` is neither NULL nor empty. False always.
+bool source_error(const Source *source, Span span, const char *allowed, Err *err,
+                  const char *format, ...) __attribute__((format(printf, 5, 6)));
+
+// Bytes at the start of the text that are valid UTF-8 without control characters other than tabs
+// and line breaks; equal to size where all of it is text.
+size_t source_text_length(const char *text, size_t size);
+
+// The line, counted from 1, that a character stands on.
+size_t source_line(const Source *source, size_t character);

@@ -1,0 +1,169 @@
+// Which units does a case file know, and what is each in SI?
+#include "casefile/units.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct DimensionWords {
+    const char *name;
+    const char *example;
+    const char *si;
+} DimensionWords;
+
+// clang-format off
+static const DimensionWords DIMENSIONS[DIMENSION_COUNT] = {
+    [DIMENSION_NONE]          = {"a plain number",     "0.9",            ""},
+    [DIMENSION_LENGTH]        = {"a length",           "254 mm",         "m"},
+    [DIMENSION_MASS]          = {"a mass",             "0.29 kg",        "kg"},
+    [DIMENSION_INERTIA]       = {"a moment of inertia", "173.92 kg mm^2", "kg m^2"},
+    [DIMENSION_ANGULAR_SPEED] = {"an angular speed",   "1000 rpm",       "rad/s"},
+    [DIMENSION_ANGLE]         = {"an angle",           "30 deg",         "rad"},
+    [DIMENSION_TIME]          = {"a time",             "1 us",           "s"},
+    [DIMENSION_ACCELERATION]  = {"an acceleration",    "9.80665 m/s^2",  "m/s^2"},
+    [DIMENSION_SPEED]         = {"a speed",            "1 mm/s",         "m/s"},
+    [DIMENSION_PRESSURE]      = {"a pressure",         "207 GPa",        "Pa"},
+    [DIMENSION_DAMPING]       = {"a damping coefficient", "973.33 N s/mm", "N s/m"},
+    [DIMENSION_STIFFNESS]     = {"a stiffness",        "6.6e10 N/m^1.5", "N/m^n"},
+};
+
+// of two units equally near to a wrong one, the first is suggested
+static const Unit UNITS[] = {
+    {"mm",      DIMENSION_LENGTH,        1.0,    1e3},
+    {"m",       DIMENSION_LENGTH,        1.0,    1.0},
+    {"um",      DIMENSION_LENGTH,        1.0,    1e6},
+    {"micron",  DIMENSION_LENGTH,        1.0,    1e6},
+    {"cm",      DIMENSION_LENGTH,        1.0,    1e2},
+    {"in",      DIMENSION_LENGTH,        25.4,   1e3},
+    {"kg",      DIMENSION_MASS,          1.0,    1.0},
+    {"g",       DIMENSION_MASS,          1.0,    1e3},
+    {"kg mm^2", DIMENSION_INERTIA,       1.0,    1e6},
+    {"kg m^2",  DIMENSION_INERTIA,       1.0,    1.0},
+    {"g mm^2",  DIMENSION_INERTIA,       1.0,    1e9},
+    {"rpm",     DIMENSION_ANGULAR_SPEED, M_PI,   30.0},
+    {"rad/s",   DIMENSION_ANGULAR_SPEED, 1.0,    1.0},
+    {"deg/s",   DIMENSION_ANGULAR_SPEED, M_PI,   180.0},
+    {"deg",     DIMENSION_ANGLE,         M_PI,   180.0},
+    {"rad",     DIMENSION_ANGLE,         1.0,    1.0},
+    {"s",       DIMENSION_TIME,          1.0,    1.0},
+    {"ms",      DIMENSION_TIME,          1.0,    1e3},
+    {"us",      DIMENSION_TIME,          1.0,    1e6},
+    {"m/s^2",   DIMENSION_ACCELERATION,  1.0,    1.0},
+    {"mm/s^2",  DIMENSION_ACCELERATION,  1.0,    1e3},
+    {"m/s",     DIMENSION_SPEED,         1.0,    1.0},
+    {"mm/s",    DIMENSION_SPEED,         1.0,    1e3},
+    {"Pa",      DIMENSION_PRESSURE,      1.0,    1.0},
+    {"MPa",     DIMENSION_PRESSURE,      1e6,    1.0},
+    {"GPa",     DIMENSION_PRESSURE,      1e9,    1.0},
+    {"N/mm^2",  DIMENSION_PRESSURE,      1e6,    1.0},
+    {"N s/m",   DIMENSION_DAMPING,       1.0,    1.0},
+    {"N s/mm",  DIMENSION_DAMPING,       1e3,    1.0},
+    {"N/m^n",   DIMENSION_STIFFNESS,     1.0,    1.0},
+    {"N/mm^n",  DIMENSION_STIFFNESS,     1.0,    1.0},
+    {"N/m",     DIMENSION_STIFFNESS,     1.0,    1.0},
+    {"N/mm",    DIMENSION_STIFFNESS,     1e3,    1.0},
+};
+// clang-format on
+
+enum { UNIT_COUNT = sizeof UNITS / sizeof UNITS[0] };
+
+// Spellings that mean the same; the second is the table's.
+static const char *const SPELLINGS[][2] = {
+    {"\u00b5", "u"}, {"\u03bc", "u"}, {"\u00b2", "^2"}, {"\u00b7", " "}, {"*", " "}, {"\t", " "},
+};
+
+enum { SPELLING_COUNT = sizeof SPELLINGS / sizeof SPELLINGS[0] };
+
+const char *units_dimension_name(Dimension dimension)
+{
+    return DIMENSIONS[dimension].name;
+}
+
+const char *units_example(Dimension dimension)
+{
+    return DIMENSIONS[dimension].example;
+}
+
+const char *units_si(Dimension dimension)
+{
+    return DIMENSIONS[dimension].si;
+}
+
+// What stands for the first character of the text, and how many bytes it replaces.
+static const char *spell(const char *text, size_t *taken)
+{
+    for (size_t i = 0; i < SPELLING_COUNT; i++) {
+        const size_t length = strlen(SPELLINGS[i][0]);
+        if (strncmp(text, SPELLINGS[i][0], length) == 0) {
+            *taken = length;
+            return SPELLINGS[i][1];
+        }
+    }
+    *taken = 1;
+    return NULL;
+}
+
+void units_normalise(const char *text, char *name)
+{
+    size_t length = 0;
+    while (*text != '\0' && length + 3 < UNITS_NAME_SIZE) {
+        size_t taken;
+        const char *spelled = spell(text, &taken);
+        const char *piece = spelled != NULL ? spelled : text;
+        const size_t piece_length = spelled != NULL ? strlen(spelled) : 1;
+        // blanks at the front and behind another blank say nothing
+        if (!(piece[0] == ' ' && (length == 0 || name[length - 1] == ' '))) {
+            memcpy(name + length, piece, piece_length);
+            length += piece_length;
+        }
+        text += taken;
+    }
+    while (length > 0 && name[length - 1] == ' ') {
+        length--;
+    }
+    name[length] = '\0';
+}
+
+const Unit *units_find(Dimension wanted, const char *name)
+{
+    const Unit *found = NULL;
+    for (size_t i = 0; i < UNIT_COUNT; i++) {
+        if (strcmp(UNITS[i].name, name) != 0) {
+            continue;
+        }
+        if (UNITS[i].dimension == wanted) {
+            return &UNITS[i];
+        }
+        found = &UNITS[i];
+    }
+    return found;
+}
+
+const char *units_nearest(Dimension dimension, const char *name)
+{
+    const char *choices[UNIT_COUNT];
+    size_t count = 0;
+    for (size_t i = 0; i < UNIT_COUNT; i++) {
+        if (UNITS[i].dimension == dimension) {
+            choices[count++] = UNITS[i].name;
+        }
+    }
+    // a unit is short: one slip is a third of three letters, and half of two
+    const char *best = text_nearest(name, choices, count);
+    for (size_t i = 0; i < count && best == NULL; i++) {
+        if (strlen(name) > 1 && text_distance(name, choices[i]) == 1) {
+            best = choices[i];
+        }
+    }
+    return best;
+}
+
+void units_list(Dimension dimension, Text *text)
+{
+    const char *separator = "";
+    for (size_t i = 0; i < UNIT_COUNT; i++) {
+        if (UNITS[i].dimension == dimension) {
+            text_append(text, "%s%s", separator, UNITS[i].name);
+            separator = ", ";
+        }
+    }
+}

@@ -1,0 +1,103 @@
+// Does docs/case-format.md say what the program does? Runs in the source root; with --write it
+// writes the page to standard output instead.
+#include "casefile/casefile.h"
+
+#include "close.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void the_page_is_what_the_program_describes(void **state)
+{
+    (void)state;
+    enum { PAGE_SIZE = 1 << 16 };
+    char *page = calloc(1, PAGE_SIZE);
+    assert_non_null(page);
+    FILE *file = fopen("docs/case-format.md", "rb");
+    assert_non_null(file);
+    const size_t length = fread(page, 1, PAGE_SIZE - 1, file);
+    fclose(file);
+    Text text;
+    text_init(&text);
+    casefile_describe_markdown(&text);
+    assert_int_equal(length, text.length);
+    assert_string_equal(page, text.data);
+    text_finish(&text);
+    free(page);
+}
+
+static void both_descriptions_name_every_key(void **state)
+{
+    (void)state;
+    Text page;
+    Text words;
+    text_init(&page);
+    text_init(&words);
+    casefile_describe_markdown(&page);
+    casefile_describe(&words);
+    const Scenario scenario = scenario_default();
+    CasefileSetting setting;
+    for (size_t i = 0; casefile_setting(&scenario, i, &setting); i++) {
+        // the last part of the key: names of joints and points are placeholders there
+        const char *dot = strrchr(setting.key, '.');
+        const char *last = dot != NULL ? dot + 1 : setting.key;
+        assert_non_null(strstr(page.data, last));
+        assert_non_null(strstr(words.data, last));
+    }
+    assert_non_null(strstr(page.data, "| `material.youngs-modulus` |"));
+    assert_non_null(strstr(page.data, "2.07e+11 Pa"));
+    text_finish(&page);
+    text_finish(&words);
+}
+
+static void words_for_a_terminal_fit_its_width(void **state)
+{
+    (void)state;
+    Text words;
+    text_init(&words);
+    casefile_describe(&words);
+    for (const char *line = words.data; *line != '\0'; line += strcspn(line, "\n") + 1) {
+        assert_true(strcspn(line, "\n") <= 100);
+    }
+    text_finish(&words);
+}
+
+// The example in the description, as everyone will copy it.
+static void the_example_loads(void **state)
+{
+    (void)state;
+    Text page;
+    text_init(&page);
+    casefile_describe_markdown(&page);
+    const char *start = strstr(page.data, "```yaml\n");
+    assert_non_null(start);
+    start += strlen("```yaml\n");
+    const char *end = strstr(start, "```");
+    assert_non_null(end);
+    Scenario scenario;
+    Err err = {0};
+    assert_true(
+        casefile_load_text("example", start, (size_t)(end - start), NULL, 0, &scenario, &err));
+    assert_true(scenario_has_clearance(&scenario));
+    text_finish(&page);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc == 2 && strcmp(argv[1], "--write") == 0) {
+        Text text;
+        text_init(&text);
+        casefile_describe_markdown(&text);
+        fputs(text.data, stdout);
+        text_finish(&text);
+        return 0;
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_page_is_what_the_program_describes),
+        cmocka_unit_test(both_descriptions_name_every_key),
+        cmocka_unit_test(words_for_a_terminal_fit_its_width),
+        cmocka_unit_test(the_example_loads),
+    };
+    return cmocka_run_group_tests_name("case_format", tests, NULL, NULL);
+}

@@ -1,0 +1,436 @@
+// Does a case file become the scenario it describes? Runs in the source root.
+#include "casefile/casefile.h"
+
+#include "close.h"
+#include "mechanism.h"
+#include "model/kinematics.h"
+#include "scratch.h"
+
+#include <string.h>
+#include <sys/stat.h>
+
+static const char IMPACT[] = "cases/paper/stackup-impact.yaml";
+static const char NOMINAL[] = "cases/paper/ideal-nominal.yaml";
+
+static Scenario load(const char *path, const char *const *overrides, size_t count)
+{
+    Scenario scenario;
+    Err err = {0};
+    if (!casefile_load(path, overrides, count, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+    return scenario;
+}
+
+static Scenario load_with(const char *path, const char *override)
+{
+    return load(path, &override, 1);
+}
+
+static void refuse(const char *path, const char *override, ErrKind kind, const char *message)
+{
+    Scenario scenario;
+    Err err = {0};
+    assert_false(casefile_load(path, &override, override != NULL ? 1 : 0, &scenario, &err));
+    assert_string_equal(err.text, message);
+    assert_int_equal(err.kind, kind);
+}
+
+static void the_paper_cases_are_the_mechanism_of_the_paper(void **state)
+{
+    (void)state;
+    const Scenario built = load(NOMINAL, NULL, 0);
+    const Scenario truth = mechanism_paper();
+    assert_int_equal(built.linkage.body_count, truth.linkage.body_count);
+    assert_int_equal(built.linkage.joint_count, truth.linkage.joint_count);
+    for (size_t i = 0; i < truth.linkage.body_count; i++) {
+        const Body *body = &built.linkage.bodies[i];
+        const Body *other = &truth.linkage.bodies[i];
+        assert_string_equal(body->name, other->name);
+        assert_near(body->mass, other->mass, 1e-16);
+        assert_near(body->inertia, other->inertia, 1e-18);
+        assert_near(body->start.position.x, other->start.position.x, 1e-12);
+        assert_near(body->start.position.y, other->start.position.y, 1e-12);
+        assert_near(body->start.omega, other->start.omega, 1e-9);
+        assert_near(body->start.alpha, other->start.alpha, 1e-6);
+    }
+    for (size_t i = 0; i < truth.linkage.joint_count; i++) {
+        const Joint *joint = &built.linkage.joints[i];
+        const Joint *other = &truth.linkage.joints[i];
+        assert_string_equal(joint->name, other->name);
+        assert_int_equal(joint->kind, JOINT_REVOLUTE);
+        assert_int_equal(joint->body_a, other->body_a);
+        assert_int_equal(joint->body_b, other->body_b);
+    }
+    assert_true(built.has_fourbar);
+    assert_string_equal(built.path, NOMINAL);
+}
+
+static void every_paper_case_loads(void **state)
+{
+    (void)state;
+    const Scenario stackup = load("cases/paper/ideal-stackup.yaml", NULL, 0);
+    assert_near(stackup.fourbar.follower.nominal, 0.271, 0.0);
+    const Scenario impact = load(IMPACT, NULL, 0);
+    assert_int_equal(impact.linkage.joints[1].kind, JOINT_CLEARANCE);
+    assert_near(linkage_radial_clearance(&impact.linkage.joints[1]), 14.5e-6, 1e-17);
+    assert_near(impact.fourbar.crank.upper, 0.3e-3, 1e-18);
+    const Scenario poisson = load("cases/paper/stackup-poisson.yaml", NULL, 0);
+    assert_int_equal(poisson.contact.model, CONTACT_POISSON);
+    assert_near(poisson.contact.penalty, 973330.0, 1e-9);
+}
+
+static Motion follower_at(const char *start, const char *assembly)
+{
+    char angle[64];
+    char side[64];
+    snprintf(angle, sizeof angle, "drive.start=%s", start);
+    snprintf(side, sizeof side, "four-bar.assembly=%s", assembly);
+    const char *const overrides[] = {angle, side};
+    return load(NOMINAL, overrides, 2).linkage.bodies[2].start;
+}
+
+// Central differences over 2e-4 deg: their truncation error is 1e-12 of the value, their
+// rounding error 1e-16 / 3.5e-6 rad, times the crank's 105 rad/s.
+static void the_start_moves_as_its_neighbours_say(void **state)
+{
+    (void)state;
+    const Motion here = follower_at("50 deg", "open");
+    const Motion before = follower_at("49.9999 deg", "open");
+    const Motion after = follower_at("50.0001 deg", "open");
+    const double crank_speed = 1000.0 * M_PI / 30.0;
+    const double time = 2e-4 * M_PI / 180.0 / crank_speed;
+    assert_near((after.angle - before.angle) / time, here.omega, 1e-7);
+    assert_near((after.omega - before.omega) / time, here.alpha, 1e-3);
+    // the wrong neighbour shows
+    assert_true(fabs((here.angle - before.angle) / time - here.omega) > 1.0);
+}
+
+static void the_crossed_assembly_is_on_the_other_side(void **state)
+{
+    (void)state;
+    assert_near(follower_at("0 deg", "open").angle, -follower_at("0 deg", "crossed").angle, 1e-12);
+    assert_true(follower_at("0 deg", "open").angle > 0.0);
+}
+
+static void check_eccentricity(const Scenario *scenario, const char *name, double x, double y)
+{
+    const Joint *joint = &scenario->linkage.joints[linkage_find_joint(&scenario->linkage, name)];
+    Motion motions[LINKAGE_BODY_MAX];
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        motions[i] = scenario->linkage.bodies[i].start;
+    }
+    const Vec2 e = vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b),
+                            linkage_point(motions, joint->body_a, joint->anchor_a));
+    // positions of some 0.3 m are rounded at 6e-17 m each
+    assert_near(e.x, x, 1e-15);
+    assert_near(e.y, y, 1e-15);
+}
+
+static void a_pin_starts_where_the_case_says(void **state)
+{
+    (void)state;
+    static const char *const OVERRIDES[] = {
+        "joints.crank-coupler.start=[10 um, -8 um]",
+        "joints.coupler-follower={radial-clearance: 20 um, start: [-10 um, 10 um]}",
+        "joints.follower-ground={radial-clearance: 20 um, start: [3 um, 15 um]}",
+    };
+    const Scenario scenario = load(IMPACT, OVERRIDES, 3);
+    check_eccentricity(&scenario, "ground-crank", 0.0, 0.0);
+    check_eccentricity(&scenario, "crank-coupler", 10e-6, -8e-6);
+    check_eccentricity(&scenario, "coupler-follower", -10e-6, 10e-6);
+    check_eccentricity(&scenario, "follower-ground", 3e-6, 15e-6);
+    const Scenario centred = load_with(IMPACT, "joints.crank-coupler.start=centred");
+    check_eccentricity(&centred, "crank-coupler", 0.0, 0.0);
+}
+
+static void overrides_replace_what_the_file_says(void **state)
+{
+    (void)state;
+    static const char *const OVERRIDES[] = {
+        "run.step=5 us",
+        "run.step=2us",
+        "run.backends=[ode]",
+        "contact.law=johnson",
+        "drive={speed: -1 rad/s}",
+        "title=another",
+        "material.youngs-modulus=70 GPa",
+    };
+    const Scenario scenario = load(IMPACT, OVERRIDES, sizeof OVERRIDES / sizeof OVERRIDES[0]);
+    assert_near(scenario.run.step, 2e-6, 0.0);
+    assert_int_equal(scenario.run.backend_count, 1);
+    assert_int_equal(scenario.run.backends[0], BACKEND_ODE);
+    assert_int_equal(scenario.contact.law, LAW_JOHNSON);
+    assert_near(scenario.linkage.driver.speed, -1.0, 0.0);
+    assert_string_equal(scenario.title, "another");
+    assert_near(scenario.material.youngs_modulus, 7e10, 0.0);
+    const Scenario one = load_with(IMPACT, "run.backends=analytic");
+    assert_int_equal(one.run.backends[0], BACKEND_ANALYTIC);
+}
+
+static void an_override_takes_the_place_of_its_rival(void **state)
+{
+    (void)state;
+    const Scenario stiff = load_with(IMPACT, "contact.stiffness=6.6e10 N/m^1.5");
+    assert_near(stiff.contact.stiffness, 6.6e10, 0.0);
+    const Scenario play = load_with(IMPACT, "joints.crank-coupler.radial-clearance=0.1 mm");
+    assert_near(play.linkage.joints[1].clearance.pin_radius, 5e-3, 0.0);
+    assert_near(play.linkage.joints[1].clearance.hole_radius, 5.1e-3, 1e-18);
+    static const char *const BACK[] = {"contact.stiffness=6.6e10 N/m^1.5", "contact.law=johnson"};
+    const Scenario law = load(IMPACT, BACK, 2);
+    assert_near(law.contact.stiffness, 0.0, 0.0);
+    assert_int_equal(law.contact.law, LAW_JOHNSON);
+}
+
+static void wrong_overrides_are_usage_errors(void **state)
+{
+    (void)state;
+    refuse(IMPACT, "contact.restitution=1.5", ERR_USAGE,
+           "--set contact.restitution=1.5: contact.restitution is out of range: 1.5\n"
+           "    --set contact.restitution=1.5\n"
+           "                              ^~~\n"
+           "allowed: 0 to 1");
+    refuse(IMPACT, "joints.crank-coupler.hole=9 mm", ERR_USAGE,
+           "--set joints.crank-coupler.hole=9 mm: the pin (9.986 mm) must be smaller than the "
+           "hole (9 mm)\n"
+           "    --set joints.crank-coupler.hole=9 mm\n"
+           "                                    ^~~~\n"
+           "allowed: a hole above 9.986 mm");
+    refuse(IMPACT, "run.stp=1 us", ERR_USAGE,
+           "--set run.stp=1 us: unknown key 'stp'; did you mean 'step'?\n"
+           "    --set run.stp=1 us\n"
+           "                  ^~~~\n"
+           "allowed: revolutions, samples, step, backends");
+    refuse(IMPACT, "joints.follower-ground.hole=9 mm", ERR_USAGE,
+           "--set joints.follower-ground.hole=9 mm: joints.follower-ground.pin is missing\n"
+           "    --set joints.follower-ground.hole=9 mm\n"
+           "                                      ^~~~\n"
+           "allowed: hole and pin, or radial-clearance");
+    refuse(IMPACT, "drive.speed=0.001 rpm", ERR_USAGE,
+           "--set drive.speed=0.001 rpm: the run of 6e+04 s takes 6e+10 steps of 1e-06 s\n"
+           "    --set drive.speed=0.001 rpm\n"
+           "                      ^~~~~~~~~\n"
+           "allowed: at most 1e+09 steps: here a step of 6e-05 s or more, or fewer revolutions");
+    refuse("tests/bad/law-needs-width.yaml", "contact.law=esdu-78035", ERR_USAGE,
+           "--set contact.law=esdu-78035: the law esdu-78035 needs the width of joint "
+           "crank-coupler\n"
+           "    --set contact.law=esdu-78035\n"
+           "                      ^~~~~~~~~~\n"
+           "allowed: width: 13 mm, or a law without it");
+}
+
+static void malformed_overrides_say_what_is_needed(void **state)
+{
+    (void)state;
+    refuse(IMPACT, "run.step", ERR_USAGE,
+           "--set run.step: a key and a value are needed\n"
+           "allowed: --set KEY=VALUE, such as --set run.step=2us");
+    refuse(IMPACT, "=1", ERR_USAGE,
+           "--set =1: a key and a value are needed\n"
+           "allowed: --set KEY=VALUE, such as --set run.step=2us");
+    refuse(IMPACT, "run.step=", ERR_USAGE, "--set run.step=: no value\nallowed: --set KEY=VALUE");
+    refuse(IMPACT, "run.step=[", ERR_USAGE,
+           "--set run.step=[: not valid YAML: while parsing a flow node: did not find expected "
+           "node content\n"
+           "    --set run.step=[\n"
+           "                    ^");
+    refuse(IMPACT, "title=a\nb", ERR_USAGE,
+           "--set: the argument is not text on one line\nallowed: --set KEY=VALUE");
+    refuse(IMPACT, "run.step.x=1", ERR_USAGE,
+           "--set run.step.x=1: unknown key 'x'\n"
+           "    --set run.step.x=1\n"
+           "                     ^");
+}
+
+static void traced_points_are_placed_on_their_links(void **state)
+{
+    (void)state;
+    const Scenario scenario =
+        load_with(NOMINAL, "points={tip: {body: coupler, along: 300 mm, offset: 20 mm}, "
+                           "pin: {body: crank, along: 108 mm}}");
+    assert_int_equal(scenario.point_count, 2);
+    assert_string_equal(scenario.points[0].name, "tip");
+    assert_int_equal(scenario.points[0].body, 1);
+    assert_near(scenario.points[0].local.x, 0.3 - 0.1397, 1e-16);
+    assert_near(scenario.points[0].local.y, 0.02, 0.0);
+    assert_near(scenario.points[1].local.x, 0.054, 1e-16);
+    const char *const parts[] = {"points.tip.body=follower", "points.tip.along=0 mm"};
+    const Scenario again = load(NOMINAL, parts, 2);
+    assert_int_equal(again.point_count, 1);
+    assert_near(again.points[0].local.x, -0.13525, 1e-16);
+}
+
+static bool find_setting(const Scenario *scenario, const char *key, CasefileSetting *setting)
+{
+    for (size_t i = 0; casefile_setting(scenario, i, setting); i++) {
+        if (strcmp(setting->key, key) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void settings_tell_what_the_case_said(void **state)
+{
+    (void)state;
+    const char *const overrides[] = {"points.tip={body: coupler, along: 300 mm}",
+                                     "joints.crank-coupler.start=[5 um, -3 um]"};
+    const Scenario scenario = load(IMPACT, overrides, 2);
+    CasefileSetting setting;
+    assert_false(casefile_setting(&scenario, casefile_setting_count(), &setting));
+    assert_true(casefile_setting(&scenario, casefile_setting_count() - 1, &setting));
+
+    assert_true(find_setting(&scenario, "four-bar.crank.length", &setting));
+    assert_int_equal(setting.number_count, 3);
+    assert_near(setting.numbers[1], -0.3e-3, 1e-18);
+    assert_string_equal(setting.unit, "m");
+    assert_true(find_setting(&scenario, "joints.crank-coupler.hole", &setting));
+    assert_near(setting.numbers[0], 0.010015, 1e-17);
+    assert_true(setting.applies);
+    assert_true(find_setting(&scenario, "joints.crank-coupler.start", &setting));
+    assert_int_equal(setting.number_count, 2);
+    assert_near(setting.numbers[1], -3e-6, 1e-20);
+    assert_true(find_setting(&scenario, "joints.follower-ground.hole", &setting));
+    assert_false(setting.applies);
+    assert_true(find_setting(&scenario, "contact.law", &setting));
+    assert_int_equal(setting.kind, CASEFILE_WORD);
+    assert_string_equal(setting.text, "hertz-socket");
+    assert_true(find_setting(&scenario, "run.backends", &setting));
+    assert_string_equal(setting.text, "analytic, ode");
+    assert_true(find_setting(&scenario, "run.samples", &setting));
+    assert_int_equal(setting.kind, CASEFILE_INTEGER);
+    assert_near(setting.numbers[0], 3600.0, 0.0);
+    assert_true(find_setting(&scenario, "points.tip.along", &setting));
+    assert_near(setting.numbers[0], 0.3, 1e-16);
+}
+
+static void settings_say_whether_they_matter(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *override;
+        const char *key;
+        bool applies;
+    } CASES[] = {
+        {"contact.stiffness=2e7 N/m", "contact.stiffness", true},
+        {"contact.stiffness=2e7 N/m", "contact.law", false},
+        {"contact.stiffness=2e7 N/m", "material.youngs-modulus", false},
+        {"contact.model=poisson", "contact.penalty", true},
+        {"contact.model=poisson", "material.youngs-modulus", true},
+        {"contact.model=poisson", "contact.damping", false},
+        {"contact.model=poisson", "ode.push-out", true},
+        {"run.backends=analytic", "ode.solver", false},
+        {"ode.solver=quick", "ode.iterations", true},
+        {"ode.solver=direct", "ode.iterations", false},
+        {"title=x", "ode.settle-steps", false},
+        {"title=x", "ode.collider", true},
+        {"title=x", "contact.viscous-coefficient", false},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        const Scenario scenario = load_with(IMPACT, CASES[i].override);
+        CasefileSetting setting;
+        assert_true(find_setting(&scenario, CASES[i].key, &setting));
+        if (setting.applies != CASES[i].applies) {
+            fail_msg("%s with %s", CASES[i].key, CASES[i].override);
+        }
+    }
+    const Scenario stiff = load_with(IMPACT, "contact.stiffness=2e7 N/m^1.25");
+    CasefileSetting setting;
+    assert_true(find_setting(&stiff, "contact.stiffness", &setting));
+    assert_string_equal(setting.unit, "N/m^1.25");
+}
+
+static void defaults_are_those_of_the_options(void **state)
+{
+    (void)state;
+    static const char TEXT[] = "four-bar:\n"
+                               "  ground: {length: 254 mm}\n"
+                               "  crank: {length: 108 mm, mass: 1 kg, inertia: 1 kg m^2}\n"
+                               "  coupler: {length: 279.4 mm, mass: 1 kg, inertia: 1 kg m^2}\n"
+                               "  follower: {length: 270.5 mm, mass: 1 kg, inertia: 1 kg m^2}\n"
+                               "drive: {speed: 1000 rpm}\n";
+    Scenario scenario;
+    Err err = {0};
+    assert_true(casefile_load_text("memory", TEXT, strlen(TEXT), NULL, 0, &scenario, &err));
+    const Scenario defaults = scenario_default();
+    assert_memory_equal(&scenario.ode, &defaults.ode, sizeof defaults.ode);
+    assert_near(scenario.contact.restitution, defaults.contact.restitution, 0.0);
+    assert_near(scenario.run.step, defaults.run.step, 0.0);
+    assert_near(scenario.gravity, 9.80665, 0.0);
+    assert_string_equal(scenario.title, "");
+}
+
+static void marks_tabs_and_returns_are_no_mistakes(void **state)
+{
+    (void)state;
+    static const char TEXT[] = "\xef\xbb\xbf"
+                               "four-bar:\r\n"
+                               "  ground: {length:\t254 mm}\r\n"
+                               "  crank: {length: 108 mm, mass: 1 kg, inertia: 1 kg m^2}\t# tab\r\n"
+                               "  coupler: {length: 279.4 mm, mass: 1 kg, inertia: 1 kg m^2}\r\n"
+                               "  follower: {length: 270.5 mm, mass: 1 kg, inertia: 1 kg m^2}\r\n"
+                               "drive: {speed: 1000 rpm}\r\n";
+    Scenario scenario;
+    Err err = {0};
+    if (!casefile_load_text("memory", TEXT, strlen(TEXT), NULL, 0, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+}
+
+static void what_is_no_readable_file_says_so(void **state)
+{
+    (void)state;
+    refuse("no/such/case.yaml", NULL, ERR_FILE,
+           "no/such/case.yaml: cannot be read: No such file or directory");
+    refuse("tests/bad", NULL, ERR_CASE, "tests/bad: is a directory\nallowed: a case file");
+    refuse("/dev/zero", NULL, ERR_CASE,
+           "/dev/zero: too large for a case file\nallowed: at most 1048576 bytes");
+    refuse("/dev/null", NULL, ERR_CASE, "/dev/null: the file is empty\nallowed: a case in YAML");
+}
+
+// The file has no blocks on the disk: its size alone is enough to refuse it.
+static void a_huge_file_is_refused_unread(void **state)
+{
+    (void)state;
+    char path[256];
+    scratch_path("huge.yaml", path, sizeof path);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    fclose(file);
+    assert_int_equal(truncate(path, 100 << 20), 0);
+    Scenario scenario;
+    Err err = {0};
+    assert_false(casefile_load(path, NULL, 0, &scenario, &err));
+    assert_int_equal(err.kind, ERR_CASE);
+    assert_non_null(strstr(err.text, "104857600 bytes are too large"));
+    // nobody may read it, unless the test runs as root
+    assert_int_equal(truncate(path, 10), 0);
+    assert_int_equal(chmod(path, 0), 0);
+    Err unreadable = {0};
+    assert_false(casefile_load(path, NULL, 0, &scenario, &unreadable));
+    assert_int_equal(unreadable.kind, geteuid() == 0 ? ERR_CASE : ERR_FILE);
+    unlink(path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_paper_cases_are_the_mechanism_of_the_paper),
+        cmocka_unit_test(every_paper_case_loads),
+        cmocka_unit_test(the_start_moves_as_its_neighbours_say),
+        cmocka_unit_test(the_crossed_assembly_is_on_the_other_side),
+        cmocka_unit_test(a_pin_starts_where_the_case_says),
+        cmocka_unit_test(overrides_replace_what_the_file_says),
+        cmocka_unit_test(an_override_takes_the_place_of_its_rival),
+        cmocka_unit_test(wrong_overrides_are_usage_errors),
+        cmocka_unit_test(malformed_overrides_say_what_is_needed),
+        cmocka_unit_test(traced_points_are_placed_on_their_links),
+        cmocka_unit_test(settings_tell_what_the_case_said),
+        cmocka_unit_test(settings_say_whether_they_matter),
+        cmocka_unit_test(defaults_are_those_of_the_options),
+        cmocka_unit_test(marks_tabs_and_returns_are_no_mistakes),
+        cmocka_unit_test(what_is_no_readable_file_says_so),
+        cmocka_unit_test(a_huge_file_is_refused_unread),
+    };
+    return cmocka_run_group_tests_name("casefile", tests, NULL, NULL);
+}
