@@ -1,0 +1,24 @@
+// What did the paper compute, does it come out again, and what should it have been?
+#include "paper/paper.h"
+
+#include "paper/embedded.h"
+
+bool paper_compute(PaperResult *result, RunWatch watch, Err *err)
+{
+    PaperResult made = {.inputs = estimate_inputs_printed()};
+    estimate_compute(&made.inputs, made.tables);
+    for (int i = 0; i < PRINTED_TABLE_COUNT; i++) {
+        made.cell_count += made.tables[i].cell_count;
+        made.as_printed += made.tables[i].as_printed;
+    }
+    Scenario nominal;
+    if (!embedded_load(EMBEDDED_IDEAL_NOMINAL, &nominal, err) ||
+        !physical_compute(&nominal, &made.physical, err) ||
+        !extremes_compute(watch, made.extremes, err)) {
+        return false;
+    }
+    made.ideal_difference_max = extremes_difference_max(made.extremes);
+    made.ideal_as_printed = extremes_as_printed(made.extremes, &made.ideal_cell_count);
+    *result = made;
+    return true;
+}
