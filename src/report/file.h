@@ -1,0 +1,32 @@
+// A file is written whole or not at all.
+//
+// The text goes to a file beside the target and takes the target's name only when all of it has
+// been written, so that a full disk or a killed program never leaves half a file. A target that is
+// no regular file (a pipe, a terminal, /dev/full) is written to directly.
+#pragma once
+
+#include "base/err.h"
+
+#include <stdio.h>
+
+enum { FILE_PATH_SIZE = 4096 };
+
+// A file that is being written; write to `stream` in between.
+typedef struct WholeFile {
+    FILE *stream;
+    char path[FILE_PATH_SIZE];      // the target
+    char temporary[FILE_PATH_SIZE]; // beside it; empty where the target is written directly
+} WholeFile;
+
+// Begins a file. Fails with ERR_FILE, naming the path and the reason.
+bool file_begin(WholeFile *file, const char *path, Err *err);
+
+// Ends the file: it now stands under its name. Where anything could not be written since
+// file_begin it fails with ERR_FILE, and nothing of it is left.
+bool file_end(WholeFile *file, Err *err);
+
+// Gives the file up: nothing of it is left.
+void file_abandon(WholeFile *file);
+
+// All of the above for text that is ready.
+bool file_write_text(const char *path, const char *text, Err *err);

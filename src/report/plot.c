@@ -1,0 +1,231 @@
+// How does a panel with axes and lines become SVG?
+#include "report/plot.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+static const double TICK_LENGTH = 5.0; // pixels, as everything about the look of the picture
+static const double COLUMN = 0.5;      // what is nearer than this cannot be told apart
+
+static const char STYLE_SHEET[] =
+    "text{font-family:'DejaVu Sans','Liberation Sans',Arial,sans-serif;font-size:12px;"
+    "fill:#222}"
+    ".title{font-size:17px;font-weight:bold}.panel{font-size:14px;font-weight:bold}"
+    ".note{fill:#555}.grid{stroke:#e4e4e4}.zero{stroke:#b0b0b0}.frame{stroke:#444;fill:none}"
+    ".line{fill:none;stroke-linejoin:round}";
+
+static void append_escaped(Text *svg, const char *text)
+{
+    for (; *text != '\0'; text++) {
+        switch (*text) {
+        case '<':
+            text_append(svg, "&lt;");
+            break;
+        case '>':
+            text_append(svg, "&gt;");
+            break;
+        case '&':
+            text_append(svg, "&amp;");
+            break;
+        default:
+            text_append(svg, "%c", (unsigned char)*text < ' ' ? ' ' : *text);
+        }
+    }
+}
+
+void plot_begin(Text *svg, double width, double height, const char *title)
+{
+    text_append(svg,
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%g\" height=\"%g\" "
+                "viewBox=\"0 0 %g %g\">\n<title>",
+                width, height, width, height);
+    append_escaped(svg, title);
+    text_append(svg, "</title>\n<style>%s</style>\n", STYLE_SHEET);
+    text_append(svg, "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n");
+}
+
+void plot_end(Text *svg)
+{
+    text_append(svg, "</svg>\n");
+}
+
+void plot_text(Text *svg, double x, double y, const char *anchor, const char *css_class,
+               const char *text)
+{
+    text_append(svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" class=\"%s\">", x, y, anchor,
+                css_class);
+    append_escaped(svg, text);
+    text_append(svg, "</text>\n");
+}
+
+static void append_stroke(Text *svg, PlotStyle style)
+{
+    text_append(svg, "stroke=\"%s\" stroke-width=\"%g\" stroke-opacity=\"%g\"", style.colour,
+                style.width, style.opacity);
+    if (style.dash != NULL) {
+        text_append(svg, " stroke-dasharray=\"%s\"", style.dash);
+    }
+}
+
+void plot_sample(Text *svg, double x, double y, PlotStyle style)
+{
+    text_append(svg, "<path class=\"line\" d=\"M%.1f %.1fh30\" ", x, y);
+    append_stroke(svg, style);
+    text_append(svg, "/>\n");
+}
+
+static double pixel_x(const PlotPanel *panel, double x)
+{
+    return panel->left + panel->width * axis_share(&panel->x, x);
+}
+
+static double pixel_y(const PlotPanel *panel, double y)
+{
+    return panel->top + panel->height * (1.0 - axis_share(&panel->y, y));
+}
+
+// An axis of many decades is labelled in powers of ten, any other in plain numbers.
+static void append_tick_label(Text *svg, double value, const Axis *axis)
+{
+    const bool has_powers = axis->scale == AXIS_SYMLOG ||
+                            (axis->scale == AXIS_LOG && (axis->low < 0.009 || axis->high > 2e4));
+    if (has_powers && value != 0.0) {
+        text_append(svg, "%s10<tspan dy=\"-5\" font-size=\"9\">%.0f</tspan>",
+                    value < 0.0 ? "-" : "", round(log10(fabs(value))));
+    } else {
+        text_append(svg, fabs(value) < 1e6 ? "%.6g" : "%.3g", value);
+    }
+}
+
+static void draw_x_axis(const PlotPanel *panel)
+{
+    Text *svg = panel->svg;
+    double ticks[AXIS_TICK_MAX];
+    const size_t count = axis_ticks(&panel->x, ticks);
+    const double bottom = panel->top + panel->height;
+    for (size_t i = 0; i < count; i++) {
+        const double x = pixel_x(panel, ticks[i]);
+        text_append(svg, "<path class=\"%s\" d=\"M%.1f %.1fV%.1f\"/>",
+                    ticks[i] == 0.0 && panel->x.low < 0.0 ? "zero" : "grid", x, panel->top, bottom);
+        text_append(svg, "<path class=\"frame\" d=\"M%.1f %.1fv%g\"/>", x, bottom, TICK_LENGTH);
+        text_append(svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">", x,
+                    bottom + TICK_LENGTH + 13.0);
+        append_tick_label(svg, ticks[i], &panel->x);
+        text_append(svg, "</text>\n");
+    }
+    plot_text(svg, panel->left + 0.5 * panel->width, bottom + 37.0, "middle", "", panel->x.title);
+}
+
+static void draw_y_axis(const PlotPanel *panel)
+{
+    Text *svg = panel->svg;
+    double ticks[AXIS_TICK_MAX];
+    const size_t count = axis_ticks(&panel->y, ticks);
+    for (size_t i = 0; i < count; i++) {
+        const double y = pixel_y(panel, ticks[i]);
+        text_append(svg, "<path class=\"%s\" d=\"M%.1f %.1fh%.1f\"/>",
+                    ticks[i] == 0.0 ? "zero" : "grid", panel->left, y, panel->width);
+        text_append(svg, "<path class=\"frame\" d=\"M%.1f %.1fh%g\"/>", panel->left, y,
+                    -TICK_LENGTH);
+        text_append(svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">",
+                    panel->left - TICK_LENGTH - 3.0, y + 4.0);
+        append_tick_label(svg, ticks[i], &panel->y);
+        text_append(svg, "</text>\n");
+    }
+    const double x = panel->left - 58.0;
+    const double y = panel->top + 0.5 * panel->height;
+    text_append(svg, "<g transform=\"rotate(-90 %.1f %.1f)\">", x, y);
+    plot_text(svg, x, y, "middle", "", panel->y.title);
+    text_append(svg, "</g>\n");
+}
+
+void plot_enter(const PlotPanel *panel)
+{
+    Text *svg = panel->svg;
+    draw_x_axis(panel);
+    draw_y_axis(panel);
+    plot_text(svg, panel->left, panel->top - 10.0, "start", "panel", panel->title);
+    // the cut is named after its place, which no two panels share
+    text_append(svg,
+                "<clipPath id=\"cut-%.0f-%.0f\"><rect x=\"%g\" y=\"%g\" width=\"%g\" "
+                "height=\"%g\"/></clipPath>\n<g clip-path=\"url(#cut-%.0f-%.0f)\">\n",
+                panel->left, panel->top, panel->left, panel->top, panel->width, panel->height,
+                panel->left, panel->top);
+}
+
+void plot_leave(const PlotPanel *panel)
+{
+    text_append(panel->svg,
+                "</g>\n<rect class=\"frame\" x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\"/>\n",
+                panel->left, panel->top, panel->width, panel->height);
+}
+
+// Points that fall into one column of the picture, drawn together: a line through the first, the
+// lowest, the highest and the last of them looks the same as one through all.
+typedef struct Pile {
+    double column;
+    size_t count;
+    double low;
+    double high;
+    double last;
+} Pile;
+
+static void append_pile(Text *svg, const Pile *pile)
+{
+    if (pile->count > 2 && pile->high - pile->low > COLUMN) {
+        text_append(svg, "V%.1fV%.1f", pile->low, pile->high);
+    }
+    if (pile->count > 1) {
+        text_append(svg, "V%.1f", pile->last);
+    }
+}
+
+void plot_line(const PlotPanel *panel, size_t count, const double *x, const double *y,
+               PlotStyle style)
+{
+    Text *svg = panel->svg;
+    text_append(svg, "<path class=\"line\" d=\"");
+    Pile pile = {0};
+    for (size_t i = 0; i < count; i++) {
+        const double at_x = pixel_x(panel, x[i]);
+        const double at_y = pixel_y(panel, y[i]);
+        if (pile.count > 0 && floor(at_x / COLUMN) == pile.column) {
+            pile.count++;
+            pile.low = fmin(pile.low, at_y);
+            pile.high = fmax(pile.high, at_y);
+            pile.last = at_y;
+            continue;
+        }
+        append_pile(svg, &pile);
+        text_append(svg, "%c%.1f %.1f", i == 0 ? 'M' : 'L', at_x, at_y);
+        pile = (Pile){floor(at_x / COLUMN), 1, at_y, at_y, at_y};
+    }
+    append_pile(svg, &pile);
+    text_append(svg, "\" ");
+    append_stroke(svg, style);
+    text_append(svg, "/>\n");
+}
+
+void plot_stem(const PlotPanel *panel, double x, double y, PlotStyle style)
+{
+    Text *svg = panel->svg;
+    const double at_x = pixel_x(panel, x);
+    const double at_y = pixel_y(panel, y);
+    text_append(svg, "<path class=\"line\" d=\"M%.2f %.2fV%.2f\" ", at_x,
+                panel->top + panel->height, at_y);
+    append_stroke(svg, style);
+    text_append(svg, "/><circle cx=\"%.2f\" cy=\"%.2f\" r=\"3.5\" fill=\"%s\"/>\n", at_x, at_y,
+                style.colour);
+}
+
+void plot_circle(const PlotPanel *panel, double radius, PlotStyle style)
+{
+    Text *svg = panel->svg;
+    text_append(svg, "<ellipse class=\"line\" cx=\"%.2f\" cy=\"%.2f\" rx=\"%.2f\" ry=\"%.2f\" ",
+                pixel_x(panel, 0.0), pixel_y(panel, 0.0),
+                pixel_x(panel, radius) - pixel_x(panel, 0.0),
+                pixel_y(panel, 0.0) - pixel_y(panel, radius));
+    append_stroke(svg, style);
+    text_append(svg, "/>\n");
+}

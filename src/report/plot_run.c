@@ -1,0 +1,177 @@
+// What does a run look like?
+#include "report/plot_run.h"
+
+#include "report/plot_joints.h"
+#include "report/plot_look.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double PICTURE_WIDTH = 1000.0; // pixels, as all that follow
+static const double PICTURE_HEIGHT = 880.0;
+static const double PANEL_WIDTH = 390.0;
+static const double PANEL_HEIGHT = 290.0;
+static const double PANEL_LEFT[2] = {84.0, 584.0};
+static const double PANEL_TOP[2] = {146.0, 530.0};
+static const double LEGEND_TOP = 62.0;
+static const double LEGEND_ROW = 22.0;
+
+// a symmetric logarithmic scale is used where one backend goes so many times beyond another
+static const double SPIKY = 8.0;
+
+static double omega_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
+{
+    (void)report;
+    return trajectory_motion(run, sample, body)->omega;
+}
+
+static double alpha_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
+{
+    (void)report;
+    return trajectory_motion(run, sample, body)->alpha;
+}
+
+static PlotPanel place_panel(const RunReport *report, Text *svg, int row, int place,
+                             const char *title)
+{
+    return (PlotPanel){
+        .svg = svg,
+        .title = title,
+        .left = PANEL_LEFT[place],
+        .top = PANEL_TOP[row],
+        .width = PANEL_WIDTH,
+        .height = PANEL_HEIGHT,
+        .x = plot_look_x_axis(report),
+    };
+}
+
+// The range of a quantity in one run, over all samples and all bodies that are shown.
+static void find_range(const RunReport *report, const Trajectory *run, PlotQuantity quantity,
+                       double *low, double *high)
+{
+    for (size_t body = 0; body < run->body_count; body++) {
+        for (size_t i = 0; plot_look_shows_body(report, body) && i < run->sample_count; i++) {
+            const double value = quantity.at(report, run, i, body);
+            *low = fmin(*low, value);
+            *high = fmax(*high, value);
+        }
+    }
+}
+
+// A linear scale, unless one backend dwarfs another.
+static void choose_scale(const RunReport *report, PlotQuantity quantity, Axis *axis)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < report->run_count; i++) {
+        if (!report->runs[i]->is_complete) {
+            continue;
+        }
+        double low = 0.0;
+        double high = 0.0;
+        find_range(report, report->runs[i], quantity, &low, &high);
+        const double size = fmax(-low, high);
+        least = size > 0.0 ? fmin(least, size) : least;
+        axis->low = fmin(axis->low, low);
+        axis->high = fmax(axis->high, high);
+    }
+    const double most = fmax(-axis->low, axis->high);
+    if (most > SPIKY * least) {
+        axis->scale = AXIS_SYMLOG;
+        axis->threshold = pow(10.0, floor(log10(least)));
+        axis->high = pow(10.0, ceil(log10(most)));
+        axis->low = -axis->high;
+    } else {
+        axis_round(&axis->low, &axis->high);
+    }
+}
+
+static void draw_motion(const RunReport *report, PlotPanel panel, PlotQuantity quantity)
+{
+    choose_scale(report, quantity, &panel.y);
+    plot_enter(&panel);
+    for (size_t run = 0; run < report->run_count; run++) {
+        for (size_t body = 0; body < report->scenario->linkage.body_count; body++) {
+            if (plot_look_shows_body(report, body) && report->runs[run]->is_complete) {
+                plot_look_draw(report, &panel, run, quantity, body);
+            }
+        }
+    }
+    plot_leave(&panel);
+}
+
+// Where the next entry of the legend begins.
+typedef struct Legend {
+    Text *svg;
+    double x;
+    double y;
+} Legend;
+
+static void add_entry(Legend *legend, PlotStyle style, const char *words)
+{
+    // a character of this font takes some 7 pixels
+    const double width = 37.0 + 7.2 * (double)strlen(words) + 22.0;
+    if (legend->x + width > PICTURE_WIDTH) {
+        legend->x = PANEL_LEFT[0];
+        legend->y += LEGEND_ROW;
+    }
+    plot_sample(legend->svg, legend->x, legend->y - 4.0, style);
+    plot_text(legend->svg, legend->x + 37.0, legend->y, "start", "", words);
+    legend->x += width;
+}
+
+static void draw_legend(const RunReport *report, Text *svg)
+{
+    Legend legend = {svg, PANEL_LEFT[0], LEGEND_TOP};
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        PlotStyle style = plot_look_line(i, 0);
+        style.colour = "#333333";
+        char words[TRAJECTORY_LABEL_SIZE + 16];
+        snprintf(words, sizeof words, "%s%s", run->label, run->is_complete ? "" : " (failed)");
+        add_entry(&legend, style, words);
+    }
+    legend.x = PANEL_LEFT[0];
+    legend.y += LEGEND_ROW;
+    const Linkage *linkage = &report->scenario->linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if (plot_look_shows_body(report, i)) {
+            PlotStyle style = plot_look_line(1, plot_look_body_colour(report, i));
+            style.width = 3.0;
+            add_entry(&legend, style, linkage->bodies[i].name);
+        }
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (plot_look_shows_joint(report, i)) {
+            PlotStyle style = plot_look_line(1, plot_look_joint_colour(report, i));
+            style.width = 3.0;
+            char words[LINKAGE_NAME_SIZE + 16];
+            snprintf(words, sizeof words, "joint %s", linkage->joints[i].name);
+            add_entry(&legend, style, words);
+        }
+    }
+}
+
+void plot_run_write(const RunReport *report, Text *svg)
+{
+    static const PlotQuantity OMEGA = {omega_of, plot_look_body_colour};
+    static const PlotQuantity ALPHA = {alpha_of, plot_look_body_colour};
+    const char *title = report->scenario->title;
+    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT, title);
+    plot_text(svg, PANEL_LEFT[0], 34.0, "start", "title", title);
+    draw_legend(report, svg);
+    PlotPanel panel = place_panel(report, svg, 0, 0, "Angular velocity");
+    panel.y.title = "omega, rad/s";
+    draw_motion(report, panel, OMEGA);
+    panel = place_panel(report, svg, 0, 1, "Angular acceleration");
+    panel.y.title = "alpha, rad/s^2";
+    draw_motion(report, panel, ALPHA);
+    plot_joints_forces(report, place_panel(report, svg, 1, 0, "Force in the joint"));
+    panel = place_panel(report, svg, 1, 1, "");
+    if (scenario_has_clearance(report->scenario)) {
+        plot_joints_paths(report, panel);
+    } else {
+        plot_joints_errors(report, panel);
+    }
+    plot_end(svg);
+}

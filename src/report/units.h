@@ -1,0 +1,22 @@
+// On the way out SI becomes what people read: how many of a unit make one of SI.
+//
+// Units are written in ASCII, as a case file writes them, so that a number can be copied back.
+#pragma once
+
+#include <math.h>
+
+static const double UNITS_DEG = 57.29577951308232; // per rad
+static const double UNITS_RPM = 9.549296585513721; // per rad/s
+static const double UNITS_MM = 1e3;                // per m
+static const double UNITS_UM = 1e6;                // per m
+static const double UNITS_MS = 1e3;                // per s
+static const double UNITS_US = 1e6;                // per s
+static const double UNITS_PERCENT = 1e2;           // per 1
+
+// An angle in degrees, 0 to 360. Angles that print as 360.0 are 0.
+static inline double units_wrapped_deg(double angle_rad)
+{
+    const double turned = fmod(angle_rad * UNITS_DEG, 360.0);
+    const double wrapped = turned < 0.0 ? turned + 360.0 : turned;
+    return wrapped >= 359.95 ? 0.0 : wrapped;
+}

@@ -1,0 +1,116 @@
+// Is the picture of a run well-formed, and is nothing lost in it?
+#include "report/plot_run.h"
+
+#include "report_fixture.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// Every element that begins also ends, and no text holds a bare angle bracket or ampersand.
+static void expect_well_formed(const char *svg)
+{
+    char open[32][32];
+    int depth = 0;
+    for (const char *c = svg; *c != '\0'; c++) {
+        if (*c == '&') {
+            assert_true(strncmp(c, "&amp;", 5) == 0 || strncmp(c, "&lt;", 4) == 0 ||
+                        strncmp(c, "&gt;", 4) == 0);
+        }
+        assert_true(*c != '>');
+        if (*c != '<') {
+            continue;
+        }
+        const char *end = strchr(c, '>');
+        assert_non_null(end);
+        char name[32] = "";
+        sscanf(c + 1, "%31[a-zA-Z/]", name);
+        if (name[0] == '/') {
+            assert_true(depth > 0);
+            assert_string_equal(open[--depth], name + 1);
+        } else if (end[-1] != '/') {
+            assert_true(depth < 32);
+            strcpy(open[depth++], name);
+        }
+        c = end;
+    }
+    assert_int_equal(depth, 0);
+}
+
+static void a_picture_is_well_formed_and_shows_every_contact(void **state)
+{
+    Fixture *fixture = *state;
+    Text svg;
+    text_init(&svg);
+    plot_run_write(&fixture->report, &svg);
+    expect_well_formed(svg.data);
+    assert_null(strstr(svg.data, "nan"));
+    assert_null(strstr(svg.data, "inf"));
+    assert_non_null(strstr(svg.data, "A test &amp; &lt;nothing&gt; else"));
+    assert_non_null(strstr(svg.data, "broken (failed)"));
+    assert_non_null(strstr(svg.data, "<ellipse"));
+    size_t dots = 0;
+    for (const char *c = svg.data; (c = strstr(c, "<circle")) != NULL; c++) {
+        dots++;
+    }
+    assert_int_equal(dots, 7);
+    text_finish(&svg);
+}
+
+static void a_picture_without_play_shows_the_difference(void **state)
+{
+    Fixture *fixture = *state;
+    fixture->scenario.linkage.joints[1].kind = JOINT_REVOLUTE;
+    fixture->runs[1]->joints[1].spike_count = 0;
+    Text svg;
+    text_init(&svg);
+    plot_run_write(&fixture->report, &svg);
+    expect_well_formed(svg.data);
+    assert_null(strstr(svg.data, "nan"));
+    assert_non_null(strstr(svg.data, "Difference from analytic"));
+    text_finish(&svg);
+}
+
+static void a_picture_of_nothing_but_failures_is_still_one(void **state)
+{
+    Fixture *fixture = *state;
+    fixture->runs[0]->is_complete = false;
+    fixture->runs[1]->is_complete = false;
+    fixture->errors[1].is_known = false;
+    fixture->scenario.linkage.joints[1].kind = JOINT_REVOLUTE;
+    Text svg;
+    text_init(&svg);
+    plot_run_write(&fixture->report, &svg);
+    expect_well_formed(svg.data);
+    assert_null(strstr(svg.data, "nan"));
+    assert_null(strstr(svg.data, "inf"));
+    assert_non_null(strstr(svg.data, "No run to compare with"));
+    text_finish(&svg);
+}
+
+static void a_spiky_quantity_gets_decades_on_both_sides(void **state)
+{
+    Fixture *fixture = *state;
+    Motion *motion = fixture->runs[1]->motions + 4;
+    motion->alpha = -5e5;
+    Text svg;
+    text_init(&svg);
+    plot_run_write(&fixture->report, &svg);
+    expect_well_formed(svg.data);
+    assert_non_null(strstr(svg.data, ">-10<tspan"));
+    text_finish(&svg);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_picture_is_well_formed_and_shows_every_contact,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_picture_without_play_shows_the_difference, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_picture_of_nothing_but_failures_is_still_one,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_spiky_quantity_gets_decades_on_both_sides, fixture_set_up,
+                                        fixture_tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

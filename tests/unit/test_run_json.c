@@ -1,0 +1,147 @@
+// Does JSON hold what the trajectory holds, under the keys that others rely on?
+#include "report/run_json.h"
+
+#include "report_fixture.h"
+
+static double number_at(const json_t *object, const char *first, const char *second,
+                        const char *third)
+{
+    const json_t *value = json_object_get(object, first);
+    value = second == NULL ? value : json_object_get(value, second);
+    value = third == NULL ? value : json_object_get(value, third);
+    assert_true(json_is_number(value));
+    return json_number_value(value);
+}
+
+static void json_holds_the_keys_that_others_rely_on(void **state)
+{
+    Fixture *fixture = *state;
+    json_t *root = run_json_build(&fixture->report);
+    assert_string_equal(json_string_value(json_object_get(root, "case")), "cases/test.yaml");
+    const json_t *tool = json_object_get(root, "tool");
+    static const char *const VERSIONS[] = {"version", "ode", "ccd", "gsl"};
+    for (int i = 0; i < 4; i++) {
+        assert_true(json_is_string(json_object_get(tool, VERSIONS[i])));
+    }
+    const json_t *run = json_array_get(json_object_get(root, "runs"), 1);
+    assert_string_equal(json_string_value(json_object_get(run, "backend")), "ode");
+    assert_string_equal(json_string_value(json_object_get(run, "status")), "ok");
+    assert_string_equal(json_string_value(json_object_get(run, "message")), "");
+    assert_string_equal(json_string_value(json_object_get(run, "hash")), "0123456789abcdef");
+    assert_true(number_at(run, "step_s", NULL, NULL) == 1e-6);
+    assert_true(number_at(run, "steps", NULL, NULL) == 2000.0);
+    assert_true(number_at(run, "wall_s", NULL, NULL) == 0.004);
+    assert_close(number_at(run, "us_per_step", NULL, NULL), 2.0, 1e-12);
+    assert_close(number_at(run, "real_time_factor", NULL, NULL),
+                 scenario_duration(&fixture->scenario) / 0.004, 1e-12);
+    assert_true(number_at(run, "bodies", "coupler", "omega_max_rad_s") == 42.2008);
+    assert_true(number_at(run, "bodies", "coupler", "omega_min_rad_s") == 0.0);
+    assert_true(number_at(run, "bodies", "coupler", "alpha_max_rad_s2") == 0.0);
+    assert_true(number_at(run, "bodies", "coupler", "alpha_min_rad_s2") == -11970.4);
+    assert_null(json_object_get(json_object_get(run, "bodies"), "crank"));
+    assert_true(number_at(run, "joints", "crank-coupler", "impacts") == 17.0);
+    assert_true(number_at(run, "joints", "crank-coupler", "force_max_N") == 1234.5);
+    assert_true(number_at(run, "joints", "crank-coupler", "impulse_N_s") == 0.75);
+    assert_true(number_at(run, "joints", "crank-coupler", "penetration_max_m") == 2.5e-6);
+    assert_close(number_at(run, "joints", "crank-coupler", "contact_fraction"), 0.25, 1e-12);
+    assert_true(number_at(run, "error", "omega_max", NULL) == 0.017);
+    assert_true(number_at(run, "error", "omega_rms", NULL) == 0.004);
+    const json_t *error = json_object_get(run, "error");
+    assert_string_equal(json_string_value(json_object_get(error, "against")), "analytic");
+    assert_true(json_is_null(json_object_get(error, "horizon_s")));
+    assert_true(json_is_null(json_object_get(error, "reference_uncertainty")));
+    json_decref(root);
+}
+
+static void json_angles_are_degrees_of_one_turn(void **state)
+{
+    Fixture *fixture = *state;
+    json_t *root = run_json_build(&fixture->report);
+    const json_t *run = json_array_get(json_object_get(root, "runs"), 1);
+    assert_close(number_at(run, "bodies", "coupler", "omega_max_crank_deg"),
+                 6.7 * UNITS_DEG - 360.0, 1e-12);
+    assert_close(number_at(run, "bodies", "coupler", "alpha_min_crank_deg"),
+                 360.0 - 0.1 * UNITS_DEG, 1e-12);
+    json_decref(root);
+}
+
+static void json_of_the_closed_form_is_there_when_it_has_spoken(void **state)
+{
+    Fixture *fixture = *state;
+    json_t *root = run_json_build(&fixture->report);
+    assert_close(number_at(root, "kinematics", "transmission_angle_min_rad", NULL),
+                 30.74 / UNITS_DEG, 1e-12);
+    const json_t *forces = json_object_get(root, "inverse_dynamics");
+    assert_true(number_at(forces, "drive_torque", "max_N_m", NULL) == 55.5);
+    assert_true(number_at(forces, "reactions", "crank-coupler", "max_N") == 1504.7);
+    const json_t *row = json_array_get(json_object_get(root, "stackup"), 0);
+    assert_true(number_at(row, "max", "worst", NULL) == 5.0);
+    assert_true(number_at(row, "max", "alone", "coupler length") == 0.5);
+    const json_t *corner = json_object_get(json_object_get(row, "min"), "corner");
+    assert_string_equal(json_string_value(json_object_get(corner, "coupler length")), "largest");
+    assert_string_equal(json_string_value(json_object_get(corner, "play crank-coupler")),
+                        "shortens coupler");
+    json_decref(root);
+    fixture->report.summary = NULL;
+    fixture->report.stackup = NULL;
+    root = run_json_build(&fixture->report);
+    assert_null(json_object_get(root, "kinematics"));
+    assert_null(json_object_get(root, "stackup"));
+    json_decref(root);
+}
+
+static void a_failed_run_has_a_message_and_no_numbers(void **state)
+{
+    Fixture *fixture = *state;
+    json_t *root = run_json_build(&fixture->report);
+    json_t *run = json_array_get(json_object_get(root, "runs"), 2);
+    assert_string_equal(json_string_value(json_object_get(run, "status")), "failed");
+    assert_string_equal(json_string_value(json_object_get(run, "message")),
+                        "not finite at 1.25 ms");
+    const char *key;
+    json_t *value;
+    json_object_foreach(run, key, value)
+    {
+        assert_true(json_is_string(value));
+    }
+    json_decref(root);
+}
+
+static void a_number_that_is_not_finite_becomes_null(void **state)
+{
+    Fixture *fixture = *state;
+    fixture->runs[1]->bodies[1].omega_max.value = NAN;
+    json_t *root = run_json_build(&fixture->report);
+    const json_t *run = json_array_get(json_object_get(root, "runs"), 1);
+    const json_t *coupler = json_object_get(json_object_get(run, "bodies"), "coupler");
+    assert_true(json_is_null(json_object_get(coupler, "omega_max_rad_s")));
+    json_decref(root);
+}
+
+static void a_path_that_is_not_utf8_is_still_written(void **state)
+{
+    Fixture *fixture = *state;
+    strcpy(fixture->scenario.path, "cases/\xff.yaml");
+    json_t *root = run_json_build(&fixture->report);
+    assert_string_equal(json_string_value(json_object_get(root, "case")), "cases/?.yaml");
+    json_decref(root);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(json_holds_the_keys_that_others_rely_on, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(json_angles_are_degrees_of_one_turn, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(json_of_the_closed_form_is_there_when_it_has_spoken,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_failed_run_has_a_message_and_no_numbers, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_number_that_is_not_finite_becomes_null, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_path_that_is_not_utf8_is_still_written, fixture_set_up,
+                                        fixture_tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,139 @@
+// Does the text say what was modelled and what came out?
+#include "report/run_text.h"
+
+#include "report_fixture.h"
+
+#include <string.h>
+
+static void expect_words(const char *text, const char *const *words)
+{
+    for (; *words != NULL; words++) {
+        if (strstr(text, *words) == NULL) {
+            print_error("'%s' is not in:\n%s\n", *words, text);
+            fail();
+        }
+    }
+}
+
+static void the_text_says_what_was_modelled_and_what_came_out(void **state)
+{
+    Fixture *fixture = *state;
+    static const char *const WORDS[] = {
+        "A test & <nothing> else",
+        "3 bodies, 4 joints, mobility",
+        "hole 10.015 mm, pin 9.986 mm, radial clearance 14.5 um",
+        "954.93 rpm counter-clockwise",
+        "hertz-socket, K = ",
+        "damping lankarani-nikravesh, restitution 0.9",
+        "step 1 us, 8 constraint rows, at most 1 contact row\n",
+        "42.2008      23.9",
+        "-11970.4     354.3",
+        "1234     171.9",
+        "14.5 um",
+        "The analytic solver takes every joint as ideal",
+        "0.017",
+        "broken failed: not finite at 1.25 ms",
+        "transmission angle   30.74 deg",
+        "power balance",
+        "play crank-coupler shortens coupler",
+        NULL,
+    };
+    Text text;
+    text_init(&text);
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    expect_words(text.data, WORDS);
+    assert_null(strchr(text.data, '\x1b'));
+    assert_null(strstr(text.data, "nan"));
+    text_finish(&text);
+}
+
+static void at_most_five_contacts_of_a_joint_are_listed(void **state)
+{
+    Fixture *fixture = *state;
+    Text text;
+    text_init(&text);
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    const char *section = strstr(text.data, "Strongest contacts, ode");
+    assert_non_null(section);
+    assert_non_null(strstr(section, " 834.5"));
+    assert_null(strstr(section, " 734.5"));
+    text_finish(&text);
+}
+
+static void a_terminal_sees_headings_and_failures_marked(void **state)
+{
+    Fixture *fixture = *state;
+    static const char *const WORDS[] = {"\x1b[1mCost\x1b[0m", "\x1b[31mFAILED\x1b[0m", NULL};
+    Text text;
+    text_init(&text);
+    run_text_write(&fixture->report, &STYLE_TERMINAL, &text);
+    expect_words(text.data, WORDS);
+    text_finish(&text);
+}
+
+static void every_contact_law_is_named(void **state)
+{
+    Fixture *fixture = *state;
+    ContactOptions *contact = &fixture->scenario.contact;
+    static const char *const GIVEN[] = {"given stiffness, K = 6.6e+10 N/m^1.5", "viscous 12 N s/m",
+                                        NULL};
+    static const char *const LOGARITHMIC[] = {"johnson, d = A F (B - ln F)", "damping none\n",
+                                              NULL};
+    static const char *const POISSON[] = {"poisson, p = 250 N s/m (given), restitution 0.9", NULL};
+    static const char *const ESTIMATE[] = {"(the paper's estimate)", "clockwise", NULL};
+    Text text;
+    text_init(&text);
+    contact->stiffness = 6.6e10;
+    contact->damping = DAMPING_VISCOUS;
+    contact->viscous_coefficient = 12.0;
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    expect_words(text.data, GIVEN);
+    contact->stiffness = 0.0;
+    contact->law = LAW_JOHNSON;
+    contact->damping = DAMPING_NONE;
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    expect_words(text.data, LOGARITHMIC);
+    contact->model = CONTACT_POISSON;
+    contact->penalty = 250.0;
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    expect_words(text.data, POISSON);
+    contact->penalty = 0.0;
+    fixture->scenario.linkage.driver.speed = -100.0;
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    expect_words(text.data, ESTIMATE);
+    text_finish(&text);
+}
+
+static void without_play_there_are_no_contacts_to_list(void **state)
+{
+    Fixture *fixture = *state;
+    fixture->scenario.linkage.joints[1].kind = JOINT_REVOLUTE;
+    fixture->runs[1]->joints[1].spike_count = 0;
+    fixture->report.summary = NULL;
+    fixture->report.stackup = NULL;
+    Text text;
+    text_init(&text);
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    assert_null(strstr(text.data, "Contacts in"));
+    assert_null(strstr(text.data, "Strongest"));
+    assert_null(strstr(text.data, "takes every joint as ideal"));
+    assert_null(strstr(text.data, "Kinematics"));
+    text_finish(&text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(the_text_says_what_was_modelled_and_what_came_out,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(at_most_five_contacts_of_a_joint_are_listed, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_terminal_sees_headings_and_failures_marked,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(every_contact_law_is_named, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(without_play_there_are_no_contacts_to_list, fixture_set_up,
+                                        fixture_tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
