@@ -21,3 +21,7 @@ typedef struct PaperResult {
 // Recomputes everything. The watch is told of the two ODE runs, which take nearly all the time.
 // Fails where an embedded case cannot be loaded or solved in closed form.
 bool paper_compute(PaperResult *result, RunWatch watch, Err *err);
+
+// Fails with ERR_DIFFERS where the result is not the paper's: a cell of Tables I to III that does
+// not come out as printed, or an ideal row of Tables VII and VIII more than 0.03 % off.
+bool paper_check(const PaperResult *result, Err *err);

@@ -1,0 +1,23 @@
+// One case on all of its backends, ready to be reported.
+#pragma once
+
+#include "report/run_report.h"
+
+typedef struct CaseRun {
+    Scenario scenario;
+    Trajectory *runs[BACKEND_COUNT];
+    TrajectoryError errors[BACKEND_COUNT];
+    AnalyticSummary summary;
+    Stackup stackup;
+    RunReport report; // points into this CaseRun, which must not be moved
+    size_t failed_count;
+} CaseRun;
+
+// Runs the scenario that stands in it, with progress on standard error unless quiet. A backend
+// that fails is a run that is not complete, and counted.
+void case_run_execute(CaseRun *run, bool is_quiet);
+
+void case_run_finish(CaseRun *run);
+
+// The name of the case: that of its file, without folder and ending.
+void case_run_name(const Scenario *scenario, char *name, size_t size);

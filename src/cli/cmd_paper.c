@@ -1,0 +1,90 @@
+// What did the paper compute, and what comes out when it is computed again?
+#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "report/paper_json.h"
+#include "report/paper_text.h"
+#include "report/run_json.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+typedef struct PaperOptions {
+    bool is_json;
+    bool is_quiet;
+} PaperOptions;
+
+enum { KEY_JSON = 'j', KEY_QUIET = 'q' };
+
+static const struct argp_option OPTIONS[] = {
+    {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 0},
+    {"quiet", KEY_QUIET, NULL, 0, "No progress on standard error", 0},
+    {0},
+};
+
+static bool take_option(int key, const char *value, void *target, Err *err)
+{
+    PaperOptions *options = target;
+    switch (key) {
+    case KEY_JSON:
+        options->is_json = true;
+        return true;
+    case KEY_QUIET:
+        options->is_quiet = true;
+        return true;
+    default:
+        return err_set(err, ERR_USAGE, "'jointplay paper' takes no argument, and '%s' is one",
+                       value);
+    }
+}
+
+static void print_result(const PaperResult *result, bool is_json)
+{
+    if (is_json) {
+        json_t *object = paper_json_make(result);
+        json_dumpf(object, stdout, RUN_JSON_FLAGS);
+        putchar('\n');
+        json_decref(object);
+        return;
+    }
+    Text text;
+    text_init(&text);
+    paper_text_write(result, output_style(stdout), &text);
+    fputs(text.data, stdout);
+    text_finish(&text);
+}
+
+static bool run_paper(int argc, char **argv, Err *err)
+{
+    static const Arguments ARGUMENTS = {
+        .program = "jointplay paper",
+        .doc = "Recomputes the tables of the paper the program grew from: printed, recomputed, "
+               "difference, and what physics gives.",
+        .options = OPTIONS,
+        .take = take_option,
+    };
+    PaperOptions options = {0};
+    bool is_answered;
+    if (!arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) || is_answered) {
+        return err->kind == ERR_NONE;
+    }
+    PaperResult *result = calloc(1, sizeof *result);
+    assert(result != NULL);
+    Progress progress;
+    const RunWatch watch = progress_watch(&progress, "paper", options.is_quiet);
+    const bool is_computed = paper_compute(result, watch, err);
+    progress_end(&progress);
+    if (is_computed) {
+        print_result(result, options.is_json);
+    }
+    const bool is_reproduced = is_computed && paper_check(result, err);
+    free(result);
+    return is_reproduced;
+}
+
+const Command cmd_paper = {
+    .name = "paper",
+    .summary = "recomputes the paper's tables and holds them against the printed ones",
+    .run = run_paper,
+};

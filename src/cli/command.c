@@ -1,0 +1,41 @@
+// Which command is meant, and which are there?
+#include "cli/command.h"
+
+#include "base/text.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { COMMAND_MAX = 32 };
+
+const Command *command_find(const char *name, Err *err)
+{
+    const char *names[COMMAND_MAX];
+    size_t count = 0;
+    for (; COMMANDS[count] != NULL; count++) {
+        names[count] = COMMANDS[count]->name;
+        if (strcmp(name, names[count]) == 0) {
+            return COMMANDS[count];
+        }
+    }
+    const char *nearest = text_nearest(name, names, count);
+    if (nearest != NULL) {
+        err_set(err, ERR_USAGE, "unknown command '%s'; did you mean '%s'?", name, nearest);
+    } else {
+        err_set(err, ERR_USAGE, "unknown command '%s'; 'jointplay help' lists the commands", name);
+    }
+    return NULL;
+}
+
+void command_list(void)
+{
+    printf("jointplay: how far can ODE be trusted with a joint that has play, and at what cost?\n\n"
+           "Usage: jointplay COMMAND [OPTION...] [ARGUMENT...]\n\nCommands:\n");
+    for (size_t i = 0; COMMANDS[i] != NULL; i++) {
+        printf("  %-8s %s\n", COMMANDS[i]->name, COMMANDS[i]->summary);
+    }
+    printf("\n'jointplay COMMAND --help' tells more of a command, 'jointplay help case' how a case "
+           "file\nis written, 'jointplay --version' which versions are at work.\n"
+           "\nExit status: 0 done, 1 the numbers differ, 2 usage, 3 bad case file, 4 a solver "
+           "failed,\n5 a file could not be read or written.\n");
+}

@@ -1,0 +1,27 @@
+// A command of the program: one file a command, all listed in main.c.
+#pragma once
+
+#include "base/err.h"
+
+#include <stdbool.h>
+
+typedef struct Command {
+    const char *name;
+    const char *summary; // one line for people
+    // Does it. argv[0] is the command's name. Data go to standard output, words to standard error;
+    // an error is only set, never printed.
+    bool (*run)(int argc, char **argv, Err *err);
+} Command;
+
+extern const Command cmd_run;
+extern const Command cmd_paper;
+extern const Command cmd_help;
+
+// All of them, in the order in which they are listed; ends in NULL.
+extern const Command *const COMMANDS[];
+
+// The command of a name. Fails with ERR_USAGE, naming the command that may have been meant.
+const Command *command_find(const char *name, Err *err);
+
+// Prints what the program does and the list of commands.
+void command_list(void);

@@ -1,0 +1,70 @@
+// What was asked for, and how did it end?
+//
+// The only place that prints errors and ends the program.
+#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/output.h"
+#include "version.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool take_option(int key, const char *value, void *target, Err *err)
+{
+    (void)value;
+    (void)target;
+    if (key == 'V') {
+        printf("jointplay %s\nODE %s, libccd %s, GSL %s\n", JOINTPLAY_VERSION,
+               JOINTPLAY_ODE_VERSION, JOINTPLAY_CCD_VERSION, JOINTPLAY_GSL_VERSION);
+        return true;
+    }
+    return err_set(err, ERR_USAGE, "no command given; 'jointplay help' lists the commands");
+}
+
+// Answers an option that stands before any command.
+static bool answer_option(char **argv, Err *err)
+{
+    static const struct argp_option OPTIONS[] = {
+        {"version", 'V', NULL, 0, "Print the versions of the program and its libraries", 0},
+        {0},
+    };
+    static const Arguments ARGUMENTS = {
+        .program = "jointplay", .options = OPTIONS, .take = take_option};
+    bool is_answered;
+    char *words[] = {argv[0], argv[1], NULL};
+    return arguments_parse(&ARGUMENTS, 2, words, NULL, &is_answered, err);
+}
+
+static bool run_program(int argc, char **argv, Err *err)
+{
+    if (argc < 2) {
+        return err_set(err, ERR_USAGE, "no command given; 'jointplay help' lists the commands");
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+        command_list();
+        return true;
+    }
+    if (argv[1][0] == '-') {
+        return answer_option(argv, err);
+    }
+    const Command *command = command_find(argv[1], err);
+    return command != NULL && command->run(argc - 1, argv + 1, err);
+}
+
+int main(int argc, char **argv)
+{
+    // a reader that goes away shows as a failed write, and a failed write has an exit status
+    signal(SIGPIPE, SIG_IGN);
+    argp_err_exit_status = ERR_USAGE;
+    Err err = {0};
+    run_program(argc, argv, &err);
+    output_end(&err);
+    if (err.kind != ERR_NONE && err.text[0] != '\0') {
+        const Style *style = output_style(stderr);
+        fprintf(stderr, "%sjointplay:%s %s\n", style->failure, style->end, err.text);
+    }
+    return err.kind;
+}
+
+const Command *const COMMANDS[] = {&cmd_run, &cmd_paper, &cmd_help, NULL};

@@ -1,0 +1,17 @@
+// Where data and words go, and how they look there.
+#pragma once
+
+#include "base/err.h"
+#include "report/style.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+// Marked for a terminal, plain for anything else and where NO_COLOR is set.
+const Style *output_style(FILE *stream);
+
+bool output_is_terminal(FILE *stream);
+
+// Sees that all of standard output has been written. Fails with ERR_FILE; the text is empty where
+// the reader has gone away, which needs no words.
+bool output_end(Err *err);

@@ -1,0 +1,113 @@
+// Does the program do what its command line asks for, and say what is wrong with one?
+#include "program.h"
+
+static void the_commands_are_listed(void **state)
+{
+    Program *program = *state;
+    static const char *const WAYS[] = {"help", "--help", "-h"};
+    for (int i = 0; i < 3; i++) {
+        program_run(program, WAYS[i]);
+        assert_int_equal(program->status, 0);
+        assert_says(program->output, "\n  run ");
+        assert_says(program->output, "\n  paper ");
+        assert_says(program->output, "Exit status: 0 done");
+        assert_string_equal(program->errors, "");
+    }
+}
+
+static void the_versions_at_work_are_printed(void **state)
+{
+    Program *program = *state;
+    program_run(program, "--version");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "jointplay ");
+    assert_says(program->output, "ODE ");
+    assert_says(program->output, "libccd ");
+    assert_says(program->output, "GSL ");
+}
+
+static void each_command_tells_how_it_is_used(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run --help");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "Usage: jointplay run [OPTION...] CASE...");
+    assert_says(program->output, "--set=KEY=VALUE");
+    program_run(program, "help paper");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "Usage: jointplay paper [OPTION...]");
+    program_run(program, "help help");
+    assert_says(program->output, "Usage: jointplay help [OPTION...] [case|COMMAND]");
+}
+
+static void the_case_format_is_described(void **state)
+{
+    Program *program = *state;
+    program_run(program, "help case");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "restitution");
+    program_run(program, "help case --markdown");
+    assert_int_equal(program->status, 0);
+    assert_int_equal(strncmp(program->output, "# ", 2), 0);
+}
+
+static void a_wrong_command_line_is_answered_with_what_may_be_meant(void **state)
+{
+    Program *program = *state;
+    program_fails_usage(program, "", "no command given");
+    program_fails_usage(program, "-", "no command given");
+    program_fails_usage(program, "rnu", "unknown command 'rnu'; did you mean 'run'?");
+    program_fails_usage(program, "simulate", "'jointplay help' lists the commands");
+    program_fails_usage(program, "--verison", "did you mean '--version'?");
+    program_fails_usage(program, "help papre", "did you mean 'paper'?");
+    program_fails_usage(program, "help run paper", "one topic at a time");
+    program_fails_usage(program, "run", "no case given");
+    program_fails_usage(program, "run --stepp 1us a.yaml", "did you mean '--step'?");
+    program_fails_usage(program, "run -x a.yaml", "unknown option '-x'");
+    program_fails_usage(program, "run -qx a.yaml", "unknown option '-qx'");
+    program_fails_usage(program, "run --step", "option '--step' needs a value");
+    program_fails_usage(program, "run --json=1 a.yaml", "takes no value");
+    program_fails_usage(program, "run a.yaml b.yaml --series s.csv", "--series takes one case");
+    program_fails_usage(program, "run a.yaml b.yaml --plot s.svg", "--plot takes one case");
+    program_fails_usage(program, "paper --frobnicate", "unknown option '--frobnicate'");
+    program_fails_usage(program, "paper here", "takes no argument");
+}
+
+static void a_wrong_setting_is_a_wrong_command_line(void **state)
+{
+    Program *program = *state;
+    program_fails_usage(program, "run $cases/paper/ideal-nominal.yaml --set run.stp=1us",
+                        "did you mean 'step'?");
+    program_fails_usage(program, "run $cases/paper/ideal-nominal.yaml --backend odee",
+                        "did you mean 'ode'?");
+    program_fails_usage(program, "run $cases/paper/ideal-nominal.yaml --step 5kg", "5kg");
+}
+
+static void the_paper_is_recomputed(void **state)
+{
+    Program *program = *state;
+    program_run(program, "paper --quiet");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "Table");
+    program_run(program, "paper --json");
+    assert_int_equal(program->status, 0);
+    json_t *root = json_loads(program->output, 0, NULL);
+    assert_non_null(root);
+    json_decref(root);
+}
+
+#define COMMAND_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        COMMAND_TEST(the_commands_are_listed),
+        COMMAND_TEST(the_versions_at_work_are_printed),
+        COMMAND_TEST(each_command_tells_how_it_is_used),
+        COMMAND_TEST(the_case_format_is_described),
+        COMMAND_TEST(a_wrong_command_line_is_answered_with_what_may_be_meant),
+        COMMAND_TEST(a_wrong_setting_is_a_wrong_command_line),
+        COMMAND_TEST(the_paper_is_recomputed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

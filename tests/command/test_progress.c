@@ -1,0 +1,152 @@
+// Does a long run say how far it has come, without leaving anything behind on a terminal?
+#define _GNU_SOURCE // pseudo-terminals
+
+#include "cli/progress.h"
+
+#include "cli/output.h"
+
+#include "close.h"
+
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { OUTPUT_SIZE = 4096 };
+
+// Standard error led elsewhere for a while, and what arrived there.
+typedef struct Listener {
+    int kept;
+    int reading_end;
+    char output[OUTPUT_SIZE];
+} Listener;
+
+static void listen_from(Listener *listener, int writing_end, int reading_end)
+{
+    fflush(stderr);
+    listener->kept = dup(STDERR_FILENO);
+    listener->reading_end = reading_end;
+    dup2(writing_end, STDERR_FILENO);
+    close(writing_end);
+}
+
+static void listen_on_pipe(Listener *listener)
+{
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    listen_from(listener, ends[1], ends[0]);
+}
+
+// False where the machine has no terminals to give.
+static bool listen_on_terminal(Listener *listener)
+{
+    const int reading_end = posix_openpt(O_RDWR | O_NOCTTY);
+    if (reading_end < 0 || grantpt(reading_end) != 0 || unlockpt(reading_end) != 0) {
+        return false;
+    }
+    const int writing_end = open(ptsname(reading_end), O_RDWR | O_NOCTTY);
+    if (writing_end < 0) {
+        close(reading_end);
+        return false;
+    }
+    listen_from(listener, writing_end, reading_end);
+    return true;
+}
+
+static void stop_listening(Listener *listener)
+{
+    // a mark at the end, so that reading never waits
+    fputs("#", stderr);
+    fflush(stderr);
+    size_t length = 0;
+    while (length == 0 || listener->output[length - 1] != '#') {
+        const ssize_t count =
+            read(listener->reading_end, listener->output + length, OUTPUT_SIZE - 1 - length);
+        assert_true(count > 0);
+        length += (size_t)count;
+    }
+    listener->output[length - 1] = '\0';
+    dup2(listener->kept, STDERR_FILENO);
+    close(listener->kept);
+    close(listener->reading_end);
+}
+
+static void a_terminal_sees_one_line_that_goes_away(void **state)
+{
+    (void)state;
+    Listener listener;
+    Progress progress;
+    listen_on_pipe(&listener);
+    const RunWatch watch = progress_watch(&progress, "ode", false);
+    progress.is_terminal = true;
+    watch.progress(0.25, 1.9, watch.context);
+    watch.progress(0.50, 2.5, watch.context);
+    watch.progress(0.51, 2.6, watch.context);
+    watch.progress(0.75, 3.0, watch.context);
+    progress_end(&progress);
+    progress_end(&progress);
+    stop_listening(&listener);
+    assert_string_equal(listener.output,
+                        "\rode: 50 %, 2.5 s\x1b[K\rode: 75 %, 3.0 s\x1b[K\r\x1b[K");
+}
+
+static void a_log_gets_a_line_every_ten_seconds(void **state)
+{
+    (void)state;
+    Listener listener;
+    Progress progress;
+    listen_on_pipe(&listener);
+    const RunWatch watch = progress_watch(&progress, "ode", false);
+    for (int i = 0; i <= 25; i++) {
+        watch.progress(i / 25.0, i, watch.context);
+    }
+    progress_end(&progress);
+    stop_listening(&listener);
+    assert_string_equal(listener.output, "ode: 40 %, 10 s\node: 80 %, 20 s\n");
+}
+
+static void who_wants_quiet_is_not_watched(void **state)
+{
+    (void)state;
+    Progress progress;
+    const RunWatch watch = progress_watch(&progress, "ode", true);
+    assert_true(watch.progress == NULL);
+}
+
+static void colours_are_for_terminals_that_want_them(void **state)
+{
+    (void)state;
+    Listener listener;
+    if (!listen_on_terminal(&listener)) {
+        print_message("# no terminal to be had here\n");
+        return;
+    }
+    setenv("TERM", "xterm", 1);
+    unsetenv("NO_COLOR");
+    const Style *wanted = output_style(stderr);
+    setenv("NO_COLOR", "", 1);
+    const Style *empty = output_style(stderr);
+    setenv("NO_COLOR", "1", 1);
+    const Style *refused = output_style(stderr);
+    unsetenv("NO_COLOR");
+    setenv("TERM", "dumb", 1);
+    const Style *dumb = output_style(stderr);
+    stop_listening(&listener);
+    assert_true(wanted->heading[0] == '\x1b');
+    assert_true(empty->heading[0] == '\x1b');
+    assert_string_equal(refused->heading, "");
+    assert_string_equal(dumb->heading, "");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_terminal_sees_one_line_that_goes_away),
+        cmocka_unit_test(a_log_gets_a_line_every_ten_seconds),
+        cmocka_unit_test(who_wants_quiet_is_not_watched),
+        cmocka_unit_test(colours_are_for_terminals_that_want_them),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,290 @@
+// Does `jointplay run` print, write and end as it should?
+#include "program.h"
+
+#include <sys/stat.h>
+
+static void a_bad_case_ends_with_status_3_before_anything_runs(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "bad.yaml", path);
+    FILE *stream = fopen(path, "w");
+    fputs("title: bad\nfour-bar: {ground: {length: 254}}\n", stream);
+    fclose(stream);
+    program_run(program, "run $cases/paper/ideal-nominal.yaml bad.yaml --out out");
+    assert_int_equal(program->status, 3);
+    assert_string_equal(program->output, "");
+    assert_says(program->errors, "bad.yaml:2:");
+    program_path(program, "out", path);
+    assert_int_equal(access(path, F_OK), -1);
+}
+
+static void a_missing_case_ends_with_status_5(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run nowhere.yaml");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "nowhere.yaml");
+    assert_string_equal(program->output, "");
+}
+
+static void a_run_prints_extremes_error_and_cost(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run $cases/paper/ideal-nominal.yaml");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "transmission angle 30.74 to 82.32 deg");
+    assert_says(program->output, "coupler   analytic    42.2008     237.6   -78.6973       5.0");
+    assert_says(program->output, "Error at the samples");
+    assert_says(program->output, "simulated/wall");
+    assert_null(strchr(program->output, '\x1b'));
+    assert_string_equal(program->errors, "");
+}
+
+static double number_of(const json_t *run, const char *group, const char *name, const char *key)
+{
+    const json_t *object = json_object_get(json_object_get(run, group), name);
+    return json_number_value(json_object_get(object, key));
+}
+
+static void json_of_one_case_is_one_object(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run --json $cases/paper/ideal-nominal.yaml");
+    assert_int_equal(program->status, 0);
+    json_t *root = json_loads(program->output, 0, NULL);
+    assert_non_null(root);
+    const json_t *settings = json_object_get(root, "settings");
+    assert_near(json_number_value(json_object_get(settings, "run.step")), 1e-5, 1e-18);
+    const json_t *runs = json_object_get(root, "runs");
+    assert_int_equal(json_array_size(runs), 2);
+    const json_t *analytic = json_array_get(runs, 0);
+    // the paper's Table VII and VIII, ideal nominal, as continuous extremes
+    assert_near(number_of(analytic, "bodies", "coupler", "omega_min_rad_s"), -78.6973, 1e-4);
+    assert_near(number_of(analytic, "bodies", "follower", "alpha_max_rad_s2"), 12485.5, 0.1);
+    const json_t *ode = json_array_get(runs, 1);
+    assert_string_equal(json_string_value(json_object_get(ode, "status")), "ok");
+    const json_t *error = json_object_get(ode, "error");
+    // first order at a step of 10 us: some 8e-4, and surely not exact
+    assert_true(json_number_value(json_object_get(error, "omega_max")) < 2e-3);
+    assert_true(json_number_value(json_object_get(error, "omega_max")) > 1e-6);
+    json_decref(root);
+}
+
+static void json_of_several_cases_is_a_list_of_them(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run $cases/paper/ideal-nominal.yaml --json --backend analytic "
+                         "$cases/paper/ideal-stackup.yaml");
+    assert_int_equal(program->status, 0);
+    json_t *root = json_loads(program->output, 0, NULL);
+    const json_t *cases = json_object_get(root, "cases");
+    assert_int_equal(json_array_size(cases), 2);
+    const json_t *runs = json_object_get(json_array_get(cases, 1), "runs");
+    assert_int_equal(json_array_size(runs), 1);
+    json_decref(root);
+}
+
+static void settings_of_the_command_line_replace_those_of_the_case(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run --json --step '20 us' --set drive.speed='500 rpm' --backend ode "
+                         "$cases/paper/ideal-nominal.yaml --set 'run.samples=100'");
+    assert_int_equal(program->status, 0);
+    json_t *root = json_loads(program->output, 0, NULL);
+    const json_t *settings = json_object_get(root, "settings");
+    assert_near(json_number_value(json_object_get(settings, "run.step")), 2e-5, 1e-18);
+    assert_close(json_number_value(json_object_get(settings, "drive.speed")),
+                 500.0 * 2.0 * M_PI / 60.0, 1e-12);
+    const json_t *run = json_array_get(json_object_get(root, "runs"), 0);
+    assert_string_equal(json_string_value(json_object_get(run, "backend")), "ode");
+    assert_near(json_number_value(json_object_get(run, "step_s")), 2e-5, 1e-18);
+    assert_true(json_is_null(json_object_get(run, "error")));
+    json_decref(root);
+}
+
+static void a_series_holds_a_row_a_sample(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    static char content[PROGRAM_OUTPUT_SIZE];
+    program_run(program, "run $cases/paper/ideal-nominal.yaml --series s.csv --set run.samples=50 "
+                         "--backend analytic");
+    assert_int_equal(program->status, 0);
+    assert_says(program->errors, "wrote s.csv");
+    program_path(program, "s.csv", path);
+    program_read(path, content);
+    assert_int_equal(strncmp(content, "time_s,crank_deg,crank_angle_rad,crank_omega_rad_s,", 51),
+                     0);
+    size_t lines = 0;
+    for (const char *c = content; *c != '\0'; c++) {
+        lines += *c == '\n' ? 1 : 0;
+    }
+    assert_int_equal(lines, 52);
+    program_run(program, "run $cases/paper/ideal-nominal.yaml --series t.csv --set run.samples=50");
+    program_path(program, "t-ode.csv", path);
+    assert_int_equal(access(path, F_OK), 0);
+    program_path(program, "t-analytic.csv", path);
+    assert_int_equal(access(path, F_OK), 0);
+}
+
+static void a_folder_gets_all_there_is_to_know(void **state)
+{
+    Program *program = *state;
+    static const char *const NAMES[] = {"ideal-nominal.json", "ideal-nominal.txt",
+                                        "ideal-nominal.svg", "ideal-nominal-ode.csv",
+                                        "ideal-nominal-analytic.csv"};
+    program_run(program, "run -q $cases/paper/ideal-nominal.yaml --out a/b --set run.samples=90");
+    assert_int_equal(program->status, 0);
+    assert_string_equal(program->errors, "");
+    for (int i = 0; i < 5; i++) {
+        char name[128];
+        char path[PROGRAM_PATH_SIZE];
+        struct stat status;
+        snprintf(name, sizeof name, "a/b/%s", NAMES[i]);
+        program_path(program, name, path);
+        assert_int_equal(stat(path, &status), 0);
+        assert_true(status.st_size > 1000);
+    }
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "a/b/ideal-nominal.json", path);
+    json_t *root = json_load_file(path, 0, NULL);
+    assert_non_null(root);
+    json_decref(root);
+}
+
+static void two_cases_of_one_name_do_not_share_a_folder(void **state)
+{
+    Program *program = *state;
+    program_fails_usage(program,
+                        "run --out o $cases/paper/ideal-nominal.yaml "
+                        "$cases/../cases/paper/ideal-nominal.yaml",
+                        "would write the same files");
+}
+
+static void a_failed_solver_ends_with_status_4_after_the_others_are_told(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_run(program, "run $cases/paper/stackup-impact.yaml --set run.step=1ms "
+                         "--set contact.stiffness='1e11 N/m^1.5' --out out");
+    assert_int_equal(program->status, 4);
+    assert_says(program->output, "coupler   analytic    42.2008");
+    assert_says(program->output, "ode       failed      -");
+    assert_says(program->errors, "1 of 2 runs failed: ");
+    program_path(program, "out/stackup-impact-analytic.csv", path);
+    assert_int_equal(access(path, F_OK), 0);
+    program_path(program, "out/stackup-impact-ode.csv", path);
+    assert_int_equal(access(path, F_OK), -1);
+}
+
+static void json_of_a_failed_run_holds_no_number(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run $cases/paper/stackup-impact.yaml --set run.step=1ms "
+                         "--set contact.stiffness='1e11 N/m^1.5' --json");
+    assert_int_equal(program->status, 4);
+    json_t *root = json_loads(program->output, 0, NULL);
+    json_t *run = json_array_get(json_object_get(root, "runs"), 1);
+    assert_string_equal(json_string_value(json_object_get(run, "status")), "failed");
+    assert_true(strlen(json_string_value(json_object_get(run, "message"))) > 0);
+    assert_null(json_object_get(run, "bodies"));
+    assert_null(json_object_get(run, "steps"));
+    json_decref(root);
+}
+
+static void a_full_disk_ends_with_status_5(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run $cases/paper/ideal-nominal.yaml >/dev/full");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "cannot write standard output: No space left on device");
+    program_run(program, "run $cases/paper/ideal-nominal.yaml --series /dev/full");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "cannot write /dev/full: No space left on device");
+    program_run(program, "run $cases/paper/ideal-nominal.yaml --plot /dev/full");
+    assert_int_equal(program->status, 5);
+}
+
+static void nothing_half_written_stays_behind(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_run(program, "run $cases/paper/ideal-nominal.yaml --plot nowhere/p.svg");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "cannot write nowhere/p.svg: No such file or directory");
+    // a folder's name that a file has
+    program_path(program, "taken", path);
+    fclose(fopen(path, "w"));
+    program_run(program, "run $cases/paper/ideal-nominal.yaml --out taken");
+    assert_int_equal(program->status, 5);
+    assert_string_equal(program->output, "");
+    assert_says(program->errors, "cannot make the folder taken");
+    // a limit on the size of files, as a full disk: the file is begun, and gone again
+    char command[PROGRAM_PATH_SIZE * 2];
+    snprintf(command, sizeof command,
+             "cd '%s' && trap '' XFSZ && ulimit -f 40 && \"$JOINTPLAY_PROGRAM\" run -q "
+             "\"$JOINTPLAY_CASES/paper/ideal-nominal.yaml\" --series s.csv >/dev/null 2>.errors; "
+             "test $? -eq 5 && test \"$(ls)\" = taken",
+             program->folder);
+    assert_int_equal(system(command), 0);
+}
+
+static void a_reader_that_goes_away_is_no_crash(void **state)
+{
+    Program *program = *state;
+    char command[PROGRAM_PATH_SIZE * 2];
+    snprintf(command, sizeof command,
+             "cd '%s' && (\"$JOINTPLAY_PROGRAM\" run \"$JOINTPLAY_CASES/paper/ideal-nominal.yaml\" "
+             "2>.errors; echo $? >.status) | true; sleep 0.3; cat .status >.output",
+             program->folder);
+    assert_int_equal(system(command), 0);
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, ".output", path);
+    program_read(path, program->output);
+    // the reader may have been fast enough to leave before, or not
+    assert_true(strcmp(program->output, "5\n") == 0 || strcmp(program->output, "0\n") == 0);
+    program_path(program, ".errors", path);
+    program_read(path, program->errors);
+    assert_string_equal(program->errors, "");
+}
+
+static void the_same_command_twice_prints_the_same_hash(void **state)
+{
+    Program *program = *state;
+    char hashes[2][32];
+    for (int i = 0; i < 2; i++) {
+        program_run(program, "run --json $cases/paper/stackup-impact.yaml --backend ode");
+        json_t *root = json_loads(program->output, 0, NULL);
+        const json_t *run = json_array_get(json_object_get(root, "runs"), 0);
+        snprintf(hashes[i], sizeof hashes[i], "%s",
+                 json_string_value(json_object_get(run, "hash")));
+        json_decref(root);
+    }
+    assert_int_equal(strlen(hashes[0]), 16);
+    assert_string_equal(hashes[0], hashes[1]);
+}
+
+#define COMMAND_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        COMMAND_TEST(a_bad_case_ends_with_status_3_before_anything_runs),
+        COMMAND_TEST(a_missing_case_ends_with_status_5),
+        COMMAND_TEST(a_run_prints_extremes_error_and_cost),
+        COMMAND_TEST(json_of_one_case_is_one_object),
+        COMMAND_TEST(json_of_several_cases_is_a_list_of_them),
+        COMMAND_TEST(settings_of_the_command_line_replace_those_of_the_case),
+        COMMAND_TEST(a_series_holds_a_row_a_sample),
+        COMMAND_TEST(a_folder_gets_all_there_is_to_know),
+        COMMAND_TEST(two_cases_of_one_name_do_not_share_a_folder),
+        COMMAND_TEST(a_failed_solver_ends_with_status_4_after_the_others_are_told),
+        COMMAND_TEST(json_of_a_failed_run_holds_no_number),
+        COMMAND_TEST(a_full_disk_ends_with_status_5),
+        COMMAND_TEST(nothing_half_written_stays_behind),
+        COMMAND_TEST(a_reader_that_goes_away_is_no_crash),
+        COMMAND_TEST(the_same_command_twice_prints_the_same_hash),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
