@@ -114,7 +114,7 @@ static SolverModel analytic_model(const void *state)
 {
     const Analytic *analytic = state;
     SolverModel model = {.steps = analytic->steps};
-    snprintf(model.label, sizeof model.label, "analytic");
+    snprintf(model.label, sizeof model.label, "closed form, every joint ideal");
     return model;
 }
 

@@ -69,8 +69,8 @@ OdeOptions ode_options_default(void)
         .stepping = ODE_PLAIN,
         .map = ODE_MAP_TEXTBOOK,
         .collider = ODE_COLLIDER_PIN_HOLE,
-        .erp = 0.2,      // ODE's own default, set and not inherited
-        .cfm = 0.0,      // no joint row is redundant, so none needs softening
+        .erp = 0.2, // ODE's own default, set and not inherited
+        .cfm = 0.0, // no joint row is redundant, so none needs softening
         // the paper's Eq. (2) has no term in the penetration, and at 0 the pin creeps into the
         // wall, deeper than its play within a turn; ODE's own default holds it
         .push_out = 0.2,

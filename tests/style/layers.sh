@@ -1,0 +1,81 @@
+#!/bin/sh
+# Does data flow one way? A file includes only its own folder and those above it, and each library
+# shows in its own place alone. Prints TAP.
+set -u
+root=$1
+layers="base model casefile contact analytic ode run compare paper report cli"
+
+rank_of() {
+    rank=0
+    for layer in $layers; do
+        rank=$((rank + 1))
+        [ "$layer" != "$1" ] || { echo "$rank"; return; }
+    done
+    echo 0
+}
+
+# Lines 'file: what is wrong' for one source tree.
+broken_layers() {
+    for file in $(find "$1" -name '*.[ch]' | sort); do
+        own=$(basename "$(dirname "$file")")
+        own_rank=$(rank_of "$own")
+        [ "$own_rank" != 0 ] || echo "$file: folder $own is no layer"
+        for name in $(sed -n 's/^#include "\([a-z_]*\)\/.*/\1/p' "$file" | sort -u); do
+            rank=$(rank_of "$name")
+            if [ "$rank" = 0 ] || [ "$rank" -gt "$own_rank" ]; then
+                echo "$file: includes $name/, which is not above $own/"
+            fi
+        done
+    done
+}
+
+# Lines for every file outside the places allowed that includes a library's header.
+broken_wall() {
+    grep -rlE "^#include <$2" "$1" --include='*.[ch]' | grep -vE "$3" | sed "s|\$|: includes <$2|"
+}
+
+broken_walls() {
+    broken_wall "$1" 'ode/' '/ode/'
+    broken_wall "$1" 'ccd/' '/ode/'
+    broken_wall "$1" 'gsl/' '/base/root\.c$'
+    broken_wall "$1" 'yaml\.h' '/casefile/document\.c$'
+    broken_wall "$1" 'jansson\.h' '/report/'
+    broken_wall "$1" 'argp\.h' '/cli/'
+}
+
+long_files() {
+    find "$1" -name '*.[ch]' -exec awk 'END { if (NR > 400) print FILENAME ": " NR " lines" }' {} \;
+}
+
+unguarded_headers() {
+    find "$1" -name '*.h' | xargs grep -L '^#pragma once'
+}
+
+number=0
+report() {
+    number=$((number + 1))
+    if [ -z "$2" ]; then
+        echo "ok $number - $1"
+    else
+        echo "not ok $number - $1"
+        echo "$2" | sed 's/^/# /'
+    fi
+}
+
+# the control: a tree with one fault of each kind must be caught
+control=$(mktemp -d)
+trap 'rm -rf "$control"' EXIT
+mkdir -p "$control/model" "$control/run"
+printf '#include "run/run.h"\n#include <ode/ode.h>\n' >"$control/model/bad.c"
+
+caught() {
+    if [ -n "$1" ]; then echo ''; else echo 'nothing was found'; fi
+}
+
+echo 1..6
+report "a file includes only its own folder and those above it" "$(broken_layers "$root/src")"
+report "each library is included in its own place alone" "$(broken_walls "$root/src")"
+report "no file has more than 400 lines" "$(long_files "$root/src")"
+report "every header guards itself" "$(unguarded_headers "$root/src")"
+report "a file that includes a lower layer is caught" "$(caught "$(broken_layers "$control")")"
+report "a library outside its place is caught" "$(caught "$(broken_walls "$control")")"
