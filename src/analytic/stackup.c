@@ -60,16 +60,24 @@ FourBarLengths stackup_lengths(const FourBar *fourbar, const double play[STACKUP
     return (FourBarLengths){values[0], values[1], values[2], values[3], fourbar->assembly};
 }
 
-static bool turns_fully(const FourBarLengths *lengths)
+// Whether the crank turns fully, and the mechanism is of the nominal one's class: between two
+// classes lie lengths at which it does not turn.
+static bool is_alike(const Search *search, const FourBarLengths *lengths)
 {
-    return fabs(lengths->ground - lengths->crank) > fabs(lengths->coupler - lengths->follower) &&
-           lengths->ground + lengths->crank < lengths->coupler + lengths->follower;
+    const FourBar corner = {
+        .ground = {lengths->ground, 0.0, 0.0},
+        .crank = {lengths->crank, 0.0, 0.0},
+        .coupler = {lengths->coupler, 0.0, 0.0},
+        .follower = {lengths->follower, 0.0, 0.0},
+    };
+    return fourbar_crank_turns(&corner) &&
+           fourbar_grashof(&corner) == fourbar_grashof(search->fourbar);
 }
 
 static void try_combination(Search *search, const StackupCombination *combination)
 {
     const FourBarLengths lengths = stackup_lengths(search->fourbar, search->play, combination);
-    search->is_turning = search->is_turning && turns_fully(&lengths);
+    search->is_turning = search->is_turning && is_alike(search, &lengths);
     for (int quantity = 0; quantity < FOURBAR_QUANTITY_COUNT; quantity++) {
         for (int i = 0; i < GRID; i++) {
             const double value =

@@ -1,32 +1,105 @@
 // How far is one trajectory from the one that is taken as the truth?
 //
 //     error(t) = max over bodies |omega_b(t) - ref_b(t)| / max over t |ref_b|
-// over every body whose speed is not prescribed; the reference's samples stand at the same times.
+// over every body whose speed is not prescribed; the reference's samples stand at the same times. A
+// body that hardly turns is measured by a thousandth of the fastest body's speed: its own would be
+// rounding.
 #include "compare/error.h"
+
+static const double SMALLEST_SCALE =
+    1e-3; // of the fastest body's: below it lies no motion to speak of
 
 typedef struct Sums {
     double square; // of the relative errors of omega
     size_t count;
 } Sums;
 
-static void add_body(const Trajectory *trajectory, const Trajectory *reference, size_t body,
-                     TrajectoryError *error, Sums *sums)
+typedef struct Scales {
+    double omega; // rad/s
+    double alpha; // rad/s^2
+} Scales;
+
+static Scales body_scales(const Trajectory *reference, size_t body)
 {
-    double omega_scale = 0.0;
-    double alpha_scale = 0.0;
+    Scales scales = {0.0, 0.0};
     for (size_t k = 0; k < reference->sample_count; k++) {
         const Motion *truth = trajectory_motion(reference, k, body);
-        omega_scale = fmax(omega_scale, fabs(truth->omega));
-        alpha_scale = fmax(alpha_scale, fabs(truth->alpha));
+        scales.omega = fmax(scales.omega, fabs(truth->omega));
+        scales.alpha = fmax(scales.alpha, fabs(truth->alpha));
     }
+    return scales;
+}
+
+static Scales smallest_scales(const Trajectory *reference)
+{
+    Scales largest = {0.0, 0.0};
+    for (size_t i = 0; i < reference->body_count; i++) {
+        const Scales scales = body_scales(reference, i);
+        largest.omega = fmax(largest.omega, scales.omega);
+        largest.alpha = fmax(largest.alpha, scales.alpha);
+    }
+    // where nothing turns at all, errors are absolute
+    return (Scales){
+        .omega = largest.omega > 0.0 ? SMALLEST_SCALE * largest.omega : 1.0,
+        .alpha = largest.alpha > 0.0 ? SMALLEST_SCALE * largest.alpha : 1.0,
+    };
+}
+
+static bool can_compare(const Trajectory *trajectory, const Trajectory *reference)
+{
+    return trajectory->is_complete && reference->is_complete &&
+           trajectory->sample_count == reference->sample_count &&
+           trajectory->body_count == reference->body_count;
+}
+
+// The scales of every body that is not driven; 0 for the driven one, which does not count.
+static void free_scales(const Trajectory *reference, Scales scales[LINKAGE_BODY_MAX])
+{
+    const Scales smallest = smallest_scales(reference);
+    for (size_t i = 0; i < reference->body_count; i++) {
+        scales[i] = body_scales(reference, i);
+        scales[i].omega = fmax(scales[i].omega, smallest.omega);
+        scales[i].alpha = fmax(scales[i].alpha, smallest.alpha);
+        if ((int)i == reference->driven_body) {
+            scales[i] = (Scales){0.0, 0.0};
+        }
+    }
+}
+
+bool error_series(const Trajectory *trajectory, const Trajectory *reference, double *omega)
+{
+    if (!can_compare(trajectory, reference)) {
+        return false;
+    }
+    Scales scales[LINKAGE_BODY_MAX];
+    free_scales(reference, scales);
+    for (size_t k = 0; k < reference->sample_count; k++) {
+        omega[k] = 0.0;
+        for (size_t i = 0; i < reference->body_count; i++) {
+            if (scales[i].omega > 0.0) {
+                const double difference = trajectory_motion(trajectory, k, i)->omega -
+                                          trajectory_motion(reference, k, i)->omega;
+                omega[k] = fmax(omega[k], fabs(difference) / scales[i].omega);
+            }
+        }
+    }
+    return true;
+}
+
+static void add_body(const Trajectory *trajectory, const Trajectory *reference, size_t body,
+                     const Scales *scales, double horizon_s, TrajectoryError *error, Sums *sums)
+{
     for (size_t k = 0; k < reference->sample_count; k++) {
         const Motion *truth = trajectory_motion(reference, k, body);
         const Motion *motion = trajectory_motion(trajectory, k, body);
-        const double omega = fabs(motion->omega - truth->omega) / omega_scale;
-        const double alpha = fabs(motion->alpha - truth->alpha) / alpha_scale;
+        const double omega = fabs(motion->omega - truth->omega) / scales->omega;
+        const double alpha = fabs(motion->alpha - truth->alpha) / scales->alpha;
         if (omega > error->omega_max) {
             error->omega_max = omega;
             error->omega_max_time_s = reference->times[k];
+        }
+        if (reference->times[k] <= horizon_s) {
+            error->omega_max_in_horizon = fmax(error->omega_max_in_horizon, omega);
         }
         error->alpha_max = fmax(error->alpha_max, alpha);
         error->angle_max_rad = fmax(error->angle_max_rad, fabs(motion->angle - truth->angle));
@@ -35,18 +108,19 @@ static void add_body(const Trajectory *trajectory, const Trajectory *reference, 
     }
 }
 
-TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *reference)
+TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *reference,
+                              double horizon_s)
 {
     TrajectoryError error = {.against = "none"};
-    if (!trajectory->is_complete || !reference->is_complete ||
-        trajectory->sample_count != reference->sample_count ||
-        trajectory->body_count != reference->body_count) {
+    if (!can_compare(trajectory, reference)) {
         return error;
     }
     Sums sums = {0.0, 0};
+    Scales scales[LINKAGE_BODY_MAX];
+    free_scales(reference, scales);
     for (size_t i = 0; i < reference->body_count; i++) {
-        if ((int)i != reference->driven_body) {
-            add_body(trajectory, reference, i, &error, &sums);
+        if (scales[i].omega > 0.0) {
+            add_body(trajectory, reference, i, &scales[i], horizon_s, &error, &sums);
         }
     }
     // a number that is not finite makes the sum not finite, though it is larger than nothing

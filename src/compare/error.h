@@ -9,10 +9,18 @@ typedef struct TrajectoryError {
     double omega_max;    // 1: largest |omega - omega_ref| over all moving bodies that are not
                          // driven and all samples, each over that body's largest |omega_ref|
     double omega_max_time_s;
-    double omega_rms;     // 1: root of the mean square of the same
-    double alpha_max;     // 1: as omega_max, of the angular acceleration
-    double angle_max_rad; // largest |angle - angle_ref|
+    double omega_max_in_horizon; // 1: as omega_max, up to the horizon
+    double omega_rms;            // 1: root of the mean square of the same, whole run
+    double alpha_max;            // 1: as omega_max, of the angular acceleration
+    double angle_max_rad;        // largest |angle - angle_ref|
 } TrajectoryError;
 
-// Both trajectories must be of the same scenario: same bodies, same sample times.
-TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *reference);
+// Both trajectories must be of the same scenario: same bodies, same sample times. The horizon, s,
+// is the time up to which trajectories may be compared; INFINITY where nothing limits it.
+TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *reference,
+                              double horizon_s);
+
+// The same measure sample by sample: writes the largest relative difference in omega over the bodies
+// at each sample into an array of the trajectories' length. Returns false, the array untouched,
+// where the two cannot be compared.
+bool error_series(const Trajectory *trajectory, const Trajectory *reference, double *omega);

@@ -97,3 +97,9 @@ bool law_build(const ContactOptions *contact, const MaterialOptions *material,
     *law = built;
     return true;
 }
+
+double law_depth_max(const ForceLaw *law, double pin_radius)
+{
+    const double share = 0.1;
+    return fmin(share * pin_radius, force_law_depth_limit(law));
+}

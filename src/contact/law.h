@@ -42,6 +42,11 @@ ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material
 bool law_build(const ContactOptions *contact, const MaterialOptions *material,
                const Clearance *clearance, double speed, ForceLaw *law, Err *err);
 
+// The deepest penetration, m, at which a law of a pin of this radius, m, still means anything: a
+// tenth of the radius, for the laws are for depths small against it and steel has yielded long
+// before, or the law's own limit.
+double law_depth_max(const ForceLaw *law, double pin_radius);
+
 // E* = E / (2 (1 - nu^2)), Pa.
 double law_effective_modulus(const ContactPair *pair);
 

@@ -16,7 +16,7 @@
 // Newton doubles the number of right digits: from 1e-2 of a length to rounding takes about 5
 enum { ITERATION_MAX = 50 };
 
-// rounding leaves some 1e-16 m on lengths of a metre; a closed linkage is a thousand times above it
+// of the linkage's size: rounding leaves some 1e-16, a closed linkage is a thousand times above it
 static const double CLOSED = 1e-13;
 
 // pivots of a linkage that moves freely are above 1e-3 of the largest; below this it is stuck
@@ -95,8 +95,20 @@ static bool solve_rows(const Linkage *linkage, const Motion *motions, double *ri
            dense_solve(jacobian.columns, jacobian.entries, right);
 }
 
+// The largest distance of an anchor from its body's centre, or from the world's origin, m.
+static double linkage_size(const Linkage *linkage)
+{
+    double size = 0.0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        size = fmax(size, vec2_length(linkage->joints[i].anchor_a));
+        size = fmax(size, vec2_length(linkage->joints[i].anchor_b));
+    }
+    return size;
+}
+
 static bool newton(const Linkage *linkage, double crank_angle, Motion *motions)
 {
+    const double size = linkage_size(linkage);
     for (int iteration = 0; iteration < ITERATION_MAX; iteration++) {
         double residual[KINEMATICS_ROW_MAX] = {0.0};
         for (size_t i = 0; i < linkage->joint_count; i++) {
@@ -108,7 +120,7 @@ static bool newton(const Linkage *linkage, double crank_angle, Motion *motions)
         }
         const int crank = linkage_driven_body(linkage);
         residual[2 * linkage->joint_count] = crank_angle - motions[crank].angle;
-        const bool is_closed = kinematics_closure_error(linkage, motions) <= CLOSED &&
+        const bool is_closed = kinematics_closure_error(linkage, motions) <= CLOSED * size &&
                                fabs(residual[2 * linkage->joint_count]) <= CLOSED;
         if (is_closed) {
             return true;

@@ -38,7 +38,12 @@ typedef enum OdeStepping { ODE_PLAIN } OdeStepping;
 typedef enum OdeMap { ODE_MAP_TEXTBOOK, ODE_MAP_CORRECTED } OdeMap;
 typedef enum OdeCollider { ODE_COLLIDER_PIN_HOLE } OdeCollider;
 
-typedef enum BackendKind { BACKEND_ANALYTIC, BACKEND_ODE, BACKEND_COUNT } BackendKind;
+typedef enum BackendKind {
+    BACKEND_ANALYTIC,
+    BACKEND_REFERENCE,
+    BACKEND_ODE,
+    BACKEND_COUNT,
+} BackendKind;
 
 // The words that stand for the choices above, in their order; each list ends in NULL.
 extern const char *const OPTIONS_CONTACT_MODELS[];
@@ -63,7 +68,8 @@ typedef struct ContactOptions {
     DampingKind damping;
     double viscous_coefficient; // N s/m, of DAMPING_VISCOUS
     double restitution;         // 1, asked for
-    double friction;            // 1, coefficient; only 0 in this version
+    double friction;            // 1, Coulomb's coefficient; 0 for none
+    double friction_speed;      // m/s, sliding speed over which the reference's friction sets in
     double impact_speed_floor;  // m/s, smallest impact speed the damping laws divide by
     double penalty;             // N s/m, of CONTACT_POISSON; 0: the paper's Eq. (9) at the speed
     double bounce_speed;        // m/s, CONTACT_POISSON: slower impacts do not bounce
@@ -77,6 +83,10 @@ typedef struct RunOptions {
     size_t backend_count;
     BackendKind backends[BACKEND_COUNT];
 } RunOptions;
+
+typedef struct ReferenceOptions {
+    double tolerance; // 1, of each step's error, relative to the size of each coordinate and speed
+} ReferenceOptions;
 
 typedef struct OdeOptions {
     OdeSolver solver;
@@ -95,4 +105,5 @@ typedef struct OdeOptions {
 MaterialOptions material_options_default(void);
 ContactOptions contact_options_default(void);
 RunOptions run_options_default(void);
+ReferenceOptions reference_options_default(void);
 OdeOptions ode_options_default(void);

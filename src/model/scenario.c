@@ -8,6 +8,7 @@ Scenario scenario_default(void)
         .material = material_options_default(),
         .contact = contact_options_default(),
         .run = run_options_default(),
+        .reference = reference_options_default(),
         .ode = ode_options_default(),
     };
 }

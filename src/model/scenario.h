@@ -26,6 +26,7 @@ typedef struct Scenario {
     MaterialOptions material;
     ContactOptions contact;
     RunOptions run;
+    ReferenceOptions reference;
     OdeOptions ode;
 } Scenario;
 

@@ -13,10 +13,16 @@
 typedef struct StepRecord {
     double start_s;
     double end_s;
+    double joint_s;           // the instant that the joints' states belong to
     const double *omega;      // rad/s, of each body at end_s
-    const double *alpha;      // rad/s^2, of each body: mean over the step
-    const JointState *joints; // in the step: force its mean, gap as it was when the force arose
-    const double *approach;   // m/s, closing speed of each joint at the time of that gap
+    const double *alpha;      // rad/s^2, of each body: mean over the step, or at its end
+    const JointState *joints; // force and gap as the force arose
+    const double *impulse;    // N s, of each joint in the step
+    const double *approach;   // m/s, closing speed at which each joint's contact began
+    double drive_work;        // J, done by the drive in the step
+    double dissipated;        // J, in the contacts' damping in the step
+    double friction;          // J, in the contacts' friction in the step
+    double elastic;           // J, stored in the contacts at end_s
 } StepRecord;
 
 // What a solver built from the scenario, for people and for the record.
@@ -26,6 +32,7 @@ typedef struct SolverModel {
     size_t constraint_rows; // of the ideal joints
     size_t contact_rows;    // most so far
     size_t steps;           // taken so far
+    size_t evaluations;     // of the equations of motion so far, 0 where it does not count them
 } SolverModel;
 
 typedef struct Solver {

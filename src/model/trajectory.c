@@ -16,12 +16,16 @@ Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
     trajectory->sample_count = samples;
     trajectory->times = calloc(samples, sizeof *trajectory->times);
     trajectory->crank_angles = calloc(samples, sizeof *trajectory->crank_angles);
-    trajectory->motions = calloc(samples * trajectory->body_count, sizeof *trajectory->motions);
-    trajectory->states = calloc(samples * trajectory->joint_count, sizeof *trajectory->states);
-    assert(trajectory->times != NULL && trajectory->crank_angles != NULL);
-    assert(trajectory->motions != NULL && trajectory->states != NULL);
+    trajectory->motions = calloc(samples * trajectory->body_count + 1, sizeof *trajectory->motions);
+    trajectory->states = calloc(samples * trajectory->joint_count + 1, sizeof *trajectory->states);
     snprintf(trajectory->backend, sizeof trajectory->backend, "%s", backend);
     snprintf(trajectory->label, sizeof trajectory->label, "%s", backend);
+    if (trajectory->times == NULL || trajectory->crank_angles == NULL ||
+        trajectory->motions == NULL || trajectory->states == NULL) {
+        trajectory->sample_count = 0;
+        snprintf(trajectory->message, sizeof trajectory->message,
+                 "there is no memory for %zu samples", samples);
+    }
     return trajectory;
 }
 

@@ -12,6 +12,7 @@ typedef struct JointState {
     Vec2 eccentricity; // pin centre minus hole centre, m
     double gap;        // radial clearance less eccentricity, m; negative inside the metal
     double force;      // size of the force in the joint, N
+    Vec2 force_on_b;   // the force itself, on body b, N
     bool is_touching;  // pin and hole overlap (an ideal joint always touches)
 } JointState;
 
@@ -58,6 +59,15 @@ typedef struct Sample {
     JointState joints[LINKAGE_JOINT_MAX];
 } Sample;
 
+// Where the energy of a run went, J.
+typedef struct Energy {
+    double drive_work; // done by the drive
+    double dissipated; // in the contacts' damping
+    double friction;   // in the contacts' friction
+    double change;     // of kinetic, potential and elastic energy from start to end
+    double residual;   // drive work less all of the others: zero but for the solver's error
+} Energy;
+
 typedef struct Trajectory {
     char backend[LINKAGE_NAME_SIZE];
     char label[TRAJECTORY_LABEL_SIZE]; // backend and scheme, e.g. "ode direct/plain/textbook"
@@ -73,15 +83,19 @@ typedef struct Trajectory {
     JointState *states;   // [sample * joint_count + joint]
     BodyExtremes bodies[LINKAGE_BODY_MAX];
     JointExtremes joints[LINKAGE_JOINT_MAX];
-    double duration_s;      // simulated
+    double duration_s; // simulated
+    Energy energy;
     double step_s;          // 0 where the solver has no fixed step
-    size_t steps;           // every step taken, settling included
+    size_t steps;           // every step taken, settling and rejected ones included
+    size_t evaluations;     // of the equations of motion, where the solver counts them
     double wall_s;          // spent in the stepping loop
     size_t constraint_rows; // of the ideal joints, where the solver builds rows
     size_t contact_rows;    // most at any one step
     uint64_t hash;          // of every step's velocities, accelerations and joint forces
 } Trajectory;
 
+// An empty trajectory with room for the scenario's samples. Without the memory for them it has none,
+// and a message that says so.
 Trajectory *trajectory_create(const Scenario *scenario, const char *backend);
 void trajectory_destroy(Trajectory *trajectory);
 

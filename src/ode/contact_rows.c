@@ -12,10 +12,6 @@
 
 #include <string.h>
 
-// the contact laws are for depths small against the radii; a tenth of the pin's is far outside
-// them, and steel has yielded long before: the step was too coarse to catch the wall
-static const double DEPTH_LIMIT = 0.1;
-
 bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world, Err *err)
 {
     memset(rows, 0, sizeof *rows);
@@ -76,8 +72,13 @@ static PinHole pair_pose(const WorldPair *pair, double radial_clearance)
 static dSurfaceParameters surface_of(const ContactRows *rows, const ContactRow *row, double step_s)
 {
     const ContactOptions *options = &rows->scenario->contact;
-    // no friction: mu 0 makes one row, along the normal
+    // without friction mu 0 makes one row, along the normal; with it a second one, along the wall
     dSurfaceParameters surface = {.mode = dContactSoftERP | dContactSoftCFM, .mu = 0.0};
+    if (options->friction > 0.0) {
+        surface.mode |= dContactMu2 | dContactFDir1 | dContactApprox1;
+        surface.mu = options->friction;
+        surface.mu2 = 0.0;
+    }
     if (options->model == CONTACT_POISSON) {
         surface.mode |= dContactBounce;
         surface.bounce = options->restitution;
@@ -97,7 +98,11 @@ static dSurfaceParameters surface_of(const ContactRows *rows, const ContactRow *
 static void make_row(ContactRows *rows, size_t number, const dContactGeom *geom, double step_s)
 {
     ContactRow *row = &rows->rows[number];
-    const dContact contact = {.surface = surface_of(rows, row, step_s), .geom = *geom};
+    const dContact contact = {
+        .surface = surface_of(rows, row, step_s),
+        .geom = *geom,
+        .fdir1 = {-row->normal.y, row->normal.x, 0.0, 0.0},
+    };
     const dJointID joint = dJointCreateContact(rows->world->id, rows->group, &contact);
     const WorldPair *pair = &rows->world->pairs[number];
     dJointAttach(joint, dGeomGetBody(pair->hole), dGeomGetBody(pair->pin));
@@ -108,8 +113,8 @@ static bool check_depth(const ContactRows *rows, size_t number, Err *err)
 {
     const ContactRow *row = &rows->rows[number];
     const Joint *joint = &rows->scenario->linkage.joints[rows->world->pairs[number].joint];
-    const double allowed =
-        fmin(DEPTH_LIMIT * joint->clearance.pin_radius, force_law_depth_limit(&row->law));
+    // deeper than any law: the step was too coarse to catch the wall
+    const double allowed = law_depth_max(&row->law, joint->clearance.pin_radius);
     if (row->depth <= allowed) {
         return true;
     }
@@ -135,35 +140,102 @@ bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, dou
             .gap = pose.gap,
             .is_touching = row->is_touching,
         };
-        approach[pair->joint] = pose.approach_speed;
+        row->impact_speed =
+            row->is_touching && was_touching ? row->impact_speed : pose.approach_speed;
+        approach[pair->joint] = row->impact_speed;
         if (!row->is_touching) {
             continue;
         }
         row->depth = geom.depth;
-        row->impact_speed = was_touching ? row->impact_speed : pose.approach_speed;
+        row->normal = pose.normal;
         if (!check_depth(rows, i, err)) {
             return false;
         }
         make_row(rows, i, &geom, step_s);
-        row_count++;
+        row_count += rows->scenario->contact.friction > 0.0 ? 2 : 1;
     }
     rows->most_rows = row_count > rows->most_rows ? row_count : rows->most_rows;
     return true;
 }
 
-void contact_rows_clear(ContactRows *rows, JointState *states)
+// Work of the friction on the two bodies in the step, at the wall's point that the pin touched.
+static double friction_work(const ContactRows *rows, size_t number, Vec2 force, double step_s)
+{
+    const ContactRow *row = &rows->rows[number];
+    const WorldPair *pair = &rows->world->pairs[number];
+    const Joint *joint = &rows->scenario->linkage.joints[pair->joint];
+    const Vec2 tangent = vec2_perp(row->normal);
+    const Vec2 outward = vec2_scale(-joint->clearance.hole_radius, row->normal);
+    double sliding = 0.0;
+    const dGeomID geoms[2] = {pair->hole, pair->pin};
+    for (int i = 0; i < 2; i++) {
+        Vec2 centre;
+        Vec2 velocity;
+        geom_centre(geoms[i], &centre, &velocity);
+        const dBodyID body = dGeomGetBody(geoms[i]);
+        const double omega = body != NULL ? dBodyGetAngularVel(body)[2] : 0.0;
+        const Vec2 there = vec2_add(velocity, vec2_scale(omega, vec2_perp(outward)));
+        sliding += (i == 0 ? -1.0 : 1.0) * vec2_dot(tangent, there);
+    }
+    return vec2_dot(tangent, force) * sliding * step_s;
+}
+
+// Where the work of a contact's force on the pin went in the step. The bodies have moved on at the
+// speeds after the step; what the law's spring holds at the depth then is not lost.
+static void book_energy(ContactRows *rows, size_t number, Vec2 force, double step_s)
+{
+    ContactRow *row = &rows->rows[number];
+    const WorldPair *pair = &rows->world->pairs[number];
+    Vec2 centre;
+    Vec2 hole_velocity;
+    Vec2 pin_velocity;
+    geom_centre(pair->hole, &centre, &hole_velocity);
+    geom_centre(pair->pin, &centre, &pin_velocity);
+    const double before = row->elastic;
+    row->elastic = 0.0;
+    row->dissipated = before;
+    row->friction = 0.0;
+    if (!row->is_touching) {
+        return;
+    }
+    const Vec2 moved = vec2_scale(step_s, vec2_sub(pin_velocity, hole_velocity));
+    const double sunk = -vec2_dot(row->normal, moved);
+    if (rows->scenario->contact.model == CONTACT_IMPACT) {
+        row->elastic = force_law_energy(&row->law, fmax(0.0, row->depth + sunk));
+    }
+    row->dissipated = before - row->elastic + vec2_dot(row->normal, force) * sunk;
+    row->friction = -friction_work(rows, number, force, step_s);
+}
+
+void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
 {
     bool any = false;
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         const ContactRow *row = &rows->rows[i];
+        JointState *state = &states[rows->world->pairs[i].joint];
         if (row->is_touching) {
-            const dReal *force = row->feedback.f1;
-            states[rows->world->pairs[i].joint].force =
-                sqrt(force[0] * force[0] + force[1] * force[1]);
+            // ODE gives the force on the first body attached: the hole's, if it is no ground
+            const double sign = dGeomGetBody(rows->world->pairs[i].hole) != NULL ? -1.0 : 1.0;
+            state->force_on_b = (Vec2){sign * row->feedback.f1[0], sign * row->feedback.f1[1]};
+            state->force = vec2_length(state->force_on_b);
             any = true;
         }
+        book_energy(rows, i, state->force_on_b, step_s);
     }
     if (any) {
         dJointGroupEmpty(rows->group);
     }
+}
+
+Vec2 contact_rows_offset(const ContactRows *rows, int joint, bool is_hole)
+{
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        const ContactRow *row = &rows->rows[i];
+        if (rows->world->pairs[i].joint == joint && row->is_touching) {
+            const Clearance *clearance = &rows->scenario->linkage.joints[joint].clearance;
+            return vec2_scale(is_hole ? -clearance->hole_radius : -clearance->pin_radius,
+                              row->normal);
+        }
+    }
+    return (Vec2){0.0, 0.0};
 }

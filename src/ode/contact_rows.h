@@ -12,6 +12,10 @@ typedef struct ContactRow {
     double impact_speed;     // m/s, closing speed when the present contact began
     bool is_touching;        // whether the present step has a row
     double depth;            // m, of the row
+    Vec2 normal;             // of the row: unit, direction of the force on the pin
+    double elastic;          // J, stored in the contact after the step
+    double dissipated;       // J, lost along the normal in the step
+    double friction;         // J, lost in sliding in the step
     dJointFeedback feedback;
 } ContactRow;
 
@@ -31,10 +35,14 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
 void contact_rows_finish(ContactRows *rows);
 
 // Looks for contacts where the bodies stand now and makes a row for each; fills the states (gap,
-// eccentricity, touching) and closing speeds of the joints with play, by joint. Fails with
+// eccentricity, touching) and the closing speeds at which their contacts began, by joint. Fails with
 // ERR_SOLVER where a pin is deeper in its wall than any contact law holds.
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err);
 
-// After the step: fills in the joints' forces and removes the rows.
-void contact_rows_clear(ContactRows *rows, JointState *states);
+// From the centre of a joint's hole or pin to the point where its contact's force acts, m; zero for a
+// joint without a row in this step.
+Vec2 contact_rows_offset(const ContactRows *rows, int joint, bool is_hole);
+
+// After the step: fills in the joints' forces, books the energies, and removes the rows.
+void contact_rows_clear(ContactRows *rows, double step_s, JointState *states);

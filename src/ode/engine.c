@@ -14,6 +14,7 @@ enum { ENGINE_MESSAGE_SIZE = 256 };
 
 static jmp_buf way_back;
 static bool is_stepping = false;
+static bool has_complained = false;
 static char message[ENGINE_MESSAGE_SIZE];
 
 static void leave(int number, const char *text, va_list arguments)
@@ -29,6 +30,17 @@ static void leave(int number, const char *text, va_list arguments)
     abort();
 }
 
+// ODE also reports what it can go on from, such as a failed linear complementarity problem: the
+// step's forces are then not to be trusted.
+static void note(int number, const char *text, va_list arguments)
+{
+    has_complained = true;
+    const int written = snprintf(message, sizeof message, "ODE message %d: ", number);
+    if (written > 0 && (size_t)written < sizeof message) {
+        vsnprintf(message + written, sizeof message - (size_t)written, text, arguments);
+    }
+}
+
 void engine_start(void)
 {
     static bool is_started = false;
@@ -39,6 +51,7 @@ void engine_start(void)
     dInitODE2(0);
     dSetErrorHandler(leave);
     dSetDebugHandler(leave);
+    dSetMessageHandler(note);
     is_started = true;
 }
 
@@ -49,8 +62,12 @@ bool engine_step(dWorldID world, double step_s, bool is_quick, Err *err)
         return err_set(err, ERR_SOLVER, "%s", message);
     }
     is_stepping = true;
+    has_complained = false;
     const int status = is_quick ? dWorldQuickStep(world, step_s) : dWorldStep(world, step_s);
     is_stepping = false;
+    if (has_complained) {
+        return err_set(err, ERR_SOLVER, "%s", message);
+    }
     return status != 0 || err_set(err, ERR_SOLVER, "ODE had no memory for the step");
 }
 

@@ -31,7 +31,9 @@ typedef struct Ode {
     double omega[LINKAGE_BODY_MAX];    // at its end
     double alpha[LINKAGE_BODY_MAX];
     JointState joints[LINKAGE_JOINT_MAX];
+    double impulse[LINKAGE_JOINT_MAX];
     double approach[LINKAGE_JOINT_MAX];
+    double drive_work; // J, in the last step
 } Ode;
 
 // The driven body turns about its joint with the ground: exact at any time.
@@ -48,21 +50,23 @@ static Motion driven_motion(const Ode *ode, double time_s)
     return motion;
 }
 
-// Where the bodies stand at the start of the run, which may lie before time zero.
-static bool start_motions(const Scenario *scenario, long first_index, Motion *motions, Err *err)
+// Where the bodies stand at the start of the run, at most so many steps before time zero: fewer
+// where the linkage does not close that far back. Returns the number of those steps.
+static long start_motions(const Scenario *scenario, long settle_steps, Motion *motions)
 {
     const Linkage *linkage = &scenario->linkage;
     for (size_t i = 0; i < linkage->body_count; i++) {
         motions[i] = linkage->bodies[i].start;
     }
     // step by step backwards, so that the loop stays closed the same way round
-    for (long index = -1; index >= first_index; index--) {
-        const double time_s = (double)index * scenario->run.step;
-        if (!kinematics_solve(linkage, linkage_crank_angle(linkage, time_s), motions, err)) {
-            return false;
+    for (long back = 1; back <= settle_steps; back++) {
+        Err unused = {ERR_NONE, ""};
+        const double time_s = -(double)back * scenario->run.step;
+        if (!kinematics_solve(linkage, linkage_crank_angle(linkage, time_s), motions, &unused)) {
+            return back - 1;
         }
     }
-    return true;
+    return settle_steps;
 }
 
 static void ode_close(void *state)
@@ -121,11 +125,48 @@ static void read_ideal_forces(Ode *ode)
 {
     const Linkage *linkage = &ode->scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_REVOLUTE) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint->kind == JOINT_REVOLUTE) {
+            // ODE gives the force on the first body attached: a, if it is no ground
+            const double sign = joint->body_a != LINKAGE_GROUND ? -1.0 : 1.0;
             const dReal *force = ode->world.feedback[i].f1;
-            ode->joints[i].force = sqrt(force[0] * force[0] + force[1] * force[1]);
+            ode->joints[i].force_on_b = (Vec2){sign * force[0], sign * force[1]};
+            ode->joints[i].force = vec2_length(ode->joints[i].force_on_b);
         }
     }
+}
+
+// The driven body's own equations give the force in its joint and the work of the drive: all other
+// forces on it are known.
+static void find_drive(Ode *ode, double start_s)
+{
+    const Linkage *linkage = &ode->scenario->linkage;
+    if (ode->driven < 0) {
+        return;
+    }
+    const double mass = linkage->bodies[ode->driven].mass;
+    const Motion motion = driven_motion(ode, start_s);
+    const Vec2 needed =
+        vec2_scale(mass, vec2_add(motion.acceleration, (Vec2){0.0, ode->scenario->gravity}));
+    Vec2 others = {0.0, 0.0};
+    double power = vec2_dot(needed, motion.velocity);
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const bool is_on_a = joint->body_a == ode->driven;
+        if (i == linkage->driver.joint || (!is_on_a && joint->body_b != ode->driven)) {
+            continue;
+        }
+        const Vec2 force = vec2_scale(is_on_a ? -1.0 : 1.0, ode->joints[i].force_on_b);
+        const Vec2 anchor = vec2_rotate(motion.angle, is_on_a ? joint->anchor_a : joint->anchor_b);
+        const Vec2 arm = vec2_add(anchor, contact_rows_offset(&ode->contacts, i, is_on_a));
+        const Vec2 velocity = vec2_add(motion.velocity, vec2_scale(motion.omega, vec2_perp(arm)));
+        others = vec2_add(others, force);
+        power -= vec2_dot(force, velocity);
+    }
+    JointState *drive = &ode->joints[linkage->driver.joint];
+    drive->force_on_b = vec2_sub(needed, others);
+    drive->force = vec2_length(drive->force_on_b);
+    ode->drive_work = power * ode->step_s;
 }
 
 static bool advance(Ode *ode, Err *err)
@@ -143,9 +184,13 @@ static bool advance(Ode *ode, Err *err)
         !engine_step(ode->world.id, ode->step_s, is_quick, err)) {
         return fail_at(ode, start_s, err);
     }
-    contact_rows_clear(&ode->contacts, ode->joints);
+    contact_rows_clear(&ode->contacts, ode->step_s, ode->joints);
     read_velocities(ode);
     read_ideal_forces(ode);
+    find_drive(ode, start_s);
+    for (size_t i = 0; i < ode->scenario->linkage.joint_count; i++) {
+        ode->impulse[i] = ode->joints[i].force * ode->step_s;
+    }
     if (!check_state(ode, err)) {
         return fail_at(ode, start_s, err);
     }
@@ -154,6 +199,7 @@ static bool advance(Ode *ode, Err *err)
     return true;
 }
 
+// Takes the steps before time zero, with the first one asked for, so that they are timed with it.
 static bool settle(Ode *ode, Err *err)
 {
     while (ode->index < 0) {
@@ -172,11 +218,11 @@ static bool ode_open(const Scenario *scenario, void **state, Err *err)
     ode->step_s = scenario->run.step;
     ode->driven = linkage_driven_body(&scenario->linkage);
     const bool is_driven_wholly = ode->driven >= 0 && !scenario_has_clearance(scenario);
-    ode->index = is_driven_wholly ? -(long)scenario->ode.settle_steps : 0;
     Motion motions[LINKAGE_BODY_MAX];
-    if (start_motions(scenario, ode->index, motions, err) &&
-        world_build(scenario, motions, &ode->world, err) &&
-        contact_rows_init(&ode->contacts, scenario, &ode->world, err) && settle(ode, err)) {
+    ode->index =
+        -start_motions(scenario, is_driven_wholly ? (long)scenario->ode.settle_steps : 0, motions);
+    if (world_build(scenario, motions, &ode->world, err) &&
+        contact_rows_init(&ode->contacts, scenario, &ode->world, err)) {
         *state = ode;
         return true;
     }
@@ -187,20 +233,29 @@ static bool ode_open(const Scenario *scenario, void **state, Err *err)
 static bool ode_step(void *state, double stop_s, Err *err)
 {
     (void)stop_s; // a fixed step: the sample is looked up inside it
-    return advance(state, err);
+    return settle(state, err) && advance(state, err);
 }
 
 static StepRecord ode_record(const void *state)
 {
     const Ode *ode = state;
-    return (StepRecord){
+    StepRecord record = {
         .start_s = (double)(ode->index - 1) * ode->step_s,
         .end_s = (double)ode->index * ode->step_s,
+        .joint_s = (double)(ode->index - 1) * ode->step_s,
         .omega = ode->omega,
         .alpha = ode->alpha,
         .joints = ode->joints,
+        .impulse = ode->impulse,
         .approach = ode->approach,
+        .drive_work = ode->drive_work,
     };
+    for (size_t i = 0; i < ode->world.pair_count; i++) {
+        record.dissipated += ode->contacts.rows[i].dissipated;
+        record.friction += ode->contacts.rows[i].friction;
+        record.elastic += ode->contacts.rows[i].elastic;
+    }
+    return record;
 }
 
 // The motion at a share of the step between two snapshots.

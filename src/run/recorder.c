@@ -1,7 +1,8 @@
 // Which extremes and which contacts did a run have, whatever its samples show?
 //
 // Every step counts: extremes of omega (at the step's end) and alpha (its mean), each contact from
-// the first step with overlap to the last: force maximum, impulse = sum of F h, depth, duration.
+// the first step with overlap to the last: force maximum, impulse, depth, duration; and the energy
+// that went in and out.
 #include "run/recorder.h"
 
 #include "base/hash.h"
@@ -57,11 +58,11 @@ static void add_contact(Recorder *recorder, size_t number, const StepRecord *ste
     }
     if (state->is_touching) {
         spike->duration_s += duration;
-        spike->impulse += state->force * duration;
+        spike->impulse += step->impulse[number];
         spike->force_max = fmax(spike->force_max, state->force);
         spike->penetration_max = fmax(spike->penetration_max, -state->gap);
         joint->contact_time += duration;
-        joint->impulse += state->force * duration;
+        joint->impulse += step->impulse[number];
     } else if (recorder->was_touching[number]) {
         keep_spike(joint, spike);
     }
@@ -73,8 +74,8 @@ static void add_joint(Recorder *recorder, size_t number, const StepRecord *step)
     const JointState *state = &step->joints[number];
     JointExtremes *joint = &recorder->trajectory->joints[number];
     const double depth = state->is_touching ? fmax(0.0, -state->gap) : 0.0;
-    raise_to(&joint->force_max, recorder->is_empty, state->force, 1.0, step->start_s);
-    raise_to(&joint->penetration_max, recorder->is_empty, depth, 1.0, step->start_s);
+    raise_to(&joint->force_max, recorder->is_empty, state->force, 1.0, step->joint_s);
+    raise_to(&joint->penetration_max, recorder->is_empty, depth, 1.0, step->joint_s);
     if (recorder->scenario->linkage.joints[number].kind == JOINT_CLEARANCE) {
         add_contact(recorder, number, step);
     }
@@ -97,6 +98,9 @@ void recorder_add(Recorder *recorder, const StepRecord *step)
         hash = hash_number(hash, step->joints[i].force);
     }
     trajectory->hash = hash;
+    trajectory->energy.drive_work += step->drive_work;
+    trajectory->energy.dissipated += step->dissipated;
+    trajectory->energy.friction += step->friction;
     recorder->is_empty = false;
 }
 

@@ -3,11 +3,13 @@
 
 #include "analytic/analytic.h"
 #include "ode/ode_solver.h"
+#include "reference/reference.h"
 
 #include <assert.h>
 
 static const Solver *const SOLVERS[BACKEND_COUNT] = {
     [BACKEND_ANALYTIC] = &ANALYTIC_SOLVER,
+    [BACKEND_REFERENCE] = &REFERENCE_SOLVER,
     [BACKEND_ODE] = &ODE_SOLVER,
 };
 

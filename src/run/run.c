@@ -4,6 +4,7 @@
 // the stepping loop alone: steps, contact detection, recording and samples, not the setting up.
 #include "run/run.h"
 
+#include "model/energy.h"
 #include "run/recorder.h"
 
 #include <stdio.h>
@@ -26,8 +27,23 @@ typedef struct Loop {
     RunWatch watch;
     double started_s; // by the clock
     size_t steps;
-    double reached_s; // simulated
+    double reached_s;               // simulated
+    double width_s;                 // length of the last step
+    double angle[LINKAGE_BODY_MAX]; // rad, of each body there, by adding up omega
+    double omega[LINKAGE_BODY_MAX]; // rad/s, there
+    double elastic;                 // J, stored in the contacts there
+    double start_energy;            // J, kinetic and potential, at time zero
 } Loop;
+
+// Adds what each body has turned in a step: enough to know which turn an angle is in.
+static void add_turning(Loop *loop, const StepRecord *record)
+{
+    const double width_s = record->end_s - loop->reached_s;
+    for (size_t i = 0; i < loop->scenario->linkage.body_count; i++) {
+        loop->angle[i] += 0.5 * width_s * (loop->omega[i] + record->omega[i]);
+        loop->omega[i] = record->omega[i];
+    }
+}
 
 static bool take_step(Loop *loop, double stop_s, Err *err)
 {
@@ -36,7 +52,10 @@ static bool take_step(Loop *loop, double stop_s, Err *err)
     }
     const StepRecord record = loop->solver->record(loop->state);
     recorder_add(&loop->recorder, &record);
+    add_turning(loop, &record);
+    loop->width_s = record.end_s - loop->reached_s;
     loop->reached_s = record.end_s;
+    loop->elastic = record.elastic;
     loop->steps++;
     if (loop->watch.progress != NULL && loop->steps % PROGRESS_EVERY == 0) {
         loop->watch.progress(loop->reached_s / scenario_duration(loop->scenario),
@@ -45,16 +64,36 @@ static bool take_step(Loop *loop, double stop_s, Err *err)
     return true;
 }
 
-// Keeps each body's angle in the turn nearest to the sample before.
-static void unwrap_angles(const Trajectory *trajectory, size_t index, const Scenario *scenario,
-                          Sample *sample)
+// Puts the angles of a sample, known but for whole turns, into the turn that the bodies are in.
+static void unwrap_angles(const Loop *loop, Sample *sample)
 {
-    for (size_t i = 0; i < trajectory->body_count; i++) {
-        const double before = index > 0 ? trajectory_motion(trajectory, index - 1, i)->angle
-                                        : scenario->linkage.bodies[i].start.angle;
+    const Linkage *linkage = &loop->scenario->linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if ((int)i == linkage_driven_body(linkage)) {
+            continue;
+        }
+        const double ahead = loop->omega[i] * (loop->reached_s - sample->time_s);
         double *angle = &sample->bodies[i].angle;
-        *angle += 2.0 * M_PI * round((before - *angle) / (2.0 * M_PI));
+        *angle += 2.0 * M_PI * round((loop->angle[i] - ahead - *angle) / (2.0 * M_PI));
     }
+}
+
+static double mechanical_energy(const Scenario *scenario, const Sample *sample)
+{
+    return energy_kinetic(&scenario->linkage, sample->bodies) +
+           energy_potential(&scenario->linkage, sample->bodies, scenario->gravity);
+}
+
+// Steps until a time is reached. A step that ends short of it by rounding has reached it.
+static bool reach(Loop *loop, double time_s, Err *err)
+{
+    const double rounding = 1e-9;
+    while (loop->reached_s < time_s - rounding * loop->width_s) {
+        if (!take_step(loop, time_s, err)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
@@ -65,17 +104,29 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
     }
     for (size_t k = 0; k < trajectory->sample_count; k++) {
         const double time_s = scenario_sample_time(loop->scenario, k);
-        while (loop->reached_s < time_s) {
-            if (!take_step(loop, time_s, err)) {
-                return false;
-            }
+        if (!reach(loop, time_s, err)) {
+            return false;
         }
         Sample sample = {.time_s = time_s};
         loop->solver->observe(loop->state, time_s, &sample);
-        unwrap_angles(trajectory, k, loop->scenario, &sample);
+        if (k == 0) {
+            loop->start_energy = mechanical_energy(loop->scenario, &sample);
+        }
+        unwrap_angles(loop, &sample);
         trajectory_store(trajectory, k, &sample);
     }
-    return true;
+    // what is left after the last whole sample interval
+    return reach(loop, scenario_duration(loop->scenario), err);
+}
+
+// The balance over the run, from its first instant to the last one reached.
+static void close_energy(const Loop *loop, Trajectory *trajectory)
+{
+    Sample last = {.time_s = loop->reached_s};
+    loop->solver->observe(loop->state, loop->reached_s, &last);
+    Energy *energy = &trajectory->energy;
+    energy->change = mechanical_energy(loop->scenario, &last) - loop->start_energy + loop->elastic;
+    energy->residual = energy->drive_work - energy->change - energy->dissipated - energy->friction;
 }
 
 static void fill_model(const Loop *loop, Trajectory *trajectory)
@@ -84,6 +135,7 @@ static void fill_model(const Loop *loop, Trajectory *trajectory)
     snprintf(trajectory->label, sizeof trajectory->label, "%s", model.label);
     trajectory->step_s = model.step_s;
     trajectory->steps = model.steps;
+    trajectory->evaluations = model.evaluations;
     trajectory->constraint_rows = model.constraint_rows;
     trajectory->contact_rows = model.contact_rows;
 }
@@ -93,6 +145,13 @@ Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatc
     Trajectory *trajectory = trajectory_create(scenario, solver->name);
     Err err = {ERR_NONE, ""};
     Loop loop = {.scenario = scenario, .solver = solver, .watch = watch};
+    if (trajectory->sample_count == 0) {
+        return trajectory;
+    }
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        loop.angle[i] = scenario->linkage.bodies[i].start.angle;
+        loop.omega[i] = scenario->linkage.bodies[i].start.omega;
+    }
     if (!solver->open(scenario, &loop.state, &err)) {
         snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
         return trajectory;
@@ -106,6 +165,9 @@ Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatc
     trajectory->duration_s = loop.reached_s;
     if (is_done && solver->extremes != NULL) {
         solver->extremes(loop.state, trajectory->bodies);
+    }
+    if (is_done) {
+        close_energy(&loop, trajectory);
     }
     trajectory->is_complete = is_done;
     snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);

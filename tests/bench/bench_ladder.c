@@ -35,7 +35,7 @@ static void climb(Scenario *scenario, const Trajectory *truth, int repetition, R
         Rung *rung = &rungs[repetition % 2 == 0 ? i : RUNGS - 1 - i];
         scenario->run.step = STEPS_S[rung - rungs];
         Trajectory *trajectory = run_scenario(scenario, registry_solver(BACKEND_ODE), nobody);
-        rung->error = error_against(trajectory, truth);
+        rung->error = error_against(trajectory, truth, INFINITY);
         rung->steps = trajectory->steps;
         rung->wall_s[repetition] = trajectory->wall_s;
         trajectory_destroy(trajectory);

@@ -44,7 +44,7 @@ static TrajectoryError error_at(Scenario *scenario, double step_s)
     scenario->run.step = step_s;
     Trajectory *ode = run(scenario, BACKEND_ODE);
     Trajectory *analytic = run(scenario, BACKEND_ANALYTIC);
-    const TrajectoryError error = error_against(ode, analytic);
+    const TrajectoryError error = error_against(ode, analytic, INFINITY);
     assert_true(error.is_known);
     trajectory_destroy(ode);
     trajectory_destroy(analytic);

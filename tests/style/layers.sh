@@ -3,7 +3,7 @@
 # shows in its own place alone. Prints TAP.
 set -u
 root=$1
-layers="base model casefile contact analytic ode run compare paper report cli"
+layers="base model casefile contact analytic reference ode run compare paper report cli"
 
 rank_of() {
     rank=0

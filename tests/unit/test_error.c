@@ -30,7 +30,7 @@ static void the_largest_relative_error_of_any_free_body_counts(void **state)
     scenario.run.samples = 20;
     Trajectory *truth = made(&scenario, 0.0, 0.0);
     Trajectory *other = made(&scenario, 0.3, 0.001);
-    const TrajectoryError error = error_against(other, truth);
+    const TrajectoryError error = error_against(other, truth, INFINITY);
     assert_true(error.is_known);
     assert_string_equal(error.against, "made");
     // the coupler, whose scale is 10; the crank is driven and does not count
@@ -51,8 +51,8 @@ static void a_failed_run_has_no_error(void **state)
     Trajectory *truth = made(&scenario, 0.0, 0.0);
     Trajectory *failed = made(&scenario, 0.0, 0.0);
     failed->is_complete = false;
-    assert_false(error_against(failed, truth).is_known);
-    assert_false(error_against(truth, failed).is_known);
+    assert_false(error_against(failed, truth, INFINITY).is_known);
+    assert_false(error_against(truth, failed, INFINITY).is_known);
     trajectory_destroy(truth);
     trajectory_destroy(failed);
     trajectory_destroy(NULL);
@@ -65,7 +65,7 @@ static void a_number_that_is_not_finite_is_no_small_error(void **state)
     scenario.run.samples = 20;
     Trajectory *truth = made(&scenario, 0.0, 0.0);
     Trajectory *broken = made(&scenario, NAN, 0.0);
-    assert_false(error_against(broken, truth).is_known);
+    assert_false(error_against(broken, truth, INFINITY).is_known);
     trajectory_destroy(truth);
     trajectory_destroy(broken);
 }

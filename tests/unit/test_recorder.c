@@ -9,20 +9,27 @@ typedef struct Steps {
     double omega[3];
     double alpha[3];
     JointState joints[4];
+    double impulse[4];
     double approach[4];
 } Steps;
 
 // One step of a microsecond in which the crank-coupler pin has a force and a gap.
 static void add_step(Recorder *recorder, Steps *steps, int index, double force, double gap)
 {
+    steps->impulse[1] = 1e-6 * force;
     steps->joints[1] = (JointState){.force = force, .gap = gap, .is_touching = gap < 0.0};
     const StepRecord record = {
         .start_s = 1e-6 * index,
         .end_s = 1e-6 * (index + 1),
+        .joint_s = 1e-6 * index,
         .omega = steps->omega,
         .alpha = steps->alpha,
         .joints = steps->joints,
+        .impulse = steps->impulse,
         .approach = steps->approach,
+        .drive_work = 3.0,
+        .dissipated = 2.0,
+        .friction = 0.5,
     };
     recorder_add(recorder, &record);
 }
@@ -49,6 +56,9 @@ static void contacts_are_counted_from_onset_to_end(void **state)
     assert_near(joint->impulse, 72e-6, 1e-18);
     assert_near(joint->contact_time, 5e-6, 1e-18);
     assert_int_equal(joint->spike_count, 3);
+    assert_near(trajectory->energy.drive_work, 27.0, 1e-12);
+    assert_near(trajectory->energy.dissipated, 18.0, 1e-12);
+    assert_near(trajectory->energy.friction, 4.5, 1e-12);
     // strongest first; the one under way at the end is kept too
     assert_near(joint->spikes[0].force_max, 30.0, 0.0);
     assert_near(joint->spikes[0].onset_s, 1e-6, 0.0);

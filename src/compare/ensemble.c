@@ -1,0 +1,86 @@
+// What can be said of a motion that cannot be predicted? Its distributions.
+#include "compare/ensemble.h"
+
+#include "model/perturb.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *const ENSEMBLE_METRIC_NAMES[ENSEMBLE_METRIC_COUNT] = {
+    "force max", "impulse", "impacts", "penetration max", "contact share",
+};
+
+// of the speeds at the start: what an engine's own error amounts to within the first impacts
+static const double PERTURBATION = 1e-3;
+
+typedef struct Draws {
+    double values[LINKAGE_JOINT_MAX][ENSEMBLE_METRIC_COUNT][ENSEMBLE_MEMBERS];
+} Draws;
+
+static void take_member(const Trajectory *trajectory, size_t member, Draws *draws)
+{
+    for (size_t i = 0; i < trajectory->joint_count; i++) {
+        const JointExtremes *joint = &trajectory->joints[i];
+        draws->values[i][ENSEMBLE_FORCE_MAX][member] = joint->force_max.value;
+        draws->values[i][ENSEMBLE_IMPULSE][member] = joint->impulse;
+        draws->values[i][ENSEMBLE_IMPACTS][member] = (double)joint->impacts;
+        draws->values[i][ENSEMBLE_PENETRATION_MAX][member] = joint->penetration_max.value;
+        draws->values[i][ENSEMBLE_CONTACT_SHARE][member] =
+            joint->contact_time / trajectory->duration_s;
+    }
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static Distribution distribution_of(double *values, size_t count)
+{
+    qsort(values, count, sizeof *values, ascending);
+    Distribution made = {
+        .low = values[0],
+        .high = values[count - 1],
+        .median = 0.5 * (values[(count - 1) / 2] + values[count / 2]),
+    };
+    for (size_t i = 0; i < count; i++) {
+        made.mean += values[i] / (double)count;
+    }
+    double square = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        square += (values[i] - made.mean) * (values[i] - made.mean);
+    }
+    made.deviation = count > 1 ? sqrt(square / (double)(count - 1)) : 0.0;
+    return made;
+}
+
+void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch,
+                  Ensemble *ensemble)
+{
+    Draws draws;
+    memset(ensemble, 0, sizeof *ensemble);
+    for (unsigned member = 0; member < ENSEMBLE_MEMBERS; member++) {
+        Scenario beside = *scenario;
+        if (member > 0) {
+            perturb_start(&beside, PERTURBATION, member);
+        }
+        Trajectory *trajectory = run_scenario(&beside, solver, watch);
+        if (trajectory->is_complete) {
+            take_member(trajectory, ensemble->members++, &draws);
+        } else if (ensemble->failed++ == 0) {
+            memcpy(ensemble->message, trajectory->message, sizeof ensemble->message);
+        }
+        trajectory_destroy(trajectory);
+    }
+    for (size_t i = 0; ensemble->members > 0 && i < scenario->linkage.joint_count; i++) {
+        if (scenario->linkage.joints[i].kind != JOINT_CLEARANCE) {
+            continue;
+        }
+        for (int metric = 0; metric < ENSEMBLE_METRIC_COUNT; metric++) {
+            ensemble->joints[i][metric] =
+                distribution_of(draws.values[i][metric], ensemble->members);
+        }
+    }
+}

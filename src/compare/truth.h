@@ -1,0 +1,20 @@
+// The solution that errors are measured against, with its own uncertainty and how far it holds.
+#pragma once
+
+#include "run/run.h"
+
+typedef struct Truth {
+    Trajectory *trajectory; // owned; complete, unless `message` says why there is none
+    double uncertainty;     // 1: largest difference in omega, as omega_max of an error, between the
+                            // reference and a second one, up to the horizon
+    double horizon_s;       // up to when trajectories may be compared; the whole run where a twin
+                            // with a start 1e-10 beside stays near; never beyond
+    double growth;          // 1: by how much the twin's distance grew up to the horizon
+    bool is_limited;        // whether the horizon ends before the run does
+} Truth;
+
+// The truth of a scenario: the reference, certified by a second, tighter run and a perturbed twin.
+// With ideal joints alone it is the closed form, certified by the reference. A truth that cannot be
+// had holds an incomplete trajectory with the reason.
+Truth truth_make(const Scenario *scenario, RunWatch watch);
+void truth_finish(Truth *truth);

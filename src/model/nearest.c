@@ -1,0 +1,168 @@
+// Which places and speeds of a linkage's bodies are nearest to given ones and keep its joints?
+//
+// With J the rows of the joints and the drive, M the masses and inertias, r what is missing,
+//     min du' M du  with  J du = r    gives    du = M^-1 J' (J M^-1 J')^-1 r,
+// which for speeds is what a blow does. Rows of joints with play may be redundant: the diagonal is
+// then what keeps the matrix regular.
+#include "model/nearest.h"
+
+#include "base/dense.h"
+#include "model/kinematics.h"
+
+enum { STEP_MAX = 12 }; // Newton doubles the digits: from a clearance to rounding takes about 3
+
+static const double SOFT = 1e-12;   // on the diagonal of ones: a second pass leaves its square
+static const double CLOSED = 1e-14; // m, rounding of a metre is a hundredth of it
+static const double AGREES = 1e-9;  // of the largest speed of a joint: what written digits leave
+
+// The rows that are asked for, and what each is to change by.
+typedef struct Demand {
+    bool include[LINKAGE_JOINT_MAX];
+    size_t rows; // of the joints; the drive's row stands behind them
+    double wanted[KINEMATICS_ROW_MAX];
+    double distance; // the largest that is missing at any joint, m or m/s
+} Demand;
+
+// Asks for two more rows; true where more is missing there than anywhere before.
+static bool add_rows(Demand *demand, Vec2 missing)
+{
+    demand->wanted[demand->rows++] = missing.x;
+    demand->wanted[demand->rows++] = missing.y;
+    const bool is_worst = vec2_length(missing) > demand->distance;
+    demand->distance = fmax(demand->distance, vec2_length(missing));
+    return is_worst;
+}
+
+static double root_mass(const Linkage *linkage, size_t column)
+{
+    const Body *body = &linkage->bodies[column / 3];
+    return sqrt(column % 3 == 2 ? body->inertia : body->mass);
+}
+
+// The least change that meets the demand, three columns a body. False where rows are redundant.
+static bool least_change(const Linkage *linkage, const Motion *motions, const Demand *demand,
+                         double change[KINEMATICS_COLUMN_MAX])
+{
+    Jacobian jacobian;
+    kinematics_jacobian(linkage, motions, demand->include, true, &jacobian);
+    const size_t rows = jacobian.rows;
+    const size_t columns = jacobian.columns;
+    double matrix[KINEMATICS_ROW_MAX * KINEMATICS_ROW_MAX];
+    double pull[KINEMATICS_ROW_MAX];
+    // columns over the root of their mass, then rows to length one: a matrix with ones in it
+    for (size_t i = 0; i < rows; i++) {
+        double *row = &jacobian.entries[i * columns];
+        double square = 0.0;
+        for (size_t c = 0; c < columns; c++) {
+            row[c] /= root_mass(linkage, c);
+            square += row[c] * row[c];
+        }
+        pull[i] = demand->wanted[i] / sqrt(square);
+        for (size_t c = 0; c < columns; c++) {
+            row[c] /= sqrt(square);
+        }
+        for (size_t k = 0; k <= i; k++) {
+            double sum = i == k ? SOFT : 0.0;
+            for (size_t c = 0; c < columns; c++) {
+                sum += row[c] * jacobian.entries[k * columns + c];
+            }
+            matrix[i * rows + k] = sum;
+            matrix[k * rows + i] = sum;
+        }
+    }
+    if (!dense_solve(rows, matrix, pull)) {
+        return false;
+    }
+    for (size_t c = 0; c < columns; c++) {
+        change[c] = 0.0;
+        for (size_t i = 0; i < rows; i++) {
+            change[c] += jacobian.entries[i * columns + c] * pull[i] / root_mass(linkage, c);
+        }
+    }
+    return true;
+}
+
+// What the pins still miss of where they are to start; false where they are there.
+static bool demand_places(const Linkage *linkage, const Motion *motions, Demand *demand)
+{
+    *demand = (Demand){0};
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const Vec2 hole = linkage_point(motions, joint->body_a, joint->anchor_a);
+        const Vec2 pin = linkage_point(motions, joint->body_b, joint->anchor_b);
+        demand->include[i] = true;
+        // an ideal joint starts at 0
+        add_rows(demand, vec2_sub(joint->clearance.start, vec2_sub(pin, hole)));
+    }
+    if (linkage->driver.is_present) {
+        const double angle = motions[linkage_driven_body(linkage)].angle;
+        demand->wanted[demand->rows] = linkage->driver.start - angle;
+    }
+    return demand->distance > CLOSED;
+}
+
+bool nearest_places(const Linkage *linkage, Motion *motions)
+{
+    Demand demand;
+    for (int step = 0; demand_places(linkage, motions, &demand); step++) {
+        double change[KINEMATICS_COLUMN_MAX];
+        if (step == STEP_MAX || !least_change(linkage, motions, &demand, change)) {
+            return false;
+        }
+        for (size_t i = 0; i < linkage->body_count; i++) {
+            motions[i].position.x += change[3 * i];
+            motions[i].position.y += change[3 * i + 1];
+            motions[i].angle += change[3 * i + 2];
+        }
+    }
+    return true;
+}
+
+// What the speeds miss of keeping joints closed and following the drive. Returns the joint that is
+// furthest from it, or -1 where all agree; with play, joints with play are to be kept as well.
+static int demand_speeds(const Linkage *linkage, const Motion *motions, bool with_play,
+                         Demand *demand)
+{
+    int worst = -1;
+    double largest = 0.0;
+    demand->distance = 0.0;
+    demand->rows = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const Vec2 a = linkage_point_velocity(motions, joint->body_a, joint->anchor_a);
+        const Vec2 b = linkage_point_velocity(motions, joint->body_b, joint->anchor_b);
+        demand->include[i] = with_play || joint->kind == JOINT_REVOLUTE;
+        largest = fmax(largest, fmax(vec2_length(a), vec2_length(b)));
+        if (demand->include[i] && add_rows(demand, vec2_sub(a, b))) {
+            worst = (int)i;
+        }
+    }
+    if (linkage->driver.is_present) {
+        const double omega = motions[linkage_driven_body(linkage)].omega;
+        demand->wanted[demand->rows] = linkage->driver.speed - omega;
+    }
+    return demand->distance <= AGREES * largest ? -1 : worst;
+}
+
+void nearest_speeds(const Linkage *linkage, bool with_play, Motion *motions)
+{
+    Demand demand;
+    double change[KINEMATICS_COLUMN_MAX] = {0.0};
+    demand_speeds(linkage, motions, with_play, &demand);
+    const bool is_solved = least_change(linkage, motions, &demand, change);
+    for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
+        motions[i].velocity.x += change[3 * i];
+        motions[i].velocity.y += change[3 * i + 1];
+        motions[i].omega += change[3 * i + 2];
+    }
+}
+
+bool nearest_check(const Linkage *linkage, const Motion *motions, int *joint, double *distance)
+{
+    Demand demand;
+    *joint = demand_speeds(linkage, motions, false, &demand);
+    *distance = demand.distance;
+    const Driver *driver = &linkage->driver;
+    const double turn = driver->is_present ? fabs(demand.wanted[demand.rows]) : 0.0;
+    return *joint < 0 && turn <= AGREES * fabs(driver->speed);
+}

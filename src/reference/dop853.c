@@ -1,0 +1,164 @@
+// How is smooth motion integrated to rounding with as few evaluations as possible?
+//
+//     k_i = f(t + c_i h, y + h sum a_ij k_j),  y' = y + h sum b_j k_j
+//     error = |h| e5^2 / sqrt(e5^2 + 0.01 e3^2)      e5, e3: root mean squares over the components
+// Source: Hairer, Norsett, Wanner 1993, section II.10; see reference/dop853_table.c.
+#include "reference/dop853.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { STEP_STAGES = 12, END_STAGE = 12, FIRST_DENSE_STAGE = 13, BLOCK = 8 };
+
+// Hairer's choices: steps aim at 0.9 of what the error would allow and change by at most these
+static const double SAFETY = 0.9;
+static const double SHRINK_MOST = 0.333;
+static const double GROW_MOST = 6.0;
+
+// Adds factor times a weighted sum of the stages to a vector, in blocks of eight equations that a
+// compiler turns into vector instructions; what lies beyond the last equation is zero.
+static void add_stages(const Dop853 *integrator, const double *weights, int count, double factor,
+                       double *sum)
+{
+    for (size_t block = 0; block < integrator->size; block += BLOCK) {
+        double total[BLOCK] = {0.0};
+        for (int j = 0; j < count; j++) {
+            if (weights[j] == 0.0) {
+                continue;
+            }
+            const double *rates = integrator->stages[j] + block;
+            for (int i = 0; i < BLOCK; i++) {
+                total[i] += weights[j] * rates[i];
+            }
+        }
+        for (int i = 0; i < BLOCK; i++) {
+            sum[block + i] += factor * total[i];
+        }
+    }
+}
+
+// State at the nodes of one stage.
+static void stage_state(const Dop853 *integrator, int stage, double *y)
+{
+    const size_t padded = (integrator->size + BLOCK - 1) / BLOCK * BLOCK;
+    memcpy(y, integrator->y, padded * sizeof *y);
+    add_stages(integrator, DOP853_COUPLING[stage], stage, integrator->tried, y);
+}
+
+static void evaluate(Dop853 *integrator, int stage, const double *y)
+{
+    const double time = integrator->time + DOP853_NODE[stage] * integrator->tried;
+    integrator->rates(time, y, integrator->stages[stage], integrator->context);
+    integrator->evaluations++;
+}
+
+void dop853_start(Dop853 *integrator, double time, const double *y)
+{
+    integrator->time = time;
+    memmove(integrator->y, y, integrator->size * sizeof *y);
+    integrator->tried = 0.0;
+    evaluate(integrator, 0, integrator->y);
+}
+
+static double error_ratio(const Dop853 *integrator)
+{
+    double e5[DOP853_SIZE_MAX] = {0.0};
+    double e3[DOP853_SIZE_MAX] = {0.0};
+    add_stages(integrator, DOP853_ERROR_5, STEP_STAGES, 1.0, e5);
+    add_stages(integrator, DOP853_ERROR_3, STEP_STAGES, 1.0, e3);
+    double fifth = 0.0;
+    double third = 0.0;
+    size_t count = 0;
+    for (size_t i = 0; i < integrator->size; i++) {
+        const double allowed =
+            integrator->fixed[i] + integrator->grown[i] * fabs(integrator->tried);
+        if (allowed > 0.0) {
+            fifth += (e5[i] / allowed) * (e5[i] / allowed);
+            third += (e3[i] / allowed) * (e3[i] / allowed);
+            count++;
+        }
+    }
+    const double below = fifth + 0.01 * third;
+    return below > 0.0 ? fabs(integrator->tried) * fifth / sqrt(below * (double)count) : below;
+}
+
+double dop853_try(Dop853 *integrator, double step)
+{
+    integrator->tried = step;
+    double y[DOP853_SIZE_MAX];
+    for (int stage = 1; stage < STEP_STAGES; stage++) {
+        stage_state(integrator, stage, y);
+        evaluate(integrator, stage, y);
+    }
+    stage_state(integrator, END_STAGE, integrator->next);
+    return error_ratio(integrator);
+}
+
+bool dop853_attempt(Dop853 *integrator, double longest)
+{
+    double step = fmin(integrator->step, longest);
+    for (;;) {
+        const double error = dop853_try(integrator, step);
+        const double wanted = SAFETY * pow(fmax(error, 1e-30), -1.0 / 8.0);
+        if (error <= 1.0) {
+            const double most = integrator->was_rejected ? 1.0 : GROW_MOST;
+            const double suggested = step * fmin(most, fmax(SHRINK_MOST, wanted));
+            // a step cut short by the caller says nothing against longer ones
+            integrator->step =
+                step < integrator->step ? fmax(integrator->step, suggested) : suggested;
+            integrator->was_rejected = false;
+            return true;
+        }
+        integrator->rejected++;
+        integrator->was_rejected = true;
+        step *= error > 1.0 ? fmax(SHRINK_MOST, wanted) : SHRINK_MOST;
+        integrator->step = step;
+        if (!(step > 16.0 * DBL_EPSILON * fabs(integrator->time)) || !(step > DBL_MIN)) {
+            return false;
+        }
+    }
+}
+
+void dop853_fill(Dop853 *integrator)
+{
+    const double h = integrator->tried;
+    double y[DOP853_SIZE_MAX];
+    evaluate(integrator, END_STAGE, integrator->next);
+    for (int stage = FIRST_DENSE_STAGE; stage < DOP853_STAGES; stage++) {
+        stage_state(integrator, stage, y);
+        evaluate(integrator, stage, y);
+    }
+    double(*p)[DOP853_SIZE_MAX] = integrator->polynomial;
+    for (size_t i = 0; i < integrator->size; i++) {
+        const double change = integrator->next[i] - integrator->y[i];
+        p[0][i] = integrator->y[i];
+        p[1][i] = change;
+        p[2][i] = h * integrator->stages[0][i] - change;
+        p[3][i] = change - h * integrator->stages[END_STAGE][i] - p[2][i];
+    }
+    for (int row = 0; row < DOP853_DENSE_ROWS; row++) {
+        memset(p[4 + row], 0, sizeof p[4 + row]);
+        add_stages(integrator, DOP853_DENSE[row], DOP853_STAGES, h, p[4 + row]);
+    }
+}
+
+void dop853_dense(const Dop853 *integrator, double time, double *y)
+{
+    const double s = (time - integrator->time) / integrator->tried;
+    const double r = 1.0 - s;
+    const double(*p)[DOP853_SIZE_MAX] = integrator->polynomial;
+    for (size_t i = 0; i < integrator->size; i++) {
+        const double high = p[4][i] + s * (p[5][i] + r * (p[6][i] + s * p[7][i]));
+        y[i] = p[0][i] + s * (p[1][i] + r * (p[2][i] + s * (p[3][i] + r * high)));
+    }
+}
+
+void dop853_accept(Dop853 *integrator)
+{
+    integrator->time += integrator->tried;
+    memcpy(integrator->y, integrator->next, integrator->size * sizeof *integrator->y);
+    memcpy(integrator->stages[0], integrator->stages[END_STAGE],
+           integrator->size * sizeof *integrator->y);
+    integrator->accepted++;
+}

@@ -1,0 +1,56 @@
+// An explicit Runge-Kutta integrator of order 8 with error control and dense output of order 7,
+// made for motion that events interrupt: a step is tried, looked at, shortened, and only then
+// taken.
+#pragma once
+
+#include "reference/dop853_table.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+// the most equations: three coordinates and rates a body, sums; a multiple of eight
+enum { DOP853_SIZE_MAX = 128, DOP853_POLYNOMIAL = 8 };
+
+// Writes dy/dt at a time and state.
+typedef void (*Dop853Rates)(double time, const double *y, double *rates, void *context);
+
+typedef struct Dop853 {
+    size_t size; // number of equations
+    Dop853Rates rates;
+    void *context;
+    // Error allowed in each component of one step: fixed[i] + grown[i] times the step. A component
+    // with both 0 is not controlled.
+    double fixed[DOP853_SIZE_MAX];
+    double grown[DOP853_SIZE_MAX];
+    double time; // where the next step starts
+    double y[DOP853_SIZE_MAX];
+    double step;                  // length suggested for the next step
+    double tried;                 // length of the step that is tried
+    double next[DOP853_SIZE_MAX]; // state at the end of the step that is tried
+    double stages[DOP853_STAGES][DOP853_SIZE_MAX];
+    double polynomial[DOP853_POLYNOMIAL][DOP853_SIZE_MAX];
+    bool was_rejected; // the step before had to be shortened: the next must not grow
+    size_t accepted;
+    size_t rejected;
+    size_t evaluations;
+} Dop853;
+
+// Puts the integrator at a time and state; also after the right-hand side has changed.
+void dop853_start(Dop853 *integrator, double time, const double *y);
+
+// Tries a step of a length: fills `next`. Returns the error over the error allowed: at most 1 is
+// good. Not finite where the state is not.
+double dop853_try(Dop853 *integrator, double step);
+
+// Tries steps, shortening them, until the error is allowed, beginning with the suggested length but
+// at most `longest`. Suggests the length of the following one. Returns false where the step fell
+// below the rounding of the time.
+bool dop853_attempt(Dop853 *integrator, double longest);
+
+// Completes the tried step with the polynomial through it (four evaluations); then dop853_dense
+// gives the state at any time in it.
+void dop853_fill(Dop853 *integrator);
+void dop853_dense(const Dop853 *integrator, double time, double *y);
+
+// Takes the tried and filled step: its end becomes the start of the next.
+void dop853_accept(Dop853 *integrator);

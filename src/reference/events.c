@@ -1,0 +1,172 @@
+// When does a contact begin, end or go slack?
+//
+// Each mode holds while its margins are not negative:
+//     apart:    -d             d the penetration
+//     pressing:  d, release    release: 1 + chi d'/v0, or the force itself with a viscous damper
+//     slack:     d, -pressing
+// A margin that is negative at one of a few points of a step has crossed zero before it. The
+// crossing is found on the step's polynomial; then the step is taken again up to there, and moved
+// by Newton's method until the penetration is zero to rounding: no step ever passes the corner of
+// d^n.
+#include "reference/events.h"
+
+#include "base/root.h"
+
+#include <math.h>
+
+enum { HALVINGS = 24, LANDINGS = 4, MARGINS = 2 };
+
+// a thousandth of the depth that rounding of positions of 0.3 m leaves uncertain
+static const double LANDED = 1e-19;
+
+typedef struct Margin {
+    const Dynamics *dynamics;
+    const Dop853 *integrator;
+    size_t contact;
+    int which;
+} Margin;
+
+static double margin_of(const ContactForce *force, ContactMode mode, int which)
+{
+    switch (mode) {
+    case CONTACT_APART:
+        return -force->pose.penetration;
+    case CONTACT_PRESSING:
+        return which == 0 ? force->pose.penetration : force->release;
+    default:
+        return which == 0 ? force->pose.penetration : -force->pressing;
+    }
+}
+
+static double margin_at(double time, void *context)
+{
+    const Margin *margin = context;
+    double y[DOP853_SIZE_MAX];
+    dop853_dense(margin->integrator, time, y);
+    const ContactForce force = dynamics_contact(margin->dynamics, margin->contact, time, y);
+    return margin_of(&force, margin->dynamics->contacts[margin->contact].mode, margin->which);
+}
+
+// The mode that follows when a margin of the present one is used up.
+static ContactMode mode_after(ContactMode mode, int which)
+{
+    if (mode == CONTACT_APART) {
+        return CONTACT_PRESSING;
+    }
+    if (which == 0) {
+        return CONTACT_APART;
+    }
+    return mode == CONTACT_PRESSING ? CONTACT_SLACK : CONTACT_PRESSING;
+}
+
+// Where the margin first turns negative between two times, the first of which may be the event
+// that the step began with: there it is zero but for rounding, of either sign.
+static double crossing(Margin *margin, double first, double last)
+{
+    double good = last;
+    for (int i = 0; i < HALVINGS; i++) {
+        good = first + 0.5 * (good - first);
+        if (margin_at(good, margin) > 0.0) {
+            double time = first;
+            return root_find(margin_at, margin, good, last, 0.0, &time) ? time : first;
+        }
+    }
+    return first;
+}
+
+double events_point_time(const Dop853 *integrator, const EventPoints *points, size_t point)
+{
+    // the end is the end to the last bit
+    const double share = (double)(point + 1) / (double)points->count;
+    return point + 1 == points->count ? integrator->time + integrator->tried
+                                      : integrator->time + share * integrator->tried;
+}
+
+bool events_look(const Dynamics *dynamics, const Dop853 *integrator, EventPoints *points)
+{
+    double y[DOP853_SIZE_MAX];
+    points->count = EVENTS_POINTS_MAX;
+    for (size_t i = 0; i < dynamics->contact_count; i++) {
+        points->count = dynamics->contacts[i].mode != CONTACT_APART ? 1 : points->count;
+    }
+    for (size_t i = 0; i + 1 < points->count; i++) {
+        const double time = events_point_time(integrator, points, i);
+        dop853_dense(integrator, time, y);
+        if (!dynamics_evaluate(dynamics, time, y, &points->states[i])) {
+            return false;
+        }
+    }
+    return dynamics_evaluate(dynamics, integrator->time + integrator->tried, integrator->next,
+                             &points->states[points->count - 1]);
+}
+
+// Takes note of the event behind one margin, if it comes before those noted so far.
+static void look_at(Margin *margin, const EventPoints *points, Event *event)
+{
+    const ContactMode mode = margin->dynamics->contacts[margin->contact].mode;
+    double before = margin->integrator->time;
+    for (size_t i = 0; i < points->count; i++) {
+        const double time = events_point_time(margin->integrator, points, i);
+        const ContactForce *force = &points->states[i].contacts[margin->contact];
+        if (margin_of(force, mode, margin->which) < 0.0) {
+            const double found = crossing(margin, before, time);
+            if (!event->is_present || found < event->time) {
+                *event = (Event){
+                    .is_present = true,
+                    .time = found,
+                    .contact = margin->contact,
+                    .mode = mode_after(mode, margin->which),
+                };
+            }
+            return;
+        }
+        before = time;
+    }
+}
+
+Event events_find(const Dynamics *dynamics, const Dop853 *integrator, const EventPoints *points)
+{
+    Event event = {.is_present = false};
+    for (size_t i = 0; i < dynamics->contact_count; i++) {
+        const int margins = dynamics->contacts[i].mode == CONTACT_APART ? 1 : MARGINS;
+        for (int which = 0; which < margins; which++) {
+            Margin margin = {dynamics, integrator, i, which};
+            look_at(&margin, points, &event);
+        }
+    }
+    return event;
+}
+
+void events_land(const Dynamics *dynamics, Dop853 *integrator, Event *event)
+{
+    const bool is_depth =
+        event->mode == CONTACT_APART || dynamics->contacts[event->contact].mode == CONTACT_APART;
+    double step = fmax(0.0, event->time - integrator->time);
+    for (int i = 0; i < LANDINGS; i++) {
+        dop853_try(integrator, step);
+        event->time = integrator->time + step;
+        const ContactForce force =
+            dynamics_contact(dynamics, event->contact, event->time, integrator->next);
+        const double move = force.pose.penetration / force.pose.approach_speed;
+        // not before the step's start: an event that it began with may lie there
+        const double moved = fmax(0.0, step - move);
+        if (!is_depth || !(fabs(force.pose.penetration) > LANDED) || !isfinite(move) ||
+            moved == step || i + 1 == LANDINGS) {
+            break;
+        }
+        step = moved;
+    }
+    dop853_fill(integrator);
+}
+
+void events_apply(Dynamics *dynamics, const Event *event, double time_s, const double *y)
+{
+    DynamicsContact *contact = &dynamics->contacts[event->contact];
+    if (contact->mode == CONTACT_APART) {
+        contact->impact_speed =
+            dynamics_contact(dynamics, event->contact, time_s, y).pose.approach_speed;
+        contact->damping_rate =
+            contact->law.hysteresis / fmax(contact->impact_speed, contact->law.impact_speed_floor);
+    }
+    contact->mode = event->mode;
+}

@@ -1,0 +1,100 @@
+// How are closed loops kept closed?
+//
+// After a step the coordinates are moved by the least (in the sum of squares) that satisfies
+//     Phi + J dq = 0   and   J (u + du) + drift = 0
+// with Phi the gaps and drift the anchors' relative velocity at rest coordinates. Two Newton steps
+// take the gap of a good step, 1e-12 m, to rounding.
+#include "reference/loops.h"
+
+#include "base/dense.h"
+
+#include <string.h>
+
+enum { PASSES = 2, ROW_MAX = 2 * TREE_LOOP_MAX };
+
+static Vec2 end_column(const Tree *tree, const TreeState *state, int end, size_t column)
+{
+    const int body = tree->end_bodies[end];
+    if (body == LINKAGE_GROUND || body == tree->driven) {
+        return (Vec2){0.0, 0.0};
+    }
+    const Vec2 moved = state->columns[body][column];
+    return tree->angle_column[body] == (int)column ? vec2_add(moved, vec2_perp(state->arms[end]))
+                                                   : moved;
+}
+
+void loops_row(const Tree *tree, const TreeState *state, size_t loop, Vec2 *row)
+{
+    const int end = 2 * tree->loops[loop];
+    for (size_t j = 0; j < tree->coordinate_count; j++) {
+        row[j] = vec2_sub(end_column(tree, state, end + 1, j), end_column(tree, state, end, j));
+    }
+}
+
+// Gap (or its rate) of one loop.
+static Vec2 loop_gap(const Tree *tree, const TreeState *state, size_t loop, bool is_rate)
+{
+    const int end = 2 * tree->loops[loop];
+    if (is_rate) {
+        return vec2_sub(tree_end_velocity(tree, state, end + 1),
+                        tree_end_velocity(tree, state, end));
+    }
+    return vec2_sub(tree_end_point(tree, state, end + 1), tree_end_point(tree, state, end));
+}
+
+// Changes x by J^T (J J^T)^-1 (-gap).
+static void move_least(const Tree *tree, const TreeState *state, bool is_rate, double *x)
+{
+    const size_t n = tree->coordinate_count;
+    const size_t rows = 2 * tree->loop_count;
+    double jacobian[ROW_MAX][TREE_COORDINATE_MAX];
+    double square[ROW_MAX * ROW_MAX];
+    double right[ROW_MAX];
+    Vec2 row[TREE_COORDINATE_MAX];
+    for (size_t loop = 0; loop < tree->loop_count; loop++) {
+        loops_row(tree, state, loop, row);
+        const Vec2 gap = loop_gap(tree, state, loop, is_rate);
+        right[2 * loop] = -gap.x;
+        right[2 * loop + 1] = -gap.y;
+        for (size_t j = 0; j < n; j++) {
+            jacobian[2 * loop][j] = row[j].x;
+            jacobian[2 * loop + 1][j] = row[j].y;
+        }
+    }
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t k = 0; k < rows; k++) {
+            double sum = 0.0;
+            for (size_t j = 0; j < n; j++) {
+                sum += jacobian[i][j] * jacobian[k][j];
+            }
+            square[i * rows + k] = sum;
+        }
+    }
+    if (!dense_solve(rows, square, right)) {
+        return;
+    }
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t j = 0; j < n; j++) {
+            x[j] += right[i] * jacobian[i][j];
+        }
+    }
+}
+
+double loops_project(const Tree *tree, double time_s, double *q, double *u)
+{
+    if (tree->loop_count == 0) {
+        return 0.0;
+    }
+    TreeState state;
+    for (int pass = 0; pass < PASSES; pass++) {
+        tree_evaluate(tree, time_s, q, u, &state);
+        move_least(tree, &state, false, q);
+    }
+    tree_evaluate(tree, time_s, q, u, &state);
+    move_least(tree, &state, true, u);
+    double largest = 0.0;
+    for (size_t loop = 0; loop < tree->loop_count; loop++) {
+        largest = fmax(largest, vec2_length(loop_gap(tree, &state, loop, false)));
+    }
+    return largest;
+}

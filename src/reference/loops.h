@@ -1,0 +1,11 @@
+// The ideal joints that close loops of a tree: their constraint rows, and how they are kept.
+#pragma once
+
+#include "reference/tree.h"
+
+// Velocity of the joint's anchor on body b less that on body a, by each coordinate (a vector each).
+void loops_row(const Tree *tree, const TreeState *state, size_t loop, Vec2 *row);
+
+// Moves coordinates and rates by the least that closes every loop, at a time. Returns the largest
+// gap left in any loop, m; 0 where there are none.
+double loops_project(const Tree *tree, double time_s, double *q, double *u);

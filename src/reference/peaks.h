@@ -1,0 +1,13 @@
+// Where do the force and the depth of a contact have their maxima?
+#pragma once
+
+#include "reference/stepper.h"
+
+typedef struct Peaks {
+    bool was_rising[2 * LINKAGE_JOINT_MAX]; // force and depth of each contact, where it was left
+} Peaks;
+
+// The earliest maximum of a pressing contact's force or depth between two times of the present
+// step, or the later of them. The state is that at the later time.
+double peaks_next(Peaks *peaks, const Stepper *stepper, double start_s, double end_s,
+                  const DynamicsState *state);

@@ -1,0 +1,23 @@
+// The motion step by step: from event to event, each step no longer than its error allows.
+#pragma once
+
+#include "reference/dop853.h"
+#include "reference/events.h"
+
+typedef struct Stepper {
+    const Scenario *scenario;
+    Dynamics dynamics;
+    Dop853 integrator; // its tried step is the present one
+    EventPoints points;
+    Event event; // at its end
+    bool has_step;
+    double duration_s;
+    double onset_step; // s, length that the first step of the last contact had
+} Stepper;
+
+// Puts the stepper at the scenario's start. Fails with ERR_CASE where a law does not fit a joint
+// and with ERR_SOLVER where the accelerations at the start are not determined.
+bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err);
+
+// Goes on by one step of some length, at whose end there may be an event. Fails with ERR_SOLVER.
+bool stepper_next(Stepper *stepper, Err *err);

@@ -1,0 +1,265 @@
+// Which coordinates move a linkage, and how do its bodies follow them?
+//
+// A body i that hangs by its anchor s_i on the anchor s_p of its parent p, arms R s:
+//     r_i = r_p + R_p s_p - R_i s_i
+//     v_i = v_p + w_p z x R_p s_p - w_i z x R_i s_i
+//     a_i = a_p + al_p z x R_p s_p - w_p^2 R_p s_p - al_i z x R_i s_i + w_i^2 R_i s_i
+// The terms without second rates are the bias. Angles are absolute, so each body's own is one
+// coordinate. Source: Haug 1989, velocity transformations.
+#include "reference/tree.h"
+
+#include <string.h>
+
+static bool is_driver_joint(const Linkage *linkage, int joint)
+{
+    return linkage->driver.is_present && linkage->driver.joint == joint;
+}
+
+static void add_node(Tree *tree, int body, int joint, int parent)
+{
+    TreeNode *node = &tree->nodes[tree->node_count++];
+    *node = (TreeNode){.body = body, .joint = joint, .parent = parent};
+    if (joint >= 0) {
+        const bool is_own_b = tree->linkage->joints[joint].body_b == body;
+        node->own_end = 2 * joint + (is_own_b ? 1 : 0);
+        node->parent_end = 2 * joint + (is_own_b ? 0 : 1);
+        node->angle_column = tree->coordinate_count;
+        tree->coordinate_count += 1;
+        tree->is_driven_hung_on = tree->is_driven_hung_on || parent == tree->driven;
+    } else {
+        node->angle_column = tree->coordinate_count + 2;
+        tree->coordinate_count += 3;
+    }
+    tree->angle_column[body] = (int)node->angle_column;
+}
+
+// Hangs on every body that an unused ideal joint connects with a known one, until none is left.
+static void grow(Tree *tree, bool *is_known, bool *is_used)
+{
+    const Linkage *linkage = tree->linkage;
+    bool has_grown = true;
+    while (has_grown) {
+        has_grown = false;
+        for (size_t i = 0; i < linkage->joint_count; i++) {
+            const Joint *joint = &linkage->joints[i];
+            if (joint->kind != JOINT_REVOLUTE || is_used[i]) {
+                continue;
+            }
+            // the ground is known: it stands one before the first body
+            const bool a_known = is_known[joint->body_a + 1];
+            const bool b_known = is_known[joint->body_b + 1];
+            if (a_known == b_known) {
+                continue;
+            }
+            const int child = a_known ? joint->body_b : joint->body_a;
+            add_node(tree, child, (int)i, a_known ? joint->body_a : joint->body_b);
+            is_known[child + 1] = true;
+            is_used[i] = true;
+            has_grown = true;
+        }
+    }
+}
+
+static void list_ends(Tree *tree)
+{
+    for (int joint = 0; joint < (int)tree->linkage->joint_count; joint++) {
+        const int bodies[2] = {tree->linkage->joints[joint].body_a,
+                               tree->linkage->joints[joint].body_b};
+        for (int side = 0; side < 2; side++) {
+            const int body = bodies[side];
+            tree->end_bodies[2 * joint + side] = body;
+            if (body != LINKAGE_GROUND) {
+                tree->ends[body][tree->end_counts[body]++] = 2 * joint + side;
+            }
+        }
+    }
+}
+
+void tree_build(const Linkage *linkage, Tree *tree)
+{
+    *tree = (Tree){.linkage = linkage, .driven = linkage_driven_body(linkage)};
+    list_ends(tree);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        tree->base_direction[i] = (Vec2){1.0, 0.0};
+    }
+    bool is_known[LINKAGE_BODY_MAX + 1] = {true};
+    bool is_used[LINKAGE_JOINT_MAX] = {false};
+    if (tree->driven >= 0) {
+        tree->angle_column[tree->driven] = -1;
+        is_known[tree->driven + 1] = true;
+        is_used[linkage->driver.joint] = true;
+    }
+    grow(tree, is_known, is_used);
+    for (int body = 0; body < (int)linkage->body_count; body++) {
+        if (!is_known[body + 1]) {
+            add_node(tree, body, -1, LINKAGE_GROUND);
+            is_known[body + 1] = true;
+            grow(tree, is_known, is_used);
+        }
+    }
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        if (linkage->joints[i].kind == JOINT_REVOLUTE && !is_used[i] &&
+            !is_driver_joint(linkage, i)) {
+            tree->loops[tree->loop_count++] = i;
+        }
+    }
+}
+
+void tree_coordinates(const Tree *tree, const Motion *motions, double *q, double *u)
+{
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const TreeNode *node = &tree->nodes[i];
+        const Motion *motion = &motions[node->body];
+        q[node->angle_column] = motion->angle;
+        u[node->angle_column] = motion->omega;
+        if (node->joint < 0) {
+            q[node->angle_column - 2] = motion->position.x;
+            q[node->angle_column - 1] = motion->position.y;
+            u[node->angle_column - 2] = motion->velocity.x;
+            u[node->angle_column - 1] = motion->velocity.y;
+        }
+    }
+}
+
+static Vec2 anchor_of(const Linkage *linkage, int end)
+{
+    const Joint *joint = &linkage->joints[end / 2];
+    return end % 2 == 0 ? joint->anchor_a : joint->anchor_b;
+}
+
+void tree_rebase(Tree *tree, double time_s, const double *q)
+{
+    for (size_t i = 0; i < tree->linkage->body_count; i++) {
+        const int column = tree->angle_column[i];
+        const double angle = column < 0 ? linkage_crank_angle(tree->linkage, time_s) : q[column];
+        tree->base_angle[i] = angle;
+        tree->base_direction[i] = (Vec2){cos(angle), sin(angle)};
+    }
+}
+
+// Cosine and sine of a body's angle: turned on from the base by a series while that is near. Up to
+// 0.05 the first term left out, d^10 / 10!, is below 3e-20.
+static inline Vec2 direction_of(const Tree *tree, int body, double angle)
+{
+    const double near = 0.05;
+    const double d = angle - tree->base_angle[body];
+    if (!(fabs(d) <= near)) {
+        return (Vec2){cos(angle), sin(angle)};
+    }
+    const double e = d * d;
+    const double s =
+        d *
+        (1.0 - e * (1.0 / 6.0) *
+                   (1.0 - e * (1.0 / 20.0) * (1.0 - e * (1.0 / 42.0) * (1.0 - e * (1.0 / 72.0)))));
+    const double r =
+        0.5 * e * (1.0 - e * (1.0 / 12.0) * (1.0 - e * (1.0 / 30.0) * (1.0 - e * (1.0 / 56.0))));
+    const Vec2 base = tree->base_direction[body];
+    return (Vec2){base.x - (base.x * r + base.y * s), base.y + (base.x * s - base.y * r)};
+}
+
+// Turns a body's ends with it.
+static inline void set_arms(const Tree *tree, int body, double angle, TreeState *state)
+{
+    const Vec2 direction = direction_of(tree, body, angle);
+    const double c = direction.x;
+    const double s = direction.y;
+    for (size_t i = 0; i < tree->end_counts[body]; i++) {
+        const int end = tree->ends[body][i];
+        const Vec2 anchor = anchor_of(tree->linkage, end);
+        state->arms[end] = (Vec2){c * anchor.x - s * anchor.y, s * anchor.x + c * anchor.y};
+    }
+}
+
+static void set_ground(const Tree *tree, TreeState *state)
+{
+    for (int end = 0; end < 2 * (int)tree->linkage->joint_count; end++) {
+        if (tree->end_bodies[end] == LINKAGE_GROUND) {
+            state->arms[end] = anchor_of(tree->linkage, end);
+        }
+    }
+}
+
+static void set_driven(const Tree *tree, double time_s, TreeState *state)
+{
+    const Driver *driver = &tree->linkage->driver;
+    Motion *motion = &state->motions[tree->driven];
+    motion->angle = linkage_crank_angle(tree->linkage, time_s);
+    motion->omega = driver->speed;
+    motion->alpha = 0.0;
+    set_arms(tree, tree->driven, motion->angle, state);
+    const Vec2 arm = state->arms[2 * driver->joint + 1];
+    motion->position = vec2_sub(tree->linkage->joints[driver->joint].anchor_a, arm);
+    motion->velocity = vec2_scale(-driver->speed, vec2_perp(arm));
+    motion->acceleration = vec2_scale(driver->speed * driver->speed, arm);
+    state->bias[tree->driven] = motion->acceleration;
+}
+
+static void set_floating(const TreeNode *node, const double *q, const double *u, size_t count,
+                         TreeState *state)
+{
+    const size_t column = node->angle_column;
+    Motion *motion = &state->motions[node->body];
+    motion->position = (Vec2){q[column - 2], q[column - 1]};
+    motion->velocity = (Vec2){u[column - 2], u[column - 1]};
+    state->bias[node->body] = (Vec2){0.0, 0.0};
+    memset(state->columns[node->body], 0, count * sizeof(Vec2));
+    state->columns[node->body][column - 2] = (Vec2){1.0, 0.0};
+    state->columns[node->body][column - 1] = (Vec2){0.0, 1.0};
+}
+
+static void set_hanging(const Tree *tree, const TreeNode *node, TreeState *state)
+{
+    const int parent = node->parent;
+    Motion *motion = &state->motions[node->body];
+    Vec2 *columns = state->columns[node->body];
+    const Vec2 arm = state->arms[node->own_end];
+    const Vec2 lever = vec2_perp(arm);
+    motion->position = vec2_sub(tree_end_point(tree, state, node->parent_end), arm);
+    motion->velocity = vec2_sub(tree_end_velocity(tree, state, node->parent_end),
+                                vec2_scale(motion->omega, lever));
+    state->bias[node->body] = vec2_add(tree_end_bias(tree, state, node->parent_end),
+                                       vec2_scale(motion->omega * motion->omega, arm));
+    if (parent == LINKAGE_GROUND || parent == tree->driven) {
+        memset(columns, 0, tree->coordinate_count * sizeof *columns);
+    } else {
+        memcpy(columns, state->columns[parent], tree->coordinate_count * sizeof *columns);
+        Vec2 *column = &columns[tree->angle_column[parent]];
+        *column = vec2_add(*column, vec2_perp(state->arms[node->parent_end]));
+    }
+    columns[node->angle_column] = vec2_scale(-1.0, lever);
+}
+
+void tree_evaluate(const Tree *tree, double time_s, const double *q, const double *u,
+                   TreeState *state)
+{
+    set_ground(tree, state);
+    if (tree->driven >= 0) {
+        set_driven(tree, time_s, state);
+    }
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const TreeNode *node = &tree->nodes[i];
+        Motion *motion = &state->motions[node->body];
+        motion->angle = q[node->angle_column];
+        motion->omega = u[node->angle_column];
+        set_arms(tree, node->body, motion->angle, state);
+        if (node->joint < 0) {
+            set_floating(node, q, u, tree->coordinate_count, state);
+        } else {
+            set_hanging(tree, node, state);
+        }
+    }
+}
+
+void tree_accelerate(const Tree *tree, const double *rates, TreeState *state)
+{
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const TreeNode *node = &tree->nodes[i];
+        Vec2 acceleration = state->bias[node->body];
+        for (size_t j = 0; j < tree->coordinate_count; j++) {
+            acceleration =
+                vec2_add(acceleration, vec2_scale(rates[j], state->columns[node->body][j]));
+        }
+        state->motions[node->body].acceleration = acceleration;
+        state->motions[node->body].alpha = rates[node->angle_column];
+    }
+}

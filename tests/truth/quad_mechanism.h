@@ -1,0 +1,106 @@
+// A planar mechanism with play, in quadruple precision and maximal coordinates: its equations of
+// motion, its joints' gaps, and the way back onto the ideal joints.
+//
+// Written apart from the program's own solvers and sharing none of their code: only the scenario's
+// data and the damping factor chi come from there. gcc with libquadmath.
+#pragma once
+
+#include "model/scenario.h"
+
+#include <quadmath.h>
+
+typedef __float128 Quad;
+
+enum { QUAD_COORDINATE_MAX = 3 * LINKAGE_BODY_MAX };
+
+typedef struct QuadVec {
+    Quad x;
+    Quad y;
+} QuadVec;
+
+typedef struct QuadBody {
+    Quad mass;    // kg
+    Quad inertia; // kg m^2
+} QuadBody;
+
+typedef struct QuadJoint {
+    bool has_play;
+    int body_a; // carries the hole; LINKAGE_GROUND for the ground
+    int body_b; // carries the pin
+    QuadVec anchor_a;
+    QuadVec anchor_b;
+    Quad clearance;   // m, radial
+    Quad hole_radius; // m
+    QuadVec start;    // m, pin centre minus hole centre at time zero
+} QuadJoint;
+
+// The contact force is F = K d^n (1 + chi d'/v0), v0 = max(share * d' at the onset, floor), and
+// friction on the pin is -mu F tanh(v_t / v_s) along the wall, at the wall.
+typedef struct QuadProblem {
+    size_t body_count;
+    QuadBody bodies[LINKAGE_BODY_MAX];
+    size_t joint_count;
+    QuadJoint joints[LINKAGE_JOINT_MAX];
+    int driver_joint;                         // the joint about which the driven body turns, or -1
+    int driven_body;                          // moves as prescribed, or LINKAGE_GROUND
+    Quad drive_speed;                         // rad/s
+    Quad drive_start;                         // rad
+    Quad gravity;                             // m/s^2, along -y
+    Quad stiffness;                           // K, N/m^n
+    int exponent_twice;                       // 2 n, a whole number
+    Quad hysteresis;                          // chi, 1
+    Quad impact_speed_floor;                  // m/s
+    Quad impact_speed_share;                  // 1; anything else is a control that must be seen
+    Quad friction;                            // mu, 1
+    Quad friction_speed;                      // v_s, m/s
+    Quad start_position[QUAD_COORDINATE_MAX]; // x, y, phi of each body
+    Quad start_velocity[QUAD_COORDINATE_MAX];
+} QuadProblem;
+
+// What a joint with play is doing; it stays so between two events.
+typedef enum QuadMode {
+    QUAD_FREE,    // no overlap
+    QUAD_PRESSED, // F > 0
+    QUAD_CLAMPED, // overlap, but the damping would pull: F = 0
+} QuadMode;
+
+typedef struct QuadContacts {
+    QuadMode mode[LINKAGE_JOINT_MAX];
+    Quad speed[LINKAGE_JOINT_MAX]; // v0, m/s, of a joint that is not free
+} QuadContacts;
+
+// How a pin lies in its hole.
+typedef struct QuadGap {
+    Quad penetration; // d, m; negative in the free play
+    Quad rate;        // d', m/s
+    QuadVec outward;  // unit, from hole centre to pin centre
+    QuadVec hole_arm; // from the centre of mass of body a to the hole's centre, m
+    QuadVec pin_arm;  // from the centre of mass of body b to the pin's centre, m
+} QuadGap;
+
+// The problem of a scenario with a given stiffness and hysteretic damping. With a driver the start
+// is moved onto the closed linkage with each pin at its start in the hole and at rest against it;
+// without one the bodies start as they stand.
+QuadProblem quad_problem(const Scenario *scenario);
+
+// Puts the driven body, if there is one, into coordinates and velocities at a time, s.
+void quad_problem_drive(const QuadProblem *problem, Quad time, Quad *position, Quad *velocity);
+
+// The accelerations of every body; the driven one must stand where its drive puts it.
+void quad_problem_accelerate(const QuadProblem *problem, const QuadContacts *contacts,
+                             const Quad *position, const Quad *velocity, Quad *acceleration);
+
+QuadGap quad_problem_gap(const QuadProblem *problem, size_t joint, const Quad *position,
+                         const Quad *velocity);
+
+// The share 1 + chi d'/v0 of the elastic force in a joint that is not free; F ends where it does.
+Quad quad_problem_share(const QuadProblem *problem, const QuadContacts *contacts, size_t joint,
+                        const QuadGap *gap);
+
+// Moves the free bodies onto the ideal joints, positions and velocities, and returns the largest
+// distance, m, by which an ideal joint stood open before.
+Quad quad_problem_project(const QuadProblem *problem, Quad *position, Quad *velocity);
+
+// Kinetic, potential and elastic energy of the bodies that are not driven, J.
+Quad quad_problem_energy(const QuadProblem *problem, const QuadContacts *contacts,
+                         const Quad *position, const Quad *velocity);
