@@ -5,7 +5,6 @@
 // ground pivot to follower pin, so that its angle is the usual follower angle.
 #include "casefile/build.h"
 
-#include "casefile/schema.h"
 #include "model/kinematics.h"
 
 #include <math.h>
@@ -13,7 +12,6 @@
 
 enum {
     BODY_COUNT = 3,
-    JOINT_COUNT = 4,
     // a pin off its hole's centre turns the links by some 1e-4 rad, so that each pass leaves
     // about 1e-4 of the error before: four reach the last bit
     PASS_COUNT = 4,
@@ -27,10 +25,8 @@ static double link_length(const FourBar *fourbar, int body)
     return lengths[body]->nominal;
 }
 
-static void place_joint(Joint *joint, const char *name, int body_a, Vec2 anchor_a, int body_b,
-                        Vec2 anchor_b)
+static void place_joint(Joint *joint, int body_a, Vec2 anchor_a, int body_b, Vec2 anchor_b)
 {
-    text_copy(joint->name, sizeof joint->name, name);
     joint->body_a = body_a;
     joint->anchor_a = anchor_a;
     joint->body_b = body_b;
@@ -47,13 +43,10 @@ static void place_joints(const FourBar *fourbar, Linkage *linkage)
         second[i] = (Vec2){0.5 * link_length(fourbar, i), 0.0};
     }
     Joint *joints = linkage->joints;
-    place_joint(&joints[0], "ground-crank", LINKAGE_GROUND, (Vec2){0.0, 0.0}, CRANK, first[CRANK]);
-    place_joint(&joints[1], SCHEMA_JOINT_NAMES[0], CRANK, second[CRANK], COUPLER, first[COUPLER]);
-    place_joint(&joints[2], SCHEMA_JOINT_NAMES[1], COUPLER, second[COUPLER], FOLLOWER,
-                second[FOLLOWER]);
-    place_joint(&joints[3], SCHEMA_JOINT_NAMES[2], FOLLOWER, first[FOLLOWER], LINKAGE_GROUND,
-                ground);
-    linkage->joint_count = JOINT_COUNT;
+    place_joint(&joints[0], LINKAGE_GROUND, (Vec2){0.0, 0.0}, CRANK, first[CRANK]);
+    place_joint(&joints[1], CRANK, second[CRANK], COUPLER, first[COUPLER]);
+    place_joint(&joints[2], COUPLER, second[COUPLER], FOLLOWER, second[FOLLOWER]);
+    place_joint(&joints[3], FOLLOWER, first[FOLLOWER], LINKAGE_GROUND, ground);
     linkage->driver.joint = 0;
 }
 
@@ -104,30 +97,18 @@ static Linkage shift_holes(const Linkage *linkage, const Motion *motions)
     return shifted;
 }
 
-static bool is_eccentric(const Linkage *linkage)
+bool build_is_determined(const Linkage *linkage)
 {
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (joint->kind == JOINT_CLEARANCE && vec2_length(joint->clearance.start) > 0.0) {
-            return true;
-        }
-    }
-    return false;
+    return linkage->driver.is_present && 2 * linkage->joint_count + 1 == 3 * linkage->body_count;
 }
 
-// The motions at time zero: those of ideal joints, or where a pin starts off its hole's centre,
-// those of a pin held there at rest in its hole.
-static bool solve_start(Scenario *scenario, Err *err)
+bool build_start(Linkage *linkage, Motion *motions, Err *err)
 {
-    Linkage *linkage = &scenario->linkage;
     const double start = linkage->driver.start;
-    Motion motions[LINKAGE_BODY_MAX] = {0};
-    guess_positions(&scenario->fourbar, start, motions);
     if (!kinematics_solve(linkage, start, motions, err)) {
         return false;
     }
-    const int passes = is_eccentric(linkage) ? PASS_COUNT : 0;
-    for (int i = 0; i < passes; i++) {
+    for (int i = 0; i < PASS_COUNT; i++) {
         const Linkage shifted = shift_holes(linkage, motions);
         if (!kinematics_solve(&shifted, start, motions, err)) {
             return false;
@@ -141,17 +122,13 @@ static bool solve_start(Scenario *scenario, Err *err)
 
 bool build_fourbar(Scenario *scenario, Err *err)
 {
-    Linkage *linkage = &scenario->linkage;
-    for (size_t i = 0; i < BODY_COUNT; i++) {
-        text_copy(linkage->bodies[i].name, LINKAGE_NAME_SIZE, SCHEMA_BODY_NAMES[i]);
-    }
-    linkage->body_count = BODY_COUNT;
-    place_joints(&scenario->fourbar, linkage);
+    place_joints(&scenario->fourbar, &scenario->linkage);
     scenario->has_fourbar = true;
-
     for (size_t i = 0; i < scenario->point_count; i++) {
         TracedPoint *point = &scenario->points[i];
         point->local.x -= 0.5 * link_length(&scenario->fourbar, point->body);
     }
-    return solve_start(scenario, err);
+    Motion motions[LINKAGE_BODY_MAX] = {0};
+    guess_positions(&scenario->fourbar, scenario->linkage.driver.start, motions);
+    return build_start(&scenario->linkage, motions, err);
 }

@@ -3,8 +3,16 @@
 
 #include "model/scenario.h"
 
-// Names the bodies and joints, sets anchors, driver and traced points, and finds the motions at
-// time zero. Expects lengths, masses, clearances, joint kinds, drive (present) and points in their
-// places (points still measured along the link from its first joint). Fails with ERR_SOLVER where
-// the linkage cannot be solved at the start.
+// Sets the bodies, joints' anchors, driver and traced points of a four-bar, and finds the motions
+// at time zero. Expects names, lengths, masses, clearances, joint kinds, drive (present) and points
+// in their places (points still measured along the link from its first joint). Fails with
+// ERR_SOLVER where the linkage cannot be solved at the start.
 bool build_fourbar(Scenario *scenario, Err *err);
+
+// Whether there is a drive and as many joints as make every body follow from it.
+bool build_is_determined(const Linkage *linkage);
+
+// Sets the start of every body of such a linkage from motions that are near it: the motions of
+// ideal joints, or where a pin starts off its hole's centre, those of a pin held there at rest in
+// its hole. Fails as kinematics_solve does.
+bool build_start(Linkage *linkage, Motion *motions, Err *err);

@@ -8,6 +8,7 @@
 #include "casefile/check.h"
 #include "casefile/closure.h"
 #include "casefile/input.h"
+#include "casefile/place.h"
 #include "casefile/store.h"
 
 #include <assert.h>
@@ -76,40 +77,71 @@ static void override_finish(Override *override)
     text_finish(&override->shown);
 }
 
+// What follows from the keys that are given and not from their values.
+static void store_presence(const Entries *entries, Scenario *scenario)
+{
+    Linkage *linkage = &scenario->linkage;
+    const EntryNames *names = entries->names;
+    linkage->body_count = names[SCHEMA_BODY].count;
+    linkage->joint_count = names[SCHEMA_JOINT].count;
+    scenario->point_count = names[SCHEMA_POINT].count;
+    for (size_t i = 0; i < LINKAGE_JOINT_MAX; i++) {
+        Joint *joint = &linkage->joints[i];
+        text_copy(joint->name, LINKAGE_NAME_SIZE, names[SCHEMA_JOINT].names[i]);
+        joint->kind = entries_has_play(entries, i) ? JOINT_CLEARANCE : JOINT_REVOLUTE;
+    }
+    for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
+        text_copy(linkage->bodies[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_BODY].names[i]);
+    }
+    for (size_t i = 0; i < SCENARIO_POINT_MAX; i++) {
+        text_copy(scenario->points[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_POINT].names[i]);
+    }
+    linkage->driver.is_present =
+        entries->form == SCHEMA_SHORT || entries_group(entries, "drive", 0) != NULL;
+    if (entries->form == SCHEMA_LONG) {
+        // the closed form knows four-bars only
+        scenario->run.backend_count = 2;
+        scenario->run.backends[0] = BACKEND_REFERENCE;
+        scenario->run.backends[1] = BACKEND_ODE;
+    }
+}
+
 // Stores every value in the order of the schema, so that the same mistake is told first wherever
 // the keys stand.
 static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
 {
+    store_presence(entries, scenario);
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
         const SchemaRow *row = &SCHEMA_ROWS[i];
-        for (size_t index = 0; index < schema_family_size(row); index++) {
+        const size_t members = entries_family_size(entries, row);
+        for (size_t index = 0; index < members; index++) {
             const Entry *entry = entries_find(entries, row->path, index);
             if (entry != NULL && !store_value(entries, entry, scenario, err)) {
                 return false;
             }
         }
     }
-    for (size_t i = 0; i < SCHEMA_JOINT_COUNT; i++) {
-        const bool has_play = entries_group(entries, "joints.*", i) != NULL;
-        scenario->linkage.joints[i + 1].kind = has_play ? JOINT_CLEARANCE : JOINT_REVOLUTE;
-    }
-    scenario->linkage.driver.is_present = true;
-    scenario->point_count = entries->point_count;
-    for (size_t i = 0; i < entries->point_count; i++) {
-        text_copy(scenario->points[i].name, LINKAGE_NAME_SIZE, entries->point_names[i]);
-    }
     return true;
 }
 
-// What remains is wrong as a whole; it is shown at the drive, which every case has.
+// What remains is wrong as a whole; it is shown at the drive, or at the top where there is none.
 static bool build(const Entries *entries, Scenario *scenario, Err *err)
 {
     Err own = {0};
-    if (build_fourbar(scenario, &own) && scenario_check(scenario, &own)) {
+    const bool is_built = entries->form == SCHEMA_SHORT ? closure_check(entries, scenario, &own) &&
+                                                              build_fourbar(scenario, &own)
+                                                        : place_linkage(entries, scenario, &own);
+    if (is_built && scenario_check(scenario, &own)) {
         return true;
     }
+    if (!is_built && own.kind != ERR_SOLVER) {
+        *err = own; // it has its place already
+        return false;
+    }
     const Entry *speed = entries_find(entries, "drive.speed", 0);
-    return source_error(speed->source, speed->node->span, NULL, err,
+    const EntryGroup *top = entries_group(entries, "", 0);
+    return source_error(speed != NULL ? speed->source : top->source,
+                        speed != NULL ? speed->node->span : top->node->span, NULL, err,
                         "the mechanism cannot be solved at its start: %s", own.text);
 }
 
@@ -160,7 +192,7 @@ bool casefile_load_text(const char *name, const char *text, size_t size,
     }
     is_good = read_entries(entries, root, &source, read, override_count, err) &&
               store_entries(entries, &built, err) && check_values(entries, &built, err) &&
-              closure_check(entries, &built, err) && build(entries, &built, err);
+              build(entries, &built, err);
     if (is_good) {
         text_copy(built.path, sizeof built.path, name);
         *scenario = built;

@@ -1,6 +1,9 @@
 // Do the values of a case fit together?
 #include "casefile/check.h"
 
+#include "casefile/build.h"
+#include "casefile/store.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -43,32 +46,41 @@ static const EntryGroup *group_above(const Entries *entries, const SchemaRow *ro
 static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t index, Err *err)
 {
     const EntryGroup *group = group_above(entries, row, index);
-    const Node *node = group->node;
-    const Span span = node->key != NULL ? node->key->span : node->span;
     char path[SCHEMA_PATH_SIZE];
     schema_path(row, entries_name(entries, row, index), path);
-    char allowed[ALLOWED_SIZE] = "";
+    Text allowed;
+    text_init(&allowed);
     if (row->rivalry == SCHEMA_SIZES) {
-        snprintf(allowed, sizeof allowed, "hole and pin, or radial-clearance");
-    } else if (row->words == NULL) {
-        snprintf(allowed, sizeof allowed, "%s such as %s", units_dimension_name(row->dimension),
-                 units_example(row->dimension));
+        text_append(&allowed, "hole and pin, or radial-clearance");
     } else {
-        snprintf(allowed, sizeof allowed, "one of the links crank, coupler, follower");
+        store_describe(entries, row, &allowed);
     }
-    return source_error(group->source, span, allowed, err, "%s is missing", path);
+    source_error(group->source, entries_key_span(group->node), allowed.data, err, "%s is missing",
+                 path);
+    text_finish(&allowed);
+    return false;
+}
+
+// Whether a required key of a member is required in this case.
+static bool is_wanted(const Entries *entries, const SchemaRow *row, size_t index)
+{
+    if (row->form != SCHEMA_BOTH && row->form != entries->form) {
+        return false;
+    }
+    if (row->rivalry == SCHEMA_SIZES) {
+        return entries_has_play(entries, index);
+    }
+    const bool is_drive = strncmp(row->path, "drive.", strlen("drive.")) == 0;
+    return !is_drive || entries->form == SCHEMA_SHORT || entries_group(entries, "drive", 0) != NULL;
 }
 
 bool check_required(const Entries *entries, Err *err)
 {
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
         const SchemaRow *row = &SCHEMA_ROWS[i];
-        for (size_t index = 0; row->is_required && index < schema_family_size(row); index++) {
-            const bool is_wanted = row->family == SCHEMA_POINT ? index < entries->point_count
-                                   : row->family == SCHEMA_JOINT
-                                       ? entries_group(entries, "joints.*", index) != NULL
-                                       : true;
-            if (is_wanted && entries_find(entries, row->path, index) == NULL &&
+        const size_t members = row->is_required ? entries_family_size(entries, row) : 0;
+        for (size_t index = 0; index < members; index++) {
+            if (is_wanted(entries, row, index) && entries_find(entries, row->path, index) == NULL &&
                 !has_rival(entries, row, index)) {
                 return refuse_missing(entries, row, index, err);
             }
@@ -105,23 +117,11 @@ static bool check_sizes(const Entries *entries, size_t index, const Joint *joint
                         hole->node->text);
 }
 
-static bool refuse_without_width(const Entries *entries, const EntryGroup *group, size_t index,
-                                 LawKind law, Err *err)
-{
-    const Span joint = group->node->key != NULL ? group->node->key->span : group->node->span;
-    const Entry *chosen = entries_find(entries, "contact.law", 0);
-    const bool law_is_new = chosen != NULL && chosen->source->is_option;
-    return source_error(
-        law_is_new ? chosen->source : group->source, law_is_new ? chosen->node->span : joint,
-        "width: 13 mm, or a law without it", err, "the law %s needs the width of joint %s",
-        OPTIONS_LAWS[law], SCHEMA_JOINT_NAMES[index]);
-}
-
 static bool check_joint(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
 {
-    const Joint *joint = &scenario->linkage.joints[index + 1];
+    const Joint *joint = &scenario->linkage.joints[index];
     const EntryGroup *group = entries_group(entries, "joints.*", index);
-    if (group == NULL) {
+    if (joint->kind != JOINT_CLEARANCE) {
         return true;
     }
     if (!check_sizes(entries, index, joint, err)) {
@@ -139,13 +139,27 @@ static bool check_joint(const Entries *entries, size_t index, const Scenario *sc
                             "the pin starts %.6g um off the centre, inside the metal", 1e6 * start);
     }
     if (needs_width(scenario) && joint->clearance.width == 0.0) {
-        return refuse_without_width(entries, group, index, scenario->contact.law, err);
+        const Entry *law = entries_find(entries, "contact.law", 0);
+        const bool law_is_new = law != NULL && law->source->is_option;
+        return source_error(law_is_new ? law->source : group->source,
+                            law_is_new ? law->node->span : entries_key_span(group->node),
+                            "width: 13 mm, or a law without it", err,
+                            "the law %s needs the width of joint %s",
+                            OPTIONS_LAWS[scenario->contact.law], joint->name);
     }
     return true;
 }
 
-static bool check_contact(const Entries *entries, const ContactOptions *contact, Err *err)
+static bool check_contact(const Entries *entries, const Scenario *scenario, Err *err)
 {
+    const ContactOptions *contact = &scenario->contact;
+    const Entry *model = entries_find(entries, "contact.model", 0);
+    if (contact->model == CONTACT_POISSON && contact->penalty == 0.0 &&
+        !scenario->linkage.driver.is_present) {
+        return source_error(model->source, model->node->span,
+                            "impact, or contact.penalty such as 973.33 N s/mm", err,
+                            "the paper's estimate of the penalty needs the speed of a drive");
+    }
     const Entry *damping = entries_find(entries, "contact.damping", 0);
     if (damping == NULL || contact->model != CONTACT_IMPACT) {
         return true;
@@ -169,16 +183,18 @@ static bool check_contact(const Entries *entries, const ContactOptions *contact,
     return true;
 }
 
-static bool check_steps(const Entries *entries, const RunOptions *run, double duration, Err *err)
+static bool check_steps(const Entries *entries, const RunOptions *run, double duration,
+                        bool is_driven, Err *err)
 {
-    static const char *const LENGTHS[] = {"run.step", "run.revolutions", "drive.speed"};
-    const Entry *entry = entries_blame(entries, LENGTHS, 3, 0);
+    static const char *const LENGTHS[] = {"run.step", "run.revolutions", "run.duration",
+                                          "drive.speed"};
+    const Entry *entry = entries_blame(entries, LENGTHS, 4, 0);
     const double steps = duration / run->step;
     char allowed[ALLOWED_SIZE];
     if (!(steps <= STEPS_MAX)) {
-        snprintf(allowed, sizeof allowed,
-                 "at most %g steps: here a step of %.3g s or more, or fewer revolutions", STEPS_MAX,
-                 duration / STEPS_MAX);
+        snprintf(allowed, sizeof allowed, "at most %g steps: here a step of %.3g s or more, or %s",
+                 STEPS_MAX, duration / STEPS_MAX,
+                 is_driven ? "fewer revolutions" : "a shorter run");
         return source_error(entry->source, entry->node->span, allowed, err,
                             "the run of %.4g s takes %.3g steps of %.3g s", duration, steps,
                             run->step);
@@ -207,23 +223,91 @@ static bool check_samples(const Entries *entries, const RunOptions *run, Err *er
                         run->revolutions, run->samples);
 }
 
+// With a drive a run is counted in its revolutions, without one in seconds.
+static bool check_length(const Entries *entries, bool is_driven, Err *err)
+{
+    const Entry *wrong = entries_find(entries, is_driven ? "run.duration" : "run.revolutions", 0);
+    return wrong == NULL ||
+           source_error(wrong->source, wrong->node->span,
+                        is_driven ? "revolutions of the drive, such as revolutions: 1"
+                                  : "a duration, such as duration: 60 ms",
+                        err,
+                        is_driven ? "a run with a drive has no duration of its own"
+                                  : "without a drive there are no revolutions");
+}
+
+static bool check_backends(const Entries *entries, const RunOptions *run, Err *err)
+{
+    for (size_t i = 0; entries->form == SCHEMA_LONG && i < run->backend_count; i++) {
+        if (run->backends[i] == BACKEND_ANALYTIC) {
+            const Entry *entry = entries_find(entries, "run.backends", 0);
+            return source_error(entry->source, entry->node->span, "reference, ode", err,
+                                "the analytic backend knows four-bars only, in a case with "
+                                "four-bar");
+        }
+    }
+    return true;
+}
+
 static bool check_run(const Entries *entries, const Scenario *scenario, Err *err)
 {
-    if (scenario->linkage.driver.speed == 0.0) {
+    const bool is_driven = scenario->linkage.driver.is_present;
+    if (is_driven && scenario->linkage.driver.speed == 0.0) {
         const Entry *speed = entries_find(entries, "drive.speed", 0);
         return source_error(speed->source, speed->node->span, "any speed but 0", err,
                             "the crank does not turn");
     }
-    return check_steps(entries, &scenario->run, scenario_duration(scenario), err) &&
-           check_samples(entries, &scenario->run, err);
+    return check_length(entries, is_driven, err) && check_backends(entries, &scenario->run, err) &&
+           check_steps(entries, &scenario->run, scenario_duration(scenario), is_driven, err) &&
+           (!is_driven || check_samples(entries, &scenario->run, err));
+}
+
+// The drive of a case with bodies turns about an ideal joint with the ground.
+static bool check_drive(const Entries *entries, const Linkage *linkage, Err *err)
+{
+    const Entry *entry = entries_find(entries, "drive.joint", 0);
+    if (entry == NULL) {
+        return true;
+    }
+    const Joint *driven = &linkage->joints[linkage->driver.joint];
+    const bool has_play = driven->kind == JOINT_CLEARANCE;
+    if (!has_play && (driven->body_a == LINKAGE_GROUND || driven->body_b == LINKAGE_GROUND)) {
+        return true;
+    }
+    return source_error(entry->source, entry->node->span, "an ideal joint with the ground", err,
+                        "the drive cannot turn a body about joint '%s', which %s", driven->name,
+                        has_play ? "has play" : "is not with the ground");
+}
+
+// Speeds at the start are the drive's where it determines them.
+static bool check_speeds(const Entries *entries, const Linkage *linkage, Err *err)
+{
+    static const char *const SPEEDS[] = {"bodies.*.velocity", "bodies.*.spin"};
+    for (size_t i = 0; build_is_determined(linkage) && i < linkage->body_count; i++) {
+        const Entry *entry = entries_blame(entries, SPEEDS, 2, i);
+        if (entry != NULL) {
+            return source_error(entry->source, entry->node->span, "no velocity and no spin", err,
+                                "the drive determines how body '%s' moves",
+                                linkage->bodies[i].name);
+        }
+    }
+    return true;
 }
 
 bool check_values(const Entries *entries, const Scenario *scenario, Err *err)
 {
-    for (size_t i = 0; i < SCHEMA_JOINT_COUNT; i++) {
+    const Linkage *linkage = &scenario->linkage;
+    const EntryGroup *bodies = entries_group(entries, "bodies", 0);
+    if (linkage->body_count == 0) {
+        return source_error(bodies->source, entries_key_span(bodies->node),
+                            "pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm]}", err,
+                            "a case needs a body");
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
         if (!check_joint(entries, i, scenario, err)) {
             return false;
         }
     }
-    return check_contact(entries, &scenario->contact, err) && check_run(entries, scenario, err);
+    return check_drive(entries, linkage, err) && check_speeds(entries, linkage, err) &&
+           check_contact(entries, scenario, err) && check_run(entries, scenario, err);
 }

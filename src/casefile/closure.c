@@ -18,18 +18,16 @@ static const double MARGIN = 1e-9;
 
 static const double DEGREE = M_PI / 180.0;
 
-// Where a message points: at the first of these from the command line, else at the first given.
+// Where a message points: at the first of these from the command line, else at the first given. The
+// start is not to blame for a turn, nor the revolutions for the start.
 enum { BLAMED_COUNT = 5 };
-static const char *const BLAMED_FOR_START[BLAMED_COUNT] = {
+static const char *const BLAMED[BLAMED_COUNT + 1] = {
     "drive.start",
     "four-bar.crank.length",
     "four-bar.ground.length",
     "four-bar.coupler.length",
     "four-bar.follower.length",
-};
-static const char *const BLAMED_FOR_TURN[BLAMED_COUNT] = {
-    "four-bar.crank.length",    "four-bar.ground.length", "four-bar.coupler.length",
-    "four-bar.follower.length", "run.revolutions",
+    "run.revolutions",
 };
 
 // The cosines of the crank angles at which the loop just closes.
@@ -54,16 +52,15 @@ static Reach find_reach(const FourBar *fourbar)
 
 static const Entry *longest_link(const Entries *entries, const FourBar *fourbar, double *length)
 {
-    const double lengths[] = {fourbar->ground.nominal, fourbar->crank.nominal,
+    const double lengths[] = {fourbar->crank.nominal, fourbar->ground.nominal,
                               fourbar->coupler.nominal, fourbar->follower.nominal};
-    const char *const paths[] = {"four-bar.ground.length", "four-bar.crank.length",
-                                 "four-bar.coupler.length", "four-bar.follower.length"};
-    size_t longest = 0;
-    for (size_t i = 1; i < sizeof lengths / sizeof lengths[0]; i++) {
+    // of equal ones the ground is told first
+    size_t longest = 1;
+    for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
         longest = lengths[i] > lengths[longest] ? i : longest;
     }
     *length = lengths[longest];
-    return entries_find(entries, paths[longest], 0);
+    return entries_find(entries, BLAMED[1 + longest], 0);
 }
 
 // The start angles that close, in words.
@@ -102,7 +99,7 @@ static bool check_start(const Entries *entries, const Scenario *scenario, const 
     if (diagonal > reach->shortest + margin && diagonal < reach->longest - margin) {
         return true;
     }
-    const Entry *blamed = entries_blame(entries, BLAMED_FOR_START, BLAMED_COUNT, 0);
+    const Entry *blamed = entries_blame(entries, BLAMED, BLAMED_COUNT, 0);
     // a start that nobody gave is not to blame: the longest link is
     const bool is_at_home =
         strcmp(blamed->row->path, "drive.start") != 0 && !blamed->source->is_option;
@@ -149,7 +146,7 @@ bool closure_check(const Entries *entries, const Scenario *scenario, Err *err)
     if (!(turns <= scenario->run.revolutions)) {
         return true;
     }
-    const Entry *entry = entries_blame(entries, BLAMED_FOR_TURN, BLAMED_COUNT, 0);
+    const Entry *entry = entries_blame(entries, BLAMED + 1, BLAMED_COUNT, 0);
     char allowed[ALLOWED_SIZE];
     snprintf(allowed, sizeof allowed,
              "less than %.4g revolutions, or a crank that turns fully (crank or ground the "

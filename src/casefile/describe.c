@@ -22,9 +22,19 @@ static const char EXAMPLE[] =
     "run: {revolutions: 1, samples: 3600, step: 1 us, backends: [analytic, ode]}\n"
     "ode: {solver: direct, map: textbook}\n";
 
+static const char LONG_EXAMPLE[] =
+    "title: Pin circling in its hole\n"
+    "bodies:\n"
+    "  pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm], velocity: [0.5 m/s, 0 m/s]}\n"
+    "joints:\n"
+    "  hole: {between: [ground, pin], at: [0 mm, 0 mm], hole: 10.2 mm, pin: 10 mm, width: 10 mm}\n"
+    "run: {duration: 60 ms, samples: 3600, step: 1 us, backends: [reference, ode]}\n";
+
 static const char *const RULES[] = {
     "A case is one YAML document of at most 1 MiB. Every quantity carries its unit; numbers have a "
     "decimal point.",
+    "A case has either four-bar, with a mechanism of that kind, or bodies, with any planar "
+    "linkage.",
     "Unknown and doubled keys are errors, as are anchors, aliases and tags.",
     "On the command line, --set KEY=VALUE takes a key's whole path: --set run.step=2us. It "
     "replaces what the file says about the key, and about a key that excludes it.",
@@ -40,19 +50,6 @@ static bool is_in_group(const SchemaRow *row, const char *group)
     return strlen(group) == length && strncmp(row->path, group, length) == 0;
 }
 
-// The path with a word in place of the star.
-static void describe_path(const SchemaRow *row, char path[SCHEMA_PATH_SIZE])
-{
-    schema_path(row, row->family == SCHEMA_JOINT ? "<joint>" : "<name>", path);
-}
-
-static void describe_words(const SchemaRow *row, Text *text)
-{
-    for (size_t i = 0; row->words[i] != NULL; i++) {
-        text_append(text, "%s%s", i > 0 ? ", " : "", row->words[i]);
-    }
-}
-
 // How the value is written.
 static void describe_value(const SchemaRow *row, Text *text)
 {
@@ -64,14 +61,23 @@ static void describe_value(const SchemaRow *row, Text *text)
         text_append(text, "a whole number");
         break;
     case SCHEMA_CHOICE:
-        describe_words(row, text);
-        break;
     case SCHEMA_BACKENDS:
-        text_append(text, "a list of ");
-        describe_words(row, text);
+        text_append(text, row->type == SCHEMA_BACKENDS ? "a list of " : "");
+        for (size_t i = 0; row->words[i] != NULL; i++) {
+            text_append(text, "%s%s", i > 0 ? ", " : "", row->words[i]);
+        }
         break;
-    case SCHEMA_ECCENTRICITY:
-        text_append(text, "centred, or two lengths");
+    case SCHEMA_VECTOR:
+    case SCHEMA_ANCHOR:
+        text_append(text, "%s%s in [x, y]", row->default_words != NULL ? "centred, or " : "",
+                    units_dimension_name(row->dimension));
+        break;
+    case SCHEMA_BETWEEN:
+        text_append(text, "[body, body]");
+        break;
+    case SCHEMA_BODY_NAME:
+    case SCHEMA_JOINT_NAME:
+        text_append(text, row->type == SCHEMA_BODY_NAME ? "a body" : "a joint");
         break;
     default:
         text_append(text, "%s", units_dimension_name(row->dimension));
@@ -85,12 +91,7 @@ static void describe_value(const SchemaRow *row, Text *text)
 // The range in SI; nothing where the value is no number.
 static void describe_range(const SchemaRow *row, Text *text)
 {
-    const bool is_number = row->words == NULL && row->type != SCHEMA_TEXT;
-    if (!is_number) {
-        return;
-    }
-    if (row->low == row->high) {
-        text_append(text, "only %g", row->low);
+    if (!(row->low < row->high)) {
         return;
     }
     const char *unit = units_si(row->dimension);
@@ -114,7 +115,7 @@ static void describe_default(size_t row_number, Text *text)
     }
     const Scenario defaults = scenario_default();
     char path[SCHEMA_PATH_SIZE];
-    schema_path(row, row->family == SCHEMA_JOINT ? SCHEMA_JOINT_NAMES[0] : "", path);
+    schema_path(row, "*", path);
     CasefileSetting setting;
     for (size_t i = 0; casefile_setting(&defaults, i, &setting); i++) {
         if (strcmp(setting.key, path) == 0) {
@@ -123,7 +124,9 @@ static void describe_default(size_t row_number, Text *text)
     }
     if (setting.kind == CASEFILE_NUMBER || setting.kind == CASEFILE_INTEGER) {
         const char *blank = setting.unit[0] != '\0' ? " " : "";
-        text_append(text, "%.6g%s%s", setting.numbers[0], blank, setting.unit);
+        text_append(text, setting.number_count == 2 ? "[%.6g, %.6g]" : "%.6g", setting.numbers[0],
+                    setting.numbers[1]);
+        text_append(text, "%s%s", blank, setting.unit);
     } else {
         text_append(text, "%s", setting.text);
     }
@@ -152,11 +155,24 @@ static void append_wrapped(const char *words, int indent, Text *text)
     text_append(text, "\n");
 }
 
-static void describe_row(size_t row_number, Text *text)
+// A row in words for a terminal, or as a line of a table.
+static void describe_row(size_t row_number, bool is_page, Text *text)
 {
     const SchemaRow *row = &SCHEMA_ROWS[row_number];
     char path[SCHEMA_PATH_SIZE];
-    describe_path(row, path);
+    char name[LINKAGE_NAME_SIZE];
+    snprintf(name, sizeof name, "<%s>", SCHEMA_FAMILIES[row->family].what);
+    schema_path(row, name, path);
+    if (is_page) {
+        text_append(text, "| `%s` | ", path);
+        describe_value(row, text);
+        text_append(text, " | ");
+        describe_range(row, text);
+        text_append(text, " | ");
+        describe_default(row_number, text);
+        text_append(text, " | %s |\n", row->doc);
+        return;
+    }
     Text words;
     text_init(&words);
     text_append(&words, "%s. ", row->doc);
@@ -164,14 +180,34 @@ static void describe_row(size_t row_number, Text *text)
     text_append(&words, "; ");
     const size_t before = words.length;
     describe_range(row, &words);
-    text_append(&words, "%s", words.length > before ? "; " : "");
-    if (!row->is_required) {
-        text_append(&words, "default: ");
-    }
+    text_append(&words, "%s%s", words.length > before ? "; " : "",
+                row->is_required ? "" : "default: ");
     describe_default(row_number, &words);
     text_append(text, "    %s\n", path);
     append_wrapped(words.data, DESCRIBE_INDENT, text);
     text_finish(&words);
+}
+
+static void describe_groups(bool is_page, Text *text)
+{
+    for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
+        const SchemaGroup *group = &SCHEMA_GROUPS[g];
+        const bool is_top = group->path[0] == '\0';
+        if (is_page) {
+            text_append(text, is_top ? "\n## %s\n\n%s\n\n" : "\n## `%s`\n\n%s\n\n",
+                        is_top ? "Top level" : group->path, group->doc);
+            text_append(text, "| key | value | range, SI | default | meaning |\n"
+                              "|---|---|---|---|---|\n");
+        } else {
+            text_append(text, "\n%s\n", is_top ? "top level" : group->path);
+            append_wrapped(group->doc, 2, text);
+        }
+        for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+            if (is_in_group(&SCHEMA_ROWS[i], group->path)) {
+                describe_row(i, is_page, text);
+            }
+        }
+    }
 }
 
 void casefile_describe(Text *text)
@@ -180,53 +216,19 @@ void casefile_describe(Text *text)
     for (size_t i = 0; i < RULE_COUNT; i++) {
         append_wrapped(RULES[i], 0, text);
     }
-    text_append(text, "\n%s", EXAMPLE);
-    for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
-        const SchemaGroup *group = &SCHEMA_GROUPS[g];
-        text_append(text, "\n%s\n", group->path[0] != '\0' ? group->path : "top level");
-        append_wrapped(group->doc, 2, text);
-        for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-            if (is_in_group(&SCHEMA_ROWS[i], group->path)) {
-                describe_row(i, text);
-            }
-        }
-    }
-}
-
-static void describe_row_markdown(size_t row_number, Text *text)
-{
-    const SchemaRow *row = &SCHEMA_ROWS[row_number];
-    char path[SCHEMA_PATH_SIZE];
-    describe_path(row, path);
-    text_append(text, "| `%s` | ", path);
-    describe_value(row, text);
-    text_append(text, " | ");
-    describe_range(row, text);
-    text_append(text, " | ");
-    describe_default(row_number, text);
-    text_append(text, " | %s |\n", row->doc);
+    text_append(text, "\n%s\nOr, for any other linkage:\n\n%s", EXAMPLE, LONG_EXAMPLE);
+    describe_groups(false, text);
 }
 
 void casefile_describe_markdown(Text *text)
 {
-    text_append(text, "# The case file\n\n");
-    text_append(text, "This page is generated from the program's own schema; a test holds it "
+    text_append(text, "# The case file\n\n"
+                      "This page is generated from the program's own schema; a test holds it "
                       "against the program.\n\n");
     for (size_t i = 0; i < RULE_COUNT; i++) {
         text_append(text, "- %s\n", RULES[i]);
     }
-    text_append(text, "\n```yaml\n%s```\n", EXAMPLE);
-    for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
-        const SchemaGroup *group = &SCHEMA_GROUPS[g];
-        const bool is_top = group->path[0] == '\0';
-        text_append(text, is_top ? "\n## %s\n\n%s\n\n" : "\n## `%s`\n\n%s\n\n",
-                    is_top ? "Top level" : group->path, group->doc);
-        text_append(text, "| key | value | range, SI | default | meaning |\n");
-        text_append(text, "|---|---|---|---|---|\n");
-        for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-            if (is_in_group(&SCHEMA_ROWS[i], group->path)) {
-                describe_row_markdown(i, text);
-            }
-        }
-    }
+    text_append(text, "\n```yaml\n%s```\n\nOr, for any other linkage:\n\n```yaml\n%s```\n", EXAMPLE,
+                LONG_EXAMPLE);
+    describe_groups(true, text);
 }

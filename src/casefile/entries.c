@@ -19,24 +19,23 @@ typedef struct Position {
 
 const char *entries_name(const Entries *entries, const SchemaRow *row, size_t index)
 {
-    switch (row->family) {
-    case SCHEMA_JOINT:
-        return SCHEMA_JOINT_NAMES[index];
-    case SCHEMA_POINT:
-        return entries->point_names[index];
-    default:
-        return "";
-    }
+    return entries->names[row->family].names[index];
 }
 
-static Entry *find_entry(Entries *entries, const SchemaRow *row, size_t index)
+size_t entries_family_size(const Entries *entries, const SchemaRow *row)
 {
-    for (size_t i = 0; i < entries->count; i++) {
-        if (entries->entries[i].row == row && entries->entries[i].index == index) {
-            return &entries->entries[i];
+    return row->family == SCHEMA_SINGLE ? 1 : entries->names[row->family].count;
+}
+
+int entries_number(const Entries *entries, SchemaFamily family, const char *name)
+{
+    const EntryNames *names = &entries->names[family];
+    for (size_t i = 0; i < names->count; i++) {
+        if (strcmp(names->names[i], name) == 0) {
+            return (int)i;
         }
     }
-    return NULL;
+    return -1;
 }
 
 const Entry *entries_find(const Entries *entries, const char *path, size_t index)
@@ -75,65 +74,118 @@ const EntryGroup *entries_group(const Entries *entries, const char *path, size_t
     return NULL;
 }
 
-// The span of a node's key, or of the node where it has none.
-static Span key_span(const Node *node)
+bool entries_has_play(const Entries *entries, size_t joint)
+{
+    static const char *const KEYS[] = {"joints.*.hole", "joints.*.pin", "joints.*.radial-clearance",
+                                       "joints.*.width", "joints.*.start"};
+    const bool is_named = entries_group(entries, "joints.*", joint) != NULL;
+    return is_named && (entries->form == SCHEMA_SHORT ||
+                        entries_blame(entries, KEYS, sizeof KEYS / sizeof KEYS[0], joint) != NULL);
+}
+
+Span entries_key_span(const Node *node)
 {
     return node->key != NULL ? node->key->span : node->span;
 }
 
-static bool refuse_unknown(const Walk *walk, const char *group, const char *name, Span span)
+// Says that a word is none of the choices: which one is nearest, and all of them.
+static bool refuse_word(const Source *source, Span span, const char *what, const char *name,
+                        const char *const *choices, size_t count, Err *err)
 {
-    if (strcmp(group, "joints") == 0 && strcmp(name, "ground-crank") == 0) {
-        return source_error(walk->source, span, "crank-coupler, coupler-follower, follower-ground",
-                            walk->err, "the drive joint ground-crank is ideal always");
-    }
-    char names[SCHEMA_CHILD_MAX][LINKAGE_NAME_SIZE];
-    const char *choices[SCHEMA_CHILD_MAX];
-    const size_t count = schema_children(group, names);
     Text allowed;
     text_init(&allowed);
     for (size_t i = 0; i < count; i++) {
-        choices[i] = names[i];
-        text_append(&allowed, "%s%s", i > 0 ? ", " : "", names[i]);
+        text_append(&allowed, "%s%s", i > 0 ? ", " : "", choices[i]);
     }
     const char *nearest = text_nearest(name, choices, count);
-    const char *what = strcmp(group, "joints") == 0 ? "joint" : "key";
-    char hint[LINKAGE_NAME_SIZE + 24] = "";
-    if (nearest != NULL) {
-        snprintf(hint, sizeof hint, "; did you mean '%s'?", nearest);
-    } else if (name[0] >= '0' && name[0] <= '9') {
-        // 14,5 mm inside braces is a value 14 and a key 5 mm
-        text_copy(hint, sizeof hint, "; numbers have a decimal point");
-    }
-    source_error(walk->source, span, allowed.data, walk->err, "unknown %s '%.40s'%s", what, name,
-                 hint);
+    // 14,5 mm inside braces is a value 14 and a key 5 mm
+    const bool is_number = nearest == NULL && name[0] >= '0' && name[0] <= '9';
+    source_error(source, span, allowed.data, err, "unknown %s '%.40s'%s%s%s", what, name,
+                 nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+                 nearest != NULL ? "'?"
+                 : is_number     ? "; numbers have a decimal point"
+                                 : "");
     text_finish(&allowed);
     return false;
 }
 
-// The number of the point of that name; a new name gets the next number.
-static bool find_point(const Walk *walk, const char *name, Span span, size_t *index)
+bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFamily family,
+                         bool may_be_ground, const char *name, Span span, Err *err)
+{
+    const EntryNames *names = &entries->names[family];
+    // a four-bar's driven joint cannot have play, and so cannot be named
+    const size_t first = family == SCHEMA_JOINT && entries->form == SCHEMA_SHORT ? 1 : 0;
+    const char *choices[LINKAGE_JOINT_MAX + 1] = {"ground"};
+    size_t count = may_be_ground ? 1 : 0;
+    for (size_t i = first; i < names->count; i++) {
+        choices[count++] = names->names[i];
+    }
+    return refuse_word(source, span, SCHEMA_FAMILIES[family].what, name, choices, count, err);
+}
+
+// Refuses what is no key here: of the other form, or of none.
+static bool refuse_key(const Walk *walk, const Position *below, const char *group, const char *name,
+                       Span span)
+{
+    const SchemaForm form = walk->entries->form;
+    const SchemaForm other = form == SCHEMA_SHORT ? SCHEMA_LONG : SCHEMA_SHORT;
+    if (group[0] == '\0' && strcmp(name, SCHEMA_FORM_KEYS[other]) == 0) {
+        return source_error(walk->source, span, "one of the two", walk->err,
+                            "'%s' and '%s' exclude each other", name, SCHEMA_FORM_KEYS[form]);
+    }
+    char names[SCHEMA_CHILD_MAX][LINKAGE_NAME_SIZE];
+    const char *choices[SCHEMA_CHILD_MAX];
+    const size_t count = schema_children(group, form, names);
+    for (size_t i = 0; i < count; i++) {
+        choices[i] = names[i];
+    }
+    char what[LINKAGE_NAME_SIZE] = "key";
+    if (strpbrk(name, ".*") == NULL && schema_knows(below->pattern, other)) {
+        snprintf(what, sizeof what, "key in a case with %s:", SCHEMA_FORM_KEYS[form]);
+    }
+    return refuse_word(walk->source, span, what, name, choices, count, walk->err);
+}
+
+// The number of the member of that name; where the case names the family, a new name gets the next.
+static bool find_member(const Walk *walk, SchemaFamily family, const char *name, Span span,
+                        size_t *index)
 {
     Entries *entries = walk->entries;
-    for (size_t i = 0; i < entries->point_count; i++) {
-        if (strcmp(entries->point_names[i], name) == 0) {
-            *index = i;
-            return true;
+    const SchemaFamilyRow *row = &SCHEMA_FAMILIES[family];
+    const int number = entries_number(entries, family, name);
+    if (family == SCHEMA_JOINT && entries->form == SCHEMA_SHORT) {
+        if (number == 0) {
+            return source_error(walk->source, span,
+                                "crank-coupler, coupler-follower, follower-ground", walk->err,
+                                "the drive joint ground-crank is ideal always");
         }
+        if (number < 0) {
+            return entries_refuse_name(entries, walk->source, family, false, name, span, walk->err);
+        }
+    }
+    if (number >= 0) {
+        *index = (size_t)number;
+        return true;
     }
     static const char LETTERS[] =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
     const size_t length = strlen(name);
-    if (length == 0 || length >= LINKAGE_NAME_SIZE || strspn(name, LETTERS) != length) {
-        return source_error(walk->source, span, "letters, digits, - and _, at most 47", walk->err,
-                            "'%.50s' cannot name a point", name);
+    const bool is_ground = family == SCHEMA_BODY && strcmp(name, "ground") == 0;
+    if (length == 0 || length >= LINKAGE_NAME_SIZE || strspn(name, LETTERS) != length ||
+        is_ground) {
+        return source_error(walk->source, span,
+                            is_ground ? "another name: the ground is there by itself"
+                                      : "letters, digits, - and _, at most 47",
+                            walk->err, "'%.50s' cannot name a %s", name, row->what);
     }
-    if (entries->point_count == SCENARIO_POINT_MAX) {
-        return source_error(walk->source, span, "at most 4 points", walk->err,
-                            "one traced point too many");
+    EntryNames *names = &entries->names[family];
+    if (names->count == row->most) {
+        char allowed[LINKAGE_NAME_SIZE];
+        snprintf(allowed, sizeof allowed, "at most %zu %s", row->most, row->group);
+        return source_error(walk->source, span, allowed, walk->err, "one %s too many", row->what);
     }
-    *index = entries->point_count++;
-    text_copy(entries->point_names[*index], LINKAGE_NAME_SIZE, name);
+    *index = names->count++;
+    text_copy(names->names[*index], LINKAGE_NAME_SIZE, name);
     return true;
 }
 
@@ -143,15 +195,11 @@ static bool descend(const Walk *walk, const Position *here, const char *name, Sp
 {
     below->index = here->index;
     const char *segment = name;
-    if (strcmp(here->pattern, "points") == 0) {
-        if (!find_point(walk, name, span, &below->index)) {
-            return false;
-        }
-        segment = "*";
-    }
-    for (size_t i = 0; i < SCHEMA_JOINT_COUNT && strcmp(here->pattern, "joints") == 0; i++) {
-        if (strcmp(SCHEMA_JOINT_NAMES[i], name) == 0) {
-            below->index = i;
+    for (SchemaFamily family = SCHEMA_BODY; family < SCHEMA_FAMILY_COUNT; family++) {
+        if (strcmp(here->pattern, SCHEMA_FAMILIES[family].group) == 0) {
+            if (!find_member(walk, family, name, span, &below->index)) {
+                return false;
+            }
             segment = "*";
         }
     }
@@ -159,10 +207,10 @@ static bool descend(const Walk *walk, const Position *here, const char *name, Sp
     const int length =
         snprintf(below->pattern, sizeof below->pattern, "%s%s%s", here->pattern, dot, segment);
     // a key may hold a dot or a star of its own; it is then no key
-    const bool is_plain = strcmp(segment, "*") == 0 ? segment != name : strpbrk(name, ".*") == NULL;
+    const bool is_plain = segment != name || strpbrk(name, ".*") == NULL;
     const bool is_known = is_plain && length < SCHEMA_PATH_SIZE && name[0] != '\0' &&
-                          (schema_find(below->pattern) != NULL || schema_is_group(below->pattern));
-    return is_known || refuse_unknown(walk, here->pattern, name, span);
+                          schema_knows(below->pattern, walk->entries->form);
+    return is_known || refuse_key(walk, below, here->pattern, name, span);
 }
 
 // Refuses a key whose rival stands in the file, or takes the rival away before an override.
@@ -176,9 +224,9 @@ static bool settle_rivals(const Walk *walk, const Entry *entry)
                               other->row->rivalry == entry->row->rivalry &&
                               other->row->side != entry->row->side && other->index == entry->index;
         if (is_rival && !walk->source->is_option) {
-            const size_t line = source_line(other->source, key_span(other->node).start);
-            return source_error(walk->source, key_span(entry->node), "one of the two", walk->err,
-                                "'%s' and '%s' (line %zu) exclude each other",
+            const size_t line = source_line(other->source, entries_key_span(other->node).start);
+            return source_error(walk->source, entries_key_span(entry->node), "one of the two",
+                                walk->err, "'%s' and '%s' (line %zu) exclude each other",
                                 strrchr(entry->row->path, '.') + 1,
                                 strrchr(other->row->path, '.') + 1, line);
         }
@@ -196,12 +244,11 @@ static bool add_entry(const Walk *walk, const SchemaRow *row, size_t index, cons
     if (!settle_rivals(walk, &entry)) {
         return false;
     }
-    Entry *found = find_entry(walk->entries, row, index);
-    if (found == NULL) {
-        assert(walk->entries->count < ENTRIES_MAX);
-        found = &walk->entries->entries[walk->entries->count++];
-    }
-    *found = entry;
+    Entries *entries = walk->entries;
+    const Entry *found = entries_find(entries, row->path, index);
+    const size_t place = found != NULL ? (size_t)(found - entries->entries) : entries->count++;
+    assert(place < ENTRIES_MAX);
+    entries->entries[place] = entry;
     return true;
 }
 
@@ -243,7 +290,7 @@ static bool walk_node(const Walk *walk, const Position *here, const Node *node)
     }
     if (node->kind != NODE_MAP) {
         const bool is_missing = node->kind == NODE_SCALAR && node->text[0] == '\0';
-        return source_error(walk->source, is_missing ? key_span(node) : node->span,
+        return source_error(walk->source, is_missing ? entries_key_span(node) : node->span,
                             "key: value, on lines of their own or as {key: value}", walk->err,
                             "expected a mapping of keys here, found %s",
                             is_missing                ? "nothing"
@@ -261,8 +308,34 @@ static bool walk_node(const Walk *walk, const Position *here, const Node *node)
     return true;
 }
 
+// The form whose key stands first in the document: without any it is the short one.
+static SchemaForm find_form(const Node *root)
+{
+    for (const Node *child = root->kind == NODE_MAP ? root->first : NULL; child != NULL;
+         child = child->next) {
+        for (SchemaForm form = SCHEMA_SHORT; form <= SCHEMA_LONG; form++) {
+            if (strcmp(child->key->text, SCHEMA_FORM_KEYS[form]) == 0) {
+                return form;
+            }
+        }
+    }
+    return SCHEMA_SHORT;
+}
+
+static void add_names(EntryNames *names, const char *const *words)
+{
+    for (; *words != NULL; words++) {
+        text_copy(names->names[names->count++], LINKAGE_NAME_SIZE, *words);
+    }
+}
+
 bool entries_read(Entries *entries, const Node *root, const Source *source, Err *err)
 {
+    entries->form = find_form(root);
+    if (entries->form == SCHEMA_SHORT) {
+        add_names(&entries->names[SCHEMA_BODY], SCHEMA_LINK_NAMES);
+        add_names(&entries->names[SCHEMA_JOINT], SCHEMA_PIVOT_NAMES);
+    }
     const Walk walk = {entries, source, err};
     const Position top = {.pattern = ""};
     return walk_node(&walk, &top, root);

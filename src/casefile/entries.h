@@ -5,15 +5,22 @@
 #include "casefile/document.h"
 #include "casefile/schema.h"
 
-enum { ENTRIES_MAX = 128, ENTRIES_GROUP_MAX = 48 };
+// every key of every body, joint and point, and every group
+enum { ENTRIES_MAX = 384, ENTRIES_GROUP_MAX = 64 };
 
 // One key that was given. Borrows node and source.
 typedef struct Entry {
     const SchemaRow *row;
-    size_t index; // of the joint or point
+    size_t index; // of the member of the family
     const Node *node;
     const Source *source;
 } Entry;
+
+// The names of one family, in the order in which the case gives them.
+typedef struct EntryNames {
+    size_t count;
+    char names[LINKAGE_JOINT_MAX][LINKAGE_NAME_SIZE];
+} EntryNames;
 
 // One group that was given, such as joints.crank-coupler.
 typedef struct EntryGroup {
@@ -24,16 +31,17 @@ typedef struct EntryGroup {
 } EntryGroup;
 
 typedef struct Entries {
+    SchemaForm form; // short or long, as the file says
     size_t count;
     Entry entries[ENTRIES_MAX];
     size_t group_count;
     EntryGroup groups[ENTRIES_GROUP_MAX];
-    size_t point_count;
-    char point_names[SCENARIO_POINT_MAX][LINKAGE_NAME_SIZE];
+    EntryNames names[SCHEMA_FAMILY_COUNT]; // a four-bar's from the start
 } Entries;
 
-// Takes the keys of a case. Fails on an unknown or doubled key, on rivals given together, and on
-// a value where keys are expected or the other way round. The entries are then not to be used.
+// Takes the keys of a case and with them its form. Fails on an unknown or doubled key, on rivals
+// given together, and on a value where keys are expected or the other way round. The entries are
+// then not to be used.
 bool entries_read(Entries *entries, const Node *root, const Source *source, Err *err);
 
 // Takes one override: its key and the node of its value. It replaces what was said before about
@@ -52,5 +60,19 @@ const Entry *entries_blame(const Entries *entries, const char *const *paths, siz
 // The group of that path (with `*`), or NULL where nothing in it was given.
 const EntryGroup *entries_group(const Entries *entries, const char *path, size_t index);
 
-// The name of the entry's joint or point; empty for a single key.
+// The name of a member of a row's family, and how many the case has of it; empty and 1 for a
+// single key.
 const char *entries_name(const Entries *entries, const SchemaRow *row, size_t index);
+size_t entries_family_size(const Entries *entries, const SchemaRow *row);
+
+// The number of a name in a family, or -1; and a refusal of a name that is none of the family,
+// with the nearest and all that are, the ground among them where it may stand.
+int entries_number(const Entries *entries, SchemaFamily family, const char *name);
+bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFamily family,
+                         bool may_be_ground, const char *name, Span span, Err *err);
+
+// Whether the case gives a key of that joint which only a joint with play has.
+bool entries_has_play(const Entries *entries, size_t joint);
+
+// Where a message about a whole node points: at its key, or at itself where it has none.
+Span entries_key_span(const Node *node);

@@ -195,23 +195,18 @@ bool quantity_parse(const char *text, Dimension dimension, double *si, Complaint
     return true;
 }
 
-// Splits "108 mm +- 0.3 mm" into the length and what follows its tolerance sign. The sign is
-// looked for behind the first number, whose own sign and exponent are no tolerance.
-static const char *find_tolerance(const char *behind_number, bool *is_symmetric, size_t *sign_size)
+// The tolerance's sign in a text, or NULL; a plain + has two limits behind it.
+static const char *find_sign(const char *text, size_t *size)
 {
-    static const char *const SIGNS[] = {"+-", "+/-", "\u00b1"};
-    const char *plus = strchr(behind_number, '+');
-    const char *sign = strstr(behind_number, SIGNS[2]);
-    const char *found = sign != NULL ? sign : plus;
-    *is_symmetric = false;
-    *sign_size = 1;
-    for (size_t i = 0; found != NULL && i < sizeof SIGNS / sizeof SIGNS[0]; i++) {
-        if (strncmp(found, SIGNS[i], strlen(SIGNS[i])) == 0) {
-            *is_symmetric = true;
-            *sign_size = strlen(SIGNS[i]);
+    static const char *const SIGNS[] = {"+-", "+/-", "\u00b1", "+"};
+    for (size_t i = 0; i < sizeof SIGNS / sizeof SIGNS[0]; i++) {
+        const char *found = strstr(text, SIGNS[i]);
+        *size = strlen(SIGNS[i]);
+        if (found != NULL) {
+            return found;
         }
     }
-    return found;
+    return NULL;
 }
 
 // Reads what stands behind the sign: `0.3 mm`, or `0.1/-0.2 mm` where it is not symmetric.
@@ -219,19 +214,18 @@ static bool take_tolerance(const char *text, bool is_symmetric, ToleratedLength 
                            const Unit **unit, Complaint *complaint)
 {
     double upper;
-    double lower;
     if (!take_number(&text, DIMENSION_LENGTH, &upper, complaint)) {
         return false;
     }
-    if (is_symmetric) {
-        lower = -upper;
-    } else if (*text == '/') {
+    double lower = -upper;
+    if (!is_symmetric && *text != '/') {
+        return complain(complaint, "a one-sided tolerance has two limits");
+    }
+    if (!is_symmetric) {
         text++;
         if (!take_number(&text, DIMENSION_LENGTH, &lower, complaint)) {
             return false;
         }
-    } else {
-        return complain(complaint, "a one-sided tolerance has two limits");
     }
     if (!(upper >= 0.0 && lower <= 0.0)) {
         return complain(complaint, "the upper limit must be 0 or above, the lower 0 or below");
@@ -250,17 +244,15 @@ static bool take_tolerance(const char *text, bool is_symmetric, ToleratedLength 
 
 bool quantity_tolerated(const char *text, ToleratedLength *length, Complaint *complaint)
 {
-    // the sign of a tolerance stands behind the first number
+    // the sign of a tolerance stands behind the first number, whose own sign is none
     const char *behind = text;
-    double number;
+    ToleratedLength read = {0};
     complaint->allowed[0] = '\0';
-    if (!take_number(&behind, DIMENSION_LENGTH, &number, complaint)) {
+    if (!take_number(&behind, DIMENSION_LENGTH, &read.nominal, complaint)) {
         return false;
     }
-    bool is_symmetric;
     size_t sign_size;
-    const char *sign = find_tolerance(behind, &is_symmetric, &sign_size);
-    ToleratedLength read = {0};
+    const char *sign = find_sign(behind, &sign_size);
     if (sign == NULL) {
         if (!quantity_parse(text, DIMENSION_LENGTH, &read.nominal, complaint)) {
             return false;
@@ -268,22 +260,20 @@ bool quantity_tolerated(const char *text, ToleratedLength *length, Complaint *co
         *length = read;
         return true;
     }
-
     snprintf(complaint->allowed, sizeof complaint->allowed,
              "a tolerance such as 108 +- 0.3 mm or 108 +0.1/-0.2 mm");
+    const bool is_symmetric = strncmp(sign, "+", sign_size) != 0;
     const Unit *unit = NULL;
     if (!take_tolerance(sign + sign_size, is_symmetric, &read, &unit, complaint)) {
         return false;
     }
     char own_unit[QUANTITY_TEXT_SIZE];
     snprintf(own_unit, sizeof own_unit, "%.*s", (int)(sign - behind), behind);
-    if (own_unit[0] != '\0') {
-        unit = read_unit(own_unit, DIMENSION_LENGTH, complaint);
-        if (unit == NULL) {
-            return false;
-        }
+    unit = own_unit[0] != '\0' ? read_unit(own_unit, DIMENSION_LENGTH, complaint) : unit;
+    if (unit == NULL) {
+        return false;
     }
-    read.nominal = number * unit->numerator / unit->denominator;
+    read.nominal = read.nominal * unit->numerator / unit->denominator;
     if (!(isfinite(read.nominal) && isfinite(read.upper) && isfinite(read.lower))) {
         return complain(complaint, "'%.*s' is too large for a number", SHOWN_MAX, text);
     }

@@ -25,10 +25,17 @@ static const char *below(const char *path, const char *group)
     return strncmp(path, group, length) == 0 && path[length] == '.' ? path + length + 1 : NULL;
 }
 
-bool schema_is_group(const char *path)
+static bool is_of_form(const SchemaRow *row, SchemaForm form)
+{
+    return row->form == SCHEMA_BOTH || row->form == form;
+}
+
+bool schema_knows(const char *path, SchemaForm form)
 {
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-        if (below(SCHEMA_ROWS[i].path, path) != NULL) {
+        const SchemaRow *row = &SCHEMA_ROWS[i];
+        if (is_of_form(row, form) &&
+            (strcmp(row->path, path) == 0 || below(row->path, path) != NULL)) {
             return true;
         }
     }
@@ -50,18 +57,13 @@ static size_t add_child(char names[SCHEMA_CHILD_MAX][LINKAGE_NAME_SIZE], size_t 
     return count + 1;
 }
 
-size_t schema_children(const char *group, char names[SCHEMA_CHILD_MAX][LINKAGE_NAME_SIZE])
+size_t schema_children(const char *group, SchemaForm form,
+                       char names[SCHEMA_CHILD_MAX][LINKAGE_NAME_SIZE])
 {
     size_t count = 0;
-    if (strcmp(group, "joints") == 0) {
-        for (size_t i = 0; i < SCHEMA_JOINT_COUNT; i++) {
-            count = add_child(names, count, SCHEMA_JOINT_NAMES[i], LINKAGE_NAME_SIZE - 1);
-        }
-        return count;
-    }
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
         const char *rest = below(SCHEMA_ROWS[i].path, group);
-        if (rest != NULL && rest[0] != '*') {
+        if (rest != NULL && rest[0] != '*' && is_of_form(&SCHEMA_ROWS[i], form)) {
             count = add_child(names, count, rest, (int)strcspn(rest, "."));
         }
     }
@@ -81,11 +83,8 @@ void schema_path(const SchemaRow *row, const char *name, char path[SCHEMA_PATH_S
 
 static size_t field_offset(const SchemaRow *row, size_t index)
 {
-    const size_t stride = row->family == SCHEMA_JOINT   ? sizeof(Joint)
-                          : row->family == SCHEMA_POINT ? sizeof(TracedPoint)
-                                                        : 0;
-    assert(index < schema_family_size(row));
-    return row->offset + index * stride;
+    assert(index < SCHEMA_FAMILIES[row->family].most);
+    return row->offset + index * SCHEMA_FAMILIES[row->family].stride;
 }
 
 void *schema_field(const SchemaRow *row, Scenario *scenario, size_t index)
@@ -96,16 +95,4 @@ void *schema_field(const SchemaRow *row, Scenario *scenario, size_t index)
 const void *schema_field_const(const SchemaRow *row, const Scenario *scenario, size_t index)
 {
     return (const char *)scenario + field_offset(row, index);
-}
-
-size_t schema_family_size(const SchemaRow *row)
-{
-    switch (row->family) {
-    case SCHEMA_JOINT:
-        return SCHEMA_JOINT_COUNT;
-    case SCHEMA_POINT:
-        return SCENARIO_POINT_MAX;
-    default:
-        return 1;
-    }
 }

@@ -5,7 +5,7 @@
 #include "casefile/units.h"
 #include "model/scenario.h"
 
-enum { SCHEMA_PATH_SIZE = 160, SCHEMA_JOINT_COUNT = 3, SCHEMA_CHILD_MAX = 16 };
+enum { SCHEMA_PATH_SIZE = 160, SCHEMA_CHILD_MAX = 16 };
 
 // How a value is written, and what it becomes in the scenario.
 typedef enum SchemaType {
@@ -17,14 +17,28 @@ typedef enum SchemaType {
     SCHEMA_BACKENDS,         // list of words -> run.backends and run.backend_count
     SCHEMA_TEXT,             // text -> title
     SCHEMA_STIFFNESS,        // N/m^n -> contact.stiffness and contact.exponent
-    SCHEMA_ECCENTRICITY,     // `centred` or [x, y] -> Vec2
+    SCHEMA_VECTOR,           // [x, y], or `centred` where the row has it as default -> Vec2
     SCHEMA_RADIAL_CLEARANCE, // length -> Clearance: both radii
-    SCHEMA_ALONG,            // length from a body's first joint -> double from its centre of mass
+    SCHEMA_ALONG,            // length from a link's first joint -> double from its centre of mass
+    SCHEMA_ANCHOR,           // [x, y] of the world -> Joint.anchor_a, of a body once it is placed
+    SCHEMA_BETWEEN,          // [body, body] -> Joint.body_a and body_b
+    SCHEMA_BODY_NAME,        // name of a body -> int
+    SCHEMA_JOINT_NAME,       // name of a joint -> int
 } SchemaType;
 
-// Keys that come once, once a joint that may have play, or once a traced point. A `*` in the path
-// stands for the name of the joint or point.
-typedef enum SchemaFamily { SCHEMA_SINGLE, SCHEMA_JOINT, SCHEMA_POINT } SchemaFamily;
+// Keys that come once, or once a body, joint or traced point. A `*` in the path stands for the
+// name of that.
+typedef enum SchemaFamily {
+    SCHEMA_SINGLE,
+    SCHEMA_BODY,
+    SCHEMA_JOINT,
+    SCHEMA_POINT,
+    SCHEMA_FAMILY_COUNT,
+} SchemaFamily;
+
+// A case has either `four-bar`, the short form, or `bodies`, the long one. A key stands in one of
+// them or in both.
+typedef enum SchemaForm { SCHEMA_BOTH, SCHEMA_SHORT, SCHEMA_LONG } SchemaForm;
 
 // Keys of which only one side may be given.
 typedef enum SchemaRivalry {
@@ -37,6 +51,7 @@ typedef struct SchemaRow {
     const char *path;
     SchemaType type;
     SchemaFamily family;
+    SchemaForm form;
     Dimension dimension;
     size_t offset; // in a Scenario, of the first of its family
     double low;    // SI; smallest value allowed, or the bound itself where low_is_open
@@ -47,7 +62,7 @@ typedef struct SchemaRow {
     int side;                  // of the rivalry
     const char *const *words;  // of a choice, ends in NULL
     const char *default_words; // in place of the default's number; NULL: the number says it
-    bool (*applies)(const Scenario *scenario, size_t index); // NULL: always
+    unsigned needs;            // what a scenario must have for the key to matter
     const char *doc;
 } SchemaRow;
 
@@ -57,33 +72,44 @@ typedef struct SchemaGroup {
     const char *doc;
 } SchemaGroup;
 
+// What a case can have several of, by name.
+typedef struct SchemaFamilyRow {
+    const char *group; // the key above the names
+    const char *what;  // one of them
+    size_t most;
+    size_t stride; // in a Scenario, bytes from one to the next
+} SchemaFamilyRow;
+
 extern const SchemaRow SCHEMA_ROWS[];
 extern const size_t SCHEMA_ROW_COUNT;
 extern const SchemaGroup SCHEMA_GROUPS[];
 extern const size_t SCHEMA_GROUP_COUNT;
+extern const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT];
 
-// The moving links, which are the bodies in this order; ends in NULL.
-extern const char *const SCHEMA_BODY_NAMES[];
+// The key that makes a case one of that form.
+extern const char *const SCHEMA_FORM_KEYS[];
 
-// The joints that may have play, in the order of a four-bar's joints behind the driven one.
-extern const char *const SCHEMA_JOINT_NAMES[SCHEMA_JOINT_COUNT];
+// The bodies and joints of a four-bar; the first joint is the driven one. End in NULL.
+extern const char *const SCHEMA_LINK_NAMES[];
+extern const char *const SCHEMA_PIVOT_NAMES[];
+
+// Whether a scenario makes use of a row, of that member of its family.
+bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index);
 
 // The row of a path with `*` for names; NULL where it is none.
 const SchemaRow *schema_find(const char *path);
 
-// Whether keys stand below the path (with `*` for names).
-bool schema_is_group(const char *path);
+// Whether the path (with `*` for names) is a key of that form, or a group of such keys.
+bool schema_knows(const char *path, SchemaForm form);
 
-// The words that may stand below a group, without repetition; for `joints` the names of the
-// joints, for `points` none, as any name may. Returns how many.
-size_t schema_children(const char *group, char names[SCHEMA_CHILD_MAX][LINKAGE_NAME_SIZE]);
+// The words that may stand below a group in that form, without repetition and without names that
+// a case gives. Returns how many.
+size_t schema_children(const char *group, SchemaForm form,
+                       char names[SCHEMA_CHILD_MAX][LINKAGE_NAME_SIZE]);
 
 // The path of a row for people: `*` replaced by the name (as it is for SCHEMA_SINGLE).
 void schema_path(const SchemaRow *row, const char *name, char path[SCHEMA_PATH_SIZE]);
 
-// The rows' fields in a scenario; `index` numbers the joint or point of a family.
+// The rows' fields in a scenario; `index` numbers the member of a family.
 void *schema_field(const SchemaRow *row, Scenario *scenario, size_t index);
 const void *schema_field_const(const SchemaRow *row, const Scenario *scenario, size_t index);
-
-// How many of the row's family a case can have.
-size_t schema_family_size(const SchemaRow *row);

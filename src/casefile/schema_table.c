@@ -1,144 +1,147 @@
 // What may a case file say? Every key, with its unit, range and meaning. Defaults stand in
 // model/options.c and model/scenario.c; here only what a number cannot say about them.
+#include "casefile/build.h"
 #include "casefile/schema.h"
 
 #include <stddef.h>
 
-const char *const SCHEMA_BODY_NAMES[] = {"crank", "coupler", "follower", NULL};
-const char *const SCHEMA_JOINT_NAMES[SCHEMA_JOINT_COUNT] = {
-    "crank-coupler",
-    "coupler-follower",
-    "follower-ground",
+const char *const SCHEMA_FORM_KEYS[] = {"", "four-bar", "bodies"};
+const char *const SCHEMA_LINK_NAMES[] = {"crank", "coupler", "follower", NULL};
+const char *const SCHEMA_PIVOT_NAMES[] = {
+    "ground-crank", "crank-coupler", "coupler-follower", "follower-ground", NULL,
+};
+
+const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
+    [SCHEMA_SINGLE] = {"", "", 1, 0},
+    [SCHEMA_BODY] = {"bodies", "body", LINKAGE_BODY_MAX, sizeof(Body)},
+    [SCHEMA_JOINT] = {"joints", "joint", LINKAGE_JOINT_MAX, sizeof(Joint)},
+    [SCHEMA_POINT] = {"points", "point", SCENARIO_POINT_MAX, sizeof(TracedPoint)},
 };
 
 static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};
 
-static bool has_play(const Scenario *scenario, size_t index)
+// What a key may ask of a scenario before it matters; a row asks for all of its bits.
+enum {
+    MEMBER = 1 << 0, // the body, joint or point is there
+    LOOSE = 1 << 1,  // the joint has play
+    FREE = 1 << 2,   // no drive determines how the bodies move
+    DRIVE = 1 << 3,  // there is a drive
+    NO_DRIVE = 1 << 4,
+    PLAY = 1 << 5,   // some joint has play
+    IMPACT = 1 << 6, // and the contact is of that model
+    POISSON = 1 << 7,
+    LAW = 1 << 8,       // its stiffness is that of a law
+    STIFFNESS = 1 << 9, // or given
+    MATERIAL = 1 << 10, // the law, or the paper's Eq. (9) for the penalty
+    VISCOUS = 1 << 11,
+    FRICTION = 1 << 12,
+    REFERENCE = 1 << 13,
+    ODE = 1 << 14,
+    QUICK = 1 << 15,
+    IDEAL = 1 << 16, // no joint has play
+};
+
+static unsigned bit(unsigned need, bool is_met)
 {
-    (void)index;
-    return scenario_has_clearance(scenario);
+    return is_met ? need : 0;
 }
 
-static bool joint_has_play(const Scenario *scenario, size_t index)
+bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index)
 {
-    return scenario->linkage.joints[index + 1].kind == JOINT_CLEARANCE;
-}
-
-static bool uses_impact(const Scenario *scenario, size_t index)
-{
-    return has_play(scenario, index) && scenario->contact.model == CONTACT_IMPACT;
-}
-
-static bool uses_poisson(const Scenario *scenario, size_t index)
-{
-    return has_play(scenario, index) && scenario->contact.model == CONTACT_POISSON;
-}
-
-static bool uses_law(const Scenario *scenario, size_t index)
-{
-    return uses_impact(scenario, index) && scenario->contact.stiffness == 0.0;
-}
-
-static bool uses_stiffness(const Scenario *scenario, size_t index)
-{
-    return uses_impact(scenario, index) && scenario->contact.stiffness > 0.0;
-}
-
-// The paper's Eq. (9) for the penalty needs the material as well.
-static bool uses_material(const Scenario *scenario, size_t index)
-{
-    return uses_law(scenario, index) ||
-           (uses_poisson(scenario, index) && scenario->contact.penalty == 0.0);
-}
-
-static bool uses_viscous(const Scenario *scenario, size_t index)
-{
-    return uses_impact(scenario, index) && scenario->contact.damping == DAMPING_VISCOUS;
-}
-
-static bool uses_ode(const Scenario *scenario, size_t index)
-{
-    (void)index;
+    const Linkage *linkage = &scenario->linkage;
+    const ContactOptions *contact = &scenario->contact;
+    const size_t members[SCHEMA_FAMILY_COUNT] = {1, linkage->body_count, linkage->joint_count,
+                                                 scenario->point_count};
+    const bool is_member = index < members[row->family];
+    const bool is_joint = row->family == SCHEMA_JOINT && is_member;
+    const bool has_play = scenario_has_clearance(scenario);
+    const bool is_impact = has_play && contact->model == CONTACT_IMPACT;
+    const bool is_poisson = has_play && contact->model == CONTACT_POISSON;
+    const bool has_law = is_impact && contact->stiffness == 0.0;
+    unsigned met = bit(MEMBER, is_member) |
+                   bit(LOOSE, is_joint && linkage->joints[index].kind == JOINT_CLEARANCE) |
+                   bit(FREE, !build_is_determined(linkage)) |
+                   bit(DRIVE, linkage->driver.is_present) |
+                   bit(NO_DRIVE, !linkage->driver.is_present) | bit(PLAY, has_play) |
+                   bit(IDEAL, !has_play) | bit(IMPACT, is_impact) | bit(POISSON, is_poisson) |
+                   bit(LAW, has_law) | bit(STIFFNESS, is_impact && !has_law) |
+                   bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
+                   bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
+                   bit(FRICTION, has_play && contact->friction > 0.0) |
+                   bit(QUICK, scenario->ode.solver == ODE_QUICK);
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
-        if (scenario->run.backends[i] == BACKEND_ODE) {
-            return true;
-        }
+        met |= bit(REFERENCE, scenario->run.backends[i] == BACKEND_REFERENCE);
+        met |= bit(ODE, scenario->run.backends[i] == BACKEND_ODE);
     }
-    return false;
-}
-
-static bool uses_ode_impact(const Scenario *scenario, size_t index)
-{
-    return uses_ode(scenario, index) && uses_impact(scenario, index);
-}
-
-static bool uses_ode_poisson(const Scenario *scenario, size_t index)
-{
-    return uses_ode(scenario, index) && uses_poisson(scenario, index);
-}
-
-static bool uses_ode_play(const Scenario *scenario, size_t index)
-{
-    return uses_ode(scenario, index) && has_play(scenario, index);
-}
-
-static bool uses_ode_quick(const Scenario *scenario, size_t index)
-{
-    return uses_ode(scenario, index) && scenario->ode.solver == ODE_QUICK;
-}
-
-static bool uses_ode_ideal(const Scenario *scenario, size_t index)
-{
-    return uses_ode(scenario, index) && !has_play(scenario, index);
-}
-
-static bool point_is_present(const Scenario *scenario, size_t index)
-{
-    return index < scenario->point_count;
+    const SchemaForm form = scenario->has_fourbar ? SCHEMA_SHORT : SCHEMA_LONG;
+    return (row->needs & ~met) == 0 && (row->form == SCHEMA_BOTH || row->form == form);
 }
 
 // clang-format off
+#define FULL_TURN 6.2831853071795872
 #define AT(field) .offset = offsetof(Scenario, field)
-#define LINK_LENGTH(link) \
-    .type = SCHEMA_TOLERATED, .dimension = DIMENSION_LENGTH, AT(fourbar.link), \
-    .low = 1e-6, .high = 1e3, .is_required = true
-#define LINK_MASS(body) \
+#define MASS(body) \
     .dimension = DIMENSION_MASS, AT(linkage.bodies[body].mass), \
     .low = 1e-9, .high = 1e6, .is_required = true
-#define LINK_INERTIA(body) \
+#define INERTIA(body) \
     .dimension = DIMENSION_INERTIA, AT(linkage.bodies[body].inertia), \
     .low = 1e-18, .high = 1e9, .is_required = true
+#define LENGTH(link, words) \
+    {.path = "four-bar." #link ".length", .type = SCHEMA_TOLERATED, .form = SCHEMA_SHORT, \
+     .dimension = DIMENSION_LENGTH, AT(fourbar.link), .low = 1e-6, .high = 1e3, \
+     .is_required = true, .doc = words}
+#define LINK(link, body, words) \
+    LENGTH(link, words), \
+    {.path = "four-bar." #link ".mass", .form = SCHEMA_SHORT, MASS(body), \
+     .doc = "of the " #link}, \
+    {.path = "four-bar." #link ".inertia", .form = SCHEMA_SHORT, INERTIA(body), \
+     .doc = "about the centre of mass, which is at mid-link"}
+#define BODY .family = SCHEMA_BODY, .form = SCHEMA_LONG
 #define JOINT(field) \
-    .family = SCHEMA_JOINT, AT(linkage.joints[1].clearance.field), .applies = joint_has_play
+    .family = SCHEMA_JOINT, AT(linkage.joints[0].clearance.field), .needs = LOOSE
 #define POINT(field) \
-    .family = SCHEMA_POINT, AT(points[0].field), .applies = point_is_present
+    .family = SCHEMA_POINT, AT(points[0].field), .needs = MEMBER
 
 const SchemaRow SCHEMA_ROWS[] = {
     {.path = "title", .type = SCHEMA_TEXT, AT(title), .default_words = "none",
      .doc = "one line that names the case in reports"},
 
-    {.path = "four-bar.ground.length", LINK_LENGTH(ground),
-     .doc = "from the crank's ground pivot, the origin, to the follower's, along +x"},
-    {.path = "four-bar.crank.length", LINK_LENGTH(crank),
-     .doc = "from its ground pivot to the crank pin"},
-    {.path = "four-bar.crank.mass", LINK_MASS(0), .doc = "of the crank"},
-    {.path = "four-bar.crank.inertia", LINK_INERTIA(0),
-     .doc = "about the centre of mass, which is at mid-link"},
-    {.path = "four-bar.coupler.length", LINK_LENGTH(coupler),
-     .doc = "from the crank pin to the follower pin"},
-    {.path = "four-bar.coupler.mass", LINK_MASS(1), .doc = "of the coupler"},
-    {.path = "four-bar.coupler.inertia", LINK_INERTIA(1),
-     .doc = "about the centre of mass, which is at mid-link"},
-    {.path = "four-bar.follower.length", LINK_LENGTH(follower),
-     .doc = "from its ground pivot to the follower pin"},
-    {.path = "four-bar.follower.mass", LINK_MASS(2), .doc = "of the follower"},
-    {.path = "four-bar.follower.inertia", LINK_INERTIA(2),
-     .doc = "about the centre of mass, which is at mid-link"},
-    {.path = "four-bar.assembly", .type = SCHEMA_CHOICE, AT(fourbar.assembly),
+    LENGTH(ground, "from the crank's ground pivot, the origin, to the follower's, along +x"),
+    LINK(crank, 0, "from its ground pivot to the crank pin"),
+    LINK(coupler, 1, "from the crank pin to the follower pin"),
+    LINK(follower, 2, "from its ground pivot to the follower pin"),
+    {.path = "four-bar.assembly", .type = SCHEMA_CHOICE, .form = SCHEMA_SHORT, AT(fourbar.assembly),
      .words = ASSEMBLIES,
      .doc = "open: the follower pin lies to the left of the line from crank pin to the follower's "
             "ground pivot; crossed: to the right"},
 
+    {.path = "bodies.*.mass", BODY, MASS(0), .needs = MEMBER, .doc = "of the body"},
+    {.path = "bodies.*.inertia", BODY, INERTIA(0), .needs = MEMBER,
+     .doc = "about the centre of mass"},
+    {.path = "bodies.*.at", BODY, .type = SCHEMA_VECTOR, .dimension = DIMENSION_LENGTH,
+     AT(linkage.bodies[0].start.position), .low = -1e3, .high = 1e3, .is_required = true,
+     .needs = MEMBER, .doc = "[x, y] of its centre of mass at time zero"},
+    {.path = "bodies.*.angle", BODY, .dimension = DIMENSION_ANGLE,
+     AT(linkage.bodies[0].start.angle), .low = -FULL_TURN, .high = FULL_TURN,
+     .needs = MEMBER,
+     .doc = "of its own x axis at time zero, counter-clockwise from the world's"},
+    {.path = "bodies.*.velocity", BODY, .type = SCHEMA_VECTOR, .dimension = DIMENSION_SPEED,
+     AT(linkage.bodies[0].start.velocity), .low = -1e4, .high = 1e4, .needs = MEMBER | FREE,
+     .doc = "[x, y] of its centre of mass at time zero; not where the drive determines it"},
+    {.path = "bodies.*.spin", BODY, .dimension = DIMENSION_ANGULAR_SPEED,
+     AT(linkage.bodies[0].start.omega), .low = -1e6, .high = 1e6, .needs = MEMBER | FREE,
+     .doc = "its angular speed at time zero, counter-clockwise positive; not where the drive "
+            "determines it"},
+
+    {.path = "joints.*.between", .type = SCHEMA_BETWEEN, .family = SCHEMA_JOINT,
+     .form = SCHEMA_LONG, AT(linkage.joints[0]), .is_required = true,
+     .needs = MEMBER,
+     .doc = "[carrier of the hole, carrier of the pin]: two bodies, or a body and ground"},
+    {.path = "joints.*.at", .type = SCHEMA_ANCHOR, .family = SCHEMA_JOINT, .form = SCHEMA_LONG,
+     .dimension = DIMENSION_LENGTH, AT(linkage.joints[0].anchor_a), .low = -1e3, .high = 1e3,
+     .is_required = true, .needs = MEMBER,
+     .doc = "[x, y] in the world at time zero, of hole and pin as they stand concentric; a start "
+            "off the centre then moves the bodies"},
     {.path = "joints.*.hole", .type = SCHEMA_DIAMETER, .dimension = DIMENSION_LENGTH,
      JOINT(hole_radius), .low = 1e-6, .high = 1e2, .is_required = true,
      .rivalry = SCHEMA_SIZES, .side = 0,
@@ -149,121 +152,142 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "diameter of the pin, smaller than the hole; in place of radial-clearance"},
     {.path = "joints.*.radial-clearance", .type = SCHEMA_RADIAL_CLEARANCE,
      .dimension = DIMENSION_LENGTH, .family = SCHEMA_JOINT,
-     AT(linkage.joints[1].clearance), .low = 1e-9, .high = 0.1, .applies = joint_has_play,
+     AT(linkage.joints[0].clearance), .low = 1e-9, .high = 0.1, .needs = LOOSE,
      .rivalry = SCHEMA_SIZES, .side = 1, .default_words = "from hole and pin",
      .doc = "hole radius less pin radius, in place of hole and pin; the pin is then 10 mm in "
             "diameter and the hole larger by twice this"},
     {.path = "joints.*.width", .dimension = DIMENSION_LENGTH, JOINT(width),
      .low = 1e-6, .high = 1e2, .default_words = "none",
      .doc = "length over which pin and hole touch; needed by the laws of cylinders"},
-    {.path = "joints.*.start", .type = SCHEMA_ECCENTRICITY, .dimension = DIMENSION_LENGTH,
+    {.path = "joints.*.start", .type = SCHEMA_VECTOR, .dimension = DIMENSION_LENGTH,
      JOINT(start), .low = -0.1, .high = 0.1, .default_words = "centred",
      .doc = "pin centre less hole centre at time zero: centred, or [x, y], no longer than the "
             "radial clearance"},
 
+    {.path = "drive.joint", .type = SCHEMA_JOINT_NAME, .form = SCHEMA_LONG,
+     AT(linkage.driver.joint), .is_required = true, .needs = DRIVE,
+     .doc = "the ideal joint with the ground about which the drive turns a body"},
     {.path = "drive.speed", .dimension = DIMENSION_ANGULAR_SPEED, AT(linkage.driver.speed),
-     .low = -1e6, .high = 1e6, .is_required = true,
-     .doc = "of the crank, constant, counter-clockwise positive; not 0"},
-    {.path = "drive.start", .dimension = DIMENSION_ANGLE, AT(linkage.driver.start),
-     .low = -6.2831853071795872, .high = 6.2831853071795872,
-     .doc = "angle of the crank at time zero, counter-clockwise from the ground link"},
+     .low = -1e6, .high = 1e6, .is_required = true, .needs = DRIVE,
+     .doc = "of the driven body, constant, counter-clockwise positive; not 0"},
+    {.path = "drive.start", .form = SCHEMA_SHORT, .dimension = DIMENSION_ANGLE,
+     AT(linkage.driver.start), .low = -FULL_TURN, .high = FULL_TURN,
+     .doc = "angle of the crank at time zero, counter-clockwise from the ground link; with bodies "
+            "their angles say it"},
     {.path = "gravity", .dimension = DIMENSION_ACCELERATION, AT(gravity),
      .low = -1e3, .high = 1e3, .doc = "downward, along -y; 0 m/s^2 for none"},
 
     {.path = "material.youngs-modulus", .dimension = DIMENSION_PRESSURE,
-     AT(material.youngs_modulus), .low = 1e3, .high = 1e13, .applies = uses_material,
+     AT(material.youngs_modulus), .low = 1e3, .high = 1e13, .needs = MATERIAL,
      .doc = "of pin and hole alike"},
     {.path = "material.poisson-ratio", AT(material.poisson_ratio), .low = 0.0, .high = 0.5,
-     .applies = uses_material, .doc = "of pin and hole alike"},
+     .needs = MATERIAL, .doc = "of pin and hole alike"},
 
     {.path = "contact.model", .type = SCHEMA_CHOICE, AT(contact.model),
-     .words = OPTIONS_CONTACT_MODELS, .applies = has_play,
+     .words = OPTIONS_CONTACT_MODELS, .needs = PLAY,
      .doc = "impact: a force from penetration and its rate; poisson: a velocity-level penalty "
             "with restitution"},
     {.path = "contact.law", .type = SCHEMA_CHOICE, AT(contact.law), .words = OPTIONS_LAWS,
-     .rivalry = SCHEMA_ELASTICITY, .side = 0, .applies = uses_law,
+     .rivalry = SCHEMA_ELASTICITY, .side = 0, .needs = LAW,
      .doc = "elastic law of the impact model; in place of stiffness"},
     {.path = "contact.stiffness", .type = SCHEMA_STIFFNESS, .dimension = DIMENSION_STIFFNESS,
      AT(contact), .low = 0.0, .high = 1e24, .low_is_open = true,
      .rivalry = SCHEMA_ELASTICITY, .side = 1, .default_words = "from the law",
-     .applies = uses_stiffness,
+     .needs = STIFFNESS,
      .doc = "K in F = K d^n, in place of a law; the unit gives n: N/m^1.5, N/mm^1.5, N/m"},
     {.path = "contact.damping", .type = SCHEMA_CHOICE, AT(contact.damping),
-     .words = OPTIONS_DAMPINGS, .applies = uses_impact,
+     .words = OPTIONS_DAMPINGS, .needs = IMPACT,
      .doc = "where the impact model loses energy"},
     {.path = "contact.restitution", AT(contact.restitution), .low = 0.0, .high = 1.0,
-     .applies = has_play, .doc = "speed after an impact over speed before it, asked for"},
+     .needs = PLAY, .doc = "speed after an impact over speed before it, asked for"},
     {.path = "contact.viscous-coefficient", .dimension = DIMENSION_DAMPING,
      AT(contact.viscous_coefficient), .low = 0.0, .high = 1e12, .low_is_open = true,
-     .default_words = "none", .applies = uses_viscous,
+     .default_words = "none", .needs = VISCOUS,
      .doc = "force over penetration rate; needed by damping: viscous"},
-    {.path = "contact.friction", AT(contact.friction), .low = 0.0, .high = 0.0,
-     .applies = has_play, .doc = "coefficient of friction; this version has no friction"},
+    {.path = "contact.friction", AT(contact.friction), .low = 0.0, .high = 1.0,
+     .needs = PLAY, .doc = "Coulomb's coefficient; 0: none"},
+    {.path = "contact.friction-speed", .dimension = DIMENSION_SPEED, AT(contact.friction_speed),
+     .low = 0.0, .high = 1e3, .low_is_open = true, .needs = FRICTION,
+     .doc = "sliding speed over which the reference's friction sets in"},
     {.path = "contact.penalty", .dimension = DIMENSION_DAMPING, AT(contact.penalty),
      .low = 0.0, .high = 1e12, .low_is_open = true,
-     .default_words = "the paper's Eq. (9) at the drive's speed", .applies = uses_poisson,
+     .default_words = "the paper's Eq. (9) at the drive's speed", .needs = POISSON,
      .doc = "force over closing speed in the poisson model"},
     {.path = "contact.bounce-speed", .dimension = DIMENSION_SPEED, AT(contact.bounce_speed),
-     .low = 0.0, .high = 1e3, .applies = uses_poisson,
+     .low = 0.0, .high = 1e3, .needs = POISSON,
      .doc = "poisson model: slower impacts do not bounce"},
     {.path = "contact.impact-speed-floor", .dimension = DIMENSION_SPEED,
      AT(contact.impact_speed_floor), .low = 0.0, .high = 1e3, .low_is_open = true,
-     .applies = uses_impact, .doc = "smallest impact speed the damping laws divide by"},
+     .needs = IMPACT, .doc = "smallest impact speed the damping laws divide by"},
 
     {.path = "run.revolutions", AT(run.revolutions), .low = 0.0, .high = 1e6,
-     .low_is_open = true, .doc = "of the crank; may be a fraction"},
+     .low_is_open = true, .needs = DRIVE, .doc = "of the drive; may be a fraction"},
+    {.path = "run.duration", .form = SCHEMA_LONG, .dimension = DIMENSION_TIME, AT(run.duration),
+     .low = 0.0, .high = 1e6, .low_is_open = true, .needs = NO_DRIVE,
+     .doc = "of a case without a drive, in place of revolutions"},
     {.path = "run.samples", .type = SCHEMA_INTEGER, AT(run.samples), .low = 1.0, .high = 1e7,
-     .doc = "written per revolution"},
+     .doc = "written per revolution of the drive, or in the whole run without one"},
     {.path = "run.step", .dimension = DIMENSION_TIME, AT(run.step), .low = 0.0, .high = 1.0,
      .low_is_open = true, .doc = "of solvers with a fixed step"},
     {.path = "run.backends", .type = SCHEMA_BACKENDS, AT(run.backends),
-     .words = OPTIONS_BACKENDS, .doc = "the solvers to run, in this order: a word or a list"},
+     .words = OPTIONS_BACKENDS,
+     .doc = "the solvers to run, in this order: a word or a list; reference, ode where a case "
+            "with bodies says nothing, as analytic knows four-bars only"},
+
+    {.path = "reference.tolerance", AT(reference.tolerance), .low = 1e-14, .high = 1e-3,
+     .needs = REFERENCE,
+     .doc = "of each step's error, relative to the size of each coordinate and speed"},
 
     {.path = "ode.solver", .type = SCHEMA_CHOICE, AT(ode.solver), .words = OPTIONS_ODE_SOLVERS,
-     .applies = uses_ode, .doc = "direct: dWorldStep; quick: dWorldQuickStep"},
+     .needs = ODE, .doc = "direct: dWorldStep; quick: dWorldQuickStep"},
     {.path = "ode.stepping", .type = SCHEMA_CHOICE, AT(ode.stepping),
-     .words = OPTIONS_ODE_STEPPINGS, .applies = uses_ode, .doc = "plain: as ODE steps by itself"},
+     .words = OPTIONS_ODE_STEPPINGS, .needs = ODE, .doc = "plain: as ODE steps by itself"},
     {.path = "ode.map", .type = SCHEMA_CHOICE, AT(ode.map), .words = OPTIONS_ODE_MAPS,
-     .applies = uses_ode_impact, .doc = "how stiffness and damping become ERP and CFM"},
+     .needs = ODE | IMPACT, .doc = "how stiffness and damping become ERP and CFM"},
     {.path = "ode.collider", .type = SCHEMA_CHOICE, AT(ode.collider),
-     .words = OPTIONS_ODE_COLLIDERS, .applies = uses_ode_play,
+     .words = OPTIONS_ODE_COLLIDERS, .needs = ODE | PLAY,
      .doc = "what finds the contact of pin and hole"},
-    {.path = "ode.erp", AT(ode.erp), .low = 0.0, .high = 1.0, .applies = uses_ode,
+    {.path = "ode.erp", AT(ode.erp), .low = 0.0, .high = 1.0, .needs = ODE,
      .doc = "error reduction of the ideal joints, per step"},
-    {.path = "ode.cfm", AT(ode.cfm), .low = 0.0, .high = 1e6, .applies = uses_ode,
+    {.path = "ode.cfm", AT(ode.cfm), .low = 0.0, .high = 1e6, .needs = ODE,
      .doc = "constraint force mixing of the ideal joints, in ODE's unit 1/kg"},
     {.path = "ode.push-out", AT(ode.push_out), .low = 0.0, .high = 1.0,
-     .applies = uses_ode_poisson, .doc = "ERP of the contact in the poisson model"},
+     .needs = ODE | POISSON, .doc = "ERP of the contact in the poisson model"},
     {.path = "ode.iterations", .type = SCHEMA_INTEGER, AT(ode.iterations), .low = 1.0,
-     .high = 1e6, .applies = uses_ode_quick, .doc = "of the quick solver, per step"},
+     .high = 1e6, .needs = ODE | QUICK, .doc = "of the quick solver, per step"},
     {.path = "ode.over-relaxation", AT(ode.over_relaxation), .low = 0.0, .high = 2.0,
-     .low_is_open = true, .applies = uses_ode_quick, .doc = "of the quick solver"},
+     .low_is_open = true, .needs = ODE | QUICK, .doc = "of the quick solver"},
     {.path = "ode.seed", .type = SCHEMA_INTEGER, AT(ode.seed), .low = 0.0, .high = 4294967295.0,
-     .applies = uses_ode_quick, .doc = "of the order in which the quick solver visits rows"},
+     .needs = ODE | QUICK, .doc = "of the order in which the quick solver visits rows"},
     {.path = "ode.settle-steps", .type = SCHEMA_INTEGER, AT(ode.settle_steps), .low = 0.0,
-     .high = 1e7, .applies = uses_ode_ideal,
+     .high = 1e7, .needs = ODE | IDEAL,
      .doc = "run before time zero where every joint is ideal"},
 
-    {.path = "points.*.body", .type = SCHEMA_CHOICE, POINT(body), .words = SCHEMA_BODY_NAMES,
-     .is_required = true, .doc = "the link that carries the point"},
+    {.path = "points.*.body", .type = SCHEMA_BODY_NAME, POINT(body), .is_required = true,
+     .doc = "the body that carries the point"},
     {.path = "points.*.along", .type = SCHEMA_ALONG, .dimension = DIMENSION_LENGTH,
      POINT(local.x), .low = -1e3, .high = 1e3, .is_required = true,
-     .doc = "from the link's first joint towards its second"},
+     .doc = "from the link's first joint towards its second; with bodies, from the centre of mass "
+            "along the body's x axis"},
     {.path = "points.*.offset", .dimension = DIMENSION_LENGTH, POINT(local.y), .low = -1e3,
      .high = 1e3, .doc = "to the left of that direction"},
 };
 
 const SchemaGroup SCHEMA_GROUPS[] = {
     {"", "Keys that stand in no group."},
-    {"four-bar", "The links. A length may carry a tolerance: 108 +- 0.3 mm, 108 +0.1/-0.2 mm."},
-    {"joints", "Joints with play, by name: crank-coupler, coupler-follower, follower-ground. A "
-               "joint not named is ideal; the drive joint ground-crank always is."},
-    {"drive", "How the crank turns."},
+    {"four-bar", "The links of a four-bar. A length may carry a tolerance: 108 +- 0.3 mm, 108 +0.1/-0.2 mm."},
+    {"bodies", "In place of four-bar, any linkage: up to 16 rigid bodies, by names of letters, "
+               "digits, - and _."},
+    {"joints", "Of a four-bar those with play, by name: crank-coupler, coupler-follower, "
+               "follower-ground; a joint not named is ideal, the drive joint ground-crank always "
+               "is. With bodies every joint, up to 24, by any name; without sizes it is ideal."},
+    {"drive", "How the crank turns; a case with bodies may do without."},
     {"material", "Of pins and holes; steel where nothing is said."},
     {"contact", "What happens where pin and hole meet."},
     {"run", "How long, how fine, and on which solvers."},
+    {"reference", "How exact the reference is."},
     {"ode", "How the Open Dynamics Engine is used."},
-    {"points", "Points of links whose path is written out, at most 4, by names of letters, "
+    {"points", "Points of bodies whose path is written out, at most 4, by names of letters, "
                "digits, - and _."},
 };
 // clang-format on

@@ -3,34 +3,19 @@
 
 #include "casefile/schema.h"
 
-#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
-// Rows of one family that follow each other; a family's settings go joint by joint.
-static size_t block_size(size_t first)
-{
-    size_t size = 1;
-    const SchemaFamily family = SCHEMA_ROWS[first].family;
-    while (family != SCHEMA_SINGLE && first + size < SCHEMA_ROW_COUNT &&
-           SCHEMA_ROWS[first + size].family == family) {
-        size++;
-    }
-    return size;
-}
-
-// The row of a setting and the number of its joint or point; NULL beyond the last.
+// The row of a setting and the number of its family's member; NULL beyond the last.
 static const SchemaRow *find_row(size_t setting, size_t *index)
 {
-    for (size_t first = 0; first < SCHEMA_ROW_COUNT;) {
-        const size_t rows = block_size(first);
-        const size_t settings = rows * schema_family_size(&SCHEMA_ROWS[first]);
-        if (setting < settings) {
-            *index = setting / rows;
-            return &SCHEMA_ROWS[first + setting % rows];
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        const size_t members = SCHEMA_FAMILIES[SCHEMA_ROWS[i].family].most;
+        if (setting < members) {
+            *index = setting;
+            return &SCHEMA_ROWS[i];
         }
-        setting -= settings;
-        first += rows;
+        setting -= members;
     }
     return NULL;
 }
@@ -39,7 +24,7 @@ size_t casefile_setting_count(void)
 {
     size_t count = 0;
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-        count += schema_family_size(&SCHEMA_ROWS[i]);
+        count += SCHEMA_FAMILIES[SCHEMA_ROWS[i].family].most;
     }
     return count;
 }
@@ -49,14 +34,6 @@ static void set_number(CasefileSetting *setting, double number)
     setting->kind = CASEFILE_NUMBER;
     setting->number_count = 1;
     setting->numbers[0] = number;
-}
-
-static void set_tolerated(CasefileSetting *setting, const ToleratedLength *length)
-{
-    set_number(setting, length->nominal);
-    setting->numbers[1] = length->lower;
-    setting->numbers[2] = length->upper;
-    setting->number_count = length->lower < 0.0 || length->upper > 0.0 ? 3 : 1;
 }
 
 static void set_stiffness(CasefileSetting *setting, const ContactOptions *contact)
@@ -72,28 +49,56 @@ static void set_stiffness(CasefileSetting *setting, const ContactOptions *contac
 static void set_backends(CasefileSetting *setting, const RunOptions *run)
 {
     setting->kind = CASEFILE_TEXT;
-    size_t length = 0;
     for (size_t i = 0; i < run->backend_count; i++) {
-        const int written = snprintf(setting->text + length, sizeof setting->text - length, "%s%s",
-                                     i > 0 ? ", " : "", OPTIONS_BACKENDS[run->backends[i]]);
-        assert(written >= 0 && length + (size_t)written < sizeof setting->text);
-        length += (size_t)written;
+        const size_t length = strlen(setting->text);
+        snprintf(setting->text + length, sizeof setting->text - length, "%s%s", i > 0 ? ", " : "",
+                 OPTIONS_BACKENDS[run->backends[i]]);
     }
 }
 
-// Where along its link a traced point stands, from the link's first joint.
+// Where along its link a traced point stands: of a four-bar, from the link's first joint.
 static double point_along(const Scenario *scenario, size_t index)
 {
     const TracedPoint *point = &scenario->points[index];
     const ToleratedLength *const lengths[] = {&scenario->fourbar.crank, &scenario->fourbar.coupler,
                                               &scenario->fourbar.follower};
-    return point->local.x + 0.5 * lengths[point->body]->nominal;
+    return point->local.x + (scenario->has_fourbar ? 0.5 * lengths[point->body]->nominal : 0.0);
+}
+
+static void set_vector(CasefileSetting *setting, Vec2 vector)
+{
+    set_number(setting, vector.x);
+    setting->numbers[1] = vector.y;
+    setting->number_count = 2;
+}
+
+// Where a joint's hole stands at time zero.
+static Vec2 joint_place(const Linkage *linkage, size_t index)
+{
+    Motion motions[LINKAGE_BODY_MAX];
+    for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
+        motions[i] = linkage->bodies[i].start;
+    }
+    return linkage_point(motions, linkage->joints[index].body_a, linkage->joints[index].anchor_a);
+}
+
+static const char *body_name(const Linkage *linkage, int body)
+{
+    return body == LINKAGE_GROUND ? "ground" : linkage->bodies[body].name;
+}
+
+static void set_words(CasefileSetting *setting, const char *first, const char *second)
+{
+    setting->kind = CASEFILE_TEXT;
+    snprintf(setting->text, sizeof setting->text, second != NULL ? "%s, %s" : "%s", first, second);
 }
 
 static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scenario *scenario,
                       size_t index)
 {
+    const Linkage *linkage = &scenario->linkage;
     const void *field = schema_field_const(row, scenario, index);
+    const ToleratedLength *length;
     int number;
     switch (row->type) {
     case SCHEMA_QUANTITY:
@@ -103,7 +108,11 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         set_number(setting, 2.0 * *(const double *)field);
         break;
     case SCHEMA_TOLERATED:
-        set_tolerated(setting, field);
+        length = field;
+        set_number(setting, length->nominal);
+        setting->numbers[1] = length->lower;
+        setting->numbers[2] = length->upper;
+        setting->number_count = length->lower < 0.0 || length->upper > 0.0 ? 3 : 1;
         break;
     case SCHEMA_INTEGER:
         set_number(setting, (double)*(const size_t *)field);
@@ -118,24 +127,44 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         set_backends(setting, &scenario->run);
         break;
     case SCHEMA_TEXT:
-        setting->kind = CASEFILE_TEXT;
-        text_copy(setting->text, sizeof setting->text, field);
+        set_words(setting, field, NULL);
         break;
     case SCHEMA_STIFFNESS:
         set_stiffness(setting, field);
         break;
-    case SCHEMA_ECCENTRICITY:
-        set_number(setting, ((const Vec2 *)field)->x);
-        setting->numbers[1] = ((const Vec2 *)field)->y;
-        setting->number_count = 2;
+    case SCHEMA_VECTOR:
+        set_vector(setting, *(const Vec2 *)field);
+        break;
+    case SCHEMA_ANCHOR:
+        set_vector(setting, joint_place(linkage, index));
+        break;
+    case SCHEMA_BETWEEN:
+        set_words(setting, body_name(linkage, linkage->joints[index].body_a),
+                  body_name(linkage, linkage->joints[index].body_b));
+        break;
+    case SCHEMA_BODY_NAME:
+        set_words(setting, body_name(linkage, scenario->points[index].body), NULL);
+        break;
+    case SCHEMA_JOINT_NAME:
+        set_words(setting, linkage->joints[linkage->driver.joint].name, NULL);
         break;
     case SCHEMA_RADIAL_CLEARANCE:
-        set_number(setting, linkage_radial_clearance(&scenario->linkage.joints[index + 1]));
+        set_number(setting, linkage_radial_clearance(&linkage->joints[index]));
         break;
     case SCHEMA_ALONG:
         set_number(setting, point_along(scenario, index));
         break;
     }
+}
+
+// The name of a family's member; one that the scenario does not have keeps the star.
+static const char *member_name(const Scenario *scenario, SchemaFamily family, size_t member)
+{
+    const char *name = family == SCHEMA_BODY    ? scenario->linkage.bodies[member].name
+                       : family == SCHEMA_JOINT ? scenario->linkage.joints[member].name
+                       : family == SCHEMA_POINT ? scenario->points[member].name
+                                                : "";
+    return name[0] != '\0' ? name : "*";
 }
 
 bool casefile_setting(const Scenario *scenario, size_t index, CasefileSetting *setting)
@@ -146,14 +175,9 @@ bool casefile_setting(const Scenario *scenario, size_t index, CasefileSetting *s
         return false;
     }
     *setting = (CasefileSetting){0};
-    // a point that the scenario does not have keeps the star for its name
-    const char *name = row->family == SCHEMA_JOINT ? SCHEMA_JOINT_NAMES[member]
-                       : row->family == SCHEMA_POINT && member < scenario->point_count
-                           ? scenario->points[member].name
-                           : "*";
-    schema_path(row, name, setting->key);
+    schema_path(row, member_name(scenario, row->family, member), setting->key);
     text_copy(setting->unit, sizeof setting->unit, units_si(row->dimension));
     set_value(setting, row, scenario, member);
-    setting->applies = row->applies == NULL || row->applies(scenario, member);
+    setting->applies = schema_applies(row, scenario, member);
     return true;
 }

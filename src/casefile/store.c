@@ -3,44 +3,79 @@
 
 #include "casefile/quantity.h"
 
+#include <float.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 static const double PIN_RADIUS = 5e-3; // m, where only the radial clearance is given: the paper's
 
+static const double ROUNDING = 1e-9; // of a radial clearance, and far below a nanometre
+
 // Whatever a store function needs to know.
 typedef struct Target {
+    const Entries *entries;
     const Entry *entry;
     char path[SCHEMA_PATH_SIZE]; // of the key, for messages
     void *field;
     Err *err;
 } Target;
 
-static bool complain_at(const Target *target, const Node *node, const Complaint *complaint)
+void store_describe(const Entries *entries, const SchemaRow *row, Text *text)
 {
-    return source_error(target->entry->source, node->span, complaint->allowed, target->err, "%s",
-                        complaint->text);
+    const bool is_speed = row->dimension == DIMENSION_SPEED;
+    const EntryNames *names =
+        &entries->names[row->type == SCHEMA_JOINT_NAME ? SCHEMA_JOINT : SCHEMA_BODY];
+    switch (row->type) {
+    case SCHEMA_CHOICE:
+    case SCHEMA_BACKENDS:
+        for (size_t i = 0; row->words[i] != NULL; i++) {
+            text_append(text, "%s%s", i > 0 ? ", " : "", row->words[i]);
+        }
+        break;
+    case SCHEMA_BODY_NAME:
+    case SCHEMA_JOINT_NAME:
+        for (size_t i = 0; i < names->count; i++) {
+            text_append(text, "%s%s", i > 0 ? ", " : "", names->names[i]);
+        }
+        break;
+    case SCHEMA_BETWEEN:
+        text_append(text, "two bodies such as [ground, pin]");
+        break;
+    case SCHEMA_VECTOR:
+    case SCHEMA_ANCHOR:
+        text_append(text, "%s[x, y] such as %s", row->default_words != NULL ? "centred, or " : "",
+                    row->default_words != NULL ? "[5 um, 0 um]"
+                    : is_speed                 ? "[0.5 m/s, 0 m/s]"
+                                               : "[25 mm, 0 mm]");
+        break;
+    case SCHEMA_TEXT:
+        text_append(text, "text on one line");
+        break;
+    case SCHEMA_INTEGER:
+        text_append(text, "a whole number such as 100");
+        break;
+    default:
+        text_append(text, "%s such as %s", units_dimension_name(row->dimension),
+                    units_example(row->dimension));
+    }
 }
 
-// What the row takes, in words.
-static void describe_allowed(const SchemaRow *row, char *text, size_t size)
+// Refuses a node with what its row takes.
+__attribute__((format(printf, 3, 4))) static bool refuse(const Target *target, Span span,
+                                                         const char *format, ...)
 {
-    if (row->words != NULL) {
-        size_t length = 0;
-        text[0] = '\0';
-        for (size_t i = 0; row->words[i] != NULL && length < size; i++) {
-            const char *separator = i > 0 ? ", " : "";
-            length +=
-                (size_t)snprintf(text + length, size - length, "%s%s", separator, row->words[i]);
-        }
-    } else if (row->type == SCHEMA_TEXT) {
-        snprintf(text, size, "text on one line");
-    } else if (row->type == SCHEMA_INTEGER) {
-        snprintf(text, size, "a whole number such as 100");
-    } else {
-        snprintf(text, size, "%s such as %s", units_dimension_name(row->dimension),
-                 units_example(row->dimension));
-    }
+    char message[QUANTITY_TEXT_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    Text allowed;
+    text_init(&allowed);
+    store_describe(target->entries, target->entry->row, &allowed);
+    source_error(target->entry->source, span, allowed.data, target->err, "%s", message);
+    text_finish(&allowed);
+    return false;
 }
 
 // A node that is one value; a missing one is shown at its key.
@@ -52,10 +87,8 @@ static bool check_scalar(const Target *target, const Node *node)
         return true;
     }
     const Span span = is_scalar && node->key != NULL ? node->key->span : node->span;
-    char allowed[QUANTITY_TEXT_SIZE];
-    describe_allowed(row, allowed, sizeof allowed);
-    return source_error(target->entry->source, span, allowed, target->err,
-                        is_scalar ? "%s has no value" : "%s takes a single value", target->path);
+    return refuse(target, span, is_scalar ? "%s has no value" : "%s takes a single value",
+                  target->path);
 }
 
 static bool check_range(const Target *target, const Node *node, double value)
@@ -63,12 +96,6 @@ static bool check_range(const Target *target, const Node *node, double value)
     const SchemaRow *row = target->entry->row;
     if (value <= row->high && (row->low_is_open ? value > row->low : value >= row->low)) {
         return true;
-    }
-    if (row->low == row->high) {
-        char only[QUANTITY_TEXT_SIZE];
-        snprintf(only, sizeof only, "%g", row->low);
-        return source_error(target->entry->source, node->span, only, target->err, "%s: %s",
-                            target->path, row->doc);
     }
     const char *unit = units_si(row->dimension);
     const char *blank = unit[0] != '\0' ? " " : "";
@@ -80,44 +107,45 @@ static bool check_range(const Target *target, const Node *node, double value)
                         "%s is out of range: %.60s", target->path, node->text);
 }
 
-static bool store_number(const Target *target, double scale)
+// What a quantity_ function read of a node: its complaint gets a place, its number a range.
+static bool accept(const Target *target, const Node *node, bool is_read, const Complaint *complaint,
+                   double value)
 {
-    const Node *node = target->entry->node;
+    return is_read ? check_range(target, node, value)
+                   : source_error(target->entry->source, node->span, complaint->allowed,
+                                  target->err, "%s", complaint->text);
+}
+
+// One number of the row's dimension, from its node or from one of a pair.
+static bool read_number(const Target *target, const Node *node, double *value)
+{
     Complaint complaint;
-    double value;
     if (!check_scalar(target, node)) {
         return false;
     }
-    if (!quantity_parse(node->text, target->entry->row->dimension, &value, &complaint)) {
-        // a size with a tolerance is a fair thing to try
-        const char *sign = strstr(node->text, "+-") != NULL  ? "+-"
-                           : strstr(node->text, "±") != NULL ? "±"
-                                                             : NULL;
-        if (sign != NULL) {
-            return source_error(target->entry->source, node->span, "a value without tolerance",
-                                target->err, "%s takes no tolerance (%s)", target->path, sign);
-        }
-        return complain_at(target, node, &complaint);
+    const bool is_read =
+        quantity_parse(node->text, target->entry->row->dimension, value, &complaint);
+    // a size with a tolerance is a fair thing to try
+    const char *sign = strstr(node->text, "+-") != NULL  ? "+-"
+                       : strstr(node->text, "±") != NULL ? "±"
+                                                         : NULL;
+    if (!is_read && sign != NULL) {
+        return source_error(target->entry->source, node->span, "a value without tolerance",
+                            target->err, "%s takes no tolerance (%s)", target->path, sign);
     }
-    if (!check_range(target, node, value)) {
-        return false;
-    }
-    *(double *)target->field = scale * value;
-    return true;
+    return accept(target, node, is_read, &complaint, *value);
 }
 
 static bool store_tolerated(const Target *target)
 {
     const Node *node = target->entry->node;
     Complaint complaint;
-    ToleratedLength length;
+    ToleratedLength length = {0};
     if (!check_scalar(target, node)) {
         return false;
     }
-    if (!quantity_tolerated(node->text, &length, &complaint)) {
-        return complain_at(target, node, &complaint);
-    }
-    if (!check_range(target, node, length.nominal)) {
+    const bool is_read = quantity_tolerated(node->text, &length, &complaint);
+    if (!accept(target, node, is_read, &complaint, length.nominal)) {
         return false;
     }
     if (!(length.nominal + length.lower > 0.0)) {
@@ -133,14 +161,12 @@ static bool store_integer(const Target *target)
 {
     const Node *node = target->entry->node;
     Complaint complaint;
-    size_t value;
+    size_t value = 0;
     if (!check_scalar(target, node)) {
         return false;
     }
-    if (!quantity_integer(node->text, &value, &complaint)) {
-        return complain_at(target, node, &complaint);
-    }
-    if (!check_range(target, node, (double)value)) {
+    const bool is_read = quantity_integer(node->text, &value, &complaint);
+    if (!accept(target, node, is_read, &complaint, (double)value)) {
         return false;
     }
     *(size_t *)target->field = value;
@@ -162,51 +188,36 @@ static bool find_word(const Target *target, const Node *node, int *number)
         }
     }
     const char *nearest = text_nearest(node->text, words, count);
-    char hint[LINKAGE_NAME_SIZE + 24] = "";
-    if (nearest != NULL) {
-        snprintf(hint, sizeof hint, "; did you mean '%s'?", nearest);
-    }
-    char allowed[QUANTITY_TEXT_SIZE];
-    describe_allowed(target->entry->row, allowed, sizeof allowed);
-    return source_error(target->entry->source, node->span, allowed, target->err,
-                        "'%.40s' is no choice for %s%s", node->text, target->path, hint);
-}
-
-static bool store_choice(const Target *target)
-{
-    int number;
-    if (!find_word(target, target->entry->node, &number)) {
-        return false;
-    }
-    memcpy(target->field, &number, sizeof number); // every enumeration here has the size of int
-    return true;
+    return refuse(target, node->span, "'%.40s' is no choice for %s%s%s%s", node->text, target->path,
+                  nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+                  nearest != NULL ? "'?" : "");
 }
 
 static bool store_backends(const Target *target, RunOptions *run)
 {
     const Node *node = target->entry->node;
-    const Node *item = node->kind == NODE_LIST ? node->first : node;
-    if (item == NULL) {
-        return source_error(target->entry->source, node->span, "at least one backend", target->err,
-                            "the list %s is empty", target->path);
-    }
-    BackendKind backends[BACKEND_COUNT];
-    size_t count = 0;
-    for (; item != NULL; item = node->kind == NODE_LIST ? item->next : NULL) {
-        int number;
+    const bool is_list = node->kind == NODE_LIST;
+    RunOptions read = {0};
+    for (const Node *item = is_list ? node->first : node; item != NULL;
+         item = is_list ? item->next : NULL) {
+        int number = 0;
         if (!find_word(target, item, &number)) {
             return false;
         }
-        for (size_t i = 0; i < count; i++) {
-            if (backends[i] == (BackendKind)number) {
+        for (size_t i = 0; i < read.backend_count; i++) {
+            if (read.backends[i] == (BackendKind)number) {
                 return source_error(target->entry->source, item->span, "each backend once",
                                     target->err, "'%s' is listed twice", item->text);
             }
         }
-        backends[count++] = (BackendKind)number;
+        read.backends[read.backend_count++] = (BackendKind)number;
     }
-    memcpy(run->backends, backends, count * sizeof backends[0]);
-    run->backend_count = count;
+    if (read.backend_count == 0) {
+        return source_error(target->entry->source, node->span, "at least one backend", target->err,
+                            "the list %s is empty", target->path);
+    }
+    memcpy(run->backends, read.backends, sizeof read.backends);
+    run->backend_count = read.backend_count;
     return true;
 }
 
@@ -230,15 +241,13 @@ static bool store_stiffness(const Target *target, ContactOptions *contact)
 {
     const Node *node = target->entry->node;
     Complaint complaint;
-    double stiffness;
-    double exponent;
+    double stiffness = 0.0;
+    double exponent = 0.0;
     if (!check_scalar(target, node)) {
         return false;
     }
-    if (!quantity_stiffness(node->text, &stiffness, &exponent, &complaint)) {
-        return complain_at(target, node, &complaint);
-    }
-    if (!check_range(target, node, stiffness)) {
+    const bool is_read = quantity_stiffness(node->text, &stiffness, &exponent, &complaint);
+    if (!accept(target, node, is_read, &complaint, stiffness)) {
         return false;
     }
     contact->stiffness = stiffness;
@@ -246,46 +255,79 @@ static bool store_stiffness(const Target *target, ContactOptions *contact)
     return true;
 }
 
-static bool store_eccentricity(const Target *target)
+// The two items of a list of two; false for anything else.
+static bool find_pair(const Node *node, const Node *pair[2])
+{
+    pair[0] = node->kind == NODE_LIST ? node->first : NULL;
+    pair[1] = pair[0] != NULL ? pair[0]->next : NULL;
+    return pair[1] != NULL && pair[1]->next == NULL;
+}
+
+static bool store_vector(const Target *target)
 {
     const Node *node = target->entry->node;
-    Vec2 start = {0.0, 0.0};
-    if (node->kind == NODE_SCALAR && strcmp(node->text, "centred") == 0) {
-        *(Vec2 *)target->field = start;
-        return true;
+    const SchemaRow *row = target->entry->row;
+    Vec2 read = {0.0, 0.0};
+    const bool is_word = row->default_words != NULL && node->kind == NODE_SCALAR &&
+                         strcmp(node->text, row->default_words) == 0;
+    const Node *pair[2];
+    if (!is_word && !find_pair(node, pair)) {
+        return refuse(target, node->span, "%s takes %s", target->path,
+                      row->dimension == DIMENSION_SPEED ? "two speeds" : "a place");
     }
-    const Node *x = node->kind == NODE_LIST ? node->first : NULL;
-    const Node *y = x != NULL ? x->next : NULL;
-    if (y == NULL || y->next != NULL) {
-        return source_error(target->entry->source, node->span,
-                            "centred, or [x, y] such as "
-                            "[5 um, 0 um]",
-                            target->err, "%s takes a place", target->path);
+    if (!is_word &&
+        (!read_number(target, pair[0], &read.x) || !read_number(target, pair[1], &read.y))) {
+        return false;
     }
-    double *const parts[] = {&start.x, &start.y};
-    const Node *const nodes[] = {x, y};
-    for (size_t i = 0; i < 2; i++) {
-        Complaint complaint;
-        if (!check_scalar(target, nodes[i])) {
-            return false;
-        }
-        if (!quantity_parse(nodes[i]->text, DIMENSION_LENGTH, parts[i], &complaint)) {
-            return complain_at(target, nodes[i], &complaint);
-        }
-        if (!check_range(target, nodes[i], *parts[i])) {
-            return false;
-        }
-    }
-    *(Vec2 *)target->field = start;
+    *(Vec2 *)target->field = read;
     return true;
+}
+
+// Finds the number of a body or joint that the case names; the ground where it may stand.
+static bool find_name(const Target *target, const Node *node, SchemaFamily family,
+                      bool may_be_ground, int *number)
+{
+    if (!check_scalar(target, node)) {
+        return false;
+    }
+    *number = entries_number(target->entries, family, node->text);
+    if (*number < 0 && !(may_be_ground && strcmp(node->text, "ground") == 0)) {
+        return entries_refuse_name(target->entries, target->entry->source, family, may_be_ground,
+                                   node->text, node->span, target->err);
+    }
+    return true; // the ground is LINKAGE_GROUND, which is what an unknown name has
+}
+
+static bool store_between(const Target *target, Joint *joint)
+{
+    const Node *node = target->entry->node;
+    const Node *pair[2];
+    if (!find_pair(node, pair)) {
+        return refuse(target, node->span, "%s takes the two bodies of the joint", target->path);
+    }
+    if (!find_name(target, pair[0], SCHEMA_BODY, true, &joint->body_a) ||
+        !find_name(target, pair[1], SCHEMA_BODY, true, &joint->body_b)) {
+        return false;
+    }
+    return joint->body_a != joint->body_b ||
+           source_error(target->entry->source, pair[1]->span, "two different bodies", target->err,
+                        "%s names %s twice", target->path, pair[1]->text);
+}
+
+// A pin at the wall is at the wall, though the difference of two radii is rounded.
+static void seat_pin(Clearance *clearance)
+{
+    const double radial = clearance->hole_radius - clearance->pin_radius;
+    const double start = vec2_length(clearance->start);
+    if (start > radial && start <= radial * (1.0 + ROUNDING)) {
+        clearance->start = vec2_scale(radial / start * (1.0 - DBL_EPSILON), clearance->start);
+    }
 }
 
 static bool store_radial_clearance(const Target *target, Clearance *clearance)
 {
-    double radial;
-    Target number = *target;
-    number.field = &radial;
-    if (!store_number(&number, 1.0)) {
+    double radial = 0.0;
+    if (!read_number(target, target->entry->node, &radial)) {
         return false;
     }
     clearance->pin_radius = PIN_RADIUS;
@@ -295,31 +337,46 @@ static bool store_radial_clearance(const Target *target, Clearance *clearance)
 
 bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
 {
-    Target target = {.entry = entry, .err = err};
+    Target target = {.entries = entries, .entry = entry, .err = err};
     schema_path(entry->row, entries_name(entries, entry->row, entry->index), target.path);
     target.field = schema_field(entry->row, scenario, entry->index);
+    double number = 0.0;
     switch (entry->row->type) {
-    case SCHEMA_DIAMETER:
-        return store_number(&target, 0.5);
     case SCHEMA_TOLERATED:
         return store_tolerated(&target);
     case SCHEMA_INTEGER:
         return store_integer(&target);
     case SCHEMA_CHOICE:
-        return store_choice(&target);
+        // every enumeration here has the size of int
+        return find_word(&target, entry->node, target.field);
     case SCHEMA_BACKENDS:
         return store_backends(&target, &scenario->run);
     case SCHEMA_TEXT:
         return store_text(&target, target.field, SCENARIO_TITLE_SIZE);
     case SCHEMA_STIFFNESS:
         return store_stiffness(&target, &scenario->contact);
-    case SCHEMA_ECCENTRICITY:
-        return store_eccentricity(&target);
+    case SCHEMA_VECTOR:
+    case SCHEMA_ANCHOR: // moved to its body's frame once the bodies are placed
+        if (!store_vector(&target)) {
+            return false;
+        }
+        if (entry->row->family == SCHEMA_JOINT) {
+            seat_pin(&scenario->linkage.joints[entry->index].clearance);
+        }
+        return true;
+    case SCHEMA_BETWEEN:
+        return store_between(&target, target.field);
+    case SCHEMA_BODY_NAME:
+        return find_name(&target, entry->node, SCHEMA_BODY, false, target.field);
+    case SCHEMA_JOINT_NAME:
+        return find_name(&target, entry->node, SCHEMA_JOINT, false, target.field);
     case SCHEMA_RADIAL_CLEARANCE:
         return store_radial_clearance(&target, target.field);
-    case SCHEMA_QUANTITY:
-    case SCHEMA_ALONG: // moved to the centre of mass once the links are known
-    default:
-        return store_number(&target, 1.0);
+    default: // SCHEMA_ALONG is moved to the centre of mass once the links are known
+        if (!read_number(&target, entry->node, &number)) {
+            return false;
+        }
+        *(double *)target.field = entry->row->type == SCHEMA_DIAMETER ? 0.5 * number : number;
+        return true;
     }
 }

@@ -296,7 +296,7 @@ static void settings_tell_what_the_case_said(void **state)
     assert_int_equal(setting.kind, CASEFILE_WORD);
     assert_string_equal(setting.text, "hertz-socket");
     assert_true(find_setting(&scenario, "run.backends", &setting));
-    assert_string_equal(setting.text, "analytic, ode");
+    assert_string_equal(setting.text, "analytic, reference, ode");
     assert_true(find_setting(&scenario, "run.samples", &setting));
     assert_int_equal(setting.kind, CASEFILE_INTEGER);
     assert_near(setting.numbers[0], 3600.0, 0.0);

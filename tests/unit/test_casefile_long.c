@@ -1,0 +1,348 @@
+// Does a case with bodies become the linkage it describes? Runs in the source root.
+#include "casefile/casefile.h"
+
+#include "close.h"
+#include "model/kinematics.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char PIN[] =
+    "bodies:\n"
+    "  pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [1 mm, -2 mm], angle: 30 deg,\n"
+    "        velocity: [0.5 m/s, 0 m/s], spin: 3 rad/s}\n"
+    "joints:\n"
+    "  hole: {between: [ground, pin], at: [0 mm, 0 mm], hole: 10.2 mm, pin: 10 mm}\n"
+    "run: {duration: 10 ms, samples: 50}\n";
+
+// A four-bar's joints and drive, to be filled with the places of elbow and wrist.
+static const char LINKS[] = "joints:\n"
+                            "  pivot: {between: [crank, ground], at: [0 mm, 0 mm]}\n"
+                            "  elbow: {between: [crank, coupler], at: [%.17g m, %.17g m]}\n"
+                            "  wrist: {between: [coupler, follower], at: [%.17g m, %.17g m]}\n"
+                            "  heel:  {between: [follower, ground], at: [254 mm, 0 mm]}\n"
+                            "drive: {joint: pivot, speed: 1000 rpm}\n";
+
+// A driven crank with a rod that hangs on it and a pin in the rod's end: the drive moves the crank
+// alone.
+static const char CHAIN[] = "bodies:\n"
+                            "  crank: {mass: 0.1 kg, inertia: 90 kg mm^2, at: [50 mm, 0 mm]}\n"
+                            "  rod: {mass: 0.2 kg, inertia: 700 kg mm^2, at: [200 mm, 0 mm]}\n"
+                            "joints:\n"
+                            "  pivot: {between: [ground, crank], at: [0 mm, 0 mm]}\n"
+                            "  elbow: {between: [crank, rod], at: [100 mm, 0 mm]}\n"
+                            "drive: {joint: pivot, speed: 10 rad/s}\n";
+
+static Scenario load(const char *text, const char *const *overrides, size_t count)
+{
+    Scenario scenario;
+    Err err = {0};
+    if (!casefile_load_text("memory", text, strlen(text), overrides, count, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+    return scenario;
+}
+
+static Scenario load_file(const char *path, const char *override)
+{
+    Scenario scenario;
+    Err err = {0};
+    if (!casefile_load(path, &override, override != NULL ? 1 : 0, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+    return scenario;
+}
+
+static void refuse(const char *text, const char *override, const char *message)
+{
+    Scenario scenario;
+    Err err = {0};
+    const size_t count = override != NULL ? 1 : 0;
+    assert_false(
+        casefile_load_text("memory", text, strlen(text), &override, count, &scenario, &err));
+    assert_string_equal(err.text, message);
+}
+
+static Vec2 eccentricity(const Linkage *linkage, size_t number)
+{
+    Motion motions[LINKAGE_BODY_MAX];
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i] = linkage->bodies[i].start;
+    }
+    const Joint *joint = &linkage->joints[number];
+    return vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b),
+                    linkage_point(motions, joint->body_a, joint->anchor_a));
+}
+
+static void a_pin_in_a_hole_is_what_the_case_says(void **state)
+{
+    (void)state;
+    const Scenario scenario = load(PIN, NULL, 0);
+    const Linkage *linkage = &scenario.linkage;
+    assert_int_equal(linkage->body_count, 1);
+    assert_int_equal(linkage->joint_count, 1);
+    assert_false(linkage->driver.is_present);
+    assert_false(scenario.has_fourbar);
+    const Motion *start = &linkage->bodies[0].start;
+    assert_near(start->position.x, 1e-3, 0.0);
+    assert_near(start->angle, M_PI / 6.0, 1e-16);
+    assert_near(start->velocity.x, 0.5, 0.0);
+    assert_near(start->omega, 3.0, 0.0);
+    assert_int_equal(linkage->joints[0].kind, JOINT_CLEARANCE);
+    assert_int_equal(linkage->joints[0].body_a, LINKAGE_GROUND);
+    assert_near(linkage_radial_clearance(&linkage->joints[0]), 1e-4, 1e-17);
+    // the anchor follows the body's frame: R(-30 deg) (-1, 2) mm
+    assert_near(linkage->joints[0].anchor_b.x, 1e-3 * (1.0 - cos(M_PI / 6.0)), 1e-17);
+    assert_near(linkage->joints[0].anchor_b.y, 1e-3 * (0.5 + 2.0 * cos(M_PI / 6.0)), 1e-17);
+    assert_near(scenario_duration(&scenario), 0.01, 0.0);
+    assert_int_equal(scenario_sample_count(&scenario), 51);
+    // the closed form knows four-bars only
+    assert_int_equal(scenario.run.backend_count, 2);
+    assert_int_equal(scenario.run.backends[0], BACKEND_REFERENCE);
+    assert_int_equal(scenario.run.backends[1], BACKEND_ODE);
+}
+
+static void append_link(Text *text, const Body *body)
+{
+    text_append(text,
+                "  %s: {mass: %.17g kg, inertia: %.17g kg m^2, at: [%.17g m, %.17g m], angle: "
+                "%.17g rad}\n",
+                body->name, body->mass, body->inertia, body->start.position.x,
+                body->start.position.y, body->start.angle);
+}
+
+// The short form is the outside truth: the same four-bar as bodies starts and moves alike.
+static void a_four_bar_as_bodies_moves_as_the_short_form_says(void **state)
+{
+    (void)state;
+    const Scenario truth = load_file("cases/paper/ideal-nominal.yaml", "drive.start=50 deg");
+    const Linkage *links = &truth.linkage;
+    Motion motions[LINKAGE_BODY_MAX];
+    Text text;
+    text_init(&text);
+    text_append(&text, "bodies:\n");
+    for (size_t i = 0; i < links->body_count; i++) {
+        motions[i] = links->bodies[i].start;
+        append_link(&text, &links->bodies[i]);
+    }
+    const Vec2 elbow = linkage_point(motions, 0, links->joints[1].anchor_a);
+    const Vec2 wrist = linkage_point(motions, 1, links->joints[2].anchor_a);
+    text_append(&text, LINKS, elbow.x, elbow.y, wrist.x, wrist.y);
+    const Scenario built = load(text.data, NULL, 0);
+    for (size_t i = 0; i < links->body_count; i++) {
+        const Motion *motion = &built.linkage.bodies[i].start;
+        assert_near(motion->position.x, motions[i].position.x, 1e-12);
+        assert_near(motion->angle, motions[i].angle, 1e-12);
+        assert_near(motion->velocity.y, motions[i].velocity.y, 1e-9);
+        assert_near(motion->omega, motions[i].omega, 1e-8);
+        assert_near(motion->alpha, motions[i].alpha, 1e-5);
+    }
+    // an ideal joint has no sides: the drive finds the ground in its first place
+    assert_int_equal(built.linkage.joints[0].body_a, LINKAGE_GROUND);
+    assert_int_equal(linkage_driven_body(&built.linkage), 0);
+    assert_near(built.linkage.driver.start, 50.0 * M_PI / 180.0, 1e-12);
+    text_finish(&text);
+}
+
+static void a_pin_off_the_centre_moves_the_bodies(void **state)
+{
+    (void)state;
+    static const char *const OVERRIDE[] = {"joints.hole.start=[60 um, 80 um]"};
+    const Scenario pin = load(PIN, OVERRIDE, 1);
+    assert_near(eccentricity(&pin.linkage, 0).x, 60e-6, 1e-15);
+    assert_near(eccentricity(&pin.linkage, 0).y, 80e-6, 1e-15);
+    // at the wall, however the radii are rounded
+    assert_true(vec2_length(pin.linkage.joints[0].clearance.start) <=
+                linkage_radial_clearance(&pin.linkage.joints[0]));
+    const Scenario linkage =
+        load_file("cases/literature/parallelogram.yaml", "joints.wrist.start=[3 um, -4 um]");
+    // joints close to 1e-13 m
+    assert_near(eccentricity(&linkage.linkage, 2).x, 3e-6, 1e-13);
+    assert_near(eccentricity(&linkage.linkage, 2).y, -4e-6, 1e-13);
+    assert_near(eccentricity(&linkage.linkage, 1).x, 0.0, 1e-13);
+    static const char *const PLAY[] = {
+        "joints.elbow={radial-clearance: 1 mm, start: [0.3 mm, 0.4 mm]}"};
+    const Scenario chain = load(CHAIN, PLAY, 1);
+    assert_near(eccentricity(&chain.linkage, 1).x, 3e-4, 1e-15);
+    assert_near(chain.linkage.bodies[0].start.angle, 0.0, 1e-13);
+}
+
+// A third crank: with every joint held one is redundant, and the third turns with the others.
+static void redundant_play_is_no_hindrance(void **state)
+{
+    (void)state;
+    static const char *const OVERRIDES[] = {
+        "bodies.third={mass: 0.1 kg, inertia: 90 kg mm^2, at: [100 mm, 50 mm]}",
+        "joints.foot={between: [ground, third], at: [100 mm, 0 mm]}",
+        "joints.head={between: [coupler, third], at: [100 mm, 100 mm], radial-clearance: 10 um}",
+    };
+    Scenario scenario;
+    Err err = {0};
+    assert_true(
+        casefile_load("cases/literature/parallelogram.yaml", OVERRIDES, 3, &scenario, &err));
+    const double speed = scenario.linkage.driver.speed;
+    for (size_t i = 0; i < scenario.linkage.body_count; i++) {
+        const double omega = strcmp(scenario.linkage.bodies[i].name, "coupler") == 0 ? 0.0 : speed;
+        assert_near(scenario.linkage.bodies[i].start.omega, omega, 1e-9 * speed);
+    }
+}
+
+static Vec2 parting(const Linkage *linkage, size_t number)
+{
+    Motion motions[LINKAGE_BODY_MAX];
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i] = linkage->bodies[i].start;
+    }
+    const Joint *joint = &linkage->joints[number];
+    return vec2_sub(linkage_point_velocity(motions, joint->body_b, joint->anchor_b),
+                    linkage_point_velocity(motions, joint->body_a, joint->anchor_a));
+}
+
+// The rod starts as a blow on its end leaves it, which then moves with the crank's.
+static void a_drive_takes_free_bodies_with_it(void **state)
+{
+    (void)state;
+    const Scenario scenario = load(CHAIN, NULL, 0);
+    const Body *rod = &scenario.linkage.bodies[1];
+    assert_near(vec2_length(parting(&scenario.linkage, 0)), 0.0, 1e-15);
+    assert_near(vec2_length(parting(&scenario.linkage, 1)), 0.0, 1e-15);
+    assert_near(scenario.linkage.bodies[0].start.omega, 10.0, 1e-14);
+    // impulse J at the end: m v_c = J, I omega = -J l/2, v_c - omega l/2 = 1 m/s with l/2 = 0.1 m
+    const double impulse = 1.0 / (1.0 / rod->mass + 0.01 / rod->inertia);
+    assert_close(rod->start.velocity.y, impulse / rod->mass, 1e-12);
+    assert_close(rod->start.omega, -0.1 * impulse / rod->inertia, 1e-12);
+}
+
+static void speeds_that_agree_are_taken_as_they_are(void **state)
+{
+    (void)state;
+    static const char *const OVERRIDES[] = {
+        "bodies.crank.spin=10 rad/s", "bodies.crank.velocity=[0 m/s, 0.5 m/s]",
+        "bodies.rod.velocity=[0 m/s, 1.2 m/s]", "bodies.rod.spin=2 rad/s"};
+    const Scenario scenario = load(CHAIN, OVERRIDES, 4);
+    assert_near(scenario.linkage.bodies[1].start.velocity.y, 1.2, 1e-12);
+    assert_near(scenario.linkage.bodies[1].start.omega, 2.0, 1e-12);
+    // rounded to nine digits they still agree, and are then made to
+    static const char *const ROUNDED[] = {
+        "bodies.crank.spin=10 rad/s", "bodies.crank.velocity=[0 m/s, 0.5 m/s]",
+        "bodies.rod.velocity=[0 m/s, 1.2000000005 m/s]", "bodies.rod.spin=2 rad/s"};
+    const Scenario rounded = load(CHAIN, ROUNDED, 4);
+    assert_near(vec2_length(parting(&rounded.linkage, 1)), 0.0, 1e-15);
+    refuse(CHAIN, "bodies.rod.spin=2 rad/s",
+           "--set bodies.rod.spin=2 rad/s: the speeds at the start pull the ideal joint 'elbow' "
+           "apart by 1.2 m/s\n"
+           "    --set bodies.rod.spin=2 rad/s\n"
+           "                          ^~~~~~~\n"
+           "allowed: speeds that keep the joints closed, for rod next to these velocity: [0 m/s, "
+           "0.311111111111 m/s], spin: -6.88888888889 rad/s");
+    refuse(CHAIN, "bodies.crank.spin=0 rad/s",
+           "--set bodies.crank.spin=0 rad/s: the driven body does not turn as the drive does\n"
+           "    --set bodies.crank.spin=0 rad/s\n"
+           "                            ^~~~~~~\n"
+           "allowed: speeds that keep the joints closed, for crank next to these velocity: [0 "
+           "m/s, 0.5 m/s], spin: 10 rad/s");
+}
+
+static void points_stand_on_any_body(void **state)
+{
+    (void)state;
+    static const char *const OVERRIDES[] = {"points.tip={body: rod, along: 100 mm, offset: 5 mm}"};
+    const Scenario scenario = load(CHAIN, OVERRIDES, 1);
+    assert_int_equal(scenario.points[0].body, 1);
+    assert_near(scenario.points[0].local.x, 0.1, 0.0);
+    assert_near(scenario.points[0].local.y, 0.005, 0.0);
+    refuse(CHAIN, "points.tip={body: rood, along: 1 mm}",
+           "--set points.tip={body: rood, along: 1 mm}: unknown body 'rood'; did you mean 'rod'?\n"
+           "    --set points.tip={body: rood, along: 1 mm}\n"
+           "                            ^~~~\n"
+           "allowed: crank, rod");
+}
+
+static bool find_setting(const Scenario *scenario, const char *key, CasefileSetting *setting)
+{
+    for (size_t i = 0; casefile_setting(scenario, i, setting); i++) {
+        if (strcmp(setting->key, key) == 0) {
+            return setting->applies;
+        }
+    }
+    return false;
+}
+
+static void settings_tell_bodies_and_joints(void **state)
+{
+    (void)state;
+    CasefileSetting setting;
+    const Scenario pin = load(PIN, NULL, 0);
+    assert_true(find_setting(&pin, "bodies.pin.velocity", &setting));
+    assert_int_equal(setting.number_count, 2);
+    assert_near(setting.numbers[0], 0.5, 0.0);
+    assert_string_equal(setting.unit, "m/s");
+    assert_true(find_setting(&pin, "joints.hole.between", &setting));
+    assert_string_equal(setting.text, "ground, pin");
+    assert_true(find_setting(&pin, "joints.hole.at", &setting));
+    assert_near(setting.numbers[1], 0.0, 1e-18);
+    assert_true(find_setting(&pin, "run.duration", &setting));
+    assert_false(find_setting(&pin, "run.revolutions", &setting));
+    assert_false(find_setting(&pin, "drive.speed", &setting));
+    assert_false(find_setting(&pin, "four-bar.crank.length", &setting));
+    assert_false(find_setting(&pin, "contact.friction-speed", &setting));
+    static const char *const POINT[] = {"points.tip={body: rod, along: 100 mm}",
+                                        "contact.friction=0.1", "reference.tolerance=1e-9"};
+    const Scenario chain = load(CHAIN, POINT, 3);
+    assert_true(find_setting(&chain, "drive.joint", &setting));
+    assert_string_equal(setting.text, "pivot");
+    assert_true(find_setting(&chain, "points.tip.body", &setting));
+    assert_string_equal(setting.text, "rod");
+    assert_true(find_setting(&chain, "points.tip.along", &setting));
+    assert_near(setting.numbers[0], 0.1, 0.0);
+    assert_true(find_setting(&chain, "reference.tolerance", &setting));
+    assert_near(chain.reference.tolerance, 1e-9, 0.0);
+    assert_false(find_setting(&chain, "joints.elbow.hole", &setting));
+    // of a determined mechanism the drive sets the speeds
+    const Scenario linkage = load_file("cases/literature/parallelogram.yaml", NULL);
+    assert_false(find_setting(&linkage, "bodies.coupler.spin", &setting));
+    assert_true(find_setting(&linkage, "joints.wrist.radial-clearance", &setting));
+}
+
+static void the_cases_of_the_literature_load(void **state)
+{
+    (void)state;
+    static const char *const CASES[] = {"four-bar-half-mm", "parallelogram", "pin-in-hole-drop",
+                                        "pin-in-hole-orbit", "three-clearances"};
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        char path[128];
+        snprintf(path, sizeof path, "cases/literature/%s.yaml", CASES[i]);
+        const Scenario scenario = load_file(path, NULL);
+        assert_true(scenario_has_clearance(&scenario));
+        Motion motions[LINKAGE_BODY_MAX];
+        for (size_t k = 0; k < scenario.linkage.body_count; k++) {
+            motions[k] = scenario.linkage.bodies[k].start;
+        }
+        // with the play open nothing is redundant: each freedom is one a body, less two a joint
+        size_t held = 0;
+        for (size_t k = 0; k < scenario.linkage.joint_count; k++) {
+            held += scenario.linkage.joints[k].kind == JOINT_REVOLUTE ? 2 : 0;
+        }
+        assert_int_equal(kinematics_mobility(&scenario.linkage, motions, true),
+                         3 * scenario.linkage.body_count - held);
+    }
+    const Scenario orbit = load_file("cases/literature/pin-in-hole-orbit.yaml", NULL);
+    assert_near(orbit.linkage.bodies[0].start.position.x, 1e-4, 1e-15);
+    assert_near(orbit.linkage.bodies[0].start.velocity.y, 0.5, 0.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pin_in_a_hole_is_what_the_case_says),
+        cmocka_unit_test(a_four_bar_as_bodies_moves_as_the_short_form_says),
+        cmocka_unit_test(a_pin_off_the_centre_moves_the_bodies),
+        cmocka_unit_test(redundant_play_is_no_hindrance),
+        cmocka_unit_test(a_drive_takes_free_bodies_with_it),
+        cmocka_unit_test(speeds_that_agree_are_taken_as_they_are),
+        cmocka_unit_test(points_stand_on_any_body),
+        cmocka_unit_test(settings_tell_bodies_and_joints),
+        cmocka_unit_test(the_cases_of_the_literature_load),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
