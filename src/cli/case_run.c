@@ -7,32 +7,106 @@
 #include <stdio.h>
 #include <string.h>
 
-// The run that the others are held against: the closed form, where it is among them.
-static const Trajectory *find_truth(const CaseRun *run)
+// The run of a backend that is complete, or NULL.
+static const Trajectory *find_run(const CaseRun *run, BackendKind backend)
 {
     for (size_t i = 0; i < run->scenario.run.backend_count; i++) {
-        if (run->scenario.run.backends[i] == BACKEND_ANALYTIC && run->runs[i]->is_complete) {
+        if (run->scenario.run.backends[i] == backend && run->runs[i]->is_complete) {
             return run->runs[i];
         }
     }
     return NULL;
 }
 
-static void measure_errors(CaseRun *run)
+static bool uses(const CaseRun *run, BackendKind backend)
 {
-    const Trajectory *truth = find_truth(run);
-    for (size_t i = 0; truth != NULL && i < run->scenario.run.backend_count; i++) {
-        if (run->runs[i] != truth && run->runs[i]->is_complete) {
-            run->errors[i] = error_against(run->runs[i], truth);
+    const RunOptions *options = &run->scenario.run;
+    for (size_t i = 0; i < options->backend_count; i++) {
+        if (options->backends[i] == backend) {
+            return true;
         }
     }
+    return false;
+}
+
+static void make_truth(CaseRun *run, bool is_quiet)
+{
+    if (!uses(run, BACKEND_REFERENCE)) {
+        return;
+    }
+    Progress progress;
+    run->truth = truth_make(&run->scenario, progress_watch(&progress, "reference", is_quiet));
+    progress_end(&progress);
+    run->report.truth = &run->truth;
+}
+
+// One run of one backend; the truth's own trajectory stands for the run of its backend.
+static Trajectory *run_backend(const CaseRun *run, const Solver *solver, bool is_quiet)
+{
+    Trajectory *truth = run->truth.trajectory;
+    if (truth != NULL && strcmp(truth->backend, solver->name) == 0) {
+        return truth;
+    }
+    Progress progress;
+    const RunWatch watch = progress_watch(&progress, solver->name, is_quiet);
+    Trajectory *trajectory = run_scenario(&run->scenario, solver, watch);
+    progress_end(&progress);
+    return trajectory;
+}
+
+// Errors are against the certified solution; without one, against the closed form.
+static void measure_errors(CaseRun *run)
+{
+    const bool has_truth = run_report_has_truth(&run->report);
+    const Trajectory *truth = has_truth ? run->truth.trajectory : find_run(run, BACKEND_ANALYTIC);
+    const double horizon = has_truth ? run->truth.horizon_s : INFINITY;
+    for (size_t i = 0; truth != NULL && i < run->scenario.run.backend_count; i++) {
+        if (run->runs[i] != truth && run->runs[i]->is_complete) {
+            run->errors[i] = error_against(run->runs[i], truth, horizon);
+        }
+    }
+}
+
+// The contacts of every run that lets the play happen, beside the truth's.
+static void match_contacts(CaseRun *run)
+{
+    const Linkage *linkage = &run->scenario.linkage;
+    for (size_t i = 0; i < run->scenario.run.backend_count; i++) {
+        const Trajectory *trajectory = run->runs[i];
+        for (size_t k = 0; trajectory != run->truth.trajectory && k < linkage->joint_count; k++) {
+            if (run_report_feels_play(trajectory, &linkage->joints[k])) {
+                run->matches[i].joints[k] =
+                    spike_match(trajectory, run->truth.trajectory, k, run->truth.horizon_s);
+            }
+        }
+    }
+    run->report.matches = run->matches;
+}
+
+// Where the motion cannot be predicted, its statistics may still agree.
+static void run_ensembles(CaseRun *run, bool is_quiet)
+{
+    const RunOptions *options = &run->scenario.run;
+    for (size_t i = 0; i < options->backend_count; i++) {
+        if (options->backends[i] == BACKEND_ANALYTIC || !run->runs[i]->is_complete) {
+            continue;
+        }
+        const Solver *solver = registry_solver(options->backends[i]);
+        char name[LINKAGE_NAME_SIZE];
+        snprintf(name, sizeof name, "%s, %d starts", solver->name, ENSEMBLE_MEMBERS);
+        Progress progress;
+        const RunWatch watch = progress_watch(&progress, name, is_quiet);
+        ensemble_run(&run->scenario, solver, watch, &run->ensembles[i]);
+        progress_end(&progress);
+    }
+    run->report.ensembles = run->ensembles;
 }
 
 // What the closed form has to say beyond its trajectory, where it took part.
 static void ask_closed_form(CaseRun *run)
 {
     const Scenario *scenario = &run->scenario;
-    if (find_truth(run) == NULL || !scenario->has_fourbar) {
+    if (find_run(run, BACKEND_ANALYTIC) == NULL || !scenario->has_fourbar) {
         return;
     }
     // a crank that does not turn fully has no turn to sum up: no error, only nothing to say
@@ -49,30 +123,36 @@ static void ask_closed_form(CaseRun *run)
 void case_run_execute(CaseRun *run, bool is_quiet)
 {
     const RunOptions *options = &run->scenario.run;
-    for (size_t i = 0; i < options->backend_count; i++) {
-        const Solver *solver = registry_solver(options->backends[i]);
-        Progress progress;
-        const RunWatch watch = progress_watch(&progress, solver->name, is_quiet);
-        run->runs[i] = run_scenario(&run->scenario, solver, watch);
-        progress_end(&progress);
-        run->failed_count += run->runs[i]->is_complete ? 0 : 1;
-    }
     run->report = (RunReport){
         .scenario = &run->scenario,
         .run_count = options->backend_count,
         .runs = run->runs,
         .errors = run->errors,
     };
+    make_truth(run, is_quiet);
+    for (size_t i = 0; i < options->backend_count; i++) {
+        run->runs[i] = run_backend(run, registry_solver(options->backends[i]), is_quiet);
+        run->failed_count += run->runs[i]->is_complete ? 0 : 1;
+    }
     measure_errors(run);
     ask_closed_form(run);
+    if (run_report_has_truth(&run->report) && scenario_has_clearance(&run->scenario)) {
+        match_contacts(run);
+        if (run->truth.is_limited) {
+            run_ensembles(run, is_quiet);
+        }
+    }
 }
 
 void case_run_finish(CaseRun *run)
 {
     for (size_t i = 0; i < BACKEND_COUNT; i++) {
-        trajectory_destroy(run->runs[i]);
+        if (run->runs[i] != run->truth.trajectory) {
+            trajectory_destroy(run->runs[i]);
+        }
         run->runs[i] = NULL;
     }
+    truth_finish(&run->truth);
 }
 
 void case_run_name(const Scenario *scenario, char *name, size_t size)

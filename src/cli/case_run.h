@@ -9,12 +9,16 @@ typedef struct CaseRun {
     TrajectoryError errors[BACKEND_COUNT];
     AnalyticSummary summary;
     Stackup stackup;
+    Truth truth; // its trajectory is among the runs where its backend is
+    RunMatches matches[BACKEND_COUNT];
+    Ensemble ensembles[BACKEND_COUNT];
     RunReport report; // points into this CaseRun, which must not be moved
     size_t failed_count;
 } CaseRun;
 
-// Runs the scenario that stands in it, with progress on standard error unless quiet. A backend
-// that fails is a run that is not complete, and counted.
+// Runs the scenario that stands in it, with the reference certified where it is asked for, and from
+// many starts where the motion cannot be predicted, with progress on standard error unless quiet. A
+// backend that fails is a run that is not complete, and counted.
 void case_run_execute(CaseRun *run, bool is_quiet);
 
 void case_run_finish(CaseRun *run);

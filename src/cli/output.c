@@ -30,5 +30,5 @@ bool output_end(Err *err)
         return err_set(err, ERR_FILE, "%s", "");
     }
     return err_set(err, ERR_FILE, "cannot write standard output: %s",
-                   strerror(errno != 0 ? errno : EIO));
+                   errno != 0 ? strerror(errno) : "a write failed");
 }

@@ -39,16 +39,10 @@ static bool write_series(const CaseRun *run, const Trajectory *trajectory, const
     return true;
 }
 
-// A pipe or a device takes all series as it is; a name is only made for files.
-static bool is_device(const char *path)
-{
-    struct stat status;
-    return stat(path, &status) == 0 && !S_ISREG(status.st_mode);
-}
-
 bool run_files_series(const CaseRun *run, const char *path, bool is_quiet, Err *err)
 {
-    const size_t file_count = is_device(path) ? 1 : run->report.run_count;
+    // a stream takes all series as it is; a name is only made for files
+    const size_t file_count = file_is_stream(path) ? 1 : run->report.run_count;
     for (size_t i = 0; i < run->report.run_count; i++) {
         const Trajectory *trajectory = run->runs[i];
         char target[FILE_PATH_SIZE];
@@ -138,8 +132,13 @@ bool run_files_folder(const CaseRun *run, const char *folder, bool is_quiet, Err
         const Trajectory *trajectory = run->runs[i];
         char ending[LINKAGE_NAME_SIZE + 8];
         snprintf(ending, sizeof ending, "-%s.csv", trajectory->backend);
-        if (trajectory->is_complete && (!join_path(folder, name, ending, path, err) ||
-                                        !write_series(run, trajectory, path, is_quiet, err))) {
+        if (!join_path(folder, name, ending, path, err)) {
+            return false;
+        }
+        if (!trajectory->is_complete) {
+            // a series of an earlier run must not stand for one that failed
+            remove(path);
+        } else if (!write_series(run, trajectory, path, is_quiet, err)) {
             return false;
         }
     }

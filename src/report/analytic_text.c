@@ -28,10 +28,12 @@ void analytic_text_kinematics(const RunReport *report, const Style *style, Text 
                 units_wrapped_deg(summary->transmission_low_crank),
                 summary->transmission_high * UNITS_DEG,
                 units_wrapped_deg(summary->transmission_high_crank));
-    text_append(text, "  follower             %.6g to %.6g deg, a swing of %.6g deg\n",
-                summary->follower_low * UNITS_DEG, summary->follower_high * UNITS_DEG,
-                (summary->follower_high - summary->follower_low) * UNITS_DEG);
-    if (summary->has_limits) {
+    if (!summary->has_limits) {
+        text_append(text, "  follower             turns fully\n");
+    } else {
+        text_append(text, "  follower             %.6g to %.6g deg, a swing of %.6g deg\n",
+                    summary->follower_low * UNITS_DEG, summary->follower_high * UNITS_DEG,
+                    (summary->follower_high - summary->follower_low) * UNITS_DEG);
         text_append(text,
                     "  limits of the swing  at crank %.1f deg (crank and coupler stretched) and "
                     "%.1f deg (folded)\n",
@@ -117,6 +119,24 @@ static void describe_combination(const Stackup *stackup, const StackupCombinatio
     }
 }
 
+// A change: of an angle in degrees, for a share of an angle means nothing; else in percent.
+static void change_cell(Table *table, int quantity, double change, double nominal)
+{
+    const bool is_angle = quantity == FOURBAR_FOLLOWER_ANGLE || quantity == FOURBAR_TRANSMISSION;
+    if (is_angle) {
+        table_cell(table, "%+.3f deg", change * UNITS_DEG);
+    } else {
+        table_cell(table, "%+.3g %%", change / fabs(nominal) * UNITS_PERCENT);
+    }
+}
+
+// The swing of a follower that turns fully has no ends.
+static bool has_row(const RunReport *report, int quantity)
+{
+    return quantity != FOURBAR_FOLLOWER_ANGLE || report->summary == NULL ||
+           report->summary->has_limits;
+}
+
 static void bound_row(Table *table, const Stackup *stackup, int quantity, bool is_high)
 {
     const StackupRow *row = &stackup->rows[quantity];
@@ -131,13 +151,14 @@ static void bound_row(Table *table, const Stackup *stackup, int quantity, bool i
     table_cell(table, "%s", unit);
     table_cell(table, "%.6g", nominal * per_si);
     table_cell(table, "%.6g", bound->value * per_si);
-    table_cell(table, "%+.3g", (bound->value - nominal) / fabs(nominal) * UNITS_PERCENT);
+    change_cell(table, quantity, bound->value - nominal, nominal);
     table_cell(table, "%s", words);
 }
 
-// What each source does alone, as a share of the nominal value.
-static void write_shares(const Stackup *stackup, Text *text)
+// What each source does alone.
+static void write_shares(const RunReport *report, Text *text)
 {
+    const Stackup *stackup = report->stackup;
     size_t sources = 0;
     for (int i = 0; i < STACKUP_SOURCES; i++) {
         sources += stackup->is_source[i] ? 1 : 0;
@@ -148,18 +169,21 @@ static void write_shares(const Stackup *stackup, Text *text)
     size_t column = 2;
     for (int i = 0; i < STACKUP_SOURCES; i++) {
         if (stackup->is_source[i]) {
-            table_head(table, column++, STACKUP_SOURCE_NAMES[i], "%", TABLE_RIGHT);
+            table_head(table, column++, STACKUP_SOURCE_NAMES[i], "", TABLE_RIGHT);
         }
     }
     for (int cell = 0; cell < 2 * FOURBAR_QUANTITY_COUNT; cell++) {
         const StackupRow *row = &stackup->rows[cell / 2];
         const StackupBound *bound = cell % 2 == 0 ? &row->high : &row->low;
         const double nominal = cell % 2 == 0 ? row->nominal_high : row->nominal_low;
+        if (!has_row(report, cell / 2)) {
+            continue;
+        }
         table_cell(table, "%s", STACKUP_QUANTITY_NAMES[cell / 2]);
         table_cell(table, "%s", cell % 2 == 0 ? "max" : "min");
         for (int i = 0; i < STACKUP_SOURCES; i++) {
             if (stackup->is_source[i]) {
-                table_cell(table, "%+.3g", bound->alone[i] / fabs(nominal) * UNITS_PERCENT);
+                change_cell(table, cell / 2, bound->alone[i], nominal);
             }
         }
     }
@@ -180,16 +204,18 @@ void analytic_text_stackup(const RunReport *report, const Style *style, Text *te
     table_head(table, 2, "unit", "", TABLE_LEFT);
     table_head(table, 3, "nominal", "", TABLE_RIGHT);
     table_head(table, 4, "worst case", "", TABLE_RIGHT);
-    table_head(table, 5, "change", "%", TABLE_RIGHT);
+    table_head(table, 5, "change", "", TABLE_RIGHT);
     table_head(table, 6, "where", "", TABLE_LEFT);
     for (int quantity = 0; quantity < FOURBAR_QUANTITY_COUNT; quantity++) {
-        bound_row(table, stackup, quantity, true);
-        bound_row(table, stackup, quantity, false);
+        if (has_row(report, quantity)) {
+            bound_row(table, stackup, quantity, true);
+            bound_row(table, stackup, quantity, false);
+        }
     }
     table_write(table, text);
     table_destroy(table);
     text_append(text, "\n");
-    write_shares(stackup, text);
+    write_shares(report, text);
     text_append(text,
                 "  Play counts as a link of its radial clearance; impacts are not part of it.\n");
 }

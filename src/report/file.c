@@ -1,7 +1,11 @@
 // How does a file come to be there whole or not at all?
+//
+// It is written beside its place and renamed when complete. A run that is interrupted meanwhile
+// takes what it had begun away with it.
 #include "report/file.h"
 
 #include <errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -12,11 +16,48 @@ static bool fail_to_write(const char *path, int reason, Err *err)
     return err_set(err, ERR_FILE, "cannot write %s: %s", path, strerror(reason));
 }
 
+// What a signal has to take away: the one file that is being written.
+static char pending[FILE_PATH_SIZE];
+
+static void take_away(int signal_number)
+{
+    if (pending[0] != '\0') {
+        unlink(pending);
+    }
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+}
+
+static void watch_signals(const char *temporary)
+{
+    const int signals[] = {SIGINT, SIGTERM, SIGHUP};
+    snprintf(pending, sizeof pending, "%s", temporary);
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+        struct sigaction former;
+        // what the caller ignores stays ignored
+        if (sigaction(signals[i], NULL, &former) == 0 && former.sa_handler == SIG_DFL) {
+            signal(signals[i], take_away);
+        }
+    }
+}
+
+static bool is_standard_output(const char *path)
+{
+    return strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0;
+}
+
+bool file_is_stream(const char *path)
+{
+    struct stat status;
+    return is_standard_output(path) || strncmp(path, "/dev/", 5) == 0 ||
+           strncmp(path, "/proc/", 6) == 0 ||
+           (stat(path, &status) == 0 && !S_ISREG(status.st_mode));
+}
+
 // Follows symbolic links, so that the file they lead to is replaced and not the link.
 static bool find_target(const char *path, char *target, bool *is_regular, Err *err)
 {
-    struct stat status;
-    *is_regular = stat(path, &status) != 0 || S_ISREG(status.st_mode);
+    *is_regular = !file_is_stream(path);
     char *resolved = realpath(path, NULL);
     const int written = snprintf(target, FILE_PATH_SIZE, "%s", resolved == NULL ? path : resolved);
     free(resolved);
@@ -40,8 +81,18 @@ bool file_begin(WholeFile *file, const char *path, Err *err)
             return fail_to_write(path, ENAMETOOLONG, err);
         }
     }
-    file->stream = fopen(is_regular ? file->temporary : file->path, is_regular ? "wx" : "w");
-    return file->stream != NULL || fail_to_write(path, errno, err);
+    if (is_standard_output(path)) {
+        // beside the program's own words, wherever they go
+        fflush(stdout);
+        file->stream = fdopen(dup(STDOUT_FILENO), "w");
+    } else {
+        file->stream = fopen(is_regular ? file->temporary : path, is_regular ? "wx" : "w");
+    }
+    if (file->stream == NULL) {
+        return fail_to_write(path, errno, err);
+    }
+    watch_signals(file->temporary);
+    return true;
 }
 
 bool file_end(WholeFile *file, Err *err)
@@ -49,10 +100,11 @@ bool file_end(WholeFile *file, Err *err)
     // a write that failed earlier has left its mark on the stream, but not always its reason
     errno = 0;
     const bool is_written = fflush(file->stream) == 0 && !ferror(file->stream);
-    const int reason = errno != 0 ? errno : EIO;
+    const int reason = errno;
     if (!is_written) {
         file_abandon(file);
-        return fail_to_write(file->path, reason, err);
+        return reason != 0 ? fail_to_write(file->path, reason, err)
+                           : err_set(err, ERR_FILE, "cannot write %s: a write failed", file->path);
     }
     const bool is_closed = fclose(file->stream) == 0;
     file->stream = NULL;
@@ -61,6 +113,7 @@ bool file_end(WholeFile *file, Err *err)
         file_abandon(file);
         return fail_to_write(file->path, late_reason, err);
     }
+    pending[0] = '\0';
     return true;
 }
 
@@ -73,6 +126,7 @@ void file_abandon(WholeFile *file)
     if (file->temporary[0] != '\0') {
         unlink(file->temporary);
     }
+    pending[0] = '\0';
 }
 
 bool file_write_text(const char *path, const char *text, Err *err)

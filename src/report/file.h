@@ -18,6 +18,10 @@ typedef struct WholeFile {
     char temporary[FILE_PATH_SIZE]; // beside it; empty where the target is written directly
 } WholeFile;
 
+// Whether a path stands for a stream that is written as it is: "-" and /dev/stdout for standard
+// output, a pipe, a device. Anything else is a file that is written whole or not at all.
+bool file_is_stream(const char *path);
+
 // Begins a file. Fails with ERR_FILE, naming the path and the reason.
 bool file_begin(WholeFile *file, const char *path, Err *err);
 

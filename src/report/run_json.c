@@ -1,61 +1,14 @@
 // What do other programs read of the runs of a case?
 #include "report/run_json.h"
 
-#include "casefile/casefile.h"
 #include "report/analytic_json.h"
 #include "report/json_value.h"
+#include "report/run_truth_json.h"
+#include "report/settings_json.h"
 #include "report/units.h"
-#include "version.h"
 
 #include <inttypes.h>
 #include <stdio.h>
-
-static json_t *tool_object(void)
-{
-    return json_pack("{s:s, s:s, s:s, s:s}", "version", JOINTPLAY_VERSION, "ode",
-                     JOINTPLAY_ODE_VERSION, "ccd", JOINTPLAY_CCD_VERSION, "gsl",
-                     JOINTPLAY_GSL_VERSION);
-}
-
-static json_t *setting_value(const CasefileSetting *setting)
-{
-    const double *numbers = setting->numbers;
-    switch (setting->kind) {
-    case CASEFILE_INTEGER:
-        return json_integer((json_int_t)numbers[0]);
-    case CASEFILE_NUMBER:
-        break;
-    default:
-        return json_value_text(setting->text);
-    }
-    if (setting->number_count == 1) {
-        return json_value_real(numbers[0]);
-    }
-    if (setting->number_count == 2) {
-        return json_pack("[o, o]", json_value_real(numbers[0]), json_value_real(numbers[1]));
-    }
-    return json_pack("{s:o, s:o, s:o}", "nominal", json_value_real(numbers[0]), "lower",
-                     json_value_real(numbers[1]), "upper", json_value_real(numbers[2]));
-}
-
-// Every setting that the scenario makes use of, by the key it has in a case file, in SI; and the
-// units of those that have one.
-static void set_settings(json_t *object, const Scenario *scenario)
-{
-    json_t *settings = json_object();
-    json_t *units = json_object();
-    CasefileSetting setting;
-    for (size_t i = 0; casefile_setting(scenario, i, &setting); i++) {
-        if (setting.applies) {
-            json_object_set_new(settings, setting.key, setting_value(&setting));
-        }
-        if (setting.applies && setting.unit[0] != '\0') {
-            json_object_set_new(units, setting.key, json_string(setting.unit));
-        }
-    }
-    json_object_set_new(object, "settings", settings);
-    json_object_set_new(object, "setting_units", units);
-}
 
 static void set_extreme(json_t *object, const char *name, const char *unit, Extreme extreme)
 {
@@ -127,26 +80,6 @@ static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
     return joints;
 }
 
-static json_t *error_object(const RunReport *report, const TrajectoryError *error)
-{
-    if (!error->is_known) {
-        return json_null();
-    }
-    json_t *object = json_object();
-    json_object_set_new(object, "against", json_string(error->against));
-    json_value_set(object, "omega_max", error->omega_max);
-    json_value_set(object, "omega_max_time_s", error->omega_max_time_s);
-    json_value_set(object, "omega_rms", error->omega_rms);
-    json_value_set(object, "alpha_max", error->alpha_max);
-    json_value_set(object, "angle_max_rad", error->angle_max_rad);
-    json_object_set_new(object, "includes_play",
-                        json_boolean(scenario_has_clearance(report->scenario)));
-    // not measured in this version
-    json_object_set_new(object, "horizon_s", json_null());
-    json_object_set_new(object, "reference_uncertainty", json_null());
-    return object;
-}
-
 static json_t *run_object(const RunReport *report, size_t index)
 {
     const Trajectory *run = report->runs[index];
@@ -159,6 +92,7 @@ static json_t *run_object(const RunReport *report, size_t index)
     }
     json_value_set(object, "step_s", run->step_s > 0.0 ? run->step_s : NAN);
     json_object_set_new(object, "steps", json_integer((json_int_t)run->steps));
+    json_object_set_new(object, "evaluations", json_integer((json_int_t)run->evaluations));
     json_value_set(object, "duration_s", run->duration_s);
     json_value_set(object, "wall_s", run->wall_s);
     json_value_set(object, "us_per_step", run->wall_s / (double)run->steps * UNITS_US);
@@ -167,7 +101,10 @@ static json_t *run_object(const RunReport *report, size_t index)
     json_object_set_new(object, "contact_rows", json_integer((json_int_t)run->contact_rows));
     json_object_set_new(object, "bodies", bodies_object(linkage, run));
     json_object_set_new(object, "joints", joints_object(linkage, run));
-    json_object_set_new(object, "error", error_object(report, &report->errors[index]));
+    json_object_set_new(object, "error", run_truth_json_error(report, index));
+    json_object_set_new(object, "energy", run_truth_json_energy(&run->energy));
+    json_object_set_new(object, "spike_match", run_truth_json_matches(report, index));
+    json_object_set_new(object, "ensemble", run_truth_json_ensemble(report, index));
     json_object_set_new(object, "hash", json_sprintf("%016" PRIx64, run->hash));
     return object;
 }
@@ -175,10 +112,10 @@ static json_t *run_object(const RunReport *report, size_t index)
 json_t *run_json_build(const RunReport *report)
 {
     json_t *object = json_object();
-    json_object_set_new(object, "tool", tool_object());
+    json_object_set_new(object, "tool", settings_json_tool());
     json_object_set_new(object, "case", json_value_text(report->scenario->path));
     json_object_set_new(object, "title", json_value_text(report->scenario->title));
-    set_settings(object, report->scenario);
+    settings_json_set(object, report->scenario);
     if (report->summary != NULL) {
         json_object_set_new(object, "kinematics", analytic_json_kinematics(report));
         json_object_set_new(object, "inverse_dynamics", analytic_json_forces(report));
@@ -186,6 +123,7 @@ json_t *run_json_build(const RunReport *report)
     if (report->stackup != NULL && report->stackup->has_sources) {
         json_object_set_new(object, "stackup", analytic_json_stackup(report));
     }
+    json_object_set_new(object, "truth", run_truth_json_truth(report));
     json_t *runs = json_array();
     for (size_t i = 0; i < report->run_count; i++) {
         json_array_append_new(runs, run_object(report, i));

@@ -3,9 +3,20 @@
 
 #include "analytic/stackup.h"
 #include "analytic/summary.h"
+#include "compare/ensemble.h"
 #include "compare/error.h"
+#include "compare/spike_match.h"
+#include "compare/truth.h"
 
 #include <string.h>
+
+// An error below so many times the reference's uncertainty says nothing about the run.
+static const double RUN_REPORT_CERTAIN = 10.0;
+
+// The contacts of one run beside the reference's, by joint.
+typedef struct RunMatches {
+    SpikeMatch joints[LINKAGE_JOINT_MAX];
+} RunMatches;
 
 typedef struct RunReport {
     const Scenario *scenario;
@@ -14,7 +25,39 @@ typedef struct RunReport {
     const TrajectoryError *errors;  // one a run; not known for the run that is the truth
     const AnalyticSummary *summary; // NULL where the closed form had no part in it
     const Stackup *stackup;         // likewise
+    const Truth *truth;             // NULL where no reference was asked for
+    const RunMatches *matches;      // one a run; NULL without a reference
+    const Ensemble *ensembles;      // one a run, some empty; NULL where the motion is predictable
 } RunReport;
+
+// Whether there is a certified solution.
+static inline bool run_report_has_truth(const RunReport *report)
+{
+    return report->truth != NULL && report->truth->trajectory->is_complete;
+}
+
+// Whether an error is against the certified solution, so that uncertainty and horizon belong to it.
+static inline bool run_report_is_certified(const RunReport *report, const TrajectoryError *error)
+{
+    return error->is_known && run_report_has_truth(report) &&
+           strcmp(error->against, report->truth->trajectory->backend) == 0;
+}
+
+static inline bool run_report_is_limited_by_reference(const RunReport *report,
+                                                      const TrajectoryError *error)
+{
+    return run_report_is_certified(report, error) &&
+           error->omega_max_in_horizon < RUN_REPORT_CERTAIN * report->truth->uncertainty;
+}
+
+// Whether the error of a run is that of ideal joints against joints with play.
+static inline bool run_report_includes_play(const RunReport *report, size_t run)
+{
+    const char *ideal = OPTIONS_BACKENDS[BACKEND_ANALYTIC];
+    return scenario_has_clearance(report->scenario) &&
+           (strcmp(report->errors[run].against, ideal) == 0 ||
+            strcmp(report->runs[run]->backend, ideal) == 0);
+}
 
 // Whether the run let the play of a joint happen: it is complete, the joint has play, and the
 // solver is not the closed form, which takes every joint as ideal.

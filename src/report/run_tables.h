@@ -1,4 +1,4 @@
-// The tables of a run: what the bodies did, what the joints felt, how far off, at what cost.
+// The tables of a run: what the bodies did, what the joints felt, at what cost.
 #pragma once
 
 #include "base/text.h"
@@ -14,9 +14,6 @@ void run_tables_contacts(const RunReport *report, const Style *style, Text *text
 // At most `limit` of the strongest contacts of each joint with play, of the last backend that has
 // any.
 void run_tables_spikes(const RunReport *report, size_t limit, const Style *style, Text *text);
-
-// The errors against the run that is taken as the truth; nothing where there is none.
-void run_tables_errors(const RunReport *report, const Style *style, Text *text);
 
 // Steps and time, and the message of each run that failed.
 void run_tables_cost(const RunReport *report, const Style *style, Text *text);

@@ -6,6 +6,7 @@
 #include "model/kinematics.h"
 #include "report/analytic_text.h"
 #include "report/run_tables.h"
+#include "report/run_truth.h"
 #include "report/units.h"
 
 #include <math.h>
@@ -158,6 +159,9 @@ void run_text_write(const RunReport *report, const Style *style, Text *text)
     run_tables_extremes(report, style, text);
     run_tables_contacts(report, style, text);
     run_tables_spikes(report, RUN_TEXT_SPIKES, style, text);
-    run_tables_errors(report, style, text);
+    run_truth_errors(report, style, text);
+    run_truth_matches(report, style, text);
+    run_truth_ensembles(report, style, text);
+    run_truth_energy(report, style, text);
     run_tables_cost(report, style, text);
 }

@@ -1,7 +1,7 @@
 // Does JSON hold what the trajectory holds, under the keys that others rely on?
 #include "report/run_json.h"
 
-#include "report_fixture.h"
+#include "truth_fixture.h"
 
 static double number_at(const json_t *object, const char *first, const char *second,
                         const char *third)
@@ -50,6 +50,53 @@ static void json_holds_the_keys_that_others_rely_on(void **state)
     assert_string_equal(json_string_value(json_object_get(error, "against")), "analytic");
     assert_true(json_is_null(json_object_get(error, "horizon_s")));
     assert_true(json_is_null(json_object_get(error, "reference_uncertainty")));
+    assert_true(json_is_true(json_object_get(error, "includes_play")));
+    assert_true(json_is_false(json_object_get(error, "limited_by_reference")));
+    assert_true(json_is_null(json_object_get(root, "truth")));
+    assert_true(json_is_null(json_object_get(run, "spike_match")));
+    assert_true(json_is_null(json_object_get(run, "ensemble")));
+    json_decref(root);
+}
+
+static void json_holds_the_truth_and_what_limits_it(void **state)
+{
+    TruthFixture *own = *state;
+    json_t *root = run_json_build(&own->fixture->report);
+    const json_t *truth = json_object_get(root, "truth");
+    assert_string_equal(json_string_value(json_object_get(truth, "backend")), "reference");
+    assert_true(number_at(truth, "growth", NULL, NULL) == 3.5e7);
+    assert_true(json_is_true(json_object_get(truth, "is_limited")));
+    const json_t *run = json_array_get(json_object_get(root, "runs"), 1);
+    assert_true(number_at(run, "error", "omega_max_in_horizon", NULL) == 3e-9);
+    assert_true(number_at(run, "error", "horizon_s", NULL) == 0.02);
+    assert_true(number_at(run, "error", "reference_uncertainty", NULL) == 4e-10);
+    const json_t *error = json_object_get(run, "error");
+    assert_true(json_is_true(json_object_get(error, "limited_by_reference")));
+    assert_true(json_is_false(json_object_get(error, "includes_play")));
+    assert_true(number_at(run, "energy", "drive_work_J", NULL) == 2.0);
+    assert_true(number_at(run, "energy", "dissipated_J", NULL) == 0.5);
+    assert_true(number_at(run, "energy", "friction_J", NULL) == 0.125);
+    assert_true(number_at(run, "energy", "change_J", NULL) == 1.25);
+    assert_true(number_at(run, "energy", "residual_J", NULL) == 0.0625);
+    const json_t *match = json_object_get(json_object_get(run, "spike_match"), "crank-coupler");
+    assert_true(number_at(match, "missed", NULL, NULL) == 4.0);
+    assert_true(number_at(match, "extra", NULL, NULL) == 5.0);
+    const json_t *pair = json_array_get(json_object_get(match, "pairs"), 0);
+    assert_true(number_at(pair, "reference_onset_s", NULL, NULL) == 0.030);
+    assert_true(number_at(pair, "force_error", NULL, NULL) == -0.125);
+    const json_t *ensemble = json_object_get(run, "ensemble");
+    assert_true(number_at(ensemble, "members", NULL, NULL) == 14.0);
+    const json_t *joint = json_object_get(json_object_get(ensemble, "joints"), "crank-coupler");
+    assert_true(number_at(joint, "impulse_N_s", "deviation", NULL) == 0.03125);
+    assert_true(number_at(joint, "contact_fraction", "median", NULL) == 0.5);
+    json_decref(root);
+    // a reference that failed says why and has no numbers
+    own->fixture->runs[0]->is_complete = false;
+    strcpy(own->fixture->runs[0]->message, "too stiff");
+    root = run_json_build(&own->fixture->report);
+    truth = json_object_get(root, "truth");
+    assert_string_equal(json_string_value(json_object_get(truth, "message")), "too stiff");
+    assert_null(json_object_get(truth, "uncertainty"));
     json_decref(root);
 }
 
@@ -142,6 +189,8 @@ int main(void)
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_path_that_is_not_utf8_is_still_written, fixture_set_up,
                                         fixture_tear_down),
+        cmocka_unit_test_setup_teardown(json_holds_the_truth_and_what_limits_it,
+                                        truth_fixture_set_up, truth_fixture_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,7 @@
 // Does the text say what was modelled and what came out?
 #include "report/run_text.h"
 
-#include "report_fixture.h"
+#include "truth_fixture.h"
 
 #include <string.h>
 
@@ -121,6 +121,72 @@ static void without_play_there_are_no_contacts_to_list(void **state)
     text_finish(&text);
 }
 
+static void an_error_is_told_with_what_limits_it(void **state)
+{
+    TruthFixture *own = *state;
+    static const char *const WORDS[] = {
+        "in horizon",
+        "3e-09",
+        "4e-10",
+        "limited by the reference",
+        "cannot be predicted beyond 20 of 62.83 ms",
+        "3.5e+07\n  times as far away",
+        "Contacts matched within the horizon, ode",
+        "crank-coupler            30.0000       1234       2.5  -12.5    +6.25",
+        "4 of the reference and 5 of ode have no partner",
+        "Over starts that differ by 1e-10 of the speeds",
+        "crank-coupler  deepest, um    ode        250000  500000  750000  562500    31250",
+        "reference: 16 starts\n",
+        "ode: 14 starts, and 2 that failed: a member broke\n",
+        "ode                 2    1.25         0.5     0.125    0.0625         0.03125",
+        "54321",
+        NULL,
+    };
+    Text text;
+    text_init(&text);
+    run_text_write(&own->fixture->report, &STYLE_PLAIN, &text);
+    expect_words(text.data, WORDS);
+    assert_null(strstr(text.data, "takes every joint as ideal"));
+    text_finish(&text);
+}
+
+static void a_truth_that_holds_is_told_in_one_line(void **state)
+{
+    TruthFixture *own = *state;
+    static const char *const WORDS[] = {"holds through the whole run, 62.83 ms", NULL};
+    own->truth.is_limited = false;
+    own->fixture->report.ensembles = NULL;
+    own->fixture->errors[1].omega_max_in_horizon = 4.1e-9;
+    // without a drive there is no work to divide by
+    own->fixture->runs[1]->energy.drive_work = 0.0;
+    Text text;
+    text_init(&text);
+    run_text_write(&own->fixture->report, &STYLE_PLAIN, &text);
+    expect_words(text.data, WORDS);
+    assert_null(strstr(text.data, "cannot be predicted"));
+    assert_null(strstr(text.data, "Over starts"));
+    assert_null(strstr(text.data, "limited by the reference"));
+    assert_null(strstr(text.data, "nan"));
+    text_finish(&text);
+}
+
+// A reference that failed is no truth: what stands against the closed form contains the play.
+static void a_truth_that_cannot_be_had_certifies_nothing(void **state)
+{
+    TruthFixture *own = *state;
+    own->fixture->runs[0]->is_complete = false;
+    own->fixture->errors[1].against = "analytic";
+    own->fixture->report.matches = NULL;
+    own->fixture->report.ensembles = NULL;
+    Text text;
+    text_init(&text);
+    run_text_write(&own->fixture->report, &STYLE_PLAIN, &text);
+    assert_non_null(strstr(text.data, "takes every joint as ideal"));
+    assert_null(strstr(text.data, "reference holds"));
+    assert_null(strstr(text.data, "4e-10"));
+    text_finish(&text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -134,6 +200,12 @@ int main(void)
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(without_play_there_are_no_contacts_to_list, fixture_set_up,
                                         fixture_tear_down),
+        cmocka_unit_test_setup_teardown(an_error_is_told_with_what_limits_it, truth_fixture_set_up,
+                                        truth_fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_truth_that_holds_is_told_in_one_line,
+                                        truth_fixture_set_up, truth_fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_truth_that_cannot_be_had_certifies_nothing,
+                                        truth_fixture_set_up, truth_fixture_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

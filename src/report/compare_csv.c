@@ -1,0 +1,59 @@
+// What does a spreadsheet read of a comparison?
+#include "report/compare_csv.h"
+
+#include "report/file.h"
+
+#include <stdio.h>
+
+static const char HEAD[] =
+    "scheme,step_s,status,steps,evaluations,error_omega,limited_by_truth,omega_max,omega_rms,"
+    "alpha_max,angle_max_rad,wall_median_s,wall_min_s,wall_max_s,on_frontier,message\n";
+
+// Quoted, so that commas and quotes of a message stay in their cell.
+static void write_quoted(FILE *stream, const char *text)
+{
+    fputc('"', stream);
+    for (; *text != '\0'; text++) {
+        fputs(*text == '"' ? "\"" : "", stream);
+        fputc(*text == '\n' ? ' ' : *text, stream);
+    }
+    fputc('"', stream);
+}
+
+static void write_numbers(FILE *stream, const LadderPoint *point)
+{
+    const TrajectoryError *error = &point->run.error;
+    fprintf(stream, "ok,%zu,%zu,%.17g,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d,",
+            point->run.steps, point->run.evaluations, point->error, point->is_limited_by_truth,
+            error->omega_max, error->omega_rms, error->alpha_max, error->angle_max_rad,
+            point->wall_median_s, point->wall_min_s, point->wall_max_s, point->is_on_frontier);
+}
+
+static void write_row(FILE *stream, const Ladder *ladder, const LadderPoint *point)
+{
+    fprintf(stream, "%s,", ladder->schemes[point->scheme].name);
+    if (point->step_s > 0.0) {
+        fprintf(stream, "%.17g", point->step_s);
+    }
+    fputc(',', stream);
+    if (point->is_failed) {
+        fputs("failed,,,,,,,,,,,,,", stream);
+        write_quoted(stream, point->reason);
+    } else {
+        write_numbers(stream, point);
+    }
+    fputc('\n', stream);
+}
+
+bool compare_csv_write(const CompareReport *report, const char *path, Err *err)
+{
+    WholeFile file;
+    if (!file_begin(&file, path, err)) {
+        return false;
+    }
+    fputs(HEAD, file.stream);
+    for (size_t i = 0; i < report->ladder->point_count; i++) {
+        write_row(file.stream, report->ladder, &report->ladder->points[i]);
+    }
+    return file_end(&file, err);
+}

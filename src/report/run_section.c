@@ -1,0 +1,36 @@
+// What does a section of the report look like?
+#include "report/run_section.h"
+
+#include <math.h>
+
+Table *run_section_begin(const char *heading, size_t columns, const RunSectionHead *heads,
+                         const Style *style, Text *text)
+{
+    text_append(text, "\n%s%s%s\n\n", style->heading, heading, style->end);
+    Table *table = table_create(columns);
+    for (size_t i = 0; i < columns; i++) {
+        table_head(table, i, heads[i].title, heads[i].unit, heads[i].align);
+    }
+    return table;
+}
+
+void run_section_end(Table *table, Text *text)
+{
+    table_write(table, text);
+    table_destroy(table);
+}
+
+void run_section_number(Table *table, double value)
+{
+    const bool is_long = fabs(value) >= 1e4 && fabs(value) < 1e8;
+    table_cell(table, is_long ? "%.0f" : "%.4g", value);
+}
+
+void run_section_number_or_dash(Table *table, bool is_known, double value)
+{
+    if (is_known) {
+        run_section_number(table, value);
+    } else {
+        table_cell(table, "-");
+    }
+}

@@ -1,0 +1,24 @@
+// A section of the report for people: a heading and a table under it.
+#pragma once
+
+#include "base/table.h"
+#include "report/style.h"
+
+#include <stdbool.h>
+
+typedef struct RunSectionHead {
+    const char *title;
+    const char *unit;
+    TableAlign align;
+} RunSectionHead;
+
+// Begins a section; the caller fills the table and hands it to run_section_end, which frees it.
+Table *run_section_begin(const char *heading, size_t columns, const RunSectionHead *heads,
+                         const Style *style, Text *text);
+void run_section_end(Table *table, Text *text);
+
+// Four digits; a number that would need an exponent for them gets all of its own instead.
+void run_section_number(Table *table, double value);
+
+// The same, or a dash where there is nothing to tell.
+void run_section_number_or_dash(Table *table, bool is_known, double value);

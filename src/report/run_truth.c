@@ -1,0 +1,230 @@
+// How far are the runs from the truth, how sure is the truth, and where does it end?
+#include "report/run_truth.h"
+
+#include "report/run_section.h"
+#include "report/units.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static void error_row(Table *table, const RunReport *report, size_t run)
+{
+    const TrajectoryError *error = &report->errors[run];
+    const bool is_certified = run_report_is_certified(report, error);
+    table_cell(table, "%s", report->runs[run]->backend);
+    table_cell(table, "%s", error->against);
+    run_section_number(table, error->omega_max);
+    run_section_number(table, error->omega_max_time_s * UNITS_MS);
+    run_section_number_or_dash(table, is_certified, error->omega_max_in_horizon);
+    run_section_number_or_dash(table, is_certified,
+                               is_certified ? report->truth->uncertainty : 0.0);
+    run_section_number(table, error->omega_rms);
+    run_section_number(table, error->alpha_max);
+    run_section_number(table, error->angle_max_rad * UNITS_DEG);
+    table_cell(table,
+               run_report_is_limited_by_reference(report, error) ? "limited by the reference" : "");
+}
+
+// What is to be known about the truth before an error is believed.
+static void write_horizon(const RunReport *report, Text *text)
+{
+    const Truth *truth = report->truth;
+    const double end_ms = scenario_duration(report->scenario) * UNITS_MS;
+    if (truth->is_limited) {
+        text_append(
+            text,
+            "  The motion cannot be predicted beyond %.4g of %.4g ms: by then a start 1e-10 "
+            "beside this one is %.3g\n  times as far away. Errors after it mean nothing; "
+            "distributions over many starts can be compared.\n",
+            truth->horizon_s * UNITS_MS, end_ms, truth->growth);
+    } else {
+        text_append(text,
+                    "  The reference holds through the whole run, %.4g ms: a start 1e-10 beside "
+                    "this one ends %.3g times as far away.\n",
+                    end_ms, truth->growth);
+    }
+}
+
+void run_truth_errors(const RunReport *report, const Style *style, Text *text)
+{
+    static const RunSectionHead HEADS[] = {
+        {"backend", "", TABLE_LEFT},       {"against", "", TABLE_LEFT},
+        {"omega max", "1", TABLE_RIGHT},   {"at time", "ms", TABLE_RIGHT},
+        {"in horizon", "1", TABLE_RIGHT},  {"reference +-", "1", TABLE_RIGHT},
+        {"omega rms", "1", TABLE_RIGHT},   {"alpha max", "1", TABLE_RIGHT},
+        {"angle max", "deg", TABLE_RIGHT}, {"", "", TABLE_LEFT},
+    };
+    Table *table = NULL;
+    bool includes_play = false;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const TrajectoryError *error = &report->errors[i];
+        if (!report->runs[i]->is_complete || !error->is_known) {
+            continue;
+        }
+        if (table == NULL) {
+            table = run_section_begin("Error at the samples, over the reference's largest value",
+                                      10, HEADS, style, text);
+        }
+        error_row(table, report, i);
+        includes_play = includes_play || run_report_includes_play(report, i);
+    }
+    if (table == NULL) {
+        return;
+    }
+    run_section_end(table, text);
+    if (includes_play) {
+        text_append(text, "  The analytic solver takes every joint as ideal: an error of it, or "
+                          "against it, contains the play itself.\n");
+    }
+    if (run_report_has_truth(report)) {
+        write_horizon(report, text);
+    }
+}
+
+void run_truth_energy(const RunReport *report, const Style *style, Text *text)
+{
+    static const RunSectionHead HEADS[] = {
+        {"backend", "", TABLE_LEFT},          {"drive work", "J", TABLE_RIGHT},
+        {"change", "J", TABLE_RIGHT},         {"dissipated", "J", TABLE_RIGHT},
+        {"friction", "J", TABLE_RIGHT},       {"residual", "J", TABLE_RIGHT},
+        {"residual/drive", "1", TABLE_RIGHT},
+    };
+    Table *table = NULL;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Energy *energy = &report->runs[i]->energy;
+        if (!report->runs[i]->is_complete) {
+            continue;
+        }
+        if (table == NULL) {
+            table = run_section_begin("Energy", 7, HEADS, style, text);
+        }
+        table_cell(table, "%s", report->runs[i]->backend);
+        run_section_number(table, energy->drive_work);
+        run_section_number(table, energy->change);
+        run_section_number(table, energy->dissipated);
+        run_section_number(table, energy->friction);
+        run_section_number(table, energy->residual);
+        run_section_number_or_dash(table, energy->drive_work != 0.0,
+                                   fabs(energy->residual / energy->drive_work));
+    }
+    if (table != NULL) {
+        run_section_end(table, text);
+    }
+}
+
+static void match_rows(Table *table, const Joint *joint, const JointExtremes *truth,
+                       const SpikeMatch *match)
+{
+    for (size_t i = 0; i < match->pair_count; i++) {
+        const SpikePair *pair = &match->pairs[i];
+        const Spike *spike = &truth->spikes[pair->reference_spike];
+        table_cell(table, "%s", joint->name);
+        table_cell(table, "%.4f", spike->onset_s * UNITS_MS);
+        run_section_number(table, spike->force_max);
+        run_section_number(table, pair->onset_delay_s * UNITS_US);
+        table_cell(table, "%+.3g", pair->force_error * UNITS_PERCENT);
+        table_cell(table, "%+.3g", pair->impulse_error * UNITS_PERCENT);
+    }
+}
+
+void run_truth_matches(const RunReport *report, const Style *style, Text *text)
+{
+    static const RunSectionHead HEADS[] = {
+        {"joint", "", TABLE_LEFT},       {"reference's onset", "ms", TABLE_RIGHT},
+        {"force max", "N", TABLE_RIGHT}, {"later by", "us", TABLE_RIGHT},
+        {"force", "%", TABLE_RIGHT},     {"impulse", "%", TABLE_RIGHT},
+    };
+    const Linkage *linkage = &report->scenario->linkage;
+    for (size_t i = 0; report->matches != NULL && i < report->run_count; i++) {
+        Table *table = NULL;
+        size_t missed = 0;
+        size_t extra = 0;
+        for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+            const SpikeMatch *match = &report->matches[i].joints[joint];
+            missed += match->missed;
+            extra += match->extra;
+            if (table == NULL && match->pair_count + match->missed + match->extra > 0) {
+                char heading[128];
+                snprintf(heading, sizeof heading, "Contacts matched within the horizon, %s",
+                         report->runs[i]->backend);
+                table = run_section_begin(heading, 6, HEADS, style, text);
+            }
+            match_rows(table, &linkage->joints[joint], &report->truth->trajectory->joints[joint],
+                       match);
+        }
+        if (table != NULL) {
+            run_section_end(table, text);
+            text_append(text,
+                        "  Of the strongest contacts kept, %zu of the reference and %zu of %s have "
+                        "no partner.\n",
+                        missed, extra, report->runs[i]->backend);
+        }
+    }
+}
+
+typedef struct MetricWords {
+    const char *name;
+    double scale; // from SI
+} MetricWords;
+
+static const MetricWords METRICS[ENSEMBLE_METRIC_COUNT] = {
+    [ENSEMBLE_FORCE_MAX] = {"force max, N", 1.0},
+    [ENSEMBLE_IMPULSE] = {"impulse, N s", 1.0},
+    [ENSEMBLE_IMPACTS] = {"impacts", 1.0},
+    [ENSEMBLE_PENETRATION_MAX] = {"deepest, um", 1e6},
+    [ENSEMBLE_CONTACT_SHARE] = {"in contact, %", 1e2},
+};
+
+static void distribution_row(Table *table, const Joint *joint, const MetricWords *words,
+                             const char *backend, const Distribution *distribution)
+{
+    table_cell(table, "%s", joint->name);
+    table_cell(table, "%s", words->name);
+    table_cell(table, "%s", backend);
+    run_section_number(table, distribution->low * words->scale);
+    run_section_number(table, distribution->median * words->scale);
+    run_section_number(table, distribution->high * words->scale);
+    run_section_number(table, distribution->mean * words->scale);
+    run_section_number(table, distribution->deviation * words->scale);
+}
+
+static void ensemble_rows(Table *table, const RunReport *report, size_t joint, size_t metric)
+{
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Ensemble *ensemble = &report->ensembles[i];
+        if (ensemble->members > 0) {
+            distribution_row(table, &report->scenario->linkage.joints[joint], &METRICS[metric],
+                             report->runs[i]->backend, &ensemble->joints[joint][metric]);
+        }
+    }
+}
+
+void run_truth_ensembles(const RunReport *report, const Style *style, Text *text)
+{
+    static const RunSectionHead HEADS[] = {
+        {"joint", "", TABLE_LEFT}, {"what", "", TABLE_LEFT},    {"backend", "", TABLE_LEFT},
+        {"low", "", TABLE_RIGHT},  {"median", "", TABLE_RIGHT}, {"high", "", TABLE_RIGHT},
+        {"mean", "", TABLE_RIGHT}, {"+-", "", TABLE_RIGHT},
+    };
+    if (report->ensembles == NULL) {
+        return;
+    }
+    const Linkage *linkage = &report->scenario->linkage;
+    Table *table =
+        run_section_begin("Over starts that differ by 1e-10 of the speeds", 8, HEADS, style, text);
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        const bool has_play = linkage->joints[joint].kind == JOINT_CLEARANCE;
+        for (size_t metric = 0; has_play && metric < ENSEMBLE_METRIC_COUNT; metric++) {
+            ensemble_rows(table, report, joint, metric);
+        }
+    }
+    run_section_end(table, text);
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Ensemble *ensemble = &report->ensembles[i];
+        if (ensemble->members + ensemble->failed > 0) {
+            text_append(text, "  %s: %zu starts", report->runs[i]->backend, ensemble->members);
+            text_append(text, ensemble->failed > 0 ? ", and %zu that failed: %s\n" : "\n",
+                        ensemble->failed, ensemble->message);
+        }
+    }
+}

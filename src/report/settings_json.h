@@ -1,0 +1,16 @@
+// The versions at work and the resolved settings of a scenario, as JSON.
+#pragma once
+
+#include "model/scenario.h"
+
+#include <jansson.h>
+
+// New references: version, ode, ccd, gsl; a setting's value in SI.
+json_t *settings_json_tool(void);
+
+// Puts "settings" and "setting_units" into the object: those that the scenario makes use of, by
+// the key they have in a case file.
+void settings_json_set(json_t *object, const Scenario *scenario);
+
+// New reference: every setting, used or not, without units.
+json_t *settings_json_all(const Scenario *scenario);
