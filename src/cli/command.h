@@ -14,6 +14,7 @@ typedef struct Command {
 } Command;
 
 extern const Command cmd_run;
+extern const Command cmd_compare;
 extern const Command cmd_paper;
 extern const Command cmd_help;
 

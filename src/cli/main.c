@@ -67,4 +67,4 @@ int main(int argc, char **argv)
     return err.kind;
 }
 
-const Command *const COMMANDS[] = {&cmd_run, &cmd_paper, &cmd_help, NULL};
+const Command *const COMMANDS[] = {&cmd_run, &cmd_compare, &cmd_paper, &cmd_help, NULL};

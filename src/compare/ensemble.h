@@ -32,7 +32,7 @@ typedef struct Ensemble {
     Distribution joints[LINKAGE_JOINT_MAX][ENSEMBLE_METRIC_COUNT]; // of joints with play
 } Ensemble;
 
-// Runs the scenario from ENSEMBLE_MEMBERS starts that differ by a thousandth of the speeds, the first
-// one unperturbed.
+// Runs the scenario from ENSEMBLE_MEMBERS starts that differ by a thousandth of the speeds, the
+// first one unperturbed.
 void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch,
                   Ensemble *ensemble);

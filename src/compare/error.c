@@ -3,7 +3,8 @@
 //     error(t) = max over bodies |omega_b(t) - ref_b(t)| / max over t |ref_b|
 // over every body whose speed is not prescribed; the reference's samples stand at the same times. A
 // body that hardly turns is measured by a thousandth of the fastest body's speed: its own would be
-// rounding.
+// rounding. Where no drive turns anything, bodies may not turn at all: the speeds of their centres
+// then take the place of omega, and their accelerations that of alpha.
 #include "compare/error.h"
 
 static const double SMALLEST_SCALE =
@@ -19,13 +20,33 @@ typedef struct Scales {
     double alpha; // rad/s^2
 } Scales;
 
+// What errors are measured in.
+static bool by_velocity(const Trajectory *reference)
+{
+    return reference->driven_body == LINKAGE_GROUND;
+}
+
+static double rate_difference(const Motion *motion, const Motion *truth, bool is_velocity)
+{
+    return is_velocity ? vec2_length(vec2_sub(motion->velocity, truth->velocity))
+                       : fabs(motion->omega - truth->omega);
+}
+
+static double change_difference(const Motion *motion, const Motion *truth, bool is_velocity)
+{
+    return is_velocity ? vec2_length(vec2_sub(motion->acceleration, truth->acceleration))
+                       : fabs(motion->alpha - truth->alpha);
+}
+
 static Scales body_scales(const Trajectory *reference, size_t body)
 {
+    const Motion still = {.omega = 0.0};
+    const bool is_velocity = by_velocity(reference);
     Scales scales = {0.0, 0.0};
     for (size_t k = 0; k < reference->sample_count; k++) {
         const Motion *truth = trajectory_motion(reference, k, body);
-        scales.omega = fmax(scales.omega, fabs(truth->omega));
-        scales.alpha = fmax(scales.alpha, fabs(truth->alpha));
+        scales.omega = fmax(scales.omega, rate_difference(truth, &still, is_velocity));
+        scales.alpha = fmax(scales.alpha, change_difference(truth, &still, is_velocity));
     }
     return scales;
 }
@@ -77,9 +98,10 @@ bool error_series(const Trajectory *trajectory, const Trajectory *reference, dou
         omega[k] = 0.0;
         for (size_t i = 0; i < reference->body_count; i++) {
             if (scales[i].omega > 0.0) {
-                const double difference = trajectory_motion(trajectory, k, i)->omega -
-                                          trajectory_motion(reference, k, i)->omega;
-                omega[k] = fmax(omega[k], fabs(difference) / scales[i].omega);
+                const double difference =
+                    rate_difference(trajectory_motion(trajectory, k, i),
+                                    trajectory_motion(reference, k, i), by_velocity(reference));
+                omega[k] = fmax(omega[k], difference / scales[i].omega);
             }
         }
     }
@@ -89,11 +111,12 @@ bool error_series(const Trajectory *trajectory, const Trajectory *reference, dou
 static void add_body(const Trajectory *trajectory, const Trajectory *reference, size_t body,
                      const Scales *scales, double horizon_s, TrajectoryError *error, Sums *sums)
 {
+    const bool is_velocity = by_velocity(reference);
     for (size_t k = 0; k < reference->sample_count; k++) {
         const Motion *truth = trajectory_motion(reference, k, body);
         const Motion *motion = trajectory_motion(trajectory, k, body);
-        const double omega = fabs(motion->omega - truth->omega) / scales->omega;
-        const double alpha = fabs(motion->alpha - truth->alpha) / scales->alpha;
+        const double omega = rate_difference(motion, truth, is_velocity) / scales->omega;
+        const double alpha = change_difference(motion, truth, is_velocity) / scales->alpha;
         if (omega > error->omega_max) {
             error->omega_max = omega;
             error->omega_max_time_s = reference->times[k];

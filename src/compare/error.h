@@ -1,4 +1,7 @@
 // How far is one trajectory from another that is taken as the truth?
+//
+// In omega and alpha; where no drive turns anything, in the velocities and accelerations of the
+// bodies' centres instead.
 #pragma once
 
 #include "model/trajectory.h"
@@ -20,7 +23,7 @@ typedef struct TrajectoryError {
 TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *reference,
                               double horizon_s);
 
-// The same measure sample by sample: writes the largest relative difference in omega over the bodies
-// at each sample into an array of the trajectories' length. Returns false, the array untouched,
-// where the two cannot be compared.
+// The same measure sample by sample: writes the largest relative difference in omega over the
+// bodies at each sample into an array of the trajectories' length. Returns false, the array
+// untouched, where the two cannot be compared.
 bool error_series(const Trajectory *trajectory, const Trajectory *reference, double *omega);

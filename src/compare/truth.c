@@ -65,9 +65,13 @@ Truth truth_make(const Scenario *scenario, RunWatch watch)
     if (!truth.trajectory->is_complete) {
         return truth;
     }
+    // what cannot be certified holds nowhere
+    truth.horizon_s = 0.0;
+    truth.is_limited = true;
     Trajectory *tighter = run(&tight, BACKEND_REFERENCE, watch);
     Trajectory *twin = run(&beside, BACKEND_REFERENCE, watch);
     if (tighter->is_complete && twin->is_complete) {
+        truth.is_limited = false;
         find_horizon(tighter, twin, &truth);
         truth.uncertainty =
             error_against(truth.trajectory, tighter, truth.horizon_s).omega_max_in_horizon;

@@ -43,6 +43,6 @@ double penalty_velocity_level(double printed);
 double penalty_approach(const PenaltyReading *reading, double effective_modulus, double force);
 
 // The penalty, N s/m, where a case asks for the Poisson model and gives none: the paper's reading
-// for its crank-coupler pin at the driver's speed, rad/s, in the case's material. Speed 0 stands for
-// 1000 rpm.
+// for its crank-coupler pin at the driver's speed, rad/s, in the case's material. Speed 0 stands
+// for 1000 rpm.
 double penalty_estimate(double speed, const MaterialOptions *material);

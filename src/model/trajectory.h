@@ -94,8 +94,8 @@ typedef struct Trajectory {
     uint64_t hash;          // of every step's velocities, accelerations and joint forces
 } Trajectory;
 
-// An empty trajectory with room for the scenario's samples. Without the memory for them it has none,
-// and a message that says so.
+// An empty trajectory with room for the scenario's samples. Without the memory for them it has
+// none, and a message that says so.
 Trajectory *trajectory_create(const Scenario *scenario, const char *backend);
 void trajectory_destroy(Trajectory *trajectory);
 

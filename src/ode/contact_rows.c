@@ -180,31 +180,31 @@ static double friction_work(const ContactRows *rows, size_t number, Vec2 force, 
     return vec2_dot(tangent, force) * sliding * step_s;
 }
 
-// Where the work of a contact's force on the pin went in the step. The bodies have moved on at the
-// speeds after the step; what the law's spring holds at the depth then is not lost.
+// What a contact lost and stored in the step, by its law: the damper at the speed after the step,
+// the spring at the depth after it. What the step itself gains or loses beyond that is ODE's error
+// and stays in the residual. The velocity-level model has no spring: all its work is lost.
 static void book_energy(ContactRows *rows, size_t number, Vec2 force, double step_s)
 {
     ContactRow *row = &rows->rows[number];
-    const WorldPair *pair = &rows->world->pairs[number];
-    Vec2 centre;
-    Vec2 hole_velocity;
-    Vec2 pin_velocity;
-    geom_centre(pair->hole, &centre, &hole_velocity);
-    geom_centre(pair->pin, &centre, &pin_velocity);
-    const double before = row->elastic;
     row->elastic = 0.0;
-    row->dissipated = before;
+    row->dissipated = 0.0;
     row->friction = 0.0;
     if (!row->is_touching) {
         return;
     }
-    const Vec2 moved = vec2_scale(step_s, vec2_sub(pin_velocity, hole_velocity));
-    const double sunk = -vec2_dot(row->normal, moved);
-    if (rows->scenario->contact.model == CONTACT_IMPACT) {
-        row->elastic = force_law_energy(&row->law, fmax(0.0, row->depth + sunk));
+    const PinHole pose = pair_pose(&rows->world->pairs[number], row->radial_clearance);
+    const double pressing = vec2_dot(row->normal, force);
+    const double closing = pose.approach_speed;
+    if (rows->scenario->contact.model == CONTACT_POISSON) {
+        row->dissipated = pressing * closing * step_s;
+    } else {
+        const double damping = force_law_damping(&row->law, row->depth, row->impact_speed);
+        row->dissipated = pressing > 0.0 ? damping * closing * closing * step_s : 0.0;
+        row->elastic = force_law_energy(&row->law, fmax(0.0, pose.penetration));
     }
-    row->dissipated = before - row->elastic + vec2_dot(row->normal, force) * sunk;
-    row->friction = -friction_work(rows, number, force, step_s);
+    if (rows->scenario->contact.friction > 0.0) {
+        row->friction = -friction_work(rows, number, force, step_s);
+    }
 }
 
 void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)

@@ -35,13 +35,13 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
 void contact_rows_finish(ContactRows *rows);
 
 // Looks for contacts where the bodies stand now and makes a row for each; fills the states (gap,
-// eccentricity, touching) and the closing speeds at which their contacts began, by joint. Fails with
-// ERR_SOLVER where a pin is deeper in its wall than any contact law holds.
+// eccentricity, touching) and the closing speeds at which their contacts began, by joint. Fails
+// with ERR_SOLVER where a pin is deeper in its wall than any contact law holds.
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err);
 
-// From the centre of a joint's hole or pin to the point where its contact's force acts, m; zero for a
-// joint without a row in this step.
+// From the centre of a joint's hole or pin to the point where its contact's force acts, m; zero for
+// a joint without a row in this step.
 Vec2 contact_rows_offset(const ContactRows *rows, int joint, bool is_hole);
 
 // After the step: fills in the joints' forces, books the energies, and removes the rows.

@@ -145,7 +145,8 @@ void dop853_fill(Dop853 *integrator)
 
 void dop853_dense(const Dop853 *integrator, double time, double *y)
 {
-    const double s = (time - integrator->time) / integrator->tried;
+    // a step cut to nothing by an event at its start is a point
+    const double s = integrator->tried != 0.0 ? (time - integrator->time) / integrator->tried : 0.0;
     const double r = 1.0 - s;
     const double(*p)[DOP853_SIZE_MAX] = integrator->polynomial;
     for (size_t i = 0; i < integrator->size; i++) {

@@ -87,7 +87,7 @@ bool events_look(const Dynamics *dynamics, const Dop853 *integrator, EventPoints
     double y[DOP853_SIZE_MAX];
     points->count = EVENTS_POINTS_MAX;
     for (size_t i = 0; i < dynamics->contact_count; i++) {
-        points->count = dynamics->contacts[i].mode != CONTACT_APART ? 1 : points->count;
+        points->count = dynamics->contacts[i].mode == CONTACT_PRESSING ? 1 : points->count;
     }
     for (size_t i = 0; i + 1 < points->count; i++) {
         const double time = events_point_time(integrator, points, i);

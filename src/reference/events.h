@@ -11,9 +11,9 @@ typedef struct Event {
     ContactMode mode; // the mode that begins
 } Event;
 
-// A step is looked at in some points, equal parts of it, the last at its end. While nothing touches
-// steps are long, and a pin might reach its wall and leave it within one; in contact some ten steps
-// make a swing, and the end is enough.
+// A step is looked at in some points, equal parts of it, the last at its end. While nothing presses
+// steps are long, and a pin might reach its wall and leave it within one; while something does some
+// ten steps make a swing, and the end is enough.
 enum { EVENTS_POINTS_MAX = 4 };
 
 typedef struct EventPoints {

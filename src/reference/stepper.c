@@ -2,7 +2,8 @@
 //
 // Errors are allowed relative to the rates of the whole mechanism: tolerance times the largest
 // speed in each rate, and that times the step in each coordinate, so that a penetration of a micron
-// in a linkage of half a metre keeps its digits.
+// in a linkage of half a metre keeps its digits. Work and losses are allowed the tolerance times m
+// v^2.
 #include "reference/stepper.h"
 
 #include "reference/loops.h"
@@ -56,6 +57,14 @@ static void set_tolerances(Stepper *stepper)
         integrator->fixed[n + angle] = tolerance * turning;
         integrator->grown[angle] = tolerance * turning;
     }
+    double energy = 0.0;
+    for (size_t i = 0; i < stepper->scenario->linkage.body_count; i++) {
+        energy += stepper->scenario->linkage.bodies[i].mass * moving * moving;
+    }
+    const size_t sums = dynamics_sum_index(&stepper->dynamics, 0);
+    integrator->fixed[sums + DYNAMICS_DRIVE_WORK] = tolerance * energy;
+    integrator->fixed[sums + DYNAMICS_DISSIPATED] = tolerance * energy;
+    integrator->fixed[sums + DYNAMICS_FRICTION] = tolerance * energy;
 }
 
 bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)

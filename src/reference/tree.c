@@ -65,9 +65,12 @@ static void list_ends(Tree *tree)
     for (int joint = 0; joint < (int)tree->linkage->joint_count; joint++) {
         const int bodies[2] = {tree->linkage->joints[joint].body_a,
                                tree->linkage->joints[joint].body_b};
+        const Vec2 anchors[2] = {tree->linkage->joints[joint].anchor_a,
+                                 tree->linkage->joints[joint].anchor_b};
         for (int side = 0; side < 2; side++) {
             const int body = bodies[side];
             tree->end_bodies[2 * joint + side] = body;
+            tree->anchors[2 * joint + side] = anchors[side];
             if (body != LINKAGE_GROUND) {
                 tree->ends[body][tree->end_counts[body]++] = 2 * joint + side;
             }
@@ -121,12 +124,6 @@ void tree_coordinates(const Tree *tree, const Motion *motions, double *q, double
     }
 }
 
-static Vec2 anchor_of(const Linkage *linkage, int end)
-{
-    const Joint *joint = &linkage->joints[end / 2];
-    return end % 2 == 0 ? joint->anchor_a : joint->anchor_b;
-}
-
 void tree_rebase(Tree *tree, double time_s, const double *q)
 {
     for (size_t i = 0; i < tree->linkage->body_count; i++) {
@@ -165,17 +162,8 @@ static inline void set_arms(const Tree *tree, int body, double angle, TreeState 
     const double s = direction.y;
     for (size_t i = 0; i < tree->end_counts[body]; i++) {
         const int end = tree->ends[body][i];
-        const Vec2 anchor = anchor_of(tree->linkage, end);
+        const Vec2 anchor = tree->anchors[end];
         state->arms[end] = (Vec2){c * anchor.x - s * anchor.y, s * anchor.x + c * anchor.y};
-    }
-}
-
-static void set_ground(const Tree *tree, TreeState *state)
-{
-    for (int end = 0; end < 2 * (int)tree->linkage->joint_count; end++) {
-        if (tree->end_bodies[end] == LINKAGE_GROUND) {
-            state->arms[end] = anchor_of(tree->linkage, end);
-        }
     }
 }
 
@@ -220,9 +208,13 @@ static void set_hanging(const Tree *tree, const TreeNode *node, TreeState *state
     state->bias[node->body] = vec2_add(tree_end_bias(tree, state, node->parent_end),
                                        vec2_scale(motion->omega * motion->omega, arm));
     if (parent == LINKAGE_GROUND || parent == tree->driven) {
-        memset(columns, 0, tree->coordinate_count * sizeof *columns);
+        for (size_t i = 0; i < tree->coordinate_count; i++) {
+            columns[i] = (Vec2){0.0, 0.0};
+        }
     } else {
-        memcpy(columns, state->columns[parent], tree->coordinate_count * sizeof *columns);
+        for (size_t i = 0; i < tree->coordinate_count; i++) {
+            columns[i] = state->columns[parent][i];
+        }
         Vec2 *column = &columns[tree->angle_column[parent]];
         *column = vec2_add(*column, vec2_perp(state->arms[node->parent_end]));
     }
@@ -232,7 +224,6 @@ static void set_hanging(const Tree *tree, const TreeNode *node, TreeState *state
 void tree_evaluate(const Tree *tree, double time_s, const double *q, const double *u,
                    TreeState *state)
 {
-    set_ground(tree, state);
     if (tree->driven >= 0) {
         set_driven(tree, time_s, state);
     }

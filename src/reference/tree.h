@@ -30,6 +30,7 @@ typedef struct Tree {
     TreeNode nodes[LINKAGE_BODY_MAX];
     int angle_column[LINKAGE_BODY_MAX];  // by body; -1 for the driven one
     int end_bodies[TREE_END_MAX];        // the body of each end, or LINKAGE_GROUND
+    Vec2 anchors[TREE_END_MAX];          // of each end in its body's frame, m
     size_t end_counts[LINKAGE_BODY_MAX]; // how many ends each body has, and which
     int ends[LINKAGE_BODY_MAX][TREE_END_MAX];
     size_t coordinate_count;
@@ -44,7 +45,7 @@ typedef struct Tree {
 // Where the tree's bodies are and how their velocities depend on the coordinates' rates.
 typedef struct TreeState {
     Motion motions[LINKAGE_BODY_MAX]; // of all bodies; accelerations after tree_accelerate
-    Vec2 arms[TREE_END_MAX];          // from the body's centre to each end, m
+    Vec2 arms[TREE_END_MAX];          // from the body's centre to each end, m; not of ground ends
     Vec2 bias[LINKAGE_BODY_MAX]; // acceleration of each centre with all coordinates' rates steady
     // velocity of each body's centre by each coordinate's rate
     Vec2 columns[LINKAGE_BODY_MAX][TREE_COORDINATE_MAX];
@@ -70,8 +71,8 @@ void tree_accelerate(const Tree *tree, const double *rates, TreeState *state);
 static inline Vec2 tree_end_point(const Tree *tree, const TreeState *state, int end)
 {
     const int body = tree->end_bodies[end];
-    const Vec2 arm = state->arms[end];
-    return body == LINKAGE_GROUND ? arm : vec2_add(state->motions[body].position, arm);
+    return body == LINKAGE_GROUND ? tree->anchors[end]
+                                  : vec2_add(state->motions[body].position, state->arms[end]);
 }
 
 static inline Vec2 tree_end_velocity(const Tree *tree, const TreeState *state, int end)

@@ -1,0 +1,56 @@
+// A piece of work in a process of its own: whatever happens to it, the caller goes on.
+#pragma once
+
+#include "base/err.h"
+
+#include <stddef.h>
+#include <sys/types.h>
+
+enum { CHILD_TEXT_SIZE = 128 };
+
+// What a child may use; 0 stands for no limit.
+typedef struct ChildLimits {
+    double time_s;       // by the clock on the wall
+    size_t memory_bytes; // of address space, that of the parent at the start included
+} ChildLimits;
+
+typedef enum ChildEnd {
+    CHILD_RUNNING,
+    CHILD_DONE,      // the whole result has arrived
+    CHILD_EXITED,    // it left by itself, without a result
+    CHILD_SIGNALLED, // a signal ended it
+    CHILD_TIMED_OUT, // it was ended, for its time was over
+} ChildEnd;
+
+// Fills the result, which begins as all zeroes, from the context. It runs in the child: nothing
+// else that it changes is seen by the parent, and nothing it leaves open is closed by anyone.
+typedef void (*ChildWork)(const void *context, void *result);
+
+typedef struct Child {
+    ChildEnd end;
+    int code;      // exit status of CHILD_EXITED, number of the signal of CHILD_SIGNALLED
+    pid_t process; // the rest is the child's own business
+    int pipe;
+    char *result;
+    size_t result_size;
+    size_t received;
+    double started_s;
+    ChildLimits limits;
+} Child;
+
+// Starts the work. The result, of so many bytes, belongs to the caller, must outlive the child and
+// holds something only once the child is CHILD_DONE. Should the caller die, the child dies as
+// well. Fails with ERR_SOLVER where the system has no process or pipe left; there is then nothing
+// to end.
+bool child_start(Child *child, ChildWork work, const void *context, void *result,
+                 size_t result_size, ChildLimits limits, Err *err);
+
+// Waits until one of the children that are running ends, at most so long; their ends stand in
+// them. Returns at once where none is running.
+void child_wait(Child *children, size_t count, double wait_s);
+
+// Ends a child that is running; nothing is to be had from it. Accepts zeroed children.
+void child_kill(Child *child);
+
+// How a child ended, in words: "ended by signal 6 (Aborted)".
+void child_describe(const Child *child, char text[CHILD_TEXT_SIZE]);

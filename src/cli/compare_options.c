@@ -1,0 +1,261 @@
+// What was `jointplay compare` asked for?
+#include "cli/compare_options.h"
+
+#include "casefile/casefile.h"
+#include "casefile/quantity.h"
+#include "cli/arguments.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum {
+    KEY_STEPS = 0x200, // options without a letter of their own
+    KEY_SCHEMES,
+    KEY_REPEATS,
+    KEY_JOBS,
+    KEY_SET,
+    KEY_TIME_LIMIT,
+    KEY_STORE,
+    KEY_FRESH,
+    KEY_JSON,
+    KEY_CSV,
+    KEY_PLOT,
+    KEY_OUT,
+    KEY_QUIET = 'q',
+};
+
+enum { PART_SIZE = 256 };
+
+// three decades, from where a steel contact is hardly seen; the fine end is thinner, for it costs
+// most
+static const double DEFAULT_STEPS[] = {3e-5, 2e-5, 1e-5, 5e-6, 3e-6, 2e-6,
+                                       1e-6, 5e-7, 3e-7, 1e-7, 3e-8};
+static const double DEFAULT_TIME_LIMIT = 600.0; // s: some hundred times the longest usual run
+
+static const struct argp_option OPTIONS[] = {
+    {"steps", KEY_STEPS, "LIST", 0, "The steps, such as '10 us, 3 us, 1 us' (default: 30 to 0.03)",
+     1},
+    {"schemes", KEY_SCHEMES, "LIST", 0,
+     "Only these schemes of ODE: 'direct/corrected' is every one with both words", 1},
+    {"set", KEY_SET, "KEY=VALUE", 0,
+     "Replace a value of the case, such as contact.restitution=0.8; may be given often", 1},
+    {"repeats", KEY_REPEATS, "N", 0, "Timing runs of each point, at least 5 (default: 5)", 2},
+    {"jobs", KEY_JOBS, "N", 0, "Error runs at a time; timing runs go one by one (default: 1)", 2},
+    {"time-limit", KEY_TIME_LIMIT, "TIME", 0, "A run that takes longer has failed (default: 600 s)",
+     2},
+    {"store", KEY_STORE, "FILE", 0, "Keep finished runs here and take them from here", 2},
+    {"fresh", KEY_FRESH, NULL, 0, "Forget what the store holds", 2},
+    {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 3},
+    {"csv", KEY_CSV, "FILE.csv", 0, "Write a row a point", 3},
+    {"plot", KEY_PLOT, "FILE.svg", 0, "Draw error over wall time", 3},
+    {"out", KEY_OUT, "DIR", 0, "Write <case>-compare.json, .txt, .csv and .svg there", 3},
+    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 3},
+    {0},
+};
+
+static bool read_count(const char *name, const char *text, size_t least, size_t most, size_t *count,
+                       Err *err)
+{
+    Complaint complaint;
+    size_t value;
+    if (!quantity_integer(text, &value, &complaint) || value < least || value > most) {
+        return err_set(err, ERR_USAGE, "--%s is %s; allowed: a whole number from %zu to %zu", name,
+                       text, least, most);
+    }
+    *count = value;
+    return true;
+}
+
+static bool read_time(const char *name, const char *text, double *seconds, Err *err)
+{
+    Complaint complaint;
+    double value;
+    if (!quantity_parse(text, DIMENSION_TIME, &value, &complaint)) {
+        return err_set(err, ERR_USAGE, "--%s: %s%s%s", name, complaint.text,
+                       complaint.allowed[0] != '\0' ? "; allowed: " : "", complaint.allowed);
+    }
+    if (!(value > 0.0)) {
+        return err_set(err, ERR_USAGE, "--%s: %s is not above 0", name, text);
+    }
+    *seconds = value;
+    return true;
+}
+
+static bool take_setting(CompareOptions *options, const char *value, Err *err)
+{
+    if (options->override_count == COMPARE_OVERRIDE_MAX) {
+        return err_set(err, ERR_USAGE, "more than %d settings on one command line",
+                       COMPARE_OVERRIDE_MAX);
+    }
+    options->overrides[options->override_count++] = value;
+    return true;
+}
+
+static bool take_case(CompareOptions *options, const char *path, Err *err)
+{
+    if (options->path != NULL) {
+        return err_set(err, ERR_USAGE, "compare takes one case, not %s and %s", options->path,
+                       path);
+    }
+    options->path = path;
+    return true;
+}
+
+static bool take_option(int key, const char *value, void *target, Err *err)
+{
+    CompareOptions *options = target;
+    switch (key) {
+    case KEY_STEPS:
+        options->steps = value;
+        return true;
+    case KEY_SCHEMES:
+        options->schemes = value;
+        return true;
+    case KEY_SET:
+        return take_setting(options, value, err);
+    case KEY_REPEATS:
+        return read_count("repeats", value, LADDER_REPEAT_LEAST, LADDER_REPEAT_MAX,
+                          &options->repeats, err);
+    case KEY_JOBS: {
+        const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+        return read_count("jobs", value, 1, cores > 0 ? (size_t)cores : 1, &options->jobs, err);
+    }
+    case KEY_TIME_LIMIT:
+        return read_time("time-limit", value, &options->time_limit_s, err);
+    case KEY_STORE:
+        options->store = value;
+        return true;
+    case KEY_FRESH:
+        options->is_fresh = true;
+        return true;
+    case KEY_JSON:
+        options->is_json = true;
+        return true;
+    case KEY_CSV:
+        options->csv = value;
+        return true;
+    case KEY_PLOT:
+        options->plot = value;
+        return true;
+    case KEY_OUT:
+        options->folder = value;
+        return true;
+    case KEY_QUIET:
+        options->is_quiet = true;
+        return true;
+    default:
+        return take_case(options, value, err);
+    }
+}
+
+bool compare_options_read(int argc, char **argv, CompareOptions *options, bool *is_answered,
+                          Err *err)
+{
+    static const Arguments ARGUMENTS = {
+        .program = "jointplay compare",
+        .usage = "CASE",
+        .doc = "Runs every scheme of ODE over a ladder of steps and prints speed against error, "
+               "the frontier, the order observed and the cheapest setting."
+               "\vFinished runs are kept in a store under $XDG_CACHE_HOME or ~/.cache: whoever "
+               "ends the program at any moment goes on where it stood.",
+        .options = OPTIONS,
+        .take = take_option,
+    };
+    *options = (CompareOptions){
+        .repeats = LADDER_REPEAT_LEAST, .jobs = 1, .time_limit_s = DEFAULT_TIME_LIMIT};
+    if (!arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err)) {
+        return false;
+    }
+    return *is_answered || options->path != NULL ||
+           err_set(err, ERR_USAGE, "no case given: jointplay compare CASE.yaml");
+}
+
+// Whether the case can be run at that step: read once more with it, so that the checks and their
+// words are those of the case file.
+static bool check_step(const CompareOptions *options, double step_s, Err *err)
+{
+    const char *overrides[COMPARE_OVERRIDE_MAX + 1];
+    char step[64];
+    snprintf(step, sizeof step, "run.step=%.17g s", step_s);
+    memcpy(overrides, options->overrides, options->override_count * sizeof *overrides);
+    overrides[options->override_count] = step;
+    Scenario *scenario = malloc(sizeof *scenario);
+    if (scenario == NULL) {
+        return err_set(err, ERR_SOLVER, "no memory is left");
+    }
+    const bool is_right =
+        casefile_load(options->path, overrides, options->override_count + 1, scenario, err);
+    free(scenario);
+    return is_right;
+}
+
+static int compare_falling(const void *a, const void *b)
+{
+    const double left = *(const double *)a;
+    const double right = *(const double *)b;
+    return (left < right) - (left > right);
+}
+
+static bool read_steps(const CompareOptions *options, double *steps, size_t *count, Err *err)
+{
+    const char *list = options->steps;
+    *count = 0;
+    while (*list != '\0') {
+        char part[PART_SIZE];
+        const size_t length = strcspn(list, ",");
+        snprintf(part, sizeof part, "%.*s", (int)length, list);
+        list += length + (list[length] == ',' ? 1 : 0);
+        if (*count == LADDER_STEP_MAX) {
+            return err_set(err, ERR_USAGE, "--steps: more than %d", LADDER_STEP_MAX);
+        }
+        if (!read_time("steps", part + strspn(part, " "), &steps[*count], err) ||
+            !check_step(options, steps[*count], err)) {
+            return false;
+        }
+        (*count)++;
+    }
+    qsort(steps, *count, sizeof *steps, compare_falling);
+    for (size_t i = 1; i < *count; i++) {
+        if (steps[i] == steps[i - 1]) {
+            return err_set(err, ERR_USAGE, "--steps: %.6g us stands there twice", 1e6 * steps[i]);
+        }
+    }
+    return *count > 0 || err_set(err, ERR_USAGE, "--steps: the list is empty");
+}
+
+// Those of the usual steps that the scenario can be run at; its own where that is none.
+static size_t usual_steps(const CompareOptions *options, const Scenario *scenario, double *steps)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < sizeof DEFAULT_STEPS / sizeof DEFAULT_STEPS[0]; i++) {
+        Err err = {0};
+        if (check_step(options, DEFAULT_STEPS[i], &err)) {
+            steps[count++] = DEFAULT_STEPS[i];
+        }
+    }
+    if (count == 0) {
+        steps[count++] = scenario->run.step;
+    }
+    return count;
+}
+
+bool compare_options_ladder(const CompareOptions *options, const Scenario *scenario,
+                            Ladder **ladder, Err *err)
+{
+    Scheme schemes[SCHEME_MAX];
+    size_t scheme_count = scheme_list(scenario, schemes);
+    double steps[LADDER_STEP_MAX];
+    size_t step_count;
+    if (options->schemes != NULL && !scheme_filter(options->schemes, schemes, &scheme_count, err)) {
+        return false;
+    }
+    if (options->steps == NULL) {
+        step_count = usual_steps(options, scenario, steps);
+    } else if (!read_steps(options, steps, &step_count, err)) {
+        return false;
+    }
+    *ladder = ladder_create(schemes, scheme_count, steps, step_count, options->repeats);
+    return true;
+}

@@ -1,0 +1,133 @@
+// What do the runs of a ladder say about speed against error?
+#include "compare/frontier.h"
+#include "compare/ladder.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const double LADDER_TARGETS[LADDER_TARGET_COUNT] = {1e-2, 1e-3, 1e-4, 1e-5};
+
+// an error is a number of its own only where the truth's uncertainty does not show in its first
+// digit
+static const double CLEAR_OF_TRUTH = 10.0;
+// speeds that are off by as much as their own size follow nothing
+static const double UNSTABLE = 1.0;
+
+static double error_of(const Ladder *ladder, const LadderPoint *point)
+{
+    const LadderTruth *truth = &ladder->truth;
+    // the truth against itself has no error but its uncertainty
+    if (strcmp(ladder->schemes[point->scheme].name, truth->backend) == 0) {
+        return truth->uncertainty;
+    }
+    const TrajectoryError *error = &point->run.error;
+    return truth->is_limited ? error->omega_max_in_horizon : error->omega_max;
+}
+
+static void fail(LadderPoint *point, const char *reason)
+{
+    point->is_failed = true;
+    snprintf(point->reason, sizeof point->reason, "%s", reason);
+}
+
+static void judge(const Ladder *ladder, LadderPoint *point)
+{
+    point->is_failed = false;
+    point->error = NAN;
+    if (!point->is_measured) {
+        fail(point, "not run");
+    } else if (!point->run.is_complete) {
+        fail(point, point->run.message);
+    } else if (point->timing_message[0] != '\0') {
+        fail(point, point->timing_message);
+    } else if (!point->run.error.is_known) {
+        fail(point, "has no error: its numbers are not finite");
+    } else if (!(error_of(ladder, point) < UNSTABLE)) {
+        fail(point, "unstable: the speeds are off by their own size and more");
+    } else {
+        point->error = error_of(ladder, point);
+    }
+    point->is_limited_by_truth =
+        !point->is_failed && point->error < CLEAR_OF_TRUTH * ladder->truth.uncertainty;
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+    const double left = *(const double *)a;
+    const double right = *(const double *)b;
+    return (left > right) - (left < right);
+}
+
+static void time_point(const Ladder *ladder, LadderPoint *point)
+{
+    double sorted[LADDER_REPEAT_MAX];
+    size_t count = 0;
+    for (size_t i = 0; i < ladder->repeats; i++) {
+        if (point->is_timed[i] && isfinite(point->wall_s[i])) {
+            sorted[count++] = point->wall_s[i];
+        }
+    }
+    point->wall_median_s = point->wall_min_s = point->wall_max_s = NAN;
+    if (count == 0 || point->is_failed) {
+        return;
+    }
+    qsort(sorted, count, sizeof *sorted, compare_numbers);
+    point->wall_median_s = 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]);
+    point->wall_min_s = sorted[0];
+    point->wall_max_s = sorted[count - 1];
+}
+
+static void fit_orders(Ladder *ladder)
+{
+    double errors[LADDER_STEP_MAX];
+    for (size_t scheme = 0; scheme < ladder->scheme_count; scheme++) {
+        size_t count = 0;
+        for (size_t i = 0; i < ladder->point_count; i++) {
+            if (ladder->points[i].scheme == scheme && ladder->points[i].step_s > 0.0) {
+                errors[count++] = ladder->points[i].error;
+            }
+        }
+        ladder->orders[scheme] =
+            order_fit(count, ladder->steps, errors, CLEAR_OF_TRUTH * ladder->truth.uncertainty);
+    }
+}
+
+// The frontier and the cheapest points are ODE's: the solvers that choose their own steps stand
+// beside them.
+static void rank_points(Ladder *ladder)
+{
+    const size_t count = ladder->point_count;
+    double *times = calloc(count + 1, sizeof *times);
+    double *errors = calloc(count + 1, sizeof *errors);
+    bool *marks = calloc(count + 1, sizeof *marks);
+    assert(times != NULL && errors != NULL && marks != NULL);
+    for (size_t i = 0; i < count; i++) {
+        const LadderPoint *point = &ladder->points[i];
+        times[i] = point->step_s > 0.0 ? point->wall_median_s : NAN;
+        errors[i] = point->error;
+    }
+    frontier_mark(count, times, errors, marks);
+    for (size_t i = 0; i < count; i++) {
+        ladder->points[i].is_on_frontier = marks[i];
+    }
+    for (size_t i = 0; i < LADDER_TARGET_COUNT; i++) {
+        ladder->cheapest[i] =
+            frontier_cheapest(count, times, errors, ladder->truth.uncertainty, LADDER_TARGETS[i]);
+    }
+    free(times);
+    free(errors);
+    free(marks);
+}
+
+void ladder_conclude(Ladder *ladder)
+{
+    for (size_t i = 0; i < ladder->point_count; i++) {
+        judge(ladder, &ladder->points[i]);
+        time_point(ladder, &ladder->points[i]);
+    }
+    fit_orders(ladder);
+    rank_points(ladder);
+}

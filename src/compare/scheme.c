@@ -1,0 +1,177 @@
+// Which ways are there to run a scenario?
+#include "compare/scheme.h"
+
+#include "base/text.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { ENTRY_SIZE = 256 };
+
+static int word_count(const char *const *words)
+{
+    int count = 0;
+    while (words[count] != NULL) {
+        count++;
+    }
+    return count;
+}
+
+// First and last word of a choice: one of them only where it makes no difference.
+typedef struct Choice {
+    int first;
+    int last;
+} Choice;
+
+static Choice choose(const char *const *words, bool matters, int as_it_is)
+{
+    return matters ? (Choice){0, word_count(words) - 1} : (Choice){as_it_is, as_it_is};
+}
+
+static void name_scheme(Scheme *scheme, bool has_map, bool has_collider)
+{
+    snprintf(scheme->name, sizeof scheme->name, "%s/%s%s%s%s%s",
+             OPTIONS_ODE_SOLVERS[scheme->solver], OPTIONS_ODE_STEPPINGS[scheme->stepping],
+             has_map ? "/" : "", has_map ? OPTIONS_ODE_MAPS[scheme->map] : "",
+             has_collider ? "/" : "", has_collider ? OPTIONS_ODE_COLLIDERS[scheme->collider] : "");
+}
+
+static size_t list_ode(const Scenario *scenario, Scheme *schemes)
+{
+    const OdeOptions *ode = &scenario->ode;
+    const bool has_play = scenario_has_clearance(scenario);
+    const bool has_map = has_play && scenario->contact.model != CONTACT_POISSON;
+    const Choice maps = choose(OPTIONS_ODE_MAPS, has_map, (int)ode->map);
+    const Choice colliders = choose(OPTIONS_ODE_COLLIDERS, has_play, (int)ode->collider);
+    const int solvers = word_count(OPTIONS_ODE_SOLVERS);
+    const int steppings = word_count(OPTIONS_ODE_STEPPINGS);
+    size_t count = 0;
+    for (int solver = 0; solver < solvers; solver++) {
+        for (int stepping = 0; stepping < steppings; stepping++) {
+            for (int map = maps.first; map <= maps.last; map++) {
+                for (int collider = colliders.first; collider <= colliders.last; collider++) {
+                    assert(count + 2 < SCHEME_MAX);
+                    Scheme *scheme = &schemes[count++];
+                    *scheme = (Scheme){.backend = BACKEND_ODE,
+                                       .solver = (OdeSolver)solver,
+                                       .stepping = (OdeStepping)stepping,
+                                       .map = (OdeMap)map,
+                                       .collider = (OdeCollider)collider};
+                    name_scheme(scheme, has_map, colliders.last > colliders.first);
+                }
+            }
+        }
+    }
+    return count;
+}
+
+static void add_backend(BackendKind backend, Scheme *schemes, size_t *count)
+{
+    schemes[*count] = (Scheme){.backend = backend};
+    text_copy(schemes[*count].name, SCHEME_NAME_SIZE, OPTIONS_BACKENDS[backend]);
+    (*count)++;
+}
+
+size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX])
+{
+    size_t count = list_ode(scenario, schemes);
+    add_backend(BACKEND_REFERENCE, schemes, &count);
+    if (!scenario_has_clearance(scenario)) {
+        add_backend(BACKEND_ANALYTIC, schemes, &count);
+    }
+    return count;
+}
+
+bool scheme_has_step(const Scheme *scheme)
+{
+    return scheme->backend == BACKEND_ODE;
+}
+
+void scheme_apply(const Scheme *scheme, double step_s, Scenario *scenario)
+{
+    if (!scheme_has_step(scheme)) {
+        return;
+    }
+    scenario->run.step = step_s;
+    scenario->ode.solver = scheme->solver;
+    scenario->ode.stepping = scheme->stepping;
+    scenario->ode.map = scheme->map;
+    scenario->ode.collider = scheme->collider;
+}
+
+// Takes the next part of a text up to one of the separators; false where there is none.
+static bool next_part(const char **text, const char *separators, char part[ENTRY_SIZE])
+{
+    const char *start = *text + strspn(*text, separators);
+    const size_t length = strcspn(start, separators);
+    snprintf(part, ENTRY_SIZE, "%.*s", (int)length, start);
+    *text = start + length;
+    return length > 0;
+}
+
+static bool has_word(const Scheme *scheme, const char *word)
+{
+    const char *rest = scheme->name;
+    char part[ENTRY_SIZE];
+    while (next_part(&rest, "/", part)) {
+        if (strcmp(part, word) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool matches(const Scheme *scheme, const char *entry)
+{
+    char word[ENTRY_SIZE];
+    bool is_match = true;
+    while (next_part(&entry, "/", word)) {
+        is_match = is_match && has_word(scheme, word);
+    }
+    return is_match;
+}
+
+static bool mark_entry(const char *entry, const Scheme *schemes, size_t count, bool *is_kept,
+                       Err *err)
+{
+    const char *names[SCHEME_MAX];
+    size_t named = 0;
+    size_t found = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (scheme_has_step(&schemes[i])) {
+            names[named++] = schemes[i].name;
+            is_kept[i] = is_kept[i] || matches(&schemes[i], entry);
+            found += matches(&schemes[i], entry) ? 1 : 0;
+        }
+    }
+    if (found > 0) {
+        return true;
+    }
+    const char *nearest = text_nearest(entry, names, named);
+    return err_set(err, ERR_USAGE, "no scheme of this case is '%s'; %s '%s'", entry,
+                   nearest != NULL ? "did you mean" : "one is", nearest ? nearest : names[0]);
+}
+
+bool scheme_filter(const char *list, Scheme *schemes, size_t *count, Err *err)
+{
+    bool is_kept[SCHEME_MAX] = {false};
+    char entry[ENTRY_SIZE];
+    size_t entries = 0;
+    for (; next_part(&list, ", ", entry); entries++) {
+        if (!mark_entry(entry, schemes, *count, is_kept, err)) {
+            return false;
+        }
+    }
+    if (entries == 0) {
+        return err_set(err, ERR_USAGE, "the list of schemes is empty");
+    }
+    size_t kept = 0;
+    for (size_t i = 0; i < *count; i++) {
+        if (is_kept[i] || !scheme_has_step(&schemes[i])) {
+            schemes[kept++] = schemes[i];
+        }
+    }
+    *count = kept;
+    return true;
+}

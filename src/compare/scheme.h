@@ -1,0 +1,33 @@
+// The ways to run a scenario that are held against one another: each combination of ODE's choices
+// that makes a difference, and the solvers that choose their own steps.
+#pragma once
+
+#include "model/scenario.h"
+
+enum { SCHEME_MAX = 128, SCHEME_NAME_SIZE = 64 };
+
+typedef struct Scheme {
+    char name[SCHEME_NAME_SIZE]; // "direct/plain/textbook", or the name of the backend
+    BackendKind backend;
+    OdeSolver solver; // of BACKEND_ODE, as the three below
+    OdeStepping stepping;
+    OdeMap map;
+    OdeCollider collider;
+} Scheme;
+
+// Lists the schemes of a scenario, ODE's first, and returns their count. They come from the lists
+// of words in model/options.h. A choice that makes no difference stays as the case has it: the map
+// where no joint has play or the contact is CONTACT_POISSON, the collider where no joint has play.
+// Then come the reference and, where no joint has play, the closed form.
+size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX]);
+
+// Whether the scheme takes steps of a length that it is told.
+bool scheme_has_step(const Scheme *scheme);
+
+// The scenario run by that scheme at that step, s.
+void scheme_apply(const Scheme *scheme, double step_s, Scenario *scenario);
+
+// Keeps those that the list names, separated by commas, and all that have no step. An entry names
+// every scheme that has all of its words: "direct/corrected" is any such stepping and collider.
+// Fails with ERR_USAGE for an entry that no scheme matches; the schemes are then untouched.
+bool scheme_filter(const char *list, Scheme *schemes, size_t *count, Err *err);

@@ -1,0 +1,22 @@
+// The pieces of work that a comparison gives to child processes.
+#pragma once
+
+#include "compare/ladder.h"
+#include "compare/truth_pack.h"
+
+typedef struct Task {
+    Scenario scenario; // with scheme and step applied
+    BackendKind backend;
+    LadderRun run;           // kind, point and round of a run that is measured
+    const Trajectory *truth; // of LADDER_ERROR
+    double horizon_s;        // likewise; INFINITY where nothing limits it
+} Task;
+
+// The task of a run of a ladder; the truth is only needed for LADDER_ERROR.
+Task task_make(const Ladder *ladder, const Scenario *scenario, LadderRun run, const Truth *truth);
+
+// Each is a ChildWork and takes a Task. What comes of it is, in this order: a LadderRun; a packed
+// truth; an Ensemble.
+void task_measure(const void *task, void *run);
+void task_certify(const void *task, void *packed);
+void task_spread(const void *task, void *ensemble);

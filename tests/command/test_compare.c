@@ -1,0 +1,297 @@
+// Does `jointplay compare` print, write and end as it should, and lose nothing when it is killed?
+#include "program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <time.h>
+
+static const char CHEAP[] = "compare $cases/paper/ideal-nominal.yaml --store s.jsonl "
+                            "--steps '100 us, 30us, 50 us' ";
+
+// points of two steppers at three steps, the reference, the closed form; an error run and five
+// timing runs of each
+static json_t *load(const Program *program)
+{
+    json_t *root = json_loads(program->output, 0, NULL);
+    assert_non_null(root);
+    return root;
+}
+
+static const json_t *find_scheme(const json_t *root, const char *name)
+{
+    const json_t *schemes = json_object_get(root, "schemes");
+    for (size_t i = 0; i < json_array_size(schemes); i++) {
+        const json_t *scheme = json_array_get(schemes, i);
+        if (strcmp(json_string_value(json_object_get(scheme, "scheme")), name) == 0) {
+            return scheme;
+        }
+    }
+    fail_msg("no scheme %s", name);
+    return NULL;
+}
+
+static double number(const json_t *object, const char *key)
+{
+    return json_number_value(json_object_get(object, key));
+}
+
+// The runs of a comparison: each point an error run and the timing runs.
+static size_t count_runs(const json_t *root)
+{
+    size_t points = 0;
+    const json_t *schemes = json_object_get(root, "schemes");
+    for (size_t i = 0; i < json_array_size(schemes); i++) {
+        points += json_array_size(json_object_get(json_array_get(schemes, i), "points"));
+    }
+    return points * (1 + (size_t)number(root, "repeats"));
+}
+
+static size_t count_lines(const Program *program, const char *name)
+{
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, name, path);
+    FILE *stream = fopen(path, "r");
+    size_t lines = 0;
+    for (int c = 0; stream != NULL && (c = fgetc(stream)) != EOF;) {
+        lines += c == '\n' ? 1 : 0;
+    }
+    if (stream != NULL) {
+        fclose(stream);
+    }
+    return lines;
+}
+
+static void run_words(Program *program, const char *more)
+{
+    char words[PROGRAM_PATH_SIZE];
+    snprintf(words, sizeof words, "%s%s", CHEAP, more);
+    program_run(program, words);
+}
+
+static void points_orders_and_the_cheapest_are_printed(void **state)
+{
+    Program *program = *state;
+    run_words(program, "");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "Speed against error");
+    assert_says(program->output, "direct/plain");
+    assert_says(program->output, "Order observed");
+    assert_says(program->output, "Cheapest setting of ODE");
+    assert_says(program->output, "none of these");
+    assert_null(strchr(program->output, '\x1b'));
+    assert_string_equal(program->errors, "");
+}
+
+static void json_holds_every_point(void **state)
+{
+    Program *program = *state;
+    run_words(program, "--json -q");
+    assert_int_equal(program->status, 0);
+    json_t *root = load(program);
+    const json_t *direct = find_scheme(root, "direct/plain");
+    const json_t *points = json_object_get(direct, "points");
+    assert_int_equal(json_array_size(points), 3);
+    // coarse to fine, in whatever order they were given
+    assert_near(number(json_array_get(points, 0), "step_s"), 1e-4, 1e-18);
+    assert_near(number(json_array_get(points, 2), "step_s"), 3e-5, 1e-18);
+    for (size_t i = 0; i < 3; i++) {
+        const json_t *point = json_array_get(points, i);
+        assert_string_equal(json_string_value(json_object_get(point, "status")), "ok");
+        assert_int_equal(json_array_size(json_object_get(point, "wall_s")), 5);
+        assert_true(number(point, "wall_min_s") <= number(point, "wall_median_s"));
+        assert_true(number(point, "wall_median_s") <= number(point, "wall_max_s"));
+    }
+    // first order against the closed form, some 78 rad/s^2 .. of error a second of step
+    assert_near(number(json_object_get(direct, "order"), "order"), 1.0, 0.05);
+    assert_near(number(json_array_get(points, 0), "error_omega"), 7.9e-3, 1e-3);
+    assert_non_null(find_scheme(root, "analytic"));
+    assert_string_equal(
+        json_string_value(json_object_get(json_object_get(root, "truth"), "backend")), "analytic");
+    json_decref(root);
+}
+
+// Starts the program in its folder and ends it after so many seconds, as the worst of users would.
+static void kill_after(const Program *program, double seconds)
+{
+    const pid_t process = fork();
+    if (process == 0) {
+        char word[PROGRAM_PATH_SIZE];
+        snprintf(word, sizeof word, "%s/paper/ideal-nominal.yaml", getenv("JOINTPLAY_CASES"));
+        const int nowhere = open("/dev/null", O_WRONLY);
+        dup2(nowhere, STDOUT_FILENO);
+        dup2(nowhere, STDERR_FILENO);
+        if (chdir(program->folder) == 0) {
+            execl(getenv("JOINTPLAY_PROGRAM"), "jointplay", "compare", word, "--store", "s.jsonl",
+                  "--steps", "100 us, 30us, 50 us", (char *)NULL);
+        }
+        _exit(127);
+    }
+    const struct timespec pause = {0, (long)(1e9 * seconds)};
+    nanosleep(&pause, NULL);
+    kill(process, SIGKILL);
+    waitpid(process, NULL, 0);
+}
+
+static void killing_it_at_any_moment_loses_nothing(void **state)
+{
+    Program *program = *state;
+    const double moments[] = {0.001, 0.01, 0.03, 0.05, 0.1, 0.2};
+    size_t lines = 0;
+    for (int i = 0; i < 6; i++) {
+        kill_after(program, moments[i]);
+        // what had been finished stays
+        assert_true(count_lines(program, "s.jsonl") >= lines);
+        lines = count_lines(program, "s.jsonl");
+    }
+    run_words(program, "--json");
+    assert_int_equal(program->status, 0);
+    json_t *root = load(program);
+    const size_t runs = count_runs(root);
+    // behind the key and the truth a line a run, none of them made twice
+    assert_int_equal(count_lines(program, "s.jsonl"), runs + 2);
+    if (lines > 2) {
+        char words[128];
+        snprintf(words, sizeof words, "took %zu of %zu runs from the store s.jsonl", lines - 2,
+                 runs);
+        assert_says(program->errors, words);
+    }
+    json_decref(root);
+    // once more: everything is there, and nothing is run
+    run_words(program, "--json");
+    char words[128];
+    snprintf(words, sizeof words, "took %zu of %zu runs from the store s.jsonl", runs, runs);
+    assert_says(program->errors, words);
+    assert_int_equal(count_lines(program, "s.jsonl"), runs + 2);
+    // more repeats only add to it
+    run_words(program, "--json --repeats 6");
+    assert_says(program->errors, "took ");
+    assert_int_equal(count_lines(program, "s.jsonl"), runs + runs / 6 + 2);
+}
+
+static void a_store_of_another_comparison_is_refused(void **state)
+{
+    Program *program = *state;
+    run_words(program, "-q");
+    assert_int_equal(program->status, 0);
+    run_words(program, "--set run.samples=100");
+    assert_int_equal(program->status, 5);
+    assert_string_equal(program->output, "");
+    assert_says(program->errors, "settings.run.samples is 3600 there and 100 here");
+    run_words(program, "--set run.samples=100 --fresh");
+    assert_int_equal(program->status, 0);
+    assert_null(strstr(program->errors, "took"));
+}
+
+static void the_usual_store_is_found_by_its_key(void **state)
+{
+    Program *program = *state;
+    char words[PROGRAM_PATH_SIZE];
+    setenv("XDG_CACHE_HOME", program->folder, 1);
+    static const char LINE[] = "compare $cases/paper/ideal-nominal.yaml --steps '100us' "
+                               "--schemes direct --jobs 2 %s";
+    snprintf(words, sizeof words, LINE, "");
+    program_run(program, words);
+    assert_int_equal(program->status, 0);
+    assert_null(strstr(program->errors, "took"));
+    program_run(program, words);
+    assert_says(program->errors, "/jointplay/compare-");
+    assert_says(program->errors, "took ");
+    // another key has another store, and the first is still there
+    snprintf(words, sizeof words, LINE, "--set run.samples=360");
+    program_run(program, words);
+    assert_int_equal(program->status, 0);
+    assert_null(strstr(program->errors, "took"));
+    setenv("XDG_CACHE_HOME", "", 1);
+    setenv("HOME", program->folder, 1);
+    program_run(program, words);
+    assert_int_equal(program->status, 0);
+    snprintf(words, sizeof words, "%s/.cache/jointplay", program->folder);
+    assert_int_equal(access(words, F_OK), 0);
+    setenv("HOME", "", 1);
+    snprintf(words, sizeof words, LINE, "");
+    program_fails_usage(program, words, "there is no home for the store");
+}
+
+static void files_are_written(void **state)
+{
+    Program *program = *state;
+    static const char *const NAMES[] = {"p.svg",
+                                        "p.csv",
+                                        "out/ideal-nominal-compare.txt",
+                                        "out/ideal-nominal-compare.csv",
+                                        "out/ideal-nominal-compare.svg",
+                                        "out/ideal-nominal-compare.json"};
+    run_words(program, "--plot p.svg --csv p.csv --out out");
+    assert_int_equal(program->status, 0);
+    for (int i = 0; i < 6; i++) {
+        char path[PROGRAM_PATH_SIZE];
+        program_path(program, NAMES[i], path);
+        assert_int_equal(access(path, F_OK), 0);
+        assert_says(program->errors, NAMES[i]);
+    }
+    run_words(program, "--plot nowhere/p.svg");
+    assert_int_equal(program->status, 5);
+    run_words(program, "--out p.csv/x");
+    assert_int_equal(program->status, 5);
+}
+
+static void when_every_run_of_ode_fails_the_status_is_4(void **state)
+{
+    Program *program = *state;
+    // the truth is kept, so that only ODE's runs are cut short
+    program_run(program, "compare $cases/paper/ideal-nominal.yaml --steps 50us --schemes direct "
+                         "--store s.jsonl --set run.revolutions=40 -q");
+    assert_int_equal(program->status, 0);
+    assert_int_equal(system("true"), 0);
+    program_run(program, "compare $cases/paper/ideal-nominal.yaml --steps 50us --schemes direct "
+                         "--store s.jsonl --set run.revolutions=40 --repeats 6 --time-limit 1us");
+    assert_int_equal(program->status, 4);
+    assert_says(program->errors, "every run of ODE failed: direct/plain at 50 us");
+    assert_says(program->errors, "took longer than its limit");
+    // a run that was cut short is tried again
+    program_run(program, "compare $cases/paper/ideal-nominal.yaml --steps 50us --schemes direct "
+                         "--store s.jsonl --set run.revolutions=40 --repeats 6 -q");
+    assert_int_equal(program->status, 0);
+}
+
+static void a_wrong_command_line_is_answered(void **state)
+{
+    Program *program = *state;
+    program_fails_usage(program, "compare", "no case given");
+    program_fails_usage(program, "compare a.yaml b.yaml", "compare takes one case");
+    program_fails_usage(program, "compare a.yaml --repeats 4", "a whole number from 5 to 100");
+    program_fails_usage(program, "compare a.yaml --jobs 0", "--jobs is 0");
+    program_fails_usage(program, "compare a.yaml --time-limit 5kg", "--time-limit");
+    program_fails_usage(program, "compare a.yaml --time-limit '-1 s'", "--time-limit");
+    program_fails_usage(program, "compare a.yaml --stepps 1us", "did you mean '--steps'?");
+    program_fails_usage(program, "compare $cases/paper/ideal-nominal.yaml --steps ''", "is empty");
+    program_fails_usage(program, "compare $cases/paper/ideal-nominal.yaml --steps '1us, 1 us'",
+                        "1 us stands there twice");
+    program_fails_usage(program, "compare $cases/paper/ideal-nominal.yaml --steps '1us, 2'",
+                        "--steps");
+    program_fails_usage(program, "compare $cases/paper/ideal-nominal.yaml --steps '1 s'", "step");
+    program_fails_usage(program, "compare $cases/paper/ideal-nominal.yaml --schemes drect",
+                        "no scheme of this case is 'drect'");
+    program_run(program, "compare nowhere.yaml");
+    assert_int_equal(program->status, 5);
+    program_run(program, "compare --help");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "Usage: jointplay compare [OPTION...] CASE");
+}
+
+#define COMPARE_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        COMPARE_TEST(points_orders_and_the_cheapest_are_printed),
+        COMPARE_TEST(json_holds_every_point),
+        COMPARE_TEST(killing_it_at_any_moment_loses_nothing),
+        COMPARE_TEST(a_store_of_another_comparison_is_refused),
+        COMPARE_TEST(the_usual_store_is_found_by_its_key),
+        COMPARE_TEST(files_are_written),
+        COMPARE_TEST(when_every_run_of_ode_fails_the_status_is_4),
+        COMPARE_TEST(a_wrong_command_line_is_answered),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,139 @@
+// Do the lists of choices make every scheme that differs, and none that does not?
+#include "compare/scheme.h"
+
+#include "close.h"
+#include "mechanism.h"
+
+#include <string.h>
+
+static size_t words(const char *const *list)
+{
+    size_t count = 0;
+    while (list[count] != NULL) {
+        count++;
+    }
+    return count;
+}
+
+static size_t steppers(const Scheme *schemes, size_t count)
+{
+    size_t found = 0;
+    for (size_t i = 0; i < count; i++) {
+        found += scheme_has_step(&schemes[i]) ? 1 : 0;
+    }
+    return found;
+}
+
+static void with_play_every_choice_counts(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    Scheme schemes[SCHEME_MAX];
+    const size_t count = scheme_list(&scenario, schemes);
+    assert_int_equal(steppers(schemes, count),
+                     words(OPTIONS_ODE_SOLVERS) * words(OPTIONS_ODE_STEPPINGS) *
+                         words(OPTIONS_ODE_MAPS) * words(OPTIONS_ODE_COLLIDERS));
+    assert_string_equal(schemes[count - 1].name, "reference");
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = 0; k < i; k++) {
+            assert_string_not_equal(schemes[i].name, schemes[k].name);
+        }
+    }
+}
+
+static void the_map_is_left_out_for_poisson(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    scenario.contact.model = CONTACT_POISSON;
+    scenario.ode.map = ODE_MAP_CORRECTED;
+    Scheme schemes[SCHEME_MAX];
+    const size_t count = scheme_list(&scenario, schemes);
+    assert_int_equal(steppers(schemes, count), words(OPTIONS_ODE_SOLVERS) *
+                                                   words(OPTIONS_ODE_STEPPINGS) *
+                                                   words(OPTIONS_ODE_COLLIDERS));
+    assert_int_equal(schemes[0].map, ODE_MAP_CORRECTED);
+    assert_null(strstr(schemes[0].name, "corrected"));
+}
+
+static void without_play_solver_and_stepping_are_left(void **state)
+{
+    (void)state;
+    const Scenario scenario = mechanism_paper();
+    Scheme schemes[SCHEME_MAX];
+    const size_t count = scheme_list(&scenario, schemes);
+    assert_int_equal(steppers(schemes, count),
+                     words(OPTIONS_ODE_SOLVERS) * words(OPTIONS_ODE_STEPPINGS));
+    assert_string_equal(schemes[0].name, "direct/plain");
+    assert_string_equal(schemes[count - 2].name, "reference");
+    assert_string_equal(schemes[count - 1].name, "analytic");
+}
+
+static void a_scheme_sets_what_it_stands_for(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    const Scheme scheme = {.backend = BACKEND_ODE,
+                           .solver = ODE_QUICK,
+                           .map = ODE_MAP_CORRECTED,
+                           .collider = ODE_COLLIDER_PIN_HOLE};
+    scheme_apply(&scheme, 3e-6, &scenario);
+    assert_int_equal(scenario.ode.solver, ODE_QUICK);
+    assert_int_equal(scenario.ode.map, ODE_MAP_CORRECTED);
+    assert_near(scenario.run.step, 3e-6, 0.0);
+    const Scheme reference = {.backend = BACKEND_REFERENCE};
+    scheme_apply(&reference, 1e-6, &scenario);
+    assert_near(scenario.run.step, 3e-6, 0.0);
+}
+
+static void a_list_keeps_those_with_all_of_its_words(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    Scheme schemes[SCHEME_MAX];
+    Err err = {0};
+    size_t count = scheme_list(&scenario, schemes);
+    const size_t all = steppers(schemes, count);
+    assert_true(scheme_filter("direct", schemes, &count, &err));
+    assert_int_equal(steppers(schemes, count), all / words(OPTIONS_ODE_SOLVERS));
+    assert_true(scheme_filter("textbook/plain, direct/plain/corrected", schemes, &count, &err));
+    assert_int_equal(steppers(schemes, count), 2 * words(OPTIONS_ODE_COLLIDERS));
+    // what has no step stays
+    assert_string_equal(schemes[count - 1].name, "reference");
+}
+
+static void a_word_that_no_scheme_has_is_told(void **state)
+{
+    (void)state;
+    const Scenario scenario = mechanism_paper();
+    Scheme schemes[SCHEME_MAX];
+    size_t count = scheme_list(&scenario, schemes);
+    const size_t before = count;
+    Err err = {0};
+    assert_false(scheme_filter("direct, direct/plane", schemes, &count, &err));
+    assert_int_equal(err.kind, ERR_USAGE);
+    assert_non_null(strstr(err.text, "did you mean 'direct/plain'"));
+    err = (Err){0};
+    assert_false(scheme_filter("something", schemes, &count, &err));
+    assert_non_null(strstr(err.text, "one is 'direct/plain'"));
+    err = (Err){0};
+    assert_false(scheme_filter(" ,", schemes, &count, &err));
+    assert_non_null(strstr(err.text, "empty"));
+    assert_int_equal(count, before);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(with_play_every_choice_counts),
+        cmocka_unit_test(the_map_is_left_out_for_poisson),
+        cmocka_unit_test(without_play_solver_and_stepping_are_left),
+        cmocka_unit_test(a_scheme_sets_what_it_stands_for),
+        cmocka_unit_test(a_list_keeps_those_with_all_of_its_words),
+        cmocka_unit_test(a_word_that_no_scheme_has_is_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
