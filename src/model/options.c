@@ -69,7 +69,7 @@ ReferenceOptions reference_options_default(void)
     return (ReferenceOptions){
         // gives 2e-10 or better over a turn with play in up to three joints; below it, rounding of
         // positions of 0.3 m against depths of 10 micron takes over
-        .tolerance = 1e-12,
+        .tolerance = 3e-13,
     };
 }
 

@@ -138,18 +138,17 @@ static void read_ideal_forces(Ode *ode)
 
 // The driven body's own equations give the force in its joint and the work of the drive: all other
 // forces on it are known.
-static void find_drive(Ode *ode, double start_s)
+static void find_drive(Ode *ode, const Motion *driven)
 {
     const Linkage *linkage = &ode->scenario->linkage;
     if (ode->driven < 0) {
         return;
     }
     const double mass = linkage->bodies[ode->driven].mass;
-    const Motion motion = driven_motion(ode, start_s);
     const Vec2 needed =
-        vec2_scale(mass, vec2_add(motion.acceleration, (Vec2){0.0, ode->scenario->gravity}));
+        vec2_scale(mass, vec2_add(driven->acceleration, (Vec2){0.0, ode->scenario->gravity}));
     Vec2 others = {0.0, 0.0};
-    double power = vec2_dot(needed, motion.velocity);
+    double power = vec2_dot(needed, driven->velocity);
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const bool is_on_a = joint->body_a == ode->driven;
@@ -157,9 +156,9 @@ static void find_drive(Ode *ode, double start_s)
             continue;
         }
         const Vec2 force = vec2_scale(is_on_a ? -1.0 : 1.0, ode->joints[i].force_on_b);
-        const Vec2 anchor = vec2_rotate(motion.angle, is_on_a ? joint->anchor_a : joint->anchor_b);
+        const Vec2 anchor = vec2_rotate(driven->angle, is_on_a ? joint->anchor_a : joint->anchor_b);
         const Vec2 arm = vec2_add(anchor, contact_rows_offset(&ode->contacts, i, is_on_a));
-        const Vec2 velocity = vec2_add(motion.velocity, vec2_scale(motion.omega, vec2_perp(arm)));
+        const Vec2 velocity = vec2_add(driven->velocity, vec2_scale(driven->omega, vec2_perp(arm)));
         others = vec2_add(others, force);
         power -= vec2_dot(force, velocity);
     }
@@ -172,9 +171,10 @@ static void find_drive(Ode *ode, double start_s)
 static bool advance(Ode *ode, Err *err)
 {
     const double start_s = (double)ode->index * ode->step_s;
+    Motion driven = {.angle = 0.0};
     if (ode->driven >= 0) {
-        const Motion motion = driven_motion(ode, start_s);
-        world_place(&ode->world, (size_t)ode->driven, &motion);
+        driven = driven_motion(ode, start_s);
+        world_place(&ode->world, (size_t)ode->driven, &driven);
     }
     for (size_t i = 0; i < ode->scenario->linkage.body_count; i++) {
         ode->before[i] = world_snapshot(&ode->world, i);
@@ -187,7 +187,7 @@ static bool advance(Ode *ode, Err *err)
     contact_rows_clear(&ode->contacts, ode->step_s, ode->joints);
     read_velocities(ode);
     read_ideal_forces(ode);
-    find_drive(ode, start_s);
+    find_drive(ode, &driven);
     for (size_t i = 0; i < ode->scenario->linkage.joint_count; i++) {
         ode->impulse[i] = ode->joints[i].force * ode->step_s;
     }

@@ -16,6 +16,12 @@ static const double SAFETY = 0.9;
 static const double SHRINK_MOST = 0.333;
 static const double GROW_MOST = 6.0;
 
+// The number of equations, rounded up to whole blocks.
+static size_t padded(const Dop853 *integrator)
+{
+    return (integrator->size + BLOCK - 1) / BLOCK * BLOCK;
+}
+
 // Adds factor times a weighted sum of the stages to a vector, in blocks of eight equations that a
 // compiler turns into vector instructions; what lies beyond the last equation is zero.
 static void add_stages(const Dop853 *integrator, const double *weights, int count, double factor,
@@ -41,8 +47,7 @@ static void add_stages(const Dop853 *integrator, const double *weights, int coun
 // State at the nodes of one stage.
 static void stage_state(const Dop853 *integrator, int stage, double *y)
 {
-    const size_t padded = (integrator->size + BLOCK - 1) / BLOCK * BLOCK;
-    memcpy(y, integrator->y, padded * sizeof *y);
+    memcpy(y, integrator->y, padded(integrator) * sizeof *y);
     add_stages(integrator, DOP853_COUPLING[stage], stage, integrator->tried, y);
 }
 
@@ -63,8 +68,10 @@ void dop853_start(Dop853 *integrator, double time, const double *y)
 
 static double error_ratio(const Dop853 *integrator)
 {
-    double e5[DOP853_SIZE_MAX] = {0.0};
-    double e3[DOP853_SIZE_MAX] = {0.0};
+    double e5[DOP853_SIZE_MAX];
+    double e3[DOP853_SIZE_MAX];
+    memset(e5, 0, padded(integrator) * sizeof *e5);
+    memset(e3, 0, padded(integrator) * sizeof *e3);
     add_stages(integrator, DOP853_ERROR_5, STEP_STAGES, 1.0, e5);
     add_stages(integrator, DOP853_ERROR_3, STEP_STAGES, 1.0, e3);
     double fifth = 0.0;
@@ -138,7 +145,7 @@ void dop853_fill(Dop853 *integrator)
         p[3][i] = change - h * integrator->stages[END_STAGE][i] - p[2][i];
     }
     for (int row = 0; row < DOP853_DENSE_ROWS; row++) {
-        memset(p[4 + row], 0, sizeof p[4 + row]);
+        memset(p[4 + row], 0, padded(integrator) * sizeof p[4 + row][0]);
         add_stages(integrator, DOP853_DENSE[row], DOP853_STAGES, h, p[4 + row]);
     }
 }

@@ -12,8 +12,6 @@
 #include "contact/law.h"
 #include "reference/loops.h"
 
-#include <string.h>
-
 enum { EQUATION_MAX = TREE_COORDINATE_MAX + 2 * TREE_LOOP_MAX };
 
 // Forces on the bodies, by body: at the centre, and the moment about it.
@@ -68,19 +66,26 @@ static PinHole contact_pose(const Dynamics *dynamics, size_t number, const TreeS
                          contact->radial_clearance);
 }
 
-static Vec2 body_centre(const TreeState *tree, int body)
+// Velocity of the point of an end's body that lies beside the end.
+static Vec2 beside_velocity(const Tree *tree, const TreeState *state, int end, Vec2 beside)
 {
-    return body == LINKAGE_GROUND ? (Vec2){0.0, 0.0} : tree->motions[body].position;
+    const int body = tree->end_bodies[end];
+    const Vec2 velocity = tree_end_velocity(tree, state, end);
+    return body == LINKAGE_GROUND
+               ? velocity
+               : vec2_add(velocity, vec2_scale(state->motions[body].omega, vec2_perp(beside)));
 }
 
-static Vec2 velocity_at(const TreeState *tree, int body, Vec2 point)
+// From the centres of hole and pin to the point of the wall where they touch. Without friction the
+// force's line passes through both centres, and those serve as well.
+static void contact_places(const Dynamics *dynamics, const DynamicsContact *contact,
+                           const PinHole *pose, Vec2 *from_hole, Vec2 *from_pin)
 {
-    if (body == LINKAGE_GROUND) {
-        return (Vec2){0.0, 0.0};
+    *from_hole = *from_pin = (Vec2){0.0, 0.0};
+    if (dynamics->scenario->contact.friction > 0.0) {
+        *from_hole = vec2_scale(-contact->hole_radius, pose->normal);
+        *from_pin = vec2_sub(*from_hole, pose->eccentricity);
     }
-    const Vec2 arm = vec2_sub(point, body_centre(tree, body));
-    return vec2_add(tree->motions[body].velocity,
-                    vec2_scale(tree->motions[body].omega, vec2_perp(arm)));
 }
 
 // Adds what friction does to a contact that presses.
@@ -88,12 +93,13 @@ static void add_friction(const Dynamics *dynamics, const DynamicsContact *contac
                          const TreeState *tree, ContactForce *force)
 {
     const ContactOptions *options = &dynamics->scenario->contact;
-    const Joint *joint = &dynamics->scenario->linkage.joints[contact->joint];
-    const Vec2 hole = tree_end_point(&dynamics->tree, tree, 2 * contact->joint);
-    const Vec2 point = pin_hole_contact_point(&force->pose, hole, contact->hole_radius);
+    const int hole = 2 * contact->joint;
     const Vec2 tangent = vec2_perp(force->pose.normal);
-    const Vec2 sliding =
-        vec2_sub(velocity_at(tree, joint->body_b, point), velocity_at(tree, joint->body_a, point));
+    Vec2 from_hole;
+    Vec2 from_pin;
+    contact_places(dynamics, contact, &force->pose, &from_hole, &from_pin);
+    const Vec2 sliding = vec2_sub(beside_velocity(&dynamics->tree, tree, hole + 1, from_pin),
+                                  beside_velocity(&dynamics->tree, tree, hole, from_hole));
     const double speed = vec2_dot(tangent, sliding);
     const double held = options->friction * force->normal * tanh(speed / options->friction_speed);
     force->force = vec2_sub(force->force, vec2_scale(held, tangent));
@@ -128,66 +134,79 @@ static void find_contact(const Dynamics *dynamics, size_t number, const TreeStat
     }
 }
 
-// A force on a body at a point of the world.
-static void load_body(const Dynamics *dynamics, const TreeState *tree, int body, Vec2 point,
-                      Vec2 force, Loads *loads)
+// A force on the body of an end, beside the end.
+static void load_end(const Tree *tree, const TreeState *state, int end, Vec2 beside, Vec2 force,
+                     Loads *loads)
 {
+    const int body = tree->end_bodies[end];
     if (body == LINKAGE_GROUND) {
         return;
     }
-    if (body == dynamics->tree.driven) {
-        loads->driven_power += vec2_dot(force, velocity_at(tree, body, point));
+    if (body == tree->driven) {
+        loads->driven_power += vec2_dot(force, beside_velocity(tree, state, end, beside));
         loads->driven_force = vec2_add(loads->driven_force, force);
         return;
     }
-    const Vec2 arm = vec2_sub(point, body_centre(tree, body));
     loads->force[body] = vec2_add(loads->force[body], force);
-    loads->moment[body] += vec2_cross(arm, force);
+    loads->moment[body] += vec2_cross(vec2_add(state->arms[end], beside), force);
 }
 
-static void load_contact(const Dynamics *dynamics, size_t number, const TreeState *tree,
+static void load_contact(const Dynamics *dynamics, size_t number, const TreeState *state,
                          const ContactForce *force, Loads *loads)
 {
     const DynamicsContact *contact = &dynamics->contacts[number];
-    const Joint *joint = &dynamics->scenario->linkage.joints[contact->joint];
-    const Vec2 hole = tree_end_point(&dynamics->tree, tree, 2 * contact->joint);
-    // without friction the force's line passes through both centres; the pin's keeps its digits
-    const bool is_rough = dynamics->scenario->contact.friction > 0.0;
-    const Vec2 point =
-        is_rough ? pin_hole_contact_point(&force->pose, hole, contact->hole_radius) : hole;
-    load_body(dynamics, tree, joint->body_b, point, force->force, loads);
-    load_body(dynamics, tree, joint->body_a, point, vec2_scale(-1.0, force->force), loads);
+    const int hole = 2 * contact->joint;
+    Vec2 from_hole;
+    Vec2 from_pin;
+    contact_places(dynamics, contact, &force->pose, &from_hole, &from_pin);
+    load_end(&dynamics->tree, state, hole + 1, from_pin, force->force, loads);
+    load_end(&dynamics->tree, state, hole, from_hole, vec2_scale(-1.0, force->force), loads);
 }
 
-static void load_gravity(const Dynamics *dynamics, Loads *loads)
+// Gravity, and nothing else yet.
+static void start_loads(const Dynamics *dynamics, Loads *loads)
 {
     const Tree *tree = &dynamics->tree;
     for (size_t i = 0; i < tree->node_count; i++) {
         const int body = tree->nodes[i].body;
         const double weight = tree->linkage->bodies[body].mass * dynamics->scenario->gravity;
-        loads->force[body] = vec2_sub(loads->force[body], (Vec2){0.0, weight});
+        loads->force[body] = (Vec2){0.0, -weight};
+        loads->moment[body] = 0.0;
     }
+    loads->driven_power = 0.0;
+    loads->driven_force = (Vec2){0.0, 0.0};
 }
 
-// Mass matrix (n by n, in rows of `width`) and right-hand side of the coordinates.
+// Mass matrix (n by n, in rows of `width`) and right-hand side of the coordinates; a body counts
+// for the coordinates of its chain.
 static void assemble(const Tree *tree, const TreeState *state, const Loads *loads, size_t width,
                      double *matrix, double *right)
 {
-    const size_t n = tree->coordinate_count;
+    for (size_t i = 0; i < width * width; i++) {
+        matrix[i] = 0.0;
+    }
+    for (size_t i = 0; i < width; i++) {
+        right[i] = 0.0;
+    }
     for (size_t i = 0; i < tree->node_count; i++) {
-        const int body = tree->nodes[i].body;
-        const double mass = tree->linkage->bodies[body].mass;
-        const Vec2 *columns = state->columns[body];
-        const Vec2 push = vec2_sub(loads->force[body], vec2_scale(mass, state->bias[body]));
-        for (size_t j = 0; j < n; j++) {
-            right[j] += vec2_dot(columns[j], push);
-            for (size_t k = 0; k < n; k++) {
-                matrix[j * width + k] += mass * vec2_dot(columns[j], columns[k]);
+        const TreeNode *node = &tree->nodes[i];
+        const Body *body = &tree->linkage->bodies[node->body];
+        const Vec2 *columns = state->columns[i];
+        const Vec2 push =
+            vec2_sub(loads->force[node->body], vec2_scale(body->mass, state->bias[node->body]));
+        for (size_t j = 0; j < node->chain_count; j++) {
+            const size_t row = node->chain[j];
+            const Vec2 heavy = vec2_scale(body->mass, columns[j]);
+            right[row] += vec2_dot(columns[j], push);
+            for (size_t k = 0; k < j; k++) {
+                const double product = vec2_dot(heavy, columns[k]);
+                matrix[row * width + node->chain[k]] += product;
+                matrix[node->chain[k] * width + row] += product;
             }
+            matrix[row * width + row] += vec2_dot(heavy, columns[j]);
         }
-        const size_t angle = tree->nodes[i].angle_column;
-        matrix[angle * width + angle] += tree->linkage->bodies[body].inertia;
-        right[angle] += loads->moment[body];
+        matrix[node->angle_column * width + node->angle_column] += body->inertia;
+        right[node->angle_column] += loads->moment[node->body];
     }
 }
 
@@ -212,26 +231,22 @@ static void append_loops(const Tree *tree, const TreeState *state, size_t width,
 }
 
 // Forces of the loop joints on their bodies b: the multipliers' negatives.
-static void load_loops(const Dynamics *dynamics, const TreeState *state, const double *solved,
+static void load_loops(const Tree *tree, const TreeState *state, const double *solved,
                        Vec2 *reactions, Loads *loads)
 {
-    const Tree *tree = &dynamics->tree;
     for (size_t loop = 0; loop < tree->loop_count; loop++) {
-        const Joint *joint = &tree->linkage->joints[tree->loops[loop]];
+        const int end = 2 * tree->loops[loop];
         const double *lambda = solved + tree->coordinate_count + 2 * loop;
         const Vec2 force = {-lambda[0], -lambda[1]};
-        const Vec2 point = tree_end_point(tree, state, 2 * tree->loops[loop]);
         reactions[tree->loops[loop]] = force;
-        load_body(dynamics, state, joint->body_b, point, force, loads);
-        load_body(dynamics, state, joint->body_a, point, vec2_scale(-1.0, force), loads);
+        load_end(tree, state, end + 1, (Vec2){0.0, 0.0}, force, loads);
+        load_end(tree, state, end, (Vec2){0.0, 0.0}, vec2_scale(-1.0, force), loads);
     }
 }
 
 // Reactions of the tree's joints, children before parents, from each body's own equation.
-static void find_reactions(const Dynamics *dynamics, const TreeState *state, Loads *loads,
-                           Vec2 *reactions)
+static void find_reactions(const Tree *tree, const TreeState *state, Loads *loads, Vec2 *reactions)
 {
-    const Tree *tree = &dynamics->tree;
     for (size_t i = tree->node_count; i-- > 0;) {
         const TreeNode *node = &tree->nodes[i];
         if (node->joint < 0) {
@@ -242,8 +257,7 @@ static void find_reactions(const Dynamics *dynamics, const TreeState *state, Loa
                                    loads->force[node->body]);
         const bool is_child_b = tree->linkage->joints[node->joint].body_b == node->body;
         reactions[node->joint] = is_child_b ? held : vec2_scale(-1.0, held);
-        load_body(dynamics, state, node->parent, tree_end_point(tree, state, node->parent_end),
-                  vec2_scale(-1.0, held), loads);
+        load_end(tree, state, node->parent_end, (Vec2){0.0, 0.0}, vec2_scale(-1.0, held), loads);
     }
 }
 
@@ -280,50 +294,59 @@ static bool solve(size_t width, double *matrix, double *right)
     return true;
 }
 
-// Everything at an instant; the reactions of the tree's joints only if asked for, or where the
-// driven body carries some and the drive's power depends on them.
-static bool evaluate(const Dynamics *dynamics, double time_s, const double *y, bool with_reactions,
-                     DynamicsState *state)
+// Solves for the coordinates' second rates (and the loops' multipliers behind them).
+static bool find_rates(const Dynamics *dynamics, double time_s, const double *y,
+                       DynamicsState *state, Loads *loads, double *solved)
 {
     const Tree *tree = &dynamics->tree;
     const size_t n = tree->coordinate_count;
     const size_t width = n + 2 * tree->loop_count;
     double matrix[EQUATION_MAX * EQUATION_MAX];
-    double right[EQUATION_MAX];
-    Loads loads;
-    memset(loads.force, 0, tree->linkage->body_count * sizeof *loads.force);
-    memset(loads.moment, 0, tree->linkage->body_count * sizeof *loads.moment);
-    loads.driven_power = 0.0;
-    loads.driven_force = (Vec2){0.0, 0.0};
-    memset(matrix, 0, width * width * sizeof *matrix);
-    memset(right, 0, width * sizeof *right);
-
     tree_evaluate(tree, time_s, y, y + n, &state->tree);
-    load_gravity(dynamics, &loads);
+    start_loads(dynamics, loads);
     for (size_t i = 0; i < dynamics->contact_count; i++) {
         find_contact(dynamics, i, &state->tree, &state->contacts[i]);
         if (dynamics->contacts[i].mode == CONTACT_PRESSING) {
-            load_contact(dynamics, i, &state->tree, &state->contacts[i], &loads);
+            load_contact(dynamics, i, &state->tree, &state->contacts[i], loads);
         }
     }
-    assemble(tree, &state->tree, &loads, width, matrix, right);
-    append_loops(tree, &state->tree, width, matrix, right);
-    if (!solve(width, matrix, right)) {
-        return false;
-    }
-    tree_accelerate(tree, right, &state->tree);
-    load_loops(dynamics, &state->tree, right, state->reactions, &loads);
-    if (with_reactions || tree->is_driven_hung_on) {
-        find_reactions(dynamics, &state->tree, &loads, state->reactions);
-    }
-    find_drive(dynamics, &loads, state);
-    return true;
+    assemble(tree, &state->tree, loads, width, matrix, solved);
+    append_loops(tree, &state->tree, width, matrix, solved);
+    return solve(width, matrix, solved);
+}
+
+// Accelerations of the bodies, then reactions of the ideal joints.
+static void find_motion(const Tree *tree, const double *solved, Loads *loads, DynamicsState *state)
+{
+    tree_accelerate(tree, solved, &state->tree);
+    load_loops(tree, &state->tree, solved, state->reactions, loads);
+    find_reactions(tree, &state->tree, loads, state->reactions);
 }
 
 bool dynamics_evaluate(const Dynamics *dynamics, double time_s, const double *y,
                        DynamicsState *state)
 {
-    return evaluate(dynamics, time_s, y, true, state);
+    double solved[EQUATION_MAX];
+    Loads loads;
+    if (!find_rates(dynamics, time_s, y, state, &loads, solved)) {
+        return false;
+    }
+    find_motion(&dynamics->tree, solved, &loads, state);
+    find_drive(dynamics, &loads, state);
+    return true;
+}
+
+static void fill_sums(const Dynamics *dynamics, const DynamicsState *state, double *sums)
+{
+    sums[DYNAMICS_DRIVE_WORK] = state->drive_power;
+    sums[DYNAMICS_DISSIPATED] = 0.0;
+    sums[DYNAMICS_FRICTION] = 0.0;
+    for (size_t i = 0; i < dynamics->contact_count; i++) {
+        const Vec2 force = state->contacts[i].force;
+        sums[DYNAMICS_DISSIPATED] += state->contacts[i].damping_power;
+        sums[DYNAMICS_FRICTION] += state->contacts[i].friction_power;
+        sums[DYNAMICS_IMPULSES + i] = sqrt(vec2_dot(force, force));
+    }
 }
 
 void dynamics_rates(double time_s, const double *y, double *rates, void *context)
@@ -332,32 +355,24 @@ void dynamics_rates(double time_s, const double *y, double *rates, void *context
     const Tree *tree = &dynamics->tree;
     const size_t n = tree->coordinate_count;
     DynamicsState state;
-    if (!evaluate(dynamics, time_s, y, false, &state)) {
+    Loads loads;
+    double solved[EQUATION_MAX];
+    if (!find_rates(dynamics, time_s, y, &state, &loads, solved)) {
         for (size_t i = 0; i < dynamics_size(dynamics); i++) {
             rates[i] = NAN;
         }
         return;
     }
-    double *sums = rates + 2 * n;
-    memcpy(rates, y + n, n * sizeof *rates);
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const TreeNode *node = &tree->nodes[i];
-        const Motion *motion = &state.tree.motions[node->body];
-        rates[n + node->angle_column] = motion->alpha;
-        if (node->joint < 0) {
-            rates[n + node->angle_column - 2] = motion->acceleration.x;
-            rates[n + node->angle_column - 1] = motion->acceleration.y;
-        }
+    // the drive's power needs the reactions only where the driven body carries ideal joints
+    if (tree->is_driven_hung_on) {
+        find_motion(tree, solved, &loads, &state);
     }
-    sums[DYNAMICS_DRIVE_WORK] = state.drive_power;
-    sums[DYNAMICS_DISSIPATED] = 0.0;
-    sums[DYNAMICS_FRICTION] = 0.0;
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
-        sums[DYNAMICS_DISSIPATED] += state.contacts[i].damping_power;
-        sums[DYNAMICS_FRICTION] += state.contacts[i].friction_power;
-        const Vec2 force = state.contacts[i].force;
-        sums[DYNAMICS_IMPULSES + i] = sqrt(vec2_dot(force, force));
+    find_drive(dynamics, &loads, &state);
+    for (size_t i = 0; i < n; i++) {
+        rates[i] = y[n + i];
+        rates[n + i] = solved[i];
     }
+    fill_sums(dynamics, &state, rates + 2 * n);
 }
 
 ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double time_s,

@@ -12,23 +12,31 @@
 
 enum { PASSES = 2, ROW_MAX = 2 * TREE_LOOP_MAX };
 
-static Vec2 end_column(const Tree *tree, const TreeState *state, int end, size_t column)
+// Adds the velocity of one end by each coordinate, with a sign.
+static void add_end(const Tree *tree, const TreeState *state, int end, double sign, Vec2 *row)
 {
     const int body = tree->end_bodies[end];
     if (body == LINKAGE_GROUND || body == tree->driven) {
-        return (Vec2){0.0, 0.0};
+        return;
     }
-    const Vec2 moved = state->columns[body][column];
-    return tree->angle_column[body] == (int)column ? vec2_add(moved, vec2_perp(state->arms[end]))
-                                                   : moved;
+    const TreeNode *node = &tree->nodes[tree->node_of[body]];
+    const Vec2 *columns = state->columns[tree->node_of[body]];
+    for (size_t i = 0; i < node->chain_count; i++) {
+        Vec2 *entry = &row[node->chain[i]];
+        *entry = vec2_add(*entry, vec2_scale(sign, columns[i]));
+    }
+    Vec2 *angle = &row[node->angle_column];
+    *angle = vec2_add(*angle, vec2_scale(sign, vec2_perp(state->arms[end])));
 }
 
 void loops_row(const Tree *tree, const TreeState *state, size_t loop, Vec2 *row)
 {
     const int end = 2 * tree->loops[loop];
     for (size_t j = 0; j < tree->coordinate_count; j++) {
-        row[j] = vec2_sub(end_column(tree, state, end + 1, j), end_column(tree, state, end, j));
+        row[j] = (Vec2){0.0, 0.0};
     }
+    add_end(tree, state, end, -1.0, row);
+    add_end(tree, state, end + 1, 1.0, row);
 }
 
 // Gap (or its rate) of one loop.

@@ -9,7 +9,11 @@
 
 #include "base/root.h"
 
-#include <string.h>
+// of a step: a maximum missed by so much is too low by half the square of it, 1e-10 of itself
+static const double NARROW = 1e-5;
+
+// how much higher than both its ends a part of a step can rise: it is a seventh of a swing or so
+static const double OVERSHOOT = 1.5;
 
 // Rates of force, N/s, and depth, m/s, of one contact.
 static void contact_rates(const Dynamics *dynamics, size_t number, const DynamicsState *state,
@@ -53,37 +57,64 @@ static double peak_rate(double time, void *context)
     return rates[peak->which];
 }
 
+// Whether a maximum of one quantity lies between two times, and could be the largest of its
+// contact.
+static bool has_peak(const Peaks *peaks, size_t index, double rate, double value)
+{
+    return peaks->was_rising[index] && rate < 0.0 &&
+           OVERSHOOT * fmax(value, peaks->last[index]) > peaks->largest[index];
+}
+
+// Takes note of where a contact is now.
+static void leave(Peaks *peaks, size_t index, double rate, double value)
+{
+    peaks->was_rising[index] = rate > 0.0;
+    peaks->last[index] = value;
+    peaks->largest[index] = fmax(peaks->largest[index], value);
+}
+
 double peaks_next(Peaks *peaks, const Stepper *stepper, double start_s, double end_s,
                   const DynamicsState *state)
 {
     const Dynamics *dynamics = &stepper->dynamics;
     double earliest = end_s;
     size_t passed = SIZE_MAX;
-    bool is_rising[2 * LINKAGE_JOINT_MAX];
+    double rates[LINKAGE_JOINT_MAX][2];
     for (size_t i = 0; i < dynamics->contact_count; i++) {
         if (dynamics->contacts[i].mode != CONTACT_PRESSING) {
-            // the next contact begins with both rising
-            is_rising[2 * i] = is_rising[2 * i + 1] = true;
             continue;
         }
-        double rates[2];
-        contact_rates(dynamics, i, state, rates);
+        contact_rates(dynamics, i, state, rates[i]);
+        const double values[2] = {state->contacts[i].normal, state->contacts[i].pose.penetration};
         for (int which = 0; which < 2; which++) {
-            is_rising[2 * i + which] = rates[which] > 0.0;
+            const size_t index = 2 * i + (size_t)which;
             Peak peak = {stepper, i, which};
             double time = end_s;
-            if (peaks->was_rising[2 * i + which] && rates[which] < 0.0 &&
-                root_find(peak_rate, &peak, start_s, end_s, 0.0, &time) && time < earliest &&
-                time > start_s) {
+            if (has_peak(peaks, index, rates[i][which], values[which]) &&
+                root_find(peak_rate, &peak, start_s, end_s, NARROW * (end_s - start_s), &time) &&
+                time < earliest && time > start_s) {
                 earliest = time;
-                passed = 2 * i + (size_t)which;
+                passed = index;
             }
         }
     }
-    if (passed == SIZE_MAX) {
-        memcpy(peaks->was_rising, is_rising, 2 * dynamics->contact_count * sizeof *is_rising);
-    } else {
+    if (passed != SIZE_MAX) {
         peaks->was_rising[passed] = false;
+        return earliest;
     }
-    return earliest;
+    for (size_t i = 0; i < dynamics->contact_count; i++) {
+        const bool is_pressing = dynamics->contacts[i].mode == CONTACT_PRESSING;
+        for (size_t which = 0; which < 2; which++) {
+            const size_t index = 2 * i + which;
+            if (is_pressing) {
+                leave(peaks, index, rates[i][which],
+                      which == 0 ? state->contacts[i].normal : state->contacts[i].pose.penetration);
+            } else {
+                // the next contact begins with both rising from nothing
+                peaks->was_rising[index] = true;
+                peaks->last[index] = peaks->largest[index] = 0.0;
+            }
+        }
+    }
+    return end_s;
 }

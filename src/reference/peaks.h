@@ -3,8 +3,11 @@
 
 #include "reference/stepper.h"
 
+// Force and depth of each contact, where it was left.
 typedef struct Peaks {
-    bool was_rising[2 * LINKAGE_JOINT_MAX]; // force and depth of each contact, where it was left
+    bool was_rising[2 * LINKAGE_JOINT_MAX];
+    double last[2 * LINKAGE_JOINT_MAX];
+    double largest[2 * LINKAGE_JOINT_MAX]; // since the contact began, at the times looked at
 } Peaks;
 
 // The earliest maximum of a pressing contact's force or depth between two times of the present

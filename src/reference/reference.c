@@ -77,7 +77,7 @@ static void fill_joints(const Dynamics *dynamics, const DynamicsState *state, Jo
             joints[i] = (JointState){
                 .eccentricity = vec2_sub(b, a),
                 .force_on_b = state->reactions[i],
-                .force = vec2_length(state->reactions[i]),
+                .force = sqrt(vec2_dot(state->reactions[i], state->reactions[i])),
                 .is_touching = true,
             };
         }
@@ -88,7 +88,7 @@ static void fill_joints(const Dynamics *dynamics, const DynamicsState *state, Jo
             .eccentricity = force->pose.eccentricity,
             .gap = force->pose.gap,
             .force_on_b = force->force,
-            .force = vec2_length(force->force),
+            .force = sqrt(vec2_dot(force->force, force->force)),
             .is_touching = dynamics->contacts[i].mode != CONTACT_APART,
         };
     }

@@ -39,6 +39,10 @@ static void rate_scales(const Stepper *stepper, double *turning, double *moving)
     *moving = *moving > 0.0 ? *moving : 1.0;
 }
 
+// Places may err by so many times what rates times the step would allow: measured on the paper's
+// mechanism, an error of 1e-9 costs a fifth less than at 1, and no less from 8 to 32.
+static const double PLACE_SHARE = 16.0;
+
 static void set_tolerances(Stepper *stepper)
 {
     const Tree *tree = &stepper->dynamics.tree;
@@ -50,12 +54,12 @@ static void set_tolerances(Stepper *stepper)
     rate_scales(stepper, &turning, &moving);
     for (size_t i = 0; i < n; i++) {
         integrator->fixed[n + i] = tolerance * moving;
-        integrator->grown[i] = tolerance * moving;
+        integrator->grown[i] = PLACE_SHARE * tolerance * moving;
     }
     for (size_t i = 0; i < tree->node_count; i++) {
         const size_t angle = tree->nodes[i].angle_column;
         integrator->fixed[n + angle] = tolerance * turning;
-        integrator->grown[angle] = tolerance * turning;
+        integrator->grown[angle] = PLACE_SHARE * tolerance * turning;
     }
     double energy = 0.0;
     for (size_t i = 0; i < stepper->scenario->linkage.body_count; i++) {

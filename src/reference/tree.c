@@ -18,6 +18,7 @@ static bool is_driver_joint(const Linkage *linkage, int joint)
 static void add_node(Tree *tree, int body, int joint, int parent)
 {
     TreeNode *node = &tree->nodes[tree->node_count++];
+    const size_t first = tree->coordinate_count;
     *node = (TreeNode){.body = body, .joint = joint, .parent = parent};
     if (joint >= 0) {
         const bool is_own_b = tree->linkage->joints[joint].body_b == body;
@@ -31,6 +32,16 @@ static void add_node(Tree *tree, int body, int joint, int parent)
         tree->coordinate_count += 3;
     }
     tree->angle_column[body] = (int)node->angle_column;
+    tree->node_of[body] = (int)tree->node_count - 1;
+    // what moves the parent moves the child
+    if (joint >= 0 && parent != LINKAGE_GROUND && parent != tree->driven) {
+        const TreeNode *above = &tree->nodes[tree->node_of[parent]];
+        node->chain_count = above->chain_count;
+        memcpy(node->chain, above->chain, sizeof node->chain);
+    }
+    for (size_t column = first; column < tree->coordinate_count; column++) {
+        node->chain[node->chain_count++] = column;
+    }
 }
 
 // Hangs on every body that an unused ideal joint connects with a known one, until none is left.
@@ -89,6 +100,7 @@ void tree_build(const Linkage *linkage, Tree *tree)
     bool is_used[LINKAGE_JOINT_MAX] = {false};
     if (tree->driven >= 0) {
         tree->angle_column[tree->driven] = -1;
+        tree->node_of[tree->driven] = -1;
         is_known[tree->driven + 1] = true;
         is_used[linkage->driver.joint] = true;
     }
@@ -104,6 +116,9 @@ void tree_build(const Linkage *linkage, Tree *tree)
         if (linkage->joints[i].kind == JOINT_REVOLUTE && !is_used[i] &&
             !is_driver_joint(linkage, i)) {
             tree->loops[tree->loop_count++] = i;
+            tree->is_driven_hung_on = tree->is_driven_hung_on ||
+                                      linkage->joints[i].body_a == tree->driven ||
+                                      linkage->joints[i].body_b == tree->driven;
         }
     }
 }
@@ -135,21 +150,18 @@ void tree_rebase(Tree *tree, double time_s, const double *q)
 }
 
 // Cosine and sine of a body's angle: turned on from the base by a series while that is near. Up to
-// 0.05 the first term left out, d^10 / 10!, is below 3e-20.
+// 0.01 the first terms left out, d^9 / 9! and d^8 / 8!, are below 3e-21.
 static inline Vec2 direction_of(const Tree *tree, int body, double angle)
 {
-    const double near = 0.05;
+    const double near = 0.01;
     const double d = angle - tree->base_angle[body];
     if (!(fabs(d) <= near)) {
         return (Vec2){cos(angle), sin(angle)};
     }
     const double e = d * d;
     const double s =
-        d *
-        (1.0 - e * (1.0 / 6.0) *
-                   (1.0 - e * (1.0 / 20.0) * (1.0 - e * (1.0 / 42.0) * (1.0 - e * (1.0 / 72.0)))));
-    const double r =
-        0.5 * e * (1.0 - e * (1.0 / 12.0) * (1.0 - e * (1.0 / 30.0) * (1.0 - e * (1.0 / 56.0))));
+        d * (1.0 - e * (1.0 / 6.0) * (1.0 - e * (1.0 / 20.0) * (1.0 - e * (1.0 / 42.0))));
+    const double r = 0.5 * e * (1.0 - e * (1.0 / 12.0) * (1.0 - e * (1.0 / 30.0)));
     const Vec2 base = tree->base_direction[body];
     return (Vec2){base.x - (base.x * r + base.y * s), base.y + (base.x * s - base.y * r)};
 }
@@ -182,7 +194,7 @@ static void set_driven(const Tree *tree, double time_s, TreeState *state)
     state->bias[tree->driven] = motion->acceleration;
 }
 
-static void set_floating(const TreeNode *node, const double *q, const double *u, size_t count,
+static void set_floating(const TreeNode *node, const double *q, const double *u, Vec2 *columns,
                          TreeState *state)
 {
     const size_t column = node->angle_column;
@@ -190,16 +202,14 @@ static void set_floating(const TreeNode *node, const double *q, const double *u,
     motion->position = (Vec2){q[column - 2], q[column - 1]};
     motion->velocity = (Vec2){u[column - 2], u[column - 1]};
     state->bias[node->body] = (Vec2){0.0, 0.0};
-    memset(state->columns[node->body], 0, count * sizeof(Vec2));
-    state->columns[node->body][column - 2] = (Vec2){1.0, 0.0};
-    state->columns[node->body][column - 1] = (Vec2){0.0, 1.0};
+    columns[0] = (Vec2){1.0, 0.0};
+    columns[1] = (Vec2){0.0, 1.0};
+    columns[2] = (Vec2){0.0, 0.0};
 }
 
-static void set_hanging(const Tree *tree, const TreeNode *node, TreeState *state)
+static void set_hanging(const Tree *tree, const TreeNode *node, Vec2 *columns, TreeState *state)
 {
-    const int parent = node->parent;
     Motion *motion = &state->motions[node->body];
-    Vec2 *columns = state->columns[node->body];
     const Vec2 arm = state->arms[node->own_end];
     const Vec2 lever = vec2_perp(arm);
     motion->position = vec2_sub(tree_end_point(tree, state, node->parent_end), arm);
@@ -207,18 +217,16 @@ static void set_hanging(const Tree *tree, const TreeNode *node, TreeState *state
                                 vec2_scale(motion->omega, lever));
     state->bias[node->body] = vec2_add(tree_end_bias(tree, state, node->parent_end),
                                        vec2_scale(motion->omega * motion->omega, arm));
-    if (parent == LINKAGE_GROUND || parent == tree->driven) {
-        for (size_t i = 0; i < tree->coordinate_count; i++) {
-            columns[i] = (Vec2){0.0, 0.0};
+    const size_t own = node->chain_count - 1;
+    if (own > 0) {
+        // the parent's chain, whose last coordinate is the parent's angle
+        const Vec2 *above = state->columns[tree->node_of[node->parent]];
+        for (size_t i = 0; i < own; i++) {
+            columns[i] = above[i];
         }
-    } else {
-        for (size_t i = 0; i < tree->coordinate_count; i++) {
-            columns[i] = state->columns[parent][i];
-        }
-        Vec2 *column = &columns[tree->angle_column[parent]];
-        *column = vec2_add(*column, vec2_perp(state->arms[node->parent_end]));
+        columns[own - 1] = vec2_add(columns[own - 1], vec2_perp(state->arms[node->parent_end]));
     }
-    columns[node->angle_column] = vec2_scale(-1.0, lever);
+    columns[own] = vec2_scale(-1.0, lever);
 }
 
 void tree_evaluate(const Tree *tree, double time_s, const double *q, const double *u,
@@ -234,9 +242,9 @@ void tree_evaluate(const Tree *tree, double time_s, const double *q, const doubl
         motion->omega = u[node->angle_column];
         set_arms(tree, node->body, motion->angle, state);
         if (node->joint < 0) {
-            set_floating(node, q, u, tree->coordinate_count, state);
+            set_floating(node, q, u, state->columns[i], state);
         } else {
-            set_hanging(tree, node, state);
+            set_hanging(tree, node, state->columns[i], state);
         }
     }
 }
@@ -246,9 +254,9 @@ void tree_accelerate(const Tree *tree, const double *rates, TreeState *state)
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
         Vec2 acceleration = state->bias[node->body];
-        for (size_t j = 0; j < tree->coordinate_count; j++) {
+        for (size_t j = 0; j < node->chain_count; j++) {
             acceleration =
-                vec2_add(acceleration, vec2_scale(rates[j], state->columns[node->body][j]));
+                vec2_add(acceleration, vec2_scale(rates[node->chain[j]], state->columns[i][j]));
         }
         state->motions[node->body].acceleration = acceleration;
         state->motions[node->body].alpha = rates[node->angle_column];

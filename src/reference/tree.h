@@ -21,6 +21,8 @@ typedef struct TreeNode {
     int parent_end;      // of the joint, on the parent
     int own_end;         // and on the body
     size_t angle_column; // coordinate that is its angle; a floating body's x and y stand before it
+    size_t chain_count;  // coordinates that move it, its own last, and which
+    size_t chain[TREE_COORDINATE_MAX];
 } TreeNode;
 
 typedef struct Tree {
@@ -29,6 +31,7 @@ typedef struct Tree {
     size_t node_count; // free bodies, parents before children
     TreeNode nodes[LINKAGE_BODY_MAX];
     int angle_column[LINKAGE_BODY_MAX];  // by body; -1 for the driven one
+    int node_of[LINKAGE_BODY_MAX];       // by body; -1 for the driven one
     int end_bodies[TREE_END_MAX];        // the body of each end, or LINKAGE_GROUND
     Vec2 anchors[TREE_END_MAX];          // of each end in its body's frame, m
     size_t end_counts[LINKAGE_BODY_MAX]; // how many ends each body has, and which
@@ -47,7 +50,7 @@ typedef struct TreeState {
     Motion motions[LINKAGE_BODY_MAX]; // of all bodies; accelerations after tree_accelerate
     Vec2 arms[TREE_END_MAX];          // from the body's centre to each end, m; not of ground ends
     Vec2 bias[LINKAGE_BODY_MAX]; // acceleration of each centre with all coordinates' rates steady
-    // velocity of each body's centre by each coordinate's rate
+    // velocity of each node's centre by the rate of each coordinate of its chain
     Vec2 columns[LINKAGE_BODY_MAX][TREE_COORDINATE_MAX];
 } TreeState;
 

@@ -107,7 +107,8 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
         if (!reach(loop, time_s, err)) {
             return false;
         }
-        Sample sample = {.time_s = time_s};
+        // a solver fills in what the linkage has; the rest is never looked at
+        Sample sample;
         loop->solver->observe(loop->state, time_s, &sample);
         if (k == 0) {
             loop->start_energy = mechanical_energy(loop->scenario, &sample);
