@@ -25,16 +25,6 @@ typedef struct Override {
 
 static const char OPTION[] = "--set ";
 
-// The characters in a text of so many bytes.
-static size_t count_characters(const char *text, size_t size)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < size; i++) {
-        count += ((unsigned char)text[i] & 0xc0u) != 0x80u ? 1 : 0;
-    }
-    return count;
-}
-
 static bool override_read(Override *override, const char *argument, Err *err)
 {
     text_init(&override->shown);
@@ -58,7 +48,8 @@ static bool override_read(Override *override, const char *argument, Err *err)
         .name = override->shown.data,
         .text = override->shown.data,
         .size = override->shown.length,
-        .shift = strlen(OPTION) + count_characters(argument, key_size) + 1,
+        .shift = strlen(OPTION) + source_count(argument, key_size) + 1,
+        .key_start = strlen(OPTION),
         .is_option = true,
     };
     if (!document_parse(&override->source, equals + 1, strlen(equals + 1), &override->value, err)) {

@@ -30,7 +30,8 @@ typedef enum CasefileKind {
     CASEFILE_NUMBER,  // a quantity in SI
     CASEFILE_INTEGER, // a whole number, in numbers[0]
     CASEFILE_WORD,    // one of a list of words
-    CASEFILE_TEXT,    // free text, or words separated by ", "
+    CASEFILE_WORDS,   // several of a list of words, separated by ", "
+    CASEFILE_TEXT,    // free text, or names separated by ", "
 } CasefileKind;
 
 // One resolved setting of a scenario.
@@ -41,7 +42,7 @@ typedef struct CasefileSetting {
                          // limit of a length with a tolerance, the limits as deviations
     double numbers[3];   // SI
     char unit[CASEFILE_UNIT_SIZE]; // SI, empty for plain numbers
-    char text[CASEFILE_TEXT_SIZE]; // of CASEFILE_WORD and CASEFILE_TEXT
+    char text[CASEFILE_TEXT_SIZE]; // of a word, words or text
     bool applies;                  // the scenario makes use of it
 } CasefileSetting;
 

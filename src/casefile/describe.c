@@ -94,7 +94,7 @@ static void describe_range(const SchemaRow *row, Text *text)
     if (!(row->low < row->high)) {
         return;
     }
-    const char *unit = units_si(row->dimension);
+    const char *unit = schema_unit(row);
     const int digits = row->type == SCHEMA_INTEGER ? 12 : 6;
     text_append(text, row->low_is_open ? "above %.*g, up to %.*g%s%s" : "%.*g to %.*g%s%s", digits,
                 row->low, digits, row->high, unit[0] != '\0' ? " " : "", unit);

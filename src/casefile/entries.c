@@ -345,14 +345,20 @@ bool entries_override(Entries *entries, const char *key, const Node *value, cons
                       Err *err)
 {
     const Walk walk = {entries, source, err};
+    // a name of the key that is wrong is shown in the key
+    Source in_key = *source;
+    in_key.shift = source->key_start;
+    const Walk key_walk = {entries, &in_key, err};
     Position here = {.pattern = ""};
     const char *rest = key;
     for (;;) {
         char name[SCHEMA_PATH_SIZE];
         const size_t length = strcspn(rest, ".");
         snprintf(name, sizeof name, "%.*s", (int)length, rest);
+        const size_t start = source_count(key, (size_t)(rest - key));
+        const Span span = {start, start + source_count(name, length)};
         Position below;
-        if (!descend(&walk, &here, name, value->span, &below)) {
+        if (!descend(&key_walk, &here, name, span, &below)) {
             return false;
         }
         here = below;

@@ -135,7 +135,7 @@ bool quantity_integer(const char *text, size_t *value, Complaint *complaint)
         return false;
     }
     if (!(read >= 0.0 && read <= INTEGER_MAX && read == floor(read))) {
-        snprintf(complaint->allowed, sizeof complaint->allowed, "a whole number, 0 or above");
+        snprintf(complaint->allowed, sizeof complaint->allowed, "a whole number");
         return complain(complaint, "'%.*s' is not a whole number", SHOWN_MAX, text);
     }
     *value = (size_t)read;

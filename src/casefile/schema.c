@@ -30,6 +30,11 @@ static bool is_of_form(const SchemaRow *row, SchemaForm form)
     return row->form == SCHEMA_BOTH || row->form == form;
 }
 
+const char *schema_unit(const SchemaRow *row)
+{
+    return row->plain_unit != NULL ? row->plain_unit : units_si(row->dimension);
+}
+
 bool schema_knows(const char *path, SchemaForm form)
 {
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {

@@ -53,9 +53,10 @@ typedef struct SchemaRow {
     SchemaFamily family;
     SchemaForm form;
     Dimension dimension;
-    size_t offset; // in a Scenario, of the first of its family
-    double low;    // SI; smallest value allowed, or the bound itself where low_is_open
-    double high;   // SI; largest value allowed
+    const char *plain_unit; // SI unit of a number that is written plain; NULL where it has none
+    size_t offset;          // in a Scenario, of the first of its family
+    double low;             // SI; smallest value allowed, or the bound itself where low_is_open
+    double high;            // SI; largest value allowed
     bool low_is_open;
     bool is_required;
     SchemaRivalry rivalry;
@@ -92,6 +93,9 @@ extern const char *const SCHEMA_FORM_KEYS[];
 // The bodies and joints of a four-bar; the first joint is the driven one. End in NULL.
 extern const char *const SCHEMA_LINK_NAMES[];
 extern const char *const SCHEMA_PIVOT_NAMES[];
+
+// The SI unit of a row's number, such as "m"; empty where it has none.
+const char *schema_unit(const SchemaRow *row);
 
 // Whether a scenario makes use of a row, of that member of its family.
 bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index);

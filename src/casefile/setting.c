@@ -48,7 +48,7 @@ static void set_stiffness(CasefileSetting *setting, const ContactOptions *contac
 
 static void set_backends(CasefileSetting *setting, const RunOptions *run)
 {
-    setting->kind = CASEFILE_TEXT;
+    setting->kind = CASEFILE_WORDS;
     for (size_t i = 0; i < run->backend_count; i++) {
         const size_t length = strlen(setting->text);
         snprintf(setting->text + length, sizeof setting->text - length, "%s%s", i > 0 ? ", " : "",
@@ -176,7 +176,7 @@ bool casefile_setting(const Scenario *scenario, size_t index, CasefileSetting *s
     }
     *setting = (CasefileSetting){0};
     schema_path(row, member_name(scenario, row->family, member), setting->key);
-    text_copy(setting->unit, sizeof setting->unit, units_si(row->dimension));
+    text_copy(setting->unit, sizeof setting->unit, schema_unit(row));
     set_value(setting, row, scenario, member);
     setting->applies = schema_applies(row, scenario, member);
     return true;

@@ -178,6 +178,15 @@ size_t source_text_length(const char *text, size_t size)
     return length;
 }
 
+size_t source_count(const char *text, size_t size)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < size; i++) {
+        count += starts_character(text[i]) ? 1 : 0;
+    }
+    return count;
+}
+
 size_t source_line(const Source *source, size_t character)
 {
     return find_place(source, character + source->shift).line;

@@ -17,6 +17,7 @@ typedef struct Source {
     const char *text; // valid UTF-8
     size_t size;      // bytes
     size_t shift;     // characters in front of the part that spans count from (the key of --set)
+    size_t key_start; // of an option: characters in front of its key
     bool is_option;   // given on the command line: messages name no line and are ERR_USAGE
 } Source;
 
@@ -28,6 +29,9 @@ bool source_error(const Source *source, Span span, const char *allowed, Err *err
 // Bytes at the start of the text that are valid UTF-8 without control characters other than tabs
 // and line breaks; equal to size where all of it is text.
 size_t source_text_length(const char *text, size_t size);
+
+// The characters in so many bytes of text.
+size_t source_count(const char *text, size_t size);
 
 // The line, counted from 1, that a character stands on.
 size_t source_line(const Source *source, size_t character);

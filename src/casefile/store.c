@@ -91,18 +91,24 @@ static bool check_scalar(const Target *target, const Node *node)
                   target->path);
 }
 
+// The row's range in words, such as "above 0 and up to 1 s".
+static void describe_range(const SchemaRow *row, char allowed[QUANTITY_TEXT_SIZE])
+{
+    const char *unit = row->plain_unit == NULL ? units_si(row->dimension) : "";
+    const char *blank = unit[0] != '\0' ? " " : "";
+    snprintf(allowed, QUANTITY_TEXT_SIZE,
+             row->low_is_open ? "above %g and up to %g%s%s" : "%g to %g%s%s", row->low, row->high,
+             blank, unit);
+}
+
 static bool check_range(const Target *target, const Node *node, double value)
 {
     const SchemaRow *row = target->entry->row;
     if (value <= row->high && (row->low_is_open ? value > row->low : value >= row->low)) {
         return true;
     }
-    const char *unit = units_si(row->dimension);
-    const char *blank = unit[0] != '\0' ? " " : "";
     char allowed[QUANTITY_TEXT_SIZE];
-    snprintf(allowed, sizeof allowed,
-             row->low_is_open ? "above %g and up to %g%s%s" : "%g to %g%s%s", row->low, row->high,
-             blank, unit);
+    describe_range(row, allowed);
     return source_error(target->entry->source, node->span, allowed, target->err,
                         "%s is out of range: %.60s", target->path, node->text);
 }
@@ -166,6 +172,11 @@ static bool store_integer(const Target *target)
         return false;
     }
     const bool is_read = quantity_integer(node->text, &value, &complaint);
+    if (!is_read) {
+        char range[QUANTITY_TEXT_SIZE];
+        describe_range(target->entry->row, range);
+        snprintf(complaint.allowed, sizeof complaint.allowed, "a whole number, %.64s", range);
+    }
     if (!accept(target, node, is_read, &complaint, (double)value)) {
         return false;
     }
@@ -271,6 +282,11 @@ static bool store_vector(const Target *target)
     const bool is_word = row->default_words != NULL && node->kind == NODE_SCALAR &&
                          strcmp(node->text, row->default_words) == 0;
     const Node *pair[2];
+    if (!is_word && row->default_words != NULL && node->kind == NODE_SCALAR &&
+        text_nearest(node->text, &row->default_words, 1) != NULL) {
+        return refuse(target, node->span, "'%.40s' is no place; did you mean '%s'?", node->text,
+                      row->default_words);
+    }
     if (!is_word && !find_pair(node, pair)) {
         return refuse(target, node->span, "%s takes %s", target->path,
                       row->dimension == DIMENSION_SPEED ? "two speeds" : "a place");

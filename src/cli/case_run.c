@@ -76,7 +76,8 @@ static void match_contacts(CaseRun *run)
         for (size_t k = 0; trajectory != run->truth.trajectory && k < linkage->joint_count; k++) {
             if (run_report_feels_play(trajectory, &linkage->joints[k])) {
                 run->matches[i].joints[k] =
-                    spike_match(trajectory, run->truth.trajectory, k, run->truth.horizon_s);
+                    spike_match(trajectory, run->truth.trajectory, k, run->truth.horizon_s,
+                                spike_match_reach(&run->scenario));
             }
         }
     }
@@ -109,14 +110,16 @@ static void ask_closed_form(CaseRun *run)
     if (find_run(run, BACKEND_ANALYTIC) == NULL || !scenario->has_fourbar) {
         return;
     }
-    // a crank that does not turn fully has no turn to sum up: no error, only nothing to say
-    Err err = {0};
-    if (summary_compute(scenario, &run->summary, &err)) {
+    // a crank that does not turn fully has no turn to sum up: no error, but said
+    if (summary_compute(scenario, &run->summary, &run->summary_err)) {
         run->report.summary = &run->summary;
+    } else {
+        run->report.no_summary = run->summary_err.text;
     }
-    err = (Err){0};
-    if (stackup_compute(scenario, &run->stackup, &err)) {
+    if (stackup_compute(scenario, &run->stackup, &run->stackup_err)) {
         run->report.stackup = &run->stackup;
+    } else {
+        run->report.no_stackup = run->stackup_err.text;
     }
 }
 

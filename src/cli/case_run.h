@@ -8,8 +8,10 @@ typedef struct CaseRun {
     Trajectory *runs[BACKEND_COUNT];
     TrajectoryError errors[BACKEND_COUNT];
     AnalyticSummary summary;
+    Err summary_err; // why there is none
     Stackup stackup;
-    Truth truth; // its trajectory is among the runs where its backend is
+    Err stackup_err; // likewise
+    Truth truth;     // its trajectory is among the runs where its backend is
     RunMatches matches[BACKEND_COUNT];
     Ensemble ensembles[BACKEND_COUNT];
     RunReport report; // points into this CaseRun, which must not be moved

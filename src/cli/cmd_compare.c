@@ -4,6 +4,7 @@
 #include "cli/compare_options.h"
 #include "cli/compare_progress.h"
 #include "cli/compare_store.h"
+#include "cli/idle_settings.h"
 #include "cli/output.h"
 #include "cli/run_files.h"
 
@@ -45,10 +46,7 @@ static void wait(const char *doing, void *context)
 static void print_report(const CompareReport *report, bool is_json)
 {
     if (is_json) {
-        json_t *object = compare_json_build(report);
-        json_dumpf(object, stdout, RUN_JSON_FLAGS);
-        putchar('\n');
-        json_decref(object);
+        output_json(compare_json_build(report));
         return;
     }
     Text text;
@@ -98,14 +96,34 @@ static bool compare_ladder(const CompareOptions *options, const Scenario *scenar
     return compare_files_write(&report, options, err) && check_points(ladder, err);
 }
 
+// Names the settings of the command line that no scheme and no truth makes use of.
+static void say_idle(const CompareOptions *options, const Scenario *scenario)
+{
+    // a comparison runs all backends and both solvers of ODE, whatever the case says
+    Scenario *whole = malloc(sizeof *whole);
+    assert(whole != NULL);
+    *whole = *scenario;
+    whole->run.backend_count = BACKEND_COUNT;
+    for (int i = 0; i < BACKEND_COUNT; i++) {
+        whole->run.backends[i] = (BackendKind)i;
+    }
+    whole->ode.solver = ODE_QUICK;
+    idle_settings_say(whole, options->overrides, options->override_count);
+    free(whole);
+}
+
 static bool compare_case(const CompareOptions *options, Scenario *scenario, Err *err)
 {
     Ladder *ladder = NULL;
-    const bool is_done =
+    bool is_done =
         casefile_load(options->path, options->overrides, options->override_count, scenario, err) &&
         compare_options_ladder(options, scenario, &ladder, err) &&
         (options->folder == NULL || run_files_make_folder(options->folder, err)) &&
-        compare_ladder(options, scenario, ladder, err);
+        compare_files_probe(scenario, options, err);
+    if (is_done && !options->is_quiet) {
+        say_idle(options, scenario);
+    }
+    is_done = is_done && compare_ladder(options, scenario, ladder, err);
     ladder_destroy(ladder);
     return is_done;
 }

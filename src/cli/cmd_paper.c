@@ -42,10 +42,7 @@ static bool take_option(int key, const char *value, void *target, Err *err)
 static void print_result(const PaperResult *result, bool is_json)
 {
     if (is_json) {
-        json_t *object = paper_json_make(result);
-        json_dumpf(object, stdout, RUN_JSON_FLAGS);
-        putchar('\n');
-        json_decref(object);
+        output_json(paper_json_make(result));
         return;
     }
     Text text;

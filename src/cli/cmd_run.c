@@ -2,10 +2,12 @@
 #include "cli/arguments.h"
 #include "cli/case_run.h"
 #include "cli/command.h"
+#include "cli/idle_settings.h"
 #include "cli/output.h"
 #include "cli/run_files.h"
 
 #include "casefile/casefile.h"
+#include "report/file.h"
 #include "report/run_json.h"
 #include "report/run_text.h"
 
@@ -85,6 +87,9 @@ static bool take_option(int key, const char *value, void *target, Err *err)
     RunCommand *command = target;
     switch (key) {
     case KEY_BACKEND:
+        if (value[strspn(value, " \t")] == '\0') {
+            return err_set(err, ERR_USAGE, "--backend names no backend; such as --backend ode");
+        }
         text_append(&command->backends, "%s%s", command->backends.length > 0 ? ", " : "", value);
         return true;
     case KEY_STEP:
@@ -156,11 +161,8 @@ static bool report_case(const RunCommand *command, const CaseRun *run, json_t *o
 // One case is one object, several are {"cases": [...]}.
 static void print_json(json_t *objects)
 {
-    json_t *whole = json_array_size(objects) == 1 ? json_incref(json_array_get(objects, 0))
-                                                  : json_pack("{s:O}", "cases", objects);
-    json_dumpf(whole, stdout, RUN_JSON_FLAGS);
-    putchar('\n');
-    json_decref(whole);
+    output_json(json_array_size(objects) == 1 ? json_incref(json_array_get(objects, 0))
+                                              : json_pack("{s:O}", "cases", objects));
 }
 
 static bool count_failures(const RunCommand *command, const CaseRun *runs, Err *err)
@@ -181,11 +183,29 @@ static bool count_failures(const RunCommand *command, const CaseRun *runs, Err *
                                   all, first_case->scenario.path, first->backend, first->message);
 }
 
-static bool run_cases(const RunCommand *command, CaseRun *runs, Err *err)
+// What cannot be written is told before anything runs.
+static bool probe_files(const RunCommand *command, const CaseRun *runs, Err *err)
 {
-    if (!load_cases(command, runs, err) ||
+    if (!run_files_probe(&runs[0], command->series, command->plot, err) ||
         (command->folder != NULL && !run_files_make_folder(command->folder, err))) {
         return false;
+    }
+    for (size_t i = 0; command->folder != NULL && i < command->case_count; i++) {
+        if (!run_files_probe_folder(&runs[i], command->folder, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool run_cases(const RunCommand *command, CaseRun *runs, Err *err)
+{
+    if (!load_cases(command, runs, err) || !probe_files(command, runs, err)) {
+        return false;
+    }
+    for (size_t i = 0; !command->is_quiet && i < command->case_count; i++) {
+        idle_settings_say(&runs[i].scenario, (const char *const *)command->overrides,
+                          command->override_count);
     }
     json_t *objects = command->is_json ? json_array() : NULL;
     bool is_reported = true;
@@ -208,6 +228,9 @@ static bool check_command(RunCommand *command, Err *err)
     if (command->case_count > 1 && (command->series != NULL || command->plot != NULL)) {
         return err_set(err, ERR_USAGE, "--%s takes one case; --out DIR takes several",
                        command->series != NULL ? "series" : "plot");
+    }
+    if (file_is_same(command->series, command->plot)) {
+        return err_set(err, ERR_USAGE, "--series and --plot would both write %s", command->plot);
     }
     if (command->backends.length > 0) {
         Text text;

@@ -2,34 +2,27 @@
 #include "cli/compare_files.h"
 
 #include "cli/case_run.h"
-#include "cli/run_files.h"
+#include "cli/written.h"
 #include "report/compare_csv.h"
 #include "report/compare_json.h"
 #include "report/compare_plot.h"
 #include "report/compare_text.h"
 #include "report/file.h"
-#include "report/run_json.h"
 
-#include <assert.h>
 #include <stdio.h>
-#include <stdlib.h>
 
-static bool say_written(const char *path, bool is_quiet)
-{
-    if (!is_quiet) {
-        fprintf(stderr, "wrote %s\n", path);
-    }
-    return true;
-}
+enum { ENDING_COUNT = 4 };
+
+static const char *const ENDINGS[ENDING_COUNT] = {"txt", "csv", "svg", "json"};
 
 static bool write_csv(const CompareReport *report, const char *path, bool is_quiet, Err *err)
 {
-    return compare_csv_write(report, path, err) && say_written(path, is_quiet);
+    return compare_csv_write(report, path, err) && written_say(path, is_quiet);
 }
 
 static bool write_text(const char *path, Text *text, bool is_quiet, Err *err)
 {
-    const bool is_written = file_write_text(path, text->data, err) && say_written(path, is_quiet);
+    const bool is_written = written_text(path, text->data, is_quiet, err);
     text_finish(text);
     return is_written;
 }
@@ -53,32 +46,46 @@ static bool write_report(const CompareReport *report, const char *path, bool is_
 static bool write_json(const CompareReport *report, const char *path, bool is_quiet, Err *err)
 {
     json_t *object = compare_json_build(report);
-    char *words = json_dumps(object, RUN_JSON_FLAGS);
-    assert(words != NULL);
-    Text text;
-    text_init(&text);
-    text_append(&text, "%s\n", words);
-    free(words);
+    const bool is_written = written_json(path, object, is_quiet, err);
     json_decref(object);
-    return write_text(path, &text, is_quiet, err);
+    return is_written;
+}
+
+// The file of that ending in the folder.
+static bool find_path(const CompareOptions *options, const Scenario *scenario, const char *ending,
+                      char path[FILE_PATH_SIZE], Err *err)
+{
+    char name[SCENARIO_PATH_SIZE];
+    case_run_name(scenario, name, sizeof name);
+    const int length =
+        snprintf(path, FILE_PATH_SIZE, "%s/%s-compare.%s", options->folder, name, ending);
+    return (length >= 0 && length < FILE_PATH_SIZE) ||
+           err_set(err, ERR_FILE, "the path of %s-compare.%s is too long", name, ending);
 }
 
 static bool write_folder(const CompareReport *report, const CompareOptions *options, Err *err)
 {
-    static bool (*const WRITERS[])(const CompareReport *, const char *, bool,
-                                   Err *) = {write_report, write_csv, write_plot, write_json};
-    static const char *const ENDINGS[] = {"txt", "csv", "svg", "json"};
-    char name[SCENARIO_PATH_SIZE];
+    static bool (*const WRITERS[ENDING_COUNT])(const CompareReport *, const char *, bool, Err *) = {
+        write_report, write_csv, write_plot, write_json};
     char path[FILE_PATH_SIZE];
-    case_run_name(report->scenario, name, sizeof name);
-    for (int i = 0; i < 4; i++) {
-        const int length =
-            snprintf(path, sizeof path, "%s/%s-compare.%s", options->folder, name, ENDINGS[i]);
-        if (length < 0 || length >= FILE_PATH_SIZE) {
-            return err_set(err, ERR_FILE, "the path of %s-compare.%s is too long", name,
-                           ENDINGS[i]);
+    for (int i = 0; i < ENDING_COUNT; i++) {
+        if (!find_path(options, report->scenario, ENDINGS[i], path, err) ||
+            !WRITERS[i](report, path, options->is_quiet, err)) {
+            return false;
         }
-        if (!WRITERS[i](report, path, options->is_quiet, err)) {
+    }
+    return true;
+}
+
+bool compare_files_probe(const Scenario *scenario, const CompareOptions *options, Err *err)
+{
+    if ((options->csv != NULL && !file_probe(options->csv, err)) ||
+        (options->plot != NULL && !file_probe(options->plot, err))) {
+        return false;
+    }
+    for (int i = 0; options->folder != NULL && i < ENDING_COUNT; i++) {
+        char path[FILE_PATH_SIZE];
+        if (!find_path(options, scenario, ENDINGS[i], path, err) || !file_probe(path, err)) {
             return false;
         }
     }

@@ -4,6 +4,7 @@
 #include "casefile/casefile.h"
 #include "casefile/quantity.h"
 #include "cli/arguments.h"
+#include "report/file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,7 +43,8 @@ static const struct argp_option OPTIONS[] = {
     {"set", KEY_SET, "KEY=VALUE", 0,
      "Replace a value of the case, such as contact.restitution=0.8; may be given often", 1},
     {"repeats", KEY_REPEATS, "N", 0, "Timing runs of each point, at least 5 (default: 5)", 2},
-    {"jobs", KEY_JOBS, "N", 0, "Error runs at a time; timing runs go one by one (default: 1)", 2},
+    {"jobs", KEY_JOBS, "N", 0,
+     "Error runs at a time (default: one a core); timing runs always go one by one", 2},
     {"time-limit", KEY_TIME_LIMIT, "TIME", 0, "A run that takes longer has failed (default: 600 s)",
      2},
     {"store", KEY_STORE, "FILE", 0, "Keep finished runs here and take them from here", 2},
@@ -83,6 +85,12 @@ static bool read_time(const char *name, const char *text, double *seconds, Err *
     return true;
 }
 
+static size_t count_cores(void)
+{
+    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    return cores > 0 ? (size_t)cores : 1;
+}
+
 static bool take_setting(CompareOptions *options, const char *value, Err *err)
 {
     if (options->override_count == COMPARE_OVERRIDE_MAX) {
@@ -118,10 +126,8 @@ static bool take_option(int key, const char *value, void *target, Err *err)
     case KEY_REPEATS:
         return read_count("repeats", value, LADDER_REPEAT_LEAST, LADDER_REPEAT_MAX,
                           &options->repeats, err);
-    case KEY_JOBS: {
-        const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-        return read_count("jobs", value, 1, cores > 0 ? (size_t)cores : 1, &options->jobs, err);
-    }
+    case KEY_JOBS:
+        return read_count("jobs", value, 1, count_cores(), &options->jobs, err);
     case KEY_TIME_LIMIT:
         return read_time("time-limit", value, &options->time_limit_s, err);
     case KEY_STORE:
@@ -164,11 +170,17 @@ bool compare_options_read(int argc, char **argv, CompareOptions *options, bool *
         .take = take_option,
     };
     *options = (CompareOptions){
-        .repeats = LADDER_REPEAT_LEAST, .jobs = 1, .time_limit_s = DEFAULT_TIME_LIMIT};
+        .repeats = LADDER_REPEAT_LEAST, .jobs = count_cores(), .time_limit_s = DEFAULT_TIME_LIMIT};
     if (!arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err)) {
         return false;
     }
-    return *is_answered || options->path != NULL ||
+    if (*is_answered) {
+        return true;
+    }
+    if (file_is_same(options->csv, options->plot)) {
+        return err_set(err, ERR_USAGE, "--csv and --plot would both write %s", options->plot);
+    }
+    return options->path != NULL ||
            err_set(err, ERR_USAGE, "no case given: jointplay compare CASE.yaml");
 }
 
@@ -244,6 +256,9 @@ static size_t usual_steps(const CompareOptions *options, const Scenario *scenari
 bool compare_options_ladder(const CompareOptions *options, const Scenario *scenario,
                             Ladder **ladder, Err *err)
 {
+    if (!scheme_check(scenario, err)) {
+        return false;
+    }
     Scheme schemes[SCHEME_MAX];
     size_t scheme_count = scheme_list(scenario, schemes);
     double steps[LADDER_STEP_MAX];

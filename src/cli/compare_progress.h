@@ -1,15 +1,13 @@
 // How far a comparison has come: a line on standard error, as of a long run, gone at its end.
 #pragma once
 
+#include "cli/status_line.h"
 #include "compare/ladder.h"
 
 typedef struct CompareProgress {
     const Ladder *ladder;
-    bool is_quiet;
-    bool is_terminal;
-    bool is_shown;
+    StatusLine line;
     double started_s; // by the clock
-    double last_line_s;
 } CompareProgress;
 
 CompareProgress compare_progress_start(const Ladder *ladder, bool is_quiet);

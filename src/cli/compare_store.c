@@ -12,7 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK_SIZE = 1 << 16, HASH_SIZE = 17 };
+enum {
+    CHUNK_SIZE = 1 << 16,
+    HASH_SIZE = 17,
+    ENTRY_LINE = 2, // of the first entry: the key stands before it
+};
 
 static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
 {
@@ -81,7 +85,7 @@ static bool find_path(const json_t *key, char path[FILE_PATH_SIZE], Err *err)
     return length < FILE_PATH_SIZE || err_set(err, ERR_FILE, "the path of the store is too long");
 }
 
-static void take_all(CompareStore *store, Ladder *ladder, bool is_quiet)
+static bool take_all(CompareStore *store, Ladder *ladder, bool is_quiet, Err *err)
 {
     size_t others = 0;
     size_t index;
@@ -89,13 +93,18 @@ static void take_all(CompareStore *store, Ladder *ladder, bool is_quiet)
     json_array_foreach(store->journal.entries, index, line)
     {
         const LadderJsonFate fate = ladder_json_take(ladder, store->linkage, line, store->machine);
+        if (fate == LADDER_JSON_DAMAGED) {
+            return err_set(err, ERR_FILE,
+                           "line %zu of the store %s is damaged; --fresh starts it over",
+                           index + ENTRY_LINE, store->journal.path);
+        }
         const bool is_run =
             json_object_get(line, "error") != NULL || json_object_get(line, "timing") != NULL;
         store->taken += fate == LADDER_JSON_TAKEN && is_run ? 1 : 0;
         others += fate == LADDER_JSON_OTHER_MACHINE ? 1 : 0;
     }
     if (is_quiet) {
-        return;
+        return true;
     }
     if (store->taken > 0) {
         fprintf(stderr, "took %zu of %zu runs from the store %s\n", store->taken,
@@ -104,6 +113,7 @@ static void take_all(CompareStore *store, Ladder *ladder, bool is_quiet)
     if (others > 0) {
         fprintf(stderr, "left %zu timing runs of another machine there\n", others);
     }
+    return true;
 }
 
 bool compare_store_open(CompareStore *store, const CompareOptions *options,
@@ -120,10 +130,7 @@ bool compare_store_open(CompareStore *store, const CompareOptions *options,
         journal_open(&store->journal, options->store != NULL ? options->store : path, key,
                      options->is_fresh, err);
     json_decref(key);
-    if (is_open) {
-        take_all(store, ladder, options->is_quiet);
-    }
-    return is_open;
+    return is_open && take_all(store, ladder, options->is_quiet, err);
 }
 
 bool compare_store_keep_truth(const LadderTruth *truth, void *context, Err *err)

@@ -20,6 +20,13 @@ const Style *output_style(FILE *stream)
     return output_is_terminal(stream) && !is_refused && !is_dumb ? &STYLE_TERMINAL : &STYLE_PLAIN;
 }
 
+void output_json(json_t *object)
+{
+    json_dumpf(object, stdout, RUN_JSON_FLAGS);
+    putchar('\n');
+    json_decref(object);
+}
+
 bool output_end(Err *err)
 {
     errno = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/err.h"
+#include "report/run_json.h"
 #include "report/style.h"
 
 #include <stdbool.h>
@@ -11,6 +12,9 @@
 const Style *output_style(FILE *stream);
 
 bool output_is_terminal(FILE *stream);
+
+// Prints one JSON object to standard output; takes the reference.
+void output_json(json_t *object);
 
 // Sees that all of standard output has been written. Fails with ERR_FILE; the text is empty where
 // the reader has gone away, which needs no words.

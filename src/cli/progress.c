@@ -1,46 +1,27 @@
 // How far has a long run come?
 #include "cli/progress.h"
 
-#include "cli/output.h"
-
 #include <stdio.h>
-
-static const double FIRST_LINE = 2.0;     // s: who waits shorter than that needs no line
-static const double TERMINAL_PAUSE = 0.2; // s, between two lines on a terminal
-static const double LOG_PAUSE = 10.0;     // s, between two lines of a log
 
 static void show(double share, double wall_s, void *context)
 {
     Progress *progress = context;
-    const double pause = progress->is_terminal ? TERMINAL_PAUSE : LOG_PAUSE;
-    if (wall_s < FIRST_LINE || wall_s - progress->last_line_s < pause) {
-        return;
-    }
-    progress->last_line_s = wall_s;
-    if (progress->is_terminal) {
-        fprintf(stderr, "\r%s: %.0f %%, %.1f s\x1b[K", progress->backend, 100.0 * share, wall_s);
-        fflush(stderr);
-        progress->is_shown = true;
-    } else {
-        fprintf(stderr, "%s: %.0f %%, %.0f s\n", progress->backend, 100.0 * share, wall_s);
+    if (status_line_is_due(&progress->line, wall_s)) {
+        char words[LINKAGE_NAME_SIZE + 64];
+        snprintf(words, sizeof words,
+                 progress->line.is_terminal ? "%s: %.0f %%, %.1f s" : "%s: %.0f %%, %.0f s",
+                 progress->backend, 100.0 * share, wall_s);
+        status_line_show(&progress->line, words);
     }
 }
 
 RunWatch progress_watch(Progress *progress, const char *backend, bool is_quiet)
 {
-    *progress = (Progress){
-        .backend = backend,
-        .is_quiet = is_quiet,
-        .is_terminal = output_is_terminal(stderr),
-    };
+    *progress = (Progress){.backend = backend, .line = status_line_start(is_quiet)};
     return (RunWatch){.progress = is_quiet ? NULL : show, .context = progress};
 }
 
 void progress_end(Progress *progress)
 {
-    if (progress->is_shown) {
-        fputs("\r\x1b[K", stderr);
-        fflush(stderr);
-        progress->is_shown = false;
-    }
+    status_line_end(&progress->line);
 }

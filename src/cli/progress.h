@@ -1,14 +1,12 @@
 // A line on standard error that says how far a long run has come, and is gone at its end.
 #pragma once
 
+#include "cli/status_line.h"
 #include "run/run.h"
 
 typedef struct Progress {
     const char *backend; // of the run that is watched
-    bool is_quiet;
-    bool is_terminal;
-    bool is_shown;      // whether a line stands on the terminal
-    double last_line_s; // wall time of the last line, s
+    StatusLine line;
 } Progress;
 
 // Watches one run. The progress must outlive the run.

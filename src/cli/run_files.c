@@ -1,57 +1,22 @@
 // Which files does a run leave behind, and what are they called?
 #include "cli/run_files.h"
 
+#include "cli/written.h"
 #include "report/file.h"
 #include "report/plot_run.h"
 #include "report/run_json.h"
 #include "report/run_text.h"
 #include "report/series_csv.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-static void say_written(const char *path, bool is_quiet)
-{
-    if (!is_quiet) {
-        fprintf(stderr, "wrote %s\n", path);
-    }
-}
-
-static bool write_text(const char *path, const char *text, bool is_quiet, Err *err)
-{
-    if (!file_write_text(path, text, err)) {
-        return false;
-    }
-    say_written(path, is_quiet);
-    return true;
-}
-
 static bool write_series(const CaseRun *run, const Trajectory *trajectory, const char *path,
                          bool is_quiet, Err *err)
 {
-    if (!series_csv_write(&run->scenario, trajectory, path, err)) {
-        return false;
-    }
-    say_written(path, is_quiet);
-    return true;
-}
-
-bool run_files_series(const CaseRun *run, const char *path, bool is_quiet, Err *err)
-{
-    // a stream takes all series as it is; a name is only made for files
-    const size_t file_count = file_is_stream(path) ? 1 : run->report.run_count;
-    for (size_t i = 0; i < run->report.run_count; i++) {
-        const Trajectory *trajectory = run->runs[i];
-        char target[FILE_PATH_SIZE];
-        series_csv_path(path, trajectory->backend, file_count, target, sizeof target);
-        if (trajectory->is_complete && !write_series(run, trajectory, target, is_quiet, err)) {
-            return false;
-        }
-    }
-    return true;
+    return series_csv_write(&run->scenario, trajectory, path, err) && written_say(path, is_quiet);
 }
 
 bool run_files_plot(const CaseRun *run, const char *path, bool is_quiet, Err *err)
@@ -59,9 +24,44 @@ bool run_files_plot(const CaseRun *run, const char *path, bool is_quiet, Err *er
     Text svg;
     text_init(&svg);
     plot_run_write(&run->report, &svg);
-    const bool is_written = write_text(path, svg.data, is_quiet, err);
+    const bool is_written = written_text(path, svg.data, is_quiet, err);
     text_finish(&svg);
     return is_written;
+}
+
+// The file that a run's series goes to.
+static void find_series(const CaseRun *run, const char *path, size_t number, char *target)
+{
+    const RunOptions *options = &run->scenario.run;
+    // a stream takes all series as it is; a name is only made for files
+    const size_t file_count = file_is_stream(path) ? 1 : options->backend_count;
+    series_csv_path(path, OPTIONS_BACKENDS[options->backends[number]], file_count, target,
+                    FILE_PATH_SIZE);
+}
+
+bool run_files_series(const CaseRun *run, const char *path, bool is_quiet, Err *err)
+{
+    for (size_t i = 0; i < run->report.run_count; i++) {
+        const Trajectory *trajectory = run->runs[i];
+        char target[FILE_PATH_SIZE];
+        find_series(run, path, i, target);
+        if (trajectory->is_complete && !write_series(run, trajectory, target, is_quiet, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool run_files_probe(const CaseRun *run, const char *series, const char *plot, Err *err)
+{
+    for (size_t i = 0; series != NULL && i < run->scenario.run.backend_count; i++) {
+        char target[FILE_PATH_SIZE];
+        find_series(run, series, i, target);
+        if (!file_probe(target, err)) {
+            return false;
+        }
+    }
+    return plot == NULL || file_probe(plot, err);
 }
 
 bool run_files_make_folder(const char *folder, Err *err)
@@ -101,14 +101,7 @@ static bool join_path(const char *folder, const char *name, const char *ending, 
 static bool write_json(const CaseRun *run, const char *path, bool is_quiet, Err *err)
 {
     json_t *object = run_json_build(&run->report);
-    char *words = json_dumps(object, RUN_JSON_FLAGS);
-    assert(words != NULL);
-    Text text;
-    text_init(&text);
-    text_append(&text, "%s\n", words);
-    const bool is_written = write_text(path, text.data, is_quiet, err);
-    text_finish(&text);
-    free(words);
+    const bool is_written = written_json(path, object, is_quiet, err);
     json_decref(object);
     return is_written;
 }
@@ -118,9 +111,23 @@ static bool write_report(const CaseRun *run, const char *path, bool is_quiet, Er
     Text text;
     text_init(&text);
     run_text_write(&run->report, &STYLE_PLAIN, &text);
-    const bool is_written = write_text(path, text.data, is_quiet, err);
+    const bool is_written = written_text(path, text.data, is_quiet, err);
     text_finish(&text);
     return is_written;
+}
+
+bool run_files_probe_folder(const CaseRun *run, const char *folder, Err *err)
+{
+    static const char *const ENDINGS[] = {".svg", ".txt", ".json"};
+    char name[FILE_PATH_SIZE];
+    char path[FILE_PATH_SIZE];
+    case_run_name(&run->scenario, name, sizeof name);
+    for (size_t i = 0; i < sizeof ENDINGS / sizeof ENDINGS[0]; i++) {
+        if (!join_path(folder, name, ENDINGS[i], path, err) || !file_probe(path, err)) {
+            return false;
+        }
+    }
+    return join_path(folder, name, ".csv", path, err) && run_files_probe(run, path, NULL, err);
 }
 
 bool run_files_folder(const CaseRun *run, const char *folder, bool is_quiet, Err *err)

@@ -16,26 +16,50 @@ static const double CLEAR_OF_TRUTH = 10.0;
 // speeds that are off by as much as their own size follow nothing
 static const double UNSTABLE = 1.0;
 
+static bool is_truth(const Ladder *ladder, const LadderPoint *point)
+{
+    return strcmp(ladder->schemes[point->scheme].name, ladder->truth.backend) == 0;
+}
+
 static double error_of(const Ladder *ladder, const LadderPoint *point)
 {
     const LadderTruth *truth = &ladder->truth;
     // the truth against itself has no error but its uncertainty
-    if (strcmp(ladder->schemes[point->scheme].name, truth->backend) == 0) {
+    if (is_truth(ladder, point)) {
         return truth->uncertainty;
     }
     const TrajectoryError *error = &point->run.error;
     return truth->is_limited ? error->omega_max_in_horizon : error->omega_max;
 }
 
+static void explain(LadderPoint *point, const char *reason)
+{
+    snprintf(point->reason, sizeof point->reason, "%s", reason);
+}
+
 static void fail(LadderPoint *point, const char *reason)
 {
     point->is_failed = true;
-    snprintf(point->reason, sizeof point->reason, "%s", reason);
+    explain(point, reason);
+}
+
+// Why a run that is complete and finite has no error all the same.
+static const char *why_without_error(const Ladder *ladder, const LadderPoint *point)
+{
+    const LadderTruth *truth = &ladder->truth;
+    if (truth->message[0] != '\0') {
+        return "has no error: the truth could not be certified";
+    }
+    if (is_truth(ladder, point)) {
+        return "has no error: the truth's own uncertainty is not known";
+    }
+    return "has no error: no sample lies within the horizon";
 }
 
 static void judge(const Ladder *ladder, LadderPoint *point)
 {
     point->is_failed = false;
+    point->reason[0] = '\0';
     point->error = NAN;
     if (!point->is_measured) {
         fail(point, "not run");
@@ -45,6 +69,9 @@ static void judge(const Ladder *ladder, LadderPoint *point)
         fail(point, point->timing_message);
     } else if (!point->run.error.is_known) {
         fail(point, "has no error: its numbers are not finite");
+    } else if ((ladder->truth.is_limited || is_truth(ladder, point)) &&
+               !isfinite(error_of(ladder, point))) {
+        explain(point, why_without_error(ladder, point));
     } else if (!(error_of(ladder, point) < UNSTABLE)) {
         fail(point, "unstable: the speeds are off by their own size and more");
     } else {

@@ -10,8 +10,8 @@ const char *const ENSEMBLE_METRIC_NAMES[ENSEMBLE_METRIC_COUNT] = {
     "force max", "impulse", "impacts", "penetration max", "contact share",
 };
 
-// of the speeds at the start: what an engine's own error amounts to within the first impacts
-static const double PERTURBATION = 1e-3;
+// what an engine's own error amounts to within the first impacts
+const double ENSEMBLE_PERTURBATION = 1e-3;
 
 typedef struct Draws {
     double values[LINKAGE_JOINT_MAX][ENSEMBLE_METRIC_COUNT][ENSEMBLE_MEMBERS];
@@ -64,7 +64,7 @@ void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch
     for (unsigned member = 0; member < ENSEMBLE_MEMBERS; member++) {
         Scenario beside = *scenario;
         if (member > 0) {
-            perturb_start(&beside, PERTURBATION, member);
+            perturb_start(&beside, ENSEMBLE_PERTURBATION, member);
         }
         Trajectory *trajectory = run_scenario(&beside, solver, watch);
         if (trajectory->is_complete) {

@@ -146,6 +146,10 @@ TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *re
             add_body(trajectory, reference, i, &scales[i], horizon_s, &error, &sums);
         }
     }
+    // a horizon that holds no sample but the start says nothing
+    if (reference->sample_count > 1 && !(reference->times[1] <= horizon_s)) {
+        error.omega_max_in_horizon = NAN;
+    }
     // a number that is not finite makes the sum not finite, though it is larger than nothing
     error.is_known = sums.count > 0 && isfinite(sums.square);
     error.against = reference->backend;

@@ -12,7 +12,7 @@ typedef struct TrajectoryError {
     double omega_max;    // 1: largest |omega - omega_ref| over all moving bodies that are not
                          // driven and all samples, each over that body's largest |omega_ref|
     double omega_max_time_s;
-    double omega_max_in_horizon; // 1: as omega_max, up to the horizon
+    double omega_max_in_horizon; // 1: as omega_max, up to the horizon; NAN without a sample in it
     double omega_rms;            // 1: root of the mean square of the same, whole run
     double alpha_max;            // 1: as omega_max, of the angular acceleration
     double angle_max_rad;        // largest |angle - angle_ref|

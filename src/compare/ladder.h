@@ -48,8 +48,8 @@ typedef struct LadderPoint {
     char timing_message[LADDER_MESSAGE_SIZE]; // of the first timing run that failed
     // set by ladder_conclude
     bool is_failed;                   // there are no numbers, for the reason below
-    char reason[LADDER_MESSAGE_SIZE]; //
-    double error;                     // 1: of omega, within the horizon; NAN where it failed
+    char reason[LADDER_MESSAGE_SIZE]; // or why it has no error though it did not fail
+    double error;                     // 1: of omega, within the horizon; NAN where there is none
     bool is_limited_by_truth;         // the error is below ten times the truth's uncertainty
     double wall_median_s;             // NAN where it failed or is not timed
     double wall_min_s;
@@ -65,7 +65,8 @@ typedef struct LadderTruth {
     double horizon_s;
     double growth;
     bool is_limited;
-    double wall_s; // that it took to make and certify it
+    double wall_s;                     // that it took to make and certify it
+    char message[LADDER_MESSAGE_SIZE]; // why it could not be certified; empty where it was
 } LadderTruth;
 
 // The distributions beyond the horizon of one scheme at its finest step that did not fail.

@@ -5,6 +5,7 @@
 #include "compare/runner.h"
 
 #include "base/child.h"
+#include "base/text.h"
 #include "compare/task.h"
 
 #include <assert.h>
@@ -15,6 +16,9 @@
 static const double PAUSE_S = 0.2; // between two looks of the listener
 // a run keeps its samples, some tens of megabytes; whoever wants more than this has lost count
 static const size_t MEMORY_LIMIT = (size_t)4 << 30;
+
+// at most: the trajectory, once more on finer samples, a second one, a twin
+enum { TRUTH_RUNS = 8 };
 
 // One child at work.
 typedef struct Job {
@@ -31,7 +35,8 @@ typedef struct Job {
 typedef struct Work {
     const char *doing;
     size_t jobs;
-    size_t end;                                        // number behind the last
+    size_t runs; // that one job makes, each of which may take the whole time limit
+    size_t end;  // number behind the last
     size_t (*next)(const Runner *runner, size_t from); // number that is to be done
     Task (*make)(const Runner *runner, size_t number, const Truth *truth);
     ChildWork work;
@@ -46,9 +51,10 @@ static double now_s(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-static ChildLimits limits_of(const Runner *runner)
+static ChildLimits limits_of(const Runner *runner, size_t runs)
 {
-    return (ChildLimits){.time_s = runner->time_limit_s, .memory_bytes = MEMORY_LIMIT};
+    return (ChildLimits){.time_s = (double)runs * runner->time_limit_s,
+                         .memory_bytes = MEMORY_LIMIT};
 }
 
 static bool start_job(const Runner *runner, const Work *work, size_t number, const Truth *truth,
@@ -57,7 +63,7 @@ static bool start_job(const Runner *runner, const Work *work, size_t number, con
     job->number = number;
     job->task = work->make(runner, number, truth);
     job->is_busy = child_start(child, work->work, &job->task, &job->result, work->result_size,
-                               limits_of(runner), err);
+                               limits_of(runner, work->runs), err);
     return job->is_busy;
 }
 
@@ -170,7 +176,8 @@ static bool certify(const Runner *runner, void *packed, size_t size, Err *err)
     assert(task != NULL);
     task->scenario = *runner->scenario;
     Child child = {0};
-    bool is_done = child_start(&child, task_certify, task, packed, size, limits_of(runner), err);
+    bool is_done =
+        child_start(&child, task_certify, task, packed, size, limits_of(runner, TRUTH_RUNS), err);
     while (is_done && child.end == CHILD_RUNNING) {
         runner->listener.wait("making and certifying the reference", runner->listener.context);
         child_wait(&child, 1, PAUSE_S);
@@ -212,6 +219,7 @@ static bool make_truth(const Runner *runner, Truth *truth, Err *err)
         .is_limited = truth->is_limited,
         .wall_s = now_s() - started_s,
     };
+    text_copy(known->message, sizeof known->message, truth->message);
     snprintf(known->backend, sizeof known->backend, "%s", truth->trajectory->backend);
     return runner->listener.keep_truth(known, runner->listener.context, err);
 }
@@ -219,13 +227,15 @@ static bool make_truth(const Runner *runner, Truth *truth, Err *err)
 bool runner_execute(const Runner *runner, Err *err)
 {
     const Ladder *ladder = runner->ladder;
-    const Work errors = {"error runs", runner->jobs, ladder->point_count, next_run,
-                         make_run,     task_measure, sizeof(LadderRun),   finish_run};
-    const Work timings = {"timing runs",     1,         ladder_run_total(ladder),
-                          next_run,          make_run,  task_measure,
-                          sizeof(LadderRun), finish_run};
-    const Work ensembles = {"ensembles",   runner->jobs, ladder->scheme_count, next_ensemble,
-                            make_ensemble, task_spread,  sizeof(Ensemble),     finish_ensemble};
+    const Work errors = {"error runs",        runner->jobs,      1,
+                         ladder->point_count, next_run,          make_run,
+                         task_measure,        sizeof(LadderRun), finish_run};
+    const Work timings = {
+        "timing runs",     1,         1, ladder_run_total(ladder), next_run, make_run, task_measure,
+        sizeof(LadderRun), finish_run};
+    const Work ensembles = {"ensembles",          runner->jobs,     ENSEMBLE_MEMBERS,
+                            ladder->scheme_count, next_ensemble,    make_ensemble,
+                            task_spread,          sizeof(Ensemble), finish_ensemble};
     Truth truth = {0};
     const bool needs_truth = !ladder->truth.is_known || ladder_next(ladder, 0) < errors.end;
     const bool is_done = (!needs_truth || make_truth(runner, &truth, err)) &&

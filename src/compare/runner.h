@@ -18,7 +18,7 @@ typedef struct Runner {
     Ladder *ladder;
     const Scenario *scenario;
     size_t jobs;         // error runs and ensembles at a time; timing runs go one by one
-    double time_limit_s; // of one run
+    double time_limit_s; // of one run; an ensemble or the truth may take that for each of theirs
     RunnerListener listener;
 } Runner;
 

@@ -73,11 +73,26 @@ static void add_backend(BackendKind backend, Scheme *schemes, size_t *count)
     (*count)++;
 }
 
+bool scheme_check(const Scenario *scenario, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const int driven = linkage_driven_body(linkage);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if ((int)i != driven) {
+            return true;
+        }
+    }
+    return err_set(err, ERR_CASE,
+                   "there is nothing to compare: the drive prescribes how '%s' moves, and there is "
+                   "no other body whose motion could be in error",
+                   linkage->bodies[driven].name);
+}
+
 size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX])
 {
     size_t count = list_ode(scenario, schemes);
     add_backend(BACKEND_REFERENCE, schemes, &count);
-    if (!scenario_has_clearance(scenario)) {
+    if (scenario->has_fourbar && !scenario_has_clearance(scenario)) {
         add_backend(BACKEND_ANALYTIC, schemes, &count);
     }
     return count;

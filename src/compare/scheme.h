@@ -15,10 +15,13 @@ typedef struct Scheme {
     OdeCollider collider;
 } Scheme;
 
+// Fails with ERR_CASE where no body moves but the one that is driven: nothing could be in error.
+bool scheme_check(const Scenario *scenario, Err *err);
+
 // Lists the schemes of a scenario, ODE's first, and returns their count. They come from the lists
 // of words in model/options.h. A choice that makes no difference stays as the case has it: the map
 // where no joint has play or the contact is CONTACT_POISSON, the collider where no joint has play.
-// Then come the reference and, where no joint has play, the closed form.
+// Then come the reference and, for a four-bar without play, the closed form.
 size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX]);
 
 // Whether the scheme takes steps of a length that it is told.

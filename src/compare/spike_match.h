@@ -19,7 +19,12 @@ typedef struct SpikeMatch {
 } SpikeMatch;
 
 // Pairs the kept spikes of one joint by their onsets: a pair is nearer to each other than half the
-// distance to the next spike of either run, so that no spike can belong to two. Spikes that begin
-// after the horizon, s, are left out. Both trajectories must be complete and of the same scenario.
+// distance to the next spike of either run, so that no spike can belong to two, and nearer than
+// the reach, s. Left out are spikes that begin after the horizon, s, with their partners, and
+// spikes without force or impulse. Both trajectories must be complete and of the same scenario.
 SpikeMatch spike_match(const Trajectory *trajectory, const Trajectory *reference, size_t joint,
-                       double horizon_s);
+                       double horizon_s, double reach_s);
+
+// The reach of a scenario, s: a small part of a turn of its driver, or of the run where that is
+// shorter or there is no driver.
+double spike_match_reach(const Scenario *scenario);

@@ -1,8 +1,10 @@
 // Which solution are errors measured against, how sure is it, and how far does it hold?
 //
 // Uncertainty: the distance to a run at a hundredth of the tolerance. Horizon: a twin whose start
-// is 1e-10 beside moves away; past the time at which that distance has grown 1e5 times, two
-// solutions that are right to 1e-10 have only five digits in common, and an engine's none.
+// is 1e-10 beside moves away; past the time at which the first of them has grown 1e5 times, two
+// solutions that are right to 1e-10 have only five digits in common, and an engine's none. The same
+// holds where the second run is that far away. Both are watched on a grid of at least a thousand
+// samples, for the case's own samples may be few.
 #include "compare/truth.h"
 
 #include "compare/error.h"
@@ -10,10 +12,12 @@
 #include "run/registry.h"
 
 #include <assert.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 static const double TIGHTER = 1e-2;       // the second run's tolerance over the first's
 static const double PERTURBATION = 1e-10; // of the twin's start
+static const double TIGHTEST = 1e-14;     // below it rounding does not let steps follow
 static const double GROWTH_MAX = 1e5;     // of the twin's distance, up to the horizon
 
 static Trajectory *run(const Scenario *scenario, BackendKind backend, RunWatch watch)
@@ -21,21 +25,43 @@ static Trajectory *run(const Scenario *scenario, BackendKind backend, RunWatch w
     return run_scenario(scenario, registry_solver(backend), watch);
 }
 
-// The horizon is the last sample before the twin's distance passes the limit.
-static void find_horizon(const Trajectory *trajectory, const Trajectory *twin, Truth *truth)
+// Shortens the horizon to where another run is further away than the limit, and returns the largest
+// distance up to there. A run that cannot be compared leaves no horizon.
+static double shorten_horizon(const Trajectory *trajectory, const Trajectory *other, Truth *truth)
 {
-    double *distance = calloc(trajectory->sample_count, sizeof *distance);
+    const size_t count = trajectory->sample_count;
+    double *distance = calloc(count, sizeof *distance);
     assert(distance != NULL);
-    if (error_series(twin, trajectory, distance)) {
-        for (size_t k = 0; k < trajectory->sample_count && !truth->is_limited; k++) {
-            truth->is_limited = !(distance[k] <= GROWTH_MAX * PERTURBATION);
-            if (!truth->is_limited) {
-                truth->horizon_s = trajectory->times[k];
-                truth->growth = fmax(truth->growth, distance[k] / PERTURBATION);
-            }
+    double largest = 0.0;
+    double reached = 0.0;
+    size_t k = 0;
+    if (error_series(other, trajectory, distance)) {
+        while (k < count && distance[k] <= GROWTH_MAX * PERTURBATION &&
+               trajectory->times[k] <= truth->horizon_s) {
+            largest = fmax(largest, distance[k]);
+            reached = trajectory->times[k++];
         }
     }
+    truth->is_limited =
+        truth->is_limited || (k < count && trajectory->times[k] <= truth->horizon_s);
+    truth->horizon_s = fmin(truth->horizon_s, reached);
     free(distance);
+    return largest;
+}
+
+// Fewer steps of the horizon would say little; a single twin may lie in a direction that hardly
+// grows.
+enum { LEAST_SAMPLES = 1000, TWINS = 4 };
+
+// The scenario on a grid fine enough for the horizon, the case's own samples among them.
+static Scenario refined(const Scenario *scenario)
+{
+    Scenario fine = *scenario;
+    const size_t count = scenario_sample_count(scenario) - 1;
+    if (count < LEAST_SAMPLES) {
+        fine.run.samples *= (LEAST_SAMPLES + count - 1) / count;
+    }
+    return fine;
 }
 
 static void certify_ideal(const Scenario *scenario, RunWatch watch, Truth *truth)
@@ -48,6 +74,47 @@ static void certify_ideal(const Scenario *scenario, RunWatch watch, Truth *truth
     trajectory_destroy(second);
 }
 
+// A complete run, or the reason in the truth's message.
+static Trajectory *run_for(const Scenario *scenario, RunWatch watch, Truth *truth)
+{
+    Trajectory *trajectory = run(scenario, BACKEND_REFERENCE, watch);
+    if (!trajectory->is_complete && truth->message[0] == '\0') {
+        snprintf(truth->message, sizeof truth->message, "%s", trajectory->message);
+    }
+    return trajectory;
+}
+
+// Compares the reference on the fine grid with a second run of another tolerance, and that with its
+// twins.
+static void certify(const Scenario *fine, const Scenario *other, RunWatch watch, Truth *truth)
+{
+    // the first run is there already where the case's own samples are fine enough
+    const bool is_there = scenario_sample_count(fine) == truth->trajectory->sample_count;
+    Trajectory *first = is_there ? truth->trajectory : run_for(fine, watch, truth);
+    Trajectory *second = run_for(other, watch, truth);
+    truth->is_limited = false;
+    truth->horizon_s = scenario_duration(fine);
+    shorten_horizon(second, first, truth);
+    for (unsigned member = 1; member <= TWINS && truth->message[0] == '\0'; member++) {
+        Scenario beside = *other;
+        perturb_start(&beside, PERTURBATION, member);
+        Trajectory *twin = run_for(&beside, watch, truth);
+        const double distance = shorten_horizon(second, twin, truth);
+        truth->growth = fmax(truth->growth, distance / PERTURBATION);
+        trajectory_destroy(twin);
+    }
+    truth->uncertainty = shorten_horizon(second, first, truth);
+    if (truth->message[0] != '\0') {
+        truth->is_limited = true;
+        truth->horizon_s = 0.0;
+        truth->uncertainty = INFINITY;
+    }
+    trajectory_destroy(second);
+    if (!is_there) {
+        trajectory_destroy(first);
+    }
+}
+
 Truth truth_make(const Scenario *scenario, RunWatch watch)
 {
     Truth truth = {.growth = 1.0};
@@ -55,29 +122,22 @@ Truth truth_make(const Scenario *scenario, RunWatch watch)
         certify_ideal(scenario, watch, &truth);
         return truth;
     }
-    Scenario tight = *scenario;
-    tight.reference.tolerance *= TIGHTER;
-    Scenario beside = tight;
-    perturb_start(&beside, PERTURBATION, 1);
-    truth.trajectory = run(scenario, BACKEND_REFERENCE, watch);
-    truth.horizon_s = scenario_duration(scenario);
+    truth.horizon_s = 0.0;
+    truth.is_limited = true;
     truth.uncertainty = INFINITY;
+    truth.trajectory = run(scenario, BACKEND_REFERENCE, watch);
     if (!truth.trajectory->is_complete) {
         return truth;
     }
-    // what cannot be certified holds nowhere
-    truth.horizon_s = 0.0;
-    truth.is_limited = true;
-    Trajectory *tighter = run(&tight, BACKEND_REFERENCE, watch);
-    Trajectory *twin = run(&beside, BACKEND_REFERENCE, watch);
-    if (tighter->is_complete && twin->is_complete) {
-        truth.is_limited = false;
-        find_horizon(tighter, twin, &truth);
-        truth.uncertainty =
-            error_against(truth.trajectory, tighter, truth.horizon_s).omega_max_in_horizon;
+    // the second run is tighter, unless the first is as tight as can be
+    const Scenario fine = refined(scenario);
+    Scenario other = fine;
+    const double tolerance = scenario->reference.tolerance;
+    other.reference.tolerance = fmax(TIGHTEST, TIGHTER * tolerance);
+    if (other.reference.tolerance >= tolerance) {
+        other.reference.tolerance = tolerance / TIGHTER;
     }
-    trajectory_destroy(tighter);
-    trajectory_destroy(twin);
+    certify(&fine, &other, watch, &truth);
     return truth;
 }
 

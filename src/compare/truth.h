@@ -4,13 +4,14 @@
 #include "run/run.h"
 
 typedef struct Truth {
-    Trajectory *trajectory; // owned; complete, unless `message` says why there is none
+    Trajectory *trajectory; // owned; complete, unless its message says why there is none
     double uncertainty;     // 1: largest difference in omega, as omega_max of an error, between the
-                            // reference and a second one, up to the horizon
-    double horizon_s;       // up to when trajectories may be compared; the whole run where a twin
-                            // with a start 1e-10 beside stays near; never beyond
-    double growth;          // 1: by how much the twin's distance grew up to the horizon
+                            // reference and a second one, up to the horizon; INFINITY where unknown
+    double horizon_s;       // up to when trajectories may be compared: where neither the second
+                            // run nor any of four twins with starts 1e-10 beside is too far
+    double growth;          // 1: by how much the distance of the twins grew up to the horizon
     bool is_limited;        // whether the horizon ends before the run does
+    char message[ERR_TEXT_SIZE]; // why it could not be certified; empty where it was
 } Truth;
 
 // The truth of a scenario: the reference, certified by a second, tighter run and a perturbed twin.

@@ -94,7 +94,7 @@ typedef struct OdeOptions {
     OdeMap map;
     OdeCollider collider;
     double erp;             // 1, of the ideal joints' rows, per step
-    double cfm;             // 1/kg, of the ideal joints' rows
+    double cfm;             // s/kg = m/(N s), of the ideal joints' rows
     double push_out;        // 1, ERP of CONTACT_POISSON rows
     size_t iterations;      // of ODE_QUICK
     double over_relaxation; // 1, of ODE_QUICK

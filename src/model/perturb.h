@@ -3,7 +3,7 @@
 
 #include "model/scenario.h"
 
-// Changes the speeds of all bodies that are not driven by a random amount, relative to the fastest
-// body's speeds, that keeps every ideal joint closed. The member number is the seed; equal numbers
-// give equal changes. Where no joint has play there is nothing to change.
+// Changes the speeds of all bodies that are not driven by a random amount, relative to the scale of
+// the scenario's speeds, as far as the ideal joints and the driver let it. The member number is the
+// seed; equal numbers give equal changes. Where joints and driver leave no freedom nothing changes.
 void perturb_start(Scenario *scenario, double relative, unsigned member);

@@ -30,7 +30,7 @@ typedef struct SolverModel {
     char label[TRAJECTORY_LABEL_SIZE];
     double step_s;          // 0 where it has no fixed step
     size_t constraint_rows; // of the ideal joints
-    size_t contact_rows;    // most so far
+    size_t contact_rows;    // most so far; of the reference its joints with play
     size_t steps;           // taken so far
     size_t evaluations;     // of the equations of motion so far, 0 where it does not count them
 } SolverModel;

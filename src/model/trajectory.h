@@ -90,7 +90,7 @@ typedef struct Trajectory {
     size_t evaluations;     // of the equations of motion, where the solver counts them
     double wall_s;          // spent in the stepping loop
     size_t constraint_rows; // of the ideal joints, where the solver builds rows
-    size_t contact_rows;    // most at any one step
+    size_t contact_rows;    // most at any one step; of the reference its joints with play
     uint64_t hash;          // of every step's velocities, accelerations and joint forces
 } Trajectory;
 

@@ -148,6 +148,7 @@ bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, dou
         }
         row->depth = geom.depth;
         row->normal = pose.normal;
+        row->closing = pose.approach_speed;
         if (!check_depth(rows, i, err)) {
             return false;
         }
@@ -196,7 +197,7 @@ static void book_energy(ContactRows *rows, size_t number, Vec2 force, double ste
     const double pressing = vec2_dot(row->normal, force);
     const double closing = pose.approach_speed;
     if (rows->scenario->contact.model == CONTACT_POISSON) {
-        row->dissipated = pressing * closing * step_s;
+        row->dissipated = pressing * 0.5 * (row->closing + closing) * step_s;
     } else {
         const double damping = force_law_damping(&row->law, row->depth, row->impact_speed);
         row->dissipated = pressing > 0.0 ? damping * closing * closing * step_s : 0.0;

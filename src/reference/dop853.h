@@ -15,7 +15,8 @@ enum { DOP853_SIZE_MAX = 128, DOP853_POLYNOMIAL = 8 };
 typedef void (*Dop853Rates)(double time, const double *y, double *rates, void *context);
 
 typedef struct Dop853 {
-    size_t size; // number of equations
+    size_t size;        // number of equations
+    size_t motion_size; // of those, the first: the errors of the others are judged by themselves
     Dop853Rates rates;
     void *context;
     // Error allowed in each component of one step: fixed[i] + grown[i] times the step. A component

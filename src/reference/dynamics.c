@@ -2,14 +2,12 @@
 //
 //     M qdd = sum over bodies B^T (F - m a_bias) + moments + J^T lambda,   J qdd = gamma
 // B: velocity of each centre by each coordinate (reference/tree.h), M = sum m B^T B + I; J, gamma:
-// the joints that close loops. A contact presses its pin with N along the normal, from the law:
-//     N = F_el(d) (1 + chi d'/v0) + c d'        (never below zero: the slack mode)
-// and holds it back with mu N tanh(v_t / v_s) along the wall, at the wall's nearest point, v_t the
-// sliding speed of the two bodies there. tanh makes Coulomb's law smooth.
+// the joints that close loops. The contacts' forces: reference/dynamics_contact.c.
 #include "reference/dynamics.h"
 
 #include "base/dense.h"
 #include "contact/law.h"
+#include "reference/dynamics_contact.h"
 #include "reference/loops.h"
 
 enum { EQUATION_MAX = TREE_COORDINATE_MAX + 2 * TREE_LOOP_MAX };
@@ -54,86 +52,6 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
     return true;
 }
 
-static PinHole contact_pose(const Dynamics *dynamics, size_t number, const TreeState *tree)
-{
-    const DynamicsContact *contact = &dynamics->contacts[number];
-    const int hole = 2 * contact->joint;
-    const int pin = hole + 1;
-    const Vec2 moving = vec2_sub(tree_end_velocity(&dynamics->tree, tree, pin),
-                                 tree_end_velocity(&dynamics->tree, tree, hole));
-    return pin_hole_pose(tree_end_point(&dynamics->tree, tree, hole),
-                         tree_end_point(&dynamics->tree, tree, pin), moving,
-                         contact->radial_clearance);
-}
-
-// Velocity of the point of an end's body that lies beside the end.
-static Vec2 beside_velocity(const Tree *tree, const TreeState *state, int end, Vec2 beside)
-{
-    const int body = tree->end_bodies[end];
-    const Vec2 velocity = tree_end_velocity(tree, state, end);
-    return body == LINKAGE_GROUND
-               ? velocity
-               : vec2_add(velocity, vec2_scale(state->motions[body].omega, vec2_perp(beside)));
-}
-
-// From the centres of hole and pin to the point of the wall where they touch. Without friction the
-// force's line passes through both centres, and those serve as well.
-static void contact_places(const Dynamics *dynamics, const DynamicsContact *contact,
-                           const PinHole *pose, Vec2 *from_hole, Vec2 *from_pin)
-{
-    *from_hole = *from_pin = (Vec2){0.0, 0.0};
-    if (dynamics->scenario->contact.friction > 0.0) {
-        *from_hole = vec2_scale(-contact->hole_radius, pose->normal);
-        *from_pin = vec2_sub(*from_hole, pose->eccentricity);
-    }
-}
-
-// Adds what friction does to a contact that presses.
-static void add_friction(const Dynamics *dynamics, const DynamicsContact *contact,
-                         const TreeState *tree, ContactForce *force)
-{
-    const ContactOptions *options = &dynamics->scenario->contact;
-    const int hole = 2 * contact->joint;
-    const Vec2 tangent = vec2_perp(force->pose.normal);
-    Vec2 from_hole;
-    Vec2 from_pin;
-    contact_places(dynamics, contact, &force->pose, &from_hole, &from_pin);
-    const Vec2 sliding = vec2_sub(beside_velocity(&dynamics->tree, tree, hole + 1, from_pin),
-                                  beside_velocity(&dynamics->tree, tree, hole, from_hole));
-    const double speed = vec2_dot(tangent, sliding);
-    const double held = options->friction * force->normal * tanh(speed / options->friction_speed);
-    force->force = vec2_sub(force->force, vec2_scale(held, tangent));
-    force->friction_power = held * speed;
-}
-
-static void find_contact(const Dynamics *dynamics, size_t number, const TreeState *tree,
-                         ContactForce *force)
-{
-    const DynamicsContact *contact = &dynamics->contacts[number];
-    const ForceLaw *law = &contact->law;
-    *force = (ContactForce){.pose = contact_pose(dynamics, number, tree)};
-    if (contact->mode == CONTACT_APART) {
-        return;
-    }
-    // odd below zero depth: a step that overshoots the end of a contact stays smooth
-    const double depth = force->pose.penetration;
-    const double closing = force->pose.approach_speed;
-    force->elastic = copysign(force_law_elastic(law, fabs(depth)), depth);
-    const double rise = 1.0 + contact->damping_rate * closing;
-    force->pressing = force->elastic * rise + law->viscous * closing;
-    force->release = law->viscous > 0.0 ? force->pressing : rise;
-    // a slack spring relaxes by itself: what it had stored is lost like the damper's work
-    force->normal = contact->mode == CONTACT_PRESSING ? force->pressing : 0.0;
-    force->damping_power = (force->normal - force->elastic) * closing;
-    if (contact->mode == CONTACT_SLACK) {
-        return;
-    }
-    force->force = vec2_scale(force->normal, force->pose.normal);
-    if (dynamics->scenario->contact.friction > 0.0) {
-        add_friction(dynamics, contact, tree, force);
-    }
-}
-
 // A force on the body of an end, beside the end.
 static void load_end(const Tree *tree, const TreeState *state, int end, Vec2 beside, Vec2 force,
                      Loads *loads)
@@ -143,7 +61,7 @@ static void load_end(const Tree *tree, const TreeState *state, int end, Vec2 bes
         return;
     }
     if (body == tree->driven) {
-        loads->driven_power += vec2_dot(force, beside_velocity(tree, state, end, beside));
+        loads->driven_power += vec2_dot(force, dynamics_contact_velocity(tree, state, end, beside));
         loads->driven_force = vec2_add(loads->driven_force, force);
         return;
     }
@@ -158,7 +76,7 @@ static void load_contact(const Dynamics *dynamics, size_t number, const TreeStat
     const int hole = 2 * contact->joint;
     Vec2 from_hole;
     Vec2 from_pin;
-    contact_places(dynamics, contact, &force->pose, &from_hole, &from_pin);
+    dynamics_contact_places(dynamics, contact, &force->pose, &from_hole, &from_pin);
     load_end(&dynamics->tree, state, hole + 1, from_pin, force->force, loads);
     load_end(&dynamics->tree, state, hole, from_hole, vec2_scale(-1.0, force->force), loads);
 }
@@ -305,7 +223,7 @@ static bool find_rates(const Dynamics *dynamics, double time_s, const double *y,
     tree_evaluate(tree, time_s, y, y + n, &state->tree);
     start_loads(dynamics, loads);
     for (size_t i = 0; i < dynamics->contact_count; i++) {
-        find_contact(dynamics, i, &state->tree, &state->contacts[i]);
+        dynamics_contact_find(dynamics, i, &state->tree, &state->contacts[i]);
         if (dynamics->contacts[i].mode == CONTACT_PRESSING) {
             load_contact(dynamics, i, &state->tree, &state->contacts[i], loads);
         }
@@ -373,14 +291,4 @@ void dynamics_rates(double time_s, const double *y, double *rates, void *context
         rates[n + i] = solved[i];
     }
     fill_sums(dynamics, &state, rates + 2 * n);
-}
-
-ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double time_s,
-                              const double *y)
-{
-    TreeState tree;
-    tree_evaluate(&dynamics->tree, time_s, y, y + dynamics->tree.coordinate_count, &tree);
-    ContactForce force;
-    find_contact(dynamics, contact, &tree, &force);
-    return force;
 }

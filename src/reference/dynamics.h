@@ -77,3 +77,7 @@ void dynamics_rates(double time_s, const double *y, double *rates, void *context
 // One contact at a time, for events: cheaper than the whole state.
 ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double time_s,
                               const double *y);
+
+// Fails with ERR_SOLVER where a pin is deeper in its wall than a share of what its law knows.
+bool dynamics_check_depth(const Dynamics *dynamics, const DynamicsState *state, double share,
+                          Err *err);

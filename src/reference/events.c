@@ -100,27 +100,58 @@ bool events_look(const Dynamics *dynamics, const Dop853 *integrator, EventPoints
                              &points->states[points->count - 1]);
 }
 
-// Takes note of the event behind one margin, if it comes before those noted so far.
+// Takes note of an event, if it comes before those noted so far.
+static void note_event(const Margin *margin, double time, Event *event)
+{
+    if (!event->is_present || time < event->time) {
+        const ContactMode mode = margin->dynamics->contacts[margin->contact].mode;
+        *event = (Event){
+            .is_present = true,
+            .time = time,
+            .contact = margin->contact,
+            .mode = mode_after(mode, margin->which),
+        };
+    }
+}
+
+static double approach_at(double time, void *context)
+{
+    const Margin *margin = context;
+    double y[DOP853_SIZE_MAX];
+    dop853_dense(margin->integrator, time, y);
+    return dynamics_contact(margin->dynamics, margin->contact, time, y).pose.approach_speed;
+}
+
+// A free pin that went towards its wall and comes back may have been there in between: where the
+// penetration has its maximum it is looked at once more.
+static bool has_been_there(Margin *margin, double first, double first_speed, double last,
+                           double last_speed, double *top)
+{
+    return first_speed > 0.0 && last_speed < 0.0 &&
+           root_find(approach_at, margin, first, last, 0.0, top) && margin_at(*top, margin) < 0.0;
+}
+
 static void look_at(Margin *margin, const EventPoints *points, Event *event)
 {
     const ContactMode mode = margin->dynamics->contacts[margin->contact].mode;
+    const bool is_free = mode == CONTACT_APART;
     double before = margin->integrator->time;
+    double speed = is_free ? approach_at(before, margin) : 0.0;
     for (size_t i = 0; i < points->count; i++) {
         const double time = events_point_time(margin->integrator, points, i);
         const ContactForce *force = &points->states[i].contacts[margin->contact];
+        double top = time;
+        if (is_free &&
+            has_been_there(margin, before, speed, time, force->pose.approach_speed, &top)) {
+            note_event(margin, crossing(margin, before, top), event);
+            return;
+        }
         if (margin_of(force, mode, margin->which) < 0.0) {
-            const double found = crossing(margin, before, time);
-            if (!event->is_present || found < event->time) {
-                *event = (Event){
-                    .is_present = true,
-                    .time = found,
-                    .contact = margin->contact,
-                    .mode = mode_after(mode, margin->which),
-                };
-            }
+            note_event(margin, crossing(margin, before, time), event);
             return;
         }
         before = time;
+        speed = force->pose.approach_speed;
     }
 }
 
@@ -141,21 +172,29 @@ void events_land(const Dynamics *dynamics, Dop853 *integrator, Event *event)
 {
     const bool is_depth =
         event->mode == CONTACT_APART || dynamics->contacts[event->contact].mode == CONTACT_APART;
+    // the event lies in the step that showed it
+    const double longest = integrator->tried;
     double step = fmax(0.0, event->time - integrator->time);
-    for (int i = 0; i < LANDINGS; i++) {
+    double best = step;
+    double best_depth = INFINITY;
+    for (int i = 0; i < LANDINGS && step >= 0.0 && step <= longest; i++) {
         dop853_try(integrator, step);
-        event->time = integrator->time + step;
         const ContactForce force =
-            dynamics_contact(dynamics, event->contact, event->time, integrator->next);
-        const double move = force.pose.penetration / force.pose.approach_speed;
-        // not before the step's start: an event that it began with may lie there
-        const double moved = fmax(0.0, step - move);
-        if (!is_depth || !(fabs(force.pose.penetration) > LANDED) || !isfinite(move) ||
-            moved == step || i + 1 == LANDINGS) {
+            dynamics_contact(dynamics, event->contact, integrator->time + step, integrator->next);
+        const double depth = fabs(force.pose.penetration);
+        if (!(depth < best_depth)) {
             break;
         }
-        step = moved;
+        best = step;
+        best_depth = depth;
+        // an event that the step began with lies at its start and moves nowhere
+        if (!is_depth || depth <= LANDED || step == 0.0) {
+            break;
+        }
+        step -= force.pose.penetration / force.pose.approach_speed;
     }
+    dop853_try(integrator, best);
+    event->time = integrator->time + best;
     dop853_fill(integrator);
 }
 

@@ -6,7 +6,6 @@
 // or a depth has its maximum, so that no peak is missed whatever the step.
 #include "reference/reference.h"
 
-#include "contact/law.h"
 #include "reference/loops.h"
 #include "reference/peaks.h"
 #include "reference/stepper.h"
@@ -45,23 +44,6 @@ static bool fail_at(const Reference *reference, double time_s, Err *err)
 static void reference_close(void *state)
 {
     free(state);
-}
-
-static bool check_depth(const Dynamics *dynamics, const DynamicsState *state, Err *err)
-{
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
-        const DynamicsContact *contact = &dynamics->contacts[i];
-        const Joint *joint = &dynamics->scenario->linkage.joints[contact->joint];
-        const double allowed = law_depth_max(&contact->law, joint->clearance.pin_radius);
-        const double depth = state->contacts[i].pose.penetration;
-        if (!(depth <= allowed)) {
-            return err_set(err, ERR_SOLVER,
-                           "the pin of %s is %.4g mm inside the wall of its hole; no contact law "
-                           "holds beyond %.4g mm",
-                           joint->name, 1e3 * depth, 1e3 * allowed);
-        }
-    }
-    return true;
 }
 
 // Force, eccentricity and gap of every joint in a state.
@@ -118,6 +100,20 @@ static void fill_record(Reference *reference, const DynamicsState *state)
     }
 }
 
+// A part of no length where a contact begins: a viscous damper presses hardest at that instant.
+static bool show_onset(Reference *reference, Err *err)
+{
+    const Stepper *stepper = &reference->stepper;
+    DynamicsState state;
+    memcpy(reference->before, reference->y, stepper->integrator.size * sizeof *reference->y);
+    if (!dynamics_evaluate(&stepper->dynamics, reference->end_s, reference->y, &state)) {
+        return err_set(err, ERR_SOLVER, "the accelerations are not determined");
+    }
+    reference->start_s = reference->end_s;
+    fill_record(reference, &state);
+    return true;
+}
+
 static bool advance(Reference *reference, Err *err)
 {
     Stepper *stepper = &reference->stepper;
@@ -126,6 +122,9 @@ static bool advance(Reference *reference, Err *err)
             return false;
         }
         reference->point = 0;
+        if (stepper->is_after_onset) {
+            return show_onset(reference, err);
+        }
     }
     const Dop853 *integrator = &stepper->integrator;
     const double point_s = events_point_time(integrator, &stepper->points, reference->point);
@@ -143,7 +142,7 @@ static bool advance(Reference *reference, Err *err)
     reference->start_s = reference->end_s;
     reference->end_s = end_s;
     fill_record(reference, state);
-    return check_depth(&stepper->dynamics, state, err);
+    return dynamics_check_depth(&stepper->dynamics, state, 1.0, err);
 }
 
 static bool reference_open(const Scenario *scenario, void **state, Err *err)
@@ -154,6 +153,8 @@ static bool reference_open(const Scenario *scenario, void **state, Err *err)
         reference_close(reference);
         return false;
     }
+    // the stepper stands at a point; the first call takes its first step
+    reference->point = reference->stepper.points.count;
     memcpy(reference->y, reference->stepper.integrator.y, sizeof reference->y);
     *state = reference;
     return true;

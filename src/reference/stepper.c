@@ -10,65 +10,75 @@
 
 #include <string.h>
 
-// events at one and the same instant: a contact that begins at rest, another that ends with it
-enum { STANDSTILL_MAX = 8 };
+// events of one contact at one and the same instant: it begins, goes slack, and is off again
+enum { STANDSTILLS_EACH = 4 };
 
-// The largest rates that set the size of errors: of angles, rad/s, and of places, m/s.
-static void rate_scales(const Stepper *stepper, double *turning, double *moving)
-{
-    const Scenario *scenario = stepper->scenario;
-    const Tree *tree = &stepper->dynamics.tree;
-    double reach = 0.0;
-    double play = 0.0;
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        const Joint *joint = &scenario->linkage.joints[i];
-        reach = fmax(reach, fmax(vec2_length(joint->anchor_a), vec2_length(joint->anchor_b)));
-        reach = fmax(reach, joint->clearance.hole_radius);
-        play = fmax(play, joint->clearance.hole_radius - joint->clearance.pin_radius);
-    }
-    *turning = fabs(scenario->linkage.driver.speed);
-    // nothing moves yet: it will at the speed of a fall through the play
-    *moving = sqrt(2.0 * fabs(scenario->gravity) * play);
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const Motion *motion = &scenario->linkage.bodies[tree->nodes[i].body].start;
-        *turning = fmax(*turning, fabs(motion->omega));
-        *moving = fmax(*moving, vec2_length(motion->velocity));
-    }
-    *moving = fmax(*moving, *turning * reach);
-    *turning = fmax(*turning, reach > 0.0 ? *moving / reach : 1.0);
-    *moving = *moving > 0.0 ? *moving : 1.0;
-}
+// of a step: two events nearer to each other than this are one, seen with rounding
+static const double SAME = 1e-9;
+
+// of the deepest penetration a law knows: a pin that cannot be followed beyond it is at its end
+static const double NEARLY = 0.99;
 
 // Places may err by so many times what rates times the step would allow: measured on the paper's
 // mechanism, an error of 1e-9 costs a fifth less than at 1, and no less from 8 to 32.
 static const double PLACE_SHARE = 16.0;
 
+// Rounding of places against the swing of a contact: an error in a rate that no step can avoid.
+static const double ROUNDING = 0x1p-54;
+static const double SWING_S = 1e-5;
+
+// Lets the sizes of errors follow the largest speeds so far.
 static void set_tolerances(Stepper *stepper)
 {
     const Tree *tree = &stepper->dynamics.tree;
     const size_t n = tree->coordinate_count;
     const double tolerance = stepper->scenario->reference.tolerance;
+    const SpeedScale *scale = &stepper->scale;
+    const double floor = ROUNDING * scale->reach / SWING_S;
+    const double moving = fmax(tolerance * scale->moving, floor);
+    const double turning =
+        fmax(tolerance * scale->turning, scale->reach > 0.0 ? floor / scale->reach : 0.0);
     Dop853 *integrator = &stepper->integrator;
-    double turning;
-    double moving;
-    rate_scales(stepper, &turning, &moving);
     for (size_t i = 0; i < n; i++) {
-        integrator->fixed[n + i] = tolerance * moving;
-        integrator->grown[i] = PLACE_SHARE * tolerance * moving;
+        integrator->fixed[n + i] = moving;
+        integrator->grown[i] = PLACE_SHARE * moving;
     }
     for (size_t i = 0; i < tree->node_count; i++) {
         const size_t angle = tree->nodes[i].angle_column;
-        integrator->fixed[n + angle] = tolerance * turning;
-        integrator->grown[angle] = PLACE_SHARE * tolerance * turning;
+        integrator->fixed[n + angle] = turning;
+        integrator->grown[angle] = PLACE_SHARE * turning;
     }
-    double energy = 0.0;
+    // the bodies' mean speed is some tenth of the largest scale, and work goes to and fro
+    const double energy_share = 3e-2;
+    double mass = 0.0;
     for (size_t i = 0; i < stepper->scenario->linkage.body_count; i++) {
-        energy += stepper->scenario->linkage.bodies[i].mass * moving * moving;
+        mass += stepper->scenario->linkage.bodies[i].mass;
     }
-    const size_t sums = dynamics_sum_index(&stepper->dynamics, 0);
-    integrator->fixed[sums + DYNAMICS_DRIVE_WORK] = tolerance * energy;
-    integrator->fixed[sums + DYNAMICS_DISSIPATED] = tolerance * energy;
-    integrator->fixed[sums + DYNAMICS_FRICTION] = tolerance * energy;
+    double *sums = integrator->fixed + dynamics_sum_index(&stepper->dynamics, 0);
+    sums[DYNAMICS_DRIVE_WORK] = energy_share * mass * moving * scale->moving;
+    sums[DYNAMICS_DISSIPATED] = energy_share * mass * moving * scale->moving;
+    sums[DYNAMICS_FRICTION] = energy_share * mass * moving * scale->moving;
+    for (size_t i = 0; i < stepper->dynamics.contact_count; i++) {
+        sums[DYNAMICS_IMPULSES + i] = mass * moving;
+    }
+}
+
+// Raises the scale where a body has become faster than any before.
+static void follow_speeds(Stepper *stepper)
+{
+    const Tree *tree = &stepper->dynamics.tree;
+    const TreeState *state = &stepper->points.states[stepper->points.count - 1].tree;
+    SpeedScale *scale = &stepper->scale;
+    const SpeedScale before = *scale;
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const Motion *motion = &state->motions[tree->nodes[i].body];
+        const double speed = sqrt(vec2_dot(motion->velocity, motion->velocity));
+        scale->moving = fmax(scale->moving, speed);
+        scale->turning = fmax(scale->turning, fabs(motion->omega));
+    }
+    if (scale->moving > before.moving || scale->turning > before.turning) {
+        set_tolerances(stepper);
+    }
 }
 
 bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
@@ -89,14 +99,17 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     loops_project(&stepper->dynamics.tree, 0.0, y, y + n);
     Dop853 *integrator = &stepper->integrator;
     integrator->size = dynamics_size(&stepper->dynamics);
+    integrator->motion_size = dynamics_sum_index(&stepper->dynamics, 0);
     integrator->rates = dynamics_rates;
     integrator->context = &stepper->dynamics;
+    stepper->scale = scale_speeds(scenario);
     set_tolerances(stepper);
     // the first step finds its own length: a thousandth of the run is long enough to be shortened
     integrator->step = 1e-3 * stepper->duration_s;
     stepper->onset_step = integrator->step;
     tree_rebase(&stepper->dynamics.tree, 0.0, y);
     dop853_start(integrator, 0.0, y);
+    stepper->points.count = 1;
     if (!dynamics_evaluate(&stepper->dynamics, 0.0, y, &stepper->points.states[0])) {
         return err_set(err, ERR_SOLVER, "the accelerations at the start are not determined");
     }
@@ -109,6 +122,7 @@ static void take_over(Stepper *stepper)
     Dop853 *integrator = &stepper->integrator;
     Tree *tree = &stepper->dynamics.tree;
     const size_t n = tree->coordinate_count;
+    follow_speeds(stepper);
     dop853_accept(integrator);
     if (tree->loop_count > 0) {
         loops_project(tree, integrator->time, integrator->y, integrator->y + n);
@@ -125,36 +139,81 @@ static void take_over(Stepper *stepper)
     }
 }
 
-// Tries and fills one step, shortened to the next event.
+// The longest step in which no free pin crosses more than its play: error control alone lets a free
+// flight, which it integrates exactly, be as long as it likes.
+static double flight_limit(const Stepper *stepper)
+{
+    const Tree *tree = &stepper->dynamics.tree;
+    const TreeState *state = &stepper->points.states[stepper->points.count - 1].tree;
+    double limit = stepper->duration_s - stepper->integrator.time;
+    for (size_t i = 0; i < stepper->dynamics.contact_count; i++) {
+        const DynamicsContact *contact = &stepper->dynamics.contacts[i];
+        if (contact->mode == CONTACT_PRESSING) {
+            continue;
+        }
+        const int hole = 2 * contact->joint;
+        const Vec2 v = vec2_sub(tree_end_velocity(tree, state, hole + 1),
+                                tree_end_velocity(tree, state, hole));
+        const Vec2 a = vec2_sub(tree_end_acceleration(tree, state, hole + 1),
+                                tree_end_acceleration(tree, state, hole));
+        const double play = contact->radial_clearance;
+        const double speed = vec2_length(v) + sqrt(play * vec2_length(a));
+        limit = speed > 0.0 ? fmin(limit, play / speed) : limit;
+    }
+    return limit;
+}
+
+// Why a step came to nothing: a pin past the end of its law, or a motion too rough to follow.
+static bool fail_to_step(const Stepper *stepper, Err *err)
+{
+    const Dop853 *integrator = &stepper->integrator;
+    DynamicsState state;
+    if (dynamics_evaluate(&stepper->dynamics, integrator->time, integrator->y, &state) &&
+        !dynamics_check_depth(&stepper->dynamics, &state, NEARLY, err)) {
+        return false;
+    }
+    return err_set(err, ERR_SOLVER,
+                   "the step fell below the rounding of time: the motion cannot be followed at a "
+                   "tolerance of %g",
+                   stepper->scenario->reference.tolerance);
+}
+
+// Tries and fills one step, shortened to the first event in it.
 static bool step_to_event(Stepper *stepper, Err *err)
 {
     const Dynamics *dynamics = &stepper->dynamics;
     Dop853 *integrator = &stepper->integrator;
-    if (!dop853_attempt(integrator, stepper->duration_s - integrator->time)) {
-        return err_set(err, ERR_SOLVER,
-                       "the step fell below the rounding of time: the motion cannot be followed "
-                       "at a tolerance of %g",
-                       stepper->scenario->reference.tolerance);
+    if (!dop853_attempt(integrator, flight_limit(stepper))) {
+        return fail_to_step(stepper, err);
     }
     dop853_fill(integrator);
-    bool is_determined = events_look(dynamics, integrator, &stepper->points);
-    if (is_determined) {
-        stepper->event = events_find(dynamics, integrator, &stepper->points);
-        if (stepper->event.is_present) {
-            events_land(dynamics, integrator, &stepper->event);
-            is_determined = events_look(dynamics, integrator, &stepper->points);
+    stepper->event = (Event){.is_present = false};
+    for (size_t i = 0; i <= dynamics->contact_count; i++) {
+        if (!events_look(dynamics, integrator, &stepper->points)) {
+            return err_set(err, ERR_SOLVER, "the accelerations are not determined");
         }
+        // a shorter step sees better: it may show an event before the one it was cut to
+        const Event found = events_find(dynamics, integrator, &stepper->points);
+        if (!found.is_present || (stepper->event.is_present &&
+                                  found.time >= stepper->event.time - SAME * integrator->tried)) {
+            break;
+        }
+        stepper->event = found;
+        events_land(dynamics, integrator, &stepper->event);
     }
-    return is_determined || err_set(err, ERR_SOLVER, "the accelerations are not determined");
+    return true;
 }
 
 bool stepper_next(Stepper *stepper, Err *err)
 {
     Dop853 *integrator = &stepper->integrator;
-    for (int standstills = 0; standstills <= STANDSTILL_MAX; standstills++) {
+    stepper->is_after_onset = false;
+    const size_t most = STANDSTILLS_EACH * (stepper->dynamics.contact_count + 1);
+    for (size_t standstills = 0; standstills <= most; standstills++) {
         bool is_onset = false;
         if (stepper->has_step) {
             is_onset = stepper->event.is_present && stepper->event.mode == CONTACT_PRESSING;
+            stepper->is_after_onset = stepper->is_after_onset || is_onset;
             take_over(stepper);
         }
         if (!step_to_event(stepper, err)) {

@@ -1,6 +1,7 @@
 // The motion step by step: from event to event, each step no longer than its error allows.
 #pragma once
 
+#include "model/scale.h"
 #include "reference/dop853.h"
 #include "reference/events.h"
 
@@ -12,7 +13,9 @@ typedef struct Stepper {
     Event event; // at its end
     bool has_step;
     double duration_s;
-    double onset_step; // s, length that the first step of the last contact had
+    SpeedScale scale;    // largest speeds so far
+    bool is_after_onset; // whether a contact began where the present step does
+    double onset_step;   // s, length that the first step of the last contact had
 } Stepper;
 
 // Puts the stepper at the scenario's start. Fails with ERR_CASE where a law does not fit a joint

@@ -1,7 +1,7 @@
 // What does the closed form say of the mechanism, before any solver has taken a step?
 #include "report/analytic_text.h"
 
-#include "base/table.h"
+#include "report/run_section.h"
 #include "report/units.h"
 
 #include <math.h>
@@ -10,18 +10,16 @@
 // how a stack-up's four lengths are called in a combination
 static const char *const LENGTH_NAMES[STACKUP_LENGTHS] = {"ground", "crank", "coupler", "follower"};
 
-static void begin_section(const char *heading, const Style *style, Text *text)
-{
-    text_append(text, "\n%s%s%s\n\n", style->heading, heading, style->end);
-}
-
 void analytic_text_kinematics(const RunReport *report, const Style *style, Text *text)
 {
     const AnalyticSummary *summary = report->summary;
+    if (report->no_summary != NULL) {
+        text_append(text, "\n  no kinematics of the ideal four-bar: %s\n", report->no_summary);
+    }
     if (summary == NULL) {
         return;
     }
-    begin_section("Kinematics of the ideal four-bar", style, text);
+    text_append(text, "\n%sKinematics of the ideal four-bar%s\n\n", style->heading, style->end);
     text_append(text, "  class                %s\n", FOURBAR_GRASHOF_NAMES[summary->grashof]);
     text_append(text, "  transmission angle   %.6g deg (crank %.1f) to %.6g deg (crank %.1f)\n",
                 summary->transmission_low * UNITS_DEG,
@@ -54,18 +52,16 @@ static void force_row(Table *table, const char *name, const char *unit, Extreme 
 
 void analytic_text_forces(const RunReport *report, const Style *style, Text *text)
 {
+    static const RunSectionHead HEADS[] = {
+        {"quantity", "", TABLE_LEFT}, {"unit", "", TABLE_LEFT},
+        {"max", "", TABLE_RIGHT},     {"at crank", "deg", TABLE_RIGHT},
+        {"min", "", TABLE_RIGHT},     {"at crank", "deg", TABLE_RIGHT},
+    };
     const AnalyticSummary *summary = report->summary;
     if (summary == NULL) {
         return;
     }
-    begin_section("Inverse dynamics, every joint ideal", style, text);
-    Table *table = table_create(6);
-    table_head(table, 0, "quantity", "", TABLE_LEFT);
-    table_head(table, 1, "unit", "", TABLE_LEFT);
-    table_head(table, 2, "max", "", TABLE_RIGHT);
-    table_head(table, 3, "at crank", "deg", TABLE_RIGHT);
-    table_head(table, 4, "min", "", TABLE_RIGHT);
-    table_head(table, 5, "at crank", "deg", TABLE_RIGHT);
+    Table *table = run_section_begin("Inverse dynamics, every joint ideal", 6, HEADS, style, text);
     force_row(table, "drive torque", "N m", summary->torque_max, summary->torque_min);
     const Linkage *linkage = &report->scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
@@ -73,8 +69,7 @@ void analytic_text_forces(const RunReport *report, const Style *style, Text *tex
         snprintf(name, sizeof name, "reaction %s", linkage->joints[i].name);
         force_row(table, name, "N", summary->reaction_max[i], summary->reaction_min[i]);
     }
-    table_write(table, text);
-    table_destroy(table);
+    run_section_end(table, text);
     text_append(text,
                 "  power balance: drive power and rate of energy differ by %.1e of the largest\n",
                 summary->power_residual);
@@ -187,33 +182,32 @@ static void write_shares(const RunReport *report, Text *text)
             }
         }
     }
-    table_write(table, text);
-    table_destroy(table);
+    run_section_end(table, text);
 }
 
 void analytic_text_stackup(const RunReport *report, const Style *style, Text *text)
 {
+    static const RunSectionHead HEADS[] = {
+        {"quantity", "", TABLE_LEFT},    {"", "", TABLE_LEFT},
+        {"unit", "", TABLE_LEFT},        {"nominal", "", TABLE_RIGHT},
+        {"worst case", "", TABLE_RIGHT}, {"change", "", TABLE_RIGHT},
+        {"where", "", TABLE_LEFT},
+    };
     const Stackup *stackup = report->stackup;
+    if (report->no_stackup != NULL) {
+        text_append(text, "\n  no tolerance stack-up: %s\n", report->no_stackup);
+    }
     if (stackup == NULL || !stackup->has_sources) {
         return;
     }
-    begin_section("Tolerance stack-up, worst case", style, text);
-    Table *table = table_create(7);
-    table_head(table, 0, "quantity", "", TABLE_LEFT);
-    table_head(table, 1, "", "", TABLE_LEFT);
-    table_head(table, 2, "unit", "", TABLE_LEFT);
-    table_head(table, 3, "nominal", "", TABLE_RIGHT);
-    table_head(table, 4, "worst case", "", TABLE_RIGHT);
-    table_head(table, 5, "change", "", TABLE_RIGHT);
-    table_head(table, 6, "where", "", TABLE_LEFT);
+    Table *table = run_section_begin("Tolerance stack-up, worst case", 7, HEADS, style, text);
     for (int quantity = 0; quantity < FOURBAR_QUANTITY_COUNT; quantity++) {
         if (has_row(report, quantity)) {
             bound_row(table, stackup, quantity, true);
             bound_row(table, stackup, quantity, false);
         }
     }
-    table_write(table, text);
-    table_destroy(table);
+    run_section_end(table, text);
     text_append(text, "\n");
     write_shares(report, text);
     text_append(text,

@@ -3,6 +3,7 @@
 
 #include "report/file.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static const char HEAD[] =
@@ -23,8 +24,11 @@ static void write_quoted(FILE *stream, const char *text)
 static void write_numbers(FILE *stream, const LadderPoint *point)
 {
     const TrajectoryError *error = &point->run.error;
-    fprintf(stream, "ok,%zu,%zu,%.17g,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d,",
-            point->run.steps, point->run.evaluations, point->error, point->is_limited_by_truth,
+    fprintf(stream, "ok,%zu,%zu,", point->run.steps, point->run.evaluations);
+    if (isfinite(point->error)) {
+        fprintf(stream, "%.17g", point->error);
+    }
+    fprintf(stream, ",%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d,", point->is_limited_by_truth,
             error->omega_max, error->omega_rms, error->alpha_max, error->angle_max_rad,
             point->wall_median_s, point->wall_min_s, point->wall_max_s, point->is_on_frontier);
 }
@@ -41,6 +45,9 @@ static void write_row(FILE *stream, const Ladder *ladder, const LadderPoint *poi
         write_quoted(stream, point->reason);
     } else {
         write_numbers(stream, point);
+        if (point->reason[0] != '\0') {
+            write_quoted(stream, point->reason);
+        }
     }
     fputc('\n', stream);
 }

@@ -1,6 +1,7 @@
 // What do other programs read of a comparison?
 #include "report/compare_json.h"
 
+#include "report/error_json.h"
 #include "report/json_value.h"
 #include "report/ladder_json.h"
 #include "report/settings_json.h"
@@ -14,9 +15,11 @@ static json_t *truth_object(const CompareReport *report)
     json_t *object = json_object();
     json_object_set_new(object, "backend", json_string(truth->backend));
     json_value_set(object, "uncertainty", truth->uncertainty);
-    json_value_set(object, "horizon_s", truth->horizon_s);
+    const bool is_certified = truth->message[0] == '\0';
+    json_object_set_new(object, "message", json_value_not_certified(truth->message));
+    json_value_set(object, "horizon_s", is_certified ? truth->horizon_s : NAN);
     json_object_set_new(object, "is_limited", json_boolean(truth->is_limited));
-    json_value_set(object, "growth", truth->growth);
+    json_value_set(object, "growth", is_certified ? truth->growth : NAN);
     json_object_set_new(object, "other_contact_model",
                         json_boolean(compare_report_mixes_models(report)));
     json_value_set(object, "wall_s", truth->wall_s);
@@ -25,14 +28,8 @@ static json_t *truth_object(const CompareReport *report)
 
 static json_t *error_object(const LadderPoint *point)
 {
-    const TrajectoryError *error = &point->run.error;
     json_t *object = json_object();
-    json_value_set(object, "omega_max", error->omega_max);
-    json_value_set(object, "omega_max_time_s", error->omega_max_time_s);
-    json_value_set(object, "omega_max_in_horizon", error->omega_max_in_horizon);
-    json_value_set(object, "omega_rms", error->omega_rms);
-    json_value_set(object, "alpha_max", error->alpha_max);
-    json_value_set(object, "angle_max_rad", error->angle_max_rad);
+    error_json_set(object, &point->run.error);
     return object;
 }
 

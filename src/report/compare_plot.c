@@ -311,9 +311,12 @@ static void draw_head(const CompareReport *report, Text *svg)
     const LadderTruth *truth = &ladder->truth;
     char words[512];
     plot_text(svg, PANEL_LEFT, 34.0, "start", "title", report->scenario->title);
-    int length =
-        snprintf(words, sizeof words, "truth: %s, to %.1g", truth->backend, truth->uncertainty);
-    if (truth->is_limited) {
+    const bool is_certified = truth->message[0] == '\0';
+    int length = is_certified ? snprintf(words, sizeof words, "truth: %s, to %.1g", truth->backend,
+                                         truth->uncertainty)
+                              : snprintf(words, sizeof words,
+                                         "truth: %s, which could not be certified", truth->backend);
+    if (truth->is_limited && is_certified) {
         length += snprintf(words + length, sizeof words - (size_t)length,
                            ", up to its horizon at %.4g ms of %.4g", truth->horizon_s * UNITS_MS,
                            scenario_duration(report->scenario) * UNITS_MS);

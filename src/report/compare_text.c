@@ -1,34 +1,12 @@
 // How does speed stand against error, and what is the cheapest setting?
 #include "report/compare_text.h"
 
-#include "base/table.h"
+#include "report/run_section.h"
 #include "report/units.h"
 
 #include <math.h>
 #include <stdio.h>
-
-typedef struct Head {
-    const char *title;
-    const char *unit;
-    TableAlign align;
-} Head;
-
-static Table *begin_section(const char *heading, size_t columns, const Head *heads,
-                            const Style *style, Text *text)
-{
-    text_append(text, "\n%s%s%s\n\n", style->heading, heading, style->end);
-    Table *table = table_create(columns);
-    for (size_t i = 0; i < columns; i++) {
-        table_head(table, i, heads[i].title, heads[i].unit, heads[i].align);
-    }
-    return table;
-}
-
-static void end_section(Table *table, Text *text)
-{
-    table_write(table, text);
-    table_destroy(table);
-}
+#include <string.h>
 
 static void step_cell(Table *table, double step_s)
 {
@@ -54,9 +32,14 @@ static void write_head(const CompareReport *report, const Style *style, Text *te
     const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
     text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
     text_append(text, "  case        %s\n", scenario->path);
-    text_append(text, "  truth       %s, to %.2g of omega; made and certified in %.3g s\n",
-                truth->backend, truth->uncertainty, truth->wall_s);
-    if (truth->is_limited) {
+    if (truth->message[0] != '\0') {
+        text_append(text, "  truth       %s, made in %.3g s; could not be certified: %s\n",
+                    truth->backend, truth->wall_s, truth->message);
+    } else {
+        text_append(text, "  truth       %s, to %.2g of omega; made and certified in %.3g s\n",
+                    truth->backend, truth->uncertainty, truth->wall_s);
+    }
+    if (truth->is_limited && truth->message[0] == '\0') {
         text_append(text,
                     "  horizon     %.4g ms of %.4g ms: beyond it no trajectory can be told, and "
                     "errors are\n              those up to it (a start 1e-10 beside has grown "
@@ -90,7 +73,7 @@ static void point_row(Table *table, const LadderPoint *point)
     }
     table_cell(table, "%zu", point->run.steps);
     table_cell(table, point->run.evaluations > 0 ? "%zu" : "-", point->run.evaluations);
-    table_cell(table, "%.2e", point->error);
+    number_cell(table, "%.2e", point->error);
     number_cell(table, "%.4g", point->wall_median_s * UNITS_MS);
     number_cell(table, "%.4g", point->wall_min_s * UNITS_MS);
     number_cell(table, "%.4g", point->wall_max_s * UNITS_MS);
@@ -98,6 +81,22 @@ static void point_row(Table *table, const LadderPoint *point)
     table_cell(table, "%s%s%s", point->is_on_frontier ? "frontier" : "",
                point->is_on_frontier && point->is_limited_by_truth ? ", " : "",
                point->is_limited_by_truth ? "truth-limited" : "");
+}
+
+// Why there is no error for points that did not fail: once where neighbours have the same reason.
+static void write_without_error(const Ladder *ladder, Text *text)
+{
+    const char *last = "";
+    size_t last_scheme = ladder->scheme_count;
+    for (size_t i = 0; i < ladder->point_count; i++) {
+        const LadderPoint *point = &ladder->points[i];
+        const bool is_told = point->scheme == last_scheme && strcmp(point->reason, last) == 0;
+        if (!point->is_failed && point->reason[0] != '\0' && !is_told) {
+            text_append(text, "\n  %s %s\n", ladder->schemes[point->scheme].name, point->reason);
+        }
+        last = point->is_failed ? "" : point->reason;
+        last_scheme = point->scheme;
+    }
 }
 
 // Why points failed; neighbours of one scheme that failed alike are told together.
@@ -118,7 +117,7 @@ static void write_failures(const CompareReport *report, const Style *style, Text
 
 static void write_points(const CompareReport *report, const Style *style, Text *text)
 {
-    static const Head HEADS[] = {
+    static const RunSectionHead HEADS[] = {
         {"scheme", "", TABLE_LEFT},         {"step", "us", TABLE_RIGHT},
         {"steps", "", TABLE_RIGHT},         {"evaluations", "", TABLE_RIGHT},
         {"error", "of omega", TABLE_RIGHT}, {"wall time", "ms", TABLE_RIGHT},
@@ -126,7 +125,7 @@ static void write_points(const CompareReport *report, const Style *style, Text *
         {"a step", "us", TABLE_RIGHT},      {"", "", TABLE_LEFT},
     };
     const Ladder *ladder = report->ladder;
-    Table *table = begin_section("Speed against error", 10, HEADS, style, text);
+    Table *table = run_section_begin("Speed against error", 10, HEADS, style, text);
     for (size_t i = 0; i < ladder->point_count; i++) {
         const LadderPoint *point = &ladder->points[i];
         const bool is_first = i == 0 || point->scheme != ladder->points[i - 1].scheme;
@@ -137,24 +136,25 @@ static void write_points(const CompareReport *report, const Style *style, Text *
         step_cell(table, point->step_s);
         point_row(table, point);
     }
-    end_section(table, text);
+    run_section_end(table, text);
     text_append(text,
                 "  frontier: every faster point of ODE has an error at least a hundredth larger.\n"
                 "  truth-limited: below ten times the truth's own uncertainty, so not a number of "
                 "its own.\n");
     write_failures(report, style, text);
+    write_without_error(ladder, text);
 }
 
 static void write_orders(const CompareReport *report, const Style *style, Text *text)
 {
-    static const Head HEADS[] = {
+    static const RunSectionHead HEADS[] = {
         {"scheme", "", TABLE_LEFT},       {"order", "1", TABLE_RIGHT},
         {"from step", "us", TABLE_RIGHT}, {"to step", "us", TABLE_RIGHT},
         {"points", "", TABLE_RIGHT},      {"spread", "1", TABLE_RIGHT},
     };
     const Ladder *ladder = report->ladder;
     Table *table =
-        begin_section("Order observed: the error falls as step^order", 6, HEADS, style, text);
+        run_section_begin("Order observed: the error falls as step^order", 6, HEADS, style, text);
     for (size_t i = 0; i < ladder->scheme_count; i++) {
         const Order *order = &ladder->orders[i];
         if (!scheme_has_step(&ladder->schemes[i])) {
@@ -174,7 +174,7 @@ static void write_orders(const CompareReport *report, const Style *style, Text *
         table_cell(table, "%zu", order->last - order->first + 1);
         table_cell(table, "%.2f", order->spread);
     }
-    end_section(table, text);
+    run_section_end(table, text);
     text_append(text, "  none: the error does not fall alike over any three steps in a row.\n");
 }
 
@@ -184,22 +184,23 @@ static void write_others(const Ladder *ladder, Text *text)
     for (size_t i = 0; i < ladder->point_count; i++) {
         const LadderPoint *point = &ladder->points[i];
         if (point->step_s == 0.0 && !point->is_failed && isfinite(point->wall_median_s)) {
-            text_append(text, "  beside it: %s, error %.1e in %.4g ms\n",
-                        ladder->schemes[point->scheme].name, point->error,
-                        point->wall_median_s * UNITS_MS);
+            text_append(text, "  beside it: %s, ", ladder->schemes[point->scheme].name);
+            text_append(text, isfinite(point->error) ? "error %.1e" : "without an error",
+                        point->error);
+            text_append(text, " in %.4g ms\n", point->wall_median_s * UNITS_MS);
         }
     }
 }
 
 static void write_cheapest(const CompareReport *report, const Style *style, Text *text)
 {
-    static const Head HEADS[] = {
+    static const RunSectionHead HEADS[] = {
         {"error at most", "", TABLE_LEFT}, {"scheme", "", TABLE_LEFT},
         {"step", "us", TABLE_RIGHT},       {"error", "of omega", TABLE_RIGHT},
         {"wall time", "ms", TABLE_RIGHT},
     };
     const Ladder *ladder = report->ladder;
-    Table *table = begin_section("Cheapest setting of ODE", 5, HEADS, style, text);
+    Table *table = run_section_begin("Cheapest setting of ODE", 5, HEADS, style, text);
     for (size_t i = 0; i < LADDER_TARGET_COUNT; i++) {
         table_cell(table, "%.0e", LADDER_TARGETS[i]);
         if (ladder->cheapest[i] == ladder->point_count) {
@@ -215,7 +216,7 @@ static void write_cheapest(const CompareReport *report, const Style *style, Text
         table_cell(table, "%.2e", point->error);
         table_cell(table, "%.4g", point->wall_median_s * UNITS_MS);
     }
-    end_section(table, text);
+    run_section_end(table, text);
     write_others(ladder, text);
 }
 

@@ -54,6 +54,36 @@ bool file_is_stream(const char *path)
            (stat(path, &status) == 0 && !S_ISREG(status.st_mode));
 }
 
+// A path without links and dots: its own where it is there, else that of the folder it is for.
+static void resolve(const char *path, char target[FILE_PATH_SIZE])
+{
+    char folder[FILE_PATH_SIZE];
+    const char *slash = strrchr(path, '/');
+    const char *name = slash == NULL ? path : slash + 1;
+    snprintf(folder, sizeof folder, "%.*s.", (int)(name - path), path);
+    char *whole = realpath(path, NULL);
+    char *above = realpath(folder, NULL);
+    if (whole == NULL && above != NULL) {
+        snprintf(target, FILE_PATH_SIZE, "%s/%s", above, name);
+    } else {
+        snprintf(target, FILE_PATH_SIZE, "%s", whole != NULL ? whole : path);
+    }
+    free(whole);
+    free(above);
+}
+
+bool file_is_same(const char *path, const char *other)
+{
+    if (path == NULL || other == NULL) {
+        return false;
+    }
+    char first[FILE_PATH_SIZE];
+    char second[FILE_PATH_SIZE];
+    resolve(path, first);
+    resolve(other, second);
+    return strcmp(first, second) == 0;
+}
+
 // Follows symbolic links, so that the file they lead to is replaced and not the link.
 static bool find_target(const char *path, char *target, bool *is_regular, Err *err)
 {
@@ -93,6 +123,27 @@ bool file_begin(WholeFile *file, const char *path, Err *err)
     }
     watch_signals(file->temporary);
     return true;
+}
+
+bool file_probe(const char *path, Err *err)
+{
+    struct stat status;
+    if (!file_is_stream(path)) {
+        WholeFile file;
+        const bool is_begun = file_begin(&file, path, err);
+        if (is_begun) {
+            file_abandon(&file);
+        }
+        return is_begun;
+    }
+    if (is_standard_output(path)) {
+        return true;
+    }
+    // a stream is only asked: opening a pipe would wait for its reader
+    if (stat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
+        return fail_to_write(path, EISDIR, err);
+    }
+    return access(path, W_OK) == 0 || fail_to_write(path, errno, err);
 }
 
 bool file_end(WholeFile *file, Err *err)

@@ -22,6 +22,13 @@ typedef struct WholeFile {
 // output, a pipe, a device. Anything else is a file that is written whole or not at all.
 bool file_is_stream(const char *path);
 
+// Whether two paths, neither of which must exist, lead to the same file. NULL leads nowhere.
+bool file_is_same(const char *path, const char *other);
+
+// Whether a file can be written there, before the work whose result it is to hold. Leaves nothing
+// behind. Fails as file_begin would.
+bool file_probe(const char *path, Err *err);
+
 // Begins a file. Fails with ERR_FILE, naming the path and the reason.
 bool file_begin(WholeFile *file, const char *path, Err *err);
 

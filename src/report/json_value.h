@@ -3,6 +3,7 @@
 
 #include <jansson.h>
 #include <math.h>
+#include <stdio.h>
 
 // JSON knows no infinity and no NaN: they become null.
 static inline json_t *json_value_real(double value)
@@ -24,6 +25,14 @@ static inline json_t *json_value_text(const char *text)
         value = json_string(readable);
     }
     return value;
+}
+
+// Why a truth could not be certified, in words of its own; empty where it was.
+static inline json_t *json_value_not_certified(const char *message)
+{
+    char words[2304];
+    snprintf(words, sizeof words, "could not be certified: %s", message);
+    return json_value_text(message[0] != '\0' ? words : "");
 }
 
 static inline void json_value_set(json_t *object, const char *key, double value)

@@ -1,7 +1,9 @@
 // How is a finished run written down so that it can be taken up again?
 #include "report/ladder_json.h"
 
+#include "report/error_json.h"
 #include "report/json_value.h"
+#include "report/ladder_shape.h"
 #include "report/settings_json.h"
 
 #include <inttypes.h>
@@ -57,6 +59,7 @@ json_t *ladder_json_truth(const LadderTruth *truth)
     json_value_set(object, "growth", truth->growth);
     json_object_set_new(object, "is_limited", json_boolean(truth->is_limited));
     json_value_set(object, "wall_s", truth->wall_s);
+    json_object_set_new(object, "message", json_value_text(truth->message));
     return json_pack("{s:o}", "truth", object);
 }
 
@@ -75,12 +78,7 @@ static void set_error(json_t *object, const LadderRun *run)
     json_object_set_new(object, "evaluations", json_integer((json_int_t)run->evaluations));
     json_object_set_new(object, "hash", json_sprintf("%016" PRIx64, run->hash));
     json_object_set_new(object, "is_known", json_boolean(error->is_known));
-    json_value_set(object, "omega_max", error->omega_max);
-    json_value_set(object, "omega_max_time_s", error->omega_max_time_s);
-    json_value_set(object, "omega_max_in_horizon", error->omega_max_in_horizon);
-    json_value_set(object, "omega_rms", error->omega_rms);
-    json_value_set(object, "alpha_max", error->alpha_max);
-    json_value_set(object, "angle_max_rad", error->angle_max_rad);
+    error_json_set(object, error);
 }
 
 json_t *ladder_json_run(const Ladder *ladder, const LadderRun *run, const char *machine)
@@ -154,6 +152,7 @@ static LadderJsonFate take_truth(Ladder *ladder, const json_t *object)
     // one that could not be certified is as uncertain as can be, and JSON knows no infinity
     truth->uncertainty = isnan(truth->uncertainty) ? INFINITY : truth->uncertainty;
     copy(object, "backend", truth->backend, sizeof truth->backend);
+    copy(object, "message", truth->message, sizeof truth->message);
     return LADDER_JSON_TAKEN;
 }
 
@@ -222,6 +221,9 @@ static LadderJsonFate take_ensemble(Ladder *ladder, const Linkage *linkage, cons
 LadderJsonFate ladder_json_take(Ladder *ladder, const Linkage *linkage, const json_t *line,
                                 const char *machine)
 {
+    if (!ladder_shape_is_right(line, linkage)) {
+        return LADDER_JSON_DAMAGED;
+    }
     const json_t *object = json_object_get(line, "truth");
     if (object != NULL) {
         return take_truth(ladder, object);

@@ -26,8 +26,9 @@ typedef enum LadderJsonFate {
     LADDER_JSON_TAKEN,
     LADDER_JSON_UNUSED,        // not of this ladder, or there already
     LADDER_JSON_OTHER_MACHINE, // a time of another machine
+    LADDER_JSON_DAMAGED,       // a key is missing or has a value of another type
 } LadderJsonFate;
 
-// Puts a line into its place in the ladder.
+// Puts a line into its place in the ladder; one that is damaged leaves it as it was.
 LadderJsonFate ladder_json_take(Ladder *ladder, const Linkage *linkage, const json_t *line,
                                 const char *machine);

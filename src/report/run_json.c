@@ -62,19 +62,21 @@ static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
         const JointExtremes *extremes = &run->joints[i];
         json_t *joint = json_object();
         const bool has_play = linkage->joints[i].kind == JOINT_CLEARANCE;
-        json_object_set_new(joint, "impacts", json_integer((json_int_t)extremes->impacts));
+        // without play that is felt there is no contact to count: null, not 0
+        const bool is_felt = run_report_feels_play(run, &linkage->joints[i]);
+        json_object_set_new(joint, "impacts",
+                            is_felt ? json_integer((json_int_t)extremes->impacts) : json_null());
         set_extreme(joint, "force_max", "N", extremes->force_max);
-        json_value_set(joint, "impulse_N_s", extremes->impulse);
-        json_value_set(joint, "penetration_max_m", extremes->penetration_max.value);
-        json_value_set(joint, "contact_fraction", extremes->contact_time / run->duration_s);
+        json_value_set(joint, "impulse_N_s", is_felt ? extremes->impulse : NAN);
+        json_value_set(joint, "penetration_max_m", is_felt ? extremes->penetration_max.value : NAN);
+        json_value_set(joint, "contact_fraction",
+                       is_felt ? extremes->contact_time / run->duration_s : NAN);
         json_object_set_new(joint, "has_play", json_boolean(has_play));
         if (has_play) {
             json_value_set(joint, "radial_clearance_m",
                            linkage_radial_clearance(&linkage->joints[i]));
         }
-        json_object_set_new(
-            joint, "spikes",
-            spikes_array(extremes, run_report_feels_play(run, &linkage->joints[i])));
+        json_object_set_new(joint, "spikes", spikes_array(extremes, is_felt));
         json_object_set_new(joints, linkage->joints[i].name, joint);
     }
     return joints;
@@ -109,6 +111,14 @@ static json_t *run_object(const RunReport *report, size_t index)
     return object;
 }
 
+// In place of what could not be had: why.
+static json_t *message_object(const char *message)
+{
+    json_t *object = json_object();
+    json_object_set_new(object, "message", json_value_text(message));
+    return object;
+}
+
 json_t *run_json_build(const RunReport *report)
 {
     json_t *object = json_object();
@@ -119,9 +129,14 @@ json_t *run_json_build(const RunReport *report)
     if (report->summary != NULL) {
         json_object_set_new(object, "kinematics", analytic_json_kinematics(report));
         json_object_set_new(object, "inverse_dynamics", analytic_json_forces(report));
+    } else if (report->no_summary != NULL) {
+        json_object_set_new(object, "kinematics", message_object(report->no_summary));
+        json_object_set_new(object, "inverse_dynamics", message_object(report->no_summary));
     }
     if (report->stackup != NULL && report->stackup->has_sources) {
         json_object_set_new(object, "stackup", analytic_json_stackup(report));
+    } else if (report->no_stackup != NULL) {
+        json_object_set_new(object, "stackup", message_object(report->no_stackup));
     }
     json_object_set_new(object, "truth", run_truth_json_truth(report));
     json_t *runs = json_array();

@@ -8,10 +8,27 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-static void extreme_cells(Table *table, Extreme extreme)
+// When something was: by the crank's angle, or by the time where nothing drives a crank.
+static void head_when(Table *table, size_t column, const RunReport *report)
+{
+    const bool is_driven = report->scenario->linkage.driver.is_present;
+    table_head(table, column, is_driven ? "at crank" : "at time", is_driven ? "deg" : "ms",
+               TABLE_RIGHT);
+}
+
+static void when_cell(Table *table, const RunReport *report, Extreme extreme)
+{
+    if (report->scenario->linkage.driver.is_present) {
+        table_cell(table, "%.1f", units_wrapped_deg(extreme.crank_rad));
+    } else {
+        table_cell(table, "%.4f", extreme.time_s * UNITS_MS);
+    }
+}
+
+static void extreme_cells(Table *table, const RunReport *report, Extreme extreme)
 {
     table_cell(table, "%.6g", extreme.value);
-    table_cell(table, "%.1f", units_wrapped_deg(extreme.crank_rad));
+    when_cell(table, report, extreme);
 }
 
 void run_tables_extremes(const RunReport *report, const Style *style, Text *text)
@@ -20,16 +37,19 @@ void run_tables_extremes(const RunReport *report, const Style *style, Text *text
         {"body", "", TABLE_LEFT},
         {"backend", "", TABLE_LEFT},
         {"omega max", "rad/s", TABLE_RIGHT},
-        {"at crank", "deg", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
         {"omega min", "rad/s", TABLE_RIGHT},
-        {"at crank", "deg", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
         {"alpha max", "rad/s^2", TABLE_RIGHT},
-        {"at crank", "deg", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
         {"alpha min", "rad/s^2", TABLE_RIGHT},
-        {"at crank", "deg", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
     };
     const Linkage *linkage = &report->scenario->linkage;
     Table *table = run_section_begin("Extremes of the motion", 10, HEADS, style, text);
+    for (size_t column = 3; column < 10; column += 2) {
+        head_when(table, column, report);
+    }
     for (size_t body = 0; body < linkage->body_count; body++) {
         if ((int)body == linkage_driven_body(linkage)) {
             continue;
@@ -39,24 +59,25 @@ void run_tables_extremes(const RunReport *report, const Style *style, Text *text
             if (run->is_complete) {
                 table_cell(table, "%s", linkage->bodies[body].name);
                 table_cell(table, "%s", run->backend);
-                extreme_cells(table, run->bodies[body].omega_max);
-                extreme_cells(table, run->bodies[body].omega_min);
-                extreme_cells(table, run->bodies[body].alpha_max);
-                extreme_cells(table, run->bodies[body].alpha_min);
+                extreme_cells(table, report, run->bodies[body].omega_max);
+                extreme_cells(table, report, run->bodies[body].omega_min);
+                extreme_cells(table, report, run->bodies[body].alpha_max);
+                extreme_cells(table, report, run->bodies[body].alpha_min);
             }
         }
     }
     run_section_end(table, text);
 }
 
-static void contact_row(Table *table, const Joint *joint, const Trajectory *run,
-                        const JointExtremes *extremes)
+static void contact_row(Table *table, const RunReport *report, const Trajectory *run, size_t number)
 {
+    const Joint *joint = &report->scenario->linkage.joints[number];
+    const JointExtremes *extremes = &run->joints[number];
     table_cell(table, "%s", joint->name);
     table_cell(table, "%s", run->backend);
     table_cell(table, "%zu", extremes->impacts);
     run_section_number(table, extremes->force_max.value);
-    table_cell(table, "%.1f", units_wrapped_deg(extremes->force_max.crank_rad));
+    when_cell(table, report, extremes->force_max);
     run_section_number(table, extremes->impulse);
     run_section_number(table, extremes->penetration_max.value * UNITS_UM);
     table_cell(table, "%.1f", extremes->contact_time / run->duration_s * UNITS_PERCENT);
@@ -65,10 +86,10 @@ static void contact_row(Table *table, const Joint *joint, const Trajectory *run,
 void run_tables_contacts(const RunReport *report, const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
-        {"joint", "", TABLE_LEFT},        {"backend", "", TABLE_LEFT},
-        {"impacts", "", TABLE_RIGHT},     {"force max", "N", TABLE_RIGHT},
-        {"at crank", "deg", TABLE_RIGHT}, {"impulse", "N s", TABLE_RIGHT},
-        {"deepest", "um", TABLE_RIGHT},   {"in contact", "%", TABLE_RIGHT},
+        {"joint", "", TABLE_LEFT},      {"backend", "", TABLE_LEFT},
+        {"impacts", "", TABLE_RIGHT},   {"force max", "N", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},          {"impulse", "N s", TABLE_RIGHT},
+        {"deepest", "um", TABLE_RIGHT}, {"in contact", "%", TABLE_RIGHT},
     };
     const Linkage *linkage = &report->scenario->linkage;
     Table *table = NULL;
@@ -81,8 +102,9 @@ void run_tables_contacts(const RunReport *report, const Style *style, Text *text
             if (table == NULL) {
                 table =
                     run_section_begin("Contacts in the joints with play", 8, HEADS, style, text);
+                head_when(table, 4, report);
             }
-            contact_row(table, &linkage->joints[joint], run, &run->joints[joint]);
+            contact_row(table, report, run, joint);
         }
     }
     if (table != NULL) {
@@ -100,11 +122,13 @@ static size_t count_spikes(const Linkage *linkage, const Trajectory *run)
     return count;
 }
 
-static void spike_row(Table *table, const Joint *joint, const Spike *spike)
+static void spike_row(Table *table, const Joint *joint, bool is_driven, const Spike *spike)
 {
     table_cell(table, "%s", joint->name);
     table_cell(table, "%.4f", spike->onset_s * UNITS_MS);
-    table_cell(table, "%.1f", units_wrapped_deg(spike->crank_rad));
+    if (is_driven) {
+        table_cell(table, "%.1f", units_wrapped_deg(spike->crank_rad));
+    }
     run_section_number(table, spike->approach_speed * UNITS_MM);
     run_section_number(table, spike->force_max);
     run_section_number(table, spike->duration_s * UNITS_US);
@@ -115,6 +139,12 @@ static void spike_row(Table *table, const Joint *joint, const Spike *spike)
 void run_tables_spikes(const RunReport *report, size_t limit, const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
+        {"joint", "", TABLE_LEFT},         {"onset", "ms", TABLE_RIGHT},
+        {"approach", "mm/s", TABLE_RIGHT}, {"force max", "N", TABLE_RIGHT},
+        {"duration", "us", TABLE_RIGHT},   {"impulse", "N s", TABLE_RIGHT},
+        {"deepest", "um", TABLE_RIGHT},
+    };
+    static const RunSectionHead DRIVEN_HEADS[] = {
         {"joint", "", TABLE_LEFT},       {"onset", "ms", TABLE_RIGHT},
         {"crank", "deg", TABLE_RIGHT},   {"approach", "mm/s", TABLE_RIGHT},
         {"force max", "N", TABLE_RIGHT}, {"duration", "us", TABLE_RIGHT},
@@ -128,12 +158,14 @@ void run_tables_spikes(const RunReport *report, size_t limit, const Style *style
         }
         char heading[128];
         snprintf(heading, sizeof heading, "Strongest contacts, %s", run->backend);
-        Table *table = run_section_begin(heading, 8, HEADS, style, text);
+        const bool is_driven = linkage->driver.is_present;
+        Table *table = run_section_begin(heading, is_driven ? 8 : 7,
+                                         is_driven ? DRIVEN_HEADS : HEADS, style, text);
         for (size_t joint = 0; joint < linkage->joint_count; joint++) {
             const JointExtremes *extremes = &run->joints[joint];
             const bool has_play = linkage->joints[joint].kind == JOINT_CLEARANCE;
             for (size_t k = 0; has_play && k < extremes->spike_count && k < limit; k++) {
-                spike_row(table, &linkage->joints[joint], &extremes->spikes[k]);
+                spike_row(table, &linkage->joints[joint], is_driven, &extremes->spikes[k]);
             }
         }
         run_section_end(table, text);

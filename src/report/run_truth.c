@@ -1,11 +1,19 @@
 // How far are the runs from the truth, how sure is the truth, and where does it end?
 #include "report/run_truth.h"
 
+#include "model/energy.h"
 #include "report/run_section.h"
 #include "report/units.h"
 
 #include <math.h>
 #include <stdio.h>
+
+// of the largest kinetic energy: what rounding leaves of a work that is none is a million times
+// less
+static const double WORK_ROUNDING = 1e-9;
+
+// of omega: a reference that is less sure than this holds nowhere
+static const double HOLDS = 1e-3;
 
 static void error_row(Table *table, const RunReport *report, size_t run)
 {
@@ -15,7 +23,8 @@ static void error_row(Table *table, const RunReport *report, size_t run)
     table_cell(table, "%s", error->against);
     run_section_number(table, error->omega_max);
     run_section_number(table, error->omega_max_time_s * UNITS_MS);
-    run_section_number_or_dash(table, is_certified, error->omega_max_in_horizon);
+    run_section_number_or_dash(table, is_certified && isfinite(error->omega_max_in_horizon),
+                               error->omega_max_in_horizon);
     run_section_number_or_dash(table, is_certified,
                                is_certified ? report->truth->uncertainty : 0.0);
     run_section_number(table, error->omega_rms);
@@ -30,18 +39,50 @@ static void write_horizon(const RunReport *report, Text *text)
 {
     const Truth *truth = report->truth;
     const double end_ms = scenario_duration(report->scenario) * UNITS_MS;
-    if (truth->is_limited) {
+    if (truth->message[0] != '\0') {
+        text_append(text, "  The reference could not be certified: %s\n", truth->message);
+    } else if (truth->is_limited) {
         text_append(
             text,
             "  The motion cannot be predicted beyond %.4g of %.4g ms: by then a start 1e-10 "
             "beside this one is %.3g\n  times as far away. Errors after it mean nothing; "
             "distributions over many starts can be compared.\n",
             truth->horizon_s * UNITS_MS, end_ms, truth->growth);
+    } else if (!(truth->uncertainty <= HOLDS)) {
+        text_append(text,
+                    "  The reference itself is sure to no more than %.2g of omega over the run of "
+                    "%.4g ms.\n",
+                    truth->uncertainty, end_ms);
     } else {
         text_append(text,
                     "  The reference holds through the whole run, %.4g ms: a start 1e-10 beside "
                     "this one ends %.3g times as far away.\n",
                     end_ms, truth->growth);
+    }
+}
+
+// The reference knows no POISSON model.
+static void write_other_model(const RunReport *report, Text *text)
+{
+    const ContactOptions *contact = &report->scenario->contact;
+    if (run_report_mixes_models(report)) {
+        text_append(text,
+                    "  The reference has the elastic law (%s) in place of the POISSON model: "
+                    "errors contain the difference of the two.\n",
+                    contact->stiffness > 0.0 ? "given stiffness" : OPTIONS_LAWS[contact->law]);
+    }
+}
+
+// What must be told of the truth though nothing was held against it.
+static void write_truth_alone(const RunReport *report, const Style *style, Text *text)
+{
+    const bool is_doubtful = run_report_has_truth(report) && report->truth->message[0] != '\0';
+    if (is_doubtful || run_report_mixes_models(report)) {
+        text_append(text, "\n%sThe reference%s\n\n", style->heading, style->end);
+        if (is_doubtful) {
+            write_horizon(report, text);
+        }
+        write_other_model(report, text);
     }
 }
 
@@ -69,6 +110,7 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
         includes_play = includes_play || run_report_includes_play(report, i);
     }
     if (table == NULL) {
+        write_truth_alone(report, style, text);
         return;
     }
     run_section_end(table, text);
@@ -78,7 +120,19 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
     }
     if (run_report_has_truth(report)) {
         write_horizon(report, text);
+        write_other_model(report, text);
     }
+}
+
+// Whether the drive's work is more than rounding beside the energy it moved to and fro: over whole
+// turns of ideal joints it is none, and nothing can be held against it.
+static bool has_drive_work(const Linkage *linkage, const Trajectory *run)
+{
+    double kinetic = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        kinetic = fmax(kinetic, energy_kinetic(linkage, trajectory_motion(run, i, 0)));
+    }
+    return fabs(run->energy.drive_work) > WORK_ROUNDING * kinetic;
 }
 
 void run_truth_energy(const RunReport *report, const Style *style, Text *text)
@@ -104,7 +158,8 @@ void run_truth_energy(const RunReport *report, const Style *style, Text *text)
         run_section_number(table, energy->dissipated);
         run_section_number(table, energy->friction);
         run_section_number(table, energy->residual);
-        run_section_number_or_dash(table, energy->drive_work != 0.0,
+        run_section_number_or_dash(table,
+                                   has_drive_work(&report->scenario->linkage, report->runs[i]),
                                    fabs(energy->residual / energy->drive_work));
     }
     if (table != NULL) {
@@ -210,8 +265,10 @@ void run_truth_ensembles(const RunReport *report, const Style *style, Text *text
         return;
     }
     const Linkage *linkage = &report->scenario->linkage;
-    Table *table =
-        run_section_begin("Over starts that differ by 1e-10 of the speeds", 8, HEADS, style, text);
+    char heading[128];
+    snprintf(heading, sizeof heading, "Over starts that differ by %g of the speeds",
+             ENSEMBLE_PERTURBATION);
+    Table *table = run_section_begin(heading, 8, HEADS, style, text);
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         const bool has_play = linkage->joints[joint].kind == JOINT_CLEARANCE;
         for (size_t metric = 0; has_play && metric < ENSEMBLE_METRIC_COUNT; metric++) {

@@ -1,6 +1,7 @@
 // What do other programs read of the truth and of what was measured against it?
 #include "report/run_truth_json.h"
 
+#include "report/error_json.h"
 #include "report/json_value.h"
 
 json_t *run_truth_json_truth(const RunReport *report)
@@ -13,11 +14,17 @@ json_t *run_truth_json_truth(const RunReport *report)
     json_object_set_new(object, "backend", json_string(truth->trajectory->backend));
     json_object_set_new(object, "status",
                         json_string(truth->trajectory->is_complete ? "ok" : "failed"));
-    json_object_set_new(object, "message", json_value_text(truth->trajectory->message));
+    const bool is_certified = truth->message[0] == '\0';
+    json_object_set_new(object, "message",
+                        truth->trajectory->is_complete
+                            ? json_value_not_certified(truth->message)
+                            : json_value_text(truth->trajectory->message));
     if (truth->trajectory->is_complete) {
         json_value_set(object, "uncertainty", truth->uncertainty);
-        json_value_set(object, "horizon_s", truth->horizon_s);
-        json_value_set(object, "growth", truth->growth);
+        json_value_set(object, "horizon_s", is_certified ? truth->horizon_s : NAN);
+        json_value_set(object, "growth", is_certified ? truth->growth : NAN);
+        json_object_set_new(object, "other_contact_model",
+                            json_boolean(run_report_mixes_models(report)));
         json_object_set_new(object, "is_limited", json_boolean(truth->is_limited));
     }
     return object;
@@ -33,12 +40,7 @@ json_t *run_truth_json_error(const RunReport *report, size_t run)
     const Truth *truth = report->truth;
     json_t *object = json_object();
     json_object_set_new(object, "against", json_string(error->against));
-    json_value_set(object, "omega_max", error->omega_max);
-    json_value_set(object, "omega_max_time_s", error->omega_max_time_s);
-    json_value_set(object, "omega_max_in_horizon", error->omega_max_in_horizon);
-    json_value_set(object, "omega_rms", error->omega_rms);
-    json_value_set(object, "alpha_max", error->alpha_max);
-    json_value_set(object, "angle_max_rad", error->angle_max_rad);
+    error_json_set(object, error);
     json_object_set_new(object, "includes_play",
                         json_boolean(run_report_includes_play(report, run)));
     json_value_set(object, "horizon_s", is_certified ? truth->horizon_s : NAN);

@@ -5,11 +5,26 @@
 #include "report/json_value.h"
 #include "version.h"
 
+#include <string.h>
+
 json_t *settings_json_tool(void)
 {
     return json_pack("{s:s, s:s, s:s, s:s}", "version", JOINTPLAY_VERSION, "ode",
                      JOINTPLAY_ODE_VERSION, "ccd", JOINTPLAY_CCD_VERSION, "gsl",
                      JOINTPLAY_GSL_VERSION);
+}
+
+// A list from words separated by ", ".
+static json_t *words_array(const char *words)
+{
+    json_t *list = json_array();
+    while (*words != '\0') {
+        const size_t length = strcspn(words, ",");
+        json_array_append_new(list, json_stringn(words, length));
+        words += length;
+        words += strspn(words, ", ");
+    }
+    return list;
 }
 
 static json_t *setting_value(const CasefileSetting *setting)
@@ -20,6 +35,8 @@ static json_t *setting_value(const CasefileSetting *setting)
         return json_integer((json_int_t)numbers[0]);
     case CASEFILE_NUMBER:
         break;
+    case CASEFILE_WORDS:
+        return words_array(setting->text);
     default:
         return json_value_text(setting->text);
     }

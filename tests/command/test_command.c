@@ -69,6 +69,8 @@ static void a_wrong_command_line_is_answered_with_what_may_be_meant(void **state
     program_fails_usage(program, "run --json=1 a.yaml", "takes no value");
     program_fails_usage(program, "run a.yaml b.yaml --series s.csv", "--series takes one case");
     program_fails_usage(program, "run a.yaml b.yaml --plot s.svg", "--plot takes one case");
+    program_fails_usage(program, "run a.yaml --series x --plot ./x", "both write ./x");
+    program_fails_usage(program, "run a.yaml --backend ''", "--backend names no backend");
     program_fails_usage(program, "paper --frobnicate", "unknown option '--frobnicate'");
     program_fails_usage(program, "paper here", "takes no argument");
 }

@@ -182,6 +182,50 @@ static void a_store_of_another_comparison_is_refused(void **state)
     assert_null(strstr(program->errors, "took"));
 }
 
+static void append_line(const Program *program, const char *line)
+{
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "s.jsonl", path);
+    FILE *stream = fopen(path, "a");
+    assert_non_null(stream);
+    fprintf(stream, "%s\n", line);
+    fclose(stream);
+}
+
+static void a_line_of_the_store_without_its_keys_is_damaged(void **state)
+{
+    Program *program = *state;
+    run_words(program, "-q");
+    char words[64];
+    snprintf(words, sizeof words, "line %zu of the store", count_lines(program, "s.jsonl") + 1);
+    append_line(program, "{\"error\":{\"scheme\":\"direct/plain\",\"step_s\":1e-4}}");
+    run_words(program, "-q");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, words);
+    assert_says(program->errors, "is damaged; --fresh starts it over");
+    run_words(program, "-q --fresh");
+    assert_int_equal(program->status, 0);
+}
+
+static void a_case_whose_only_body_is_driven_is_refused(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "wheel.yaml", path);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fputs("bodies:\n  wheel: {mass: 1 kg, inertia: 1e-3 kg m^2, at: [0 m, 0 m]}\n"
+          "joints:\n  axle: {between: [ground, wheel], at: [0 m, 0 m]}\n"
+          "drive: {joint: axle, speed: 100 rpm}\n"
+          "run: {backends: [reference, ode]}\n",
+          stream);
+    fclose(stream);
+    program_run(program, "compare wheel.yaml --store s.jsonl");
+    assert_int_equal(program->status, 3);
+    assert_says(program->errors, "there is nothing to compare: the drive prescribes how 'wheel'");
+    assert_int_equal(count_lines(program, "s.jsonl"), 0);
+}
+
 static void the_usual_store_is_found_by_its_key(void **state)
 {
     Program *program = *state;
@@ -231,6 +275,10 @@ static void files_are_written(void **state)
     }
     run_words(program, "--plot nowhere/p.svg");
     assert_int_equal(program->status, 5);
+    assert_string_equal(program->output, "");
+    run_words(program, "--csv nowhere/p.csv");
+    assert_int_equal(program->status, 5);
+    assert_string_equal(program->output, "");
     run_words(program, "--out p.csv/x");
     assert_int_equal(program->status, 5);
 }
@@ -261,6 +309,7 @@ static void a_wrong_command_line_is_answered(void **state)
     program_fails_usage(program, "compare a.yaml b.yaml", "compare takes one case");
     program_fails_usage(program, "compare a.yaml --repeats 4", "a whole number from 5 to 100");
     program_fails_usage(program, "compare a.yaml --jobs 0", "--jobs is 0");
+    program_fails_usage(program, "compare a.yaml --csv x --plot x", "would both write x");
     program_fails_usage(program, "compare a.yaml --time-limit 5kg", "--time-limit");
     program_fails_usage(program, "compare a.yaml --time-limit '-1 s'", "--time-limit");
     program_fails_usage(program, "compare a.yaml --stepps 1us", "did you mean '--steps'?");
@@ -274,9 +323,15 @@ static void a_wrong_command_line_is_answered(void **state)
                         "no scheme of this case is 'drect'");
     program_run(program, "compare nowhere.yaml");
     assert_int_equal(program->status, 5);
+    // the quick solver makes use of the seed; without play nothing makes use of the law
+    program_run(program, "compare $cases/paper/ideal-nominal.yaml --store s.jsonl --steps 100us "
+                         "--set contact.law=johnson --set ode.seed=4");
+    assert_int_equal(program->status, 0);
+    assert_says(program->errors, "without effect: contact.law (");
     program_run(program, "compare --help");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "Usage: jointplay compare [OPTION...] CASE");
+    assert_says(program->output, "(default: one a core)");
 }
 
 #define COMPARE_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
@@ -288,6 +343,8 @@ int main(void)
         COMPARE_TEST(json_holds_every_point),
         COMPARE_TEST(killing_it_at_any_moment_loses_nothing),
         COMPARE_TEST(a_store_of_another_comparison_is_refused),
+        COMPARE_TEST(a_line_of_the_store_without_its_keys_is_damaged),
+        COMPARE_TEST(a_case_whose_only_body_is_driven_is_refused),
         COMPARE_TEST(the_usual_store_is_found_by_its_key),
         COMPARE_TEST(files_are_written),
         COMPARE_TEST(when_every_run_of_ode_fails_the_status_is_4),

@@ -69,7 +69,7 @@ static void a_terminal_sees_one_line_that_goes_away(void **state)
     Ladder *ladder = make_ladder();
     listen();
     CompareProgress progress = compare_progress_start(ladder, false);
-    progress.is_terminal = true;
+    progress.line.is_terminal = true;
     progress.started_s -= 10.0;
     compare_progress_show(&progress, "timing runs");
     compare_progress_end(&progress);

@@ -80,7 +80,7 @@ static void a_terminal_sees_one_line_that_goes_away(void **state)
     Progress progress;
     listen_on_pipe(&listener);
     const RunWatch watch = progress_watch(&progress, "ode", false);
-    progress.is_terminal = true;
+    progress.line.is_terminal = true;
     watch.progress(0.25, 1.9, watch.context);
     watch.progress(0.50, 2.5, watch.context);
     watch.progress(0.51, 2.6, watch.context);

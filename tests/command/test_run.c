@@ -56,6 +56,11 @@ static void json_of_one_case_is_one_object(void **state)
     assert_non_null(root);
     const json_t *settings = json_object_get(root, "settings");
     assert_near(json_number_value(json_object_get(settings, "run.step")), 1e-5, 1e-18);
+    const json_t *backends = json_object_get(settings, "run.backends");
+    assert_int_equal(json_array_size(backends), 2);
+    assert_string_equal(json_string_value(json_array_get(backends, 1)), "ode");
+    const json_t *units = json_object_get(root, "setting_units");
+    assert_string_equal(json_string_value(json_object_get(units, "ode.cfm")), "s/kg");
     const json_t *runs = json_object_get(root, "runs");
     assert_int_equal(json_array_size(runs), 2);
     const json_t *analytic = json_array_get(runs, 0);
@@ -210,9 +215,18 @@ static void nothing_half_written_stays_behind(void **state)
 {
     Program *program = *state;
     char path[PROGRAM_PATH_SIZE];
-    program_run(program, "run $cases/paper/ideal-nominal.yaml --plot nowhere/p.svg");
-    assert_int_equal(program->status, 5);
-    assert_says(program->errors, "cannot write nowhere/p.svg: No such file or directory");
+    // what cannot be written is told before anything runs
+    static const char *const TARGETS[] = {"--plot nowhere/p.svg", "--series nowhere/s.csv",
+                                          "--series s.csv --plot nowhere/p.svg"};
+    for (int i = 0; i < 3; i++) {
+        char words[256];
+        snprintf(words, sizeof words, "run $cases/paper/ideal-nominal.yaml %s", TARGETS[i]);
+        program_run(program, words);
+        assert_int_equal(program->status, 5);
+        assert_string_equal(program->output, "");
+        assert_says(program->errors, "cannot write nowhere/");
+        assert_says(program->errors, "No such file or directory");
+    }
     // a folder's name that a file has
     program_path(program, "taken", path);
     fclose(fopen(path, "w"));
@@ -228,6 +242,34 @@ static void nothing_half_written_stays_behind(void **state)
              "test $? -eq 5 && test \"$(ls)\" = taken",
              program->folder);
     assert_int_equal(system(command), 0);
+}
+
+static void settings_without_effect_are_said_in_a_line(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run $cases/paper/ideal-nominal.yaml --set contact.law=johnson "
+                         "--set ode.seed=4 --set run.samples=90 --backend analytic --step 5us");
+    assert_int_equal(program->status, 0);
+    assert_int_equal(
+        strncmp(program->errors, "without effect: contact.law, ode.seed, run.step (", 49), 0);
+    assert_ptr_equal(strchr(program->errors, '\n'), strrchr(program->errors, '\n'));
+    program_run(program, "run -q $cases/paper/ideal-nominal.yaml --set contact.law=johnson");
+    assert_int_equal(program->status, 0);
+    assert_string_equal(program->errors, "");
+    // the control: with play the law matters
+    program_run(program, "run $cases/paper/stackup-impact.yaml --set contact.law=johnson "
+                         "--set contact.damping=none --backend ode --step 5us");
+    assert_null(strstr(program->errors, "without effect"));
+}
+
+static void a_stack_up_that_fails_says_so(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run $cases/paper/ideal-stackup.yaml --backend analytic "
+                         "--set four-bar.follower.length='270.5 +- 200 mm' --set run.samples=90");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "\n  no tolerance stack-up: within its tolerances the crank does "
+                                 "not always turn fully\n");
 }
 
 static void a_reader_that_goes_away_is_no_crash(void **state)
@@ -283,6 +325,8 @@ int main(void)
         COMMAND_TEST(json_of_a_failed_run_holds_no_number),
         COMMAND_TEST(a_full_disk_ends_with_status_5),
         COMMAND_TEST(nothing_half_written_stays_behind),
+        COMMAND_TEST(settings_without_effect_are_said_in_a_line),
+        COMMAND_TEST(a_stack_up_that_fails_says_so),
         COMMAND_TEST(a_reader_that_goes_away_is_no_crash),
         COMMAND_TEST(the_same_command_twice_prints_the_same_hash),
     };

@@ -51,7 +51,7 @@ static void beyond_the_horizon_distributions_stand_in_for_errors(void **state)
                          "--set run.revolutions=0.5");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "The motion cannot be predicted beyond ");
-    assert_says(program->output, "Over starts that differ by 1e-10 of the speeds");
+    assert_says(program->output, "Over starts that differ by 0.001 of the speeds");
     assert_says(program->output, "reference: 16 starts");
     assert_says(program->output, "ode: 16 starts");
 }

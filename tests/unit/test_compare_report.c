@@ -54,7 +54,7 @@ static int set_up(void **state)
     strcpy(fixture->scenario.title, "Play & <nothing> else");
     strcpy(fixture->scenario.path, "cases/test.yaml");
     fixture->ladder = ladder_create(SCHEMES, 3, STEP_LIST, STEPS, REPEATS);
-    fixture->ladder->truth = (LadderTruth){true, "reference", 4e-6, 0.025, 2e4, true, 1.5};
+    fixture->ladder->truth = (LadderTruth){true, "reference", 4e-6, 0.025, 2e4, true, 1.5, ""};
     add_runs(fixture->ladder);
     for (size_t i = 0; i < 3; i++) {
         LadderEnsemble *ensemble = &fixture->ladder->ensembles[i];
@@ -123,6 +123,44 @@ static void without_a_horizon_nothing_lies_beyond(void **state)
     assert_has(fixture->text.data, "difference of the two models");
 }
 
+static void a_truth_that_could_not_be_certified_has_no_horizon(void **state)
+{
+    Fixture *fixture = *state;
+    LadderTruth *truth = &fixture->ladder->truth;
+    strcpy(truth->message, "the tighter run left the plane");
+    truth->uncertainty = INFINITY;
+    for (size_t i = 0; i < fixture->ladder->point_count; i++) {
+        fixture->ladder->points[i].run.error.omega_max_in_horizon = NAN;
+    }
+    ladder_conclude(fixture->ladder);
+    compare_text_write(&fixture->report, &STYLE_PLAIN, &fixture->text);
+    const char *text = fixture->text.data;
+    assert_has(text, "could not be certified: the tighter run left the plane");
+    assert_has(text, "direct/plain/textbook has no error: the truth could not be certified");
+    assert_has(text, "beside it: reference, without an error in");
+    assert_null(strstr(text, "horizon"));
+    assert_null(strstr(text, "nan"));
+    assert_null(strstr(text, "inf "));
+    assert_null(strstr(text, "frontier  "));
+    json_t *root = compare_json_build(&fixture->report);
+    const json_t *object = json_object_get(root, "truth");
+    assert_string_equal(json_string_value(json_object_get(object, "message")),
+                        "could not be certified: the tighter run left the plane");
+    assert_true(json_is_null(json_object_get(object, "horizon_s")));
+    const json_t *point = json_array_get(
+        json_object_get(json_array_get(json_object_get(root, "schemes"), 0), "points"), 0);
+    assert_string_equal(json_string_value(json_object_get(point, "status")), "ok");
+    assert_true(json_is_null(json_object_get(point, "error_omega")));
+    assert_true(json_is_true(json_object_get(point, "on_frontier")) == 0);
+    json_decref(root);
+    text_finish(&fixture->text);
+    text_init(&fixture->text);
+    compare_plot_write(&fixture->report, &fixture->text);
+    assert_has(fixture->text.data, "which could not be certified");
+    assert_null(strstr(fixture->text.data, "nan"));
+    assert_null(strstr(fixture->text.data, "inf"));
+}
+
 static const json_t *at(const json_t *root, const char *list, size_t index)
 {
     return json_array_get(json_object_get(root, list), index);
@@ -188,6 +226,9 @@ static void a_spreadsheet_has_as_many_cells_in_every_row(void **state)
     assert_true(file >= 0);
     close(file);
     Err err = {0};
+    // a point without an error has an empty cell and its reason
+    fixture->ladder->points[0].run.error.omega_max_in_horizon = NAN;
+    ladder_conclude(fixture->ladder);
     assert_true(compare_csv_write(&fixture->report, path, &err));
     char line[4096];
     FILE *stream = fopen(path, "r");
@@ -196,6 +237,10 @@ static void a_spreadsheet_has_as_many_cells_in_every_row(void **state)
     while (fgets(line, sizeof line, stream) != NULL) {
         cells = lines == 0 ? count_cells(line) : cells;
         assert_int_equal(count_cells(line), cells);
+        if (lines == 1) {
+            assert_has(line, "ok,5999,0,,0,");
+            assert_has(line, "\"has no error: no sample lies within the horizon\"");
+        }
         if (lines == 6) {
             assert_has(line, "\"at 1 ms: the \"\"pin\"\", alas, has left\"");
         }
@@ -245,6 +290,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         REPORT_TEST(people_read_of_truth_points_orders_and_the_cheapest),
         REPORT_TEST(without_a_horizon_nothing_lies_beyond),
+        REPORT_TEST(a_truth_that_could_not_be_certified_has_no_horizon),
         REPORT_TEST(programs_read_the_same),
         REPORT_TEST(a_spreadsheet_has_as_many_cells_in_every_row),
         REPORT_TEST(the_picture_has_lines_frontier_band_and_arrow),

@@ -83,6 +83,52 @@ static void a_file_that_cannot_be_written_is_an_error(void **state)
     assert_int_equal(err.kind, ERR_FILE);
 }
 
+static void a_probe_leaves_nothing_behind(void **state)
+{
+    (void)state;
+    char path[256];
+    char inside[300];
+    char content[64];
+    Err err = {0};
+    scratch_path("probed.txt", path, sizeof path);
+    assert_true(file_probe(path, &err));
+    assert_int_equal(access(path, F_OK), -1);
+    // and leaves what is there as it is
+    assert_true(file_write_text(path, "old\n", &err));
+    assert_true(file_probe(path, &err));
+    read_whole(path, content, sizeof content);
+    assert_string_equal(content, "old\n");
+    assert_true(file_probe("-", &err) && file_probe("/dev/null", &err));
+    // what cannot be written: below a file, a folder
+    snprintf(inside, sizeof inside, "%s/x", path);
+    assert_false(file_probe(inside, &err));
+    assert_int_equal(err.kind, ERR_FILE);
+    err = (Err){0};
+    assert_false(file_probe("/tmp", &err));
+    assert_string_equal(err.text, "cannot write /tmp: Is a directory");
+    unlink(path);
+}
+
+static void two_paths_to_one_file_are_the_same(void **state)
+{
+    (void)state;
+    char path[256];
+    char link_path[256];
+    Err err = {0};
+    assert_true(file_is_same("a.csv", "./a.csv"));
+    assert_true(file_is_same("-", "-"));
+    assert_false(file_is_same("a.csv", "b.csv"));
+    assert_false(file_is_same("nowhere/a.csv", "a.csv"));
+    assert_false(file_is_same(NULL, "a.csv"));
+    scratch_path("one.txt", path, sizeof path);
+    scratch_path("other.txt", link_path, sizeof link_path);
+    assert_true(file_write_text(path, "old\n", &err));
+    assert_int_equal(symlink(path, link_path), 0);
+    assert_true(file_is_same(path, link_path));
+    unlink(link_path);
+    unlink(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -90,6 +136,8 @@ int main(void)
         cmocka_unit_test(a_file_given_up_leaves_what_was_there),
         cmocka_unit_test(a_symbolic_link_stays_one),
         cmocka_unit_test(a_file_that_cannot_be_written_is_an_error),
+        cmocka_unit_test(a_probe_leaves_nothing_behind),
+        cmocka_unit_test(two_paths_to_one_file_are_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -203,12 +203,13 @@ static void every_run_comes_back_from_its_line(void **state)
     const Linkage *linkage = &scenario.linkage;
     Ladder *ladder = make_ladder();
     Ladder *other = make_ladder();
-    LadderTruth truth = {true, "reference", 1e-9, 0.05, 1e3, true, 2.5};
+    LadderTruth truth = {true, "reference", 1e-9, 0.05, 1e3, true, 2.5, "too wild"};
     json_t *line = ladder_json_truth(&truth);
     assert_int_equal(ladder_json_take(other, linkage, line, "m"), LADDER_JSON_TAKEN);
     assert_int_equal(ladder_json_take(other, linkage, line, "m"), LADDER_JSON_UNUSED);
     assert_near(other->truth.horizon_s, 0.05, 0.0);
     assert_true(other->truth.is_limited);
+    assert_string_equal(other->truth.message, "too wild");
     json_decref(line);
     LadderRun run = {.kind = LADDER_ERROR,
                      .point = 1,
@@ -259,15 +260,60 @@ static void an_ensemble_comes_back_from_its_line(void **state)
     assert_string_equal(taken->message, "too deep");
     assert_near(taken->joints[joint][ENSEMBLE_IMPULSE].high, 4.0, 0.0);
     json_decref(line);
-    // a line of a scheme that is not asked for, and one that says nothing
-    line = json_pack("{s:{s:s, s:f}}", "error", "scheme", "quick/plain", "step_s", 1e-5);
-    assert_int_equal(ladder_json_take(other, &scenario.linkage, line, "m"), LADDER_JSON_UNUSED);
-    json_decref(line);
-    line = json_object();
+    // a line of a scheme that is not asked for
+    const LadderRun run = {.kind = LADDER_ERROR};
+    line = ladder_json_run(ladder, &run, "m");
+    json_object_set_new(json_object_get(line, "error"), "scheme", json_string("quick/plain"));
     assert_int_equal(ladder_json_take(other, &scenario.linkage, line, "m"), LADDER_JSON_UNUSED);
     json_decref(line);
     ladder_destroy(ladder);
     ladder_destroy(other);
+}
+
+// Takes the line whole, then without each of its keys and with each of another type.
+static void expect_every_key_to_count(Ladder *ladder, const Linkage *linkage, json_t *line)
+{
+    const char *key;
+    json_t *value;
+    const json_t *object = json_object_iter_value(json_object_iter(line));
+    json_object_foreach((json_t *)object, key, value)
+    {
+        json_t *damaged = json_deep_copy(line);
+        json_t *inner = json_object_iter_value(json_object_iter(damaged));
+        json_object_set_new(inner, key, json_array());
+        assert_int_equal(ladder_json_take(ladder, linkage, damaged, "m"), LADDER_JSON_DAMAGED);
+        json_object_del(inner, key);
+        assert_int_equal(ladder_json_take(ladder, linkage, damaged, "m"), LADDER_JSON_DAMAGED);
+        json_decref(damaged);
+    }
+    assert_int_equal(ladder_json_take(ladder, linkage, line, "m"), LADDER_JSON_TAKEN);
+    json_decref(line);
+}
+
+static void a_line_with_a_key_too_few_is_damaged(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    const Linkage *linkage = &scenario.linkage;
+    Ladder *ladder = make_ladder();
+    const LadderTruth truth = {.uncertainty = INFINITY, .backend = "reference"};
+    LadderRun run = {.kind = LADDER_ERROR, .is_complete = true};
+    const LadderEnsemble ensemble = {.step_s = 3e-6};
+    expect_every_key_to_count(ladder, linkage, ladder_json_truth(&truth));
+    expect_every_key_to_count(ladder, linkage, ladder_json_run(ladder, &run, "m"));
+    run.kind = LADDER_TIMING;
+    expect_every_key_to_count(ladder, linkage, ladder_json_run(ladder, &run, "m"));
+    // an ensemble has the joints with play
+    json_t *line = ladder_json_ensemble(ladder, linkage, 0, &ensemble);
+    json_object_clear(json_object_get(json_object_get(line, "ensemble"), "joints"));
+    assert_int_equal(ladder_json_take(ladder, linkage, line, "m"), LADDER_JSON_DAMAGED);
+    json_decref(line);
+    expect_every_key_to_count(ladder, linkage, ladder_json_ensemble(ladder, linkage, 0, &ensemble));
+    line = json_object();
+    assert_int_equal(ladder_json_take(ladder, linkage, line, "m"), LADDER_JSON_DAMAGED);
+    json_decref(line);
+    ladder_destroy(ladder);
 }
 
 static void the_key_holds_settings_steps_and_versions(void **state)
@@ -303,6 +349,7 @@ int main(void)
         STORE_TEST(a_place_that_cannot_be_written_is_told),
         cmocka_unit_test(every_run_comes_back_from_its_line),
         cmocka_unit_test(an_ensemble_comes_back_from_its_line),
+        cmocka_unit_test(a_line_with_a_key_too_few_is_damaged),
         cmocka_unit_test(the_key_holds_settings_steps_and_versions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

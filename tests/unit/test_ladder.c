@@ -1,6 +1,7 @@
 // Are the right runs made, each once, and is what they say put together rightly?
 #include "compare/runner.h"
 #include "compare/task.h"
+#include "run/registry.h"
 
 #include "close.h"
 #include "mechanism.h"
@@ -161,6 +162,22 @@ static void unstable_and_unknown_errors_are_no_numbers(void **state)
     ladder_destroy(ladder);
 }
 
+static void a_point_without_a_sample_in_the_horizon_has_no_error(void **state)
+{
+    (void)state;
+    Ladder *ladder = make_ladder();
+    fill(ladder);
+    ladder->truth.is_limited = true;
+    ladder->points[0].run.error.omega_max_in_horizon = NAN;
+    ladder_conclude(ladder);
+    const LadderPoint *point = &ladder->points[0];
+    assert_false(point->is_failed || point->is_on_frontier || point->is_limited_by_truth);
+    assert_string_equal(point->reason, "has no error: no sample lies within the horizon");
+    assert_true(isnan(point->error) && point->wall_median_s > 0.0);
+    assert_int_equal(ladder->cheapest[0], 1);
+    ladder_destroy(ladder);
+}
+
 // What a runner tells, counted.
 typedef struct Counts {
     size_t truths;
@@ -287,6 +304,17 @@ static void without_a_truth_there_is_no_comparison(void **state)
     ladder_destroy(ladder);
 }
 
+// How long one member of the ensemble of the finest step takes here, s, and not nothing.
+static double time_of_member(const Scenario *scenario)
+{
+    Scenario member = *scenario;
+    member.run.step = LADDER_STEPS[STEPS - 1];
+    Trajectory *trajectory = run_scenario(&member, registry_solver(BACKEND_ODE), (RunWatch){0});
+    const double wall_s = trajectory->wall_s;
+    trajectory_destroy(trajectory);
+    return fmax(wall_s, 1e-3);
+}
+
 static void ensembles_are_made_beyond_a_horizon(void **state)
 {
     (void)state;
@@ -303,11 +331,16 @@ static void ensembles_are_made_beyond_a_horizon(void **state)
     assert_int_equal(counts.runs, 0);
     assert_near(ladder->ensembles[0].step_s, LADDER_STEPS[STEPS - 1], 0.0);
     assert_true(ladder->ensembles[0].ensemble.members > 0);
+    // the limit is that of one run, not of all members
+    runner.time_limit_s = 8.0 * time_of_member(&scenario);
+    ladder->ensembles[0].is_known = false;
+    assert_true(runner_execute(&runner, &err));
+    assert_int_equal(ladder->ensembles[0].ensemble.failed, 0);
     // what is known is not made again, and what hangs has failed
     ladder->ensembles[0].is_known = false;
     runner.time_limit_s = 1e-6;
     assert_true(runner_execute(&runner, &err));
-    assert_int_equal(counts.ensembles, 3);
+    assert_int_equal(counts.ensembles, 4);
     assert_int_equal(ladder->ensembles[0].ensemble.members, 0);
     assert_int_equal(ladder->ensembles[0].ensemble.failed, ENSEMBLE_MEMBERS);
     ladder_destroy(ladder);
@@ -354,6 +387,7 @@ int main(void)
         cmocka_unit_test(errors_times_frontier_and_orders_are_put_together),
         cmocka_unit_test(the_horizon_and_the_uncertainty_limit_what_is_said),
         cmocka_unit_test(unstable_and_unknown_errors_are_no_numbers),
+        cmocka_unit_test(a_point_without_a_sample_in_the_horizon_has_no_error),
         cmocka_unit_test(a_runner_makes_what_is_missing),
         cmocka_unit_test(a_run_that_hangs_is_a_failed_run),
         cmocka_unit_test(without_a_truth_there_is_no_comparison),

@@ -66,6 +66,7 @@ static void json_holds_the_truth_and_what_limits_it(void **state)
     assert_string_equal(json_string_value(json_object_get(truth, "backend")), "reference");
     assert_true(number_at(truth, "growth", NULL, NULL) == 3.5e7);
     assert_true(json_is_true(json_object_get(truth, "is_limited")));
+    assert_true(json_is_false(json_object_get(truth, "other_contact_model")));
     const json_t *run = json_array_get(json_object_get(root, "runs"), 1);
     assert_true(number_at(run, "error", "omega_max_in_horizon", NULL) == 3e-9);
     assert_true(number_at(run, "error", "horizon_s", NULL) == 0.02);
@@ -90,6 +91,16 @@ static void json_holds_the_truth_and_what_limits_it(void **state)
     assert_true(number_at(joint, "impulse_N_s", "deviation", NULL) == 0.03125);
     assert_true(number_at(joint, "contact_fraction", "median", NULL) == 0.5);
     json_decref(root);
+    // one that could not be certified says why and ends nowhere; it has only the elastic law
+    strcpy(own->truth.message, "the twin failed");
+    own->fixture->scenario.contact.model = CONTACT_POISSON;
+    root = run_json_build(&own->fixture->report);
+    truth = json_object_get(root, "truth");
+    assert_string_equal(json_string_value(json_object_get(truth, "message")),
+                        "could not be certified: the twin failed");
+    assert_true(json_is_null(json_object_get(truth, "horizon_s")));
+    assert_true(json_is_true(json_object_get(truth, "other_contact_model")));
+    json_decref(root);
     // a reference that failed says why and has no numbers
     own->fixture->runs[0]->is_complete = false;
     strcpy(own->fixture->runs[0]->message, "too stiff");
@@ -97,6 +108,28 @@ static void json_holds_the_truth_and_what_limits_it(void **state)
     truth = json_object_get(root, "truth");
     assert_string_equal(json_string_value(json_object_get(truth, "message")), "too stiff");
     assert_null(json_object_get(truth, "uncertainty"));
+    json_decref(root);
+}
+
+static void contacts_are_null_where_no_play_is_felt(void **state)
+{
+    Fixture *fixture = *state;
+    static const char *const KEYS[] = {"impacts", "impulse_N_s", "penetration_max_m",
+                                       "contact_fraction"};
+    // the closed form takes the joint with play as ideal; ode's second joint has none
+    static const char *const JOINTS[] = {"crank-coupler", "coupler-follower"};
+    fixture->runs[0]->joints[1].impacts = 1;
+    fixture->runs[0]->joints[1].impulse = 0.5;
+    json_t *root = run_json_build(&fixture->report);
+    for (size_t i = 0; i < 2; i++) {
+        const json_t *run = json_array_get(json_object_get(root, "runs"), i);
+        const json_t *joint = json_object_get(json_object_get(run, "joints"), JOINTS[i]);
+        for (size_t k = 0; k < sizeof KEYS / sizeof KEYS[0]; k++) {
+            assert_true(json_is_null(json_object_get(joint, KEYS[k])));
+        }
+        assert_true(json_is_number(json_object_get(joint, "force_max_N")));
+        assert_int_equal(json_array_size(json_object_get(joint, "spikes")), 0);
+    }
     json_decref(root);
 }
 
@@ -134,6 +167,17 @@ static void json_of_the_closed_form_is_there_when_it_has_spoken(void **state)
     root = run_json_build(&fixture->report);
     assert_null(json_object_get(root, "kinematics"));
     assert_null(json_object_get(root, "stackup"));
+    json_decref(root);
+    // asked for and not to be had: why
+    fixture->report.no_summary = "it sticks";
+    fixture->report.no_stackup = "it sticks within its tolerances";
+    root = run_json_build(&fixture->report);
+    static const char *const KEYS[] = {"kinematics", "inverse_dynamics", "stackup"};
+    for (int i = 0; i < 3; i++) {
+        const json_t *message = json_object_get(json_object_get(root, KEYS[i]), "message");
+        assert_string_equal(json_string_value(message),
+                            i < 2 ? "it sticks" : "it sticks within its tolerances");
+    }
     json_decref(root);
 }
 
@@ -178,6 +222,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(json_holds_the_keys_that_others_rely_on, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(contacts_are_null_where_no_play_is_felt, fixture_set_up,
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(json_angles_are_degrees_of_one_turn, fixture_set_up,
                                         fixture_tear_down),

@@ -121,6 +121,41 @@ static void without_play_there_are_no_contacts_to_list(void **state)
     text_finish(&text);
 }
 
+static void without_a_drive_times_stand_for_crank_angles(void **state)
+{
+    Fixture *fixture = *state;
+    static const char *const WORDS[] = {"at time  omega min", "42.2008  10.0000", "1234  30.0000",
+                                        NULL};
+    fixture->scenario.linkage.driver.is_present = false;
+    fixture->report.summary = NULL;
+    fixture->report.stackup = NULL;
+    Text text;
+    text_init(&text);
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    expect_words(text.data, WORDS);
+    assert_null(strstr(text.data, "at crank"));
+    text_finish(&text);
+}
+
+static void what_the_closed_form_cannot_say_is_said_in_a_line(void **state)
+{
+    Fixture *fixture = *state;
+    static const char *const WORDS[] = {
+        "\n  no kinematics of the ideal four-bar: it sticks\n",
+        "\n  no tolerance stack-up: it sticks within its tolerances\n",
+        NULL,
+    };
+    fixture->report.summary = NULL;
+    fixture->report.no_summary = "it sticks";
+    fixture->report.stackup = NULL;
+    fixture->report.no_stackup = "it sticks within its tolerances";
+    Text text;
+    text_init(&text);
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    expect_words(text.data, WORDS);
+    text_finish(&text);
+}
+
 static void an_error_is_told_with_what_limits_it(void **state)
 {
     TruthFixture *own = *state;
@@ -134,7 +169,7 @@ static void an_error_is_told_with_what_limits_it(void **state)
         "Contacts matched within the horizon, ode",
         "crank-coupler            30.0000       1234       2.5  -12.5    +6.25",
         "4 of the reference and 5 of ode have no partner",
-        "Over starts that differ by 1e-10 of the speeds",
+        "Over starts that differ by 0.001 of the speeds",
         "crank-coupler  deepest, um    ode        250000  500000  750000  562500    31250",
         "reference: 16 starts\n",
         "ode: 14 starts, and 2 that failed: a member broke\n",
@@ -153,12 +188,17 @@ static void an_error_is_told_with_what_limits_it(void **state)
 static void a_truth_that_holds_is_told_in_one_line(void **state)
 {
     TruthFixture *own = *state;
-    static const char *const WORDS[] = {"holds through the whole run, 62.83 ms", NULL};
+    static const char *const WORDS[] = {
+        "holds through the whole run, 62.83 ms",
+        "reference       4e-14       0           0         0     1e-14               -\n",
+        NULL,
+    };
     own->truth.is_limited = false;
     own->fixture->report.ensembles = NULL;
     own->fixture->errors[1].omega_max_in_horizon = 4.1e-9;
-    // without a drive there is no work to divide by
+    // without a drive there is no work to divide by, and rounding is none either
     own->fixture->runs[1]->energy.drive_work = 0.0;
+    own->fixture->runs[0]->energy = (Energy){.drive_work = 4e-14, .residual = 1e-14};
     Text text;
     text_init(&text);
     run_text_write(&own->fixture->report, &STYLE_PLAIN, &text);
@@ -167,6 +207,53 @@ static void a_truth_that_holds_is_told_in_one_line(void **state)
     assert_null(strstr(text.data, "Over starts"));
     assert_null(strstr(text.data, "limited by the reference"));
     assert_null(strstr(text.data, "nan"));
+    text_finish(&text);
+}
+
+static void a_truth_that_is_not_sure_does_not_hold(void **state)
+{
+    TruthFixture *own = *state;
+    Text text;
+    text_init(&text);
+    own->truth.is_limited = false;
+    own->truth.uncertainty = 2e-3;
+    run_text_write(&own->fixture->report, &STYLE_PLAIN, &text);
+    assert_non_null(strstr(text.data, "sure to no more than 0.002 of omega"));
+    assert_null(strstr(text.data, "holds through"));
+    text_finish(&text);
+    text_init(&text);
+    strcpy(own->truth.message, "the twin left the plane");
+    own->truth.is_limited = true;
+    own->truth.uncertainty = INFINITY;
+    own->fixture->errors[1].omega_max_in_horizon = NAN;
+    run_text_write(&own->fixture->report, &STYLE_PLAIN, &text);
+    assert_non_null(strstr(text.data, "could not be certified: the twin left the plane"));
+    assert_null(strstr(text.data, "cannot be predicted"));
+    assert_null(strstr(text.data, "nan"));
+    assert_null(strstr(text.data, "limited by the reference"));
+    text_finish(&text);
+}
+
+static void the_law_that_stands_for_poisson_is_named(void **state)
+{
+    TruthFixture *own = *state;
+    Text text;
+    text_init(&text);
+    own->fixture->scenario.contact.model = CONTACT_POISSON;
+    own->fixture->scenario.contact.law = LAW_PAPER_TABLE_3;
+    run_text_write(&own->fixture->report, &STYLE_PLAIN, &text);
+    assert_non_null(strstr(text.data, "the elastic law (paper-table-3) in place of the POISSON"));
+    text_finish(&text);
+    // the reference alone has no errors, and is no less of another model
+    text_init(&text);
+    own->fixture->errors[1].is_known = false;
+    run_text_write(&own->fixture->report, &STYLE_PLAIN, &text);
+    assert_non_null(strstr(text.data, "The reference\n\n  The reference has the elastic law"));
+    text_finish(&text);
+    text_init(&text);
+    own->fixture->scenario.contact.model = CONTACT_IMPACT;
+    run_text_write(&own->fixture->report, &STYLE_PLAIN, &text);
+    assert_null(strstr(text.data, "in place of the POISSON"));
     text_finish(&text);
 }
 
@@ -200,9 +287,17 @@ int main(void)
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(without_play_there_are_no_contacts_to_list, fixture_set_up,
                                         fixture_tear_down),
+        cmocka_unit_test_setup_teardown(without_a_drive_times_stand_for_crank_angles,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(what_the_closed_form_cannot_say_is_said_in_a_line,
+                                        fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(an_error_is_told_with_what_limits_it, truth_fixture_set_up,
                                         truth_fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_truth_that_holds_is_told_in_one_line,
+                                        truth_fixture_set_up, truth_fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_truth_that_is_not_sure_does_not_hold,
+                                        truth_fixture_set_up, truth_fixture_tear_down),
+        cmocka_unit_test_setup_teardown(the_law_that_stands_for_poisson_is_named,
                                         truth_fixture_set_up, truth_fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_truth_that_cannot_be_had_certifies_nothing,
                                         truth_fixture_set_up, truth_fixture_tear_down),

@@ -71,6 +71,33 @@ static void without_play_solver_and_stepping_are_left(void **state)
     assert_string_equal(schemes[count - 1].name, "analytic");
 }
 
+static void the_closed_form_is_of_four_bars_alone(void **state)
+{
+    (void)state;
+    const Scenario scenario = mechanism_parallelogram();
+    assert_false(scenario.has_fourbar || scenario_has_clearance(&scenario));
+    Scheme schemes[SCHEME_MAX];
+    const size_t count = scheme_list(&scenario, schemes);
+    for (size_t i = 0; i < count; i++) {
+        assert_string_not_equal(schemes[i].name, "analytic");
+    }
+}
+
+static void what_is_driven_alone_cannot_be_in_error(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    Err err = {0};
+    assert_true(scheme_check(&scenario, &err));
+    scenario.linkage.body_count = 1;
+    assert_false(scheme_check(&scenario, &err));
+    assert_int_equal(err.kind, ERR_CASE);
+    assert_non_null(strstr(err.text, "there is nothing to compare"));
+    // one body that nothing drives does move by itself
+    const Scenario pin = mechanism_pin(1.0, 1e-4);
+    assert_true(scheme_check(&pin, &err));
+}
+
 static void a_scheme_sets_what_it_stands_for(void **state)
 {
     (void)state;
@@ -131,6 +158,8 @@ int main(void)
         cmocka_unit_test(with_play_every_choice_counts),
         cmocka_unit_test(the_map_is_left_out_for_poisson),
         cmocka_unit_test(without_play_solver_and_stepping_are_left),
+        cmocka_unit_test(the_closed_form_is_of_four_bars_alone),
+        cmocka_unit_test(what_is_driven_alone_cannot_be_in_error),
         cmocka_unit_test(a_scheme_sets_what_it_stands_for),
         cmocka_unit_test(a_list_keeps_those_with_all_of_its_words),
         cmocka_unit_test(a_word_that_no_scheme_has_is_told),

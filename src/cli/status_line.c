@@ -1,0 +1,41 @@
+// When and how is a line of progress shown?
+#include "cli/status_line.h"
+
+#include "cli/output.h"
+
+#include <stdio.h>
+
+static const double FIRST_LINE = 2.0;     // s: who waits shorter than that needs no line
+static const double TERMINAL_PAUSE = 0.2; // s, between two lines on a terminal
+static const double LOG_PAUSE = 10.0;     // s, between two lines of a log
+
+StatusLine status_line_start(bool is_quiet)
+{
+    return (StatusLine){.is_quiet = is_quiet, .is_terminal = output_is_terminal(stderr)};
+}
+
+bool status_line_is_due(StatusLine *line, double wall_s)
+{
+    const double pause = line->is_terminal ? TERMINAL_PAUSE : LOG_PAUSE;
+    if (line->is_quiet || wall_s < FIRST_LINE || wall_s - line->last_line_s < pause) {
+        return false;
+    }
+    line->last_line_s = wall_s;
+    return true;
+}
+
+void status_line_show(StatusLine *line, const char *words)
+{
+    fprintf(stderr, line->is_terminal ? "\r%s\x1b[K" : "%s\n", words);
+    fflush(stderr);
+    line->is_shown = line->is_terminal;
+}
+
+void status_line_end(StatusLine *line)
+{
+    if (line->is_shown) {
+        fputs("\r\x1b[K", stderr);
+        fflush(stderr);
+        line->is_shown = false;
+    }
+}

@@ -1,0 +1,23 @@
+// A line on standard error that says how far something long has come, and is gone at its end: one
+// line on a terminal, a plain line now and then elsewhere.
+#pragma once
+
+#include <stdbool.h>
+
+typedef struct StatusLine {
+    bool is_quiet;
+    bool is_terminal;
+    bool is_shown;      // whether a line stands on the terminal
+    double last_line_s; // wall time of the last line, s
+} StatusLine;
+
+StatusLine status_line_start(bool is_quiet);
+
+// Whether it is time for a line, so many seconds after the start; if so it counts as written.
+bool status_line_is_due(StatusLine *line, double wall_s);
+
+// Writes the line.
+void status_line_show(StatusLine *line, const char *words);
+
+// Takes the line away again.
+void status_line_end(StatusLine *line);

@@ -1,0 +1,35 @@
+// How does a file come to be there, and who is told?
+#include "cli/written.h"
+
+#include "base/text.h"
+#include "report/file.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+bool written_say(const char *path, bool is_quiet)
+{
+    if (!is_quiet) {
+        fprintf(stderr, "wrote %s\n", path);
+    }
+    return true;
+}
+
+bool written_text(const char *path, const char *text, bool is_quiet, Err *err)
+{
+    return file_write_text(path, text, err) && written_say(path, is_quiet);
+}
+
+bool written_json(const char *path, const json_t *object, bool is_quiet, Err *err)
+{
+    char *words = json_dumps(object, RUN_JSON_FLAGS);
+    assert(words != NULL);
+    Text text;
+    text_init(&text);
+    text_append(&text, "%s\n", words);
+    free(words);
+    const bool is_written = written_text(path, text.data, is_quiet, err);
+    text_finish(&text);
+    return is_written;
+}
