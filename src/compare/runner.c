@@ -17,7 +17,7 @@ static const double PAUSE_S = 0.2; // between two looks of the listener
 // a run keeps its samples, some tens of megabytes; whoever wants more than this has lost count
 static const size_t MEMORY_LIMIT = (size_t)4 << 30;
 
-// at most: the trajectory, once more on finer samples, a second one, a twin
+// at most: the trajectory, once more on finer samples, a second one, four twins, and one to spare
 enum { TRUTH_RUNS = 8 };
 
 // One child at work.
