@@ -96,7 +96,7 @@ static void check(const Claim *claim)
     const QuadProblem problem = quad_problem(&scenario);
     TruthSample *truth = make_truth(&scenario, &problem, NULL);
     const double error = error_of(&scenario, truth);
-    print_message("%s, %.4g turns, tolerance %.3g: error %.3g\n", claim->problem->name,
+    print_message("# %s, %.4g turns, tolerance %.3g: error %.3g\n", claim->problem->name,
                   claim->turns, scenario.reference.tolerance, error);
     assert_true(error <= claim->bound);
     scenario.contact.damping = DAMPING_HUNT_CROSSLEY;
