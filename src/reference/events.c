@@ -67,8 +67,11 @@ static double crossing(Margin *margin, double first, double last)
     for (int i = 0; i < HALVINGS; i++) {
         good = first + 0.5 * (good - first);
         if (margin_at(good, margin) > 0.0) {
-            double time = first;
-            return root_find(margin_at, margin, good, last, 0.0, &time) ? time : first;
+            // where the polynomial sees no change of sign, the state at the end alone does: it is
+            // there
+            double time = last;
+            root_find(margin_at, margin, good, last, 0.0, &time);
+            return time;
         }
     }
     return first;
