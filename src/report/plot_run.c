@@ -120,6 +120,14 @@ static void add_entry(Legend *legend, PlotStyle style, const char *words)
     legend->x += width;
 }
 
+// the label, with the backend before it where the label does not begin with it
+static void name_run(const Trajectory *run, char *words, size_t size)
+{
+    const bool is_named = strncmp(run->label, run->backend, strlen(run->backend)) == 0;
+    snprintf(words, size, "%s%s%s%s", is_named ? "" : run->backend, is_named ? "" : ": ",
+             run->label, run->is_complete ? "" : " (failed)");
+}
+
 static void draw_legend(const RunReport *report, Text *svg)
 {
     Legend legend = {svg, PANEL_LEFT[0], LEGEND_TOP};
@@ -127,8 +135,8 @@ static void draw_legend(const RunReport *report, Text *svg)
         const Trajectory *run = report->runs[i];
         PlotStyle style = plot_look_line(i, 0);
         style.colour = "#333333";
-        char words[TRAJECTORY_LABEL_SIZE + 16];
-        snprintf(words, sizeof words, "%s%s", run->label, run->is_complete ? "" : " (failed)");
+        char words[TRAJECTORY_LABEL_SIZE + LINKAGE_NAME_SIZE + 16];
+        name_run(run, words, sizeof words);
         add_entry(&legend, style, words);
     }
     legend.x = PANEL_LEFT[0];

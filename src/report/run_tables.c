@@ -31,6 +31,16 @@ static void extreme_cells(Table *table, const RunReport *report, Extreme extreme
     when_cell(table, report, extreme);
 }
 
+static bool any_is_complete(const RunReport *report)
+{
+    for (size_t i = 0; i < report->run_count; i++) {
+        if (report->runs[i]->is_complete) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void run_tables_extremes(const RunReport *report, const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
@@ -45,6 +55,9 @@ void run_tables_extremes(const RunReport *report, const Style *style, Text *text
         {"alpha min", "rad/s^2", TABLE_RIGHT},
         {"", "", TABLE_RIGHT},
     };
+    if (!any_is_complete(report)) {
+        return;
+    }
     const Linkage *linkage = &report->scenario->linkage;
     Table *table = run_section_begin("Extremes of the motion", 10, HEADS, style, text);
     for (size_t column = 3; column < 10; column += 2) {
