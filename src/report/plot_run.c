@@ -5,6 +5,7 @@
 #include "report/plot_look.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -30,6 +31,47 @@ static double alpha_of(const RunReport *report, const Trajectory *run, size_t sa
 {
     (void)report;
     return trajectory_motion(run, sample, body)->alpha;
+}
+
+static double speed_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
+{
+    (void)report;
+    const Vec2 velocity = trajectory_motion(run, sample, body)->velocity;
+    return hypot(velocity.x, velocity.y);
+}
+
+static double acceleration_of(const RunReport *report, const Trajectory *run, size_t sample,
+                              size_t body)
+{
+    (void)report;
+    const Vec2 acceleration = trajectory_motion(run, sample, body)->acceleration;
+    return hypot(acceleration.x, acceleration.y);
+}
+
+// Does any body turn by more than rounding? A body without friction in a round hole does not, and
+// its angular velocity would be a picture of noise. Its energy of rotation is held against its
+// energy of translation: speeds that differ by 1e-10 are rounding over many steps.
+static bool any_turns(const RunReport *report)
+{
+    const double turning = 1e-10 * 1e-10;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        for (size_t body = 0; run->is_complete && body < run->body_count; body++) {
+            const Body *shape = &report->scenario->linkage.bodies[body];
+            double rotation = 0.0;
+            double translation = 0.0;
+            for (size_t sample = 0; sample < run->sample_count; sample++) {
+                const double omega = omega_of(report, run, sample, body);
+                const double speed = speed_of(report, run, sample, body);
+                rotation = fmax(rotation, shape->inertia * omega * omega);
+                translation = fmax(translation, shape->mass * speed * speed);
+            }
+            if (rotation > turning * translation) {
+                return true;
+            }
+        }
+    }
+    return false;
 }
 
 static PlotPanel place_panel(const RunReport *report, Text *svg, int row, int place,
@@ -160,22 +202,33 @@ static void draw_legend(const RunReport *report, Text *svg)
     }
 }
 
-void plot_run_write(const RunReport *report, Text *svg)
+// The rotation of the bodies, or the motion of their centres where nothing turns.
+static void draw_motions(const RunReport *report, Text *svg)
 {
     static const PlotQuantity OMEGA = {omega_of, plot_look_body_colour};
     static const PlotQuantity ALPHA = {alpha_of, plot_look_body_colour};
+    static const PlotQuantity SPEED = {speed_of, plot_look_body_colour};
+    static const PlotQuantity ACCELERATION = {acceleration_of, plot_look_body_colour};
+    const bool turns = report->scenario->linkage.driver.is_present || any_turns(report);
+    PlotPanel panel =
+        place_panel(report, svg, 0, 0, turns ? "Angular velocity" : "Speed of the centre of mass");
+    panel.y.title = turns ? "omega, rad/s" : "speed, m/s";
+    draw_motion(report, panel, turns ? OMEGA : SPEED);
+    panel = place_panel(report, svg, 0, 1,
+                        turns ? "Angular acceleration" : "Acceleration of the centre of mass");
+    panel.y.title = turns ? "alpha, rad/s^2" : "acceleration, m/s^2";
+    draw_motion(report, panel, turns ? ALPHA : ACCELERATION);
+}
+
+void plot_run_write(const RunReport *report, Text *svg)
+{
     const char *title = report->scenario->title;
     plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT, title);
     plot_text(svg, PANEL_LEFT[0], 34.0, "start", "title", title);
     draw_legend(report, svg);
-    PlotPanel panel = place_panel(report, svg, 0, 0, "Angular velocity");
-    panel.y.title = "omega, rad/s";
-    draw_motion(report, panel, OMEGA);
-    panel = place_panel(report, svg, 0, 1, "Angular acceleration");
-    panel.y.title = "alpha, rad/s^2";
-    draw_motion(report, panel, ALPHA);
+    draw_motions(report, svg);
     plot_joints_forces(report, place_panel(report, svg, 1, 0, "Force in the joint"));
-    panel = place_panel(report, svg, 1, 1, "");
+    const PlotPanel panel = place_panel(report, svg, 1, 1, "");
     if (scenario_has_clearance(report->scenario)) {
         plot_joints_paths(report, panel);
     } else {

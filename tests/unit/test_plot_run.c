@@ -100,6 +100,37 @@ static void a_spiky_quantity_gets_decades_on_both_sides(void **state)
     text_finish(&svg);
 }
 
+// Rounding by rounding: the speed is shown. A real rotation, however slow: the rotation.
+static void a_body_that_does_not_turn_shows_its_speed(void **state)
+{
+    Fixture *fixture = *state;
+    fixture->scenario.linkage.driver.is_present = false;
+    static const struct {
+        double omega;
+        const char *shown;
+        const char *not_shown;
+    } CASES[] = {
+        {5e-15, "Speed of the centre of mass", "Angular velocity"},
+        {5e-6, "Angular velocity", "Speed of the centre of mass"},
+    };
+    for (size_t i = 0; i < 2; i++) {
+        for (size_t run = 0; run < 2; run++) {
+            Trajectory *trajectory = fixture->runs[run];
+            for (size_t j = 0; j < trajectory->sample_count * trajectory->body_count; j++) {
+                trajectory->motions[j].velocity = (Vec2){1.0, 0.0};
+                trajectory->motions[j].omega = CASES[i].omega;
+            }
+        }
+        Text svg;
+        text_init(&svg);
+        plot_run_write(&fixture->report, &svg);
+        expect_well_formed(svg.data);
+        assert_non_null(strstr(svg.data, CASES[i].shown));
+        assert_null(strstr(svg.data, CASES[i].not_shown));
+        text_finish(&svg);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -109,6 +140,8 @@ int main(void)
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_picture_of_nothing_but_failures_is_still_one,
                                         fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_body_that_does_not_turn_shows_its_speed, fixture_set_up,
+                                        fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_spiky_quantity_gets_decades_on_both_sides, fixture_set_up,
                                         fixture_tear_down),
     };
