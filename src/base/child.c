@@ -6,6 +6,8 @@
 
 #include "base/child.h"
 
+#include "base/clock.h"
+
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -18,7 +20,6 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { WATCHED_MAX = 256 }; // children at a time: more than any machine has cores for
@@ -35,13 +36,6 @@ enum { CAN_LIMIT_MEMORY = 1 };
 #else
 enum { CAN_LIMIT_MEMORY = 1 };
 #endif
-
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 static void limit(__rlimit_resource_t resource, size_t most)
 {
@@ -111,7 +105,7 @@ bool child_start(Child *child, ChildWork work, const void *context, void *result
         .pipe = ends[0],
         .result = result,
         .result_size = result_size,
-        .started_s = now_s(),
+        .started_s = clock_now_s(),
         .limits = limits,
     };
     return true;
@@ -170,7 +164,7 @@ static bool wait_once(Child *children, size_t count, double wait_s)
             assert(watched_count < WATCHED_MAX);
             owners[watched_count] = &children[i];
             watched[watched_count++] = (struct pollfd){.fd = children[i].pipe, .events = POLLIN};
-            wait_s = fmin(wait_s, time_left(&children[i], now_s()));
+            wait_s = fmin(wait_s, time_left(&children[i], clock_now_s()));
         }
     }
     if (watched_count == 0) {
@@ -182,7 +176,7 @@ static bool wait_once(Child *children, size_t count, double wait_s)
         if (ready > 0 && watched[i].revents != 0) {
             receive(owners[i]);
         }
-        if (is_running(owners[i]) && time_left(owners[i], now_s()) <= 0.0) {
+        if (is_running(owners[i]) && time_left(owners[i], clock_now_s()) <= 0.0) {
             child_kill(owners[i]);
             owners[i]->end = CHILD_TIMED_OUT;
         }
@@ -193,8 +187,8 @@ static bool wait_once(Child *children, size_t count, double wait_s)
 
 void child_wait(Child *children, size_t count, double wait_s)
 {
-    const double stop_s = now_s() + wait_s;
-    while (!wait_once(children, count, stop_s - now_s()) && now_s() < stop_s) {
+    const double stop_s = clock_now_s() + wait_s;
+    while (!wait_once(children, count, stop_s - clock_now_s()) && clock_now_s() < stop_s) {
     }
 }
 

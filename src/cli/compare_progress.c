@@ -1,26 +1,18 @@
 // How far has a comparison come, and how long will the rest take?
 #include "cli/compare_progress.h"
 
+#include "base/clock.h"
 #include "base/text.h"
-
-#include <time.h>
-
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 CompareProgress compare_progress_start(const Ladder *ladder, bool is_quiet)
 {
     return (CompareProgress){
-        .ladder = ladder, .line = status_line_start(is_quiet), .started_s = now_s()};
+        .ladder = ladder, .line = status_line_start(is_quiet), .started_s = clock_now_s()};
 }
 
 void compare_progress_show(CompareProgress *progress, const char *doing)
 {
-    const double wall_s = now_s() - progress->started_s;
+    const double wall_s = clock_now_s() - progress->started_s;
     if (!status_line_is_due(&progress->line, wall_s)) {
         return;
     }

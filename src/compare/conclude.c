@@ -1,4 +1,5 @@
 // What do the runs of a ladder say about speed against error?
+#include "base/sorted.h"
 #include "compare/frontier.h"
 #include "compare/ladder.h"
 
@@ -81,13 +82,6 @@ static void judge(const Ladder *ladder, LadderPoint *point)
         !point->is_failed && point->error < CLEAR_OF_TRUTH * ladder->truth.uncertainty;
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const double left = *(const double *)a;
-    const double right = *(const double *)b;
-    return (left > right) - (left < right);
-}
-
 static void time_point(const Ladder *ladder, LadderPoint *point)
 {
     double sorted[LADDER_REPEAT_MAX];
@@ -101,8 +95,8 @@ static void time_point(const Ladder *ladder, LadderPoint *point)
     if (count == 0 || point->is_failed) {
         return;
     }
-    qsort(sorted, count, sizeof *sorted, compare_numbers);
-    point->wall_median_s = 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]);
+    sorted_make(sorted, count);
+    point->wall_median_s = sorted_median(sorted, count);
     point->wall_min_s = sorted[0];
     point->wall_max_s = sorted[count - 1];
 }

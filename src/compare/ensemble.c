@@ -1,9 +1,9 @@
 // What can be said of a motion that cannot be predicted? Its distributions.
 #include "compare/ensemble.h"
 
+#include "base/sorted.h"
 #include "model/perturb.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 const char *const ENSEMBLE_METRIC_NAMES[ENSEMBLE_METRIC_COUNT] = {
@@ -30,20 +30,13 @@ static void take_member(const Trajectory *trajectory, size_t member, Draws *draw
     }
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static Distribution distribution_of(double *values, size_t count)
 {
-    qsort(values, count, sizeof *values, ascending);
+    sorted_make(values, count);
     Distribution made = {
         .low = values[0],
         .high = values[count - 1],
-        .median = 0.5 * (values[(count - 1) / 2] + values[count / 2]),
+        .median = sorted_median(values, count),
     };
     for (size_t i = 0; i < count; i++) {
         made.mean += values[i] / (double)count;

@@ -5,13 +5,13 @@
 #include "compare/runner.h"
 
 #include "base/child.h"
+#include "base/clock.h"
 #include "base/text.h"
 #include "compare/task.h"
 
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 static const double PAUSE_S = 0.2; // between two looks of the listener
 // a run keeps its samples, some tens of megabytes; whoever wants more than this has lost count
@@ -43,13 +43,6 @@ typedef struct Work {
     size_t result_size;
     bool (*finish)(const Runner *runner, Job *job, const Child *child, Err *err);
 } Work;
-
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 static ChildLimits limits_of(const Runner *runner, size_t runs)
 {
@@ -194,7 +187,7 @@ static bool certify(const Runner *runner, void *packed, size_t size, Err *err)
 
 static bool make_truth(const Runner *runner, Truth *truth, Err *err)
 {
-    const double started_s = now_s();
+    const double started_s = clock_now_s();
     const size_t size = truth_pack_size(runner->scenario);
     void *packed = malloc(size);
     assert(packed != NULL);
@@ -217,7 +210,7 @@ static bool make_truth(const Runner *runner, Truth *truth, Err *err)
         .horizon_s = truth->horizon_s,
         .growth = truth->growth,
         .is_limited = truth->is_limited,
-        .wall_s = now_s() - started_s,
+        .wall_s = clock_now_s() - started_s,
     };
     text_copy(known->message, sizeof known->message, truth->message);
     snprintf(known->backend, sizeof known->backend, "%s", truth->trajectory->backend);

@@ -4,20 +4,13 @@
 // the stepping loop alone: steps, contact detection, recording and samples, not the setting up.
 #include "run/run.h"
 
+#include "base/clock.h"
 #include "model/energy.h"
 #include "run/recorder.h"
 
 #include <stdio.h>
-#include <time.h>
 
 enum { PROGRESS_EVERY = 4096 }; // steps between two looks at the clock: some 10 ms
-
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 typedef struct Loop {
     const Scenario *scenario;
@@ -59,7 +52,7 @@ static bool take_step(Loop *loop, double stop_s, Err *err)
     loop->steps++;
     if (loop->watch.progress != NULL && loop->steps % PROGRESS_EVERY == 0) {
         loop->watch.progress(loop->reached_s / scenario_duration(loop->scenario),
-                             now_s() - loop->started_s, loop->watch.context);
+                             clock_now_s() - loop->started_s, loop->watch.context);
     }
     return true;
 }
@@ -158,9 +151,9 @@ Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatc
         return trajectory;
     }
     loop.recorder = recorder_start(scenario, trajectory);
-    loop.started_s = now_s();
+    loop.started_s = clock_now_s();
     const bool is_done = run_samples(&loop, trajectory, &err);
-    trajectory->wall_s = now_s() - loop.started_s;
+    trajectory->wall_s = clock_now_s() - loop.started_s;
     recorder_finish(&loop.recorder);
     fill_model(&loop, trajectory);
     trajectory->duration_s = loop.reached_s;

@@ -2,31 +2,17 @@
 //
 // Medians over repetitions of a million queries of a pin that moves about its hole; the last column
 // is each against the geometry, from the same run.
+#include "base/clock.h"
+#include "base/sorted.h"
 #include "contact/pin_hole.h"
 #include "ode/engine.h"
 #include "ode/hole_geom.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
 
 enum { QUERIES = 1000000, REPETITIONS = 9, POSES = 1024, ROWS = 3 };
 
 static const double CLEARANCE = 14.5e-6;
-
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 typedef struct Scene {
     Vec2 poses[POSES];
@@ -37,35 +23,35 @@ typedef struct Scene {
 
 static double time_geometry(const Scene *scene, double *sum)
 {
-    const double start = now_s();
+    const double start = clock_now_s();
     for (int i = 0; i < QUERIES; i++) {
         const Vec2 still = {0.0, 0.0};
         *sum += pin_hole_pose(still, scene->poses[i % POSES], still, CLEARANCE).gap;
     }
-    return now_s() - start;
+    return clock_now_s() - start;
 }
 
 static double time_collider(const Scene *scene, double *sum)
 {
     dContactGeom contact;
-    const double start = now_s();
+    const double start = clock_now_s();
     for (int i = 0; i < QUERIES; i++) {
         *sum += hole_geom_collide(scene->hole, scene->pin, 1, &contact, sizeof contact);
     }
-    return now_s() - start;
+    return clock_now_s() - start;
 }
 
 // With the body moved before each query, so that ODE recomputes the geom's pose.
 static double time_engine(const Scene *scene, double *sum)
 {
     dContactGeom contact;
-    const double start = now_s();
+    const double start = clock_now_s();
     for (int i = 0; i < QUERIES; i++) {
         const Vec2 pose = scene->poses[i % POSES];
         dBodySetPosition(scene->body, pose.x, pose.y, 0.0);
         *sum += dCollide(scene->hole, scene->pin, 1, &contact, sizeof contact);
     }
-    return now_s() - start;
+    return clock_now_s() - start;
 }
 
 static Scene make_scene(dWorldID world)
@@ -103,8 +89,8 @@ int main(void)
     printf("%-24s %12s %10s\n", "", "ns a query", "ratio");
     double first = 0.0;
     for (int row = 0; row < ROWS; row++) {
-        qsort(times[row], REPETITIONS, sizeof *times[row], ascending);
-        const double median = times[row][REPETITIONS / 2];
+        sorted_make(times[row], REPETITIONS);
+        const double median = sorted_median(times[row], REPETITIONS);
         first = row == 0 ? median : first;
         printf("%-24s %12.1f %10.1f\n", names[row], 1e9 * median / QUERIES, median / first);
     }

@@ -4,12 +4,12 @@
 // |omega|. Times are medians over repetitions that go up and down the ladder in turn.
 #include "mechanism.h"
 
+#include "base/sorted.h"
 #include "compare/error.h"
 #include "run/registry.h"
 #include "run/run.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { RUNGS = 5, REPETITIONS = 7 };
 
@@ -20,13 +20,6 @@ typedef struct Rung {
     size_t steps;
     double wall_s[REPETITIONS];
 } Rung;
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 static void climb(Scenario *scenario, const Trajectory *truth, int repetition, Rung rungs[RUNGS])
 {
@@ -55,8 +48,8 @@ int main(void)
            "alpha error", "wall, ms", "us a step");
     for (int i = 0; i < RUNGS; i++) {
         Rung *rung = &rungs[i];
-        qsort(rung->wall_s, REPETITIONS, sizeof *rung->wall_s, ascending);
-        const double wall = rung->wall_s[REPETITIONS / 2];
+        sorted_make(rung->wall_s, REPETITIONS);
+        const double wall = sorted_median(rung->wall_s, REPETITIONS);
         printf("%10.4g %8zu %12.3e ", 1e6 * STEPS_S[i], rung->steps, rung->error.omega_max);
         if (i == 0) {
             printf("%8s", "-");

@@ -5,25 +5,18 @@
 // evaluations for each impact must not depend on how many there are.
 #include "mechanism.h"
 
+#include "base/sorted.h"
 #include "compare/error.h"
 #include "run/registry.h"
 #include "run/run.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { REPETITIONS = 9, TOLERANCES = 4, PROBLEMS = 4 };
 
 static const RunWatch NOBODY = {NULL, NULL};
 static const double TOLERANCE[TOLERANCES] = {1e-9, 1e-10, 2e-11, 3e-13};
 static const char *const NAMES[PROBLEMS] = {"one joint", "two joints", "three joints", "0.5 mm"};
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 static Trajectory *run_reference(const Scenario *scenario)
 {
@@ -66,9 +59,10 @@ static void print_problem(int number)
         }
     }
     for (int i = 0; i < TOLERANCES; i++) {
-        qsort(wall_s[i], REPETITIONS, sizeof *wall_s[i], ascending);
+        sorted_make(wall_s[i], REPETITIONS);
         printf("%-14s %10.1e %12zu %10.1e %10.2f %10.2f\n", NAMES[number], TOLERANCE[i],
-               evaluations[i], error[i], 1e3 * wall_s[i][REPETITIONS / 2], 1e3 * wall_s[i][0]);
+               evaluations[i], error[i], 1e3 * sorted_median(wall_s[i], REPETITIONS),
+               1e3 * wall_s[i][0]);
     }
     trajectory_destroy(truth);
 }

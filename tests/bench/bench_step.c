@@ -4,6 +4,8 @@
 // median over interleaved repetitions, and its ratio to the bare engine on the ideal mechanism.
 #include "mechanism.h"
 
+#include "base/clock.h"
+#include "base/sorted.h"
 #include "ode/engine.h"
 #include "ode/world.h"
 #include "run/registry.h"
@@ -11,23 +13,8 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { REPETITIONS = 9, BARE_STEPS = 60000 };
-
-static double now_s(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 // The engine alone: the crank placed, the world stepped, nothing read.
 static double bare_us(const Scenario *scenario)
@@ -42,7 +29,7 @@ static double bare_us(const Scenario *scenario)
         fprintf(stderr, "%s\n", err.text);
         exit(1);
     }
-    const double start = now_s();
+    const double start = clock_now_s();
     for (int i = 0; i < BARE_STEPS; i++) {
         Motion crank = motions[0];
         crank.angle = linkage_crank_angle(&scenario->linkage, 1e-6 * i);
@@ -51,7 +38,7 @@ static double bare_us(const Scenario *scenario)
         world_place(&world, 0, &crank);
         engine_step(world.id, 1e-6, false, &err);
     }
-    const double us = 1e6 * (now_s() - start) / BARE_STEPS;
+    const double us = 1e6 * (clock_now_s() - start) / BARE_STEPS;
     world_finish(&world);
     return us;
 }
@@ -84,8 +71,8 @@ int main(void)
     printf("%-26s %12s %12s %10s\n", "", "us a step", "smallest", "ratio");
     double first = 0.0;
     for (int row = 0; row < 4; row++) {
-        qsort(times[row], REPETITIONS, sizeof *times[row], ascending);
-        const double median = times[row][REPETITIONS / 2];
+        sorted_make(times[row], REPETITIONS);
+        const double median = sorted_median(times[row], REPETITIONS);
         first = row == 0 ? median : first;
         printf("%-26s %12.3f %12.3f %10.2f\n", names[row], median, times[row][0], median / first);
     }
