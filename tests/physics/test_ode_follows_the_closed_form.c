@@ -1,30 +1,17 @@
 // With ideal joints, is ODE's motion the closed form's, and does its error go with the step?
-#include "close.h"
+#include "complete_run.h"
 
 #include "mechanism.h"
 
 #include "compare/error.h"
-#include "run/registry.h"
-#include "run/run.h"
-
-static const RunWatch NOBODY = {NULL, NULL};
-
-static Trajectory *run(const Scenario *scenario, BackendKind backend)
-{
-    Trajectory *trajectory = run_scenario(scenario, registry_solver(backend), NOBODY);
-    if (!trajectory->is_complete) {
-        fail_msg("%s", trajectory->message);
-    }
-    return trajectory;
-}
 
 static void extremes_at_ten_microseconds_are_the_closed_forms(void **state)
 {
     (void)state;
     Scenario scenario = mechanism_paper();
     scenario.run.step = 1e-5;
-    Trajectory *ode = run(&scenario, BACKEND_ODE);
-    Trajectory *analytic = run(&scenario, BACKEND_ANALYTIC);
+    Trajectory *ode = complete_run(&scenario, BACKEND_ODE);
+    Trajectory *analytic = complete_run(&scenario, BACKEND_ANALYTIC);
     for (size_t i = 1; i < 3; i++) {
         const BodyExtremes *now = &ode->bodies[i];
         const BodyExtremes *truth = &analytic->bodies[i];
@@ -42,8 +29,8 @@ static void extremes_at_ten_microseconds_are_the_closed_forms(void **state)
 static TrajectoryError error_at(Scenario *scenario, double step_s)
 {
     scenario->run.step = step_s;
-    Trajectory *ode = run(scenario, BACKEND_ODE);
-    Trajectory *analytic = run(scenario, BACKEND_ANALYTIC);
+    Trajectory *ode = complete_run(scenario, BACKEND_ODE);
+    Trajectory *analytic = complete_run(scenario, BACKEND_ANALYTIC);
     const TrajectoryError error = error_against(ode, analytic, INFINITY);
     assert_true(error.is_known);
     trajectory_destroy(ode);
@@ -91,8 +78,8 @@ static void joint_forces_are_those_of_inverse_dynamics(void **state)
     (void)state;
     Scenario scenario = mechanism_paper();
     scenario.run.step = 1e-6;
-    Trajectory *ode = run(&scenario, BACKEND_ODE);
-    Trajectory *analytic = run(&scenario, BACKEND_ANALYTIC);
+    Trajectory *ode = complete_run(&scenario, BACKEND_ODE);
+    Trajectory *analytic = complete_run(&scenario, BACKEND_ANALYTIC);
     for (size_t joint = 1; joint < 4; joint++) {
         const double scale = analytic->joints[joint].force_max.value;
         assert_close(ode->joints[joint].force_max.value, scale, 1e-4);
@@ -111,7 +98,7 @@ static void a_fourbar_takes_nine_rows_and_never_leaves_the_plane(void **state)
     (void)state;
     Scenario scenario = mechanism_paper();
     scenario.run.step = 1e-4;
-    Trajectory *ode = run(&scenario, BACKEND_ODE);
+    Trajectory *ode = complete_run(&scenario, BACKEND_ODE);
     assert_int_equal(ode->constraint_rows, 9);
     assert_int_equal(ode->contact_rows, 0);
     trajectory_destroy(ode);
@@ -129,7 +116,7 @@ static void the_other_direction_mirrors_the_speeds(void **state)
             vec2_scale(-1.0, scenario.linkage.bodies[i].start.velocity);
     }
     scenario.run.step = 1e-5;
-    Trajectory *ode = run(&scenario, BACKEND_ODE);
+    Trajectory *ode = complete_run(&scenario, BACKEND_ODE);
     assert_close(ode->bodies[1].omega_max.value, 78.6973, 1e-4);
     assert_close(ode->bodies[2].alpha_max.value, 12485.5, 1e-3);
     trajectory_destroy(ode);

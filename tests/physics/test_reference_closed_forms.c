@@ -1,5 +1,5 @@
 // Does the reference give what can be known of one impact without any integrator?
-#include "close.h"
+#include "complete_run.h"
 
 #include "mechanism.h"
 
@@ -10,15 +10,6 @@
 #include <stdio.h>
 
 static const RunWatch NOBODY = {NULL, NULL};
-
-static Trajectory *run_reference(const Scenario *scenario)
-{
-    Trajectory *trajectory = run_scenario(scenario, registry_solver(BACKEND_REFERENCE), NOBODY);
-    if (!trajectory->is_complete) {
-        fail_msg("%s", trajectory->message);
-    }
-    return trajectory;
-}
 
 // A pin that flies across its hole at a speed and hits the wall once.
 static Scenario flight(double mass, double speed, double stiffness)
@@ -45,7 +36,7 @@ static void an_undamped_hertz_impact_is_that_of_the_closed_form(void **state)
     Scenario scenario = flight(mass, 1.0, stiffness);
     scenario.run.duration = 1.2e-3;
     scenario.reference.tolerance = 1e-13;
-    Trajectory *trajectory = run_reference(&scenario);
+    Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
     const Spike *spike = &trajectory->joints[0].spikes[0];
     const double depth = pow(5.0 * mass / (4.0 * stiffness), 0.4);
     // 2.943275...: twice the integral of 1 / sqrt(1 - x^2.5) from 0 to 1, by its gamma functions
@@ -78,7 +69,7 @@ static void every_damping_law_delivers_its_exact_restitution(void **state)
             scenario.contact.damping = kinds[i];
             scenario.contact.restitution = asked[k];
             scenario.run.duration = 2.4e-3;
-            Trajectory *trajectory = run_reference(&scenario);
+            Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
             const double expected = damping_delivered(damping_factor(kinds[i], asked[k]));
             const double delivered = -trajectory_motion(trajectory, 2, 0)->velocity.x / 0.5;
             assert_near(delivered, expected, 1e-6);
@@ -99,7 +90,7 @@ static void a_linear_damper_delivers_its_closed_form(void **state)
         scenario.contact.viscous_coefficient =
             2.0 * damping_linear_ratio(asked[k]) * sqrt(1e7 * 0.1);
         scenario.run.duration = 3.5e-3;
-        Trajectory *trajectory = run_reference(&scenario);
+        Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
         const double delivered = -trajectory_motion(trajectory, 2, 0)->velocity.x / 0.5;
         assert_near(delivered, asked[k], 1e-9);
         trajectory_destroy(trajectory);
@@ -117,7 +108,7 @@ static void energy_is_accounted_for_to_a_share_of_1e_10(void **state)
         mechanism_loosen(&scenario, joints[i]);
         for (int k = 0; k < 2; k++) {
             scenario.contact.friction = 0.1 * k;
-            Trajectory *trajectory = run_reference(&scenario);
+            Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
             const Energy *energy = &trajectory->energy;
             assert_true(energy->dissipated > 0.0);
             assert_true(k == 0 || energy->friction > 1.0);
@@ -136,7 +127,7 @@ static void ideal_loops_stay_closed_and_follow_the_closed_form(void **state)
     (void)state;
     Scenario scenario = mechanism_paper();
     scenario.run.revolutions = 3.0;
-    Trajectory *trajectory = run_reference(&scenario);
+    Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
     Trajectory *truth = run_scenario(&scenario, registry_solver(BACKEND_ANALYTIC), NOBODY);
     for (size_t k = 0; k < trajectory->sample_count; k++) {
         for (size_t joint = 1; joint < 4; joint++) {
@@ -167,7 +158,7 @@ static void with_play_going_to_zero_the_motion_becomes_the_ideal_one(void **stat
     for (int decade = 4; decade <= 7; decade++) {
         Clearance *clearance = &scenario.linkage.joints[1].clearance;
         clearance->hole_radius = clearance->pin_radius + pow(10.0, -decade);
-        Trajectory *trajectory = run_reference(&scenario);
+        Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
         double largest = 0.0;
         for (size_t k = 0; k < trajectory->sample_count; k++) {
             largest = fmax(largest, fabs(trajectory_motion(trajectory, k, 1)->omega -

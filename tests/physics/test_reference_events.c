@@ -1,26 +1,16 @@
 // Does the reference see every contact begin and end, however it comes about, and certify no more
 // than it knows?
-#include "close.h"
+#include "complete_run.h"
 
 #include "mechanism.h"
 
 #include "compare/error.h"
 #include "compare/truth.h"
-#include "run/registry.h"
 
 #include <stdio.h>
 #include <string.h>
 
 static const RunWatch NOBODY = {NULL, NULL};
-
-static Trajectory *run_reference(const Scenario *scenario)
-{
-    Trajectory *trajectory = run_scenario(scenario, registry_solver(BACKEND_REFERENCE), NOBODY);
-    if (!trajectory->is_complete) {
-        fail_msg("%s", trajectory->message);
-    }
-    return trajectory;
-}
 
 // A rod let go level about its end: from rest the scale of its speeds must come from gravity.
 static void a_pendulum_let_go_at_rest_keeps_its_energy(void **state)
@@ -35,7 +25,7 @@ static void a_pendulum_let_go_at_rest_keeps_its_energy(void **state)
     scenario.gravity = 9.80665;
     scenario.run.duration = 2.0;
     scenario.run.samples = 1000;
-    Trajectory *trajectory = run_reference(&scenario);
+    Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
     // at the lowest point: I w^2 / 2 = m g l, I about the pivot
     const double fastest = sqrt(2.0 * 0.1 * 9.80665 * 0.1 / (1e-4 + 0.1 * 0.1 * 0.1));
     double largest = 0.0;
@@ -66,7 +56,7 @@ static void a_grazing_touch_between_two_looks_is_seen(void **state)
         scenario.linkage.bodies[0].start.velocity.y = speeds[i];
         scenario.run.duration = 0.02;
         scenario.run.samples = 10;
-        Trajectory *trajectory = run_reference(&scenario);
+        Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
         const double arrival = sqrt(speeds[i] * speeds[i] - 2.0 * gravity * play);
         const JointExtremes *joint = &trajectory->joints[0];
         assert_true(joint->impacts > 0);
@@ -94,7 +84,7 @@ static void a_pin_too_slow_for_the_wall_does_not_touch_it(void **state)
     scenario.linkage.bodies[0].start.velocity.y = 0.0442;
     scenario.run.duration = 8e-3;
     scenario.run.samples = 10;
-    Trajectory *trajectory = run_reference(&scenario);
+    Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
     assert_int_equal(trajectory->joints[0].impacts, 0);
     trajectory_destroy(trajectory);
 }
@@ -111,7 +101,7 @@ static void a_pin_that_starts_at_the_wall_stays_in_its_hole(void **state)
         scenario.linkage.bodies[0].start.position = places[i];
         scenario.run.duration = 0.05;
         scenario.run.samples = 100;
-        Trajectory *trajectory = run_reference(&scenario);
+        Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
         assert_true(trajectory->joints[0].penetration_max.value < 1e-6);
         assert_true(fabs(trajectory->energy.residual) < 1e-12);
         trajectory_destroy(trajectory);
@@ -129,7 +119,7 @@ static void the_jump_of_a_viscous_damper_is_the_peak(void **state)
     scenario.linkage.bodies[0].start.velocity.x = 0.05;
     scenario.run.duration = 0.03;
     scenario.run.samples = 10;
-    Trajectory *trajectory = run_reference(&scenario);
+    Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
     assert_close(trajectory->joints[0].force_max.value, 2e5 * 0.05, 1e-9);
     trajectory_destroy(trajectory);
 }
@@ -153,7 +143,7 @@ static void many_contacts_may_begin_at_once(void **state)
     scenario.contact.stiffness = 6.6e10;
     scenario.run.duration = 0.02;
     scenario.run.samples = 10;
-    Trajectory *trajectory = run_reference(&scenario);
+    Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
     for (int i = 0; i < LINKAGE_BODY_MAX; i++) {
         assert_int_equal(trajectory->joints[i].impacts, trajectory->joints[0].impacts);
         assert_near(trajectory_motion(trajectory, 10, (size_t)i)->position.y,
@@ -231,10 +221,10 @@ static void the_error_goes_with_the_tolerance_without_outliers(void **state)
     mechanism_loosen(&scenario, "coupler-follower");
     scenario.contact.stiffness = 6.6e10;
     scenario.reference.tolerance = 1e-13;
-    Trajectory *truth = run_reference(&scenario);
+    Trajectory *truth = complete_run(&scenario, BACKEND_REFERENCE);
     for (double tolerance = 2e-9; tolerance > 1e-11; tolerance /= 1.5) {
         scenario.reference.tolerance = tolerance;
-        Trajectory *trajectory = run_reference(&scenario);
+        Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
         const double error = error_against(trajectory, truth, INFINITY).omega_max;
         // some 40 times the tolerance, by the growth that the impacts bring
         if (!(error <= 100.0 * tolerance)) {

@@ -2,32 +2,19 @@
 //
 // A pin flies across its hole and hits the wall once. Outside truths: the one-freedom model of
 // ODE's contact row, published delivered restitutions, the closed form of a linear damper.
-#include "close.h"
+#include "complete_run.h"
 
 #include "mechanism.h"
 
 #include "contact/damping.h"
 #include "contact/force_law.h"
 #include "contact/law.h"
-#include "run/registry.h"
-#include "run/run.h"
 
 static const double MASS = 0.1;       // kg
 static const double STIFFNESS = 1e7;  // N/m
 static const double SPEED = 0.5;      // m/s
 static const double CLEARANCE = 1e-3; // m
 enum { PHASES = 16 };
-
-static const RunWatch NOBODY = {NULL, NULL};
-
-static Trajectory *run_ode(const Scenario *scenario)
-{
-    Trajectory *trajectory = run_scenario(scenario, registry_solver(BACKEND_ODE), NOBODY);
-    if (!trajectory->is_complete) {
-        fail_msg("%s", trajectory->message);
-    }
-    return trajectory;
-}
 
 // Speed after one impact over the speed before, the mean over where the steps fall.
 static double delivered(Scenario scenario, double step_s, double contact_s)
@@ -41,7 +28,7 @@ static double delivered(Scenario scenario, double step_s, double contact_s)
         scenario.linkage.bodies[0].start.position.x = CLEARANCE - SPEED * flight;
         scenario.linkage.bodies[0].start.velocity.x = SPEED;
         scenario.run.duration = flight + 3.0 * contact_s + 3.0 * step_s;
-        Trajectory *trajectory = run_ode(&scenario);
+        Trajectory *trajectory = complete_run(&scenario, BACKEND_ODE);
         assert_int_equal(trajectory->joints[0].impacts, 1);
         sum -= trajectory_motion(trajectory, trajectory->sample_count - 1, 0)->velocity.x;
         trajectory_destroy(trajectory);
@@ -124,7 +111,7 @@ static double static_depth(Scenario scenario, double weight_n, double guess_m)
     scenario.run.step = 1e-6;
     scenario.run.samples = 1;
     scenario.run.duration = 0.02;
-    Trajectory *trajectory = run_ode(&scenario);
+    Trajectory *trajectory = complete_run(&scenario, BACKEND_ODE);
     const double depth = -trajectory_state(trajectory, trajectory->sample_count - 1, 0)->gap;
     trajectory_destroy(trajectory);
     return depth;
