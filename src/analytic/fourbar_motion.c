@@ -77,9 +77,6 @@ void fourbar_motion_grid(const FourBarLengths *lengths, double speed, size_t cou
 {
     for (size_t i = 0; i < count; i++) {
         const Loop loop = close_loop(lengths, speed, crank_angles[i]);
-        if (grid->coupler_angle != NULL) {
-            grid->coupler_angle[i] = atan2(loop.r3.y, loop.r3.x);
-        }
         if (grid->follower_angle != NULL) {
             grid->follower_angle[i] = atan2(loop.r4.y, loop.r4.x);
         }
@@ -127,29 +124,42 @@ bool fourbar_motion_bodies(const FourBarLengths *lengths, double speed, double c
     return true;
 }
 
+static double loop_quantity(const Loop *loop, FourBarQuantity quantity)
+{
+    switch (quantity) {
+    case FOURBAR_COUPLER_OMEGA:
+        return loop->omega3;
+    case FOURBAR_FOLLOWER_OMEGA:
+        return loop->omega4;
+    case FOURBAR_COUPLER_ALPHA:
+        return loop->alpha3;
+    case FOURBAR_FOLLOWER_ALPHA:
+        return loop->alpha4;
+    case FOURBAR_FOLLOWER_ANGLE:
+        return atan2(-loop->r4.y, -loop->r4.x) + M_PI;
+    default:
+        return atan2(fabs(vec2_cross(loop->r3, loop->r4)), fabs(vec2_dot(loop->r3, loop->r4)));
+    }
+}
+
 double fourbar_motion_transmission(const FourBarLengths *lengths, double crank_angle)
 {
-    const Loop loop = close_loop(lengths, 1.0, crank_angle);
-    return atan2(fabs(vec2_cross(loop.r3, loop.r4)), fabs(vec2_dot(loop.r3, loop.r4)));
+    return fourbar_motion_quantity(lengths, 1.0, FOURBAR_TRANSMISSION, crank_angle);
 }
 
 double fourbar_motion_quantity(const FourBarLengths *lengths, double speed,
                                FourBarQuantity quantity, double crank_angle)
 {
     const Loop loop = close_loop(lengths, speed, crank_angle);
-    switch (quantity) {
-    case FOURBAR_COUPLER_OMEGA:
-        return loop.omega3;
-    case FOURBAR_FOLLOWER_OMEGA:
-        return loop.omega4;
-    case FOURBAR_COUPLER_ALPHA:
-        return loop.alpha3;
-    case FOURBAR_FOLLOWER_ALPHA:
-        return loop.alpha4;
-    case FOURBAR_FOLLOWER_ANGLE:
-        return atan2(-loop.r4.y, -loop.r4.x) + M_PI;
-    default:
-        return fourbar_motion_transmission(lengths, crank_angle);
+    return loop_quantity(&loop, quantity);
+}
+
+void fourbar_motion_quantities(const FourBarLengths *lengths, double speed, double crank_angle,
+                               double values[FOURBAR_QUANTITY_COUNT])
+{
+    const Loop loop = close_loop(lengths, speed, crank_angle);
+    for (int quantity = 0; quantity < FOURBAR_QUANTITY_COUNT; quantity++) {
+        values[quantity] = loop_quantity(&loop, quantity);
     }
 }
 

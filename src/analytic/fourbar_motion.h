@@ -19,7 +19,6 @@ FourBarLengths fourbar_motion_nominal(const FourBar *fourbar);
 
 // Results over a grid of crank angles, each array of the grid's length or NULL where not wanted.
 typedef struct FourBarGrid {
-    double *coupler_angle;  // rad, in (-pi, pi]
     double *follower_angle; // rad, in (-pi, pi], of the line from follower pivot to coupler pin
     double *coupler_omega;  // rad/s
     double *follower_omega; // rad/s
@@ -60,6 +59,10 @@ typedef struct FourBarExtreme {
 
 double fourbar_motion_quantity(const FourBarLengths *lengths, double speed,
                                FourBarQuantity quantity, double crank_angle);
+
+// All of them at one crank angle, with the loop closed once.
+void fourbar_motion_quantities(const FourBarLengths *lengths, double speed, double crank_angle,
+                               double values[FOURBAR_QUANTITY_COUNT]);
 
 // The extremes of one quantity for crank angles from first to last: a grid of half a degree, then
 // Brent's method between its neighbours, so the values are right to rounding for any curve with

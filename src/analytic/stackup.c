@@ -9,6 +9,8 @@
 #include <math.h>
 #include <string.h>
 
+const char *const STACKUP_LENGTH_NAMES[STACKUP_LENGTHS] = {"ground", "crank", "coupler",
+                                                           "follower"};
 const char *const STACKUP_SOURCE_NAMES[STACKUP_SOURCES] = {
     "ground length",      "crank length",          "coupler length",       "follower length",
     "play crank-coupler", "play coupler-follower", "play follower-ground",
@@ -40,6 +42,11 @@ static const ToleratedLength *length_of(const FourBar *fourbar, int number)
     const ToleratedLength *lengths[STACKUP_LENGTHS] = {&fourbar->ground, &fourbar->crank,
                                                        &fourbar->coupler, &fourbar->follower};
     return lengths[number];
+}
+
+static bool has_tolerance(const ToleratedLength *length)
+{
+    return length->lower < 0.0 || length->upper > 0.0;
 }
 
 FourBarLengths stackup_lengths(const FourBar *fourbar, const double play[STACKUP_PLAYS],
@@ -78,17 +85,17 @@ static void try_combination(Search *search, const StackupCombination *combinatio
 {
     const FourBarLengths lengths = stackup_lengths(search->fourbar, search->play, combination);
     search->is_turning = search->is_turning && is_alike(search, &lengths);
-    for (int quantity = 0; quantity < FOURBAR_QUANTITY_COUNT; quantity++) {
-        for (int i = 0; i < GRID; i++) {
-            const double value =
-                fourbar_motion_quantity(&lengths, search->speed, quantity, 2.0 * M_PI * i / GRID);
+    for (int i = 0; i < GRID; i++) {
+        double values[FOURBAR_QUANTITY_COUNT];
+        fourbar_motion_quantities(&lengths, search->speed, 2.0 * M_PI * i / GRID, values);
+        for (int quantity = 0; quantity < FOURBAR_QUANTITY_COUNT; quantity++) {
             double *best = search->best[quantity];
-            if (value < best[0]) {
-                best[0] = value;
+            if (values[quantity] < best[0]) {
+                best[0] = values[quantity];
                 search->worst[quantity][0] = *combination;
             }
-            if (value > best[1]) {
-                best[1] = value;
+            if (values[quantity] > best[1]) {
+                best[1] = values[quantity];
                 search->worst[quantity][1] = *combination;
             }
         }
@@ -122,7 +129,7 @@ static void try_lengths(Search *search, StackupCombination *combination, int num
         return;
     }
     const ToleratedLength *length = length_of(search->fourbar, number);
-    const bool is_tolerated = length->lower < 0.0 || length->upper > 0.0;
+    const bool is_tolerated = has_tolerance(length);
     for (int side = 0; side < (is_tolerated ? SIDES : 1); side++) {
         combination->length_side[number] = is_tolerated ? 2 * side - 1 : 0;
         try_lengths(search, combination, number + 1);
@@ -162,7 +169,7 @@ static void find_sources(const Scenario *scenario, Stackup *stackup)
 {
     for (int i = 0; i < STACKUP_LENGTHS; i++) {
         const ToleratedLength *length = length_of(&scenario->fourbar, i);
-        stackup->is_source[i] = length->lower < 0.0 || length->upper > 0.0;
+        stackup->is_source[i] = has_tolerance(length);
     }
     for (int i = 0; i < STACKUP_PLAYS; i++) {
         const int joint = linkage_find_joint(&scenario->linkage, PLAY_JOINTS[i]);
@@ -202,7 +209,6 @@ bool stackup_compute(const Scenario *scenario, Stackup *stackup, Err *err)
     const StackupCombination nominal = {.play_link = {-1, -1, -1}};
     for (int quantity = 0; quantity < FOURBAR_QUANTITY_COUNT; quantity++) {
         StackupRow *row = &made.rows[quantity];
-        row->quantity = quantity;
         row->nominal_low = extreme_of(&search, &nominal, quantity, false);
         row->nominal_high = extreme_of(&search, &nominal, quantity, true);
         row->low = refine(&search, quantity, false, row->nominal_low);

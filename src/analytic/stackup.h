@@ -29,7 +29,6 @@ typedef struct StackupBound {
 } StackupBound;
 
 typedef struct StackupRow {
-    FourBarQuantity quantity;
     double nominal_low; // of the ideal mechanism over a turn
     double nominal_high;
     StackupBound low;  // the smallest the low can become
@@ -43,6 +42,7 @@ typedef struct Stackup {
     StackupRow rows[FOURBAR_QUANTITY_COUNT];
 } Stackup;
 
+extern const char *const STACKUP_LENGTH_NAMES[STACKUP_LENGTHS];
 extern const char *const STACKUP_SOURCE_NAMES[STACKUP_SOURCES];
 extern const char *const STACKUP_QUANTITY_NAMES[FOURBAR_QUANTITY_COUNT];
 

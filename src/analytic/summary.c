@@ -135,7 +135,6 @@ bool summary_compute(const Scenario *scenario, AnalyticSummary *summary, Err *er
     }
     AnalyticSummary made = {
         .grashof = fourbar_grashof(&scenario->fourbar),
-        .crank_turns = true,
     };
     const FourBarLengths lengths = fourbar_motion_nominal(&scenario->fourbar);
     const double speed = scenario->linkage.driver.speed;

@@ -5,7 +5,6 @@
 
 typedef struct AnalyticSummary {
     GrashofClass grashof;
-    bool crank_turns;
     double transmission_low;  // rad, smallest acute angle between coupler and follower
     double transmission_high; // rad
     double transmission_low_crank;

@@ -57,7 +57,6 @@ json_t *analytic_json_forces(const RunReport *report)
 // One end of a quantity: nominal, worst case, the corner it stands in, each source alone.
 static json_t *bound_object(const Stackup *stackup, const StackupBound *bound, double nominal)
 {
-    static const char *const LENGTHS[STACKUP_LENGTHS] = {"ground", "crank", "coupler", "follower"};
     json_t *object = json_object();
     json_value_set(object, "nominal", nominal);
     json_value_set(object, "worst", bound->value);
@@ -78,10 +77,10 @@ static json_t *bound_object(const Stackup *stackup, const StackupBound *bound, d
         }
         const int link = bound->combination.play_link[i - STACKUP_LENGTHS];
         const int sign = bound->combination.play_sign[i - STACKUP_LENGTHS];
-        json_object_set_new(
-            corner, STACKUP_SOURCE_NAMES[i],
-            link < 0 ? json_string("none")
-                     : json_sprintf("%s %s", sign > 0 ? "stretches" : "shortens", LENGTHS[link]));
+        json_object_set_new(corner, STACKUP_SOURCE_NAMES[i],
+                            link < 0 ? json_string("none")
+                                     : json_sprintf("%s %s", sign > 0 ? "stretches" : "shortens",
+                                                    STACKUP_LENGTH_NAMES[link]));
     }
     json_object_set_new(object, "corner", corner);
     json_object_set_new(object, "alone", alone);

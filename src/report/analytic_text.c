@@ -7,9 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-// how a stack-up's four lengths are called in a combination
-static const char *const LENGTH_NAMES[STACKUP_LENGTHS] = {"ground", "crank", "coupler", "follower"};
-
 void analytic_text_kinematics(const RunReport *report, const Style *style, Text *text)
 {
     const AnalyticSummary *summary = report->summary;
@@ -101,7 +98,8 @@ static void describe_combination(const Stackup *stackup, const StackupCombinatio
     for (int i = 0; i < STACKUP_LENGTHS && used < size; i++) {
         if (stackup->is_source[i] && combination->length_side[i] != 0) {
             used += (size_t)snprintf(words + used, size - used, "%s%s %s", used > 0 ? ", " : "",
-                                     LENGTH_NAMES[i], combination->length_side[i] > 0 ? "+" : "-");
+                                     STACKUP_LENGTH_NAMES[i],
+                                     combination->length_side[i] > 0 ? "+" : "-");
         }
     }
     for (int i = 0; i < STACKUP_PLAYS && used < size; i++) {
@@ -109,7 +107,7 @@ static void describe_combination(const Stackup *stackup, const StackupCombinatio
             used += (size_t)snprintf(words + used, size - used, "%s%s %s %s", used > 0 ? ", " : "",
                                      STACKUP_SOURCE_NAMES[STACKUP_LENGTHS + i],
                                      combination->play_sign[i] > 0 ? "stretches" : "shortens",
-                                     LENGTH_NAMES[combination->play_link[i]]);
+                                     STACKUP_LENGTH_NAMES[combination->play_link[i]]);
         }
     }
 }

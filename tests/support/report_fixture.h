@@ -104,7 +104,6 @@ static inline void make_summary(Fixture *fixture)
 {
     fixture->summary = (AnalyticSummary){
         .grashof = GRASHOF_CRANK_ROCKER,
-        .crank_turns = true,
         .transmission_low = 30.74 / UNITS_DEG,
         .transmission_high = 82.32 / UNITS_DEG,
         .follower_low = 84.83 / UNITS_DEG,
