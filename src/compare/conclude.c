@@ -11,9 +11,6 @@
 
 const double LADDER_TARGETS[LADDER_TARGET_COUNT] = {1e-2, 1e-3, 1e-4, 1e-5};
 
-// an error is a number of its own only where the truth's uncertainty does not show in its first
-// digit
-static const double CLEAR_OF_TRUTH = 10.0;
 // speeds that are off by as much as their own size follow nothing
 static const double UNSTABLE = 1.0;
 
@@ -79,7 +76,7 @@ static void judge(const Ladder *ladder, LadderPoint *point)
         point->error = error_of(ladder, point);
     }
     point->is_limited_by_truth =
-        !point->is_failed && point->error < CLEAR_OF_TRUTH * ladder->truth.uncertainty;
+        !point->is_failed && point->error < ERROR_CLEAR_OF_TRUTH * ladder->truth.uncertainty;
 }
 
 static void time_point(const Ladder *ladder, LadderPoint *point)
@@ -111,8 +108,8 @@ static void fit_orders(Ladder *ladder)
                 errors[count++] = ladder->points[i].error;
             }
         }
-        ladder->orders[scheme] =
-            order_fit(count, ladder->steps, errors, CLEAR_OF_TRUTH * ladder->truth.uncertainty);
+        ladder->orders[scheme] = order_fit(count, ladder->steps, errors,
+                                           ERROR_CLEAR_OF_TRUTH * ladder->truth.uncertainty);
     }
 }
 

@@ -6,10 +6,6 @@
 
 #include <string.h>
 
-const char *const ENSEMBLE_METRIC_NAMES[ENSEMBLE_METRIC_COUNT] = {
-    "force max", "impulse", "impacts", "penetration max", "contact share",
-};
-
 // what an engine's own error amounts to within the first impacts
 const double ENSEMBLE_PERTURBATION = 1e-3;
 

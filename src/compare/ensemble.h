@@ -17,8 +17,6 @@ typedef enum EnsembleMetric {
     ENSEMBLE_METRIC_COUNT,
 } EnsembleMetric;
 
-extern const char *const ENSEMBLE_METRIC_NAMES[ENSEMBLE_METRIC_COUNT];
-
 typedef struct Distribution {
     double low;    // smallest of the members
     double median; //

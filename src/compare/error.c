@@ -51,13 +51,12 @@ static Scales body_scales(const Trajectory *reference, size_t body)
     return scales;
 }
 
-static Scales smallest_scales(const Trajectory *reference)
+static Scales smallest_scales(const Scales *scales, size_t body_count)
 {
     Scales largest = {0.0, 0.0};
-    for (size_t i = 0; i < reference->body_count; i++) {
-        const Scales scales = body_scales(reference, i);
-        largest.omega = fmax(largest.omega, scales.omega);
-        largest.alpha = fmax(largest.alpha, scales.alpha);
+    for (size_t i = 0; i < body_count; i++) {
+        largest.omega = fmax(largest.omega, scales[i].omega);
+        largest.alpha = fmax(largest.alpha, scales[i].alpha);
     }
     // where nothing turns at all, errors are absolute
     return (Scales){
@@ -76,9 +75,11 @@ static bool can_compare(const Trajectory *trajectory, const Trajectory *referenc
 // The scales of every body that is not driven; 0 for the driven one, which does not count.
 static void free_scales(const Trajectory *reference, Scales scales[LINKAGE_BODY_MAX])
 {
-    const Scales smallest = smallest_scales(reference);
     for (size_t i = 0; i < reference->body_count; i++) {
         scales[i] = body_scales(reference, i);
+    }
+    const Scales smallest = smallest_scales(scales, reference->body_count);
+    for (size_t i = 0; i < reference->body_count; i++) {
         scales[i].omega = fmax(scales[i].omega, smallest.omega);
         scales[i].alpha = fmax(scales[i].alpha, smallest.alpha);
         if ((int)i == reference->driven_body) {

@@ -6,6 +6,10 @@
 
 #include "model/trajectory.h"
 
+// An error below so many times the uncertainty of its truth, which then shows in its first digit,
+// is no number of its own.
+static const double ERROR_CLEAR_OF_TRUTH = 10.0;
+
 typedef struct TrajectoryError {
     bool is_known;       // false: there was no reference, or the two have no samples in common
     const char *against; // name of the reference's backend: lives as long as it

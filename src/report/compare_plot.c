@@ -26,16 +26,9 @@ enum { LEGEND_ROOMY = 12 }; // schemes up to which an entry has two lines
 
 static const PlotStyle FRONTIER = {"#f0c419", 9.0, 0.5, NULL};
 
-static const double CLEAR_OF_TRUTH = 10.0; // as where errors are judged
-
 static double at_x(const PlotPanel *panel, double time_s)
 {
-    return panel->left + panel->width * axis_share(&panel->x, time_s * UNITS_MS);
-}
-
-static double at_y(const PlotPanel *panel, double error)
-{
-    return panel->top + panel->height * (1.0 - axis_share(&panel->y, error));
+    return plot_x(panel, time_s * UNITS_MS);
 }
 
 static bool is_drawn(const LadderPoint *point)
@@ -143,7 +136,7 @@ static void draw_fine_grid(const PlotPanel *panel)
          power *= 10.0) {
         for (int i = 2; i < 10; i++) {
             if (i * power > panel->y.low && i * power < panel->y.high) {
-                text_append(panel->svg, "M%.1f %.1fh%.1f", panel->left, at_y(panel, i * power),
+                text_append(panel->svg, "M%.1f %.1fh%.1f", panel->left, plot_y(panel, i * power),
                             panel->width);
             }
         }
@@ -154,11 +147,11 @@ static void draw_fine_grid(const PlotPanel *panel)
 // Where an error is not a number of its own.
 static void draw_band(const PlotPanel *panel, const LadderTruth *truth)
 {
-    const double limit = CLEAR_OF_TRUTH * truth->uncertainty;
+    const double limit = ERROR_CLEAR_OF_TRUTH * truth->uncertainty;
     if (!(limit > panel->y.low)) {
         return;
     }
-    const double top = fmax(at_y(panel, limit), panel->top);
+    const double top = fmax(plot_y(panel, limit), panel->top);
     text_append(panel->svg,
                 "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#999\" "
                 "fill-opacity=\"0.18\"/>\n",
@@ -199,7 +192,7 @@ static void draw_frontier(const PlotPanel *panel, const LadderPoint *const *list
                 style.colour, style.width, style.opacity);
     for (size_t i = 0; i < count; i++) {
         const double x = at_x(panel, list[i]->wall_median_s);
-        const double y = at_y(panel, list[i]->error);
+        const double y = plot_y(panel, list[i]->error);
         text_append(panel->svg, i == 0 ? "M%.1f %.1f" : "H%.1fV%.1f", x, y);
     }
     text_append(panel->svg, count > 0 ? "H%.1f\"/>\n" : "\"/>\n", panel->left + panel->width);
@@ -212,7 +205,7 @@ static void label_frontier(const PlotPanel *panel, const LadderPoint *const *lis
     double last_y = -INFINITY;
     for (size_t i = 0; i < count; i++) {
         const double x = at_x(panel, list[i]->wall_median_s) - 9.0;
-        const double y = at_y(panel, list[i]->error) + 15.0;
+        const double y = plot_y(panel, list[i]->error) + 15.0;
         if (fabs(x - last_x) < 40.0 && fabs(y - last_y) < 14.0) {
             continue;
         }
@@ -240,7 +233,7 @@ static void draw_scheme(const PlotPanel *panel, const Ladder *ladder, size_t sch
     for (size_t i = 0; i < ladder->point_count; i++) {
         const LadderPoint *point = &ladder->points[i];
         if (point->scheme == scheme && is_drawn(point)) {
-            draw_dot(panel->svg, at_x(panel, point->wall_median_s), at_y(panel, point->error),
+            draw_dot(panel->svg, at_x(panel, point->wall_median_s), plot_y(panel, point->error),
                      point->is_on_frontier ? 5.2 : 3.8, &ladder->schemes[scheme]);
         }
     }
@@ -252,7 +245,7 @@ static void draw_other(const PlotPanel *panel, const Ladder *ladder, const Ladde
     const double x = at_x(panel, point->wall_median_s);
     const double edge = panel->top + panel->height;
     const bool is_below = point->error < panel->y.low;
-    const double y = is_below ? edge - 40.0 : at_y(panel, point->error);
+    const double y = is_below ? edge - 40.0 : plot_y(panel, point->error);
     text_append(panel->svg, "<path fill=\"#333\" d=\"M%.1f %.1fl6 6l-6 6l-6 -6z\"/>\n", x, y - 6.0);
     if (is_below) {
         text_append(panel->svg,

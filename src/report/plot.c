@@ -75,12 +75,12 @@ void plot_sample(Text *svg, double x, double y, PlotStyle style)
     text_append(svg, "/>\n");
 }
 
-static double pixel_x(const PlotPanel *panel, double x)
+double plot_x(const PlotPanel *panel, double x)
 {
     return panel->left + panel->width * axis_share(&panel->x, x);
 }
 
-static double pixel_y(const PlotPanel *panel, double y)
+double plot_y(const PlotPanel *panel, double y)
 {
     return panel->top + panel->height * (1.0 - axis_share(&panel->y, y));
 }
@@ -105,7 +105,7 @@ static void draw_x_axis(const PlotPanel *panel)
     const size_t count = axis_ticks(&panel->x, ticks);
     const double bottom = panel->top + panel->height;
     for (size_t i = 0; i < count; i++) {
-        const double x = pixel_x(panel, ticks[i]);
+        const double x = plot_x(panel, ticks[i]);
         text_append(svg, "<path class=\"%s\" d=\"M%.1f %.1fV%.1f\"/>",
                     ticks[i] == 0.0 && panel->x.low < 0.0 ? "zero" : "grid", x, panel->top, bottom);
         text_append(svg, "<path class=\"frame\" d=\"M%.1f %.1fv%g\"/>", x, bottom, TICK_LENGTH);
@@ -123,7 +123,7 @@ static void draw_y_axis(const PlotPanel *panel)
     double ticks[AXIS_TICK_MAX];
     const size_t count = axis_ticks(&panel->y, ticks);
     for (size_t i = 0; i < count; i++) {
-        const double y = pixel_y(panel, ticks[i]);
+        const double y = plot_y(panel, ticks[i]);
         text_append(svg, "<path class=\"%s\" d=\"M%.1f %.1fh%.1f\"/>",
                     ticks[i] == 0.0 ? "zero" : "grid", panel->left, y, panel->width);
         text_append(svg, "<path class=\"frame\" d=\"M%.1f %.1fh%g\"/>", panel->left, y,
@@ -188,8 +188,8 @@ void plot_line(const PlotPanel *panel, size_t count, const double *x, const doub
     text_append(svg, "<path class=\"line\" d=\"");
     Pile pile = {0};
     for (size_t i = 0; i < count; i++) {
-        const double at_x = pixel_x(panel, x[i]);
-        const double at_y = pixel_y(panel, y[i]);
+        const double at_x = plot_x(panel, x[i]);
+        const double at_y = plot_y(panel, y[i]);
         if (pile.count > 0 && floor(at_x / COLUMN) == pile.column) {
             pile.count++;
             pile.low = fmin(pile.low, at_y);
@@ -210,8 +210,8 @@ void plot_line(const PlotPanel *panel, size_t count, const double *x, const doub
 void plot_stem(const PlotPanel *panel, double x, double y, PlotStyle style)
 {
     Text *svg = panel->svg;
-    const double at_x = pixel_x(panel, x);
-    const double at_y = pixel_y(panel, y);
+    const double at_x = plot_x(panel, x);
+    const double at_y = plot_y(panel, y);
     text_append(svg, "<path class=\"line\" d=\"M%.2f %.2fV%.2f\" ", at_x,
                 panel->top + panel->height, at_y);
     append_stroke(svg, style);
@@ -223,9 +223,8 @@ void plot_circle(const PlotPanel *panel, double radius, PlotStyle style)
 {
     Text *svg = panel->svg;
     text_append(svg, "<ellipse class=\"line\" cx=\"%.2f\" cy=\"%.2f\" rx=\"%.2f\" ry=\"%.2f\" ",
-                pixel_x(panel, 0.0), pixel_y(panel, 0.0),
-                pixel_x(panel, radius) - pixel_x(panel, 0.0),
-                pixel_y(panel, 0.0) - pixel_y(panel, radius));
+                plot_x(panel, 0.0), plot_y(panel, 0.0), plot_x(panel, radius) - plot_x(panel, 0.0),
+                plot_y(panel, 0.0) - plot_y(panel, radius));
     append_stroke(svg, style);
     text_append(svg, "/>\n");
 }

@@ -34,6 +34,10 @@ void plot_text(Text *svg, double x, double y, const char *anchor, const char *cs
 // A short piece of line, for a legend.
 void plot_sample(Text *svg, double x, double y, PlotStyle style);
 
+// Where a value of an axis stands in the picture, pixels.
+double plot_x(const PlotPanel *panel, double x);
+double plot_y(const PlotPanel *panel, double y);
+
 // The grid, the ticks, the titles. What is drawn next in the panel is cut at its edges, up to
 // plot_leave.
 void plot_enter(const PlotPanel *panel);

@@ -10,9 +10,6 @@
 
 #include <string.h>
 
-// An error below so many times the reference's uncertainty says nothing about the run.
-static const double RUN_REPORT_CERTAIN = 10.0;
-
 // The contacts of one run beside the reference's, by joint.
 typedef struct RunMatches {
     SpikeMatch joints[LINKAGE_JOINT_MAX];
@@ -49,7 +46,7 @@ static inline bool run_report_is_limited_by_reference(const RunReport *report,
                                                       const TrajectoryError *error)
 {
     return run_report_is_certified(report, error) &&
-           error->omega_max_in_horizon < RUN_REPORT_CERTAIN * report->truth->uncertainty;
+           error->omega_max_in_horizon < ERROR_CLEAR_OF_TRUTH * report->truth->uncertainty;
 }
 
 // Whether errors against the reference contain more than a solver's own: it knows contact by its

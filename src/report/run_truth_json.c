@@ -3,6 +3,7 @@
 
 #include "report/error_json.h"
 #include "report/json_value.h"
+#include "report/ladder_json.h"
 
 json_t *run_truth_json_truth(const RunReport *report)
 {
@@ -101,47 +102,16 @@ json_t *run_truth_json_matches(const RunReport *report, size_t run)
     return joints;
 }
 
-static const char *const METRIC_KEYS[ENSEMBLE_METRIC_COUNT] = {
-    [ENSEMBLE_FORCE_MAX] = "force_max_N",
-    [ENSEMBLE_IMPULSE] = "impulse_N_s",
-    [ENSEMBLE_IMPACTS] = "impacts",
-    [ENSEMBLE_PENETRATION_MAX] = "penetration_max_m",
-    [ENSEMBLE_CONTACT_SHARE] = "contact_fraction",
-};
-
-static json_t *distributions_object(const Distribution *distributions)
-{
-    json_t *metrics = json_object();
-    for (size_t i = 0; i < ENSEMBLE_METRIC_COUNT; i++) {
-        json_t *object = json_object();
-        json_value_set(object, "low", distributions[i].low);
-        json_value_set(object, "median", distributions[i].median);
-        json_value_set(object, "high", distributions[i].high);
-        json_value_set(object, "mean", distributions[i].mean);
-        json_value_set(object, "deviation", distributions[i].deviation);
-        json_object_set_new(metrics, METRIC_KEYS[i], object);
-    }
-    return metrics;
-}
-
 json_t *run_truth_json_ensemble(const RunReport *report, size_t run)
 {
     const Ensemble *ensemble = report->ensembles != NULL ? &report->ensembles[run] : NULL;
     if (ensemble == NULL || ensemble->members + ensemble->failed == 0) {
         return json_null();
     }
-    const Linkage *linkage = &report->scenario->linkage;
-    json_t *joints = json_object();
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_CLEARANCE) {
-            json_object_set_new(joints, linkage->joints[i].name,
-                                distributions_object(ensemble->joints[i]));
-        }
-    }
     json_t *object = json_object();
     json_object_set_new(object, "members", json_integer((json_int_t)ensemble->members));
     json_object_set_new(object, "failed", json_integer((json_int_t)ensemble->failed));
     json_object_set_new(object, "message", json_value_text(ensemble->message));
-    json_object_set_new(object, "joints", joints);
+    json_object_set_new(object, "joints", ladder_json_joints(&report->scenario->linkage, ensemble));
     return object;
 }
