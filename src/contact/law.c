@@ -6,9 +6,6 @@
 
 #include <math.h>
 
-// the speed at which the paper ran its mechanism: 1000 rpm, rad/s
-static const double PAPER_SPEED = 104.71975511965977;
-
 static const Law *const LAWS[] = {
     [LAW_HERTZ_SOCKET] = &law_hertz_socket,
     [LAW_JOHNSON] = &law_johnson,
@@ -64,15 +61,13 @@ bool law_make(LawKind kind, const ContactPair *pair, ForceLaw *law, Err *err)
 
 ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material, double speed)
 {
-    const PenaltyReading reading = penalty_reading_of_tables();
-    const double load_speed = speed == 0.0 ? PAPER_SPEED : speed;
     return (ContactPair){
         .hole_radius = clearance->hole_radius,
         .pin_radius = clearance->pin_radius,
         .width = clearance->width,
         .youngs_modulus = material->youngs_modulus,
         .poisson_ratio = material->poisson_ratio,
-        .reference_force = penalty_force(&reading, reading.alpha_at_1000, load_speed),
+        .reference_force = penalty_reference_force(speed),
     };
 }
 
@@ -102,4 +97,14 @@ double law_depth_max(const ForceLaw *law, double pin_radius)
 {
     const double share = 0.1;
     return fmin(share * pin_radius, force_law_depth_limit(law));
+}
+
+bool law_check_depth(const ForceLaw *law, const Joint *joint, double depth, double share, Err *err)
+{
+    const double allowed = law_depth_max(law, joint->clearance.pin_radius);
+    return depth <= share * allowed ||
+           err_set(err, ERR_SOLVER,
+                   "the pin of %s is %.4g mm inside the wall of its hole; no contact law holds "
+                   "beyond %.4g mm",
+                   joint->name, 1e3 * depth, 1e3 * allowed);
 }

@@ -47,6 +47,10 @@ bool law_build(const ContactOptions *contact, const MaterialOptions *material,
 // before, or the law's own limit.
 double law_depth_max(const ForceLaw *law, double pin_radius);
 
+// Fails with ERR_SOLVER where the pin of a joint is deeper, m, in its wall than a share of that, or
+// its depth is no number.
+bool law_check_depth(const ForceLaw *law, const Joint *joint, double depth, double share, Err *err);
+
 // E* = E / (2 (1 - nu^2)), Pa.
 double law_effective_modulus(const ContactPair *pair);
 

@@ -74,13 +74,18 @@ double penalty_approach(const PenaltyReading *reading, double effective_modulus,
     return 0.75 * cbrt(hertz * hertz);
 }
 
-double penalty_estimate(double speed, const MaterialOptions *material)
+double penalty_reference_force(double speed)
 {
     const PenaltyReading reading = penalty_reading_of_tables();
     // without a drive the paper's own speed stands in, 1000 rpm
     const double paper_speed = 1000.0 * 2.0 * M_PI / 60.0;
-    const double force =
-        penalty_force(&reading, reading.alpha_at_1000, speed != 0.0 ? speed : paper_speed);
+    return penalty_force(&reading, reading.alpha_at_1000, speed != 0.0 ? speed : paper_speed);
+}
+
+double penalty_estimate(double speed, const MaterialOptions *material)
+{
+    const PenaltyReading reading = penalty_reading_of_tables();
+    const double force = penalty_reference_force(speed);
     const double modulus = penalty_effective_modulus(material);
     return penalty_velocity_level(penalty_printed(&reading, modulus, force));
 }

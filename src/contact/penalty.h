@@ -42,6 +42,10 @@ double penalty_velocity_level(double printed);
 // sphere on a plane with the 3/4 left outside the power.
 double penalty_approach(const PenaltyReading *reading, double effective_modulus, double force);
 
+// The force, N, of the paper's crank-coupler pin at a driver's speed, rad/s. Speed 0 stands for
+// 1000 rpm.
+double penalty_reference_force(double speed);
+
 // The penalty, N s/m, where a case asks for the Poisson model and gives none: the paper's reading
 // for its crank-coupler pin at the driver's speed, rad/s, in the case's material. Speed 0 stands
 // for 1000 rpm.

@@ -69,7 +69,7 @@ static PinHole pair_pose(const WorldPair *pair, double radial_clearance)
     return pin_hole_pose(hole, pin, vec2_sub(pin_velocity, hole_velocity), radial_clearance);
 }
 
-static dSurfaceParameters surface_of(const ContactRows *rows, const ContactRow *row, double step_s)
+static dSurfaceParameters surface_of(const ContactRows *rows, ContactRow *row, double step_s)
 {
     const ContactOptions *options = &rows->scenario->contact;
     // without friction mu 0 makes one row, along the normal; with it a second one, along the wall
@@ -88,8 +88,8 @@ static dSurfaceParameters surface_of(const ContactRows *rows, const ContactRow *
         return surface;
     }
     const double stiffness = force_law_secant(&row->law, row->depth);
-    const double damping = force_law_damping(&row->law, row->depth, row->impact_speed);
-    const ErpCfm soft = rows->map->convert(stiffness, damping, step_s);
+    row->damping = force_law_damping(&row->law, row->depth, row->impact_speed);
+    const ErpCfm soft = rows->map->convert(stiffness, row->damping, step_s);
     surface.soft_erp = soft.erp;
     surface.soft_cfm = soft.cfm;
     return surface;
@@ -114,14 +114,7 @@ static bool check_depth(const ContactRows *rows, size_t number, Err *err)
     const ContactRow *row = &rows->rows[number];
     const Joint *joint = &rows->scenario->linkage.joints[rows->world->pairs[number].joint];
     // deeper than any law: the step was too coarse to catch the wall
-    const double allowed = law_depth_max(&row->law, joint->clearance.pin_radius);
-    if (row->depth <= allowed) {
-        return true;
-    }
-    return err_set(err, ERR_SOLVER,
-                   "the pin of %s is %.4g mm inside the wall of its hole; no contact law holds "
-                   "beyond %.4g mm",
-                   joint->name, 1e3 * row->depth, 1e3 * allowed);
+    return law_check_depth(&row->law, joint, row->depth, 1.0, err);
 }
 
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
@@ -199,8 +192,7 @@ static void book_energy(ContactRows *rows, size_t number, Vec2 force, double ste
     if (rows->scenario->contact.model == CONTACT_POISSON) {
         row->dissipated = pressing * 0.5 * (row->closing + closing) * step_s;
     } else {
-        const double damping = force_law_damping(&row->law, row->depth, row->impact_speed);
-        row->dissipated = pressing > 0.0 ? damping * closing * closing * step_s : 0.0;
+        row->dissipated = pressing > 0.0 ? row->damping * closing * closing * step_s : 0.0;
         row->elastic = force_law_energy(&row->law, fmax(0.0, pose.penetration));
     }
     if (rows->scenario->contact.friction > 0.0) {

@@ -13,6 +13,7 @@ typedef struct ContactRow {
     bool is_touching;        // whether the present step has a row
     double depth;            // m, of the row
     Vec2 normal;             // of the row: unit, direction of the force on the pin
+    double damping;          // N s/m, of the row; not of CONTACT_POISSON
     double closing;          // m/s, before the step
     double elastic;          // J, stored in the contact after the step
     double dissipated;       // J, lost along the normal in the step

@@ -14,8 +14,7 @@ static PinHole contact_pose(const Dynamics *dynamics, size_t number, const TreeS
     const DynamicsContact *contact = &dynamics->contacts[number];
     const int hole = 2 * contact->joint;
     const int pin = hole + 1;
-    const Vec2 moving = vec2_sub(tree_end_velocity(&dynamics->tree, tree, pin),
-                                 tree_end_velocity(&dynamics->tree, tree, hole));
+    const Vec2 moving = tree_joint_velocity(&dynamics->tree, tree, contact->joint);
     return pin_hole_pose(tree_end_point(&dynamics->tree, tree, hole),
                          tree_end_point(&dynamics->tree, tree, pin), moving,
                          contact->radial_clearance);
@@ -103,13 +102,9 @@ bool dynamics_check_depth(const Dynamics *dynamics, const DynamicsState *state, 
     for (size_t i = 0; i < dynamics->contact_count; i++) {
         const DynamicsContact *contact = &dynamics->contacts[i];
         const Joint *joint = &dynamics->scenario->linkage.joints[contact->joint];
-        const double allowed = law_depth_max(&contact->law, joint->clearance.pin_radius);
-        const double depth = state->contacts[i].pose.penetration;
-        if (!(depth <= share * allowed)) {
-            return err_set(err, ERR_SOLVER,
-                           "the pin of %s is %.4g mm inside the wall of its hole; no contact law "
-                           "holds beyond %.4g mm",
-                           joint->name, 1e3 * depth, 1e3 * allowed);
+        if (!law_check_depth(&contact->law, joint, state->contacts[i].pose.penetration, share,
+                             err)) {
+            return false;
         }
     }
     return true;

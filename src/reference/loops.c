@@ -42,11 +42,10 @@ void loops_row(const Tree *tree, const TreeState *state, size_t loop, Vec2 *row)
 // Gap (or its rate) of one loop.
 static Vec2 loop_gap(const Tree *tree, const TreeState *state, size_t loop, bool is_rate)
 {
-    const int end = 2 * tree->loops[loop];
     if (is_rate) {
-        return vec2_sub(tree_end_velocity(tree, state, end + 1),
-                        tree_end_velocity(tree, state, end));
+        return tree_joint_velocity(tree, state, tree->loops[loop]);
     }
+    const int end = 2 * tree->loops[loop];
     return vec2_sub(tree_end_point(tree, state, end + 1), tree_end_point(tree, state, end));
 }
 

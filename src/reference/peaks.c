@@ -22,12 +22,9 @@ static void contact_rates(const Dynamics *dynamics, size_t number, const Dynamic
     const DynamicsContact *contact = &dynamics->contacts[number];
     const ForceLaw *law = &contact->law;
     const PinHole *pose = &state->contacts[number].pose;
-    const int hole = 2 * contact->joint;
     const Vec2 outward = vec2_scale(-1.0, pose->normal);
-    const Vec2 closing = vec2_sub(tree_end_acceleration(&dynamics->tree, &state->tree, hole + 1),
-                                  tree_end_acceleration(&dynamics->tree, &state->tree, hole));
-    const Vec2 moving = vec2_sub(tree_end_velocity(&dynamics->tree, &state->tree, hole + 1),
-                                 tree_end_velocity(&dynamics->tree, &state->tree, hole));
+    const Vec2 closing = tree_joint_acceleration(&dynamics->tree, &state->tree, contact->joint);
+    const Vec2 moving = tree_joint_velocity(&dynamics->tree, &state->tree, contact->joint);
     const double across = vec2_cross(outward, moving);
     const double second = vec2_dot(outward, closing) + across * across / pose->eccentricity_size;
     const double rise = 1.0 + contact->damping_rate * pose->approach_speed;

@@ -151,11 +151,8 @@ static double flight_limit(const Stepper *stepper)
         if (contact->mode == CONTACT_PRESSING) {
             continue;
         }
-        const int hole = 2 * contact->joint;
-        const Vec2 v = vec2_sub(tree_end_velocity(tree, state, hole + 1),
-                                tree_end_velocity(tree, state, hole));
-        const Vec2 a = vec2_sub(tree_end_acceleration(tree, state, hole + 1),
-                                tree_end_acceleration(tree, state, hole));
+        const Vec2 v = tree_joint_velocity(tree, state, contact->joint);
+        const Vec2 a = tree_joint_acceleration(tree, state, contact->joint);
         const double play = contact->radial_clearance;
         const double speed = vec2_length(v) + sqrt(play * vec2_length(a));
         limit = speed > 0.0 ? fmin(limit, play / speed) : limit;

@@ -10,11 +10,6 @@
 
 #include <string.h>
 
-static bool is_driver_joint(const Linkage *linkage, int joint)
-{
-    return linkage->driver.is_present && linkage->driver.joint == joint;
-}
-
 static void add_node(Tree *tree, int body, int joint, int parent)
 {
     TreeNode *node = &tree->nodes[tree->node_count++];
@@ -113,8 +108,7 @@ void tree_build(const Linkage *linkage, Tree *tree)
         }
     }
     for (int i = 0; i < (int)linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_REVOLUTE && !is_used[i] &&
-            !is_driver_joint(linkage, i)) {
+        if (linkage->joints[i].kind == JOINT_REVOLUTE && !is_used[i]) {
             tree->loops[tree->loop_count++] = i;
             tree->is_driven_hung_on = tree->is_driven_hung_on ||
                                       linkage->joints[i].body_a == tree->driven ||

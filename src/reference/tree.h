@@ -109,3 +109,16 @@ static inline Vec2 tree_end_acceleration(const Tree *tree, const TreeState *stat
                                  vec2_scale(motion->omega * motion->omega, state->arms[end]));
     return vec2_add(motion->acceleration, turned);
 }
+
+// How the end on body b of a joint moves against that on body a.
+static inline Vec2 tree_joint_velocity(const Tree *tree, const TreeState *state, int joint)
+{
+    return vec2_sub(tree_end_velocity(tree, state, 2 * joint + 1),
+                    tree_end_velocity(tree, state, 2 * joint));
+}
+
+static inline Vec2 tree_joint_acceleration(const Tree *tree, const TreeState *state, int joint)
+{
+    return vec2_sub(tree_end_acceleration(tree, state, 2 * joint + 1),
+                    tree_end_acceleration(tree, state, 2 * joint));
+}
