@@ -28,8 +28,7 @@ static const char OPTION[] = "--set ";
 static bool override_read(Override *override, const char *argument, Err *err)
 {
     text_init(&override->shown);
-    if (source_text_length(argument, strlen(argument)) < strlen(argument) ||
-        strpbrk(argument, "\t\n\r") != NULL) {
+    if (!source_is_one_line(argument, strlen(argument))) {
         return err_set(err, ERR_USAGE,
                        "--set: the argument is not text on one line\nallowed: --set KEY=VALUE");
     }

@@ -19,8 +19,7 @@ static bool has_rival(const Entries *entries, const SchemaRow *row, size_t index
 {
     for (size_t i = 0; i < entries->count; i++) {
         const Entry *other = &entries->entries[i];
-        if (row->rivalry != SCHEMA_NO_RIVAL && other->row->rivalry == row->rivalry &&
-            other->row->side != row->side && other->index == index) {
+        if (other->index == index && schema_are_rivals(row, other->row)) {
             return true;
         }
     }
@@ -282,16 +281,11 @@ static bool check_drive(const Entries *entries, const Linkage *linkage, Err *err
 // Speeds at the start are the drive's where it determines them.
 static bool check_speeds(const Entries *entries, const Linkage *linkage, Err *err)
 {
-    static const char *const SPEEDS[] = {"bodies.*.velocity", "bodies.*.spin"};
-    for (size_t i = 0; build_is_determined(linkage) && i < linkage->body_count; i++) {
-        const Entry *entry = entries_blame(entries, SPEEDS, 2, i);
-        if (entry != NULL) {
-            return source_error(entry->source, entry->node->span, "no velocity and no spin", err,
-                                "the drive determines how body '%s' moves",
-                                linkage->bodies[i].name);
-        }
-    }
-    return true;
+    const Entry *entry = entries_speed(entries, linkage->body_count);
+    return entry == NULL || !build_is_determined(linkage) ||
+           source_error(entry->source, entry->node->span, "no velocity and no spin", err,
+                        "the drive determines how body '%s' moves",
+                        linkage->bodies[entry->index].name);
 }
 
 bool check_values(const Entries *entries, const Scenario *scenario, Err *err)

@@ -63,9 +63,7 @@ static void describe_value(const SchemaRow *row, Text *text)
     case SCHEMA_CHOICE:
     case SCHEMA_BACKENDS:
         text_append(text, row->type == SCHEMA_BACKENDS ? "a list of " : "");
-        for (size_t i = 0; row->words[i] != NULL; i++) {
-            text_append(text, "%s%s", i > 0 ? ", " : "", row->words[i]);
-        }
+        schema_list_words(row, text);
         break;
     case SCHEMA_VECTOR:
     case SCHEMA_ANCHOR:

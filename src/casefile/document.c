@@ -47,11 +47,6 @@ static bool next_event(Builder *builder, yaml_event_t *event)
     return true;
 }
 
-static bool has_control_characters(const char *text, size_t length)
-{
-    return source_text_length(text, length) < length || strpbrk(text, "\t\n\r") != NULL;
-}
-
 // What an event may not carry.
 static bool check_event(const Builder *builder, const yaml_event_t *event, size_t depth)
 {
@@ -81,7 +76,7 @@ static bool check_event(const Builder *builder, const yaml_event_t *event, size_
                             "nested deeper than any case");
     }
     if (event->type == YAML_SCALAR_EVENT &&
-        has_control_characters((const char *)event->data.scalar.value, event->data.scalar.length)) {
+        !source_is_one_line((const char *)event->data.scalar.value, event->data.scalar.length)) {
         return source_error(builder->source, span, "text on one line", builder->err,
                             "a value holds a line break, a tab or a control character");
     }

@@ -63,6 +63,16 @@ const Entry *entries_blame(const Entries *entries, const char *const *paths, siz
     return blamed;
 }
 
+const Entry *entries_speed(const Entries *entries, size_t body_count)
+{
+    static const char *const SPEEDS[] = {"bodies.*.velocity", "bodies.*.spin"};
+    const Entry *found = NULL;
+    for (size_t i = 0; found == NULL && i < body_count; i++) {
+        found = entries_blame(entries, SPEEDS, 2, i);
+    }
+    return found;
+}
+
 const EntryGroup *entries_group(const Entries *entries, const char *path, size_t index)
 {
     for (size_t i = 0; i < entries->group_count; i++) {
@@ -220,9 +230,8 @@ static bool settle_rivals(const Walk *walk, const Entry *entry)
     size_t kept = 0;
     for (size_t i = 0; i < entries->count; i++) {
         const Entry *other = &entries->entries[i];
-        const bool is_rival = entry->row->rivalry != SCHEMA_NO_RIVAL &&
-                              other->row->rivalry == entry->row->rivalry &&
-                              other->row->side != entry->row->side && other->index == entry->index;
+        const bool is_rival =
+            other->index == entry->index && schema_are_rivals(entry->row, other->row);
         if (is_rival && !walk->source->is_option) {
             const size_t line = source_line(other->source, entries_key_span(other->node).start);
             return source_error(walk->source, entries_key_span(entry->node), "one of the two",

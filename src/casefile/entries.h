@@ -57,6 +57,9 @@ const Entry *entries_find(const Entries *entries, const char *path, size_t index
 const Entry *entries_blame(const Entries *entries, const char *const *paths, size_t count,
                            size_t index);
 
+// The first velocity or spin that the case gives of so many bodies; NULL where it gives none.
+const Entry *entries_speed(const Entries *entries, size_t body_count);
+
 // The group of that path (with `*`), or NULL where nothing in it was given.
 const EntryGroup *entries_group(const Entries *entries, const char *path, size_t index);
 

@@ -63,17 +63,6 @@ static bool check_redundancy(const Entries *entries, const Linkage *linkage, con
                         linkage->driver.is_present ? " and drive" : "", rank, rows);
 }
 
-// The first of the speeds that the case gives; NULL where it gives none.
-static const Entry *find_speed(const Entries *entries, size_t body_count)
-{
-    static const char *const SPEEDS[] = {"bodies.*.velocity", "bodies.*.spin"};
-    const Entry *found = NULL;
-    for (size_t i = 0; found == NULL && i < body_count; i++) {
-        found = entries_blame(entries, SPEEDS, 2, i);
-    }
-    return found;
-}
-
 // The driven body moves as the drive says, unless the case says how it moves.
 static void turn_driven_body(const Entries *entries, const Linkage *linkage, Motion *motions)
 {
@@ -111,7 +100,7 @@ static bool refuse_speeds(const Entry *entry, const Linkage *linkage, int joint,
 // takes the bodies with it, as slow as the joints leave them, play or not.
 static bool find_speeds(const Entries *entries, const Linkage *linkage, Motion *motions, Err *err)
 {
-    const Entry *given = find_speed(entries, linkage->body_count);
+    const Entry *given = entries_speed(entries, linkage->body_count);
     turn_driven_body(entries, linkage, motions);
     Motion nearest[LINKAGE_BODY_MAX];
     memcpy(nearest, motions, linkage->body_count * sizeof *motions);

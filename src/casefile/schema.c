@@ -35,6 +35,19 @@ const char *schema_unit(const SchemaRow *row)
     return row->plain_unit != NULL ? row->plain_unit : units_si(row->dimension);
 }
 
+void schema_list_words(const SchemaRow *row, Text *text)
+{
+    for (size_t i = 0; row->words[i] != NULL; i++) {
+        text_append(text, "%s%s", i > 0 ? ", " : "", row->words[i]);
+    }
+}
+
+bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other)
+{
+    return row->rivalry != SCHEMA_NO_RIVAL && other->rivalry == row->rivalry &&
+           other->side != row->side;
+}
+
 bool schema_knows(const char *path, SchemaForm form)
 {
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {

@@ -2,6 +2,7 @@
 // in docs/ and the list of resolved settings.
 #pragma once
 
+#include "base/text.h"
 #include "casefile/units.h"
 #include "model/scenario.h"
 
@@ -96,6 +97,12 @@ extern const char *const SCHEMA_PIVOT_NAMES[];
 
 // The SI unit of a row's number, such as "m"; empty where it has none.
 const char *schema_unit(const SchemaRow *row);
+
+// Adds the words that a row allows, with commas between them; the row must have some.
+void schema_list_words(const SchemaRow *row, Text *text);
+
+// Whether two rows are the two ways to say one thing, so that a member may have only one of them.
+bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other);
 
 // Whether a scenario makes use of a row, of that member of its family.
 bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index);

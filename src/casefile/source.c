@@ -10,6 +10,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 enum {
     MESSAGE_SIZE = 512,
@@ -190,4 +191,9 @@ size_t source_count(const char *text, size_t size)
 size_t source_line(const Source *source, size_t character)
 {
     return find_place(source, character + source->shift).line;
+}
+
+bool source_is_one_line(const char *text, size_t size)
+{
+    return source_text_length(text, size) == size && strpbrk(text, "\t\n\r") == NULL;
 }

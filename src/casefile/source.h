@@ -30,6 +30,9 @@ bool source_error(const Source *source, Span span, const char *allowed, Err *err
 // and line breaks; equal to size where all of it is text.
 size_t source_text_length(const char *text, size_t size);
 
+// Whether all of a text, ended by 0 after so many bytes, is text without tabs and line breaks.
+bool source_is_one_line(const char *text, size_t size);
+
 // The characters in so many bytes of text.
 size_t source_count(const char *text, size_t size);
 

@@ -29,9 +29,7 @@ void store_describe(const Entries *entries, const SchemaRow *row, Text *text)
     switch (row->type) {
     case SCHEMA_CHOICE:
     case SCHEMA_BACKENDS:
-        for (size_t i = 0; row->words[i] != NULL; i++) {
-            text_append(text, "%s%s", i > 0 ? ", " : "", row->words[i]);
-        }
+        schema_list_words(row, text);
         break;
     case SCHEMA_BODY_NAME:
     case SCHEMA_JOINT_NAME:
