@@ -8,15 +8,6 @@
 static const char CHEAP[] = "compare $cases/paper/ideal-nominal.yaml --store s.jsonl "
                             "--steps '100 us, 30us, 50 us' ";
 
-// points of two steppers at three steps, the reference, the closed form; an error run and five
-// timing runs of each
-static json_t *load(const Program *program)
-{
-    json_t *root = json_loads(program->output, 0, NULL);
-    assert_non_null(root);
-    return root;
-}
-
 static const json_t *find_scheme(const json_t *root, const char *name)
 {
     const json_t *schemes = json_object_get(root, "schemes");
@@ -87,7 +78,7 @@ static void json_holds_every_point(void **state)
     Program *program = *state;
     run_words(program, "--json -q");
     assert_int_equal(program->status, 0);
-    json_t *root = load(program);
+    json_t *root = program_json(program);
     const json_t *direct = find_scheme(root, "direct/plain");
     const json_t *points = json_object_get(direct, "points");
     assert_int_equal(json_array_size(points), 3);
@@ -145,7 +136,7 @@ static void killing_it_at_any_moment_loses_nothing(void **state)
     }
     run_words(program, "--json");
     assert_int_equal(program->status, 0);
-    json_t *root = load(program);
+    json_t *root = program_json(program);
     const size_t runs = count_runs(root);
     // behind the key and the truth a line a run, none of them made twice
     assert_int_equal(count_lines(program, "s.jsonl"), runs + 2);

@@ -52,8 +52,7 @@ static void json_of_one_case_is_one_object(void **state)
     Program *program = *state;
     program_run(program, "run --json $cases/paper/ideal-nominal.yaml");
     assert_int_equal(program->status, 0);
-    json_t *root = json_loads(program->output, 0, NULL);
-    assert_non_null(root);
+    json_t *root = program_json(program);
     const json_t *settings = json_object_get(root, "settings");
     assert_near(json_number_value(json_object_get(settings, "run.step")), 1e-5, 1e-18);
     const json_t *backends = json_object_get(settings, "run.backends");
@@ -82,7 +81,7 @@ static void json_of_several_cases_is_a_list_of_them(void **state)
     program_run(program, "run $cases/paper/ideal-nominal.yaml --json --backend analytic "
                          "$cases/paper/ideal-stackup.yaml");
     assert_int_equal(program->status, 0);
-    json_t *root = json_loads(program->output, 0, NULL);
+    json_t *root = program_json(program);
     const json_t *cases = json_object_get(root, "cases");
     assert_int_equal(json_array_size(cases), 2);
     const json_t *runs = json_object_get(json_array_get(cases, 1), "runs");
@@ -96,7 +95,7 @@ static void settings_of_the_command_line_replace_those_of_the_case(void **state)
     program_run(program, "run --json --step '20 us' --set drive.speed='500 rpm' --backend ode "
                          "$cases/paper/ideal-nominal.yaml --set 'run.samples=100'");
     assert_int_equal(program->status, 0);
-    json_t *root = json_loads(program->output, 0, NULL);
+    json_t *root = program_json(program);
     const json_t *settings = json_object_get(root, "settings");
     assert_near(json_number_value(json_object_get(settings, "run.step")), 2e-5, 1e-18);
     assert_close(json_number_value(json_object_get(settings, "drive.speed")),
@@ -189,7 +188,7 @@ static void json_of_a_failed_run_holds_no_number(void **state)
     program_run(program, "run $cases/paper/stackup-impact.yaml --set run.step=1ms "
                          "--backend analytic,ode --set contact.stiffness='1e11 N/m^1.5' --json");
     assert_int_equal(program->status, 4);
-    json_t *root = json_loads(program->output, 0, NULL);
+    json_t *root = program_json(program);
     json_t *run = json_array_get(json_object_get(root, "runs"), 1);
     assert_string_equal(json_string_value(json_object_get(run, "status")), "failed");
     assert_true(strlen(json_string_value(json_object_get(run, "message"))) > 0);
@@ -297,7 +296,7 @@ static void the_same_command_twice_prints_the_same_hash(void **state)
     char hashes[2][32];
     for (int i = 0; i < 2; i++) {
         program_run(program, "run --json $cases/paper/stackup-impact.yaml --backend ode");
-        json_t *root = json_loads(program->output, 0, NULL);
+        json_t *root = program_json(program);
         const json_t *run = json_array_get(json_object_get(root, "runs"), 0);
         snprintf(hashes[i], sizeof hashes[i], "%s",
                  json_string_value(json_object_get(run, "hash")));

@@ -18,8 +18,7 @@ static void errors_are_against_the_certified_reference(void **state)
     Program *program = *state;
     program_run(program, "run --json $cases/paper/impact-k66.yaml");
     assert_int_equal(program->status, 0);
-    json_t *root = json_loads(program->output, 0, NULL);
-    assert_non_null(root);
+    json_t *root = program_json(program);
     const json_t *truth = json_object_get(root, "truth");
     assert_string_equal(json_string_value(json_object_get(truth, "backend")), "reference");
     assert_string_equal(json_string_value(json_object_get(run_at(root, 1), "backend")),
@@ -62,7 +61,7 @@ static void ideal_joints_have_the_closed_form_for_truth(void **state)
     program_run(program, "run $cases/paper/ideal-nominal.yaml --json --backend "
                          "analytic,reference,ode");
     assert_int_equal(program->status, 0);
-    json_t *root = json_loads(program->output, 0, NULL);
+    json_t *root = program_json(program);
     const json_t *truth = json_object_get(root, "truth");
     assert_string_equal(json_string_value(json_object_get(truth, "backend")), "analytic");
     assert_string_equal(json_string_value(json_object_get(run_at(root, 1), "backend")),

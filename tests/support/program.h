@@ -93,3 +93,11 @@ static inline void program_fails_usage(Program *program, const char *words, cons
     assert_int_equal(strncmp(program->errors, "jointplay: ", 11), 0);
     assert_says(program->errors, message);
 }
+
+// New reference: what the program printed, which must be JSON.
+static inline json_t *program_json(const Program *program)
+{
+    json_t *root = json_loads(program->output, 0, NULL);
+    assert_non_null(root);
+    return root;
+}
