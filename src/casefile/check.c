@@ -2,7 +2,7 @@
 #include "casefile/check.h"
 
 #include "casefile/build.h"
-#include "casefile/store.h"
+#include "casefile/wanted.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -52,7 +52,7 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
     if (row->rivalry == SCHEMA_SIZES) {
         text_append(&allowed, "hole and pin, or radial-clearance");
     } else {
-        store_describe(entries, row, &allowed);
+        wanted_describe(entries, row, &allowed);
     }
     source_error(group->source, entries_key_span(group->node), allowed.data, err, "%s is missing",
                  path);
@@ -188,6 +188,9 @@ static bool check_steps(const Entries *entries, const RunOptions *run, double du
     static const char *const LENGTHS[] = {"run.step", "run.revolutions", "run.duration",
                                           "drive.speed"};
     const Entry *entry = entries_blame(entries, LENGTHS, 4, 0);
+    if (run->step == 0.0) {
+        return true; // chosen as the run goes
+    }
     const double steps = duration / run->step;
     char allowed[ALLOWED_SIZE];
     if (!(steps <= STEPS_MAX)) {
@@ -248,6 +251,34 @@ static bool check_backends(const Entries *entries, const RunOptions *run, Err *e
     return true;
 }
 
+// Steppings and maps that not every case can have.
+static bool check_stepping(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    const OdeOptions *ode = &scenario->ode;
+    const bool has_play = scenario_has_clearance(scenario);
+    const bool is_impact = has_play && scenario->contact.model == CONTACT_IMPACT;
+    if (scenario->run.step == 0.0) {
+        static const char *const KEYS[] = {"run.step", "contact.model"};
+        const Entry *entry = entries_blame(entries, KEYS, 2, 0);
+        return !has_play || is_impact ||
+               source_error(entry->source, entry->node->span,
+                            "a step such as 1 us, or contact.model: impact", err,
+                            "a step can only be chosen for the impact model");
+    }
+    if (is_impact && ode->map == ODE_MAP_IMPULSE && ode->stepping != ODE_STAGGERED) {
+        static const char *const KEYS[] = {"ode.map", "ode.stepping"};
+        const Entry *entry = entries_blame(entries, KEYS, 2, 0);
+        return source_error(entry->source, entry->node->span, "stepping: staggered, or another map",
+                            err, "map impulse needs stepping staggered");
+    }
+    if (has_play && ode->stepping == ODE_EXTRAPOLATED) {
+        const Entry *entry = entries_find(entries, "ode.stepping", 0);
+        return source_error(entry->source, entry->node->span, "plain, staggered", err,
+                            "extrapolated stepping is for ideal joints: contacts are not smooth");
+    }
+    return true;
+}
+
 static bool check_run(const Entries *entries, const Scenario *scenario, Err *err)
 {
     const bool is_driven = scenario->linkage.driver.is_present;
@@ -257,6 +288,7 @@ static bool check_run(const Entries *entries, const Scenario *scenario, Err *err
                             "the crank does not turn");
     }
     return check_length(entries, is_driven, err) && check_backends(entries, &scenario->run, err) &&
+           check_stepping(entries, scenario, err) &&
            check_steps(entries, &scenario->run, scenario_duration(scenario), is_driven, err) &&
            (!is_driven || check_samples(entries, &scenario->run, err));
 }

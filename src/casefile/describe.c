@@ -78,7 +78,8 @@ static void describe_value(const SchemaRow *row, Text *text)
         text_append(text, row->type == SCHEMA_BODY_NAME ? "a body" : "a joint");
         break;
     default:
-        text_append(text, "%s", units_dimension_name(row->dimension));
+        text_append(text, "%s%s%s", row->zero_word != NULL ? row->zero_word : "",
+                    row->zero_word != NULL ? ", or " : "", units_dimension_name(row->dimension));
         if (row->dimension != DIMENSION_NONE) {
             text_append(text, " in ");
             units_list(row->dimension, text);

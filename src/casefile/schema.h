@@ -63,6 +63,7 @@ typedef struct SchemaRow {
     SchemaRivalry rivalry;
     int side;                  // of the rivalry
     const char *const *words;  // of a choice, ends in NULL
+    const char *zero_word;     // what may be written for the number 0; NULL: nothing
     const char *default_words; // in place of the default's number; NULL: the number says it
     unsigned needs;            // what a scenario must have for the key to matter
     const char *doc;

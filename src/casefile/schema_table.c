@@ -39,11 +39,27 @@ enum {
     ODE = 1 << 14,
     QUICK = 1 << 15,
     IDEAL = 1 << 16, // no joint has play
+    GIVEN_STEP = 1 << 17,
+    CHOSEN_STEP = 1 << 18,
+    PLAIN = 1 << 19, // the stepping of a given step
+    EXTRAPOLATED = 1 << 20,
+    LOCAL = 1 << 21, // the contact is integrated within the step
 };
 
 static unsigned bit(unsigned need, bool is_met)
 {
     return is_met ? need : 0;
+}
+
+// How the steps are taken.
+static unsigned step_bits(const Scenario *scenario, bool is_impact)
+{
+    const OdeOptions *ode = &scenario->ode;
+    const bool is_given = scenario->run.step > 0.0;
+    return bit(GIVEN_STEP, is_given) | bit(CHOSEN_STEP, !is_given) |
+           bit(PLAIN, is_given && ode->stepping == ODE_PLAIN) |
+           bit(EXTRAPOLATED, is_given && ode->stepping == ODE_EXTRAPOLATED) |
+           bit(LOCAL, is_impact && (!is_given || ode->map == ODE_MAP_IMPULSE));
 }
 
 bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index)
@@ -68,7 +84,7 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
                    bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
                    bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
                    bit(FRICTION, has_play && contact->friction > 0.0) |
-                   bit(QUICK, scenario->ode.solver == ODE_QUICK);
+                   bit(QUICK, scenario->ode.solver == ODE_QUICK) | step_bits(scenario, is_impact);
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
         met |= bit(REFERENCE, scenario->run.backends[i] == BACKEND_REFERENCE);
         met |= bit(ODE, scenario->run.backends[i] == BACKEND_ODE);
@@ -228,7 +244,13 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "run.samples", .type = SCHEMA_INTEGER, AT(run.samples), .low = 1.0, .high = 1e7,
      .doc = "written per revolution of the drive, or in the whole run without one"},
     {.path = "run.step", .dimension = DIMENSION_TIME, AT(run.step), .low = 0.0, .high = 1.0,
-     .low_is_open = true, .needs = ODE, .doc = "of solvers with a fixed step"},
+     .low_is_open = true, .zero_word = "auto", .needs = ODE,
+     .doc = "of ode; auto: chosen so that the error is the tolerance, with stepping staggered and "
+            "map impulse, or, of ideal joints, extrapolated"},
+    {.path = "run.tolerance", AT(run.tolerance), .low = 1e-9, .high = 0.1,
+     .needs = ODE | CHOSEN_STEP,
+     .doc = "of step auto: the largest error in omega, relative to each body's largest omega, up "
+            "to the predictability horizon"},
     {.path = "run.backends", .type = SCHEMA_BACKENDS, AT(run.backends),
      .words = OPTIONS_BACKENDS,
      .doc = "the solvers to run, in this order: a word or a list; reference, ode where a case "
@@ -241,14 +263,18 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "ode.solver", .type = SCHEMA_CHOICE, AT(ode.solver), .words = OPTIONS_ODE_SOLVERS,
      .needs = ODE, .doc = "direct: dWorldStep; quick: dWorldQuickStep"},
     {.path = "ode.stepping", .type = SCHEMA_CHOICE, AT(ode.stepping),
-     .words = OPTIONS_ODE_STEPPINGS, .needs = ODE, .doc = "plain: as ODE steps by itself"},
+     .words = OPTIONS_ODE_STEPPINGS, .needs = ODE | GIVEN_STEP,
+     .doc = "plain: read at the end of each step; staggered: positions half a step behind the "
+            "speeds, second order; extrapolated: several steps side by side, of ideal joints only"},
     {.path = "ode.map", .type = SCHEMA_CHOICE, AT(ode.map), .words = OPTIONS_ODE_MAPS,
-     .needs = ODE | IMPACT, .doc = "how stiffness and damping become ERP and CFM"},
+     .needs = ODE | IMPACT | GIVEN_STEP,
+     .doc = "how stiffness and damping become ERP and CFM; impulse: neither, the contact is "
+            "integrated within the step, of staggered stepping only"},
     {.path = "ode.collider", .type = SCHEMA_CHOICE, AT(ode.collider),
      .words = OPTIONS_ODE_COLLIDERS, .needs = ODE | PLAY,
      .doc = "what finds the contact of pin and hole"},
-    {.path = "ode.erp", AT(ode.erp), .low = 0.0, .high = 1.0, .needs = ODE,
-     .doc = "error reduction of the ideal joints, per step"},
+    {.path = "ode.erp", AT(ode.erp), .low = 0.0, .high = 1.0, .needs = ODE | PLAIN,
+     .doc = "error reduction of the ideal joints, per step, of plain stepping; others have 1"},
     {.path = "ode.cfm", .plain_unit = "s/kg", AT(ode.cfm), .low = 0.0, .high = 1e6, .needs = ODE,
      .doc = "constraint force mixing of the ideal joints, in s/kg = m/(N s), written plain"},
     {.path = "ode.push-out", AT(ode.push_out), .low = 0.0, .high = 1.0,
@@ -260,8 +286,18 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "ode.seed", .type = SCHEMA_INTEGER, AT(ode.seed), .low = 0.0, .high = 4294967295.0,
      .needs = ODE | QUICK, .doc = "of the order in which the quick solver visits rows"},
     {.path = "ode.settle-steps", .type = SCHEMA_INTEGER, AT(ode.settle_steps), .low = 0.0,
-     .high = 1e7, .needs = ODE | IDEAL,
-     .doc = "run before time zero where every joint is ideal"},
+     .high = 1e7, .needs = ODE | IDEAL | PLAIN,
+     .doc = "of plain stepping, run before time zero where every joint is ideal"},
+    {.path = "ode.levels", .type = SCHEMA_INTEGER, AT(ode.levels), .low = 2.0, .high = 6.0,
+     .needs = ODE | EXTRAPOLATED,
+     .doc = "worlds side by side, of extrapolated stepping: the order is one more"},
+    {.path = "ode.gear", .type = SCHEMA_INTEGER, AT(ode.gear), .low = 1.0, .high = 64.0,
+     .needs = ODE | LOCAL | GIVEN_STEP,
+     .doc = "of map impulse: so many times finer are the steps while a pin touches or is about to"},
+    {.path = "ode.contact-phase", AT(ode.contact_phase), .low = 1e-3, .high = 0.5,
+     .needs = ODE | LOCAL, .plain_unit = "rad",
+     .doc = "of map impulse: how far a contact's own oscillation gets in one local step, in rad, "
+            "written plain"},
 
     {.path = "points.*.body", .type = SCHEMA_BODY_NAME, POINT(body), .is_required = true,
      .doc = "the body that carries the point"},

@@ -103,6 +103,10 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
     switch (row->type) {
     case SCHEMA_QUANTITY:
         set_number(setting, *(const double *)field);
+        if (row->zero_word != NULL && setting->numbers[0] == 0.0) {
+            setting->kind = CASEFILE_WORD;
+            text_copy(setting->text, sizeof setting->text, row->zero_word);
+        }
         break;
     case SCHEMA_DIAMETER:
         set_number(setting, 2.0 * *(const double *)field);

@@ -2,6 +2,7 @@
 #include "casefile/store.h"
 
 #include "casefile/quantity.h"
+#include "casefile/wanted.h"
 
 #include <float.h>
 #include <stdarg.h>
@@ -21,44 +22,6 @@ typedef struct Target {
     Err *err;
 } Target;
 
-void store_describe(const Entries *entries, const SchemaRow *row, Text *text)
-{
-    const bool is_speed = row->dimension == DIMENSION_SPEED;
-    const EntryNames *names =
-        &entries->names[row->type == SCHEMA_JOINT_NAME ? SCHEMA_JOINT : SCHEMA_BODY];
-    switch (row->type) {
-    case SCHEMA_CHOICE:
-    case SCHEMA_BACKENDS:
-        schema_list_words(row, text);
-        break;
-    case SCHEMA_BODY_NAME:
-    case SCHEMA_JOINT_NAME:
-        for (size_t i = 0; i < names->count; i++) {
-            text_append(text, "%s%s", i > 0 ? ", " : "", names->names[i]);
-        }
-        break;
-    case SCHEMA_BETWEEN:
-        text_append(text, "two bodies such as [ground, pin]");
-        break;
-    case SCHEMA_VECTOR:
-    case SCHEMA_ANCHOR:
-        text_append(text, "%s[x, y] such as %s", row->default_words != NULL ? "centred, or " : "",
-                    row->default_words != NULL ? "[5 um, 0 um]"
-                    : is_speed                 ? "[0.5 m/s, 0 m/s]"
-                                               : "[25 mm, 0 mm]");
-        break;
-    case SCHEMA_TEXT:
-        text_append(text, "text on one line");
-        break;
-    case SCHEMA_INTEGER:
-        text_append(text, "a whole number such as 100");
-        break;
-    default:
-        text_append(text, "%s such as %s", units_dimension_name(row->dimension),
-                    units_example(row->dimension));
-    }
-}
-
 // Refuses a node with what its row takes.
 __attribute__((format(printf, 3, 4))) static bool refuse(const Target *target, Span span,
                                                          const char *format, ...)
@@ -70,7 +33,7 @@ __attribute__((format(printf, 3, 4))) static bool refuse(const Target *target, S
     va_end(arguments);
     Text allowed;
     text_init(&allowed);
-    store_describe(target->entries, target->entry->row, &allowed);
+    wanted_describe(target->entries, target->entry->row, &allowed);
     source_error(target->entry->source, span, allowed.data, target->err, "%s", message);
     text_finish(&allowed);
     return false;
@@ -138,6 +101,26 @@ static bool read_number(const Target *target, const Node *node, double *value)
                             target->err, "%s takes no tolerance (%s)", target->path, sign);
     }
     return accept(target, node, is_read, &complaint, *value);
+}
+
+// A number, or the word that stands for 0.
+static bool store_quantity(const Target *target, double *field)
+{
+    const Node *node = target->entry->node;
+    const char *word = target->entry->row->zero_word;
+    if (word != NULL && node->kind == NODE_SCALAR && strcmp(node->text, word) == 0) {
+        *field = 0.0;
+        return true;
+    }
+    if (word != NULL && node->kind == NODE_SCALAR && strcspn(node->text, "0123456789") > 1) {
+        return refuse(target, node->span, "'%.40s' is no choice for %s", node->text, target->path);
+    }
+    double number = 0.0;
+    if (!read_number(target, node, &number)) {
+        return false;
+    }
+    *field = number;
+    return true;
 }
 
 static bool store_tolerated(const Target *target)
@@ -386,6 +369,8 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return find_name(&target, entry->node, SCHEMA_JOINT, false, target.field);
     case SCHEMA_RADIAL_CLEARANCE:
         return store_radial_clearance(&target, target.field);
+    case SCHEMA_QUANTITY:
+        return store_quantity(&target, target.field);
     default: // SCHEMA_ALONG is moved to the centre of mass once the links are known
         if (!read_number(&target, entry->node, &number)) {
             return false;

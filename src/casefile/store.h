@@ -6,6 +6,3 @@
 // Understands the value of one entry and puts it into the scenario. A wrong value is an error with
 // its place and what would be allowed.
 bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err);
-
-// Appends what the row takes, in words: its choices, the names of the case, or an example.
-void store_describe(const Entries *entries, const SchemaRow *row, Text *text);

@@ -97,7 +97,11 @@ static void run_ensembles(CaseRun *run, bool is_quiet)
         snprintf(name, sizeof name, "%s, %d starts", solver->name, ENSEMBLE_MEMBERS);
         Progress progress;
         const RunWatch watch = progress_watch(&progress, name, is_quiet);
-        ensemble_run(&run->scenario, solver, watch, &run->ensembles[i]);
+        // a step that was chosen once is good for starts beside this one
+        const bool is_chosen = options->step == 0.0 && options->backends[i] == BACKEND_ODE;
+        const Scenario scenario =
+            is_chosen ? scenario_with_step(&run->scenario, run->runs[i]->step_s) : run->scenario;
+        ensemble_run(&scenario, solver, watch, &run->ensembles[i]);
         progress_end(&progress);
     }
     run->report.ensembles = run->ensembles;

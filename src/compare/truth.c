@@ -8,6 +8,7 @@
 #include "compare/truth.h"
 
 #include "compare/error.h"
+#include "model/distance.h"
 #include "model/perturb.h"
 #include "run/registry.h"
 
@@ -15,10 +16,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double TIGHTER = 1e-2;       // the second run's tolerance over the first's
-static const double PERTURBATION = 1e-10; // of the twin's start
-static const double TIGHTEST = 1e-14;     // below it rounding does not let steps follow
-static const double GROWTH_MAX = 1e5;     // of the twin's distance, up to the horizon
+static const double TIGHTER = 1e-2;   // the second run's tolerance over the first's
+static const double TIGHTEST = 1e-14; // below it rounding does not let steps follow
 
 static Trajectory *run(const Scenario *scenario, BackendKind backend, RunWatch watch)
 {
@@ -36,7 +35,7 @@ static double shorten_horizon(const Trajectory *trajectory, const Trajectory *ot
     double reached = 0.0;
     size_t k = 0;
     if (error_series(other, trajectory, distance)) {
-        while (k < count && distance[k] <= GROWTH_MAX * PERTURBATION &&
+        while (k < count && distance[k] <= DISTANCE_GROWTH * DISTANCE_TWIN &&
                trajectory->times[k] <= truth->horizon_s) {
             largest = fmax(largest, distance[k]);
             reached = trajectory->times[k++];
@@ -49,9 +48,7 @@ static double shorten_horizon(const Trajectory *trajectory, const Trajectory *ot
     return largest;
 }
 
-// Fewer steps of the horizon would say little; a single twin may lie in a direction that hardly
-// grows.
-enum { LEAST_SAMPLES = 1000, TWINS = 4 };
+enum { LEAST_SAMPLES = 1000 }; // fewer steps of the horizon would say little
 
 // The scenario on a grid fine enough for the horizon, the case's own samples among them.
 static Scenario refined(const Scenario *scenario)
@@ -95,12 +92,12 @@ static void certify(const Scenario *fine, const Scenario *other, RunWatch watch,
     truth->is_limited = false;
     truth->horizon_s = scenario_duration(fine);
     shorten_horizon(second, first, truth);
-    for (unsigned member = 1; member <= TWINS && truth->message[0] == '\0'; member++) {
+    for (unsigned member = 1; member <= DISTANCE_TWINS && truth->message[0] == '\0'; member++) {
         Scenario beside = *other;
-        perturb_start(&beside, PERTURBATION, member);
+        perturb_start(&beside, DISTANCE_TWIN, member);
         Trajectory *twin = run_for(&beside, watch, truth);
         const double distance = shorten_horizon(second, twin, truth);
-        truth->growth = fmax(truth->growth, distance / PERTURBATION);
+        truth->growth = fmax(truth->growth, distance / DISTANCE_TWIN);
         trajectory_destroy(twin);
     }
     truth->uncertainty = shorten_horizon(second, first, truth);

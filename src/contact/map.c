@@ -6,6 +6,15 @@
 //                        implicit Euler, always stable, damping raised by h k
 // corrected              ERP = h k / c, CFM = 1 / c: F = k d - c v_out, spring explicit and damper
 //                        implicit; symplectic, no damping of its own, stable for omega h < 2
+// midpoint               CFM = 2 / c, ERP = h F0 / (c d / 2), F0 = k d + (c / 2) d': F = k d - (c /
+// 2)
+//                        (v_out - d'), damper on the mean of the old and the new speed; second
+//                        order where d stands at mid-step; stable for omega h < 2
+// exact                  CFM = h a / (m (1 - a)), ERP = b h / (1 - a), with a = exp(-2 z omega h)
+// and
+//                        b h = 1 + a - 2 exp(-z omega h) cos(omega_d h): then d and d' follow
+//                        d'_new = a d' - b d, d_new = d + h d'_new, of determinant a and of the
+//                        trace of the continuous oscillator; for omega h < pi
 // inverse of textbook    kp = ERP / (h CFM), kd = (1 - ERP) / CFM
 // Poisson                F = p d': CFM = 1 / p
 // bounce with CFM        delivered e' = (e - r) / (1 + r), r = CFM m / h
@@ -21,6 +30,7 @@
 #include "contact/map.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 
 // small enough that the force is right to 1e-9 wherever the overlap is at least a tenth of the
@@ -33,18 +43,53 @@ enum { PHASE_COUNT = 16 };
 // far beyond any contact that ends: 1e7 steps are seconds of wall time
 enum { STEP_MAX = 10000000 };
 
-static ErpCfm textbook(double stiffness, double damping, double step)
+static void check_contact(const MapContact *contact)
 {
-    assert(stiffness >= 0.0 && damping >= 0.0 && stiffness + damping > 0.0 && step > 0.0);
-    const double sum = step * stiffness + damping;
-    return (ErpCfm){.erp = step * stiffness / sum, .cfm = 1.0 / sum};
+    assert(contact->stiffness >= 0.0 && contact->damping >= 0.0 && contact->step > 0.0);
+    assert(contact->stiffness + contact->damping > 0.0);
 }
 
-static ErpCfm corrected(double stiffness, double damping, double step)
+static ErpCfm textbook(const MapContact *contact)
 {
-    assert(stiffness >= 0.0 && damping >= 0.0 && stiffness + damping > 0.0 && step > 0.0);
-    const double damper = fmax(damping, STAND_IN_SHARE * step * stiffness);
-    return (ErpCfm){.erp = step * stiffness / damper, .cfm = 1.0 / damper};
+    check_contact(contact);
+    const double sum = contact->step * contact->stiffness + contact->damping;
+    return (ErpCfm){.erp = contact->step * contact->stiffness / sum, .cfm = 1.0 / sum};
+}
+
+// The damper, or what stands in for one.
+static double damper_of(const MapContact *contact)
+{
+    check_contact(contact);
+    return fmax(contact->damping, STAND_IN_SHARE * contact->step * contact->stiffness);
+}
+
+static ErpCfm corrected(const MapContact *contact)
+{
+    const double damper = damper_of(contact);
+    return (ErpCfm){.erp = contact->step * contact->stiffness / damper, .cfm = 1.0 / damper};
+}
+
+static ErpCfm midpoint(const MapContact *contact)
+{
+    assert(contact->depth > 0.0);
+    const double half = 0.5 * damper_of(contact);
+    const double force = contact->stiffness * contact->depth + half * contact->closing;
+    return (ErpCfm){.erp = contact->step * force / (half * contact->depth), .cfm = 1.0 / half};
+}
+
+static ErpCfm exact(const MapContact *contact)
+{
+    assert(contact->mass > 0.0);
+    const double h = contact->step;
+    const double decay = damper_of(contact) * h / (2.0 * contact->mass); // zeta omega h
+    const double square = contact->stiffness * h * h / contact->mass - decay * decay;
+    const double alpha = exp(-2.0 * decay);
+    const double lost = -expm1(-2.0 * decay);
+    // 1 + a - 2 e^-x cos y = (1 - e^-x)^2 + 4 e^-x sin^2(y/2), which loses no digits
+    const double half_turn = square >= 0.0 ? sin(0.5 * sqrt(square)) : sinh(0.5 * sqrt(-square));
+    const double swing = copysign(4.0 * exp(-decay) * half_turn * half_turn, square);
+    const double beta = expm1(-decay) * expm1(-decay) + swing;
+    return (ErpCfm){.erp = beta / lost, .cfm = h * alpha / (contact->mass * lost)};
 }
 
 void map_invert(ErpCfm row, double step, double *stiffness, double *damping)
@@ -67,11 +112,14 @@ double map_bounce_delivered(double restitution, double cfm, double mass, double 
 MapImpact map_impact(const Map *map, double mass, double stiffness, double damping, double step,
                      double speed, double first_overlap)
 {
-    const ErpCfm row = map->convert(stiffness, damping, step);
+    MapContact contact = {.stiffness = stiffness, .damping = damping, .step = step, .mass = mass};
     MapImpact impact = {0};
     double depth = first_overlap * speed * step; // m
     double rate = speed;                         // closing speed, m/s
     while (depth >= 0.0 && impact.steps < STEP_MAX) {
+        contact.depth = fmax(depth, DBL_MIN);
+        contact.closing = rate;
+        const ErpCfm row = map->convert(&contact);
         // the row, solved for the force; the wall never pulls
         const double wanted = (row.erp / step * depth + rate) / (row.cfm + step / mass);
         const double force = fmax(wanted, 0.0);
@@ -99,12 +147,17 @@ double map_delivered_restitution(const Map *map, double mass, double stiffness, 
 
 static const Map MAPS[] = {
     [ODE_MAP_TEXTBOOK] = {"textbook", "implicit Euler: always stable, adds damping h k", INFINITY,
-                          0.0, textbook},
+                          0.0, false, textbook},
     [ODE_MAP_CORRECTED] = {"corrected", "spring explicit, damper implicit: adds no damping", 2.0,
-                           STAND_IN_SHARE, corrected},
+                           STAND_IN_SHARE, false, corrected},
+    [ODE_MAP_MIDPOINT] = {"midpoint", "damper on the mean of old and new speed: second order", 2.0,
+                          STAND_IN_SHARE, false, midpoint},
+    [ODE_MAP_EXACT] = {"exact", "frequency and decay of the continuous oscillator, for its mass",
+                       M_PI, STAND_IN_SHARE, true, exact},
 };
 
 const Map *map_get(OdeMap kind)
 {
+    assert(kind < ODE_MAP_IMPULSE);
     return &MAPS[kind];
 }

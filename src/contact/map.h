@@ -11,15 +11,26 @@ typedef struct ErpCfm {
     double cfm; // m/(N s)
 } ErpCfm;
 
+// A contact as the map finds it at the start of a step. Not every map looks at all of it.
+typedef struct MapContact {
+    double stiffness; // k, N/m: force over depth
+    double damping;   // c, N s/m; it or the stiffness must be > 0
+    double step;      // h, s
+    double mass;      // m, kg: effective along the normal
+    double depth;     // d, m, > 0
+    double closing;   // m/s, rate of the depth before the step
+} MapContact;
+
 typedef struct Map {
     const char *name;       // as in a case
     const char *summary;    // one line for people
     double stability_limit; // 1: omega h must stay below it; infinite where it always holds
     double stand_in_share;  // 1: of h k, the damper that stands in for none; 0 for no need
-    // From stiffness k, N/m, and damping c, N s/m, of which one must be > 0, and step h, s.
-    ErpCfm (*convert)(double stiffness, double damping, double step);
+    bool needs_mass;        // whether it looks at the effective mass
+    ErpCfm (*convert)(const MapContact *contact);
 } Map;
 
+// Of every map but ODE_MAP_IMPULSE, which makes no rows.
 const Map *map_get(OdeMap kind);
 
 // The spring and damper that ERP and CFM stand for when read as implicit Euler, the inverse of

@@ -64,6 +64,29 @@ Vec2 linkage_point_velocity(const Motion *motions, int body, Vec2 local)
     return vec2_add(motion->velocity, vec2_scale(motion->omega, vec2_perp(arm)));
 }
 
+// Adds, with a sign, the place and the velocity of one end of a joint.
+static void add_end(const Motion *motions, int body, Vec2 anchor, double sign, JointGap *gap)
+{
+    if (body == LINKAGE_GROUND) {
+        gap->place = vec2_add(gap->place, vec2_scale(sign, anchor));
+        return;
+    }
+    const Motion *motion = &motions[body];
+    const Vec2 arm = vec2_rotate(motion->angle, anchor);
+    const Vec2 turning = vec2_scale(motion->omega, vec2_perp(arm));
+    gap->place = vec2_add(gap->place, vec2_scale(sign, vec2_add(motion->position, arm)));
+    gap->velocity = vec2_add(gap->velocity, vec2_scale(sign, vec2_add(motion->velocity, turning)));
+}
+
+JointGap linkage_joint_gap(const Linkage *linkage, const Motion *motions, int joint)
+{
+    const Joint *data = &linkage->joints[joint];
+    JointGap gap = {{0.0, 0.0}, {0.0, 0.0}};
+    add_end(motions, data->body_b, data->anchor_b, 1.0, &gap);
+    add_end(motions, data->body_a, data->anchor_a, -1.0, &gap);
+    return gap;
+}
+
 static bool check_bodies(const Linkage *linkage, Err *err)
 {
     for (size_t i = 0; i < linkage->body_count; i++) {

@@ -93,6 +93,15 @@ int linkage_find_joint(const Linkage *linkage, const char *name);
 Vec2 linkage_point(const Motion *motions, int body, Vec2 local);
 Vec2 linkage_point_velocity(const Motion *motions, int body, Vec2 local);
 
+// Where the second anchor of a joint (the pin) is against the first (the hole), m, and how fast it
+// moves there, m/s.
+typedef struct JointGap {
+    Vec2 place;
+    Vec2 velocity;
+} JointGap;
+
+JointGap linkage_joint_gap(const Linkage *linkage, const Motion *motions, int joint);
+
 // Checks what must hold for any linkage: mass and inertia positive and finite, names unique,
 // joints between two different existing bodies, pin smaller than hole, driver at an ideal joint
 // with the ground. Fails with ERR_CASE and the name of the offender.

@@ -18,8 +18,10 @@ const char *const OPTIONS_DAMPINGS[] = {
     NULL,
 };
 const char *const OPTIONS_ODE_SOLVERS[] = {"direct", "quick", NULL};
-const char *const OPTIONS_ODE_STEPPINGS[] = {"plain", NULL};
-const char *const OPTIONS_ODE_MAPS[] = {"textbook", "corrected", NULL};
+const char *const OPTIONS_ODE_STEPPINGS[] = {"plain", "staggered", "extrapolated", NULL};
+const char *const OPTIONS_ODE_MAPS[] = {
+    "textbook", "corrected", "midpoint", "exact", "impulse", NULL,
+};
 const char *const OPTIONS_ODE_COLLIDERS[] = {"pin-hole", NULL};
 const char *const OPTIONS_BACKENDS[] = {"analytic", "reference", "ode", NULL};
 
@@ -59,6 +61,7 @@ RunOptions run_options_default(void)
         .duration = 0.06, // one revolution at 1000 rpm
         .samples = 3600,  // a tenth of a degree
         .step = 1e-6,     // some 50 steps to a steel contact
+        .tolerance = 1e-4,
         .backend_count = 2,
         .backends = {BACKEND_ANALYTIC, BACKEND_ODE},
     };
@@ -89,5 +92,8 @@ OdeOptions ode_options_default(void)
         .over_relaxation = 1.3,
         .seed = 1,
         .settle_steps = 100, // 0.8^100 = 2e-10 of the start's error is left at ERP 0.2
+        .levels = 4,         // order 5; one more gains little before rounding shows
+        .gear = 1,
+        .contact_phase = 0.05, // errors of 2e-9 on the paper's case; 80 evaluations a radian
     };
 }

@@ -34,9 +34,23 @@ typedef enum DampingKind {
 } DampingKind;
 
 typedef enum OdeSolver { ODE_DIRECT, ODE_QUICK } OdeSolver;
-typedef enum OdeStepping { ODE_PLAIN } OdeStepping;
-typedef enum OdeMap { ODE_MAP_TEXTBOOK, ODE_MAP_CORRECTED } OdeMap;
 typedef enum OdeCollider { ODE_COLLIDER_PIN_HOLE } OdeCollider;
+
+// When ODE's positions and speeds are taken to be.
+typedef enum OdeStepping {
+    ODE_PLAIN,        // both at the end of the step, as ODE's manual has it
+    ODE_STAGGERED,    // positions half a step behind: a leapfrog
+    ODE_EXTRAPOLATED, // several staggered worlds of different steps, for ideal joints
+} OdeStepping;
+
+// How stiffness and damping become ERP and CFM, or the contact's impulse a force.
+typedef enum OdeMap {
+    ODE_MAP_TEXTBOOK,
+    ODE_MAP_CORRECTED,
+    ODE_MAP_MIDPOINT,
+    ODE_MAP_EXACT,
+    ODE_MAP_IMPULSE, // no row: the contact is integrated within the step; of ODE_STAGGERED
+} OdeMap;
 
 typedef enum BackendKind {
     BACKEND_ANALYTIC,
@@ -79,7 +93,8 @@ typedef struct RunOptions {
     double revolutions; // of the driver
     double duration;    // s, where there is no driver
     size_t samples;     // per revolution of the driver, or in the whole run without one
-    double step;        // s
+    double step;        // s; 0: chosen for the tolerance
+    double tolerance;   // 1, largest error in omega wanted of a step that is chosen
     size_t backend_count;
     BackendKind backends[BACKEND_COUNT];
 } RunOptions;
@@ -99,7 +114,10 @@ typedef struct OdeOptions {
     size_t iterations;      // of ODE_QUICK
     double over_relaxation; // 1, of ODE_QUICK
     size_t seed;            // of the order in which ODE_QUICK visits rows
-    size_t settle_steps;    // run before time zero where every joint is ideal
+    size_t settle_steps;    // of ODE_PLAIN: run before time zero where every joint is ideal
+    size_t levels;          // of ODE_EXTRAPOLATED: worlds side by side
+    size_t gear;            // of ODE_MAP_IMPULSE: steps so many times finer near a wall
+    double contact_phase;   // rad, of ODE_MAP_IMPULSE: a contact's own oscillation in a local step
 } OdeOptions;
 
 MaterialOptions material_options_default(void);

@@ -53,14 +53,26 @@ bool scenario_has_clearance(const Scenario *scenario)
     return false;
 }
 
+Scenario scenario_with_step(const Scenario *scenario, double step_s)
+{
+    Scenario given = *scenario;
+    given.run.step = step_s;
+    given.ode.stepping = scenario_has_clearance(scenario) ? ODE_STAGGERED : ODE_EXTRAPOLATED;
+    given.ode.map = ODE_MAP_IMPULSE;
+    // contacts need fine steps and flight does not
+    given.ode.gear = 2;
+    return given;
+}
+
 bool scenario_check(const Scenario *scenario, Err *err)
 {
     if (!linkage_check(&scenario->linkage, err)) {
         return false;
     }
     const RunOptions *run = &scenario->run;
-    if (!(run->step > 0.0) || !isfinite(run->step)) {
-        return err_set(err, ERR_CASE, "step %g s, allowed: above 0", run->step);
+    if (!(run->step >= 0.0) || !isfinite(run->step)) {
+        return err_set(err, ERR_CASE, "step %g s, allowed: above 0, or 0 for one that is chosen",
+                       run->step);
     }
     if (run->samples == 0 || !(scenario_duration(scenario) > 0.0) ||
         scenario_sample_count(scenario) < 2) {

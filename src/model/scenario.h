@@ -43,5 +43,10 @@ double scenario_sample_time(const Scenario *scenario, size_t sample);
 // Whether any joint has play.
 bool scenario_has_clearance(const Scenario *scenario);
 
+// The scenario with the step given and the way of stepping that a step chosen for a tolerance is
+// for: staggered with the contacts integrated in the step, or extrapolated where every joint is
+// ideal.
+Scenario scenario_with_step(const Scenario *scenario, double step_s);
+
 // Checks what no single key can show: the linkage, the options' ranges, the size of the run.
 bool scenario_check(const Scenario *scenario, Err *err);

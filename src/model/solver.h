@@ -32,7 +32,11 @@ typedef struct SolverModel {
     size_t constraint_rows; // of the ideal joints
     size_t contact_rows;    // most so far; of the reference its joints with play
     size_t steps;           // taken so far
-    size_t evaluations;     // of the equations of motion so far, 0 where it does not count them
+    size_t evaluations;   // of the equations of motion so far, or of the forces of contacts that it
+                          // integrates by itself; 0 where it does not count them
+    size_t fallback_rows; // of contacts, to which a map was applied that the case does not ask for
+    double error_estimate; // 1, of a step chosen for a tolerance; 0 without one
+    double estimate_s;     // s, up to which the estimate holds
 } SolverModel;
 
 typedef struct Solver {

@@ -91,6 +91,9 @@ typedef struct Trajectory {
     double wall_s;          // spent in the stepping loop
     size_t constraint_rows; // of the ideal joints, where the solver builds rows
     size_t contact_rows;    // most at any one step; of the reference its joints with play
+    size_t fallback_rows;   // of contacts, where the map asked for would not have been stable
+    double error_estimate;  // 1, of omega, where the step was chosen for a tolerance; else 0
+    double estimate_s;      // s, up to which the estimate holds
     uint64_t hash;          // of every step's velocities, accelerations and joint forces
 } Trajectory;
 

@@ -3,7 +3,9 @@
 // ODE's contact row, F >= 0, d penetration, v_out the separating speed after the step:
 //     v_out + CFM F = (ERP / h) d
 // IMPACT: (ERP, CFM) from the secant stiffness k and damping c of the force law at d, by the map
-// chosen, anew each step. POISSON: CFM = 1 / p and bounce e, the paper's Eq. (2) F = p dg/dt.
+// chosen, anew each step; where omega h is beyond the map's limit, with omega^2 = (dF/dd) / m and m
+// the linkage's effective mass along the normal, by the textbook's, and counted. POISSON: CFM = 1 /
+// p and bounce e, the paper's Eq. (2) F = p dg/dt.
 #include "ode/contact_rows.h"
 
 #include "contact/law.h"
@@ -12,12 +14,19 @@
 
 #include <string.h>
 
-bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world, Err *err)
+bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world, bool is_staggered,
+                       Err *err)
 {
     memset(rows, 0, sizeof *rows);
     rows->scenario = scenario;
     rows->world = world;
-    rows->map = map_get(scenario->ode.map);
+    rows->is_staggered = is_staggered;
+    if (scenario->contact.model == CONTACT_IMPACT && world->pair_count > 0) {
+        rows->map = map_get(scenario->ode.map);
+    }
+    if (!response_init(&scenario->linkage, false, &rows->response, err)) {
+        return false;
+    }
     rows->penalty = scenario->contact.penalty > 0.0
                         ? scenario->contact.penalty
                         : penalty_estimate(scenario->linkage.driver.speed, &scenario->material);
@@ -89,7 +98,16 @@ static dSurfaceParameters surface_of(const ContactRows *rows, ContactRow *row, d
     }
     const double stiffness = force_law_secant(&row->law, row->depth);
     row->damping = force_law_damping(&row->law, row->depth, row->impact_speed);
-    const ErpCfm soft = rows->map->convert(stiffness, row->damping, step_s);
+    const MapContact contact = {
+        .stiffness = stiffness,
+        .damping = row->damping,
+        .step = step_s,
+        .mass = row->mass,
+        .depth = row->depth,
+        .closing = row->closing,
+    };
+    const Map *map = row->falls_back ? map_get(ODE_MAP_TEXTBOOK) : rows->map;
+    const ErpCfm soft = map->convert(&contact);
     surface.soft_erp = soft.erp;
     surface.soft_cfm = soft.cfm;
     return surface;
@@ -117,6 +135,63 @@ static bool check_depth(const ContactRows *rows, size_t number, Err *err)
     return law_check_depth(&row->law, joint, row->depth, 1.0, err);
 }
 
+// The effective mass along the normal of a row. It changes as slowly as the linkage turns.
+static void find_mass(ContactRows *rows, size_t number)
+{
+    static const double SAME_NORMAL = 0.995; // the cosine of 6 degrees
+    ContactRow *row = &rows->rows[number];
+    const bool is_known = vec2_dot(row->mass_normal, row->normal) > SAME_NORMAL;
+    if (is_known && !rows->map->needs_mass) {
+        return;
+    }
+    Motion motions[LINKAGE_BODY_MAX];
+    world_motions(rows->world, motions);
+    if (response_place(&rows->response, motions)) {
+        row->mass = response_mass(&rows->response, 2 * number, row->normal);
+        row->mass_normal = row->normal;
+    }
+}
+
+// Whether the row would not be stable under the map at this step.
+static void check_stability(ContactRows *rows, size_t number, double step_s)
+{
+    ContactRow *row = &rows->rows[number];
+    row->falls_back = false;
+    if (rows->map == NULL || isinf(rows->map->stability_limit)) {
+        return;
+    }
+    find_mass(rows, number);
+    const double frequency = sqrt(force_law_tangent(&row->law, row->depth) / row->mass);
+    row->falls_back = !(frequency * step_s < rows->map->stability_limit);
+    rows->fallback_count += row->falls_back ? 1 : 0;
+}
+
+// The speed at which a pin that overlaps its wall for the first time came to it, m/s: as found now,
+// or, where the steps before show it, its mean over the last step, taken on to the crossing by its
+// change from step to step.
+static double onset_speed(const ContactRows *rows, const ContactRow *row, const PinHole *pose,
+                          double step_s)
+{
+    if (!rows->is_staggered || row->gaps_known == 0) {
+        return pose->approach_speed;
+    }
+    const double mean = (row->gaps[0] - pose->gap) / step_s;
+    if (row->gaps_known == 1 || !(mean > 0.0)) {
+        return mean;
+    }
+    const double change = mean - (row->gaps[1] - row->gaps[0]) / step_s;
+    // the mean stands in the middle of the last step
+    return mean + change * (0.5 - pose->penetration / (mean * step_s));
+}
+
+// Keeps the gaps that a pin had while nothing acted on it.
+static void note_gap(ContactRow *row, double gap)
+{
+    row->gaps_known = row->is_touching ? 0 : row->gaps_known + (row->gaps_known < 2 ? 1 : 0);
+    row->gaps[1] = row->gaps[0];
+    row->gaps[0] = gap;
+}
+
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err)
 {
@@ -133,9 +208,13 @@ bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, dou
             .gap = pose.gap,
             .is_touching = row->is_touching,
         };
-        row->impact_speed =
-            row->is_touching && was_touching ? row->impact_speed : pose.approach_speed;
+        if (!row->is_touching) {
+            row->impact_speed = pose.approach_speed;
+        } else if (!was_touching) {
+            row->impact_speed = onset_speed(rows, row, &pose, step_s);
+        }
         approach[pair->joint] = row->impact_speed;
+        note_gap(row, pose.gap);
         if (!row->is_touching) {
             continue;
         }
@@ -145,7 +224,9 @@ bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, dou
         if (!check_depth(rows, i, err)) {
             return false;
         }
+        check_stability(rows, i, step_s);
         make_row(rows, i, &geom, step_s);
+        rows->row_count++;
         row_count += rows->scenario->contact.friction > 0.0 ? 2 : 1;
     }
     rows->most_rows = row_count > rows->most_rows ? row_count : rows->most_rows;
@@ -188,12 +269,17 @@ static void book_energy(ContactRows *rows, size_t number, Vec2 force, double ste
     }
     const PinHole pose = pair_pose(&rows->world->pairs[number], row->radial_clearance);
     const double pressing = vec2_dot(row->normal, force);
-    const double closing = pose.approach_speed;
+    // of a staggered world the step stands in the middle between its two speeds, and its end
+    // between two places
+    const double closing =
+        rows->is_staggered ? 0.5 * (row->closing + pose.approach_speed) : pose.approach_speed;
+    const double depth =
+        rows->is_staggered ? 0.5 * (row->depth + pose.penetration) : pose.penetration;
     if (rows->scenario->contact.model == CONTACT_POISSON) {
-        row->dissipated = pressing * 0.5 * (row->closing + closing) * step_s;
+        row->dissipated = pressing * 0.5 * (row->closing + pose.approach_speed) * step_s;
     } else {
         row->dissipated = pressing > 0.0 ? row->damping * closing * closing * step_s : 0.0;
-        row->elastic = force_law_energy(&row->law, fmax(0.0, pose.penetration));
+        row->elastic = force_law_energy(&row->law, fmax(0.0, depth));
     }
     if (rows->scenario->contact.friction > 0.0) {
         row->friction = -friction_work(rows, number, force, step_s);

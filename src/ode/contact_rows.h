@@ -3,6 +3,7 @@
 
 #include "contact/force_law.h"
 #include "contact/map.h"
+#include "model/response.h"
 #include "model/trajectory.h"
 #include "ode/world.h"
 
@@ -10,14 +11,19 @@ typedef struct ContactRow {
     ForceLaw law;
     double radial_clearance; // m
     double impact_speed;     // m/s, closing speed when the present contact began
-    bool is_touching;        // whether the present step has a row
-    double depth;            // m, of the row
-    Vec2 normal;             // of the row: unit, direction of the force on the pin
-    double damping;          // N s/m, of the row; not of CONTACT_POISSON
-    double closing;          // m/s, before the step
-    double elastic;          // J, stored in the contact after the step
-    double dissipated;       // J, lost along the normal in the step
-    double friction;         // J, lost in sliding in the step
+    double mass;             // kg, effective along the normal that it was worked out for
+    Vec2 mass_normal;
+    bool falls_back;   // the map is not stable at this step: the row is the textbook's
+    double gaps[2];    // m, of the last step and of the one before it
+    size_t gaps_known; // how many of them the pin was free in
+    bool is_touching;  // whether the present step has a row
+    double depth;      // m, of the row
+    Vec2 normal;       // of the row: unit, direction of the force on the pin
+    double damping;    // N s/m, of the row; not of CONTACT_POISSON
+    double closing;    // m/s, before the step
+    double elastic;    // J, stored in the contact after the step
+    double dissipated; // J, lost along the normal in the step
+    double friction;   // J, lost in sliding in the step
     dJointFeedback feedback;
 } ContactRow;
 
@@ -29,11 +35,17 @@ typedef struct ContactRows {
     dJointGroupID group;
     ContactRow rows[LINKAGE_JOINT_MAX]; // by pair of the world
     size_t most_rows;                   // at any step so far
+    size_t row_count;                   // made so far
+    size_t fallback_count;              // of those, where the map would not have been stable
+    bool is_staggered;                  // places stand half a step behind the speeds
+    Response response;                  // for effective masses
 } ContactRows;
 
 // Prepares the laws of all pairs. Fails with ERR_CASE where a law does not fit a joint. The rows
-// must not be copied: ODE writes into them.
-bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world, Err *err);
+// must not be copied: ODE writes into them. Of a staggered world the places are those of mid-step
+// and the speeds those of the step's start: the onset of a contact is then located between steps.
+bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world, bool is_staggered,
+                       Err *err);
 void contact_rows_finish(ContactRows *rows);
 
 // Looks for contacts where the bodies stand now and makes a row for each; fills the states (gap,

@@ -109,6 +109,12 @@ static dBodyID body_of(const World *world, int body)
     return body == LINKAGE_GROUND ? 0 : world->bodies[body];
 }
 
+// Staggered worlds carry an ideal joint's error of a step off in the next one: a linearised SHAKE.
+static double joint_erp(const OdeOptions *options)
+{
+    return options->stepping == ODE_PLAIN ? options->erp : 1.0;
+}
+
 static void make_ball(const Linkage *linkage, const Motion *motions, size_t number,
                       const OdeOptions *options, World *world)
 {
@@ -117,7 +123,7 @@ static void make_ball(const Linkage *linkage, const Motion *motions, size_t numb
     dJointAttach(ball, body_of(world, joint->body_a), body_of(world, joint->body_b));
     const Vec2 anchor = linkage_point(motions, joint->body_a, joint->anchor_a);
     dJointSetBallAnchor(ball, anchor.x, anchor.y, 0.0);
-    dJointSetBallParam(ball, dParamERP, options->erp);
+    dJointSetBallParam(ball, dParamERP, joint_erp(options));
     dJointSetBallParam(ball, dParamCFM, options->cfm);
     dJointSetFeedback(ball, &world->feedback[number]);
 }
@@ -150,7 +156,7 @@ static void set_world(const Scenario *scenario, dWorldID id)
 {
     const OdeOptions *options = &scenario->ode;
     dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);
-    dWorldSetERP(id, options->erp);
+    dWorldSetERP(id, joint_erp(options));
     dWorldSetCFM(id, options->cfm);
     dWorldSetAutoDisableFlag(id, 0);
     dWorldSetLinearDamping(id, 0.0);
@@ -171,6 +177,7 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
     }
     engine_start();
     engine_seed(scenario->ode.seed);
+    world->linkage = &scenario->linkage;
     world->id = dWorldCreate();
     world->constraint_rows = rows;
     set_world(scenario, world->id);
@@ -198,6 +205,38 @@ void world_finish(World *world)
     memset(world, 0, sizeof *world);
 }
 
+bool world_check(const World *world, Err *err)
+{
+    const Linkage *linkage = world->linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const dReal *velocity = dBodyGetLinearVel(world->bodies[i]);
+        const dReal *omega = dBodyGetAngularVel(world->bodies[i]);
+        if (!isfinite(velocity[0] + velocity[1] + omega[2])) {
+            return err_set(err, ERR_SOLVER, "the velocity of the %s is no longer finite",
+                           linkage->bodies[i].name);
+        }
+        if (velocity[2] != 0.0 || omega[0] != 0.0 || omega[1] != 0.0) {
+            return err_set(err, ERR_SOLVER, "the %s has left the plane", linkage->bodies[i].name);
+        }
+    }
+    return true;
+}
+
+void world_joint_forces(const World *world, JointState *joints)
+{
+    const Linkage *linkage = world->linkage;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint->kind == JOINT_REVOLUTE) {
+            // ODE gives the force on the first body attached: a, if it is no ground
+            const double sign = joint->body_a != LINKAGE_GROUND ? -1.0 : 1.0;
+            const dReal *force = world->feedback[i].f1;
+            joints[i].force_on_b = (Vec2){sign * force[0], sign * force[1]};
+            joints[i].force = vec2_length(joints[i].force_on_b);
+        }
+    }
+}
+
 void world_place(World *world, size_t body, const Motion *motion)
 {
     const dBodyID id = world->bodies[body];
@@ -220,4 +259,17 @@ Snapshot world_snapshot(const World *world, size_t body)
         .velocity = {velocity[0], velocity[1]},
         .omega = dBodyGetAngularVel(id)[2],
     };
+}
+
+void world_motions(const World *world, Motion *motions)
+{
+    for (size_t i = 0; i < world->linkage->body_count; i++) {
+        const Snapshot now = world_snapshot(world, i);
+        motions[i] = (Motion){
+            .position = now.position,
+            .angle = atan2(now.direction.y, now.direction.x),
+            .velocity = now.velocity,
+            .omega = now.omega,
+        };
+    }
 }

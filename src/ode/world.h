@@ -1,7 +1,7 @@
 // A linkage built in ODE: bodies, ideal joints, pins and holes. Only what the plane needs.
 #pragma once
 
-#include "model/scenario.h"
+#include "model/trajectory.h"
 
 #include <ode/ode.h>
 
@@ -13,6 +13,7 @@ typedef struct WorldPair {
 } WorldPair;
 
 typedef struct World {
+    const Linkage *linkage;
     dWorldID id;
     dBodyID bodies[LINKAGE_BODY_MAX];
     dJointFeedback feedback[LINKAGE_JOINT_MAX]; // of the ideal joints
@@ -28,6 +29,13 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
 // Destroys what was built; accepts a zeroed world.
 void world_finish(World *world);
 
+// Fails with ERR_SOLVER where a velocity is not finite or a body has left the plane, which is kept
+// only as long as nothing ever leaves it.
+bool world_check(const World *world, Err *err);
+
+// Fills in the forces of the ideal joints, the driven one apart, in the last step.
+void world_joint_forces(const World *world, JointState *joints);
+
 // Puts one body where a motion says, with its velocity.
 void world_place(World *world, size_t body, const Motion *motion);
 
@@ -40,3 +48,6 @@ typedef struct Snapshot {
 } Snapshot;
 
 Snapshot world_snapshot(const World *world, size_t body);
+
+// The places and velocities of all bodies; angles in one turn.
+void world_motions(const World *world, Motion *motions);

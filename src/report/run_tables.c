@@ -227,6 +227,19 @@ void run_tables_cost(const RunReport *report, const Style *style, Text *text)
         if (!run->is_complete) {
             text_append(text, "\n  %s%s failed: %s%s\n", style->failure, run->backend, run->message,
                         style->end);
+            continue;
+        }
+        if (run->error_estimate > 0.0) {
+            text_append(text,
+                        "  %s: step chosen by trial runs, which the steps count; its error is"
+                        " estimated as %.2g up to %.4g ms.\n",
+                        run->backend, run->error_estimate, run->estimate_s * UNITS_MS);
+        }
+        if (run->fallback_rows > 0) {
+            text_append(text,
+                        "  %s%s: in %zu contact rows the map would not have been stable at this "
+                        "step; textbook took its place. A shorter step mends that.%s\n",
+                        style->failure, run->backend, run->fallback_rows, style->end);
         }
     }
 }

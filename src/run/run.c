@@ -132,6 +132,9 @@ static void fill_model(const Loop *loop, Trajectory *trajectory)
     trajectory->evaluations = model.evaluations;
     trajectory->constraint_rows = model.constraint_rows;
     trajectory->contact_rows = model.contact_rows;
+    trajectory->fallback_rows = model.fallback_rows;
+    trajectory->error_estimate = model.error_estimate;
+    trajectory->estimate_s = model.estimate_s;
 }
 
 Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatch watch)

@@ -4,55 +4,24 @@
 // ODE's contact row, published delivered restitutions, the closed form of a linear damper.
 #include "complete_run.h"
 
-#include "mechanism.h"
+#include "one_impact.h"
 
-#include "contact/damping.h"
 #include "contact/force_law.h"
 #include "contact/law.h"
 
-static const double MASS = 0.1;       // kg
-static const double STIFFNESS = 1e7;  // N/m
-static const double SPEED = 0.5;      // m/s
-static const double CLEARANCE = 1e-3; // m
-enum { PHASES = 16 };
-
 // Speed after one impact over the speed before, the mean over where the steps fall.
-static double delivered(Scenario scenario, double step_s, double contact_s)
+static double delivered(const Scenario *scenario, double steps_a_contact)
 {
-    scenario.run.step = step_s;
-    scenario.run.samples = 2;
-    double sum = 0.0;
-    for (int phase = 0; phase < PHASES; phase++) {
-        // ten steps of flight and a share of one more, then the contact and as long again
-        const double flight = (10.0 + (double)phase / PHASES) * step_s;
-        scenario.linkage.bodies[0].start.position.x = CLEARANCE - SPEED * flight;
-        scenario.linkage.bodies[0].start.velocity.x = SPEED;
-        scenario.run.duration = flight + 3.0 * contact_s + 3.0 * step_s;
-        Trajectory *trajectory = complete_run(&scenario, BACKEND_ODE);
-        assert_int_equal(trajectory->joints[0].impacts, 1);
-        sum -= trajectory_motion(trajectory, trajectory->sample_count - 1, 0)->velocity.x;
-        trajectory_destroy(trajectory);
-    }
-    return sum / (PHASES * SPEED);
-}
-
-static Scenario linear_pin(OdeMap map, double asked)
-{
-    Scenario scenario = mechanism_pin(MASS, CLEARANCE);
-    scenario.contact.stiffness = STIFFNESS;
-    scenario.contact.exponent = 1.0;
-    scenario.contact.damping = DAMPING_VISCOUS;
-    scenario.contact.viscous_coefficient =
-        2.0 * damping_linear_ratio(asked) * sqrt(STIFFNESS * MASS);
-    scenario.ode.map = map;
-    return scenario;
+    const OneImpact impact =
+        one_impact_run(*scenario, one_impact_duration(scenario) / steps_a_contact);
+    assert_true(impact.is_single);
+    return impact.restitution;
 }
 
 // The table of the one-freedom model: restitution against steps per contact half-period.
 static void the_textbook_map_loses_what_the_table_says(void **state)
 {
     (void)state;
-    const double contact_s = M_PI * sqrt(MASS / STIFFNESS);
     const struct {
         double asked;
         double steps;
@@ -62,23 +31,21 @@ static void the_textbook_map_loses_what_the_table_says(void **state)
         {1.0, 10, 0.646},   {0.9, 100, 0.861}, {0.9, 10, 0.595},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        const Scenario scenario = linear_pin(ODE_MAP_TEXTBOOK, rows[i].asked);
-        assert_near(delivered(scenario, contact_s / rows[i].steps, contact_s), rows[i].expected,
-                    0.01);
+        const Scenario scenario = one_impact_linear(ODE_MAP_TEXTBOOK, rows[i].asked);
+        assert_near(delivered(&scenario, rows[i].steps), rows[i].expected, 0.01);
     }
 }
 
 static void the_corrected_map_keeps_what_is_asked(void **state)
 {
     (void)state;
-    const double contact_s = M_PI * sqrt(MASS / STIFFNESS);
     const double steps[] = {1000, 300, 100, 30, 10, 5};
     for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
-        const Scenario damped = linear_pin(ODE_MAP_CORRECTED, 0.9);
-        assert_near(delivered(damped, contact_s / steps[i], contact_s), 0.9, 0.01);
+        const Scenario damped = one_impact_linear(ODE_MAP_CORRECTED, 0.9);
+        assert_near(delivered(&damped, steps[i]), 0.9, 0.01);
         // no damping at all: the stand-in damper must not show
-        const Scenario elastic = linear_pin(ODE_MAP_CORRECTED, 1.0);
-        assert_near(delivered(elastic, contact_s / steps[i], contact_s), 1.0, 0.01);
+        const Scenario elastic = one_impact_linear(ODE_MAP_CORRECTED, 1.0);
+        assert_near(delivered(&elastic, steps[i]), 1.0, 0.01);
     }
 }
 
@@ -90,24 +57,17 @@ static void each_damping_law_delivers_its_own_restitution(void **state)
                                  DAMPING_EXACT};
     const double at_half[] = {0.7252, 0.6630, 0.4704, 0.5};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        Scenario scenario = mechanism_pin(MASS, CLEARANCE);
-        scenario.contact.stiffness = 6.6e10;
-        scenario.contact.exponent = 1.5;
-        scenario.contact.damping = kinds[i];
-        scenario.contact.restitution = 0.5;
-        scenario.ode.map = ODE_MAP_CORRECTED;
-        const double depth = damping_depth_max(6.6e10, 1.5, 0.0, MASS, SPEED);
-        const double contact_s = 2.943275 * depth / SPEED;
+        const Scenario scenario = one_impact_hertz(ODE_MAP_CORRECTED, kinds[i], 0.5);
         // first order in the step: at 2000 steps a contact, some 1e-3
-        assert_near(delivered(scenario, contact_s / 2000.0, contact_s), at_half[i], 2e-3);
+        assert_near(delivered(&scenario, 2000.0), at_half[i], 2e-3);
     }
 }
 
 // Penetration of a pin that lies still on the wall under its weight.
 static double static_depth(Scenario scenario, double weight_n, double guess_m)
 {
-    scenario.gravity = weight_n / MASS;
-    scenario.linkage.bodies[0].start.position.y = -(CLEARANCE + guess_m);
+    scenario.gravity = weight_n / ONE_IMPACT_MASS;
+    scenario.linkage.bodies[0].start.position.y = -(ONE_IMPACT_CLEARANCE + guess_m);
     scenario.run.step = 1e-6;
     scenario.run.samples = 1;
     scenario.run.duration = 0.02;
@@ -122,10 +82,11 @@ static void a_constant_load_presses_as_deep_as_the_law_says(void **state)
     (void)state;
     const LawKind laws[] = {LAW_HERTZ_SOCKET, LAW_JOHNSON, LAW_ESDU_78035};
     for (int map = 0; map < 2; map++) {
-        Scenario linear = linear_pin((OdeMap)map, 1.0);
-        linear.contact.viscous_coefficient = 2.0 * sqrt(STIFFNESS * MASS);
+        Scenario linear = one_impact_linear((OdeMap)map, 1.0);
+        const double stiffness = linear.contact.stiffness;
+        linear.contact.viscous_coefficient = 2.0 * sqrt(stiffness * ONE_IMPACT_MASS);
         const double weight = 1000.0;
-        assert_close(static_depth(linear, weight, 0.5 * weight / STIFFNESS), weight / STIFFNESS,
+        assert_close(static_depth(linear, weight, 0.5 * weight / stiffness), weight / stiffness,
                      1e-6);
         for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
             Scenario scenario = linear;
@@ -136,7 +97,7 @@ static void a_constant_load_presses_as_deep_as_the_law_says(void **state)
             assert_true(law_build(&scenario.contact, &scenario.material,
                                   &scenario.linkage.joints[0].clearance, 0.0, &law, &err));
             const double expected = force_law_penetration(&law, weight);
-            scenario.contact.viscous_coefficient = sqrt(MASS * weight / expected);
+            scenario.contact.viscous_coefficient = sqrt(ONE_IMPACT_MASS * weight / expected);
             assert_close(static_depth(scenario, weight, 0.9 * expected), expected, 1e-6);
         }
     }
@@ -146,10 +107,7 @@ static void a_constant_load_presses_as_deep_as_the_law_says(void **state)
 static void a_power_law_given_as_stiffness_presses_by_that_power(void **state)
 {
     (void)state;
-    Scenario scenario = mechanism_pin(MASS, CLEARANCE);
-    scenario.contact.stiffness = 6.6e10;
-    scenario.contact.exponent = 1.5;
-    scenario.contact.damping = DAMPING_VISCOUS;
+    Scenario scenario = one_impact_hertz(ODE_MAP_TEXTBOOK, DAMPING_VISCOUS, 0.9);
     scenario.contact.viscous_coefficient = 5e3;
     const double weight = 500.0;
     const double expected = pow(weight / 6.6e10, 1.0 / 1.5);

@@ -6,37 +6,86 @@
 
 #include <string.h>
 
-// The force of one row, solved for F: v_out = v + h F / m, v separating.
-static double row_force(ErpCfm row, double step, double mass, double depth, double closing)
+// A contact in which nothing is a round number of anything else.
+static const MapContact SOME_CONTACT = {
+    .stiffness = 4e8,
+    .damping = 500.0,
+    .step = 2e-6,
+    .mass = 0.15,
+    .depth = 3e-7,
+    .closing = 0.2,
+};
+
+// The force of the map's row, solved for F, which may pull here: v_out = v + h F / m, v separating.
+static double row_force(const Map *map, const MapContact *contact)
 {
-    return (row.erp / step * depth + closing) / (row.cfm + step / mass);
+    const ErpCfm row = map->convert(contact);
+    return (row.erp / contact->step * contact->depth + contact->closing) /
+           (row.cfm + contact->step / contact->mass);
+}
+
+// One step of a map on a linear spring and damper: the force is a depth's and a speed's share.
+typedef struct OneStep {
+    double of_depth; // h^2 / m times the force at depth 1
+    double of_speed; // h / m times the force at closing speed 1
+} OneStep;
+
+static OneStep one_step(const Map *map, MapContact contact)
+{
+    contact.depth = 1.0;
+    contact.closing = 1.0 / contact.step;
+    const double closing = row_force(map, &contact);
+    contact.closing = -contact.closing;
+    const double opening = row_force(map, &contact);
+    const double scale = contact.step * contact.step / contact.mass;
+    return (OneStep){0.5 * scale * (closing + opening), 0.5 * scale * (closing - opening)};
+}
+
+// Of the matrix that takes depth and closing speed to those of a step later, as ODE steps.
+static double determinant(OneStep step)
+{
+    return 1.0 - step.of_speed;
+}
+
+static double trace(OneStep step)
+{
+    return 2.0 - step.of_depth - step.of_speed;
+}
+
+// Unit mass and frequency, for a damping ratio and a step.
+static MapContact oscillator(double zeta, double step)
+{
+    return (MapContact){.stiffness = 1.0, .damping = 2.0 * zeta, .step = step, .mass = 1.0};
 }
 
 static void names_are_the_words_of_a_case(void **state)
 {
     (void)state;
-    for (int kind = ODE_MAP_TEXTBOOK; kind <= ODE_MAP_CORRECTED; kind++) {
+    for (int kind = ODE_MAP_TEXTBOOK; kind < ODE_MAP_IMPULSE; kind++) {
         assert_string_equal(map_get((OdeMap)kind)->name, OPTIONS_ODE_MAPS[kind]);
         assert_true(strlen(map_get((OdeMap)kind)->summary) > 0);
     }
-    assert_null(OPTIONS_ODE_MAPS[ODE_MAP_CORRECTED + 1]);
+    assert_string_equal(OPTIONS_ODE_MAPS[ODE_MAP_IMPULSE], "impulse");
+    assert_null(OPTIONS_ODE_MAPS[ODE_MAP_IMPULSE + 1]);
 }
 
 static void the_textbook_map_is_inverted_exactly(void **state)
 {
     (void)state;
+    MapContact contact = SOME_CONTACT;
+    contact.stiffness = 3e8;
+    contact.step = 1e-6;
+    double k;
+    double c;
     for (double damping = 0.0; damping < 2e4; damping = 10.0 * damping + 1.0) {
-        const ErpCfm row = map_get(ODE_MAP_TEXTBOOK)->convert(3e8, damping, 1e-6);
-        double k;
-        double c;
-        map_invert(row, 1e-6, &k, &c);
+        contact.damping = damping;
+        map_invert(map_get(ODE_MAP_TEXTBOOK)->convert(&contact), 1e-6, &k, &c);
         assert_close(k, 3e8, 1e-12);
         assert_near(c, damping, 1e-9 * (damping + 300.0)); // 1 - ERP loses digits where c << h k
     }
     // control: the corrected map read as implicit Euler is another damper
-    double k;
-    double c;
-    map_invert(map_get(ODE_MAP_CORRECTED)->convert(3e8, 100.0, 1e-6), 1e-6, &k, &c);
+    contact.damping = 100.0;
+    map_invert(map_get(ODE_MAP_CORRECTED)->convert(&contact), 1e-6, &k, &c);
     assert_close(k, 3e8, 1e-12);
     assert_close(c, 100.0 - 300.0, 1e-12);
 }
@@ -44,20 +93,73 @@ static void the_textbook_map_is_inverted_exactly(void **state)
 static void each_map_makes_the_row_the_force_it_says(void **state)
 {
     (void)state;
-    const double h = 2e-6;
-    const double m = 0.15;
-    const double k = 4e8;
-    const double c = 500.0;
-    const double d = 3e-7;
-    const double closing = 0.2;
-    // textbook: the force at the end of the step
-    double force = row_force(map_get(ODE_MAP_TEXTBOOK)->convert(k, c, h), h, m, d, closing);
-    double out = -closing + h * force / m;
-    assert_close(force, k * (d - h * out) - c * out, 1e-12);
-    // corrected: the spring at the start, the damper at the end
-    force = row_force(map_get(ODE_MAP_CORRECTED)->convert(k, c, h), h, m, d, closing);
-    out = -closing + h * force / m;
-    assert_close(force, k * d - c * out, 1e-12);
+    const MapContact at = SOME_CONTACT;
+    for (int kind = ODE_MAP_TEXTBOOK; kind <= ODE_MAP_MIDPOINT; kind++) {
+        const double force = row_force(map_get((OdeMap)kind), &at);
+        const double after = at.closing - at.step * force / at.mass; // closing speed
+        const double said[] = {
+            // spring and damper at the end of the step
+            at.stiffness * (at.depth + at.step * after) + at.damping * after,
+            // the spring at the start, the damper at the end
+            at.stiffness * at.depth + at.damping * after,
+            // the damper on the mean of both speeds
+            at.stiffness * at.depth + at.damping * 0.5 * (at.closing + after),
+        };
+        for (int other = 0; other < 3; other++) {
+            if (other == kind) {
+                assert_close(force, said[other], 1e-12);
+            } else {
+                // control: what another map says is another force
+                assert_true(fabs(force / said[other] - 1.0) > 1e-3);
+            }
+        }
+    }
+}
+
+// The midpoint's force is linear though its ERP is not: also on the way out, and in next to no
+// depth.
+static void the_midpoint_map_holds_at_any_depth_and_speed(void **state)
+{
+    (void)state;
+    const Map *map = map_get(ODE_MAP_MIDPOINT);
+    MapContact at = SOME_CONTACT;
+    for (at.depth = 1e-15; at.depth < 1e-4; at.depth *= 100.0) {
+        for (at.closing = -1.0; at.closing <= 1.0; at.closing += 0.25) {
+            const double force = row_force(map, &at);
+            const double after = at.closing - at.step * force / at.mass;
+            const double damped = 0.5 * at.damping * (at.closing + after);
+            const double size = at.stiffness * at.depth + fabs(damped);
+            assert_near(force, at.stiffness * at.depth + damped, 1e-12 * size);
+        }
+    }
+}
+
+static void the_exact_map_turns_and_decays_like_the_continuous_oscillator(void **state)
+{
+    (void)state;
+    const Map *map = map_get(ODE_MAP_EXACT);
+    assert_true(map->needs_mass);
+    static const double ZETAS[] = {0.0, 0.03, 0.5, 0.999, 1.0, 1.001, 3.0};
+    static const double STEPS[] = {1e-3, 0.1, 0.5, 1.0, 2.0, 3.0};
+    for (size_t i = 0; i < sizeof ZETAS / sizeof *ZETAS; i++) {
+        for (size_t k = 0; k < sizeof STEPS / sizeof *STEPS; k++) {
+            const double zeta = ZETAS[i];
+            const double h = STEPS[k];
+            const double turn = h * sqrt(fabs(1.0 - zeta * zeta));
+            const double swing = zeta < 1.0 ? cos(turn) : cosh(turn);
+            const OneStep step = one_step(map, oscillator(zeta, h));
+            // without a damper one of 1e-10 h k stands in, which takes 1e-10 h^2
+            const double tolerance = zeta > 0.0 ? 1e-13 : 1.1 * map->stand_in_share * h * h + 1e-13;
+            assert_near(determinant(step), exp(-2.0 * zeta * h), tolerance);
+            assert_near(trace(step), 2.0 * exp(-zeta * h) * swing, 4.0 * tolerance);
+        }
+    }
+    // controls: another map, and this one with a mass that is wrong by a hundredth
+    const OneStep corrected = one_step(map_get(ODE_MAP_CORRECTED), oscillator(0.5, 1.0));
+    assert_true(fabs(determinant(corrected) - exp(-1.0)) > 0.1);
+    MapContact heavy = oscillator(0.5, 1.0);
+    heavy.mass = 1.01;
+    assert_true(fabs(determinant(one_step(map, heavy)) - exp(-1.0)) > 1e-3);
 }
 
 static void the_stand_in_damper_changes_the_force_by_less_than_a_billionth(void **state)
@@ -65,15 +167,15 @@ static void the_stand_in_damper_changes_the_force_by_less_than_a_billionth(void 
     (void)state;
     const Map *map = map_get(ODE_MAP_CORRECTED);
     assert_true(map->stand_in_share > 0.0 && map->stand_in_share < 1e-9);
-    const double m = 0.15;
-    const double k = 4e8;
-    for (double h = 1e-7; h < 2e-5; h *= 2.0) {
+    MapContact at = SOME_CONTACT;
+    at.damping = 0.0;
+    for (at.step = 1e-7; at.step < 2e-5; at.step *= 2.0) {
         // from the first step of a contact, moved on by a tenth of a step, to its depth
         for (double share = 0.1; share < 100.0; share *= 3.0) {
-            const double d = share * 0.2 * h;
-            const double force = row_force(map->convert(k, 0.0, h), h, m, d, 0.2);
-            const double out = fabs(-0.2 + h * force / m);
-            assert_close(force, k * d, 1e-9 * fmax(1.0, out / 0.2));
+            at.depth = share * at.closing * at.step;
+            const double force = row_force(map, &at);
+            const double out = fabs(-at.closing + at.step * force / at.mass);
+            assert_close(force, at.stiffness * at.depth, 1e-9 * fmax(1.0, out / at.closing));
         }
     }
 }
@@ -114,6 +216,29 @@ static void a_restitution_of_nine_tenths_survives_only_the_corrected_map(void **
     assert_near(map_delivered_restitution(corrected, 1, 1, 2 * zeta, damped / 1e5), 0.9, 1e-5);
 }
 
+static void the_new_maps_deliver_the_law_down_to_ten_steps_a_contact(void **state)
+{
+    (void)state;
+    static const OdeMap KINDS[] = {ODE_MAP_MIDPOINT, ODE_MAP_EXACT};
+    static const double ASKED[] = {1.0, 0.9, 0.7, 0.5};
+    const double pi = acos(-1.0);
+    for (size_t i = 0; i < sizeof ASKED / sizeof *ASKED; i++) {
+        const double zeta = damping_linear_ratio(ASKED[i]);
+        const double contact = pi / sqrt(1.0 - zeta * zeta);
+        for (double steps = 1000.0; steps >= 10.0; steps /= 10.0) {
+            const double h = contact / steps;
+            for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) {
+                const Map *map = map_get(KINDS[k]);
+                const double e = map_delivered_restitution(map, 1, 1, 2 * zeta, h);
+                assert_close(e, ASKED[i], 0.01);
+            }
+        }
+        // control: the textbook map loses more than a sixth at ten steps
+        assert_true(map_delivered_restitution(map_get(ODE_MAP_TEXTBOOK), 1, 1, 2 * zeta,
+                                              0.1 * contact) < 0.85 * ASKED[i]);
+    }
+}
+
 static void mass_and_stiffness_enter_only_through_omega(void **state)
 {
     (void)state;
@@ -135,13 +260,46 @@ static void one_impact_has_the_force_and_depth_of_its_closed_form(void **state)
     assert_close(impact.steps * 1e-9, acos(-1.0) / omega, 1e-3);
 }
 
-static void the_corrected_map_is_stable_up_to_omega_h_2_and_no_further(void **state)
+// The largest depth or speed within 2000 steps from unit depth, nothing holding the row back.
+static double largest_swing(const Map *map, double step)
+{
+    const OneStep matrix = one_step(map, oscillator(0.0, step));
+    double depth = 1.0;
+    double move = 0.0; // of a step
+    double largest = 0.0;
+    for (int i = 0; i < 2000; i++) {
+        move -= matrix.of_depth * depth + matrix.of_speed * move;
+        depth += move;
+        largest = fmax(largest, fmax(fabs(depth), fabs(move)));
+    }
+    return largest;
+}
+
+static void each_map_is_bounded_below_its_limit_and_grows_above_it(void **state)
+{
+    (void)state;
+    static const OdeMap KINDS[] = {ODE_MAP_CORRECTED, ODE_MAP_MIDPOINT};
+    for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++) {
+        const Map *map = map_get(KINDS[i]);
+        assert_near(map->stability_limit, 2.0, 0.0);
+        // at omega h = 2 (1 - s) the swing is 1 / sqrt(2 s) and twice that in a step; at
+        // 2 (1 + s) it grows by exp(sqrt(8 s)) in each
+        assert_true(largest_swing(map, 1.999) < 100.0);
+        assert_true(largest_swing(map, 2.001) > 1e20);
+    }
+    const Map *exact = map_get(ODE_MAP_EXACT);
+    assert_near(exact->stability_limit, acos(-1.0), 1e-15);
+    assert_true(largest_swing(exact, 3.0) < 100.0);
+    assert_true(largest_swing(exact, 3.14) < 1e4);
+    assert_true(isinf(map_get(ODE_MAP_TEXTBOOK)->stability_limit));
+    assert_true(largest_swing(map_get(ODE_MAP_TEXTBOOK), 100.0) < 100.0);
+}
+
+static void beyond_its_limit_a_map_throws_the_pin_out_faster_than_it_came(void **state)
 {
     (void)state;
     const Map *map = map_get(ODE_MAP_CORRECTED);
-    assert_near(map->stability_limit, 2.0, 0.0);
-    assert_true(isinf(map_get(ODE_MAP_TEXTBOOK)->stability_limit));
-    // beyond it a touch that begins with the deepest overlap throws the pin out faster than it came
+    // a touch that begins with the deepest overlap
     assert_true(map_impact(map, 1, 1, 0, 1.9, 1.0, 1.0).restitution < 1.9 * 1.9);
     assert_true(map_impact(map, 1, 1, 0, 2.5, 1.0, 1.0).restitution > 4.0);
 }
@@ -173,12 +331,16 @@ int main(void)
         cmocka_unit_test(names_are_the_words_of_a_case),
         cmocka_unit_test(the_textbook_map_is_inverted_exactly),
         cmocka_unit_test(each_map_makes_the_row_the_force_it_says),
+        cmocka_unit_test(the_midpoint_map_holds_at_any_depth_and_speed),
+        cmocka_unit_test(the_exact_map_turns_and_decays_like_the_continuous_oscillator),
         cmocka_unit_test(the_stand_in_damper_changes_the_force_by_less_than_a_billionth),
         cmocka_unit_test(the_predicted_restitution_is_the_known_one),
         cmocka_unit_test(a_restitution_of_nine_tenths_survives_only_the_corrected_map),
+        cmocka_unit_test(the_new_maps_deliver_the_law_down_to_ten_steps_a_contact),
         cmocka_unit_test(mass_and_stiffness_enter_only_through_omega),
         cmocka_unit_test(one_impact_has_the_force_and_depth_of_its_closed_form),
-        cmocka_unit_test(the_corrected_map_is_stable_up_to_omega_h_2_and_no_further),
+        cmocka_unit_test(each_map_is_bounded_below_its_limit_and_grows_above_it),
+        cmocka_unit_test(beyond_its_limit_a_map_throws_the_pin_out_faster_than_it_came),
         cmocka_unit_test(bounce_beside_a_cfm_delivers_less),
         cmocka_unit_test(a_penalty_is_the_inverse_of_a_cfm),
     };

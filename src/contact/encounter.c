@@ -1,0 +1,280 @@
+// How do pins and holes meet while the linkage around them hardly changes?
+//
+// Rows u of relative motion, W the linkage's mobility and g its free acceleration, both taken as
+// constant over the step, f(u, u') the contacts' forces:
+//     u'' = g + W f
+// With the impulse P' = f and its integral Q' = P that is
+//     u' = u0' + g t + W P,   u = u0 + u0' t + g t^2 / 2 + W Q
+// so that only P and Q are integrated, by the classical Runge-Kutta method of order 4. A local step
+// is a share of the radian of the contact's oscillation, shorter next to the ends of a contact,
+// where d^1.5 is not smooth; ends are found to rounding and the steps end there.
+#include "contact/encounter.h"
+
+#include "contact/encounter_force.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// beyond this a step of the world holds more of a contact than anybody can want
+enum { NODE_MAX = 100000 };
+
+enum { ROOT_STEPS = 60 };
+
+// local steps next to the ends of a contact are down to this share of the others: the error of
+// order 2.5 that d^1.5 makes there falls to 1e-6 of what it would be
+static const double GRADED = 1.0 / 256.0;
+static const double GROWTH = 0.25; // of the time since the onset, or left to the end
+
+static const double FRICTION_PHASE = 0.5; // of the time in which friction takes hold
+
+Encounter encounter_start(double friction, double friction_speed, double phase)
+{
+    return (Encounter){
+        .rows_a_joint = friction > 0.0 ? 4 : 2,
+        .friction = friction,
+        .friction_speed = friction_speed,
+        .phase = phase,
+    };
+}
+
+size_t encounter_rows(const Encounter *encounter)
+{
+    return encounter->joint_count * encounter->rows_a_joint;
+}
+
+static void complete_point(Encounter *encounter, EncounterPoint *point)
+{
+    encounter_force_find(encounter, point->time_s, point->impulse, point->moment, point->force,
+                         point->powers);
+}
+
+// Writes a + width b for all rows.
+static inline void advance_rows(size_t rows, const double *a, double width_s, const double *b,
+                                double *sum)
+{
+    for (size_t i = 0; i < rows; i++) {
+        sum[i] = a[i] + width_s * b[i];
+    }
+}
+
+// Writes a + width (b + 2 c + 2 d + e) / 6 for all rows.
+static inline void weigh_rows(size_t rows, const double *a, double width_s,
+                              const double *const stages[4], double *sum)
+{
+    for (size_t i = 0; i < rows; i++) {
+        sum[i] = a[i] + width_s / 6.0 *
+                            (stages[0][i] + 2.0 * (stages[1][i] + stages[2][i]) + stages[3][i]);
+    }
+}
+
+// One step of the classical method from a completed point; the forces at its end are left open.
+static void try_step(Encounter *encounter, const EncounterPoint *from, double width_s,
+                     EncounterPoint *to)
+{
+    const size_t rows = encounter_rows(encounter);
+    assert(rows > 0);
+    const double half_s = 0.5 * width_s;
+    double forces[3][RESPONSE_ROW_MAX];
+    double impulses[3][RESPONSE_ROW_MAX];
+    double moment[RESPONSE_ROW_MAX];
+    double powers[3][2];
+    advance_rows(rows, from->impulse, half_s, from->force, impulses[0]);
+    advance_rows(rows, from->moment, half_s, from->impulse, moment);
+    encounter_force_find(encounter, from->time_s + half_s, impulses[0], moment, forces[0],
+                         powers[0]);
+    advance_rows(rows, from->impulse, half_s, forces[0], impulses[1]);
+    advance_rows(rows, from->moment, half_s, impulses[0], moment);
+    encounter_force_find(encounter, from->time_s + half_s, impulses[1], moment, forces[1],
+                         powers[1]);
+    advance_rows(rows, from->impulse, width_s, forces[1], impulses[2]);
+    advance_rows(rows, from->moment, width_s, impulses[1], moment);
+    encounter_force_find(encounter, from->time_s + width_s, impulses[2], moment, forces[2],
+                         powers[2]);
+    to->time_s = from->time_s + width_s;
+    weigh_rows(rows, from->impulse, width_s,
+               (const double *const[4]){from->force, forces[0], forces[1], forces[2]}, to->impulse);
+    weigh_rows(rows, from->moment, width_s,
+               (const double *const[4]){from->impulse, impulses[0], impulses[1], impulses[2]},
+               to->moment);
+    weigh_rows(2, from->losses, width_s,
+               (const double *const[4]){from->powers, powers[0], powers[1], powers[2]}, to->losses);
+}
+
+static void begin_contact(Encounter *encounter, size_t number, const PinHole *pose)
+{
+    EncounterJoint *joint = &encounter->joints[number];
+    joint->is_touching = true;
+    joint->impact_speed = pose->approach_speed;
+    joint->touching_s = 0.0;
+    // the depth at which a spring of that frequency would have taken up the speed
+    double depth = 1e-6;
+    for (int i = 0; i < 8; i++) {
+        const double speed = fmax(pose->approach_speed, joint->law.impact_speed_floor);
+        depth = fmin(speed / encounter_force_frequency(encounter, number, pose->normal, depth),
+                     0.5 * force_law_depth_limit(&joint->law));
+    }
+    joint->frequency = encounter_force_frequency(encounter, number, pose->normal, depth);
+}
+
+// Contacts that a step of the world finds begun or over already: by rounding, as the places of the
+// bodies and those of the step before differ in the last bits.
+static void settle_contacts(Encounter *encounter, const EncounterPoint *point)
+{
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        EncounterJoint *joint = &encounter->joints[i];
+        const PinHole pose =
+            encounter_force_pose(encounter, i, point->time_s, point->impulse, point->moment);
+        if (joint->is_touching) {
+            joint->is_touching = pose.penetration > 0.0 || pose.approach_speed > 0.0;
+        } else if (pose.penetration > 0.0 && pose.approach_speed > 0.0) {
+            begin_contact(encounter, i, &pose);
+        }
+    }
+}
+
+// How long the next local step is to be.
+static double choose_width(const Encounter *encounter, const EncounterPoint *point, double left_s)
+{
+    double width_s = left_s;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        const EncounterJoint *joint = &encounter->joints[i];
+        if (!joint->is_touching) {
+            continue;
+        }
+        const PinHole pose =
+            encounter_force_pose(encounter, i, point->time_s, point->impulse, point->moment);
+        const double depth = fmax(pose.penetration, 0.0);
+        const double frequency =
+            fmax(joint->frequency, encounter_force_frequency(encounter, i, pose.normal, depth));
+        const double share_s = encounter->phase / frequency;
+        const double least_s = GRADED * share_s;
+        width_s = fmin(width_s, fmin(share_s, fmax(GROWTH * joint->touching_s, least_s)));
+        if (pose.approach_speed < 0.0) {
+            width_s = fmin(width_s, fmax(GROWTH * depth / -pose.approach_speed, least_s));
+        }
+        if (encounter->friction > 0.0) {
+            width_s = fmin(width_s, FRICTION_PHASE *
+                                        encounter_force_friction_time(encounter, i, point->force));
+        }
+    }
+    return width_s;
+}
+
+static double depth_after(Encounter *encounter, size_t joint, const EncounterPoint *from,
+                          double width_s)
+{
+    EncounterPoint to;
+    try_step(encounter, from, width_s, &to);
+    return encounter_force_pose(encounter, joint, to.time_s, to.impulse, to.moment).penetration;
+}
+
+// The width at which a joint's depth passes zero, between 0 and `width_s`, by the Illinois method.
+static double find_crossing(Encounter *encounter, size_t joint, const EncounterPoint *from,
+                            double first, double width_s, double last)
+{
+    double low = 0.0;
+    double high = width_s;
+    double width = high;
+    int side = 0;
+    for (int i = 0; i < ROOT_STEPS && high - low > 1e-15 * width_s; i++) {
+        width = (low * last - high * first) / (last - first);
+        const double depth = depth_after(encounter, joint, from, width);
+        if (depth == 0.0) {
+            break;
+        }
+        if ((depth > 0.0) == (last > 0.0)) {
+            high = width;
+            last = depth;
+            first *= side == -1 ? 0.5 : 1.0;
+            side = -1;
+        } else {
+            low = width;
+            first = depth;
+            last *= side == 1 ? 0.5 : 1.0;
+            side = 1;
+        }
+    }
+    return width;
+}
+
+// Shortens a step to where the first contact begins or ends in it. Returns the joint, or -1.
+static int find_event(Encounter *encounter, const EncounterPoint *from, const EncounterPoint *to,
+                      double *width_s)
+{
+    const double whole_s = *width_s;
+    int event = -1;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        const bool is_touching = encounter->joints[i].is_touching;
+        const double last =
+            encounter_force_pose(encounter, i, to->time_s, to->impulse, to->moment).penetration;
+        if (is_touching ? !(last < 0.0) : !(last > 0.0)) {
+            continue;
+        }
+        double first = encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment)
+                           .penetration;
+        if (!is_touching && first > 0.0) {
+            continue; // inside the wall, and on its way out
+        }
+        if (is_touching && first <= 0.0) {
+            first = 1e-30; // at the wall, where the contact began
+        }
+        const double crossing_s = find_crossing(encounter, i, from, first, whole_s, last);
+        if (crossing_s <= *width_s) {
+            *width_s = crossing_s;
+            event = (int)i;
+        }
+    }
+    return event;
+}
+
+static void change_contact(Encounter *encounter, size_t number, const EncounterPoint *point)
+{
+    EncounterJoint *joint = &encounter->joints[number];
+    if (joint->is_touching) {
+        joint->is_touching = false;
+        return;
+    }
+    const PinHole pose =
+        encounter_force_pose(encounter, number, point->time_s, point->impulse, point->moment);
+    begin_contact(encounter, number, &pose);
+}
+
+bool encounter_run(Encounter *encounter, double duration)
+{
+    EncounterPoint points[2];
+    EncounterPoint *from = &points[0];
+    EncounterPoint *to = &points[1];
+    memset(from, 0, sizeof *from);
+    encounter->node_count = 0;
+    settle_contacts(encounter, from);
+    complete_point(encounter, from);
+    encounter_nodes_add(encounter, from);
+    const double rounding_s = 1e-14 * duration;
+    while (duration - from->time_s > rounding_s) {
+        if (encounter->node_count > NODE_MAX) {
+            return false;
+        }
+        double width_s = choose_width(encounter, from, duration - from->time_s);
+        try_step(encounter, from, width_s, to);
+        const int event = find_event(encounter, from, to, &width_s);
+        if (event >= 0) {
+            try_step(encounter, from, width_s, to);
+        }
+        for (size_t i = 0; i < encounter->joint_count; i++) {
+            encounter->joints[i].touching_s += width_s;
+        }
+        complete_point(encounter, to);
+        encounter_nodes_add(encounter, to);
+        if (event >= 0) {
+            change_contact(encounter, (size_t)event, to);
+            complete_point(encounter, to);
+            encounter_nodes_add(encounter, to);
+        }
+        EncounterPoint *const spare = from;
+        from = to;
+        to = spare;
+    }
+    return true;
+}

@@ -1,0 +1,90 @@
+// What happens between pins and holes while the linkage around them hardly changes: contacts
+// integrated by themselves, in steps of their own, within one step of the world.
+//
+// The relative motion of each pin in its hole has rows: x and y of the pin's centre less the
+// hole's, and with friction the turns of the hole's and of the pin's body. What acts in a row moves
+// all rows by the mobility of the linkage (model/response.h).
+#pragma once
+
+#include "contact/force_law.h"
+#include "contact/pin_hole.h"
+#include "model/linkage.h"
+#include "model/response.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+// One joint with play. The first four are given; the rest lives on from one step to the next.
+typedef struct EncounterJoint {
+    ForceLaw law;
+    double radial_clearance; // m
+    double hole_radius;      // m
+    int joint;               // number in the linkage
+    bool is_touching;
+    double impact_speed; // m/s, closing speed where the contact under way began
+    double touching_s;   // s, since then
+    double frequency;    // rad/s, of its oscillation at the depth to be expected
+} EncounterJoint;
+
+typedef struct Encounter {
+    size_t joint_count;
+    EncounterJoint joints[LINKAGE_JOINT_MAX];
+    size_t rows_a_joint; // 2, or 4 with friction
+    double friction;     // 1, Coulomb's coefficient
+    double friction_speed;
+    double phase; // rad of a contact's oscillation in one local step
+
+    // of the step under way, to be filled in before encounter_run
+    double mobility[RESPONSE_ROW_MAX * RESPONSE_ROW_MAX]; // row by row, without gaps
+    double free[RESPONSE_ROW_MAX];                        // acceleration while nothing acts
+    double place[RESPONSE_ROW_MAX];                       // at the start, m; not of turns
+    double speed[RESPONSE_ROW_MAX];                       // at the start, m/s, rad/s
+
+    // what came of it: nodes, the first at the start, two where a contact begins or ends
+    size_t node_count;
+    size_t node_room;
+    double *times;      // s, since the start; owned, like the two below
+    double *values;     // by node: impulse, its integral over time, force; each by row
+    double *losses;     // by node: J lost in damping and in friction since the start
+    uint32_t *touching; // by node: which joints touch from there on, one bit each
+    size_t evaluations; // of the forces, since the beginning
+} Encounter;
+
+// What stands between pin and hole of one joint at an instant.
+typedef struct EncounterPose {
+    PinHole pose;
+    Vec2 force; // N, on the pin, friction included
+    bool is_touching;
+} EncounterPose;
+
+// An encounter of no joints yet; the number of joints and their given parts are set next.
+Encounter encounter_start(double friction, double friction_speed, double phase);
+void encounter_finish(Encounter *encounter);
+
+// The number of rows, all joints together.
+size_t encounter_rows(const Encounter *encounter);
+
+// Integrates a step of a length, s. Returns false where that takes more local steps than there can
+// be sense in.
+bool encounter_run(Encounter *encounter, double duration);
+
+// Impulses and their integrals over time, by row, and the losses, from the start to a time in the
+// step, and the forces then.
+typedef struct EncounterSums {
+    double impulse[RESPONSE_ROW_MAX]; // N s, N m s
+    double moment[RESPONSE_ROW_MAX];  // N s^2: integral of the impulse
+    double force[RESPONSE_ROW_MAX];   // N, N m
+    double dissipated;                // J
+    double friction;                  // J
+} EncounterSums;
+
+// The sums at a time between two neighbouring nodes, of which `node` is the first.
+void encounter_at(const Encounter *encounter, size_t node, double time_s, EncounterSums *sums);
+
+// The pose of one joint there, from the sums at the same time.
+EncounterPose encounter_pose(const Encounter *encounter, size_t joint, size_t node, double time_s,
+                             const EncounterSums *sums);
+
+// The node at or before a time: the last of several at that time.
+size_t encounter_node(const Encounter *encounter, double time_s);

@@ -1,0 +1,122 @@
+// With which forces do pins and holes act on the rows of their relative motion?
+//
+// Normal force by the law (contact/force_law.h). Friction, as in reference/dynamics_contact.c:
+// mu N tanh(v_t / v_s) against the sliding speed
+//     v_t = t . u_e' + R u_a' - (R - |e|) u_b',   t the normal turned by a quarter turn,
+// R the hole's radius, e eccentricity, u_a', u_b' the turning of the hole's and the pin's body.
+#include "contact/encounter_force.h"
+
+#include <math.h>
+#include <string.h>
+
+// Where a row is and how fast it goes, from the impulses so far.
+static double row_place(const Encounter *encounter, size_t row, double time_s, const double *moment)
+{
+    const size_t width = encounter_rows(encounter);
+    const double *mobility = encounter->mobility + row * width;
+    double place = encounter->place[row] +
+                   time_s * (encounter->speed[row] + 0.5 * time_s * encounter->free[row]);
+    for (size_t k = 0; k < width; k++) {
+        place += mobility[k] * moment[k];
+    }
+    return place;
+}
+
+static double row_speed(const Encounter *encounter, size_t row, double time_s,
+                        const double *impulse)
+{
+    const size_t width = encounter_rows(encounter);
+    const double *mobility = encounter->mobility + row * width;
+    double speed = encounter->speed[row] + time_s * encounter->free[row];
+    for (size_t k = 0; k < width; k++) {
+        speed += mobility[k] * impulse[k];
+    }
+    return speed;
+}
+
+PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double time_s,
+                             const double *impulse, const double *moment)
+{
+    const size_t row = joint * encounter->rows_a_joint;
+    const Vec2 place = {row_place(encounter, row, time_s, moment),
+                        row_place(encounter, row + 1, time_s, moment)};
+    const Vec2 speed = {row_speed(encounter, row, time_s, impulse),
+                        row_speed(encounter, row + 1, time_s, impulse)};
+    return pin_hole_pose((Vec2){0.0, 0.0}, place, speed, encounter->joints[joint].radial_clearance);
+}
+
+// Adds friction to a joint's rows that press with a normal force; returns the power it takes, W.
+static double add_friction(const Encounter *encounter, size_t joint, double time_s,
+                           const double *impulse, const PinHole *pose, double normal, double *force)
+{
+    const size_t row = joint * encounter->rows_a_joint;
+    const double hole_arm = encounter->joints[joint].hole_radius;
+    const double pin_arm = hole_arm - pose->eccentricity_size;
+    const Vec2 tangent = vec2_perp(pose->normal);
+    const double sliding = tangent.x * row_speed(encounter, row, time_s, impulse) +
+                           tangent.y * row_speed(encounter, row + 1, time_s, impulse) +
+                           hole_arm * row_speed(encounter, row + 2, time_s, impulse) -
+                           pin_arm * row_speed(encounter, row + 3, time_s, impulse);
+    const double held = encounter->friction * normal * tanh(sliding / encounter->friction_speed);
+    force[row] -= held * tangent.x;
+    force[row + 1] -= held * tangent.y;
+    force[row + 2] = -hole_arm * held;
+    force[row + 3] = pin_arm * held;
+    return held * sliding;
+}
+
+void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
+                          const double *moment, double *force, double powers[2])
+{
+    encounter->evaluations++;
+    powers[0] = powers[1] = 0.0;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        const EncounterJoint *joint = &encounter->joints[i];
+        double *own = force + i * encounter->rows_a_joint;
+        if (!joint->is_touching) {
+            memset(own, 0, encounter->rows_a_joint * sizeof *own);
+            continue;
+        }
+        const PinHole pose = encounter_force_pose(encounter, i, time_s, impulse, moment);
+        const double normal = force_law_force(&joint->law, pose.penetration, pose.approach_speed,
+                                              joint->impact_speed);
+        const double elastic = force_law_elastic(&joint->law, pose.penetration);
+        own[0] = normal * pose.normal.x;
+        own[1] = normal * pose.normal.y;
+        powers[0] += (normal - elastic) * pose.approach_speed;
+        if (encounter->friction > 0.0) {
+            powers[1] += add_friction(encounter, i, time_s, impulse, &pose, normal, force);
+        }
+    }
+}
+
+// Mobility along the normal of a joint, 1/kg.
+static double normal_mobility(const Encounter *encounter, size_t joint, Vec2 normal)
+{
+    const size_t width = encounter_rows(encounter);
+    const size_t row = joint * encounter->rows_a_joint;
+    const double *first = encounter->mobility + row * width + row;
+    return normal.x * (first[0] * normal.x + 2.0 * first[1] * normal.y) +
+           normal.y * first[width + 1] * normal.y;
+}
+
+double encounter_force_frequency(const Encounter *encounter, size_t joint, Vec2 normal,
+                                 double depth)
+{
+    const double stiffness = force_law_tangent(&encounter->joints[joint].law, depth);
+    return sqrt(normal_mobility(encounter, joint, normal) * stiffness);
+}
+
+double encounter_force_friction_time(const Encounter *encounter, size_t joint, const double *force)
+{
+    const size_t width = encounter_rows(encounter);
+    const size_t row = joint * encounter->rows_a_joint;
+    const double arm = encounter->joints[joint].hole_radius;
+    double mobility = 0.0;
+    for (size_t k = 0; k < 4; k++) {
+        const double diagonal = encounter->mobility[(row + k) * width + row + k];
+        mobility += k < 2 ? diagonal : arm * arm * diagonal;
+    }
+    const double held = encounter->friction * hypot(force[row], force[row + 1]);
+    return held > 0.0 ? encounter->friction_speed / (held * mobility) : INFINITY;
+}

@@ -1,0 +1,33 @@
+// The forces between pins and holes in an encounter, and the nodes that it leaves behind: what
+// contact/encounter.c is made of.
+#pragma once
+
+#include "contact/encounter.h"
+
+// The state of an encounter at one time.
+typedef struct EncounterPoint {
+    double time_s;
+    double impulse[RESPONSE_ROW_MAX]; // N s, by row
+    double moment[RESPONSE_ROW_MAX];  // N s^2, its integral over time
+    double force[RESPONSE_ROW_MAX];   // N
+    double powers[2];                 // W, lost in damping and in friction
+    double losses[2];                 // J, likewise, since the start
+} EncounterPoint;
+
+// Writes the forces in all rows, and the powers lost in damping and in friction.
+void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
+                          const double *moment, double *force, double powers[2]);
+
+// The pose of one joint after impulses and their integrals.
+PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double time_s,
+                             const double *impulse, const double *moment);
+
+// The frequency of a contact at a depth, rad/s.
+double encounter_force_frequency(const Encounter *encounter, size_t joint, Vec2 normal,
+                                 double depth);
+
+// The time in which friction takes hold of what slides in a joint, s, under the forces given.
+double encounter_force_friction_time(const Encounter *encounter, size_t joint, const double *force);
+
+// Adds a node.
+void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point);

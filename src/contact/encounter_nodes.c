@@ -1,0 +1,110 @@
+// How is what happened in an encounter kept, and looked up between the nodes?
+//
+// Between two nodes the integral Q of the impulse is Hermite's quintic through Q, P = Q' and f =
+// Q'' at both; its derivatives are impulse and force, right to the orders 4 and 3 of the local
+// step.
+#include "contact/encounter_force.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+void encounter_finish(Encounter *encounter)
+{
+    free(encounter->times);
+    free(encounter->values);
+    free(encounter->losses);
+    free(encounter->touching);
+    *encounter = (Encounter){.joint_count = 0};
+}
+
+static uint32_t touching_bits(const Encounter *encounter)
+{
+    uint32_t bits = 0;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        bits |= encounter->joints[i].is_touching ? (uint32_t)1 << i : 0;
+    }
+    return bits;
+}
+
+void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point)
+{
+    const size_t rows = encounter_rows(encounter);
+    if (encounter->node_count == encounter->node_room) {
+        encounter->node_room = 2 * encounter->node_room + 64;
+        const size_t room = encounter->node_room;
+        encounter->times = realloc(encounter->times, room * sizeof *encounter->times);
+        encounter->values =
+            realloc(encounter->values, (3 * rows * room + 1) * sizeof *encounter->values);
+        encounter->losses = realloc(encounter->losses, 2 * room * sizeof *encounter->losses);
+        encounter->touching = realloc(encounter->touching, room * sizeof *encounter->touching);
+        assert(encounter->times != NULL && encounter->values != NULL && encounter->losses != NULL &&
+               encounter->touching != NULL);
+    }
+    const size_t node = encounter->node_count++;
+    double *values = encounter->values + 3 * rows * node;
+    encounter->times[node] = point->time_s;
+    memcpy(values, point->impulse, rows * sizeof *values);
+    memcpy(values + rows, point->moment, rows * sizeof *values);
+    memcpy(values + 2 * rows, point->force, rows * sizeof *values);
+    memcpy(encounter->losses + 2 * node, point->losses, sizeof point->losses);
+    encounter->touching[node] = touching_bits(encounter);
+}
+
+size_t encounter_node(const Encounter *encounter, double time_s)
+{
+    size_t low = 0;
+    size_t high = encounter->node_count;
+    while (high - low > 1) {
+        const size_t middle = (low + high) / 2;
+        if (encounter->times[middle] <= time_s) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+void encounter_at(const Encounter *encounter, size_t node, double time_s, EncounterSums *sums)
+{
+    const size_t rows = encounter_rows(encounter);
+    const size_t next = node + 1 < encounter->node_count ? node + 1 : node;
+    const double *first = encounter->values + 3 * rows * node;
+    const double *last = encounter->values + 3 * rows * next;
+    const double width = encounter->times[next] - encounter->times[node];
+    const double s = width > 0.0 ? (time_s - encounter->times[node]) / width : 0.0;
+    for (size_t i = 0; i < rows; i++) {
+        // Hermite's quintic for the moment, whose derivatives are impulse and force
+        const double p0 = width * first[i];
+        const double p1 = width * last[i];
+        const double f0 = width * width * first[2 * rows + i];
+        const double f1 = width * width * last[2 * rows + i];
+        const double rise = last[rows + i] - first[rows + i] - p0 - 0.5 * f0;
+        const double slope = p1 - p0 - f0;
+        const double bend = f1 - f0;
+        const double a = 10.0 * rise - 4.0 * slope + 0.5 * bend;
+        const double b = -15.0 * rise + 7.0 * slope - bend;
+        const double c = 6.0 * rise - 3.0 * slope + 0.5 * bend;
+        sums->moment[i] = first[rows + i] + s * (p0 + s * (0.5 * f0 + s * (a + s * (b + s * c))));
+        const double impulse = p0 + s * (f0 + s * (3.0 * a + s * (4.0 * b + s * 5.0 * c)));
+        const double force = f0 + s * (6.0 * a + s * (12.0 * b + s * 20.0 * c));
+        sums->impulse[i] = width > 0.0 ? impulse / width : first[i];
+        sums->force[i] = width > 0.0 ? force / (width * width) : first[2 * rows + i];
+    }
+    const double *before = encounter->losses + 2 * node;
+    const double *after = encounter->losses + 2 * next;
+    sums->dissipated = before[0] + s * (after[0] - before[0]);
+    sums->friction = before[1] + s * (after[1] - before[1]);
+}
+
+EncounterPose encounter_pose(const Encounter *encounter, size_t joint, size_t node, double time_s,
+                             const EncounterSums *sums)
+{
+    const size_t row = joint * encounter->rows_a_joint;
+    return (EncounterPose){
+        .pose = encounter_force_pose(encounter, joint, time_s, sums->impulse, sums->moment),
+        .force = {sums->force[row], sums->force[row + 1]},
+        .is_touching = (encounter->touching[node] >> joint & 1) != 0,
+    };
+}

@@ -1,0 +1,31 @@
+// How far two trajectories of one scenario are apart, in omega and alpha relative to each body's
+// largest; where no drive turns anything, in the velocities and accelerations of the centres.
+#pragma once
+
+#include "model/trajectory.h"
+
+// A trajectory is predictable up to where one of so many twins, whose starts are so far beside it,
+// has come so many times that distance away: past it two solutions that are right to the first
+// number have only five digits in common.
+static const double DISTANCE_TWIN = 1e-10;
+static const double DISTANCE_GROWTH = 1e5;
+enum { DISTANCE_TWINS = 4 }; // a single one may lie in a direction that hardly grows
+
+// What distances of a body are measured in; 0 for the driven body, which does not count.
+typedef struct DistanceScale {
+    double omega; // rad/s, or m/s
+    double alpha; // rad/s^2, or m/s^2
+} DistanceScale;
+
+void distance_scales(const Trajectory *reference, DistanceScale scales[LINKAGE_BODY_MAX]);
+
+// Whether velocities of centres take the place of omega.
+bool distance_is_by_velocity(const Trajectory *reference);
+
+// The difference of two motions in omega or velocity, and in alpha or acceleration.
+double distance_of_rates(const Motion *motion, const Motion *truth, bool is_velocity);
+double distance_of_changes(const Motion *motion, const Motion *truth, bool is_velocity);
+
+// The largest relative distance of any body at one sample.
+double distance_at(const Trajectory *trajectory, const Trajectory *reference, size_t sample,
+                   const DistanceScale *scales);

@@ -1,0 +1,316 @@
+// By how much does a push in a joint with play move the bodies?
+//
+// Rows: relative velocity in each joint, u = J v. With M the masses and inertias
+//     D = J M^-1 J',  D = [ D_ii D_ic ; D_ci D_cc ]      i ideal joints, c joints with play
+// The ideal joints answer a push p with impulses that keep them closed,
+//     D_ii y + D_ic p = 0,   v' = v + M^-1 J' (y, p)
+// so that the joints with play see the Schur complement W = D_cc - D_ci D_ii^-1 D_ic. It is what
+// is left of D when Cholesky's elimination stops after the ideal rows.
+//
+// Accelerations without a push: gamma = J a0 + dJ/dt v of all rows, a0 gravity's; then
+//     g = gamma_c - D_ci D_ii^-1 gamma_i
+// The driven body moves as its drive says: it is part of gamma, and of no row.
+//
+// Sources: E. Delassus, Ann. sci. Ec. norm. sup. 34 (1917) 95, for D; B. Brogliato, Nonsmooth
+// Mechanics, 3rd ed., Springer 2016, ch. 5.
+#include "model/response.h"
+
+#include <string.h>
+
+// the share of a row that must be left when the rows before it are taken out: rounding leaves
+// 1e-15, of either sign, of one that they make redundant
+static const double INDEPENDENT = 1e-12;
+
+static bool is_ideal(const Linkage *linkage, size_t joint)
+{
+    return linkage->joints[joint].kind == JOINT_REVOLUTE &&
+           !(linkage->driver.is_present && linkage->driver.joint == (int)joint);
+}
+
+static bool add_rows(Response *response, size_t joint, size_t count)
+{
+    if (response->row_count + count > RESPONSE_ROW_MAX) {
+        return false;
+    }
+    for (size_t i = 0; i < count; i++) {
+        response->joint_of[response->row_count++] = (int)joint;
+    }
+    return true;
+}
+
+bool response_init(const Linkage *linkage, bool with_turns, Response *response, Err *err)
+{
+    memset(response, 0, sizeof *response);
+    response->linkage = linkage;
+    response->with_turns = with_turns;
+    bool has_room = true;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        has_room = has_room && (!is_ideal(linkage, i) || add_rows(response, i, 2));
+    }
+    response->ideal_rows = response->row_count;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        has_room = has_room && (linkage->joints[i].kind != JOINT_CLEARANCE ||
+                                add_rows(response, i, with_turns ? 4 : 2));
+    }
+    return has_room || err_set(err, ERR_SOLVER,
+                               "the linkage has more than the %d joint rows that a contact's "
+                               "response is worked out for",
+                               RESPONSE_ROW_MAX);
+}
+
+size_t response_play_rows(const Response *response)
+{
+    return response->row_count - response->ideal_rows;
+}
+
+// The two rows of a joint, x and y: pin or second anchor against hole or first.
+static void place_joint(Response *response, size_t row, const Motion *motions)
+{
+    const Linkage *linkage = response->linkage;
+    const Joint *joint = &linkage->joints[response->joint_of[row]];
+    const int bodies[2] = {joint->body_a, joint->body_b};
+    const Vec2 anchors[2] = {joint->anchor_a, joint->anchor_b};
+    ResponseRow *x_row = &response->rows[row];
+    ResponseRow *y_row = &response->rows[row + 1];
+    for (int end = 0; end < 2; end++) {
+        const bool is_fixed =
+            bodies[end] == LINKAGE_GROUND || bodies[end] == linkage_driven_body(linkage);
+        const double sign = end == 0 ? -1.0 : 1.0;
+        const Vec2 arm =
+            is_fixed ? anchors[end] : vec2_rotate(motions[bodies[end]].angle, anchors[end]);
+        x_row->body[end] = y_row->body[end] = is_fixed ? LINKAGE_GROUND : bodies[end];
+        x_row->x[end] = sign;
+        x_row->turn[end] = -sign * arm.y;
+        y_row->y[end] = sign;
+        y_row->turn[end] = sign * arm.x;
+    }
+}
+
+// The turn of one body of a joint, as a row of its own.
+static void place_turn(Response *response, size_t row, int end)
+{
+    const ResponseRow *x_row = &response->rows[row - 2 - (size_t)end];
+    ResponseRow *turn = &response->rows[row];
+    turn->body[0] = x_row->body[end];
+    turn->turn[0] = 1.0;
+    turn->body[1] = LINKAGE_GROUND;
+}
+
+static void place_rows(Response *response, const Motion *motions)
+{
+    for (size_t row = 0; row < response->row_count;) {
+        place_joint(response, row, motions);
+        row += 2;
+        if (row > response->ideal_rows && response->with_turns) {
+            place_turn(response, row, 0);
+            place_turn(response, row + 1, 1);
+            row += 2;
+        }
+    }
+}
+
+// One entry of D: what the rows have in common through the bodies they share.
+static double coupling(const Linkage *linkage, const ResponseRow *a, const ResponseRow *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < 2; k++) {
+            if (a->body[i] != LINKAGE_GROUND && a->body[i] == b->body[k]) {
+                const Body *body = &linkage->bodies[a->body[i]];
+                sum += (a->x[i] * b->x[k] + a->y[i] * b->y[k]) / body->mass +
+                       a->turn[i] * b->turn[k] / body->inertia;
+            }
+        }
+    }
+    return sum;
+}
+
+bool response_place(Response *response, const Motion *motions)
+{
+    place_rows(response, motions);
+    const size_t count = response->row_count;
+    double diagonal[RESPONSE_ROW_MAX];
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = 0; k <= i; k++) {
+            response->matrix[i][k] =
+                coupling(response->linkage, &response->rows[i], &response->rows[k]);
+        }
+        diagonal[i] = response->matrix[i][i];
+    }
+    // Cholesky's elimination, stopped after the ideal rows
+    for (size_t pivot = 0; pivot < response->ideal_rows; pivot++) {
+        const double square = response->matrix[pivot][pivot];
+        if (!(square > INDEPENDENT * diagonal[pivot])) {
+            return false;
+        }
+        const double inverse = 1.0 / sqrt(square);
+        for (size_t i = pivot; i < count; i++) {
+            response->matrix[i][pivot] *= inverse;
+        }
+        for (size_t i = pivot + 1; i < count; i++) {
+            const double factor = response->matrix[i][pivot];
+            for (size_t k = pivot + 1; k <= i && factor != 0.0; k++) {
+                response->matrix[i][k] -= factor * response->matrix[k][pivot];
+            }
+        }
+    }
+    return true;
+}
+
+void response_mobility(const Response *response, double *mobility)
+{
+    const size_t first = response->ideal_rows;
+    const size_t width = response->row_count - first;
+    for (size_t i = 0; i < width; i++) {
+        for (size_t k = 0; k < width; k++) {
+            mobility[i * width + k] = k <= i ? response->matrix[first + i][first + k]
+                                             : response->matrix[first + k][first + i];
+        }
+    }
+}
+
+// Acceleration of the end of a joint on one body, which turns but is not turned faster.
+static Vec2 end_acceleration(const Linkage *linkage, const Motion *motions, int body, Vec2 anchor,
+                             double gravity)
+{
+    if (body == LINKAGE_GROUND) {
+        return (Vec2){0.0, 0.0};
+    }
+    const Motion *motion = &motions[body];
+    const Vec2 centre =
+        body == linkage_driven_body(linkage) ? motion->acceleration : (Vec2){0.0, -gravity};
+    const Vec2 arm = vec2_rotate(motion->angle, anchor);
+    return vec2_sub(centre, vec2_scale(motion->omega * motion->omega, arm));
+}
+
+void response_free(const Response *response, const Motion *motions, double gravity, double *rates)
+{
+    const Linkage *linkage = response->linkage;
+    double gamma[RESPONSE_ROW_MAX] = {0.0};
+    for (size_t row = 0; row < response->row_count;) {
+        const Joint *joint = &linkage->joints[response->joint_of[row]];
+        const Vec2 relative =
+            vec2_sub(end_acceleration(linkage, motions, joint->body_b, joint->anchor_b, gravity),
+                     end_acceleration(linkage, motions, joint->body_a, joint->anchor_a, gravity));
+        gamma[row] = relative.x;
+        gamma[row + 1] = relative.y;
+        row += row >= response->ideal_rows && response->with_turns ? 4 : 2;
+    }
+    // forward through the factor: what is left in the rows of play is g
+    for (size_t pivot = 0; pivot < response->ideal_rows; pivot++) {
+        gamma[pivot] /= response->matrix[pivot][pivot];
+        for (size_t i = pivot + 1; i < response->row_count; i++) {
+            gamma[i] -= response->matrix[i][pivot] * gamma[pivot];
+        }
+    }
+    memcpy(rates, gamma + response->ideal_rows, response_play_rows(response) * sizeof *rates);
+}
+
+static void add_row(const Linkage *linkage, const ResponseRow *row, double impulse, double *changes)
+{
+    for (int end = 0; end < 2; end++) {
+        if (row->body[end] != LINKAGE_GROUND) {
+            const Body *body = &linkage->bodies[row->body[end]];
+            double *change = changes + 3 * row->body[end];
+            change[0] += row->x[end] * impulse / body->mass;
+            change[1] += row->y[end] * impulse / body->mass;
+            change[2] += row->turn[end] * impulse / body->inertia;
+        }
+    }
+}
+
+// Back through the transposed factor.
+static void solve_back(const Response *response, double *rows)
+{
+    for (size_t i = response->ideal_rows; i-- > 0;) {
+        for (size_t k = i + 1; k < response->ideal_rows; k++) {
+            rows[i] -= response->matrix[k][i] * rows[k];
+        }
+        rows[i] /= response->matrix[i][i];
+    }
+}
+
+void response_react(const Response *response, const double *impulses, double *reactions)
+{
+    const size_t ideal = response->ideal_rows;
+    for (size_t i = 0; i < ideal; i++) {
+        reactions[i] = 0.0;
+        for (size_t k = ideal; k < response->row_count; k++) {
+            reactions[i] -= response->matrix[k][i] * impulses[k - ideal];
+        }
+    }
+    solve_back(response, reactions);
+}
+
+void response_apply(const Response *response, const double *impulses, double *changes)
+{
+    const size_t ideal = response->ideal_rows;
+    double reactions[RESPONSE_ROW_MAX];
+    response_react(response, impulses, reactions);
+    memset(changes, 0, 3 * response->linkage->body_count * sizeof *changes);
+    for (size_t i = 0; i < response->row_count; i++) {
+        const double impulse = i < ideal ? reactions[i] : impulses[i - ideal];
+        add_row(response->linkage, &response->rows[i], impulse, changes);
+    }
+}
+
+void response_load(const Response *response, const double *impulses, double *loads)
+{
+    memset(loads, 0, 3 * response->linkage->body_count * sizeof *loads);
+    for (size_t i = response->ideal_rows; i < response->row_count; i++) {
+        const ResponseRow *row = &response->rows[i];
+        const double impulse = impulses[i - response->ideal_rows];
+        for (int end = 0; end < 2; end++) {
+            if (row->body[end] != LINKAGE_GROUND) {
+                double *load = loads + 3 * row->body[end];
+                load[0] += row->x[end] * impulse;
+                load[1] += row->y[end] * impulse;
+                load[2] += row->turn[end] * impulse;
+            }
+        }
+    }
+}
+
+void response_close(const Response *response, const double *openings, double *changes)
+{
+    double rows[RESPONSE_ROW_MAX];
+    for (size_t i = 0; i < response->ideal_rows; i++) {
+        rows[i] = -openings[i];
+        for (size_t k = 0; k < i; k++) {
+            rows[i] -= response->matrix[i][k] * rows[k];
+        }
+        rows[i] /= response->matrix[i][i];
+    }
+    solve_back(response, rows);
+    memset(changes, 0, 3 * response->linkage->body_count * sizeof *changes);
+    for (size_t i = 0; i < response->ideal_rows; i++) {
+        add_row(response->linkage, &response->rows[i], rows[i], changes);
+    }
+}
+
+void response_openings(const Response *response, const Motion *motions, double *places,
+                       double *rates)
+{
+    const Linkage *linkage = response->linkage;
+    for (size_t row = 0; row < response->ideal_rows; row += 2) {
+        const JointGap gap = linkage_joint_gap(linkage, motions, response->joint_of[row]);
+        places[row] = gap.place.x;
+        places[row + 1] = gap.place.y;
+        rates[row] = gap.velocity.x;
+        rates[row + 1] = gap.velocity.y;
+    }
+}
+
+int response_joint(const Response *response, size_t play_row)
+{
+    return response->joint_of[response->ideal_rows + play_row];
+}
+
+double response_mass(const Response *response, size_t first_row, Vec2 normal)
+{
+    const size_t row = response->ideal_rows + first_row;
+    const double xx = response->matrix[row][row];
+    const double yx = response->matrix[row + 1][row];
+    const double yy = response->matrix[row + 1][row + 1];
+    return 1.0 / (normal.x * (xx * normal.x + 2.0 * yx * normal.y) + normal.y * yy * normal.y);
+}

@@ -1,0 +1,78 @@
+// How the bodies of a linkage answer what acts in its joints with play, its ideal joints holding
+// and its driven body on its path: the inverse of the effective mass, which the field calls the
+// Delassus operator.
+#pragma once
+
+#include "model/linkage.h"
+
+enum {
+    RESPONSE_ROWS_A_JOINT = 4, // x and y of the pin against the hole, turns of the two bodies
+    RESPONSE_ROW_MAX = 64,     // 24 joints, ten of them with play and friction, and more
+};
+
+// A relative velocity as a sum over one or two bodies. A body that cannot give way has no part.
+typedef struct ResponseRow {
+    int body[2]; // LINKAGE_GROUND where there is none
+    double x[2]; // 1, of the velocity of its centre
+    double y[2];
+    double turn[2]; // m, or 1 for a row that is a turn: of its angular velocity
+} ResponseRow;
+
+typedef struct Response {
+    const Linkage *linkage;
+    bool with_turns;   // two rows more a joint with play, for friction
+    size_t ideal_rows; // they come first, two a joint; the drive's joint has none
+    size_t row_count;
+    ResponseRow rows[RESPONSE_ROW_MAX];
+    int joint_of[RESPONSE_ROW_MAX];
+    double matrix[RESPONSE_ROW_MAX][RESPONSE_ROW_MAX]; // lower triangle: Cholesky's factor in the
+                                                       // ideal columns, then the mobility
+} Response;
+
+// Prepares the response of a linkage. Fails with ERR_SOLVER where it has more rows than there is
+// room for. With turns, each joint with play has four rows: velocity of the pin's centre less that
+// of the hole's, x and y, then angular velocity of the hole's and of the pin's body; else only the
+// first two.
+bool response_init(const Linkage *linkage, bool with_turns, Response *response, Err *err);
+
+// The number of rows of the joints with play, all together.
+size_t response_play_rows(const Response *response);
+
+// Takes the response at the places of the motions given. Returns false where ideal joints are
+// redundant there.
+bool response_place(Response *response, const Motion *motions);
+
+// Writes the mobility W of the joints with play, 1/kg (1/(kg m), 1/(kg m^2) of turns), row by row:
+// their rows' velocities change by W times the impulses that act there.
+void response_mobility(const Response *response, double *mobility);
+
+// Writes the acceleration of the rows of the joints with play while nothing acts in them: under
+// gravity, m/s^2 along -y, at the velocities given; of the driven body its own acceleration.
+void response_free(const Response *response, const Motion *motions, double gravity, double *rates);
+
+// Writes the impulses, N s, with which the ideal joints answer impulses in the joints with play:
+// two rows a joint, on its body b.
+void response_react(const Response *response, const double *impulses, double *reactions);
+
+// Writes what impulses in the joints with play are on the bodies they act on, the ideal joints'
+// answer left out: x, y, N s, and moment, N m s, three a body.
+void response_load(const Response *response, const double *impulses, double *loads);
+
+// Writes by how much impulses in the joints with play, N s (N m s), change the velocities of all
+// bodies: x, y, angle, three a body. The ideal joints' own impulses are in it.
+void response_apply(const Response *response, const double *impulses, double *changes);
+
+// Writes the changes, three a body, weighed by mass and inertia the least, that take from the rows
+// of the ideal joints what is given there: openings, m, of places or m/s of velocities.
+void response_close(const Response *response, const double *openings, double *changes);
+
+// The opening of the ideal joints at the places, and the rate at which they open, two rows a joint.
+void response_openings(const Response *response, const Motion *motions, double *places,
+                       double *rates);
+
+// The number of the joint that a row of play belongs to.
+int response_joint(const Response *response, size_t play_row);
+
+// The mass, kg, with which the linkage meets a push along a unit vector in a joint with play:
+// 1 / (n W n). `first_row` is the joint's first among the rows of play.
+double response_mass(const Response *response, size_t first_row, Vec2 normal);

@@ -1,0 +1,55 @@
+// Which forces in the ideal joints make the bodies move as they do?
+//
+// Newton and Euler of all bodies that are not driven, J the rows of the ideal joints:
+//     M (a - g) = J' lambda,   so that   D lambda = J (a - g),   D = J M^-1 J'
+// a holds the angular accelerations too. J a is the bodies' part alone and without centripetal
+// terms: this is a balance of forces, and says nothing of whether the joints stay closed. lambda is
+// the force on body b of each joint.
+#include "ode/ideal_forces.h"
+
+// One row of J (a - g).
+static double row_acceleration(const ResponseRow *row, const Motion *motions, double gravity)
+{
+    double sum = 0.0;
+    for (int end = 0; end < 2; end++) {
+        if (row->body[end] != LINKAGE_GROUND) {
+            const Motion *motion = &motions[row->body[end]];
+            sum += row->x[end] * motion->acceleration.x +
+                   row->y[end] * (motion->acceleration.y + gravity) +
+                   row->turn[end] * motion->alpha;
+        }
+    }
+    return sum;
+}
+
+bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, Response *response,
+                        JointState *joints)
+{
+    if (!response_place(response, motions)) {
+        return false;
+    }
+    const size_t count = response->ideal_rows;
+    double lambda[RESPONSE_ROW_MAX];
+    for (size_t i = 0; i < count; i++) {
+        lambda[i] = row_acceleration(&response->rows[i], motions, scenario->gravity);
+    }
+    // forward and back through Cholesky's factor of D
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = 0; k < i; k++) {
+            lambda[i] -= response->matrix[i][k] * lambda[k];
+        }
+        lambda[i] /= response->matrix[i][i];
+    }
+    for (size_t i = count; i-- > 0;) {
+        for (size_t k = i + 1; k < count; k++) {
+            lambda[i] -= response->matrix[k][i] * lambda[k];
+        }
+        lambda[i] /= response->matrix[i][i];
+    }
+    for (size_t i = 0; i < count; i += 2) {
+        JointState *joint = &joints[response->joint_of[i]];
+        joint->force_on_b = (Vec2){lambda[i], lambda[i + 1]};
+        joint->force = vec2_length(joint->force_on_b);
+    }
+    return true;
+}

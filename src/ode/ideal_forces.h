@@ -1,0 +1,12 @@
+// The forces in the ideal joints of a linkage whose motion is known.
+#pragma once
+
+#include "model/response.h"
+#include "model/scenario.h"
+#include "model/trajectory.h"
+
+// Fills in force and force_on_b of the ideal joints, the drive's joint apart, from positions and
+// accelerations. The response must have been prepared for the scenario's linkage. Returns false
+// where the forces are not determined; the joints are then untouched.
+bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, Response *response,
+                        JointState *joints);

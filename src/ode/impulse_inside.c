@@ -1,0 +1,111 @@
+// What is the state at a time inside a step of the world?
+//
+//     v(t) = v + a_f t + A P(t),  q(t) = q + v t + a_f t^2 / 2 + A Q(t)
+// as ode/impulse_step.c has it. Accelerations: those beside the contacts', linear in time from the
+// means of the last two steps, and A f(t). Ideal joints: the mean forces of the step, and how the
+// joints answer what the contacts do beyond theirs.
+#include "ode/impulse_step.h"
+
+#include "ode/stepping.h"
+
+#include <string.h>
+
+static bool is_free(const ImpulseStep *step, size_t body)
+{
+    return (int)body != step->driven;
+}
+
+// How the bodies move at a time within the step, from the contacts' sums up to then.
+static void find_motions(const ImpulseStep *step, double since_s, const EncounterSums *sums,
+                         Motion *motions)
+{
+    double speeds[IMPULSE_CHANGE_MAX];
+    double places[IMPULSE_CHANGE_MAX];
+    response_apply(&step->response, sums->impulse, speeds);
+    response_apply(&step->response, sums->moment, places);
+    const double share = since_s / step->width_s;
+    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
+        const Motion *first = &step->before[i];
+        const double v[3] = {first->velocity.x, first->velocity.y, first->omega};
+        double q[3] = {first->position.x, first->position.y, first->angle};
+        double w[3];
+        for (size_t k = 0; k < 3; k++) {
+            const size_t n = 3 * i + k;
+            const double mean = step->free[n];
+            w[k] = v[k] + since_s * mean + speeds[n];
+            q[k] +=
+                since_s * (v[k] + 0.5 * since_s * mean) + places[n] + share * share * step->rest[n];
+        }
+        motions[i] = (Motion){
+            .position = {q[0], q[1]}, .angle = q[2], .velocity = {w[0], w[1]}, .omega = w[2]};
+    }
+    if (step->driven >= 0) {
+        motions[step->driven] = stepping_driven(&step->scenario->linkage, step->start_s + since_s);
+    }
+}
+
+// Fills in the accelerations: those beside the contacts', linear in time, and the contacts'. What
+// these do turns with the bodies: the response is taken where they are, and not at mid-step.
+static void find_accelerations(const ImpulseStep *step, const Response *response, double since_s,
+                               const EncounterSums *sums, Motion *motions)
+{
+    double rates[IMPULSE_CHANGE_MAX];
+    const double off_middle_s = since_s - 0.5 * step->width_s;
+    response_apply(response, sums->force, rates);
+    for (size_t n = 0; n < 3 * step->scenario->linkage.body_count; n++) {
+        rates[n] += step->free[n] + off_middle_s * step->free_rate[n];
+    }
+    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
+        if (is_free(step, i)) {
+            motions[i].acceleration = (Vec2){rates[3 * i], rates[3 * i + 1]};
+            motions[i].alpha = rates[3 * i + 2];
+        }
+    }
+}
+
+// The states of all joints at a time within the step.
+static void find_joints(const ImpulseStep *step, size_t node, double since_s,
+                        const EncounterSums *sums, const Motion *motions, JointState *joints)
+{
+    const Encounter *encounter = &step->encounter;
+    const Linkage *linkage = &step->scenario->linkage;
+    memcpy(joints, step->mean, linkage->joint_count * sizeof *joints);
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        const EncounterPose pose = encounter_pose(encounter, i, node, since_s, sums);
+        joints[encounter->joints[i].joint] = (JointState){
+            .eccentricity = pose.pose.eccentricity,
+            .gap = pose.pose.gap,
+            .force_on_b = pose.force,
+            .force = vec2_length(pose.force),
+            .is_touching = pose.is_touching,
+        };
+    }
+    // the ideal joints' mean forces, and how they answer what the contacts do beyond theirs
+    double beyond[RESPONSE_ROW_MAX] = {0.0};
+    double reactions[RESPONSE_ROW_MAX];
+    for (size_t i = 0; i < encounter_rows(encounter); i++) {
+        beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
+    }
+    response_react(&step->response, beyond, reactions);
+    for (size_t row = 0; row < step->response.ideal_rows; row += 2) {
+        JointState *state = &joints[step->response.joint_of[row]];
+        state->force_on_b = vec2_add(state->force_on_b, (Vec2){reactions[row], reactions[row + 1]});
+        state->force = vec2_length(state->force_on_b);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        joints[i].is_touching = joints[i].is_touching || linkage->joints[i].kind == JOINT_REVOLUTE;
+    }
+    if (step->driven >= 0) {
+        const Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
+        stepping_drive(step->scenario, &motions[step->driven], offsets, joints);
+    }
+}
+
+void impulse_step_inside(const ImpulseStep *step, size_t node, double since_s, bool is_peak,
+                         const EncounterSums *sums, Motion *motions, JointState *joints)
+{
+    find_motions(step, since_s, sums, motions);
+    const bool is_placed = is_peak && response_place(step->there, motions);
+    find_accelerations(step, is_placed ? step->there : &step->response, since_s, sums, motions);
+    find_joints(step, node, since_s, sums, motions, joints);
+}

@@ -1,0 +1,346 @@
+// How does the linkage move in ODE if its contacts are integrated within the step?
+//
+// A step from t to t + h, places q and speeds v both known at t:
+//     q_m = q + (h/2) v                               places at mid-step
+//     W, g at q_m                                     the linkage as its joints with play feel it
+//     P, Q = impulse of the contacts and its integral over the step, by contact/encounter.c
+//     v' from dWorldStep at q_m under the mean force P / h, the driven body at its speed of t + h
+//     q' = q_m + (h/2) v' + A (Q - (h/2) P)           A P = what P does to the speeds
+//     q', v' put back on the ideal joints along the rows at mid-step
+// The last term of q' stands for when in the step the impulse came. The correction along the rows
+// at mid-step, not at the end, leaves the step symmetric in time to the order that matters: the
+// method is of second order in h, whatever the contacts do within a step.
+//
+// Inside a step    v(t) = v + a_f t + A P(t),  q(t) = q + v t + a_f t^2 / 2 + A Q(t)
+// with a_f, the acceleration beside the contacts', such that v(h) = v'. See docs/stepping.md.
+#include "ode/impulse_step.h"
+
+#include "contact/law.h"
+#include "ode/engine.h"
+#include "ode/stepping.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+// a pin this close to the wall at the end of a coarse step, of its play, is taken to be there
+static const double NEAR = 0.02;
+
+// a last step that is shorter than this share of the others tells no accelerations: rounding and
+// the corrections would stand in them
+static const double SHORT = 0.1;
+
+static size_t body_count(const ImpulseStep *step)
+{
+    return step->scenario->linkage.body_count;
+}
+
+static bool is_free(const ImpulseStep *step, size_t body)
+{
+    return (int)body != step->driven;
+}
+
+void impulse_step_finish(ImpulseStep *step)
+{
+    encounter_finish(&step->encounter);
+    free(step->there);
+    world_finish(&step->world);
+}
+
+static bool init_encounter(ImpulseStep *step, Err *err)
+{
+    const Scenario *scenario = step->scenario;
+    const ContactOptions *contact = &scenario->contact;
+    step->encounter =
+        encounter_start(contact->friction, contact->friction_speed, scenario->ode.contact_phase);
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (joint->kind != JOINT_CLEARANCE) {
+            continue;
+        }
+        EncounterJoint *added = &step->encounter.joints[step->encounter.joint_count++];
+        added->joint = (int)i;
+        added->radial_clearance = linkage_radial_clearance(joint);
+        added->hole_radius = joint->clearance.hole_radius;
+        if (!law_build(contact, &scenario->material, &joint->clearance,
+                       scenario->linkage.driver.speed, &added->law, err)) {
+            err_prefix(err, joint->name);
+            return false;
+        }
+    }
+    return true;
+}
+
+bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
+{
+    step->scenario = scenario;
+    step->driven = linkage_driven_body(&scenario->linkage);
+    step->tick_s = scenario->run.step / (double)scenario->ode.gear;
+    step->there = calloc(1, sizeof *step->there);
+    assert(step->there != NULL);
+    for (size_t i = 0; i < body_count(step); i++) {
+        step->after[i] = scenario->linkage.bodies[i].start;
+    }
+    if (!response_init(&scenario->linkage, scenario->contact.friction > 0.0, &step->response,
+                       err) ||
+        !init_encounter(step, err) || !world_build(scenario, step->after, &step->world, err)) {
+        return false;
+    }
+    *step->there = step->response;
+    return true;
+}
+
+// Where the rows of play are at the start of the step, and how fast they go.
+static void fill_rows(ImpulseStep *step)
+{
+    Encounter *encounter = &step->encounter;
+    const Linkage *linkage = &step->scenario->linkage;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        const size_t row = i * encounter->rows_a_joint;
+        const Joint *joint = &linkage->joints[encounter->joints[i].joint];
+        const JointGap gap = linkage_joint_gap(linkage, step->before, encounter->joints[i].joint);
+        encounter->place[row] = gap.place.x;
+        encounter->place[row + 1] = gap.place.y;
+        encounter->speed[row] = gap.velocity.x;
+        encounter->speed[row + 1] = gap.velocity.y;
+        if (encounter->rows_a_joint == 4) {
+            const int bodies[2] = {joint->body_a, joint->body_b};
+            for (size_t k = 0; k < 2; k++) {
+                encounter->speed[row + 2 + k] =
+                    bodies[k] == LINKAGE_GROUND ? 0.0 : step->before[bodies[k]].omega;
+            }
+        }
+    }
+}
+
+// Whether a pin touches or will have come near its wall at the end of a step of that length.
+static bool is_near_wall(const ImpulseStep *step, double width_s)
+{
+    const Encounter *encounter = &step->encounter;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        const size_t row = i * encounter->rows_a_joint;
+        const double clearance = encounter->joints[i].radial_clearance;
+        // the free acceleration of the step before will do
+        const Vec2 now = {encounter->place[row], encounter->place[row + 1]};
+        const Vec2 moved = {
+            width_s * (encounter->speed[row] + 0.5 * width_s * encounter->free[row]),
+            width_s * (encounter->speed[row + 1] + 0.5 * width_s * encounter->free[row + 1]),
+        };
+        const double limit = (1.0 - NEAR) * clearance;
+        if (encounter->joints[i].is_touching || vec2_length(now) > limit ||
+            vec2_length(vec2_add(now, moved)) > limit) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// The bodies at mid-step, with the speeds of its start.
+static void find_middle(const ImpulseStep *step, Motion *middle)
+{
+    const double half_s = 0.5 * step->width_s;
+    for (size_t i = 0; i < body_count(step); i++) {
+        const Motion *motion = &step->before[i];
+        middle[i] = *motion;
+        middle[i].position = vec2_add(motion->position, vec2_scale(half_s, motion->velocity));
+        middle[i].angle = motion->angle + half_s * motion->omega;
+    }
+    if (step->driven >= 0) {
+        middle[step->driven] = stepping_driven(&step->scenario->linkage, step->start_s + half_s);
+    }
+}
+
+// Lets the contacts run through the step by themselves.
+static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
+{
+    Encounter *encounter = &step->encounter;
+    if (!response_place(&step->response, middle)) {
+        return err_set(err, ERR_SOLVER, "the ideal joints are redundant here");
+    }
+    response_mobility(&step->response, encounter->mobility);
+    response_free(&step->response, middle, step->scenario->gravity, encounter->free);
+    if (!encounter_run(encounter, step->width_s)) {
+        return err_set(err, ERR_SOLVER,
+                       "the contacts take more than 100000 steps of their own in this one; "
+                       "allowed: a shorter step");
+    }
+    const size_t last = encounter->node_count - 1;
+    encounter_at(encounter, last, step->width_s, &step->total);
+    return true;
+}
+
+// One step of the world under the contacts' mean force.
+static bool step_world(ImpulseStep *step, const Motion *middle, Err *err)
+{
+    const double width_s = step->width_s;
+    double loads[IMPULSE_CHANGE_MAX];
+    response_load(&step->response, step->total.impulse, loads);
+    for (size_t i = 0; i < body_count(step); i++) {
+        Motion placed = middle[i];
+        if (is_free(step, i)) {
+            const dBodyID body = step->world.bodies[i];
+            dBodyAddForce(body, loads[3 * i] / width_s, loads[3 * i + 1] / width_s, 0.0);
+            dBodyAddTorque(body, 0.0, 0.0, loads[3 * i + 2] / width_s);
+        } else {
+            // the rows hold at the step's end: so must the speed in them
+            placed.velocity = step->after[i].velocity;
+        }
+        world_place(&step->world, i, &placed);
+    }
+    return engine_step(step->world.id, width_s, step->scenario->ode.solver == ODE_QUICK, err) &&
+           world_check(&step->world, err);
+}
+
+// Adds changes, three a body, to the free bodies' places and speeds.
+static void change_motions(const ImpulseStep *step, const double *places, const double *speeds,
+                           Motion *motions)
+{
+    for (size_t i = 0; i < body_count(step); i++) {
+        if (is_free(step, i)) {
+            Motion *motion = &motions[i];
+            const double *place = places + 3 * i;
+            const double *speed = speeds + 3 * i;
+            motion->position = vec2_add(motion->position, (Vec2){place[0], place[1]});
+            motion->angle += place[2];
+            motion->velocity = vec2_add(motion->velocity, (Vec2){speed[0], speed[1]});
+            motion->omega += speed[2];
+        }
+    }
+}
+
+// Places and speeds at the end of the step.
+static void find_end(ImpulseStep *step, const Motion *middle)
+{
+    const double half_s = 0.5 * step->width_s;
+    const size_t rows = encounter_rows(&step->encounter);
+    for (size_t i = 0; i < body_count(step); i++) {
+        if (is_free(step, i)) {
+            const Snapshot now = world_snapshot(&step->world, i);
+            Motion *after = &step->after[i];
+            after->velocity = now.velocity;
+            after->omega = now.omega;
+            after->position = vec2_add(middle[i].position, vec2_scale(half_s, now.velocity));
+            after->angle = middle[i].angle + half_s * now.omega;
+        }
+    }
+    // when in the step the impulse came
+    double late[RESPONSE_ROW_MAX] = {0.0};
+    for (size_t i = 0; i < rows; i++) {
+        late[i] = step->total.moment[i] - half_s * step->total.impulse[i];
+    }
+    double places[IMPULSE_CHANGE_MAX];
+    double speeds[IMPULSE_CHANGE_MAX] = {0.0};
+    response_apply(&step->response, late, places);
+    change_motions(step, places, speeds, step->after);
+    // back onto the ideal joints
+    double openings[RESPONSE_ROW_MAX];
+    double rates[RESPONSE_ROW_MAX];
+    response_openings(&step->response, step->after, openings, rates);
+    response_close(&step->response, openings, places);
+    response_close(&step->response, rates, speeds);
+    change_motions(step, places, speeds, step->after);
+}
+
+// What the state inside the step is worked out from.
+static void prepare_inside(ImpulseStep *step, double width_before_s)
+{
+    const double width_s = step->width_s;
+    double speeds[IMPULSE_CHANGE_MAX];
+    double places[IMPULSE_CHANGE_MAX];
+    response_apply(&step->response, step->total.impulse, speeds);
+    response_apply(&step->response, step->total.moment, places);
+    for (size_t i = 0; i < body_count(step); i++) {
+        const Motion *first = &step->before[i];
+        const Motion *last = &step->after[i];
+        const double v[3] = {first->velocity.x, first->velocity.y, first->omega};
+        const double w[3] = {last->velocity.x, last->velocity.y, last->omega};
+        const double q[3] = {first->position.x, first->position.y, first->angle};
+        const double p[3] = {last->position.x, last->position.y, last->angle};
+        for (size_t k = 0; k < 3; k++) {
+            const size_t n = 3 * i + k;
+            double mean = (w[k] - v[k] - speeds[n]) / width_s;
+            const double apart_s = 0.5 * (width_s + width_before_s);
+            if (width_s < SHORT * width_before_s) {
+                mean = step->free[n] + apart_s * step->free_rate[n];
+            } else {
+                const double change = mean - step->free[n];
+                step->free_rate[n] = width_before_s > 0.0 ? change / apart_s : 0.0;
+            }
+            step->free[n] = mean;
+            step->rest[n] = p[k] - q[k] - width_s * (v[k] + 0.5 * width_s * mean) - places[n];
+        }
+    }
+}
+
+// The work of the drive in the step: mean forces at mid-step, and what the contacts' force does
+// beyond its mean, as the driven body's speed turns.
+static void find_drive_work(ImpulseStep *step, const Motion *driven)
+{
+    const Encounter *encounter = &step->encounter;
+    const Linkage *linkage = &step->scenario->linkage;
+    const double width_s = step->width_s;
+    const Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
+    double work = 0.0;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        const size_t row = i * encounter->rows_a_joint;
+        const double *sum = step->total.impulse + row;
+        const double *moment = step->total.moment + row;
+        JointState *mean = &step->mean[encounter->joints[i].joint];
+        mean->force_on_b = (Vec2){sum[0] / width_s, sum[1] / width_s};
+        const Joint *joint = &linkage->joints[encounter->joints[i].joint];
+        const bool is_on_a = joint->body_a == step->driven;
+        if (step->driven < 0 || (!is_on_a && joint->body_b != step->driven)) {
+            continue;
+        }
+        const Vec2 early = {0.5 * width_s * sum[0] - moment[0], 0.5 * width_s * sum[1] - moment[1]};
+        const Vec2 arm = vec2_rotate(driven->angle, is_on_a ? joint->anchor_a : joint->anchor_b);
+        const Vec2 turning =
+            vec2_sub(driven->acceleration, vec2_scale(driven->omega * driven->omega, arm));
+        work -= (is_on_a ? -1.0 : 1.0) * vec2_dot(early, turning);
+        work -= encounter->rows_a_joint == 4 ? sum[is_on_a ? 2 : 3] * driven->omega : 0.0;
+    }
+    step->drive_work = work + width_s * stepping_drive(step->scenario, driven, offsets, step->mean);
+}
+
+// Where the step ends: on the ticks, but not beyond the run, so that no contact is recorded there.
+static void set_end(ImpulseStep *step)
+{
+    static const double ROUNDING = 1e-6; // of a step: less is no step of its own
+    const double duration_s = scenario_duration(step->scenario);
+    step->end_s = (double)step->tick * step->tick_s;
+    if (step->start_s < duration_s && step->end_s > duration_s - ROUNDING * step->tick_s) {
+        step->end_s = duration_s;
+    }
+}
+
+bool impulse_step_take(ImpulseStep *step, Err *err)
+{
+    const OdeOptions *options = &step->scenario->ode;
+    const double width_before_s = step->width_s;
+    Motion middle[LINKAGE_BODY_MAX];
+    step->start_s = step->end_s;
+    memcpy(step->before, step->after, sizeof step->before);
+    if (step->driven >= 0) {
+        step->before[step->driven] = stepping_driven(&step->scenario->linkage, step->start_s);
+    }
+    fill_rows(step);
+    const double coarse_s = (double)options->gear * step->tick_s;
+    const size_t ticks =
+        options->gear > 1 && (step->count == 0 || is_near_wall(step, coarse_s)) ? 1 : options->gear;
+    step->tick += ticks;
+    set_end(step);
+    step->width_s = step->end_s - step->start_s;
+    if (step->driven >= 0) {
+        step->after[step->driven] = stepping_driven(&step->scenario->linkage, step->end_s);
+    }
+    find_middle(step, middle);
+    if (!run_encounter(step, middle, err) || !step_world(step, middle, err)) {
+        return stepping_fail(step->scenario, step->start_s, step->count + 1, step->width_s, err);
+    }
+    find_end(step, middle);
+    prepare_inside(step, width_before_s);
+    world_joint_forces(&step->world, step->mean);
+    find_drive_work(step, &middle[step->driven >= 0 ? step->driven : 0]);
+    step->count++;
+    return true;
+}

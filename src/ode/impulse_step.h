@@ -1,0 +1,44 @@
+// One step of the world with the contacts integrated inside it, and the state at any time in it.
+#pragma once
+
+#include "contact/encounter.h"
+#include "model/trajectory.h"
+#include "ode/world.h"
+
+enum { IMPULSE_CHANGE_MAX = 3 * LINKAGE_BODY_MAX };
+
+typedef struct ImpulseStep {
+    const Scenario *scenario;
+    World world;
+    Response response; // at mid-step
+    Response *there;   // at whatever time is looked at; owned
+    Encounter encounter;
+    int driven;    // body, or LINKAGE_GROUND
+    double tick_s; // the finest step
+    size_t tick;   // at the end of the last step
+    double end_s;  // likewise
+    size_t count;
+    double start_s; // of the last step
+    double width_s;
+    Motion before[LINKAGE_BODY_MAX];      // at its start
+    Motion after[LINKAGE_BODY_MAX];       // at its end
+    double free[IMPULSE_CHANGE_MAX];      // mean acceleration beside the contacts'
+    double free_rate[IMPULSE_CHANGE_MAX]; // its rate of change
+    double rest[IMPULSE_CHANGE_MAX];      // of the end's places, beyond the formula for inside
+    double drive_work;                    // J, in the whole step
+    EncounterSums total;                  // of the contacts, in the whole step
+    JointState mean[LINKAGE_JOINT_MAX];   // mean forces of the ideal joints
+} ImpulseStep;
+
+// Builds the world of a scenario at its start. The step must not be copied, and is to be finished
+// after a failure too.
+bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err);
+void impulse_step_finish(ImpulseStep *step);
+
+// Takes the next step.
+bool impulse_step_take(ImpulseStep *step, Err *err);
+
+// How the bodies move and what the joints do at a time since the step's start, from the contacts'
+// sums up to then. Accelerations at a peak are worked out where the bodies are, else at mid-step.
+void impulse_step_inside(const ImpulseStep *step, size_t node, double since_s, bool is_peak,
+                         const EncounterSums *sums, Motion *motions, JointState *joints);

@@ -1,0 +1,116 @@
+// When in a step of its own does a contact show what is worth recording?
+//
+// Depth: greatest where its rate passes zero, which is nearly linear between two nodes. Force:
+// greatest on the parabola through three nodes. Both places are right to the second order of the
+// local step, the values there to the fourth.
+#include "ode/marks.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+static void add_mark(Marks *marks, double time_s, size_t node)
+{
+    if (marks->count == marks->room) {
+        marks->room = 2 * marks->room + 16;
+        marks->marks = realloc(marks->marks, marks->room * sizeof *marks->marks);
+        assert(marks->marks != NULL);
+    }
+    // two in one interval may come in either order
+    size_t place = marks->count++;
+    while (place > 0 && marks->marks[place - 1].time_s > time_s) {
+        marks->marks[place] = marks->marks[place - 1];
+        place--;
+    }
+    marks->marks[place] = (Mark){time_s, node};
+}
+
+static double force_at(const Encounter *encounter, size_t joint, size_t node)
+{
+    const size_t rows = encounter_rows(encounter);
+    const double *force =
+        encounter->values + (3 * node + 2) * rows + joint * encounter->rows_a_joint;
+    return hypot(force[0], force[1]);
+}
+
+static double closing_at(const Encounter *encounter, size_t joint, size_t node)
+{
+    EncounterSums sums;
+    encounter_at(encounter, node, encounter->times[node], &sums);
+    return encounter_pose(encounter, joint, node, encounter->times[node], &sums)
+        .pose.approach_speed;
+}
+
+// The time of a maximum of the force that node `middle` is nearest to, or NAN.
+static double force_peak(const Encounter *encounter, size_t joint, size_t middle)
+{
+    if (middle == 0 || middle + 1 >= encounter->node_count ||
+        (encounter->touching[middle - 1] >> joint & 1) == 0 ||
+        (encounter->touching[middle] >> joint & 1) == 0) {
+        return NAN;
+    }
+    const double t0 = encounter->times[middle - 1];
+    const double t1 = encounter->times[middle];
+    const double t2 = encounter->times[middle + 1];
+    const double f1 = force_at(encounter, joint, middle);
+    const double rise = f1 - force_at(encounter, joint, middle - 1);
+    const double fall = f1 - force_at(encounter, joint, middle + 1);
+    if (!(rise > 0.0 && fall >= 0.0 && t1 > t0 && t2 > t1)) {
+        return NAN;
+    }
+    // the slopes of the chords stand at their middles; in between the slope is linear
+    const double up = rise / (t1 - t0);
+    const double down = fall / (t2 - t1);
+    return 0.5 * (t0 + t1) + 0.5 * (t2 - t0) * up / (up + down);
+}
+
+// The maxima of one joint in the interval behind a node.
+static void mark_maxima(Marks *marks, const Encounter *encounter, size_t joint, size_t node)
+{
+    const double start_s = encounter->times[node];
+    const double end_s = encounter->times[node + 1];
+    const double before = closing_at(encounter, joint, node);
+    const double behind = closing_at(encounter, joint, node + 1);
+    if (before > 0.0 && behind <= 0.0) {
+        add_mark(marks, start_s + (end_s - start_s) * before / (before - behind), node);
+    }
+    const double peaks[2] = {force_peak(encounter, joint, node),
+                             force_peak(encounter, joint, node + 1)};
+    for (int i = 0; i < 2; i++) {
+        if (peaks[i] >= start_s && peaks[i] < end_s) {
+            add_mark(marks, peaks[i], node);
+        }
+    }
+}
+
+void marks_find(Marks *marks, const Encounter *encounter)
+{
+    marks->count = 0;
+    marks->next = 0;
+    const size_t last = encounter->node_count - 1;
+    for (size_t node = 0; node < last; node++) {
+        const uint32_t touching = encounter->touching[node];
+        if (encounter->times[node] == encounter->times[node + 1]) {
+            // a contact ends or begins: the part before it ends here, and at the onset a damper
+            // may press hardest
+            add_mark(marks, encounter->times[node], node > 0 ? node - 1 : node);
+            if ((encounter->touching[node + 1] & ~touching) != 0) {
+                add_mark(marks, encounter->times[node], node + 1);
+            }
+            continue;
+        }
+        for (size_t joint = 0; touching != 0 && joint < encounter->joint_count; joint++) {
+            if ((touching >> joint & 1) != 0) {
+                mark_maxima(marks, encounter, joint, node);
+            }
+        }
+    }
+    // what begins or ends at the very end has done so
+    const bool is_inside = last > 0 && encounter->times[last - 1] < encounter->times[last];
+    add_mark(marks, encounter->times[last], is_inside ? last - 1 : last);
+}
+
+void marks_finish(Marks *marks)
+{
+    free(marks->marks);
+    *marks = (Marks){.count = 0};
+}

@@ -1,0 +1,21 @@
+// The instants within a step at which something stands out: contacts begin or end, forces and
+// depths have their maxima, the step ends.
+#pragma once
+
+#include "contact/encounter.h"
+
+typedef struct Mark {
+    double time_s; // since the start of the step
+    size_t node;   // of the encounter: the state there is that of the interval behind it
+} Mark;
+
+typedef struct Marks {
+    size_t count;
+    size_t room;
+    size_t next; // the first that has not been handed on
+    Mark *marks; // in order of time; owned
+} Marks;
+
+// Finds the marks of an encounter that has run. The last is the step's end.
+void marks_find(Marks *marks, const Encounter *encounter);
+void marks_finish(Marks *marks);

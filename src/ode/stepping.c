@@ -1,0 +1,112 @@
+// What do all ways of stepping ODE have in common?
+//
+// On the driven body, whose motion is given: m a = m g + F_drive + sum of F_i, so that the drive's
+// force follows from the others, and its power is what they and gravity do not deliver:
+//     P = m (a - g) . v - sum F_i . v_i,    v_i velocity of the point where F_i acts
+#include "ode/stepping.h"
+
+#include "model/kinematics.h"
+
+#include <math.h>
+#include <stdio.h>
+
+Motion stepping_driven(const Linkage *linkage, double time_s)
+{
+    if (!linkage->driver.is_present) {
+        return (Motion){.angle = 0.0};
+    }
+    const Joint *joint = &linkage->joints[linkage->driver.joint];
+    const double omega = linkage->driver.speed;
+    Motion motion = {.angle = linkage_crank_angle(linkage, time_s), .omega = omega};
+    const Vec2 arm = vec2_scale(-1.0, vec2_rotate(motion.angle, joint->anchor_b));
+    motion.position = vec2_add(joint->anchor_a, arm);
+    motion.velocity = vec2_scale(omega, vec2_perp(arm));
+    motion.acceleration = vec2_scale(-omega * omega, arm);
+    return motion;
+}
+
+long stepping_start(const Scenario *scenario, double step_s, long steps_back, Motion *motions)
+{
+    const Linkage *linkage = &scenario->linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i] = linkage->bodies[i].start;
+    }
+    if (!linkage->driver.is_present || scenario_has_clearance(scenario)) {
+        return 0;
+    }
+    // step by step backwards, so that the loop stays closed the same way round
+    for (long back = 1; back <= steps_back; back++) {
+        Err unused = {ERR_NONE, ""};
+        const double crank = linkage_crank_angle(linkage, -(double)back * step_s);
+        if (!kinematics_solve(linkage, crank, motions, &unused)) {
+            return back - 1;
+        }
+    }
+    return steps_back;
+}
+
+double stepping_drive(const Scenario *scenario, const Motion *driven, const Vec2 *offsets,
+                      JointState *joints)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const int body = linkage_driven_body(linkage);
+    if (body < 0) {
+        return 0.0;
+    }
+    const double mass = linkage->bodies[body].mass;
+    const Vec2 needed =
+        vec2_scale(mass, vec2_add(driven->acceleration, (Vec2){0.0, scenario->gravity}));
+    Vec2 others = {0.0, 0.0};
+    double power = vec2_dot(needed, driven->velocity);
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const bool is_on_a = joint->body_a == body;
+        if (i == linkage->driver.joint || (!is_on_a && joint->body_b != body)) {
+            continue;
+        }
+        const Vec2 force = vec2_scale(is_on_a ? -1.0 : 1.0, joints[i].force_on_b);
+        const Vec2 anchor = vec2_rotate(driven->angle, is_on_a ? joint->anchor_a : joint->anchor_b);
+        const Vec2 arm = vec2_add(anchor, offsets[i]);
+        const Vec2 velocity = vec2_add(driven->velocity, vec2_scale(driven->omega, vec2_perp(arm)));
+        others = vec2_add(others, force);
+        power -= vec2_dot(force, velocity);
+    }
+    JointState *drive = &joints[linkage->driver.joint];
+    drive->force_on_b = vec2_sub(needed, others);
+    drive->force = vec2_length(drive->force_on_b);
+    return power;
+}
+
+bool stepping_fail(const Scenario *scenario, double time_s, size_t step, double step_s, Err *err)
+{
+    char where[128];
+    const double crank = linkage_crank_angle(&scenario->linkage, time_s) * 180.0 / M_PI;
+    snprintf(where, sizeof where, "at %.6g ms, crank angle %.5g deg, step %zu of %.4g us",
+             1e3 * time_s, crank, step, 1e6 * step_s);
+    err_prefix(err, where);
+    return false;
+}
+
+void stepping_label(const Scenario *scenario, const char *stepping, const char *map,
+                    char label[TRAJECTORY_LABEL_SIZE])
+{
+    const bool has_play = scenario_has_clearance(scenario);
+    const bool is_poisson = has_play && scenario->contact.model == CONTACT_POISSON;
+    snprintf(label, TRAJECTORY_LABEL_SIZE, "ode %s/%s/%s",
+             OPTIONS_ODE_SOLVERS[scenario->ode.solver], stepping,
+             is_poisson ? "poisson"
+             : has_play ? map
+                        : "ideal");
+}
+
+void stepping_observe_joint(const Linkage *linkage, size_t joint, Sample *sample)
+{
+    const Joint *data = &linkage->joints[joint];
+    const Vec2 hole = linkage_point(sample->bodies, data->body_a, data->anchor_a);
+    const Vec2 pin = linkage_point(sample->bodies, data->body_b, data->anchor_b);
+    const bool is_ideal = data->kind == JOINT_REVOLUTE;
+    JointState *state = &sample->joints[joint];
+    state->eccentricity = vec2_sub(pin, hole);
+    state->gap = is_ideal ? 0.0 : linkage_radial_clearance(data) - vec2_length(state->eccentricity);
+    state->is_touching = is_ideal || state->gap < 0.0;
+}

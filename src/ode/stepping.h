@@ -1,0 +1,38 @@
+// What all ways of stepping ODE have in common: where the driven body stands, the balance of forces
+// on it, labels and messages.
+#pragma once
+
+#include "model/solver.h"
+#include "ode/world.h"
+
+// Number of the constant member of each way of stepping, each a solver behind ODE_SOLVER.
+extern const Solver STEPPING_PLAIN;
+extern const Solver STEPPING_STAGGERED;
+extern const Solver STEPPING_IMPULSE;
+extern const Solver STEPPING_EXTRAPOLATED;
+extern const Solver STEPPING_CHOSEN;
+
+// How the driven body moves at a time: it turns about its joint with the ground, exactly. Zero
+// where there is no driver.
+Motion stepping_driven(const Linkage *linkage, double time_s);
+
+// Where the bodies stand at the start of a run, or at most so many steps earlier: where the drive
+// determines the motion, and not further back than the linkage closes. Returns how many steps.
+long stepping_start(const Scenario *scenario, double step_s, long steps_back, Motion *motions);
+
+// The force in the driven joint, N, and the power of the drive, W, from the body's own equations:
+// all other forces on it are known. `joints` holds those forces and receives the driven joint's;
+// `offsets` lead, by joint, from the driven body's anchor to where the force acts, m.
+double stepping_drive(const Scenario *scenario, const Motion *driven, const Vec2 *offsets,
+                      JointState *joints);
+
+// Puts time, crank angle and number of the step in front of what went wrong there; returns false.
+bool stepping_fail(const Scenario *scenario, double time_s, size_t step, double step_s, Err *err);
+
+// The label of a way of stepping, such as "ode direct/plain/textbook"; a map that does not matter
+// is NULL.
+void stepping_label(const Scenario *scenario, const char *stepping, const char *map,
+                    char label[TRAJECTORY_LABEL_SIZE]);
+
+// The state of a joint's pin in a sample whose bodies are filled in; force and force_on_b stay.
+void stepping_observe_joint(const Linkage *linkage, size_t joint, Sample *sample);
