@@ -39,7 +39,8 @@ static const struct argp_option OPTIONS[] = {
     {"steps", KEY_STEPS, "LIST", 0, "The steps, such as '10 us, 3 us, 1 us' (default: 30 to 0.03)",
      1},
     {"schemes", KEY_SCHEMES, "LIST", 0,
-     "Only these schemes of ODE: 'direct/corrected' is every one with both words", 1},
+     "Only these schemes of ODE: 'direct/corrected' is every one with both words, 'all' every one",
+     1},
     {"set", KEY_SET, "KEY=VALUE", 0,
      "Replace a value of the case, such as contact.restitution=0.8; may be given often", 1},
     {"repeats", KEY_REPEATS, "N", 0, "Timing runs of each point, at least 5 (default: 5)", 2},
@@ -263,7 +264,9 @@ bool compare_options_ladder(const CompareOptions *options, const Scenario *scena
     size_t scheme_count = scheme_list(scenario, schemes);
     double steps[LADDER_STEP_MAX];
     size_t step_count;
-    if (options->schemes != NULL && !scheme_filter(options->schemes, schemes, &scheme_count, err)) {
+    if (options->schemes == NULL) {
+        scheme_keep_usual(schemes, &scheme_count);
+    } else if (!scheme_filter(options->schemes, schemes, &scheme_count, err)) {
         return false;
     }
     if (options->steps == NULL) {

@@ -113,8 +113,7 @@ static void fit_orders(Ladder *ladder)
     }
 }
 
-// The frontier and the cheapest points are ODE's: the solvers that choose their own steps stand
-// beside them.
+// The frontier and the cheapest points are ODE's: the other solvers stand beside them.
 static void rank_points(Ladder *ladder)
 {
     const size_t count = ladder->point_count;
@@ -124,7 +123,8 @@ static void rank_points(Ladder *ladder)
     assert(times != NULL && errors != NULL && marks != NULL);
     for (size_t i = 0; i < count; i++) {
         const LadderPoint *point = &ladder->points[i];
-        times[i] = point->step_s > 0.0 ? point->wall_median_s : NAN;
+        const bool is_ode = ladder->schemes[point->scheme].backend == BACKEND_ODE;
+        times[i] = is_ode ? point->wall_median_s : NAN;
         errors[i] = point->error;
     }
     frontier_mark(count, times, errors, marks);

@@ -4,10 +4,11 @@
 #include "base/text.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { ENTRY_SIZE = 256 };
+enum { ENTRY_SIZE = 256, CHOSEN_COUNT = 4, LATER_MAX = CHOSEN_COUNT + BACKEND_COUNT };
 
 static int word_count(const char *const *words)
 {
@@ -37,6 +38,51 @@ static void name_scheme(Scheme *scheme, bool has_map, bool has_collider)
              has_collider ? "/" : "", has_collider ? OPTIONS_ODE_COLLIDERS[scheme->collider] : "");
 }
 
+// Whether two choices go together in a scenario.
+static bool go_together(OdeStepping stepping, OdeMap map, bool has_play, bool has_map)
+{
+    return !(has_play && stepping == ODE_EXTRAPOLATED) &&
+           !(has_map && map == ODE_MAP_IMPULSE && stepping != ODE_STAGGERED);
+}
+
+// Those that stand for their kind: the textbook's use of ODE, the best of plain and of staggered
+// stepping, and the quick solver at its plainest and at its best.
+static bool is_usual(const Scheme *scheme, bool has_map)
+{
+    if (!has_map) {
+        return true;
+    }
+    const bool is_plain = scheme->stepping == ODE_PLAIN;
+    const bool is_first = is_plain && scheme->map == ODE_MAP_TEXTBOOK;
+    const bool is_best = !is_plain && scheme->map == ODE_MAP_IMPULSE;
+    const bool is_direct = scheme->solver == ODE_DIRECT;
+    return is_first || is_best || (is_direct && is_plain && scheme->map == ODE_MAP_CORRECTED) ||
+           (is_direct && !is_plain && scheme->map == ODE_MAP_MIDPOINT);
+}
+
+static void add_ode(const Scheme *scheme, bool has_map, bool has_collider, Scheme *schemes,
+                    size_t *count)
+{
+    assert(*count + LATER_MAX < SCHEME_MAX);
+    Scheme *added = &schemes[(*count)++];
+    *added = *scheme;
+    added->is_usual = is_usual(scheme, has_map);
+    name_scheme(added, has_map, has_collider);
+}
+
+// Steps that ODE chooses for these errors.
+static void add_chosen(const Scenario *scenario, Scheme *schemes, size_t *count)
+{
+    if (scenario_has_clearance(scenario) && scenario->contact.model == CONTACT_POISSON) {
+        return;
+    }
+    for (int digits = 3; digits < 3 + CHOSEN_COUNT; digits++) {
+        Scheme *added = &schemes[(*count)++];
+        *added = (Scheme){.backend = BACKEND_ODE, .tolerance = pow(10.0, -digits)};
+        snprintf(added->name, sizeof added->name, "auto/1e-%d", digits);
+    }
+}
+
 static size_t list_ode(const Scenario *scenario, Scheme *schemes)
 {
     const OdeOptions *ode = &scenario->ode;
@@ -51,14 +97,15 @@ static size_t list_ode(const Scenario *scenario, Scheme *schemes)
         for (int stepping = 0; stepping < steppings; stepping++) {
             for (int map = maps.first; map <= maps.last; map++) {
                 for (int collider = colliders.first; collider <= colliders.last; collider++) {
-                    assert(count + 2 < SCHEME_MAX);
-                    Scheme *scheme = &schemes[count++];
-                    *scheme = (Scheme){.backend = BACKEND_ODE,
-                                       .solver = (OdeSolver)solver,
-                                       .stepping = (OdeStepping)stepping,
-                                       .map = (OdeMap)map,
-                                       .collider = (OdeCollider)collider};
-                    name_scheme(scheme, has_map, colliders.last > colliders.first);
+                    if (go_together((OdeStepping)stepping, (OdeMap)map, has_play, has_map)) {
+                        const Scheme scheme = {.backend = BACKEND_ODE,
+                                               .solver = (OdeSolver)solver,
+                                               .stepping = (OdeStepping)stepping,
+                                               .map = (OdeMap)map,
+                                               .collider = (OdeCollider)collider};
+                        add_ode(&scheme, has_map, colliders.last > colliders.first, schemes,
+                                &count);
+                    }
                 }
             }
         }
@@ -91,6 +138,7 @@ bool scheme_check(const Scenario *scenario, Err *err)
 size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX])
 {
     size_t count = list_ode(scenario, schemes);
+    add_chosen(scenario, schemes, &count);
     add_backend(BACKEND_REFERENCE, schemes, &count);
     if (scenario->has_fourbar && !scenario_has_clearance(scenario)) {
         add_backend(BACKEND_ANALYTIC, schemes, &count);
@@ -100,12 +148,16 @@ size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX])
 
 bool scheme_has_step(const Scheme *scheme)
 {
-    return scheme->backend == BACKEND_ODE;
+    return scheme->backend == BACKEND_ODE && scheme->tolerance == 0.0;
 }
 
 void scheme_apply(const Scheme *scheme, double step_s, Scenario *scenario)
 {
     if (!scheme_has_step(scheme)) {
+        if (scheme->tolerance > 0.0) {
+            scenario->run.step = 0.0;
+            scenario->run.tolerance = scheme->tolerance;
+        }
         return;
     }
     scenario->run.step = step_s;
@@ -141,6 +193,9 @@ static bool matches(const Scheme *scheme, const char *entry)
 {
     char word[ENTRY_SIZE];
     bool is_match = true;
+    if (strcmp(entry, "all") == 0) {
+        return true;
+    }
     while (next_part(&entry, "/", word)) {
         is_match = is_match && has_word(scheme, word);
     }
@@ -166,6 +221,17 @@ static bool mark_entry(const char *entry, const Scheme *schemes, size_t count, b
     const char *nearest = text_nearest(entry, names, named);
     return err_set(err, ERR_USAGE, "no scheme of this case is '%s'; %s '%s'", entry,
                    nearest != NULL ? "did you mean" : "one is", nearest ? nearest : names[0]);
+}
+
+void scheme_keep_usual(Scheme *schemes, size_t *count)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < *count; i++) {
+        if (schemes[i].is_usual || !scheme_has_step(&schemes[i])) {
+            schemes[kept++] = schemes[i];
+        }
+    }
+    *count = kept;
 }
 
 bool scheme_filter(const char *list, Scheme *schemes, size_t *count, Err *err)

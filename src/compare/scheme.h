@@ -7,9 +7,11 @@
 enum { SCHEME_MAX = 128, SCHEME_NAME_SIZE = 64 };
 
 typedef struct Scheme {
-    char name[SCHEME_NAME_SIZE]; // "direct/plain/textbook", or the name of the backend
+    char name[SCHEME_NAME_SIZE]; // "direct/plain/textbook", "auto/1e-4", or the name of the backend
     BackendKind backend;
-    OdeSolver solver; // of BACKEND_ODE, as the three below
+    bool is_usual;    // taken where no schemes are asked for
+    double tolerance; // 1, of BACKEND_ODE with a step that it chooses; else 0
+    OdeSolver solver; // of BACKEND_ODE with a step that it is told, as the three below
     OdeStepping stepping;
     OdeMap map;
     OdeCollider collider;
@@ -19,9 +21,11 @@ typedef struct Scheme {
 bool scheme_check(const Scenario *scenario, Err *err);
 
 // Lists the schemes of a scenario, ODE's first, and returns their count. They come from the lists
-// of words in model/options.h. A choice that makes no difference stays as the case has it: the map
-// where no joint has play or the contact is CONTACT_POISSON, the collider where no joint has play.
-// Then come the reference and, for a four-bar without play, the closed form.
+// of words in model/options.h, less what does not go together: map impulse with another stepping
+// than staggered, extrapolated stepping with play. A choice that makes no difference stays as the
+// case has it: the map where no joint has play or the contact is CONTACT_POISSON, the collider
+// where no joint has play. Then come steps chosen for a tolerance, the reference and, for a
+// four-bar without play, the closed form.
 size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX]);
 
 // Whether the scheme takes steps of a length that it is told.
@@ -30,7 +34,11 @@ bool scheme_has_step(const Scheme *scheme);
 // The scenario run by that scheme at that step, s.
 void scheme_apply(const Scheme *scheme, double step_s, Scenario *scenario);
 
+// Keeps the usual ones of those with a step, one or two of each kind, and all without.
+void scheme_keep_usual(Scheme *schemes, size_t *count);
+
 // Keeps those that the list names, separated by commas, and all that have no step. An entry names
-// every scheme that has all of its words: "direct/corrected" is any such stepping and collider.
-// Fails with ERR_USAGE for an entry that no scheme matches; the schemes are then untouched.
+// every scheme that has all of its words: "direct/corrected" is any such stepping and collider,
+// "all" is every one. Fails with ERR_USAGE for an entry that no scheme matches; the schemes are
+// then untouched.
 bool scheme_filter(const char *list, Scheme *schemes, size_t *count, Err *err);

@@ -115,6 +115,9 @@ static json_t *scheme_object(const CompareReport *report, size_t index)
         json_object_set_new(object, "collider",
                             json_string(OPTIONS_ODE_COLLIDERS[scheme->collider]));
     }
+    if (scheme->tolerance > 0.0) {
+        json_value_set(object, "tolerance", scheme->tolerance);
+    }
     json_t *points = json_array();
     for (size_t i = 0; i < ladder->point_count; i++) {
         if (ladder->points[i].scheme == index) {
@@ -137,7 +140,7 @@ static json_t *cheapest_object(const Ladder *ladder, size_t index)
     }
     const LadderPoint *point = &ladder->points[ladder->cheapest[index]];
     json_object_set_new(object, "scheme", json_string(ladder->schemes[point->scheme].name));
-    json_value_set(object, "step_s", point->step_s);
+    json_value_set(object, "step_s", point->step_s > 0.0 ? point->step_s : NAN);
     json_value_set(object, "error_omega", point->error);
     json_value_set(object, "wall_median_s", point->wall_median_s);
     return object;

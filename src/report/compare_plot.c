@@ -38,12 +38,10 @@ static bool is_drawn(const LadderPoint *point)
 
 static PlotStyle style_of(const Scheme *scheme)
 {
-    size_t maps = 0;
-    while (OPTIONS_ODE_MAPS[maps] != NULL) {
-        maps++;
-    }
-    PlotStyle style = plot_look_line(1, (size_t)scheme->stepping * maps + (size_t)scheme->map);
-    style.width = 1.6;
+    // with play the map has the colour, else the stepping, which is then all there is
+    const bool has_map = strchr(scheme->name, '/') != strrchr(scheme->name, '/');
+    PlotStyle style = plot_look_line(1, has_map ? (size_t)scheme->map : (size_t)scheme->stepping);
+    style.width = scheme->stepping == ODE_PLAIN ? 1.2 : 2.2;
     style.dash = scheme->solver == ODE_DIRECT ? NULL : "6 4";
     if (!scheme_has_step(scheme)) {
         style.colour = "#333333";
@@ -97,7 +95,7 @@ static void choose_axes(const Ladder *ladder, PlotPanel *panel)
         }
         low_x = fmin(low_x, point->wall_median_s * UNITS_MS);
         high_x = fmax(high_x, point->wall_median_s * UNITS_MS);
-        if (point->step_s > 0.0) {
+        if (ladder->schemes[point->scheme].backend == BACKEND_ODE) {
             low_y = fmin(low_y, point->error);
             high_y = fmax(high_y, point->error);
         }

@@ -183,7 +183,8 @@ static void write_others(const Ladder *ladder, Text *text)
 {
     for (size_t i = 0; i < ladder->point_count; i++) {
         const LadderPoint *point = &ladder->points[i];
-        if (point->step_s == 0.0 && !point->is_failed && isfinite(point->wall_median_s)) {
+        const bool is_ode = ladder->schemes[point->scheme].backend == BACKEND_ODE;
+        if (!is_ode && !point->is_failed && isfinite(point->wall_median_s)) {
             text_append(text, "  beside it: %s, ", ladder->schemes[point->scheme].name);
             text_append(text, isfinite(point->error) ? "error %.1e" : "without an error",
                         point->error);

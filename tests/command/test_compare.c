@@ -68,7 +68,7 @@ static void points_orders_and_the_cheapest_are_printed(void **state)
     assert_says(program->output, "direct/plain");
     assert_says(program->output, "Order observed");
     assert_says(program->output, "Cheapest setting of ODE");
-    assert_says(program->output, "none of these");
+    assert_says(program->output, "auto/1e-6");
     assert_null(strchr(program->output, '\x1b'));
     assert_string_equal(program->errors, "");
 }

@@ -31,9 +31,11 @@ static void with_play_every_choice_counts(void **state)
     mechanism_loosen(&scenario, "crank-coupler");
     Scheme schemes[SCHEME_MAX];
     const size_t count = scheme_list(&scenario, schemes);
-    assert_int_equal(steppers(schemes, count),
-                     words(OPTIONS_ODE_SOLVERS) * words(OPTIONS_ODE_STEPPINGS) *
-                         words(OPTIONS_ODE_MAPS) * words(OPTIONS_ODE_COLLIDERS));
+    // every map with staggered stepping, all but impulse with plain, none with extrapolated
+    assert_int_equal(steppers(schemes, count), words(OPTIONS_ODE_SOLVERS) *
+                                                   (2 * words(OPTIONS_ODE_MAPS) - 1) *
+                                                   words(OPTIONS_ODE_COLLIDERS));
+    assert_string_equal(schemes[count - 2].name, "auto/1e-6");
     assert_string_equal(schemes[count - 1].name, "reference");
     for (size_t i = 0; i < count; i++) {
         for (size_t k = 0; k < i; k++) {
@@ -52,8 +54,9 @@ static void the_map_is_left_out_for_poisson(void **state)
     Scheme schemes[SCHEME_MAX];
     const size_t count = scheme_list(&scenario, schemes);
     assert_int_equal(steppers(schemes, count), words(OPTIONS_ODE_SOLVERS) *
-                                                   words(OPTIONS_ODE_STEPPINGS) *
+                                                   (words(OPTIONS_ODE_STEPPINGS) - 1) *
                                                    words(OPTIONS_ODE_COLLIDERS));
+    assert_string_not_equal(schemes[count - 2].name, "auto/1e-6");
     assert_int_equal(schemes[0].map, ODE_MAP_CORRECTED);
     assert_null(strstr(schemes[0].name, "corrected"));
 }
@@ -152,11 +155,54 @@ static void a_word_that_no_scheme_has_is_told(void **state)
     assert_int_equal(count, before);
 }
 
+static void the_usual_ones_stand_for_their_kind(void **state)
+{
+    (void)state;
+    static const char *const USUAL[] = {
+        "direct/plain/textbook",    "direct/plain/corrected", "direct/staggered/midpoint",
+        "direct/staggered/impulse", "quick/plain/textbook",   "quick/staggered/impulse",
+    };
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    Scheme schemes[SCHEME_MAX];
+    size_t count = scheme_list(&scenario, schemes);
+    const size_t all = count;
+    scheme_keep_usual(schemes, &count);
+    assert_int_equal(steppers(schemes, count), 6);
+    for (size_t i = 0; i < 6; i++) {
+        assert_string_equal(schemes[i].name, USUAL[i]);
+    }
+    Err err = {0};
+    count = scheme_list(&scenario, schemes);
+    assert_true(scheme_filter("all", schemes, &count, &err));
+    assert_int_equal(count, all);
+}
+
+static void a_chosen_step_is_applied_with_its_tolerance(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    Scheme schemes[SCHEME_MAX];
+    const size_t count = scheme_list(&scenario, schemes);
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(schemes[i].name, "auto/1e-5") == 0) {
+            assert_false(scheme_has_step(&schemes[i]));
+            scheme_apply(&schemes[i], 1e-6, &scenario);
+            assert_near(scenario.run.step, 0.0, 0.0);
+            assert_near(scenario.run.tolerance, 1e-5, 1e-20);
+            return;
+        }
+    }
+    fail_msg("no auto/1e-5");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(with_play_every_choice_counts),
         cmocka_unit_test(the_map_is_left_out_for_poisson),
+        cmocka_unit_test(the_usual_ones_stand_for_their_kind),
+        cmocka_unit_test(a_chosen_step_is_applied_with_its_tolerance),
         cmocka_unit_test(without_play_solver_and_stepping_are_left),
         cmocka_unit_test(the_closed_form_is_of_four_bars_alone),
         cmocka_unit_test(what_is_driven_alone_cannot_be_in_error),
