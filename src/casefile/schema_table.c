@@ -58,7 +58,8 @@ static unsigned step_bits(const Scenario *scenario, bool is_impact)
     const bool is_given = scenario->run.step > 0.0;
     return bit(GIVEN_STEP, is_given) | bit(CHOSEN_STEP, !is_given) |
            bit(PLAIN, is_given && ode->stepping == ODE_PLAIN) |
-           bit(EXTRAPOLATED, is_given && ode->stepping == ODE_EXTRAPOLATED) |
+           bit(EXTRAPOLATED,
+               is_given ? ode->stepping == ODE_EXTRAPOLATED : !scenario_has_clearance(scenario)) |
            bit(LOCAL, is_impact && (!is_given || ode->map == ODE_MAP_IMPULSE));
 }
 
@@ -224,7 +225,7 @@ const SchemaRow SCHEMA_ROWS[] = {
      .needs = PLAY, .doc = "Coulomb's coefficient; 0: none"},
     {.path = "contact.friction-speed", .dimension = DIMENSION_SPEED, AT(contact.friction_speed),
      .low = 0.0, .high = 1e3, .low_is_open = true, .needs = FRICTION,
-     .doc = "sliding speed over which the reference's friction sets in"},
+     .doc = "sliding speed over which friction sets in, of the reference and of map impulse"},
     {.path = "contact.penalty", .dimension = DIMENSION_DAMPING, AT(contact.penalty),
      .low = 0.0, .high = 1e12, .low_is_open = true,
      .default_words = "the paper's Eq. (9) at the drive's speed", .needs = POISSON,
@@ -295,7 +296,7 @@ const SchemaRow SCHEMA_ROWS[] = {
      .needs = ODE | LOCAL | GIVEN_STEP,
      .doc = "of map impulse: so many times finer are the steps while a pin touches or is about to"},
     {.path = "ode.contact-phase", AT(ode.contact_phase), .low = 1e-3, .high = 0.5,
-     .needs = ODE | LOCAL, .plain_unit = "rad",
+     .needs = ODE | LOCAL | GIVEN_STEP, .plain_unit = "rad",
      .doc = "of map impulse: how far a contact's own oscillation gets in one local step, in rad, "
             "written plain"},
 

@@ -36,6 +36,24 @@ static void set_number(CasefileSetting *setting, double number)
     setting->numbers[0] = number;
 }
 
+// A number, or the word that stands for 0.
+static void set_quantity(CasefileSetting *setting, const SchemaRow *row, double number)
+{
+    set_number(setting, number);
+    if (row->zero_word != NULL && number == 0.0) {
+        setting->kind = CASEFILE_WORD;
+        text_copy(setting->text, sizeof setting->text, row->zero_word);
+    }
+}
+
+static void set_tolerated(CasefileSetting *setting, const ToleratedLength *length)
+{
+    set_number(setting, length->nominal);
+    setting->numbers[1] = length->lower;
+    setting->numbers[2] = length->upper;
+    setting->number_count = length->lower < 0.0 || length->upper > 0.0 ? 3 : 1;
+}
+
 static void set_stiffness(CasefileSetting *setting, const ContactOptions *contact)
 {
     set_number(setting, contact->stiffness);
@@ -98,25 +116,16 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
 {
     const Linkage *linkage = &scenario->linkage;
     const void *field = schema_field_const(row, scenario, index);
-    const ToleratedLength *length;
     int number;
     switch (row->type) {
     case SCHEMA_QUANTITY:
-        set_number(setting, *(const double *)field);
-        if (row->zero_word != NULL && setting->numbers[0] == 0.0) {
-            setting->kind = CASEFILE_WORD;
-            text_copy(setting->text, sizeof setting->text, row->zero_word);
-        }
+        set_quantity(setting, row, *(const double *)field);
         break;
     case SCHEMA_DIAMETER:
         set_number(setting, 2.0 * *(const double *)field);
         break;
     case SCHEMA_TOLERATED:
-        length = field;
-        set_number(setting, length->nominal);
-        setting->numbers[1] = length->lower;
-        setting->numbers[2] = length->upper;
-        setting->number_count = length->lower < 0.0 || length->upper > 0.0 ? 3 : 1;
+        set_tolerated(setting, field);
         break;
     case SCHEMA_INTEGER:
         set_number(setting, (double)*(const size_t *)field);

@@ -209,7 +209,7 @@ static bool mark_entry(const char *entry, const Scheme *schemes, size_t count, b
     size_t named = 0;
     size_t found = 0;
     for (size_t i = 0; i < count; i++) {
-        if (scheme_has_step(&schemes[i])) {
+        if (schemes[i].backend == BACKEND_ODE) {
             names[named++] = schemes[i].name;
             is_kept[i] = is_kept[i] || matches(&schemes[i], entry);
             found += matches(&schemes[i], entry) ? 1 : 0;
@@ -249,7 +249,7 @@ bool scheme_filter(const char *list, Scheme *schemes, size_t *count, Err *err)
     }
     size_t kept = 0;
     for (size_t i = 0; i < *count; i++) {
-        if (is_kept[i] || !scheme_has_step(&schemes[i])) {
+        if (is_kept[i] || schemes[i].backend != BACKEND_ODE) {
             schemes[kept++] = schemes[i];
         }
     }

@@ -37,8 +37,8 @@ void scheme_apply(const Scheme *scheme, double step_s, Scenario *scenario);
 // Keeps the usual ones of those with a step, one or two of each kind, and all without.
 void scheme_keep_usual(Scheme *schemes, size_t *count);
 
-// Keeps those that the list names, separated by commas, and all that have no step. An entry names
-// every scheme that has all of its words: "direct/corrected" is any such stepping and collider,
-// "all" is every one. Fails with ERR_USAGE for an entry that no scheme matches; the schemes are
-// then untouched.
+// Keeps those of ODE that the list names, separated by commas, and all other backends. An entry
+// names every scheme that has all of its words: "direct/corrected" is any such stepping and
+// collider, "all" is every one. Fails with ERR_USAGE for an entry that no scheme matches; the
+// schemes are then untouched.
 bool scheme_filter(const char *list, Scheme *schemes, size_t *count, Err *err);

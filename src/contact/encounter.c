@@ -199,6 +199,30 @@ static double find_crossing(Encounter *encounter, size_t joint, const EncounterP
     return width;
 }
 
+// Whether the depth of a joint passes zero in a step, and between which widths and depths: at the
+// step's end, or, of a pin that comes to the wall and leaves again in between, where it turns.
+static bool find_bracket(Encounter *encounter, size_t joint, const EncounterPoint *from,
+                         const EncounterPoint *to, double *first, double *width_s, double *last)
+{
+    const PinHole start =
+        encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
+    const PinHole end = encounter_force_pose(encounter, joint, to->time_s, to->impulse, to->moment);
+    *first = start.penetration;
+    *last = end.penetration;
+    if (encounter->joints[joint].is_touching) {
+        *first = fmax(*first, 1e-30); // at the wall, where the contact began
+        return *last < 0.0;
+    }
+    if (*first >= 0.0 && start.approach_speed <= 0.0) {
+        return false; // at the wall or inside, and on its way out
+    }
+    if (!(*last > 0.0) && start.approach_speed > 0.0 && end.approach_speed < 0.0) {
+        *width_s *= start.approach_speed / (start.approach_speed - end.approach_speed);
+        *last = depth_after(encounter, joint, from, *width_s);
+    }
+    return *last > 0.0;
+}
+
 // Shortens a step to where the first contact begins or ends in it. Returns the joint, or -1.
 static int find_event(Encounter *encounter, const EncounterPoint *from, const EncounterPoint *to,
                       double *width_s)
@@ -206,27 +230,38 @@ static int find_event(Encounter *encounter, const EncounterPoint *from, const En
     const double whole_s = *width_s;
     int event = -1;
     for (size_t i = 0; i < encounter->joint_count; i++) {
-        const bool is_touching = encounter->joints[i].is_touching;
-        const double last =
-            encounter_force_pose(encounter, i, to->time_s, to->impulse, to->moment).penetration;
-        if (is_touching ? !(last < 0.0) : !(last > 0.0)) {
+        double bracket_s = whole_s;
+        double first;
+        double last;
+        if (!find_bracket(encounter, i, from, to, &first, &bracket_s, &last)) {
             continue;
         }
-        double first = encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment)
-                           .penetration;
-        if (!is_touching && first > 0.0) {
-            continue; // inside the wall, and on its way out
-        }
-        if (is_touching && first <= 0.0) {
-            first = 1e-30; // at the wall, where the contact began
-        }
-        const double crossing_s = find_crossing(encounter, i, from, first, whole_s, last);
+        const double crossing_s = find_crossing(encounter, i, from, first, bracket_s, last);
         if (crossing_s <= *width_s) {
             *width_s = crossing_s;
             event = (int)i;
         }
     }
     return event;
+}
+
+// Shortens a flight that leads away from the wall and back to it to where it turns: from there on
+// the pin is within its play, and the next crossing can be found.
+static bool shorten_flight(const Encounter *encounter, const EncounterPoint *from,
+                           const EncounterPoint *to, double *width_s)
+{
+    const double whole_s = *width_s;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        const PinHole start =
+            encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment);
+        const PinHole end = encounter_force_pose(encounter, i, to->time_s, to->impulse, to->moment);
+        if (!encounter->joints[i].is_touching && start.penetration >= 0.0 &&
+            start.approach_speed < 0.0 && end.approach_speed > 0.0) {
+            const double share = start.approach_speed / (start.approach_speed - end.approach_speed);
+            *width_s = fmin(*width_s, share * whole_s);
+        }
+    }
+    return *width_s < whole_s;
 }
 
 static void change_contact(Encounter *encounter, size_t number, const EncounterPoint *point)
@@ -258,6 +293,9 @@ bool encounter_run(Encounter *encounter, double duration)
         }
         double width_s = choose_width(encounter, from, duration - from->time_s);
         try_step(encounter, from, width_s, to);
+        if (shorten_flight(encounter, from, to, &width_s)) {
+            try_step(encounter, from, width_s, to);
+        }
         const int event = find_event(encounter, from, to, &width_s);
         if (event >= 0) {
             try_step(encounter, from, width_s, to);

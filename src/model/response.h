@@ -7,7 +7,7 @@
 
 enum {
     RESPONSE_ROWS_A_JOINT = 4, // x and y of the pin against the hole, turns of the two bodies
-    RESPONSE_ROW_MAX = 64,     // 24 joints, ten of them with play and friction, and more
+    RESPONSE_ROW_MAX = 64,     // 16 joints with play and friction, and 24 without friction
 };
 
 // A relative velocity as a sum over one or two bodies. A body that cannot give way has no part.

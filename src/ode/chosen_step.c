@@ -33,8 +33,14 @@ static const double FIRST_CONTACTS = 4.0; // half-periods of a contact, if that 
 static const double FIRST_STEPS_SMOOTH = 120.0;
 
 static const double SHRINK_MOST = 8.0; // from one trial to the next
-enum { TRIAL_MAX = 24 };               // twice finer each: far below any rounding
-enum { PATIENCE = 5 };                 // trials before errors have to fall as they should
+static const double MOST_EXPLAINED = 63.0;
+
+// distances below this that do not fall any more are rounding; steps beyond the second are hours
+static const double ROUNDING = 1e-8;
+static const double STEPS_MOST = 1e8;
+
+enum { TRIAL_MAX = 24 }; // twice finer each: far below any rounding
+enum { PATIENCE = 5 };   // trials before errors have to fall as they should
 
 // two trials that say so nearly alike how far the motion can be predicted are to be believed
 static const double ALIKE = 0.1;
@@ -157,10 +163,18 @@ static double trial_distance(const Chosen *chosen, const Trajectory *fine, const
     return largest;
 }
 
+// The error of the finer of two trials from their distance: divided by no more than an eighth of
+// the step explains at second order, for below that lie other errors than the step's.
+static double error_of(const Chosen *chosen, double distance, double ratio)
+{
+    return distance / fmin(MOST_EXPLAINED, pow(ratio, chosen->order) - 1.0);
+}
+
 // What the trials have shown so far.
 typedef struct Trials {
     Trajectory *runs[3]; // the last three, the finest first; NULL where a solver failed
     double error;        // of the finest; NAN where it cannot be told
+    bool is_rounding;    // finer steps would not help
     bool is_converging;  // the distances fall as the order says
 } Trials;
 
@@ -174,11 +188,11 @@ static void judge(const Chosen *chosen, Trials *trials)
         return;
     }
     const double ratio = runs[1]->step_s / runs[0]->step_s;
-    trials->error = distance / (pow(ratio, chosen->order) - 1.0);
+    trials->error = error_of(chosen, distance, ratio);
     const double before = trial_distance(chosen, runs[1], runs[2]);
     if (!isnan(before)) {
-        const double error_before =
-            before / (pow(runs[2]->step_s / runs[1]->step_s, chosen->order) - 1.0);
+        const double error_before = error_of(chosen, before, runs[2]->step_s / runs[1]->step_s);
+        trials->is_rounding = distance >= before && before < ROUNDING;
         const double fallen = log(error_before / trials->error) / log(ratio);
         trials->is_converging = fallen >= CONVERGING * chosen->order;
         // two steps below the tolerance need not fall as h^p to be good enough
@@ -187,17 +201,24 @@ static void judge(const Chosen *chosen, Trials *trials)
     }
 }
 
+// How far the window may reach at the next look: twice as far as at the last one that limited it.
+static double longest_window(const Chosen *chosen)
+{
+    const double duration_s = scenario_duration(chosen->scenario);
+    return chosen->is_limited ? fmin(duration_s, 2.0 * chosen->window_s) : duration_s;
+}
+
 static void next_trial(Chosen *chosen, Trials *trials, double step_s)
 {
     trajectory_destroy(trials->runs[2]);
     trials->runs[2] = trials->runs[1];
     trials->runs[1] = trials->runs[0];
     set_step(chosen, step_s);
-    const double duration_s = scenario_duration(chosen->scenario);
-    const double after_s =
-        chosen->is_settled ? chosen->window_s + scenario_sample_time(&chosen->grid, 1) : duration_s;
+    const double after_s = chosen->is_settled
+                               ? chosen->window_s + scenario_sample_time(&chosen->grid, 1)
+                               : longest_window(chosen);
     trials->runs[0] = pilot_run(&chosen->pilots, &chosen->trial, &chosen->grid, after_s);
-    if (trials->runs[0] != NULL && !chosen->is_settled) {
+    if (trials->runs[0] != NULL && !chosen->is_limited) {
         distance_scales(trials->runs[0], chosen->scales);
     }
     judge(chosen, trials);
@@ -210,8 +231,11 @@ static void limit_window(Chosen *chosen, Trials *trials)
     // twins must take the very same steps
     even.ode.gear = 1;
     const double duration_s = scenario_duration(chosen->scenario);
-    const double horizon_s =
-        pilot_horizon(&chosen->pilots, &even, &chosen->grid, chosen->scales, duration_s);
+    const double horizon_s = pilot_horizon(&chosen->pilots, &even, &chosen->grid, chosen->scales,
+                                           longest_window(chosen));
+    if (!(horizon_s > 0.0)) {
+        return; // the trial itself fails: the next one may not
+    }
     chosen->is_settled = chosen->is_limited && horizon_s < duration_s &&
                          fabs(horizon_s - chosen->window_s) <= ALIKE * horizon_s;
     chosen->is_limited = horizon_s < duration_s;
@@ -246,7 +270,8 @@ static bool choose_step(Chosen *chosen, Err *err)
     Trials trials = {.error = NAN};
     double step_s = chosen->first_step_s;
     bool is_found = false;
-    for (int i = 0; i < TRIAL_MAX && !is_found; i++) {
+    const double least_s = scenario_duration(chosen->scenario) / STEPS_MOST;
+    for (int i = 0; i < TRIAL_MAX && !is_found && !trials.is_rounding && step_s > least_s; i++) {
         next_trial(chosen, &trials, step_s);
         const bool is_open = chosen->is_limited && !chosen->is_settled;
         if (i >= PATIENCE && trials.runs[2] != NULL && (!trials.is_converging || is_open)) {
@@ -258,6 +283,11 @@ static bool choose_step(Chosen *chosen, Err *err)
     }
     const double error = trials.error;
     finish_trials(&trials);
+    if (!is_found && chosen->pilots.failure.kind != ERR_NONE) {
+        *err = chosen->pilots.failure;
+        err_prefix(err, "no step will do, not the last one tried");
+        return false;
+    }
     if (!is_found) {
         return err_set(err, ERR_SOLVER,
                        "no step gives the tolerance %.3g: at %.3g us the error is still some %.3g",

@@ -120,21 +120,6 @@ static bool step_level(Nodes *nodes, NodesLevel *level, long direction, Err *err
     return true;
 }
 
-// Takes the bodies back from time zero by as many steps as the linkage closes for, at most so many.
-// Returns their number.
-static long walk_back(const Linkage *linkage, double step_s, long steps, Motion *motions)
-{
-    // step by step, so that the loop stays closed the same way round
-    for (long back = 1; back <= steps; back++) {
-        Err unused = {ERR_NONE, ""};
-        const double angle = linkage_crank_angle(linkage, -(double)back * step_s);
-        if (!kinematics_solve(linkage, angle, motions, &unused)) {
-            return back - 1;
-        }
-    }
-    return steps;
-}
-
 // Lets the world itself go back by so many steps, and turns it round there.
 static bool run_back(Nodes *nodes, NodesLevel *level, long steps, Motion *motions, Err *err)
 {
@@ -162,7 +147,7 @@ static bool start_level(Nodes *nodes, NodesLevel *level, Err *err)
     }
     Err unused = {ERR_NONE, ""};
     if (kinematics_solve(linkage, linkage_crank_angle(linkage, 0.0), motions, &unused)) {
-        level->index = -walk_back(linkage, level->step_s, steps, motions);
+        level->index = -stepping_start(nodes->scenario, level->step_s, steps, motions);
     } else if (!run_back(nodes, level, steps, motions, err)) {
         return false;
     }

@@ -20,9 +20,9 @@ typedef struct Pilot {
 
 static bool open_pilot(Pilots *pilots, const Scenario *scenario, Pilot *pilot)
 {
-    Err unused = {ERR_NONE, ""};
     *pilot = (Pilot){.solver = pilots->solver};
-    return pilot->solver->open(scenario, &pilot->state, &unused);
+    pilots->failure = (Err){ERR_NONE, ""};
+    return pilot->solver->open(scenario, &pilot->state, &pilots->failure);
 }
 
 static void close_pilot(Pilots *pilots, Pilot *pilot)
@@ -34,15 +34,14 @@ static void close_pilot(Pilots *pilots, Pilot *pilot)
 }
 
 // Goes on to a time and looks at the bodies there.
-static bool sample_pilot(Pilot *pilot, double time_s, Sample *sample)
+static bool sample_pilot(Pilot *pilot, double time_s, Sample *sample, Err *err)
 {
-    Err unused = {ERR_NONE, ""};
     const double rounding_s = 1e-12 * time_s;
     do {
         if (pilot->reached_s > 0.0 && pilot->reached_s >= time_s - rounding_s) {
             break;
         }
-        if (!pilot->solver->step(pilot->state, time_s, &unused)) {
+        if (!pilot->solver->step(pilot->state, time_s, err)) {
             return false;
         }
         pilot->reached_s = pilot->solver->record(pilot->state).end_s;
@@ -74,7 +73,8 @@ Trajectory *pilot_run(Pilots *pilots, const Scenario *scenario, const Scenario *
     bool is_going = true;
     Sample sample;
     while (is_going && count < most && scenario_sample_time(grid, count) <= until_s) {
-        is_going = sample_pilot(&pilot, scenario_sample_time(grid, count), &sample);
+        is_going =
+            sample_pilot(&pilot, scenario_sample_time(grid, count), &sample, &pilots->failure);
         if (is_going) {
             trajectory_store(trajectory, count++, &sample);
         }
@@ -102,7 +102,7 @@ static double twin_horizon(Pilots *pilots, const Scenario *twin, const Scenario 
     Sample sample;
     size_t k = 0;
     for (; k < beside->sample_count && beside->times[k] <= until_s; k++) {
-        if (!sample_pilot(&pilot, beside->times[k], &sample)) {
+        if (!sample_pilot(&pilot, beside->times[k], &sample, &pilots->failure)) {
             break;
         }
         trajectory_store(place, k, &sample);

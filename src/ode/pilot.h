@@ -8,6 +8,7 @@
 typedef struct Pilots {
     const Solver *solver;
     size_t steps; // of all of them
+    Err failure;  // why the last one failed that did
     size_t evaluations;
 } Pilots;
 

@@ -11,7 +11,7 @@
 // the arms r of the joint on its bodies, for a step keeps phi + h J v' = 0 and arms turn meanwhile.
 // The run starts half a step on, moved to that opening along M^-1 J', the directions of the joints'
 // own forces: speeds are then right from the first step. Where the drive determines the motion it
-// starts two steps early, and accelerations are, too.
+// starts four steps early, and accelerations are, too.
 //
 // Read between: speeds linear in each step, places their integral, accelerations linear between
 // mid-steps. That needs the step after: the run is one step ahead of what it hands on.

@@ -237,9 +237,10 @@ void run_tables_cost(const RunReport *report, const Style *style, Text *text)
         }
         if (run->fallback_rows > 0) {
             text_append(text,
-                        "  %s%s: in %zu contact rows the map would not have been stable at this "
+                        "  %s%s: the map would not have been stable in %zu contact row%s at this "
                         "step; textbook took its place. A shorter step mends that.%s\n",
-                        style->failure, run->backend, run->fallback_rows, style->end);
+                        style->failure, run->backend, run->fallback_rows,
+                        run->fallback_rows == 1 ? "" : "s", style->end);
         }
     }
 }
