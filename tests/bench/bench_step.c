@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { REPETITIONS = 9, BARE_STEPS = 60000 };
+enum { REPETITIONS = 9, BARE_STEPS = 60000, ROWS = 9 };
 
 // The engine alone: the crank placed, the world stepped, nothing read.
 static double bare_us(const Scenario *scenario)
@@ -52,6 +52,15 @@ static double run_us(const Scenario *scenario)
     return us;
 }
 
+// The scenario stepped in another way.
+static Scenario stepped(const Scenario *scenario, OdeStepping stepping, OdeMap map)
+{
+    Scenario other = *scenario;
+    other.ode.stepping = stepping;
+    other.ode.map = map;
+    return other;
+}
+
 int main(void)
 {
     Scenario ideal = mechanism_paper();
@@ -59,22 +68,35 @@ int main(void)
     mechanism_loosen(&loose, "crank-coupler");
     Scenario quick = loose;
     quick.ode.solver = ODE_QUICK;
-    const char *const names[] = {"bare dWorldStep, ideal", "run, ideal", "run, play, direct",
-                                 "run, play, quick"};
-    double times[4][REPETITIONS];
+    const struct {
+        const char *name;
+        Scenario scenario;
+    } rows[ROWS] = {
+        {"bare dWorldStep, ideal", ideal},
+        {"ideal, plain", ideal},
+        {"ideal, staggered", stepped(&ideal, ODE_STAGGERED, ODE_MAP_TEXTBOOK)},
+        {"play, plain, textbook", loose},
+        {"play, staggered, textbook", stepped(&loose, ODE_STAGGERED, ODE_MAP_TEXTBOOK)},
+        {"play, plain, midpoint", stepped(&loose, ODE_PLAIN, ODE_MAP_MIDPOINT)},
+        {"play, staggered, midpoint", stepped(&loose, ODE_STAGGERED, ODE_MAP_MIDPOINT)},
+        {"play, staggered, impulse", stepped(&loose, ODE_STAGGERED, ODE_MAP_IMPULSE)},
+        {"play, plain, quick", quick},
+    };
+    double times[ROWS][REPETITIONS];
     for (int repetition = 0; repetition < REPETITIONS; repetition++) {
-        times[0][repetition] = bare_us(&ideal);
-        times[1][repetition] = run_us(&ideal);
-        times[2][repetition] = run_us(&loose);
-        times[3][repetition] = run_us(&quick);
+        for (int row = 0; row < ROWS; row++) {
+            times[row][repetition] =
+                row == 0 ? bare_us(&rows[row].scenario) : run_us(&rows[row].scenario);
+        }
     }
     printf("%-26s %12s %12s %10s\n", "", "us a step", "smallest", "ratio");
     double first = 0.0;
-    for (int row = 0; row < 4; row++) {
+    for (int row = 0; row < ROWS; row++) {
         sorted_make(times[row], REPETITIONS);
         const double median = sorted_median(times[row], REPETITIONS);
         first = row == 0 ? median : first;
-        printf("%-26s %12.3f %12.3f %10.2f\n", names[row], median, times[row][0], median / first);
+        printf("%-26s %12.3f %12.3f %10.2f\n", rows[row].name, median, times[row][0],
+               median / first);
     }
     return 0;
 }

@@ -16,19 +16,11 @@ static Scenario ideal(OdeStepping stepping)
     return scenario;
 }
 
-// Play in so many joints, the crank's first, and the stiffness of the field's benchmarks. A fifth
-// of a turn holds the hardest impacts and all of the largest errors, and is not chaotic yet.
 static Scenario loose(OdeMap map, size_t joints)
 {
-    static const char *const JOINTS[] = {"crank-coupler", "coupler-follower", "follower-ground"};
-    Scenario scenario = ideal(ODE_STAGGERED);
-    for (size_t i = 0; i < joints; i++) {
-        mechanism_loosen(&scenario, JOINTS[i]);
-    }
-    scenario.contact.stiffness = 6.6e10;
-    scenario.contact.exponent = 1.5;
+    Scenario scenario = mechanism_loose(joints);
+    scenario.ode.stepping = ODE_STAGGERED;
     scenario.ode.map = map;
-    scenario.run.revolutions = 0.2;
     return scenario;
 }
 

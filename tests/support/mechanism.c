@@ -77,6 +77,19 @@ void mechanism_loosen(Scenario *scenario, const char *joint)
     };
 }
 
+Scenario mechanism_loose(size_t joints)
+{
+    static const char *const JOINTS[] = {"crank-coupler", "coupler-follower", "follower-ground"};
+    Scenario scenario = mechanism_paper();
+    for (size_t i = 0; i < joints; i++) {
+        mechanism_loosen(&scenario, JOINTS[i]);
+    }
+    scenario.contact.stiffness = 6.6e10;
+    scenario.contact.exponent = 1.5;
+    scenario.run.revolutions = 0.2;
+    return scenario;
+}
+
 Scenario mechanism_pin(double mass, double radial_clearance)
 {
     Scenario scenario = scenario_default();

@@ -122,7 +122,8 @@ static void an_onset_stands_where_the_flight_meets_the_wall(void **state)
     }
 }
 
-// The flight's top, v^2 / (2 a), at 0.99 of the gap, then at 1.01 of it.
+// The flight's top, v^2 / (2 a), at 0.99 of the gap, then at 1.01 of it: the pin is back where it
+// started at the end of either, but has touched in the second.
 static void a_slow_pin_turns_back_before_the_wall(void **state)
 {
     (void)state;
@@ -132,8 +133,29 @@ static void a_slow_pin_turns_back_before_the_wall(void **state)
     run(&pin, 2.0 * ONE_IMPACT_SPEED / -pin.free[0]);
     assert_int_equal(pin.node_count, 2);
     pin.free[0] = -square / (2.0 * 1.01 * LONE_PIN_GAP);
-    run(&pin, ONE_IMPACT_SPEED / -pin.free[0]);
+    run(&pin, 2.0 * ONE_IMPACT_SPEED / -pin.free[0]);
     assert_true(pin.node_count > 3);
+    encounter_finish(&pin);
+}
+
+// A bouncing ball within one run: while gravity is small against the contact's force, every arrival
+// is as fast as the departure before it, e times slower than the arrival before that.
+static void a_pin_that_falls_back_touches_again(void **state)
+{
+    (void)state;
+    Encounter pin = lone_pin(lone_pin_hertz(0.6), LONE_PIN_PHASE);
+    pin.free[0] = 100.0;
+    const double e = damping_delivered(0.6);
+    // arrivals at 0, and 2 v e / a, 2 v e^2 / a, .. after one another: three of them
+    run(&pin, 2.0 * ONE_IMPACT_SPEED / 100.0 * (e + e * e) + 1e-3);
+    size_t arrivals = 0;
+    for (size_t node = 1; node < pin.node_count; node++) {
+        arrivals += pin.touching[node] > pin.touching[node - 1] ? 1 : 0;
+    }
+    assert_int_equal(arrivals, 3);
+    // 0.1 N of gravity against 100 N and more of the contact
+    assert_close(pin.joints[0].impact_speed, ONE_IMPACT_SPEED * e * e, 2e-2);
+    assert_true(pin.node_count < 3000);
     encounter_finish(&pin);
 }
 
@@ -354,6 +376,7 @@ int main(void)
         cmocka_unit_test(the_error_falls_with_the_fourth_power_of_the_phase),
         cmocka_unit_test(an_onset_stands_where_the_flight_meets_the_wall),
         cmocka_unit_test(a_slow_pin_turns_back_before_the_wall),
+        cmocka_unit_test(a_pin_that_falls_back_touches_again),
         cmocka_unit_test(impulses_are_integrals_of_forces_and_move_the_pin),
         cmocka_unit_test(the_kinetic_energy_that_is_lost_is_what_the_damping_took),
         cmocka_unit_test(a_sliding_disc_is_braked_until_it_rolls),
