@@ -39,11 +39,20 @@ typedef struct SolverModel {
     double estimate_s;     // s, up to which the estimate holds
 } SolverModel;
 
+// A sign of life from work that takes long.
+typedef struct SolverPulse {
+    void (*beat)(void *context); // NULL: nobody waits for it
+    void *context;
+} SolverPulse;
+
 typedef struct Solver {
     const char *name;    // as in a case's list of backends
     const char *summary; // one line for people
     // Makes the state at time zero. On failure *state stays NULL.
     bool (*open)(const Scenario *scenario, void **state, Err *err);
+    // Optional: what is to be done before the first step and may take long, with a beat now and
+    // then. Where it is not called the first step does it. Fails as step does.
+    bool (*prepare)(void *state, SolverPulse pulse, Err *err);
     // Takes one step of the solver's own choosing towards stop_s. It may end beyond stop_s only
     // if observe can look back into the step. Fails with ERR_SOLVER, saying when and why.
     bool (*step)(void *state, double stop_s, Err *err);

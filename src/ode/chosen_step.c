@@ -299,10 +299,17 @@ static bool choose_step(Chosen *chosen, Err *err)
     return chosen->pilots.solver->open(&chosen->trial, &chosen->state, err);
 }
 
+static bool chosen_prepare(void *state, SolverPulse pulse, Err *err)
+{
+    Chosen *chosen = state;
+    chosen->pilots.pulse = pulse;
+    return choose_step(chosen, err);
+}
+
 static bool chosen_step(void *state, double stop_s, Err *err)
 {
     Chosen *chosen = state;
-    // trials come with the first step, so that they are timed with it
+    // trials come with the first step where they have not been made
     if (chosen->state == NULL && !choose_step(chosen, err)) {
         return false;
     }
@@ -342,6 +349,7 @@ const Solver STEPPING_CHOSEN = {
     .name = "chosen",
     .summary = "the step is chosen for the error that is wanted",
     .open = chosen_open,
+    .prepare = chosen_prepare,
     .step = chosen_step,
     .record = chosen_record,
     .observe = chosen_observe,

@@ -44,6 +44,12 @@ static bool ode_open(const Scenario *scenario, void **state, Err *err)
     return true;
 }
 
+static bool ode_prepare(void *state, SolverPulse pulse, Err *err)
+{
+    Ode *ode = state;
+    return ode->stepping->prepare == NULL || ode->stepping->prepare(ode->state, pulse, err);
+}
+
 static bool ode_step(void *state, double stop_s, Err *err)
 {
     Ode *ode = state;
@@ -81,6 +87,7 @@ const Solver ODE_SOLVER = {
     .name = "ode",
     .summary = "Open Dynamics Engine",
     .open = ode_open,
+    .prepare = ode_prepare,
     .step = ode_step,
     .record = ode_record,
     .observe = ode_observe,

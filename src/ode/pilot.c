@@ -14,13 +14,14 @@ static const double MARGIN = 2.0;
 
 typedef struct Pilot {
     const Solver *solver;
+    SolverPulse pulse;
     void *state;
     double reached_s;
 } Pilot;
 
 static bool open_pilot(Pilots *pilots, const Scenario *scenario, Pilot *pilot)
 {
-    *pilot = (Pilot){.solver = pilots->solver};
+    *pilot = (Pilot){.solver = pilots->solver, .pulse = pilots->pulse};
     pilots->failure = (Err){ERR_NONE, ""};
     return pilot->solver->open(scenario, &pilot->state, &pilots->failure);
 }
@@ -46,6 +47,9 @@ static bool sample_pilot(Pilot *pilot, double time_s, Sample *sample, Err *err)
         }
         pilot->reached_s = pilot->solver->record(pilot->state).end_s;
     } while (pilot->reached_s < time_s - rounding_s);
+    if (pilot->pulse.beat != NULL) {
+        pilot->pulse.beat(pilot->pulse.context);
+    }
     pilot->solver->observe(pilot->state, fmin(time_s, pilot->reached_s), sample);
     return true;
 }

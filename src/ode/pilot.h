@@ -7,6 +7,7 @@
 // How trial runs are made, and what they have cost.
 typedef struct Pilots {
     const Solver *solver;
+    SolverPulse pulse;
     size_t steps; // of all of them
     Err failure;  // why the last one failed that did
     size_t evaluations;

@@ -89,6 +89,19 @@ static bool reach(Loop *loop, double time_s, Err *err)
     return true;
 }
 
+// Shows that something is under way before the first step.
+static void beat(void *context)
+{
+    const Loop *loop = context;
+    loop->watch.progress(0.0, clock_now_s() - loop->started_s, loop->watch.context);
+}
+
+static bool prepare(Loop *loop, Err *err)
+{
+    const SolverPulse pulse = {loop->watch.progress != NULL ? beat : NULL, loop};
+    return loop->solver->prepare == NULL || loop->solver->prepare(loop->state, pulse, err);
+}
+
 static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
 {
     // a first step, so that the sample at zero already stands in one
@@ -155,7 +168,7 @@ Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatc
     }
     loop.recorder = recorder_start(scenario, trajectory);
     loop.started_s = clock_now_s();
-    const bool is_done = run_samples(&loop, trajectory, &err);
+    const bool is_done = prepare(&loop, &err) && run_samples(&loop, trajectory, &err);
     trajectory->wall_s = clock_now_s() - loop.started_s;
     recorder_finish(&loop.recorder);
     fill_model(&loop, trajectory);

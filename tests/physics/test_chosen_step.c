@@ -112,6 +112,26 @@ static void what_it_expects_and_what_it_cost_are_told(void **state)
     trajectory_destroy(run);
 }
 
+static void count_beat(double share, double wall_s, void *context)
+{
+    (void)wall_s;
+    *(size_t *)context += share == 0.0 ? 1 : 0;
+}
+
+static void trials_show_that_they_are_under_way(void **state)
+{
+    (void)state;
+    Scenario scenario = loose(1e-3, 1);
+    scenario.run.step = 0.0;
+    size_t beats = 0;
+    Trajectory *run =
+        run_scenario(&scenario, registry_solver(BACKEND_ODE), (RunWatch){count_beat, &beats});
+    assert_true(run->is_complete);
+    // three trials at the least, and a beat at each of their thousand samples and more
+    assert_true(beats > 3000);
+    trajectory_destroy(run);
+}
+
 static void an_error_that_no_step_gives_is_told(void **state)
 {
     (void)state;
@@ -134,6 +154,7 @@ int main(void)
         cmocka_unit_test(a_step_for_a_coarse_error_is_too_coarse_for_a_fine_one),
         cmocka_unit_test(where_motion_cannot_be_predicted_the_error_holds_up_to_there),
         cmocka_unit_test(what_it_expects_and_what_it_cost_are_told),
+        cmocka_unit_test(trials_show_that_they_are_under_way),
         cmocka_unit_test(an_error_that_no_step_gives_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
