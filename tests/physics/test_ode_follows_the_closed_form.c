@@ -1,9 +1,6 @@
 // With ideal joints, is ODE's motion the closed form's, and does its error go with the step?
-#include "complete_run.h"
-
 #include "mechanism.h"
-
-#include "compare/error.h"
+#include "ode_error.h"
 
 static void extremes_at_ten_microseconds_are_the_closed_forms(void **state)
 {
@@ -26,27 +23,15 @@ static void extremes_at_ten_microseconds_are_the_closed_forms(void **state)
     trajectory_destroy(analytic);
 }
 
-static TrajectoryError error_at(Scenario *scenario, double step_s)
-{
-    scenario->run.step = step_s;
-    Trajectory *ode = complete_run(scenario, BACKEND_ODE);
-    Trajectory *analytic = complete_run(scenario, BACKEND_ANALYTIC);
-    const TrajectoryError error = error_against(ode, analytic, INFINITY);
-    assert_true(error.is_known);
-    trajectory_destroy(ode);
-    trajectory_destroy(analytic);
-    return error;
-}
-
 static void the_error_falls_in_proportion_to_the_step(void **state)
 {
     (void)state;
     Scenario scenario = mechanism_paper();
     const double steps[] = {1e-4, 3e-5, 1e-5, 3e-6, 1e-6};
     for (size_t i = 0; i + 1 < sizeof steps / sizeof *steps; i++) {
-        const double coarse = error_at(&scenario, steps[i]).omega_max;
-        const double fine = error_at(&scenario, steps[i + 1]).omega_max;
-        const double order = log(coarse / fine) / log(steps[i] / steps[i + 1]);
+        const double coarse = ode_error_at(scenario, BACKEND_ANALYTIC, steps[i]).omega_max;
+        const double fine = ode_error_at(scenario, BACKEND_ANALYTIC, steps[i + 1]).omega_max;
+        const double order = ode_order(coarse, fine, steps[i] / steps[i + 1]);
         // the second-order term is 2 % of the first at 1e-4 s
         assert_near(order, 1.0, 0.03);
     }
@@ -58,7 +43,7 @@ static void the_error_is_the_half_step_that_plain_reading_is_late(void **state)
     (void)state;
     Scenario scenario = mechanism_paper();
     const double predicted = 0.5e-5 * 12485.5 / 80.5551;
-    assert_close(error_at(&scenario, 1e-5).omega_max, predicted, 0.01);
+    assert_close(ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).omega_max, predicted, 0.01);
 }
 
 // The control: without the steps before time zero the joint rows lag at the start.
@@ -66,10 +51,10 @@ static void without_settling_the_accelerations_start_wrong_at_any_step(void **st
 {
     (void)state;
     Scenario scenario = mechanism_paper();
-    const double settled = error_at(&scenario, 1e-6).alpha_max;
+    const double settled = ode_error_at(scenario, BACKEND_ANALYTIC, 1e-6).alpha_max;
     scenario.ode.settle_steps = 0;
-    assert_true(error_at(&scenario, 1e-5).alpha_max > 0.05);
-    assert_true(error_at(&scenario, 1e-6).alpha_max > 0.05);
+    assert_true(ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).alpha_max > 0.05);
+    assert_true(ode_error_at(scenario, BACKEND_ANALYTIC, 1e-6).alpha_max > 0.05);
     assert_true(settled < 1e-3);
 }
 
