@@ -122,9 +122,7 @@ bool place_linkage(const Entries *entries, Scenario *scenario, Err *err)
 {
     Linkage *linkage = &scenario->linkage;
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        motions[i] = linkage->bodies[i].start;
-    }
+    linkage_start(linkage, motions);
     set_anchors(linkage, motions);
     if (!check_redundancy(entries, linkage, motions, err)) {
         return false;

@@ -48,19 +48,6 @@ static double shorten_horizon(const Trajectory *trajectory, const Trajectory *ot
     return largest;
 }
 
-enum { LEAST_SAMPLES = 1000 }; // fewer steps of the horizon would say little
-
-// The scenario on a grid fine enough for the horizon, the case's own samples among them.
-static Scenario refined(const Scenario *scenario)
-{
-    Scenario fine = *scenario;
-    const size_t count = scenario_sample_count(scenario) - 1;
-    if (count < LEAST_SAMPLES) {
-        fine.run.samples *= (LEAST_SAMPLES + count - 1) / count;
-    }
-    return fine;
-}
-
 static void certify_ideal(const Scenario *scenario, RunWatch watch, Truth *truth)
 {
     truth->trajectory = run(scenario, BACKEND_ANALYTIC, watch);
@@ -127,7 +114,7 @@ Truth truth_make(const Scenario *scenario, RunWatch watch)
         return truth;
     }
     // the second run is tighter, unless the first is as tight as can be
-    const Scenario fine = refined(scenario);
+    const Scenario fine = distance_grid(scenario);
     Scenario other = fine;
     const double tolerance = scenario->reference.tolerance;
     other.reference.tolerance = fmax(TIGHTEST, TIGHTER * tolerance);

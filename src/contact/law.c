@@ -93,6 +93,16 @@ bool law_build(const ContactOptions *contact, const MaterialOptions *material,
     return true;
 }
 
+bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, Err *err)
+{
+    if (!law_build(&scenario->contact, &scenario->material, &joint->clearance,
+                   scenario->linkage.driver.speed, law, err)) {
+        err_prefix(err, joint->name);
+        return false;
+    }
+    return true;
+}
+
 double law_depth_max(const ForceLaw *law, double pin_radius)
 {
     const double share = 0.1;

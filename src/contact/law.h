@@ -3,8 +3,7 @@
 
 #include "base/err.h"
 #include "contact/force_law.h"
-#include "model/linkage.h"
-#include "model/options.h"
+#include "model/scenario.h"
 
 // A pin in a hole, both of one material.
 typedef struct ContactPair {
@@ -41,6 +40,10 @@ ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material
 // as law_make does.
 bool law_build(const ContactOptions *contact, const MaterialOptions *material,
                const Clearance *clearance, double speed, ForceLaw *law, Err *err);
+
+// The law of a joint with play of a scenario. Fails as law_make does, with the joint's name in
+// front.
+bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, Err *err);
 
 // The deepest penetration, m, at which a law of a pin of this radius, m, still means anything: a
 // tenth of the radius, for the laws are for depths small against it and steel has yielded long

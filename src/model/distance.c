@@ -7,6 +7,8 @@
 // accelerations that of alpha.
 #include "model/distance.h"
 
+enum { LEAST_SAMPLES = 1000 }; // fewer steps of a horizon would say little
+
 static const double SMALLEST_SCALE =
     1e-3; // of the fastest body's: below it lies no motion to speak of
 
@@ -83,4 +85,14 @@ double distance_at(const Trajectory *trajectory, const Trajectory *reference, si
         }
     }
     return largest;
+}
+
+Scenario distance_grid(const Scenario *scenario)
+{
+    Scenario fine = *scenario;
+    const size_t count = scenario_sample_count(scenario) - 1;
+    if (count < LEAST_SAMPLES) {
+        fine.run.samples *= (LEAST_SAMPLES + count - 1) / count;
+    }
+    return fine;
 }

@@ -11,6 +11,9 @@ static const double DISTANCE_TWIN = 1e-10;
 static const double DISTANCE_GROWTH = 1e5;
 enum { DISTANCE_TWINS = 4 }; // a single one may lie in a direction that hardly grows
 
+// The scenario with samples fine enough to compare on, its own among them.
+Scenario distance_grid(const Scenario *scenario);
+
 // What distances of a body are measured in; 0 for the driven body, which does not count.
 typedef struct DistanceScale {
     double omega; // rad/s, or m/s

@@ -46,6 +46,13 @@ int linkage_find_joint(const Linkage *linkage, const char *name)
     return -1;
 }
 
+void linkage_start(const Linkage *linkage, Motion *motions)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i] = linkage->bodies[i].start;
+    }
+}
+
 Vec2 linkage_point(const Motion *motions, int body, Vec2 local)
 {
     if (body == LINKAGE_GROUND) {

@@ -89,6 +89,9 @@ double linkage_period(const Linkage *linkage);
 int linkage_find_body(const Linkage *linkage, const char *name);
 int linkage_find_joint(const Linkage *linkage, const char *name);
 
+// Writes how all bodies move at time zero.
+void linkage_start(const Linkage *linkage, Motion *motions);
+
 // A point given in a body's frame (or the ground's), in the world's frame, and its velocity.
 Vec2 linkage_point(const Motion *motions, int body, Vec2 local);
 Vec2 linkage_point_velocity(const Motion *motions, int body, Vec2 local);

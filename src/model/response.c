@@ -271,17 +271,24 @@ void response_load(const Response *response, const double *impulses, double *loa
     }
 }
 
-void response_close(const Response *response, const double *openings, double *changes)
+void response_solve(const Response *response, double *rows)
 {
-    double rows[RESPONSE_ROW_MAX];
     for (size_t i = 0; i < response->ideal_rows; i++) {
-        rows[i] = -openings[i];
         for (size_t k = 0; k < i; k++) {
             rows[i] -= response->matrix[i][k] * rows[k];
         }
         rows[i] /= response->matrix[i][i];
     }
     solve_back(response, rows);
+}
+
+void response_close(const Response *response, const double *openings, double *changes)
+{
+    double rows[RESPONSE_ROW_MAX];
+    for (size_t i = 0; i < response->ideal_rows; i++) {
+        rows[i] = -openings[i];
+    }
+    response_solve(response, rows);
     memset(changes, 0, 3 * response->linkage->body_count * sizeof *changes);
     for (size_t i = 0; i < response->ideal_rows; i++) {
         add_row(response->linkage, &response->rows[i], rows[i], changes);

@@ -62,6 +62,9 @@ void response_load(const Response *response, const double *impulses, double *loa
 // bodies: x, y, angle, three a body. The ideal joints' own impulses are in it.
 void response_apply(const Response *response, const double *impulses, double *changes);
 
+// Solves D x = b for the rows of the ideal joints, D = J M^-1 J', in place.
+void response_solve(const Response *response, double *rows);
+
 // Writes the changes, three a body, weighed by mass and inertia the least, that take from the rows
 // of the ideal joints what is given there: openings, m, of places or m/s of velocities.
 void response_close(const Response *response, const double *openings, double *changes);

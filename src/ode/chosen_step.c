@@ -90,9 +90,7 @@ static double contact_time(const Scenario *scenario)
     Motion motions[LINKAGE_BODY_MAX];
     Response response;
     Err unused = {ERR_NONE, ""};
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        motions[i] = linkage->bodies[i].start;
-    }
+    linkage_start(linkage, motions);
     if (!response_init(linkage, false, &response, &unused) || !response_place(&response, motions)) {
         return INFINITY; // opening the world says what is wrong
     }
@@ -100,8 +98,7 @@ static double contact_time(const Scenario *scenario)
     for (size_t row = 0; row < response_play_rows(&response); row += 2) {
         const Joint *joint = &linkage->joints[response_joint(&response, row)];
         ForceLaw law;
-        if (law_build(&scenario->contact, &scenario->material, &joint->clearance,
-                      linkage->driver.speed, &law, &unused)) {
+        if (law_of_joint(scenario, joint, &law, &unused)) {
             const double mass = fmin(response_mass(&response, row, (Vec2){1.0, 0.0}),
                                      response_mass(&response, row, (Vec2){0.0, 1.0}));
             const double depth =
@@ -119,7 +116,7 @@ static void choose_stepping(Chosen *chosen)
     const Linkage *linkage = &scenario->linkage;
     const double turn_s =
         linkage->driver.is_present ? linkage_period(linkage) : scenario_duration(scenario);
-    chosen->grid = pilot_grid(scenario);
+    chosen->grid = distance_grid(scenario);
     chosen->pilots.solver = has_play ? &STEPPING_IMPULSE : &STEPPING_EXTRAPOLATED;
     chosen->order = has_play ? 2.0 : (double)scenario->ode.levels + 1.0;
     chosen->first_step_s = turn_s / (has_play ? FIRST_STEPS : FIRST_STEPS_SMOOTH);
@@ -194,9 +191,8 @@ static void judge(const Chosen *chosen, Trials *trials)
         const double error_before = error_of(chosen, before, runs[2]->step_s / runs[1]->step_s);
         trials->is_rounding = distance >= before && before < ROUNDING;
         const double fallen = log(error_before / trials->error) / log(ratio);
-        trials->is_converging = fallen >= CONVERGING * chosen->order;
         // two steps below the tolerance need not fall as h^p to be good enough
-        trials->is_converging = trials->is_converging ||
+        trials->is_converging = fallen >= CONVERGING * chosen->order ||
                                 fmax(distance, before) <= AIM * chosen->scenario->run.tolerance;
     }
 }

@@ -33,9 +33,7 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
     for (size_t i = 0; i < world->pair_count; i++) {
         const Joint *joint = &scenario->linkage.joints[world->pairs[i].joint];
         rows->rows[i].radial_clearance = linkage_radial_clearance(joint);
-        if (!law_build(&scenario->contact, &scenario->material, &joint->clearance,
-                       scenario->linkage.driver.speed, &rows->rows[i].law, err)) {
-            err_prefix(err, joint->name);
+        if (!law_of_joint(scenario, joint, &rows->rows[i].law, err)) {
             return false;
         }
     }
@@ -306,15 +304,28 @@ void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
     }
 }
 
-Vec2 contact_rows_offset(const ContactRows *rows, int joint, bool is_hole)
+void contact_rows_offsets(const ContactRows *rows, int body, Vec2 offsets[LINKAGE_JOINT_MAX])
 {
+    memset(offsets, 0, LINKAGE_JOINT_MAX * sizeof *offsets);
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         const ContactRow *row = &rows->rows[i];
-        if (rows->world->pairs[i].joint == joint && row->is_touching) {
-            const Clearance *clearance = &rows->scenario->linkage.joints[joint].clearance;
-            return vec2_scale(is_hole ? -clearance->hole_radius : -clearance->pin_radius,
-                              row->normal);
+        const int number = rows->world->pairs[i].joint;
+        const Joint *joint = &rows->scenario->linkage.joints[number];
+        if (row->is_touching) {
+            const double radius =
+                joint->body_a == body ? joint->clearance.hole_radius : joint->clearance.pin_radius;
+            offsets[number] = vec2_scale(-radius, row->normal);
         }
     }
-    return (Vec2){0.0, 0.0};
+}
+
+ContactEnergy contact_rows_energy(const ContactRows *rows)
+{
+    ContactEnergy sum = {0.0, 0.0, 0.0};
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        sum.dissipated += rows->rows[i].dissipated;
+        sum.friction += rows->rows[i].friction;
+        sum.elastic += rows->rows[i].elastic;
+    }
+    return sum;
 }

@@ -54,9 +54,19 @@ void contact_rows_finish(ContactRows *rows);
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err);
 
-// From the centre of a joint's hole or pin to the point where its contact's force acts, m; zero for
-// a joint without a row in this step.
-Vec2 contact_rows_offset(const ContactRows *rows, int joint, bool is_hole);
+// By joint, from the centre of the hole or pin that a body carries to the point where the contact's
+// force acts, m; zero for a joint without a row in this step.
+void contact_rows_offsets(const ContactRows *rows, int body, Vec2 offsets[LINKAGE_JOINT_MAX]);
+
+// What all contacts together lost in the step along the normal and in sliding, and store after it,
+// J.
+typedef struct ContactEnergy {
+    double dissipated;
+    double friction;
+    double elastic;
+} ContactEnergy;
+
+ContactEnergy contact_rows_energy(const ContactRows *rows);
 
 // After the step: fills in the joints' forces, books the energies, and removes the rows.
 void contact_rows_clear(ContactRows *rows, double step_s, JointState *states);

@@ -33,19 +33,7 @@ bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, Respons
     for (size_t i = 0; i < count; i++) {
         lambda[i] = row_acceleration(&response->rows[i], motions, scenario->gravity);
     }
-    // forward and back through Cholesky's factor of D
-    for (size_t i = 0; i < count; i++) {
-        for (size_t k = 0; k < i; k++) {
-            lambda[i] -= response->matrix[i][k] * lambda[k];
-        }
-        lambda[i] /= response->matrix[i][i];
-    }
-    for (size_t i = count; i-- > 0;) {
-        for (size_t k = i + 1; k < count; k++) {
-            lambda[i] -= response->matrix[k][i] * lambda[k];
-        }
-        lambda[i] /= response->matrix[i][i];
-    }
+    response_solve(response, lambda);
     for (size_t i = 0; i < count; i += 2) {
         JointState *joint = &joints[response->joint_of[i]];
         joint->force_on_b = (Vec2){lambda[i], lambda[i + 1]};

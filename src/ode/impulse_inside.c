@@ -10,11 +10,6 @@
 
 #include <string.h>
 
-static bool is_free(const ImpulseStep *step, size_t body)
-{
-    return (int)body != step->driven;
-}
-
 // How the bodies move at a time within the step, from the contacts' sums up to then.
 static void find_motions(const ImpulseStep *step, double since_s, const EncounterSums *sums,
                          Motion *motions)
@@ -56,7 +51,7 @@ static void find_accelerations(const ImpulseStep *step, const Response *response
         rates[n] += step->free[n] + off_middle_s * step->free_rate[n];
     }
     for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
-        if (is_free(step, i)) {
+        if (impulse_step_is_free(step, i)) {
             motions[i].acceleration = (Vec2){rates[3 * i], rates[3 * i + 1]};
             motions[i].alpha = rates[3 * i + 2];
         }

@@ -35,11 +35,6 @@ static size_t body_count(const ImpulseStep *step)
     return step->scenario->linkage.body_count;
 }
 
-static bool is_free(const ImpulseStep *step, size_t body)
-{
-    return (int)body != step->driven;
-}
-
 void impulse_step_finish(ImpulseStep *step)
 {
     encounter_finish(&step->encounter);
@@ -62,9 +57,7 @@ static bool init_encounter(ImpulseStep *step, Err *err)
         added->joint = (int)i;
         added->radial_clearance = linkage_radial_clearance(joint);
         added->hole_radius = joint->clearance.hole_radius;
-        if (!law_build(contact, &scenario->material, &joint->clearance,
-                       scenario->linkage.driver.speed, &added->law, err)) {
-            err_prefix(err, joint->name);
+        if (!law_of_joint(scenario, joint, &added->law, err)) {
             return false;
         }
     }
@@ -78,9 +71,7 @@ bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
     step->tick_s = scenario->run.step / (double)scenario->ode.gear;
     step->there = calloc(1, sizeof *step->there);
     assert(step->there != NULL);
-    for (size_t i = 0; i < body_count(step); i++) {
-        step->after[i] = scenario->linkage.bodies[i].start;
-    }
+    linkage_start(&scenario->linkage, step->after);
     if (!response_init(&scenario->linkage, scenario->contact.friction > 0.0, &step->response,
                        err) ||
         !init_encounter(step, err) || !world_build(scenario, step->after, &step->world, err)) {
@@ -177,7 +168,7 @@ static bool step_world(ImpulseStep *step, const Motion *middle, Err *err)
     response_load(&step->response, step->total.impulse, loads);
     for (size_t i = 0; i < body_count(step); i++) {
         Motion placed = middle[i];
-        if (is_free(step, i)) {
+        if (impulse_step_is_free(step, i)) {
             const dBodyID body = step->world.bodies[i];
             dBodyAddForce(body, loads[3 * i] / width_s, loads[3 * i + 1] / width_s, 0.0);
             dBodyAddTorque(body, 0.0, 0.0, loads[3 * i + 2] / width_s);
@@ -196,7 +187,7 @@ static void change_motions(const ImpulseStep *step, const double *places, const 
                            Motion *motions)
 {
     for (size_t i = 0; i < body_count(step); i++) {
-        if (is_free(step, i)) {
+        if (impulse_step_is_free(step, i)) {
             Motion *motion = &motions[i];
             const double *place = places + 3 * i;
             const double *speed = speeds + 3 * i;
@@ -214,7 +205,7 @@ static void find_end(ImpulseStep *step, const Motion *middle)
     const double half_s = 0.5 * step->width_s;
     const size_t rows = encounter_rows(&step->encounter);
     for (size_t i = 0; i < body_count(step); i++) {
-        if (is_free(step, i)) {
+        if (impulse_step_is_free(step, i)) {
             const Snapshot now = world_snapshot(&step->world, i);
             Motion *after = &step->after[i];
             after->velocity = now.velocity;

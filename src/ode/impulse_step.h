@@ -30,6 +30,12 @@ typedef struct ImpulseStep {
     JointState mean[LINKAGE_JOINT_MAX];   // mean forces of the ideal joints
 } ImpulseStep;
 
+// Whether a body moves by the forces on it, and not by the drive.
+static inline bool impulse_step_is_free(const ImpulseStep *step, size_t body)
+{
+    return (int)body != step->driven;
+}
+
 // Builds the world of a scenario at its start. The step must not be copied, and is to be finished
 // after a failure too.
 bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err);

@@ -142,9 +142,7 @@ static bool start_level(Nodes *nodes, NodesLevel *level, Err *err)
     const Linkage *linkage = &nodes->scenario->linkage;
     const long steps = NODES_BEFORE * (long)level->steps_a_node + SETTLE_STEPS;
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        motions[i] = linkage->bodies[i].start;
-    }
+    linkage_start(linkage, motions);
     Err unused = {ERR_NONE, ""};
     if (kinematics_solve(linkage, linkage_crank_angle(linkage, 0.0), motions, &unused)) {
         level->index = -stepping_start(nodes->scenario, level->step_s, steps, motions);
@@ -225,9 +223,7 @@ bool nodes_init(const Scenario *scenario, Nodes *nodes, Err *err)
     nodes->interval_s = (double)steps_a_node * scenario->run.step;
     set_weights(nodes);
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
-        motions[i] = scenario->linkage.bodies[i].start;
-    }
+    linkage_start(&scenario->linkage, motions);
     for (size_t k = 0; k < nodes->level_count; k++) {
         NodesLevel *level = &nodes->levels[k];
         level->step_s = nodes->interval_s / (double)level->steps_a_node;

@@ -5,9 +5,6 @@
 
 #include <stdlib.h>
 
-// the grid has at least so many samples, and no more than the scenario's own beyond these
-enum { LEAST_SAMPLES = 1000 };
-
 // twins pass the limit in jumps, at impacts, and which of them does is an accident of the trial:
 // this many times further out the accident cannot cut the time short
 static const double MARGIN = 2.0;
@@ -52,16 +49,6 @@ static bool sample_pilot(Pilot *pilot, double time_s, Sample *sample, Err *err)
     }
     pilot->solver->observe(pilot->state, fmin(time_s, pilot->reached_s), sample);
     return true;
-}
-
-Scenario pilot_grid(const Scenario *scenario)
-{
-    Scenario grid = *scenario;
-    const size_t count = scenario_sample_count(scenario) - 1;
-    if (count < LEAST_SAMPLES) {
-        grid.run.samples *= (LEAST_SAMPLES + count - 1) / count;
-    }
-    return grid;
 }
 
 Trajectory *pilot_run(Pilots *pilots, const Scenario *scenario, const Scenario *grid,

@@ -19,9 +19,6 @@ typedef struct Pilots {
 Trajectory *pilot_run(Pilots *pilots, const Scenario *scenario, const Scenario *grid,
                       double until_s);
 
-// A scenario with samples fine enough to compare on, its own among them.
-Scenario pilot_grid(const Scenario *scenario);
-
 // The time up to which the motion is predictable, s, at most `until_s`: where the first of several
 // twins of the scenario, started a little beside it, has come too far away.
 double pilot_horizon(Pilots *pilots, const Scenario *scenario, const Scenario *grid,

@@ -60,12 +60,8 @@ static void read_velocities(Plain *plain)
 // The force of each joint acts at its contact, where it has one.
 static double drive_power(Plain *plain, const Motion *driven)
 {
-    const Linkage *linkage = &plain->scenario->linkage;
     Vec2 offsets[LINKAGE_JOINT_MAX];
-    for (int i = 0; i < (int)linkage->joint_count; i++) {
-        const bool is_hole = linkage->joints[i].body_a == plain->driven;
-        offsets[i] = contact_rows_offset(&plain->contacts, i, is_hole);
-    }
+    contact_rows_offsets(&plain->contacts, plain->driven, offsets);
     return stepping_drive(plain->scenario, driven, offsets, plain->joints);
 }
 
@@ -138,7 +134,8 @@ static bool plain_step(void *state, double stop_s, Err *err)
 static StepRecord plain_record(const void *state)
 {
     const Plain *plain = state;
-    StepRecord record = {
+    const ContactEnergy energy = contact_rows_energy(&plain->contacts);
+    return (StepRecord){
         .start_s = (double)(plain->index - 1) * plain->step_s,
         .end_s = (double)plain->index * plain->step_s,
         .joint_s = (double)(plain->index - 1) * plain->step_s,
@@ -148,13 +145,10 @@ static StepRecord plain_record(const void *state)
         .impulse = plain->impulse,
         .approach = plain->approach,
         .drive_work = plain->drive_work,
+        .dissipated = energy.dissipated,
+        .friction = energy.friction,
+        .elastic = energy.elastic,
     };
-    for (size_t i = 0; i < plain->world.pair_count; i++) {
-        record.dissipated += plain->contacts.rows[i].dissipated;
-        record.friction += plain->contacts.rows[i].friction;
-        record.elastic += plain->contacts.rows[i].elastic;
-    }
-    return record;
 }
 
 // The motion at a share of the step between two snapshots.

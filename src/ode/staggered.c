@@ -40,9 +40,7 @@ typedef struct Stride {
     double impulse[LINKAGE_JOINT_MAX];
     double approach[LINKAGE_JOINT_MAX];
     double drive_work; // J
-    double dissipated;
-    double friction;
-    double elastic; // at its end
+    ContactEnergy energy;
 } Stride;
 
 typedef struct Staggered {
@@ -179,21 +177,13 @@ static void book(Staggered *staggered, const Motion *middle, Stride *stride)
 {
     const Linkage *linkage = &staggered->scenario->linkage;
     Vec2 offsets[LINKAGE_JOINT_MAX];
-    for (int i = 0; i < (int)linkage->joint_count; i++) {
-        offsets[i] = contact_rows_offset(&staggered->contacts, i,
-                                         linkage->joints[i].body_a == staggered->driven);
-    }
+    contact_rows_offsets(&staggered->contacts, staggered->driven, offsets);
     stride->drive_work =
         staggered->step_s * stepping_drive(staggered->scenario, middle, offsets, stride->joints);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         stride->impulse[i] = stride->joints[i].force * staggered->step_s;
     }
-    stride->dissipated = stride->friction = stride->elastic = 0.0;
-    for (size_t i = 0; i < staggered->world.pair_count; i++) {
-        stride->dissipated += staggered->contacts.rows[i].dissipated;
-        stride->friction += staggered->contacts.rows[i].friction;
-        stride->elastic += staggered->contacts.rows[i].elastic;
-    }
+    stride->energy = contact_rows_energy(&staggered->contacts);
 }
 
 static bool advance(Staggered *staggered, Stride *stride, Err *err)
@@ -277,9 +267,9 @@ static StepRecord staggered_record(const void *state)
         .impulse = now->impulse,
         .approach = now->approach,
         .drive_work = now->drive_work,
-        .dissipated = now->dissipated,
-        .friction = now->friction,
-        .elastic = now->elastic,
+        .dissipated = now->energy.dissipated,
+        .friction = now->energy.friction,
+        .elastic = now->energy.elastic,
     };
 }
 

@@ -28,9 +28,7 @@ Motion stepping_driven(const Linkage *linkage, double time_s)
 long stepping_start(const Scenario *scenario, double step_s, long steps_back, Motion *motions)
 {
     const Linkage *linkage = &scenario->linkage;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        motions[i] = linkage->bodies[i].start;
-    }
+    linkage_start(linkage, motions);
     if (!linkage->driver.is_present || scenario_has_clearance(scenario)) {
         return 0;
     }

@@ -43,9 +43,7 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
         contact->joint = (int)i;
         contact->radial_clearance = linkage_radial_clearance(joint);
         contact->hole_radius = joint->clearance.hole_radius;
-        if (!law_build(&scenario->contact, &scenario->material, &joint->clearance,
-                       scenario->linkage.driver.speed, &contact->law, err)) {
-            err_prefix(err, joint->name);
+        if (!law_of_joint(scenario, joint, &contact->law, err)) {
             return false;
         }
     }

@@ -91,9 +91,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     }
     const size_t n = stepper->dynamics.tree.coordinate_count;
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
-        motions[i] = scenario->linkage.bodies[i].start;
-    }
+    linkage_start(&scenario->linkage, motions);
     double y[DOP853_SIZE_MAX] = {0.0};
     tree_coordinates(&stepper->dynamics.tree, motions, y, y + n);
     loops_project(&stepper->dynamics.tree, 0.0, y, y + n);

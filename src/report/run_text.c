@@ -15,9 +15,7 @@
 static void write_freedoms(const Linkage *linkage, bool has_play, Text *text)
 {
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        motions[i] = linkage->bodies[i].start;
-    }
+    linkage_start(linkage, motions);
     text_append(text, "  mechanism   %zu bodies, %zu joints, mobility %zu", linkage->body_count,
                 linkage->joint_count, kinematics_mobility(linkage, motions, false));
     if (has_play) {

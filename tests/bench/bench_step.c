@@ -20,9 +20,7 @@ enum { REPETITIONS = 9, BARE_STEPS = 60000, ROWS = 9 };
 static double bare_us(const Scenario *scenario)
 {
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
-        motions[i] = scenario->linkage.bodies[i].start;
-    }
+    linkage_start(&scenario->linkage, motions);
     World world;
     Err err = {ERR_NONE, ""};
     if (!world_build(scenario, motions, &world, &err)) {

@@ -117,9 +117,7 @@ static void redundant_joint_rows_are_refused_before_ode_sees_them(void **state)
     assert_non_null(
         strstr(trajectory->message, "1 of the 15 rows of the ideal joints follow from the others"));
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < scenario.linkage.body_count; i++) {
-        motions[i] = scenario.linkage.bodies[i].start;
-    }
+    linkage_start(&scenario.linkage, motions);
     World world;
     Err err = {ERR_NONE, ""};
     assert_false(world_build(&scenario, motions, &world, &err));

@@ -27,9 +27,7 @@ static void assemble(Scenario *scenario)
 {
     Linkage *linkage = &scenario->linkage;
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        motions[i] = linkage->bodies[i].start;
-    }
+    linkage_start(linkage, motions);
     Err err = {ERR_NONE, ""};
     const bool is_closed = kinematics_solve(linkage, linkage->driver.start, motions, &err);
     assert(is_closed);

@@ -93,9 +93,7 @@ static void check_eccentricity(const Scenario *scenario, const char *name, doubl
 {
     const Joint *joint = &scenario->linkage.joints[linkage_find_joint(&scenario->linkage, name)];
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
-        motions[i] = scenario->linkage.bodies[i].start;
-    }
+    linkage_start(&scenario->linkage, motions);
     const Vec2 e = vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b),
                             linkage_point(motions, joint->body_a, joint->anchor_a));
     // positions of some 0.3 m are rounded at 6e-17 m each

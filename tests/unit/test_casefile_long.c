@@ -66,9 +66,7 @@ static void refuse(const char *text, const char *override, const char *message)
 static Vec2 eccentricity(const Linkage *linkage, size_t number)
 {
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        motions[i] = linkage->bodies[i].start;
-    }
+    linkage_start(linkage, motions);
     const Joint *joint = &linkage->joints[number];
     return vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b),
                     linkage_point(motions, joint->body_a, joint->anchor_a));
@@ -190,9 +188,7 @@ static void redundant_play_is_no_hindrance(void **state)
 static Vec2 parting(const Linkage *linkage, size_t number)
 {
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        motions[i] = linkage->bodies[i].start;
-    }
+    linkage_start(linkage, motions);
     const Joint *joint = &linkage->joints[number];
     return vec2_sub(linkage_point_velocity(motions, joint->body_b, joint->anchor_b),
                     linkage_point_velocity(motions, joint->body_a, joint->anchor_a));
@@ -315,9 +311,7 @@ static void the_cases_of_the_literature_load(void **state)
         const Scenario scenario = load_file(path, NULL);
         assert_true(scenario_has_clearance(&scenario));
         Motion motions[LINKAGE_BODY_MAX];
-        for (size_t k = 0; k < scenario.linkage.body_count; k++) {
-            motions[k] = scenario.linkage.bodies[k].start;
-        }
+        linkage_start(&scenario.linkage, motions);
         // with the play open nothing is redundant: each freedom is one a body, less two a joint
         size_t held = 0;
         for (size_t k = 0; k < scenario.linkage.joint_count; k++) {

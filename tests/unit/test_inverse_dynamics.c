@@ -99,9 +99,7 @@ static void reactions_that_are_not_determined_are_refused(void **state)
     (void)state;
     const Scenario redundant = mechanism_parallelogram();
     Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < redundant.linkage.body_count; i++) {
-        motions[i] = redundant.linkage.bodies[i].start;
-    }
+    linkage_start(&redundant.linkage, motions);
     Reactions reactions;
     Err err = {ERR_NONE, ""};
     assert_false(inverse_dynamics_solve(&redundant.linkage, motions, 0.0, &reactions, &err));

@@ -11,9 +11,7 @@
 
 static void copy_start(const Linkage *linkage, Motion *motions)
 {
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        motions[i] = linkage->bodies[i].start;
-    }
+    linkage_start(linkage, motions);
 }
 
 // Newton's method and the closed form share no formula but the loop itself.

@@ -43,9 +43,7 @@ static void make_case(size_t number, Case *made)
     for (size_t i = 0; i < (number < 2 ? 1 : 3); i++) {
         mechanism_loosen(&made->scenario, JOINTS[i]);
     }
-    for (size_t i = 0; i < made->scenario.linkage.body_count; i++) {
-        made->motions[i] = made->scenario.linkage.bodies[i].start;
-    }
+    linkage_start(&made->scenario.linkage, made->motions);
     Err err = {ERR_NONE, ""};
     assert_true(kinematics_solve(&made->scenario.linkage, 0.7, made->motions, &err));
     assert_true(response_init(&made->scenario.linkage, with_turns, &made->response, &err));
