@@ -17,12 +17,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { WATCHED_MAX = 256 }; // children at a time: more than any machine has cores for
+enum {
+    WATCHED_MAX = 512, // children at a time: two for each core of large machines
+    NO_MEMORY = 113,   // exit status of a child that died of its limit; no one else's
+    LEAVING_MS = 500,  // for a process whose pipe is closed to be gone; it takes some 0.1
+};
+
+// some libraries go on without what they were refused, until there is nothing left at all
+static const size_t LITTLE_MEMORY = (size_t)16 << 20;
 
 // the sanitizer's shadow lies in terabytes of address space, which no limit would let it have
 #if defined(__SANITIZE_ADDRESS__)
@@ -43,10 +52,42 @@ static void limit(__rlimit_resource_t resource, size_t most)
     setrlimit(resource, &both);
 }
 
+bool child_lacks_memory(void)
+{
+    if (errno == ENOMEM) {
+        return true;
+    }
+    void *little =
+        mmap(NULL, LITTLE_MEMORY, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (little == MAP_FAILED) {
+        return true;
+    }
+    munmap(little, LITTLE_MEMORY);
+    return false;
+}
+
+// Who cannot go on without memory aborts, or writes to where it thought there was some.
+static void die(int number)
+{
+    if (child_lacks_memory()) {
+        _exit(NO_MEMORY);
+    }
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static void limit_memory(size_t most)
+{
+    limit(RLIMIT_AS, most);
+    signal(SIGABRT, die);
+    signal(SIGSEGV, die);
+    signal(SIGBUS, die);
+}
+
 // Signals mean what they mean to any program, and the parent's death is one of them.
 static void settle_in(pid_t parent, ChildLimits limits)
 {
-    static const int SIGNALS[] = {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGINT, SIGTERM};
+    static const int SIGNALS[] = {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS};
     for (size_t i = 0; i < sizeof SIGNALS / sizeof SIGNALS[0]; i++) {
         signal(SIGNALS[i], SIG_DFL);
     }
@@ -56,7 +97,7 @@ static void settle_in(pid_t parent, ChildLimits limits)
     }
     limit(RLIMIT_CORE, 0);
     if (limits.memory_bytes > 0 && CAN_LIMIT_MEMORY) {
-        limit(RLIMIT_AS, limits.memory_bytes);
+        limit_memory(limits.memory_bytes);
     }
 }
 
@@ -64,8 +105,9 @@ static _Noreturn void live(ChildWork work, const void *context, size_t result_si
 {
     char *result = calloc(result_size, 1);
     if (result == NULL) {
-        _exit(1);
+        _exit(NO_MEMORY);
     }
+    errno = 0;
     work(context, result);
     for (size_t sent = 0; sent < result_size;) {
         const ssize_t count = write(pipe_end, result + sent, result_size - sent);
@@ -111,6 +153,22 @@ bool child_start(Child *child, ChildWork work, const void *context, void *result
     return true;
 }
 
+// Whether a process is gone, or is so within a moment. Where the kernel cannot be asked it is
+// taken to be.
+static bool is_leaving(pid_t process)
+{
+    const int handle = pidfd_open(process, 0);
+    if (handle < 0) {
+        return true;
+    }
+    struct pollfd watched = {.fd = handle, .events = POLLIN};
+    int ready;
+    while ((ready = poll(&watched, 1, LEAVING_MS)) < 0 && errno == EINTR) {
+    }
+    close(handle);
+    return ready != 0;
+}
+
 // The process is gone, or is about to be: how?
 static void bury(Child *child)
 {
@@ -122,10 +180,22 @@ static void bury(Child *child)
     if (WIFSIGNALED(status)) {
         child->end = CHILD_SIGNALLED;
         child->code = WTERMSIG(status);
+        return;
+    }
+    child->code = WEXITSTATUS(status);
+    const bool is_whole = child->code == 0 && child->received == child->result_size;
+    const ChildEnd without = child->code == NO_MEMORY ? CHILD_NO_MEMORY : CHILD_EXITED;
+    child->end = is_whole ? CHILD_DONE : without;
+}
+
+// The pipe has no other end any more: so the process leaves, or something in it went wrong.
+static void see_off(Child *child)
+{
+    if (is_leaving(child->process)) {
+        bury(child);
     } else {
-        child->code = WEXITSTATUS(status);
-        const bool is_whole = child->code == 0 && child->received == child->result_size;
-        child->end = is_whole ? CHILD_DONE : CHILD_EXITED;
+        child_kill(child);
+        child->end = CHILD_CLOSED;
     }
 }
 
@@ -138,7 +208,7 @@ static void receive(Child *child)
     if (count > 0) {
         child->received += (size_t)count;
     } else if (count == 0 || errno != EINTR) {
-        bury(child);
+        see_off(child);
     }
 }
 
@@ -219,6 +289,13 @@ void child_describe(const Child *child, char text[CHILD_TEXT_SIZE])
     case CHILD_TIMED_OUT:
         snprintf(text, CHILD_TEXT_SIZE, "took longer than its limit of %.4g s",
                  child->limits.time_s);
+        break;
+    case CHILD_NO_MEMORY:
+        snprintf(text, CHILD_TEXT_SIZE, "wanted more than its limit of %.4g MB of memory",
+                 1e-6 * (double)child->limits.memory_bytes);
+        break;
+    case CHILD_CLOSED:
+        snprintf(text, CHILD_TEXT_SIZE, "closed its pipe without a result and went on");
         break;
     }
 }

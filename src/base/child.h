@@ -20,6 +20,8 @@ typedef enum ChildEnd {
     CHILD_EXITED,    // it left by itself, without a result
     CHILD_SIGNALLED, // a signal ended it
     CHILD_TIMED_OUT, // it was ended, for its time was over
+    CHILD_NO_MEMORY, // it died of its limit of memory
+    CHILD_CLOSED,    // it was ended, for it went on where nothing could come from it any more
 } ChildEnd;
 
 // Fills the result, which begins as all zeroes, from the context. It runs in the child: nothing
@@ -40,8 +42,8 @@ typedef struct Child {
 
 // Starts the work. The result, of so many bytes, belongs to the caller, must outlive the child and
 // holds something only once the child is CHILD_DONE. Should the caller die, the child dies as
-// well. Fails with ERR_SOLVER where the system has no process or pipe left; there is then nothing
-// to end.
+// well; what the caller does on SIGINT and SIGTERM it does, too. Fails with ERR_SOLVER where the
+// system has no process or pipe left; there is then nothing to end.
 bool child_start(Child *child, ChildWork work, const void *context, void *result,
                  size_t result_size, ChildLimits limits, Err *err);
 
@@ -51,6 +53,10 @@ void child_wait(Child *children, size_t count, double wait_s);
 
 // Ends a child that is running; nothing is to be had from it. Accepts zeroed children.
 void child_kill(Child *child);
+
+// Asked in a child: whether memory was refused to it, by its limit or by the system, since errno
+// was last set to 0.
+bool child_lacks_memory(void);
 
 // How a child ended, in words: "ended by signal 6 (Aborted)".
 void child_describe(const Child *child, char text[CHILD_TEXT_SIZE]);

@@ -1,6 +1,7 @@
 // A 64-bit fingerprint of a stream of numbers: equal bits in equal order give an equal hash.
 #pragma once
 
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -13,4 +14,13 @@ static inline uint64_t hash_number(uint64_t hash, double value)
     memcpy(&bits, &value, sizeof bits);
     hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
     return hash ^ (hash >> 32);
+}
+
+static inline uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
+{
+    const unsigned char *byte = (const unsigned char *)bytes;
+    for (size_t i = 0; i < count; i++) {
+        hash = hash_number(hash, byte[i]);
+    }
+    return hash;
 }

@@ -54,6 +54,18 @@ void text_append(Text *text, const char *format, ...)
     text->length += (size_t)needed;
 }
 
+void text_append_number(Text *text, double value)
+{
+    char words[40];
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(words, sizeof words, "%.*g", digits, value);
+        if (strtod(words, NULL) == value) {
+            break;
+        }
+    }
+    text_append(text, "%s", words);
+}
+
 void text_copy(char *target, size_t size, const char *source)
 {
     snprintf(target, size, "%s", source);

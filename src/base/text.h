@@ -13,6 +13,9 @@ void text_init(Text *text);
 void text_finish(Text *text);
 void text_append(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+// The shortest decimal that reads back as the same number, which is finite.
+void text_append_number(Text *text, double value);
+
 // Copies a name into a fixed buffer, cut if it is too long.
 void text_copy(char *target, size_t size, const char *source);
 

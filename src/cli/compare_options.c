@@ -1,15 +1,9 @@
 // What was `jointplay compare` asked for?
 #include "cli/compare_options.h"
 
-#include "casefile/casefile.h"
-#include "casefile/quantity.h"
 #include "cli/arguments.h"
+#include "cli/option_values.h"
 #include "report/file.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 enum {
     KEY_STEPS = 0x200, // options without a letter of their own
@@ -26,8 +20,6 @@ enum {
     KEY_OUT,
     KEY_QUIET = 'q',
 };
-
-enum { PART_SIZE = 256 };
 
 // three decades, from where a steel contact is hardly seen; the fine end is thinner, for it costs
 // most
@@ -58,50 +50,6 @@ static const struct argp_option OPTIONS[] = {
     {0},
 };
 
-static bool read_count(const char *name, const char *text, size_t least, size_t most, size_t *count,
-                       Err *err)
-{
-    Complaint complaint;
-    size_t value;
-    if (!quantity_integer(text, &value, &complaint) || value < least || value > most) {
-        return err_set(err, ERR_USAGE, "--%s is %s; allowed: a whole number from %zu to %zu", name,
-                       text, least, most);
-    }
-    *count = value;
-    return true;
-}
-
-static bool read_time(const char *name, const char *text, double *seconds, Err *err)
-{
-    Complaint complaint;
-    double value;
-    if (!quantity_parse(text, DIMENSION_TIME, &value, &complaint)) {
-        return err_set(err, ERR_USAGE, "--%s: %s%s%s", name, complaint.text,
-                       complaint.allowed[0] != '\0' ? "; allowed: " : "", complaint.allowed);
-    }
-    if (!(value > 0.0)) {
-        return err_set(err, ERR_USAGE, "--%s: %s is not above 0", name, text);
-    }
-    *seconds = value;
-    return true;
-}
-
-static size_t count_cores(void)
-{
-    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    return cores > 0 ? (size_t)cores : 1;
-}
-
-static bool take_setting(CompareOptions *options, const char *value, Err *err)
-{
-    if (options->override_count == COMPARE_OVERRIDE_MAX) {
-        return err_set(err, ERR_USAGE, "more than %d settings on one command line",
-                       COMPARE_OVERRIDE_MAX);
-    }
-    options->overrides[options->override_count++] = value;
-    return true;
-}
-
 static bool take_case(CompareOptions *options, const char *path, Err *err)
 {
     if (options->path != NULL) {
@@ -123,14 +71,15 @@ static bool take_option(int key, const char *value, void *target, Err *err)
         options->schemes = value;
         return true;
     case KEY_SET:
-        return take_setting(options, value, err);
+        return option_values_take_setting(value, options->overrides, &options->override_count, err);
     case KEY_REPEATS:
-        return read_count("repeats", value, LADDER_REPEAT_LEAST, LADDER_REPEAT_MAX,
-                          &options->repeats, err);
+        return option_values_read_count("repeats", value, LADDER_REPEAT_LEAST, LADDER_REPEAT_MAX,
+                                        &options->repeats, err);
     case KEY_JOBS:
-        return read_count("jobs", value, 1, count_cores(), &options->jobs, err);
+        return option_values_read_count("jobs", value, 1, option_values_count_cores(),
+                                        &options->jobs, err);
     case KEY_TIME_LIMIT:
-        return read_time("time-limit", value, &options->time_limit_s, err);
+        return option_values_read_time("time-limit", value, &options->time_limit_s, err);
     case KEY_STORE:
         options->store = value;
         return true;
@@ -170,8 +119,9 @@ bool compare_options_read(int argc, char **argv, CompareOptions *options, bool *
         .options = OPTIONS,
         .take = take_option,
     };
-    *options = (CompareOptions){
-        .repeats = LADDER_REPEAT_LEAST, .jobs = count_cores(), .time_limit_s = DEFAULT_TIME_LIMIT};
+    *options = (CompareOptions){.repeats = LADDER_REPEAT_LEAST,
+                                .jobs = option_values_count_cores(),
+                                .time_limit_s = DEFAULT_TIME_LIMIT};
     if (!arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err)) {
         return false;
     }
@@ -185,57 +135,23 @@ bool compare_options_read(int argc, char **argv, CompareOptions *options, bool *
            err_set(err, ERR_USAGE, "no case given: jointplay compare CASE.yaml");
 }
 
-// Whether the case can be run at that step: read once more with it, so that the checks and their
-// words are those of the case file.
 static bool check_step(const CompareOptions *options, double step_s, Err *err)
 {
-    const char *overrides[COMPARE_OVERRIDE_MAX + 1];
-    char step[64];
-    snprintf(step, sizeof step, "run.step=%.17g s", step_s);
-    memcpy(overrides, options->overrides, options->override_count * sizeof *overrides);
-    overrides[options->override_count] = step;
-    Scenario *scenario = malloc(sizeof *scenario);
-    if (scenario == NULL) {
-        return err_set(err, ERR_SOLVER, "no memory is left");
-    }
-    const bool is_right =
-        casefile_load(options->path, overrides, options->override_count + 1, scenario, err);
-    free(scenario);
-    return is_right;
-}
-
-static int compare_falling(const void *a, const void *b)
-{
-    const double left = *(const double *)a;
-    const double right = *(const double *)b;
-    return (left < right) - (left > right);
+    return option_values_check_step(options->path, options->overrides, options->override_count,
+                                    step_s, err);
 }
 
 static bool read_steps(const CompareOptions *options, double *steps, size_t *count, Err *err)
 {
-    const char *list = options->steps;
-    *count = 0;
-    while (*list != '\0') {
-        char part[PART_SIZE];
-        const size_t length = strcspn(list, ",");
-        snprintf(part, sizeof part, "%.*s", (int)length, list);
-        list += length + (list[length] == ',' ? 1 : 0);
-        if (*count == LADDER_STEP_MAX) {
-            return err_set(err, ERR_USAGE, "--steps: more than %d", LADDER_STEP_MAX);
-        }
-        if (!read_time("steps", part + strspn(part, " "), &steps[*count], err) ||
-            !check_step(options, steps[*count], err)) {
+    if (!option_values_read_times("steps", options->steps, LADDER_STEP_MAX, steps, count, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < *count; i++) {
+        if (!check_step(options, steps[i], err)) {
             return false;
         }
-        (*count)++;
     }
-    qsort(steps, *count, sizeof *steps, compare_falling);
-    for (size_t i = 1; i < *count; i++) {
-        if (steps[i] == steps[i - 1]) {
-            return err_set(err, ERR_USAGE, "--steps: %.6g us stands there twice", 1e6 * steps[i]);
-        }
-    }
-    return *count > 0 || err_set(err, ERR_USAGE, "--steps: the list is empty");
+    return true;
 }
 
 // Those of the usual steps that the scenario can be run at; its own where that is none.

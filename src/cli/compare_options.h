@@ -3,15 +3,14 @@
 
 #include "base/err.h"
 #include "base/text.h"
+#include "cli/option_values.h"
 #include "compare/ladder.h"
 
 #include <stdbool.h>
 
-enum { COMPARE_OVERRIDE_MAX = 256 };
-
 typedef struct CompareOptions {
     const char *path; // of the case
-    const char *overrides[COMPARE_OVERRIDE_MAX];
+    const char *overrides[OPTION_SETTING_MAX];
     size_t override_count;
     const char *steps;   // as given, or NULL
     const char *schemes; // as given, or NULL

@@ -1,6 +1,7 @@
 // Where does a comparison keep what it has finished?
 #include "cli/compare_store.h"
 
+#include "base/build_print.h"
 #include "base/hash.h"
 #include "cli/run_files.h"
 #include "report/file.h"
@@ -12,36 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    CHUNK_SIZE = 1 << 16,
-    HASH_SIZE = 17,
-    ENTRY_LINE = 2, // of the first entry: the key stands before it
-};
-
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
-{
-    const unsigned char *byte = bytes;
-    for (size_t i = 0; i < count; i++) {
-        hash = hash_number(hash, byte[i]);
-    }
-    return hash;
-}
-
-// A fingerprint of this very program: another build of one version may give other numbers.
-static void find_build(char text[HASH_SIZE])
-{
-    unsigned char chunk[CHUNK_SIZE];
-    uint64_t hash = HASH_START;
-    FILE *stream = fopen("/proc/self/exe", "rb");
-    size_t count;
-    while (stream != NULL && (count = fread(chunk, 1, sizeof chunk, stream)) > 0) {
-        hash = hash_bytes(hash, chunk, count);
-    }
-    if (stream != NULL) {
-        fclose(stream);
-    }
-    snprintf(text, HASH_SIZE, "%016" PRIx64, hash);
-}
+enum { ENTRY_LINE = 2 }; // of the first entry: the key stands before it
 
 static void find_machine(char machine[COMPARE_MACHINE_SIZE])
 {
@@ -119,10 +91,10 @@ static bool take_all(CompareStore *store, Ladder *ladder, bool is_quiet, Err *er
 bool compare_store_open(CompareStore *store, const CompareOptions *options,
                         const Scenario *scenario, Ladder *ladder, Err *err)
 {
-    char build[HASH_SIZE];
+    char build[BUILD_PRINT_SIZE];
     char path[FILE_PATH_SIZE];
     *store = (CompareStore){.linkage = &scenario->linkage, .ladder = ladder};
-    find_build(build);
+    build_print(build);
     find_machine(store->machine);
     json_t *key = ladder_json_key(ladder, scenario, build);
     const bool is_open =

@@ -4,11 +4,28 @@
 // points, so that whatever slows the machine down for a while slows all of them.
 #include "compare/ladder.h"
 
+#include "base/text.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+LadderTruth ladder_truth_of(const Truth *truth, double wall_s)
+{
+    LadderTruth known = {
+        .is_known = true,
+        .uncertainty = truth->uncertainty,
+        .horizon_s = truth->horizon_s,
+        .growth = truth->growth,
+        .is_limited = truth->is_limited,
+        .wall_s = wall_s,
+    };
+    text_copy(known.message, sizeof known.message, truth->message);
+    text_copy(known.backend, sizeof known.backend, truth->trajectory->backend);
+    return known;
+}
 
 Ladder *ladder_create(const Scheme *schemes, size_t scheme_count, const double *steps,
                       size_t step_count, size_t repeats)

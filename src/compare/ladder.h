@@ -6,6 +6,7 @@
 #include "compare/error.h"
 #include "compare/order.h"
 #include "compare/scheme.h"
+#include "compare/truth.h"
 
 enum {
     LADDER_STEP_MAX = 32,
@@ -33,7 +34,8 @@ typedef struct LadderRun {
     TrajectoryError error;             // of LADDER_ERROR; `against` is NULL
     size_t steps;
     size_t evaluations;
-    double wall_s; // of the stepping loop
+    double wall_s;      // of the stepping loop
+    double processor_s; // of the whole run, its setting up included; 0 from a store
     uint64_t hash;
 } LadderRun;
 
@@ -90,6 +92,9 @@ typedef struct Ladder {
     Order orders[SCHEME_MAX];             // by scheme; of the steps of the ladder
     size_t cheapest[LADDER_TARGET_COUNT]; // points; point_count where none meets the target
 } Ladder;
+
+// What a truth says of itself, and the wall time, s, that it took.
+LadderTruth ladder_truth_of(const Truth *truth, double wall_s);
 
 // A ladder with nothing run yet. Steps come coarse to fine.
 Ladder *ladder_create(const Scheme *schemes, size_t scheme_count, const double *steps,

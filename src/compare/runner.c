@@ -6,20 +6,14 @@
 
 #include "base/child.h"
 #include "base/clock.h"
-#include "base/text.h"
 #include "compare/task.h"
+#include "compare/truth_child.h"
 
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 static const double PAUSE_S = 0.2; // between two looks of the listener
-// a run keeps its samples, some tens of megabytes; whoever wants more than this has lost count
-static const size_t MEMORY_LIMIT = (size_t)4 << 30;
-
-// at most: the trajectory, once more on finer samples, a second one, four twins, and one to spare
-enum { TRUTH_RUNS = 8 };
-
 // One child at work.
 typedef struct Job {
     bool is_busy;
@@ -47,7 +41,7 @@ typedef struct Work {
 static ChildLimits limits_of(const Runner *runner, size_t runs)
 {
     return (ChildLimits){.time_s = (double)runs * runner->time_limit_s,
-                         .memory_bytes = MEMORY_LIMIT};
+                         .memory_bytes = TASK_MEMORY_LIMIT};
 }
 
 static bool start_job(const Runner *runner, const Work *work, size_t number, const Truth *truth,
@@ -162,58 +156,23 @@ static bool finish_ensemble(const Runner *runner, Job *job, const Child *child, 
     return runner->listener.keep_ensemble(job->number, ensemble, runner->listener.context, err);
 }
 
-// The child that makes the truth: true where it came back whole.
-static bool certify(const Runner *runner, void *packed, size_t size, Err *err)
-{
-    Task *task = calloc(1, sizeof *task);
-    assert(task != NULL);
-    task->scenario = *runner->scenario;
-    Child child = {0};
-    bool is_done =
-        child_start(&child, task_certify, task, packed, size, limits_of(runner, TRUTH_RUNS), err);
-    while (is_done && child.end == CHILD_RUNNING) {
-        runner->listener.wait("making and certifying the reference", runner->listener.context);
-        child_wait(&child, 1, PAUSE_S);
-    }
-    if (is_done && child.end != CHILD_DONE) {
-        char words[CHILD_TEXT_SIZE];
-        child_describe(&child, words);
-        is_done =
-            err_set(err, ERR_SOLVER, "there is no truth to compare with: its process %s", words);
-    }
-    free(task);
-    return is_done;
-}
-
 static bool make_truth(const Runner *runner, Truth *truth, Err *err)
 {
     const double started_s = clock_now_s();
-    const size_t size = truth_pack_size(runner->scenario);
-    void *packed = malloc(size);
-    assert(packed != NULL);
-    const bool is_made = certify(runner, packed, size, err);
-    if (is_made) {
-        *truth = truth_pack_read(runner->scenario, packed);
-    }
-    free(packed);
-    if (!is_made || !truth->trajectory->is_complete) {
-        return is_made && err_set(err, ERR_SOLVER, "there is no truth to compare with: %s",
-                                  truth->trajectory->message);
+    const TruthChild work = {
+        .scenario = runner->scenario,
+        .run_limit_s = runner->time_limit_s,
+        .wait = runner->listener.wait,
+        .context = runner->listener.context,
+    };
+    if (!truth_child_make(&work, truth, err)) {
+        return false;
     }
     LadderTruth *known = &runner->ladder->truth;
     if (known->is_known) {
         return true;
     }
-    *known = (LadderTruth){
-        .is_known = true,
-        .uncertainty = truth->uncertainty,
-        .horizon_s = truth->horizon_s,
-        .growth = truth->growth,
-        .is_limited = truth->is_limited,
-        .wall_s = clock_now_s() - started_s,
-    };
-    text_copy(known->message, sizeof known->message, truth->message);
-    snprintf(known->backend, sizeof known->backend, "%s", truth->trajectory->backend);
+    *known = ladder_truth_of(truth, clock_now_s() - started_s);
     return runner->listener.keep_truth(known, runner->listener.context, err);
 }
 

@@ -1,6 +1,7 @@
 // What does one child of a comparison do?
 #include "compare/task.h"
 
+#include "base/clock.h"
 #include "run/registry.h"
 
 #include <math.h>
@@ -28,7 +29,9 @@ void task_measure(const void *context, void *result)
     const Task *task = context;
     LadderRun *run = result;
     *run = task->run;
+    const double started_s = clock_processor_s();
     Trajectory *trajectory = run_scenario(&task->scenario, registry_solver(task->backend), NOBODY);
+    run->processor_s = clock_processor_s() - started_s;
     run->is_complete = trajectory->is_complete;
     snprintf(run->message, sizeof run->message, "%.*s", LADDER_MESSAGE_SIZE - 1,
              trajectory->message);

@@ -4,6 +4,14 @@
 #include "compare/ladder.h"
 #include "compare/truth_pack.h"
 
+// Bytes of one child: a run keeps its samples, some tens of megabytes; whoever wants more than this
+// has lost count.
+static const size_t TASK_MEMORY_LIMIT = (size_t)4 << 30;
+
+// Runs that a truth consists of, at most: the trajectory, once more on finer samples, a second one,
+// four twins, and one to spare.
+enum { TASK_TRUTH_RUNS = 8 };
+
 typedef struct Task {
     Scenario scenario; // with scheme and step applied
     BackendKind backend;

@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 
 enum { AXIS_TICKS_WANTED = 6, AXIS_DECADE_LABELS = 7 };
 
@@ -48,6 +49,30 @@ void axis_round(double *low, double *high)
     const double tick = choose_tick(*high - *low, AXIS_TICKS_WANTED);
     *low = tick * floor((*low - margin) / tick);
     *high = tick * ceil((*high + margin) / tick);
+}
+
+// The nearest of 1, 2 and 5 times a power of ten below, or with `up` above.
+static double round_to_125(double value, bool up)
+{
+    static const double LEADS[] = {0.5, 1.0, 2.0, 5.0, 10.0};
+    const double power = pow(10.0, floor(log10(value)));
+    for (int i = 0; i < 5; i++) {
+        const int k = up ? i : 4 - i;
+        if (up ? LEADS[k] * power >= value : LEADS[k] * power <= value) {
+            return LEADS[k] * power;
+        }
+    }
+    return value;
+}
+
+void axis_round_log(double *low, double *high)
+{
+    *low = round_to_125(*low / 1.3, false);
+    *high = round_to_125(*high * 1.2, true);
+    if (floor(log10(*high) + 1e-9) - ceil(log10(*low) - 1e-9) < 1.0) {
+        *low = pow(10.0, floor(log10(*low) + 1e-9));
+        *high = pow(10.0, ceil(log10(*high) - 1e-9));
+    }
 }
 
 // The ticks of a logarithmic side of an axis: powers of ten, thinned out where they are many.

@@ -28,3 +28,7 @@ size_t axis_ticks(const Axis *axis, double *ticks);
 
 // Widens a range to whole ticks, so that nothing touches the edges.
 void axis_round(double *low, double *high);
+
+// Widens a range of a logarithmic axis to 1, 2 or 5 times powers of ten, and so far that at least
+// two powers of ten stand in it.
+void axis_round_log(double *low, double *high);

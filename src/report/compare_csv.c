@@ -1,6 +1,7 @@
 // What does a spreadsheet read of a comparison?
 #include "report/compare_csv.h"
 
+#include "report/csv.h"
 #include "report/file.h"
 
 #include <math.h>
@@ -9,17 +10,6 @@
 static const char HEAD[] =
     "scheme,step_s,status,steps,evaluations,error_omega,limited_by_truth,omega_max,omega_rms,"
     "alpha_max,angle_max_rad,wall_median_s,wall_min_s,wall_max_s,on_frontier,message\n";
-
-// Quoted, so that commas and quotes of a message stay in their cell.
-static void write_quoted(FILE *stream, const char *text)
-{
-    fputc('"', stream);
-    for (; *text != '\0'; text++) {
-        fputs(*text == '"' ? "\"" : "", stream);
-        fputc(*text == '\n' ? ' ' : *text, stream);
-    }
-    fputc('"', stream);
-}
 
 static void write_numbers(FILE *stream, const LadderPoint *point)
 {
@@ -42,11 +32,11 @@ static void write_row(FILE *stream, const Ladder *ladder, const LadderPoint *poi
     fputc(',', stream);
     if (point->is_failed) {
         fputs("failed,,,,,,,,,,,,,", stream);
-        write_quoted(stream, point->reason);
+        csv_write_quoted(stream, point->reason);
     } else {
         write_numbers(stream, point);
         if (point->reason[0] != '\0') {
-            write_quoted(stream, point->reason);
+            csv_write_quoted(stream, point->reason);
         }
     }
     fputc('\n', stream);

@@ -59,31 +59,6 @@ static void draw_dot(Text *svg, double x, double y, double radius, const Scheme 
                 x, y, radius, is_hollow ? "#fff" : style.colour, is_hollow ? style.colour : "#fff");
 }
 
-// The nearest of 1, 2 and 5 times a power of ten below, or with `up` above.
-static double round_to_125(double value, bool up)
-{
-    static const double LEADS[] = {0.5, 1.0, 2.0, 5.0, 10.0};
-    const double power = pow(10.0, floor(log10(value)));
-    for (int i = 0; i < 5; i++) {
-        const int k = up ? i : 4 - i;
-        if (up ? LEADS[k] * power >= value : LEADS[k] * power <= value) {
-            return LEADS[k] * power;
-        }
-    }
-    return value;
-}
-
-// A range in which at least two powers of ten stand, so that the axis can be read.
-static void round_range(double *low, double *high)
-{
-    *low = round_to_125(*low / 1.3, false);
-    *high = round_to_125(*high * 1.2, true);
-    if (floor(log10(*high) + 1e-9) - ceil(log10(*low) - 1e-9) < 1.0) {
-        *low = pow(10.0, floor(log10(*low) + 1e-9));
-        *high = pow(10.0, ceil(log10(*high) - 1e-9));
-    }
-}
-
 // The axes hold every point of ODE, and the time of all others.
 static void choose_axes(const Ladder *ladder, PlotPanel *panel)
 {
@@ -104,8 +79,8 @@ static void choose_axes(const Ladder *ladder, PlotPanel *panel)
         // nothing of ODE is there to be drawn
         low_x = fmin(low_x, 1.0), high_x = fmax(high_x, 10.0), low_y = 1e-5, high_y = 1.0;
     }
-    round_range(&low_x, &high_x);
-    round_range(&low_y, &high_y);
+    axis_round_log(&low_x, &high_x);
+    axis_round_log(&low_y, &high_y);
     panel->x = (Axis){
         .title = "wall time of the run, ms", .scale = AXIS_LOG, .low = low_x, .high = high_x};
     panel->y = (Axis){.title = ladder->truth.is_limited
@@ -114,32 +89,6 @@ static void choose_axes(const Ladder *ladder, PlotPanel *panel)
                       .scale = AXIS_LOG,
                       .low = low_y,
                       .high = high_y};
-}
-
-// Thin lines at 2 .. 9 times the powers of ten.
-static void draw_fine_grid(const PlotPanel *panel)
-{
-    text_append(panel->svg, "<path stroke=\"#f2f2f2\" fill=\"none\" d=\"");
-    for (double power = pow(10.0, floor(log10(panel->x.low))); power < panel->x.high;
-         power *= 10.0) {
-        for (int i = 2; i < 10; i++) {
-            const double share = axis_share(&panel->x, i * power);
-            if (i * power > panel->x.low && share < 1.0) {
-                text_append(panel->svg, "M%.1f %.1fv%.1f", panel->left + share * panel->width,
-                            panel->top, panel->height);
-            }
-        }
-    }
-    for (double power = pow(10.0, floor(log10(panel->y.low))); power < panel->y.high;
-         power *= 10.0) {
-        for (int i = 2; i < 10; i++) {
-            if (i * power > panel->y.low && i * power < panel->y.high) {
-                text_append(panel->svg, "M%.1f %.1fh%.1f", panel->left, plot_y(panel, i * power),
-                            panel->width);
-            }
-        }
-    }
-    text_append(panel->svg, "\"/>\n");
 }
 
 // Where an error is not a number of its own.
@@ -329,7 +278,7 @@ void compare_plot_write(const CompareReport *report, Text *svg)
                        .width = PANEL_WIDTH,
                        .height = PANEL_HEIGHT};
     choose_axes(ladder, &panel);
-    draw_fine_grid(&panel);
+    plot_fine_grid(&panel);
     plot_enter(&panel);
     draw_band(&panel, &ladder->truth);
     const LadderPoint **frontier = calloc(ladder->point_count + 1, sizeof(const LadderPoint *));

@@ -5,7 +5,6 @@
 #include "report/units.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static void step_cell(Table *table, double step_s)
@@ -15,13 +14,6 @@ static void step_cell(Table *table, double step_s)
     } else {
         table_cell(table, "its own");
     }
-}
-
-static void number_cell(Table *table, const char *format, double value)
-{
-    char text[32];
-    snprintf(text, sizeof text, format, value);
-    table_cell(table, "%s", isfinite(value) ? text : "-");
 }
 
 static void write_head(const CompareReport *report, const Style *style, Text *text)
@@ -73,11 +65,11 @@ static void point_row(Table *table, const LadderPoint *point)
     }
     table_cell(table, "%zu", point->run.steps);
     table_cell(table, point->run.evaluations > 0 ? "%zu" : "-", point->run.evaluations);
-    number_cell(table, "%.2e", point->error);
-    number_cell(table, "%.4g", point->wall_median_s * UNITS_MS);
-    number_cell(table, "%.4g", point->wall_min_s * UNITS_MS);
-    number_cell(table, "%.4g", point->wall_max_s * UNITS_MS);
-    number_cell(table, "%.3g", point->wall_median_s / (double)point->run.steps * UNITS_US);
+    run_section_finite(table, "%.2e", point->error);
+    run_section_finite(table, "%.4g", point->wall_median_s * UNITS_MS);
+    run_section_finite(table, "%.4g", point->wall_min_s * UNITS_MS);
+    run_section_finite(table, "%.4g", point->wall_max_s * UNITS_MS);
+    run_section_finite(table, "%.3g", point->wall_median_s / (double)point->run.steps * UNITS_US);
     table_cell(table, "%s%s%s", point->is_on_frontier ? "frontier" : "",
                point->is_on_frontier && point->is_limited_by_truth ? ", " : "",
                point->is_limited_by_truth ? "truth-limited" : "");

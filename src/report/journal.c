@@ -2,13 +2,13 @@
 #include "report/journal.h"
 
 #include "base/text.h"
+#include "base/work_lock.h"
 
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 enum { READ_SIZE = 1 << 16 };
@@ -148,7 +148,7 @@ bool journal_open(Journal *journal, const char *path, json_t *key, bool is_fresh
     };
     assert(journal->path != NULL && journal->entries != NULL);
     bool is_open = journal->file >= 0 || fail(journal, "open", err);
-    if (is_open && flock(journal->file, LOCK_EX | LOCK_NB) != 0) {
+    if (is_open && work_lock_take(journal->file, 0) != 0) {
         is_open = err_set(err, ERR_FILE, "the store %s is at work in another process", path);
     }
     is_open = is_open && take_in(journal, key, is_fresh, err);
@@ -182,6 +182,7 @@ bool journal_add(Journal *journal, json_t *entry, Err *err)
 void journal_close(Journal *journal)
 {
     if (journal->path != NULL && journal->file >= 0) {
+        work_lock_give(journal->file, 0);
         close(journal->file);
     }
     free(journal->path);

@@ -140,6 +140,34 @@ static void draw_y_axis(const PlotPanel *panel)
     text_append(svg, "</g>\n");
 }
 
+// Where the fine lines of an axis stand; nothing of an axis that is not logarithmic.
+static void append_fine_lines(const PlotPanel *panel, const Axis *axis, bool is_x)
+{
+    if (axis->scale != AXIS_LOG) {
+        return;
+    }
+    for (double power = pow(10.0, floor(log10(axis->low))); power < axis->high; power *= 10.0) {
+        for (int i = 2; i < 10; i++) {
+            const double value = i * power;
+            if (value > axis->low && value < axis->high && is_x) {
+                text_append(panel->svg, "M%.1f %.1fv%.1f", plot_x(panel, value), panel->top,
+                            panel->height);
+            } else if (value > axis->low && value < axis->high) {
+                text_append(panel->svg, "M%.1f %.1fh%.1f", panel->left, plot_y(panel, value),
+                            panel->width);
+            }
+        }
+    }
+}
+
+void plot_fine_grid(const PlotPanel *panel)
+{
+    text_append(panel->svg, "<path stroke=\"#f2f2f2\" fill=\"none\" d=\"");
+    append_fine_lines(panel, &panel->x, true);
+    append_fine_lines(panel, &panel->y, false);
+    text_append(panel->svg, "\"/>\n");
+}
+
 void plot_enter(const PlotPanel *panel)
 {
     Text *svg = panel->svg;

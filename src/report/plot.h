@@ -38,6 +38,9 @@ void plot_sample(Text *svg, double x, double y, PlotStyle style);
 double plot_x(const PlotPanel *panel, double x);
 double plot_y(const PlotPanel *panel, double y);
 
+// Thin lines at 2 .. 9 times the powers of ten of logarithmic axes; drawn before plot_enter.
+void plot_fine_grid(const PlotPanel *panel);
+
 // The grid, the ticks, the titles. What is drawn next in the panel is cut at its edges, up to
 // plot_leave.
 void plot_enter(const PlotPanel *panel);

@@ -2,6 +2,7 @@
 #include "report/run_section.h"
 
 #include <math.h>
+#include <stdio.h>
 
 Table *run_section_begin(const char *heading, size_t columns, const RunSectionHead *heads,
                          const Style *style, Text *text)
@@ -33,4 +34,11 @@ void run_section_number_or_dash(Table *table, bool is_known, double value)
     } else {
         table_cell(table, "-");
     }
+}
+
+void run_section_finite(Table *table, const char *format, double value)
+{
+    char text[32];
+    snprintf(text, sizeof text, format, value);
+    table_cell(table, "%s", isfinite(value) ? text : "-");
 }

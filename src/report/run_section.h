@@ -22,3 +22,6 @@ void run_section_number(Table *table, double value);
 
 // The same, or a dash where there is nothing to tell.
 void run_section_number_or_dash(Table *table, bool is_known, double value);
+
+// A number in a format of its own, or a dash where it is not finite.
+void run_section_finite(Table *table, const char *format, double value);

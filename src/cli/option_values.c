@@ -1,0 +1,113 @@
+// What do the values of a command line's options mean?
+#include "cli/option_values.h"
+
+#include "casefile/casefile.h"
+#include "casefile/quantity.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PART_SIZE = 256 };
+
+bool option_values_read_count(const char *name, const char *text, size_t least, size_t most,
+                              size_t *count, Err *err)
+{
+    Complaint complaint;
+    size_t value;
+    if (!quantity_integer(text, &value, &complaint) || value < least || value > most) {
+        return err_set(err, ERR_USAGE, "--%s is %s; allowed: a whole number from %zu to %zu", name,
+                       text, least, most);
+    }
+    *count = value;
+    return true;
+}
+
+bool option_values_read_quantity(const char *name, const char *text, Dimension dimension,
+                                 double *value, Err *err)
+{
+    Complaint complaint;
+    double si;
+    if (!quantity_parse(text, dimension, &si, &complaint)) {
+        return err_set(err, ERR_USAGE, "--%s: %s%s%s", name, complaint.text,
+                       complaint.allowed[0] != '\0' ? "; allowed: " : "", complaint.allowed);
+    }
+    if (!(si > 0.0)) {
+        return err_set(err, ERR_USAGE, "--%s: %s is not above 0", name, text);
+    }
+    *value = si;
+    return true;
+}
+
+bool option_values_read_time(const char *name, const char *text, double *seconds, Err *err)
+{
+    return option_values_read_quantity(name, text, DIMENSION_TIME, seconds, err);
+}
+
+static int compare_falling(const void *a, const void *b)
+{
+    const double left = *(const double *)a;
+    const double right = *(const double *)b;
+    return (left < right) - (left > right);
+}
+
+bool option_values_read_times(const char *name, const char *list, size_t room, double *seconds,
+                              size_t *count, Err *err)
+{
+    *count = 0;
+    while (*list != '\0') {
+        char part[PART_SIZE];
+        const size_t length = strcspn(list, ",");
+        snprintf(part, sizeof part, "%.*s", (int)length, list);
+        list += length + (list[length] == ',' ? 1 : 0);
+        if (*count == room) {
+            return err_set(err, ERR_USAGE, "--%s: more than %zu", name, room);
+        }
+        if (!option_values_read_time(name, part + strspn(part, " "), &seconds[*count], err)) {
+            return false;
+        }
+        (*count)++;
+    }
+    qsort(seconds, *count, sizeof *seconds, compare_falling);
+    for (size_t i = 1; i < *count; i++) {
+        if (seconds[i] == seconds[i - 1]) {
+            return err_set(err, ERR_USAGE, "--%s: %.6g us stands there twice", name,
+                           1e6 * seconds[i]);
+        }
+    }
+    return *count > 0 || err_set(err, ERR_USAGE, "--%s: the list is empty", name);
+}
+
+bool option_values_take_setting(const char *value, const char **settings, size_t *count, Err *err)
+{
+    if (*count == OPTION_SETTING_MAX) {
+        return err_set(err, ERR_USAGE, "more than %d settings on one command line",
+                       OPTION_SETTING_MAX);
+    }
+    settings[(*count)++] = value;
+    return true;
+}
+
+bool option_values_check_step(const char *path, const char *const *settings, size_t count,
+                              double step_s, Err *err)
+{
+    const char *overrides[OPTION_SETTING_MAX + 1];
+    char step[64];
+    assert(count <= OPTION_SETTING_MAX);
+    snprintf(step, sizeof step, "run.step=%.17g s", step_s);
+    memcpy(overrides, settings, count * sizeof *overrides);
+    overrides[count] = step;
+    Scenario *scenario = malloc(sizeof *scenario);
+    assert(scenario != NULL);
+    const bool is_right = casefile_load(path, overrides, count + 1, scenario, err);
+    free(scenario);
+    return is_right;
+}
+
+size_t option_values_count_cores(void)
+{
+    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    return cores > 0 ? (size_t)cores : 1;
+}

@@ -1,0 +1,10 @@
+// Words in a table for spreadsheets.
+#pragma once
+
+#include <stdio.h>
+
+// Quoted, so that commas and quotes stay in their cell; a line's end becomes a space.
+void csv_write_quoted(FILE *stream, const char *text);
+
+// Quoted only where it must be.
+void csv_write_word(FILE *stream, const char *text);

@@ -1,0 +1,54 @@
+// What stands in a row of a series?
+#include "report/series_rows.h"
+
+#include "report/units.h"
+
+static void write_head(const Scenario *scenario, FILE *stream)
+{
+    const Linkage *linkage = &scenario->linkage;
+    fputs("time_s,crank_deg", stream);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const char *name = linkage->bodies[i].name;
+        fprintf(stream, ",%s_angle_rad,%s_omega_rad_s,%s_alpha_rad_s2", name, name, name);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const char *name = linkage->joints[i].name;
+        fprintf(stream, ",%s_ex_m,%s_ey_m,%s_gap_m,%s_force_N", name, name, name, name);
+    }
+    for (size_t i = 0; i < scenario->point_count; i++) {
+        const char *name = scenario->points[i].name;
+        fprintf(stream, ",%s_x_m,%s_y_m", name, name);
+    }
+    fputc('\n', stream);
+}
+
+static void write_row(const Scenario *scenario, const Trajectory *trajectory, size_t sample,
+                      FILE *stream)
+{
+    fprintf(stream, "%.17g,%.17g", trajectory->times[sample],
+            trajectory->crank_angles[sample] * UNITS_DEG);
+    for (size_t i = 0; i < trajectory->body_count; i++) {
+        const Motion *motion = trajectory_motion(trajectory, sample, i);
+        fprintf(stream, ",%.17g,%.17g,%.17g", motion->angle, motion->omega, motion->alpha);
+    }
+    for (size_t i = 0; i < trajectory->joint_count; i++) {
+        const JointState *state = trajectory_state(trajectory, sample, i);
+        fprintf(stream, ",%.17g,%.17g,%.17g,%.17g", state->eccentricity.x, state->eccentricity.y,
+                state->gap, state->force);
+    }
+    const Motion *motions = trajectory_motion(trajectory, sample, 0);
+    for (size_t i = 0; i < scenario->point_count; i++) {
+        const TracedPoint *point = &scenario->points[i];
+        const Vec2 place = linkage_point(motions, point->body, point->local);
+        fprintf(stream, ",%.17g,%.17g", place.x, place.y);
+    }
+    fputc('\n', stream);
+}
+
+void series_rows_write(const Scenario *scenario, const Trajectory *trajectory, FILE *stream)
+{
+    write_head(scenario, stream);
+    for (size_t i = 0; i < trajectory->sample_count; i++) {
+        write_row(scenario, trajectory, i, stream);
+    }
+}
