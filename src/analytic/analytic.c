@@ -194,6 +194,7 @@ static void analytic_extremes(const void *state, BodyExtremes *bodies)
 const Solver ANALYTIC_SOLVER = {
     .name = "analytic",
     .summary = "closed-form four-bar with ideal joints",
+    .is_ideal = true,
     .open = analytic_open,
     .step = analytic_step,
     .record = analytic_record,

@@ -252,6 +252,10 @@ const SchemaRow SCHEMA_ROWS[] = {
      .needs = ODE | CHOSEN_STEP,
      .doc = "of step auto: the largest error in omega, relative to each body's largest omega, up "
             "to the predictability horizon"},
+    {.path = "run.spike-threshold", AT(run.spike_threshold), .low = 1e-3, .high = 1e3,
+     .needs = PLAY,
+     .doc = "least height of a spike, over what ideal joints show: the range of the angular "
+            "acceleration, the largest force; without a drive over a tenth of the signal's range"},
     {.path = "run.backends", .type = SCHEMA_BACKENDS, AT(run.backends),
      .words = OPTIONS_BACKENDS,
      .doc = "the solvers to run, in this order: a word or a list; reference, ode where a case "

@@ -3,6 +3,7 @@
 
 #include "cli/progress.h"
 #include "run/registry.h"
+#include "run/tracer.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -49,7 +50,7 @@ static Trajectory *run_backend(const CaseRun *run, const Solver *solver, bool is
     }
     Progress progress;
     const RunWatch watch = progress_watch(&progress, solver->name, is_quiet);
-    Trajectory *trajectory = run_scenario(&run->scenario, solver, watch);
+    Trajectory *trajectory = tracer_run(&run->scenario, solver, watch);
     progress_end(&progress);
     return trajectory;
 }
@@ -74,7 +75,7 @@ static void match_contacts(CaseRun *run)
     for (size_t i = 0; i < run->scenario.run.backend_count; i++) {
         const Trajectory *trajectory = run->runs[i];
         for (size_t k = 0; trajectory != run->truth.trajectory && k < linkage->joint_count; k++) {
-            if (run_report_feels_play(trajectory, &linkage->joints[k])) {
+            if (trajectory_feels_play(trajectory, &linkage->joints[k])) {
                 run->matches[i].joints[k] =
                     spike_match(trajectory, run->truth.trajectory, k, run->truth.horizon_s,
                                 spike_match_reach(&run->scenario));

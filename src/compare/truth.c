@@ -11,6 +11,7 @@
 #include "model/distance.h"
 #include "model/perturb.h"
 #include "run/registry.h"
+#include "run/tracer.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -109,7 +110,7 @@ Truth truth_make(const Scenario *scenario, RunWatch watch)
     truth.horizon_s = 0.0;
     truth.is_limited = true;
     truth.uncertainty = INFINITY;
-    truth.trajectory = run(scenario, BACKEND_REFERENCE, watch);
+    truth.trajectory = tracer_run(scenario, registry_solver(BACKEND_REFERENCE), watch);
     if (!truth.trajectory->is_complete) {
         return truth;
     }

@@ -62,6 +62,8 @@ RunOptions run_options_default(void)
         .samples = 3600,  // a tenth of a degree
         .step = 1e-6,     // some 50 steps to a steel contact
         .tolerance = 1e-4,
+        // as much as ideal joints show by themselves, so that they show no spike
+        .spike_threshold = 1.0,
         .backend_count = 2,
         .backends = {BACKEND_ANALYTIC, BACKEND_ODE},
     };

@@ -90,11 +90,12 @@ typedef struct ContactOptions {
 } ContactOptions;
 
 typedef struct RunOptions {
-    double revolutions; // of the driver
-    double duration;    // s, where there is no driver
-    size_t samples;     // per revolution of the driver, or in the whole run without one
-    double step;        // s; 0: chosen for the tolerance
-    double tolerance;   // 1, largest error in omega wanted of a step that is chosen
+    double revolutions;     // of the driver
+    double duration;        // s, where there is no driver
+    size_t samples;         // per revolution of the driver, or in the whole run without one
+    double step;            // s; 0: chosen for the tolerance
+    double tolerance;       // 1, largest error in omega wanted of a step that is chosen
+    double spike_threshold; // 1, least prominence of a spike over what ideal joints show
     size_t backend_count;
     BackendKind backends[BACKEND_COUNT];
 } RunOptions;

@@ -15,7 +15,8 @@ typedef struct StepRecord {
     double end_s;
     double joint_s;           // the instant that the joints' states belong to
     const double *omega;      // rad/s, of each body at end_s
-    const double *alpha;      // rad/s^2, of each body: mean over the step, or at its end
+    bool is_mean;             // alpha and forces are means over the step, not those at its end
+    const double *alpha;      // rad/s^2, of each body
     const JointState *joints; // force and gap as the force arose
     const double *impulse;    // N s, of each joint in the step
     const double *approach;   // m/s, closing speed at which each joint's contact began
@@ -48,6 +49,7 @@ typedef struct SolverPulse {
 typedef struct Solver {
     const char *name;    // as in a case's list of backends
     const char *summary; // one line for people
+    bool is_ideal;       // takes every joint as ideal, whatever its play
     // Makes the state at time zero. On failure *state stays NULL.
     bool (*open)(const Scenario *scenario, void **state, Err *err);
     // Optional: what is to be done before the first step and may take long, with a beat now and

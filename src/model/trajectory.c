@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
 {
@@ -62,6 +63,12 @@ const Motion *trajectory_motion(const Trajectory *trajectory, size_t sample, siz
 const JointState *trajectory_state(const Trajectory *trajectory, size_t sample, size_t joint)
 {
     return trajectory->states + sample * trajectory->joint_count + joint;
+}
+
+bool trajectory_feels_play(const Trajectory *trajectory, const Joint *joint)
+{
+    return trajectory->is_complete && joint->kind == JOINT_CLEARANCE &&
+           strcmp(trajectory->backend, OPTIONS_BACKENDS[BACKEND_ANALYTIC]) != 0;
 }
 
 double trajectory_omega_scale(const Trajectory *trajectory, size_t body)

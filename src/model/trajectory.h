@@ -2,6 +2,7 @@
 #pragma once
 
 #include "model/scenario.h"
+#include "model/signal_spikes.h"
 
 #include <stdint.h>
 
@@ -83,6 +84,8 @@ typedef struct Trajectory {
     JointState *states;   // [sample * joint_count + joint]
     BodyExtremes bodies[LINKAGE_BODY_MAX];
     JointExtremes joints[LINKAGE_JOINT_MAX];
+    SignalSpikes alpha_spikes[LINKAGE_BODY_MAX];
+    SignalSpikes force_spikes[LINKAGE_JOINT_MAX];
     double duration_s; // simulated
     Energy energy;
     double step_s;          // 0 where the solver has no fixed step
@@ -108,6 +111,10 @@ void trajectory_store(Trajectory *trajectory, size_t sample_index, const Sample 
 // The state of one body or joint at one sample.
 const Motion *trajectory_motion(const Trajectory *trajectory, size_t sample, size_t body);
 const JointState *trajectory_state(const Trajectory *trajectory, size_t sample, size_t joint);
+
+// Whether the run let the play of a joint happen: it is complete, the joint has play, and the
+// solver is not the closed form, which takes every joint as ideal.
+bool trajectory_feels_play(const Trajectory *trajectory, const Joint *joint);
 
 // Largest |omega| of one body over the samples, rad/s.
 double trajectory_omega_scale(const Trajectory *trajectory, size_t body);

@@ -139,6 +139,7 @@ static StepRecord plain_record(const void *state)
         .start_s = (double)(plain->index - 1) * plain->step_s,
         .end_s = (double)plain->index * plain->step_s,
         .joint_s = (double)(plain->index - 1) * plain->step_s,
+        .is_mean = true,
         .omega = plain->omega,
         .alpha = plain->alpha,
         .joints = plain->joints,

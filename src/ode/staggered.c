@@ -261,6 +261,7 @@ static StepRecord staggered_record(const void *state)
         .start_s = now->start_s,
         .end_s = staggered->ahead->start_s,
         .joint_s = now->start_s + 0.5 * staggered->step_s,
+        .is_mean = true,
         .omega = now->omega,
         .alpha = now->alpha,
         .joints = now->joints,

@@ -61,7 +61,7 @@ static void draw_spikes(const RunReport *report, const PlotPanel *panel, size_t 
 {
     const JointExtremes *extremes = &report->runs[run]->joints[joint];
     const Joint *shape = &report->scenario->linkage.joints[joint];
-    const bool is_shown = run_report_feels_play(report->runs[run], shape);
+    const bool is_shown = trajectory_feels_play(report->runs[run], shape);
     for (size_t i = 0; is_shown && i < extremes->spike_count; i++) {
         const Spike *spike = &extremes->spikes[i];
         plot_stem(panel, plot_look_x(report, spike->crank_rad, spike->onset_s), spike->force_max,
@@ -118,7 +118,7 @@ static double farthest(const RunReport *report, double per_metre)
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
             const Joint *shape = &report->scenario->linkage.joints[joint];
-            const bool is_shown = run_report_feels_play(trajectory, shape);
+            const bool is_shown = trajectory_feels_play(trajectory, shape);
             for (size_t i = 0; is_shown && i < trajectory->sample_count; i++) {
                 const Vec2 e = trajectory_state(trajectory, i, joint)->eccentricity;
                 const double scale =
@@ -155,7 +155,7 @@ void plot_joints_paths(const RunReport *report, PlotPanel panel)
     plot_enter(&panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-            if (run_report_feels_play(report->runs[run], &linkage->joints[joint])) {
+            if (trajectory_feels_play(report->runs[run], &linkage->joints[joint])) {
                 const double per_metre = linkage_radial_clearance(&linkage->joints[joint]);
                 draw_path(report, &panel, run, joint, is_one ? UNITS_UM : 1.0 / per_metre);
             }

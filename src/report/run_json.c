@@ -5,6 +5,7 @@
 #include "report/json_value.h"
 #include "report/run_truth_json.h"
 #include "report/settings_json.h"
+#include "report/spike_json.h"
 #include "report/units.h"
 
 #include <inttypes.h>
@@ -32,6 +33,7 @@ static json_t *bodies_object(const Linkage *linkage, const Trajectory *run)
         set_extreme(body, "omega_min", "rad_s", extremes->omega_min);
         set_extreme(body, "alpha_max", "rad_s2", extremes->alpha_max);
         set_extreme(body, "alpha_min", "rad_s2", extremes->alpha_min);
+        spike_json_set(body, "alpha", "rad_s2", "rad_s", linkage, &run->alpha_spikes[i]);
         json_object_set_new(bodies, linkage->bodies[i].name, body);
     }
     return bodies;
@@ -63,7 +65,7 @@ static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
         json_t *joint = json_object();
         const bool has_play = linkage->joints[i].kind == JOINT_CLEARANCE;
         // without play that is felt there is no contact to count: null, not 0
-        const bool is_felt = run_report_feels_play(run, &linkage->joints[i]);
+        const bool is_felt = trajectory_feels_play(run, &linkage->joints[i]);
         json_object_set_new(joint, "impacts",
                             is_felt ? json_integer((json_int_t)extremes->impacts) : json_null());
         set_extreme(joint, "force_max", "N", extremes->force_max);
@@ -77,6 +79,7 @@ static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
                            linkage_radial_clearance(&linkage->joints[i]));
         }
         json_object_set_new(joint, "spikes", spikes_array(extremes, is_felt));
+        spike_json_set(joint, "force", "N", "N_s", linkage, &run->force_spikes[i]);
         json_object_set_new(joints, linkage->joints[i].name, joint);
     }
     return joints;
@@ -109,6 +112,7 @@ static json_t *run_object(const RunReport *report, size_t index)
     json_object_set_new(object, "joints", joints_object(linkage, run));
     json_object_set_new(object, "error", run_truth_json_error(report, index));
     json_object_set_new(object, "energy", run_truth_json_energy(&run->energy));
+    json_object_set_new(object, "spike_bands", spike_json_bands(report, run));
     json_object_set_new(object, "spike_match", run_truth_json_matches(report, index));
     json_object_set_new(object, "ensemble", run_truth_json_ensemble(report, index));
     json_object_set_new(object, "hash", json_sprintf("%016" PRIx64, run->hash));

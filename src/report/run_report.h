@@ -65,11 +65,3 @@ static inline bool run_report_includes_play(const RunReport *report, size_t run)
            (strcmp(report->errors[run].against, ideal) == 0 ||
             strcmp(report->runs[run]->backend, ideal) == 0);
 }
-
-// Whether the run let the play of a joint happen: it is complete, the joint has play, and the
-// solver is not the closed form, which takes every joint as ideal.
-static inline bool run_report_feels_play(const Trajectory *run, const Joint *joint)
-{
-    return run->is_complete && joint->kind == JOINT_CLEARANCE &&
-           strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ANALYTIC]) != 0;
-}

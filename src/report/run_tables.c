@@ -109,7 +109,7 @@ void run_tables_contacts(const RunReport *report, const Style *style, Text *text
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
-            if (!run_report_feels_play(run, &linkage->joints[joint])) {
+            if (!trajectory_feels_play(run, &linkage->joints[joint])) {
                 continue;
             }
             if (table == NULL) {
@@ -130,7 +130,7 @@ static size_t count_spikes(const Linkage *linkage, const Trajectory *run)
 {
     size_t count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        count += run_report_feels_play(run, &linkage->joints[i]) ? run->joints[i].spike_count : 0;
+        count += trajectory_feels_play(run, &linkage->joints[i]) ? run->joints[i].spike_count : 0;
     }
     return count;
 }

@@ -7,6 +7,7 @@
 #include "report/analytic_text.h"
 #include "report/run_tables.h"
 #include "report/run_truth.h"
+#include "report/spike_tables.h"
 #include "report/units.h"
 
 #include <math.h>
@@ -157,6 +158,7 @@ void run_text_write(const RunReport *report, const Style *style, Text *text)
     run_tables_extremes(report, style, text);
     run_tables_contacts(report, style, text);
     run_tables_spikes(report, RUN_TEXT_SPIKES, style, text);
+    spike_tables_write(report, RUN_TEXT_SPIKES, style, text);
     run_truth_errors(report, style, text);
     run_truth_matches(report, style, text);
     run_truth_ensembles(report, style, text);

@@ -5,7 +5,7 @@
 #include "report/run_report.h"
 #include "report/style.h"
 
-enum { RUN_TEXT_SPIKES = 5 }; // contacts listed of each joint
+enum { RUN_TEXT_SPIKES = 5 }; // contacts listed of each joint, spikes of each body
 
 // The whole report: what was run and how it was modelled, then the tables.
 void run_text_write(const RunReport *report, const Style *style, Text *text);

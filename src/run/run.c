@@ -17,6 +17,8 @@ typedef struct Loop {
     const Solver *solver;
     void *state;
     Recorder recorder;
+    const RunProbe *probe;
+    void *probe_own; // of the probe; NULL: it has nothing to look at
     RunWatch watch;
     double started_s; // by the clock
     size_t steps;
@@ -45,6 +47,9 @@ static bool take_step(Loop *loop, double stop_s, Err *err)
     }
     const StepRecord record = loop->solver->record(loop->state);
     recorder_add(&loop->recorder, &record);
+    if (loop->probe_own != NULL) {
+        loop->probe->look(loop->probe_own, &record);
+    }
     add_turning(loop, &record);
     loop->width_s = record.end_s - loop->reached_s;
     loop->reached_s = record.end_s;
@@ -152,9 +157,15 @@ static void fill_model(const Loop *loop, Trajectory *trajectory)
 
 Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatch watch)
 {
+    return run_probed(scenario, solver, watch, NULL);
+}
+
+Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch watch,
+                       const RunProbe *probe)
+{
     Trajectory *trajectory = trajectory_create(scenario, solver->name);
     Err err = {ERR_NONE, ""};
-    Loop loop = {.scenario = scenario, .solver = solver, .watch = watch};
+    Loop loop = {.scenario = scenario, .solver = solver, .watch = watch, .probe = probe};
     if (trajectory->sample_count == 0) {
         return trajectory;
     }
@@ -167,6 +178,7 @@ Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatc
         return trajectory;
     }
     loop.recorder = recorder_start(scenario, trajectory);
+    loop.probe_own = probe == NULL ? NULL : probe->begin(scenario, solver, loop.state);
     loop.started_s = clock_now_s();
     const bool is_done = prepare(&loop, &err) && run_samples(&loop, trajectory, &err);
     trajectory->wall_s = clock_now_s() - loop.started_s;
@@ -180,6 +192,9 @@ Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatc
         close_energy(&loop, trajectory);
     }
     trajectory->is_complete = is_done;
+    if (loop.probe_own != NULL) {
+        probe->end(loop.probe_own, trajectory);
+    }
     snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
     solver->close(loop.state);
     return trajectory;

@@ -11,6 +11,19 @@ typedef struct RunWatch {
     void *context;
 } RunWatch;
 
+// What looks at every step of a run besides the recorder, for those who ask for more than that.
+typedef struct RunProbe {
+    // Once the solver is open. NULL: there is nothing to look at in this run.
+    void *(*begin)(const Scenario *scenario, const Solver *solver, const void *state);
+    void (*look)(void *own, const StepRecord *step);
+    // Fills in what it found, where the trajectory is complete, and frees its own.
+    void (*end)(void *own, Trajectory *trajectory);
+} RunProbe;
+
 // Runs the scenario. Never fails as a function: where the solver fails, the trajectory is not
 // complete and says when and why. The caller destroys it.
 Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatch watch);
+
+// The same with a probe; without one where it is NULL.
+Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch watch,
+                       const RunProbe *probe);

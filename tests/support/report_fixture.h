@@ -100,6 +100,29 @@ static inline void add_contacts(Trajectory *run)
     run->contact_rows = 1;
 }
 
+// Spikes of the coupler and of no other body, in the second run; none of the joint with play.
+static inline void add_spikes(Fixture *fixture)
+{
+    Trajectory *run = fixture->runs[1];
+    run->alpha_spikes[1] = (SignalSpikes){
+        .is_known = true, .threshold = 2e4, .resolution = 400.0, .count = 40, .kept = 1};
+    run->alpha_spikes[1].spikes[0] = (SignalSpike){
+        .onset_s = 0.01,
+        .time_s = 0.011,
+        .end_s = 0.012,
+        .crank_rad = 3.0,
+        .value = -91000.0,
+        .prominence = 90000.0,
+        .width_s = 4e-5,
+        .impulse = -3.5,
+        .joint = 1,
+    };
+    run->alpha_spikes[1].sectors[12] = (SignalSector){3, 50000.0};
+    run->alpha_spikes[1].sectors[17] = (SignalSector){36, 91000.0};
+    run->alpha_spikes[1].sectors[29] = (SignalSector){1, 60000.0};
+    run->force_spikes[1] = (SignalSpikes){.is_known = true, .threshold = 1500.0};
+}
+
 static inline void make_summary(Fixture *fixture)
 {
     fixture->summary = (AnalyticSummary){

@@ -218,6 +218,52 @@ static void a_path_that_is_not_utf8_is_still_written(void **state)
     json_decref(root);
 }
 
+static void spikes_stand_below_their_body_or_joint(void **state)
+{
+    Fixture *fixture = *state;
+    add_spikes(fixture);
+    fixture->scenario.has_fourbar = true;
+    json_t *root = run_json_build(&fixture->report);
+    const json_t *run = json_array_get(json_object_get(root, "runs"), 1);
+    const json_t *body = json_object_get(json_object_get(run, "bodies"), "coupler");
+    assert_true(number_at(body, "alpha_spike_count", NULL, NULL) == 40.0);
+    assert_true(number_at(body, "alpha_spike_threshold_rad_s2", NULL, NULL) == 2e4);
+    assert_true(number_at(body, "alpha_spike_resolution_rad_s2", NULL, NULL) == 400.0);
+    const json_t *spike = json_array_get(json_object_get(body, "alpha_spikes"), 0);
+    assert_true(number_at(spike, "onset_s", NULL, NULL) == 0.01);
+    assert_true(number_at(spike, "peak_s", NULL, NULL) == 0.011);
+    assert_true(number_at(spike, "end_s", NULL, NULL) == 0.012);
+    assert_close(number_at(spike, "crank_deg", NULL, NULL), 3.0 * UNITS_DEG, 1e-12);
+    assert_true(number_at(spike, "value_rad_s2", NULL, NULL) == -91000.0);
+    assert_true(number_at(spike, "prominence_rad_s2", NULL, NULL) == 90000.0);
+    assert_true(number_at(spike, "width_s", NULL, NULL) == 4e-5);
+    assert_true(number_at(spike, "impulse_rad_s", NULL, NULL) == -3.5);
+    assert_string_equal(json_string_value(json_object_get(spike, "joint")), "crank-coupler");
+    const json_t *joint = json_object_get(json_object_get(run, "joints"), "crank-coupler");
+    assert_true(number_at(joint, "force_spike_count", NULL, NULL) == 0.0);
+    assert_int_equal(json_array_size(json_object_get(joint, "force_spikes")), 0);
+    const json_t *bands = json_object_get(run, "spike_bands");
+    const json_t *second = json_array_get(json_object_get(bands, "bands_deg"), 1);
+    assert_true(json_number_value(json_array_get(second, 0)) == 290.0);
+    assert_true(json_number_value(json_array_get(second, 1)) == 300.0);
+    assert_true(number_at(bands, "bodies", "coupler", "inside") == 4.0);
+    assert_true(number_at(bands, "bodies", "coupler", "outside") == 36.0);
+    assert_true(number_at(bands, "bodies", "coupler", "largest_inside_rad_s2") == 60000.0);
+    assert_true(number_at(bands, "bodies", "coupler", "largest_outside_rad_s2") == 91000.0);
+    assert_true(number_at(bands, "joints", "crank-coupler", "inside") == 0.0);
+    // the follower was not looked at: null, not 0
+    body = json_object_get(json_object_get(run, "bodies"), "follower");
+    assert_true(json_is_null(json_object_get(body, "alpha_spikes")));
+    assert_true(json_is_null(json_object_get(body, "alpha_spike_count")));
+    json_decref(root);
+    // the paper's bands are those of its four-bar
+    fixture->scenario.has_fourbar = false;
+    root = run_json_build(&fixture->report);
+    run = json_array_get(json_object_get(root, "runs"), 1);
+    assert_true(json_is_null(json_object_get(run, "spike_bands")));
+    json_decref(root);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -234,6 +280,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_number_that_is_not_finite_becomes_null, fixture_set_up,
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_path_that_is_not_utf8_is_still_written, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(spikes_stand_below_their_body_or_joint, fixture_set_up,
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(json_holds_the_truth_and_what_limits_it,
                                         truth_fixture_set_up, truth_fixture_tear_down),

@@ -274,6 +274,42 @@ static void a_truth_that_cannot_be_had_certifies_nothing(void **state)
     text_finish(&text);
 }
 
+static void spikes_are_listed_with_what_stands_in_the_bands(void **state)
+{
+    Fixture *fixture = *state;
+    static const char *const WORDS[] = {
+        "Spikes of the signals",
+        "alpha coupler        rad/s^2  ode          20000      40     -91000     171.9         4   "
+        "   60000",
+        "force crank-coupler  N        ode           1500       0          -         -         0   "
+        "       -",
+        "The paper's bands: crank at 120 to 130 and 290 to 300 deg.",
+        "Strongest spikes of the accelerations, ode",
+        "coupler  11.0000  171.9   -91000    90000     40      2000     -3.5  crank-coupler",
+        NULL,
+    };
+    Text text;
+    text_init(&text);
+    // nobody looked for any
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    assert_null(strstr(text.data, "Spikes of the signals"));
+    text_finish(&text);
+    add_spikes(fixture);
+    fixture->scenario.has_fourbar = true;
+    text_init(&text);
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    expect_words(text.data, WORDS);
+    text_finish(&text);
+    // without a drive there are no angles, and so no bands
+    fixture->scenario.has_fourbar = false;
+    fixture->scenario.linkage.driver.is_present = false;
+    text_init(&text);
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    assert_non_null(strstr(text.data, "-91000  11.0000\n"));
+    assert_null(strstr(text.data, "bands"));
+    text_finish(&text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -290,6 +326,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(without_a_drive_times_stand_for_crank_angles,
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(what_the_closed_form_cannot_say_is_said_in_a_line,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(spikes_are_listed_with_what_stands_in_the_bands,
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(an_error_is_told_with_what_limits_it, truth_fixture_set_up,
                                         truth_fixture_tear_down),

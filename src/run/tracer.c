@@ -1,0 +1,375 @@
+// Which spikes did a run have, whatever its samples show?
+//
+// Every step puts the angular acceleration of each body that is not driven, and the force of each
+// joint, into a trace (run/trace.c). Integrals are the solver's own: omega, and the impulse of the
+// contacts.
+// A step whose values are means stands at its middle. One whose values are instants is looked at
+// inside, too, as far as its straight line is off: with s = s_0, s_1 at the ends of a step h and
+// the integral J known, a parabola stands 3/2 (J / h - (s_0 + s_1) / 2) off its chord at the
+// middle, and n parts bring that down to 1 / n^2 of it.
+#include "run/tracer.h"
+
+#include "model/scale.h"
+#include "run/spike_scale.h"
+#include "run/spikes.h"
+#include "run/trace.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    // of a trace: 400 kB each; some 600 impacts of full height
+    POINTS_MOST = 1 << 14,
+    // of a step; a chord of a quarter of a swing is then off by 1e-3 of its height
+    PARTS_MOST = 16,
+};
+
+// the least tolerance of a history over the least prominence of a spike
+static const double FINENESS = 1e-2;
+
+// Of a case without a known scale: a spike stands out by so much of the signal's own range...
+static const double OWN_SHARE = 0.1;
+
+// ... and in an angular acceleration by so much of what the forces could do: less is rounding, as
+// of a pin without friction
+static const double ROUNDING = 1e-6;
+
+// The signals at one instant.
+typedef struct Look {
+    double time_s;
+    double omega[LINKAGE_BODY_MAX];
+    double alpha[LINKAGE_BODY_MAX];
+    double force[LINKAGE_JOINT_MAX];
+} Look;
+
+typedef struct Tracer {
+    const Scenario *scenario;
+    const Solver *solver;
+    const void *state; // of the solver
+    SpikeScale scale;
+    Trace alpha[LINKAGE_BODY_MAX];
+    Trace force[LINKAGE_JOINT_MAX];
+    double impulse[LINKAGE_JOINT_MAX]; // N s, so far
+    Look last;                         // at the end of the last step
+    bool has_begun;
+} Tracer;
+
+static bool is_traced(const Tracer *tracer, size_t body)
+{
+    return (int)body != linkage_driven_body(&tracer->scenario->linkage);
+}
+
+static void *tracer_begin(const Scenario *scenario, const Solver *solver, const void *state)
+{
+    if (!scenario_has_clearance(scenario) || solver->is_ideal) {
+        return NULL;
+    }
+    Tracer *tracer = calloc(1, sizeof *tracer);
+    assert(tracer != NULL);
+    tracer->scenario = scenario;
+    tracer->solver = solver;
+    tracer->state = state;
+    tracer->scale = spike_scale(scenario);
+    const double fine = tracer->scale.is_known ? FINENESS * scenario->run.spike_threshold : 0.0;
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        tracer->alpha[i] = trace_start(fine * tracer->scale.alpha, POINTS_MOST);
+    }
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        tracer->force[i] = trace_start(fine * tracer->scale.force, POINTS_MOST);
+    }
+    return tracer;
+}
+
+// A step of means: they stand at its middle, and half of the change comes before.
+static void add_means(Tracer *tracer, const StepRecord *step)
+{
+    const Linkage *linkage = &tracer->scenario->linkage;
+    const double half_s = 0.5 * (step->end_s - step->start_s);
+    const double middle_s = step->start_s + half_s;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if (is_traced(tracer, i)) {
+            trace_add(&tracer->alpha[i], middle_s, step->alpha[i],
+                      step->omega[i] - half_s * step->alpha[i]);
+        }
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const double half = 0.5 * step->impulse[i];
+        trace_add(&tracer->force[i], middle_s, step->joints[i].force, tracer->impulse[i] + half);
+        tracer->impulse[i] += step->impulse[i];
+    }
+}
+
+// The parts that bring a chord within the tolerance, whose ends and mean are given.
+static double parts_for(double first, double last, double mean, double tolerance)
+{
+    const double off = 1.5 * fabs(mean - 0.5 * (first + last));
+    return off > tolerance ? sqrt(off / tolerance) : 1.0;
+}
+
+static bool has_play(const Tracer *tracer, size_t joint)
+{
+    return tracer->scenario->linkage.joints[joint].kind == JOINT_CLEARANCE;
+}
+
+static int count_parts(const Tracer *tracer, const StepRecord *step)
+{
+    const Linkage *linkage = &tracer->scenario->linkage;
+    const double width_s = step->end_s - step->start_s;
+    double parts = 1.0;
+    if (!(width_s > 0.0)) {
+        return 1;
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const double mean = (step->omega[i] - tracer->last.omega[i]) / width_s;
+        if (is_traced(tracer, i)) {
+            parts = fmax(parts, parts_for(tracer->last.alpha[i], step->alpha[i], mean,
+                                          tracer->alpha[i].tolerance));
+        }
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (has_play(tracer, i)) {
+            parts = fmax(parts, parts_for(tracer->last.force[i], step->joints[i].force,
+                                          step->impulse[i] / width_s, tracer->force[i].tolerance));
+        }
+    }
+    return (int)ceil(fmin(parts, PARTS_MOST));
+}
+
+static Look look_inside(const Tracer *tracer, double time_s)
+{
+    const Linkage *linkage = &tracer->scenario->linkage;
+    Look look = {.time_s = time_s};
+    Sample sample;
+    tracer->solver->observe(tracer->state, time_s, &sample);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        look.omega[i] = sample.bodies[i].omega;
+        look.alpha[i] = sample.bodies[i].alpha;
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        look.force[i] = sample.joints[i].force;
+    }
+    return look;
+}
+
+static Look look_at_end(const Tracer *tracer, const StepRecord *step)
+{
+    const Linkage *linkage = &tracer->scenario->linkage;
+    Look look = {.time_s = step->end_s};
+    memcpy(look.omega, step->omega, linkage->body_count * sizeof *look.omega);
+    memcpy(look.alpha, step->alpha, linkage->body_count * sizeof *look.alpha);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        look.force[i] = step->joints[i].force;
+    }
+    return look;
+}
+
+// The force of a joint at the looks. Its impulse in the parts is in proportion to what the broken
+// line holds; the impulse of a contact in the whole step is the solver's.
+static void add_forces(Tracer *tracer, size_t joint, const StepRecord *step, int parts,
+                       const Look *looks)
+{
+    double sums[PARTS_MOST];
+    double sum = 0.0;
+    const Look *before = &tracer->last;
+    for (int k = 0; k < parts; k++) {
+        const double width_s = looks[k].time_s - before->time_s;
+        sum += 0.5 * width_s * (before->force[joint] + looks[k].force[joint]);
+        sums[k] = sum;
+        before = &looks[k];
+    }
+    const double factor = has_play(tracer, joint) && sum > 0.0 ? step->impulse[joint] / sum : 1.0;
+    for (int k = 0; k < parts; k++) {
+        trace_add(&tracer->force[joint], looks[k].time_s, looks[k].force[joint],
+                  tracer->impulse[joint] + factor * sums[k]);
+    }
+    tracer->impulse[joint] += factor * sum;
+}
+
+// Where the run begins nothing has been looked at before.
+static void look_at_start(Tracer *tracer, const StepRecord *step)
+{
+    const Linkage *linkage = &tracer->scenario->linkage;
+    const Look look = look_inside(tracer, step->start_s);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if (is_traced(tracer, i)) {
+            trace_add(&tracer->alpha[i], look.time_s, look.alpha[i], look.omega[i]);
+        }
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        trace_add(&tracer->force[i], look.time_s, look.force[i], 0.0);
+    }
+    tracer->last = look;
+    tracer->has_begun = true;
+}
+
+static void add_instants(Tracer *tracer, const StepRecord *step)
+{
+    if (!tracer->has_begun) {
+        look_at_start(tracer, step);
+    }
+    const Linkage *linkage = &tracer->scenario->linkage;
+    const int parts = count_parts(tracer, step);
+    const double part_s = (step->end_s - step->start_s) / parts;
+    Look looks[PARTS_MOST];
+    for (int k = 0; k + 1 < parts; k++) {
+        looks[k] = look_inside(tracer, step->start_s + (k + 1) * part_s);
+    }
+    looks[parts - 1] = look_at_end(tracer, step);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        for (int k = 0; is_traced(tracer, i) && k < parts; k++) {
+            trace_add(&tracer->alpha[i], looks[k].time_s, looks[k].alpha[i], looks[k].omega[i]);
+        }
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        add_forces(tracer, i, step, parts, looks);
+    }
+    tracer->last = looks[parts - 1];
+}
+
+static void tracer_look(void *own, const StepRecord *step)
+{
+    if (step->is_mean) {
+        add_means(own, step);
+    } else {
+        add_instants(own, step);
+    }
+}
+
+// The values of a trace within a time.
+static double range_within(const Trace *trace, double from_s, double to_s)
+{
+    double least = INFINITY;
+    double most = -INFINITY;
+    // the first point inside, by halving
+    size_t low = 0;
+    size_t high = trace->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (trace->points[middle].time_s < from_s) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    for (size_t i = low; i < trace->count && trace->points[i].time_s <= to_s; i++) {
+        least = fmin(least, trace->points[i].value);
+        most = fmax(most, trace->points[i].value);
+    }
+    return most - least;
+}
+
+// The joint with play whose force changes most within a spike.
+static int find_joint(const Tracer *tracer, const SignalSpike *spike)
+{
+    int found = -1;
+    double most = 0.0;
+    for (size_t i = 0; i < tracer->scenario->linkage.joint_count; i++) {
+        if (has_play(tracer, i)) {
+            const double range = range_within(&tracer->force[i], spike->onset_s, spike->end_s);
+            found = range > most ? (int)i : found;
+            most = fmax(most, range);
+        }
+    }
+    return found;
+}
+
+// Puts a spike among the strongest, in order of its value.
+static void keep_spike(SignalSpikes *spikes, const SignalSpike *spike)
+{
+    size_t place = spikes->kept;
+    while (place > 0 && fabs(spikes->spikes[place - 1].value) < fabs(spike->value)) {
+        place--;
+    }
+    if (place == SIGNAL_SPIKE_MAX) {
+        return;
+    }
+    spikes->kept += spikes->kept < SIGNAL_SPIKE_MAX ? 1 : 0;
+    const size_t moved = spikes->kept - 1 - place;
+    memmove(&spikes->spikes[place + 1], &spikes->spikes[place], moved * sizeof *spike);
+    spikes->spikes[place] = *spike;
+}
+
+static void count_sector(SignalSpikes *spikes, const SignalSpike *spike)
+{
+    const double turn = spike->crank_rad / (2.0 * M_PI);
+    const double share = turn - floor(turn);
+    const size_t sector = (size_t)(share * SIGNAL_SECTOR_COUNT) % SIGNAL_SECTOR_COUNT;
+    spikes->sectors[sector].count++;
+    spikes->sectors[sector].largest = fmax(spikes->sectors[sector].largest, fabs(spike->value));
+}
+
+// The spikes of one signal that reach a threshold. A signal that is nothing has none.
+static void tell_signal(const Tracer *tracer, const Trace *trace, double threshold, bool is_body,
+                        SignalSpikes *spikes)
+{
+    const Linkage *linkage = &tracer->scenario->linkage;
+    SignalSpike *found = NULL;
+    *spikes = (SignalSpikes){
+        .is_known = true, .threshold = threshold, .resolution = 2.0 * trace->tolerance};
+    spikes->count = threshold > 0.0 ? spikes_find(trace, threshold, &found) : 0;
+    for (size_t i = 0; i < spikes->count; i++) {
+        found[i].crank_rad = linkage_crank_angle(linkage, found[i].time_s);
+        found[i].joint = is_body ? find_joint(tracer, &found[i]) : -1;
+        keep_spike(spikes, &found[i]);
+        if (linkage->driver.is_present) {
+            count_sector(spikes, &found[i]);
+        }
+    }
+    free(found);
+}
+
+// Thresholds of a case without a known scale: a share of the signal's own range.
+static double own_threshold(const Tracer *tracer, const Trace *trace, double least)
+{
+    return OWN_SHARE * tracer->scenario->run.spike_threshold *
+           fmax(range_within(trace, -INFINITY, INFINITY), least);
+}
+
+static void tell_all(Tracer *tracer, Trajectory *trajectory)
+{
+    const Scenario *scenario = tracer->scenario;
+    const Linkage *linkage = &scenario->linkage;
+    double largest = 0.0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        trace_close(&tracer->force[i]);
+        largest = fmax(largest, tracer->force[i].largest);
+    }
+    const double arm = scale_speeds(scenario).reach;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const double least = ROUNDING * largest * arm / linkage->bodies[i].inertia;
+        trace_close(&tracer->alpha[i]);
+        tell_signal(tracer, &tracer->alpha[i],
+                    tracer->scale.is_known ? scenario->run.spike_threshold * tracer->scale.alpha
+                                           : own_threshold(tracer, &tracer->alpha[i], least),
+                    true, &trajectory->alpha_spikes[i]);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        tell_signal(tracer, &tracer->force[i],
+                    tracer->scale.is_known ? scenario->run.spike_threshold * tracer->scale.force
+                                           : own_threshold(tracer, &tracer->force[i], 0.0),
+                    false, &trajectory->force_spikes[i]);
+    }
+}
+
+static void tracer_end(void *own, Trajectory *trajectory)
+{
+    Tracer *tracer = own;
+    if (trajectory->is_complete) {
+        tell_all(tracer, trajectory);
+    }
+    for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
+        trace_finish(&tracer->alpha[i]);
+    }
+    for (size_t i = 0; i < LINKAGE_JOINT_MAX; i++) {
+        trace_finish(&tracer->force[i]);
+    }
+    free(tracer);
+}
+
+Trajectory *tracer_run(const Scenario *scenario, const Solver *solver, RunWatch watch)
+{
+    static const RunProbe PROBE = {tracer_begin, tracer_look, tracer_end};
+    return run_probed(scenario, solver, watch, &PROBE);
+}
