@@ -1,5 +1,5 @@
-// Which ERP and CFM make ODE's contact row the spring and damper that was asked for, and what does
-// the row deliver then?
+// Which ERP and CFM make ODE's contact row the spring and damper that was asked for, and which
+// spring and damper is an ERP and a CFM?
 //
 // ODE's row, F >= 0      v_out + CFM F = (ERP / h) d
 // textbook               ERP = h k / (h k + c), CFM = 1 / (h k + c): F = k (d - h v_out) - c v_out,
@@ -15,8 +15,12 @@
 //                        b h = 1 + a - 2 exp(-z omega h) cos(omega_d h): then d and d' follow
 //                        d'_new = a d' - b d, d_new = d + h d'_new, of determinant a and of the
 //                        trace of the continuous oscillator; for omega h < pi
-// inverse of textbook    kp = ERP / (h CFM), kd = (1 - ERP) / CFM
-// Poisson                F = p d': CFM = 1 / p
+// inverses               textbook kp = ERP / (h CFM), kd = (1 - ERP) / CFM; corrected the same kp,
+//                        kd = 1 / CFM; midpoint kd = 2 / CFM, kp = ERP / (h CFM) - (kd / 2) d' / d;
+//                        exact a = r / (1 + r), r = CFM m / h, z omega h = ln(1 + 1 / r) / 2, and
+//                        sin^2 of half of omega_d h = (b h - (1 - e^-zoh)^2) / (4 e^-zoh)
+// 1 - ERP = c / (h k + c) is kept beside ERP: from ERP as a double alone, kd would be wrong by up
+// to eps/2 (h k + c) / c of itself, eps = 2.2e-16. Poisson                F = p d': CFM = 1 / p
 // bounce with CFM        delivered e' = (e - r) / (1 + r), r = CFM m / h
 //
 // At c = 0 the corrected map has no finite CFM. A damper c = 1e-10 h k stands in: it changes the
@@ -30,18 +34,16 @@
 #include "contact/map.h"
 
 #include <assert.h>
-#include <float.h>
 #include <math.h>
 
 // small enough that the force is right to 1e-9 wherever the overlap is at least a tenth of the
 // way gone in one step, large enough that the row's numbers lose no digits
 static const double STAND_IN_SHARE = 1e-10;
 
-// phases over which the delivered restitution is averaged, at the middles of equal intervals
-enum { PHASE_COUNT = 16 };
-
-// far beyond any contact that ends: 1e7 steps are seconds of wall time
-enum { STEP_MAX = 10000000 };
+ErpCfm map_row(double erp, double cfm)
+{
+    return (ErpCfm){.erp = erp, .cfm = cfm, .rest = 1.0 - erp};
+}
 
 static void check_contact(const MapContact *contact)
 {
@@ -53,7 +55,11 @@ static ErpCfm textbook(const MapContact *contact)
 {
     check_contact(contact);
     const double sum = contact->step * contact->stiffness + contact->damping;
-    return (ErpCfm){.erp = contact->step * contact->stiffness / sum, .cfm = 1.0 / sum};
+    return (ErpCfm){
+        .erp = contact->step * contact->stiffness / sum,
+        .cfm = 1.0 / sum,
+        .rest = contact->damping / sum,
+    };
 }
 
 // The damper, or what stands in for one.
@@ -66,7 +72,7 @@ static double damper_of(const MapContact *contact)
 static ErpCfm corrected(const MapContact *contact)
 {
     const double damper = damper_of(contact);
-    return (ErpCfm){.erp = contact->step * contact->stiffness / damper, .cfm = 1.0 / damper};
+    return map_row(contact->step * contact->stiffness / damper, 1.0 / damper);
 }
 
 static ErpCfm midpoint(const MapContact *contact)
@@ -74,7 +80,7 @@ static ErpCfm midpoint(const MapContact *contact)
     assert(contact->depth > 0.0);
     const double half = 0.5 * damper_of(contact);
     const double force = contact->stiffness * contact->depth + half * contact->closing;
-    return (ErpCfm){.erp = contact->step * force / (half * contact->depth), .cfm = 1.0 / half};
+    return map_row(contact->step * force / (half * contact->depth), 1.0 / half);
 }
 
 static ErpCfm exact(const MapContact *contact)
@@ -89,13 +95,54 @@ static ErpCfm exact(const MapContact *contact)
     const double half_turn = square >= 0.0 ? sin(0.5 * sqrt(square)) : sinh(0.5 * sqrt(-square));
     const double swing = copysign(4.0 * exp(-decay) * half_turn * half_turn, square);
     const double beta = expm1(-decay) * expm1(-decay) + swing;
-    return (ErpCfm){.erp = beta / lost, .cfm = h * alpha / (contact->mass * lost)};
+    return map_row(beta / lost, h * alpha / (contact->mass * lost));
 }
 
-void map_invert(ErpCfm row, double step, double *stiffness, double *damping)
+// Whether a spring and a damper are such; if so, the contact gets them.
+static bool take_pair(MapContact *contact, double stiffness, double damping)
 {
-    *stiffness = row.erp / (step * row.cfm);
-    *damping = (1.0 - row.erp) / row.cfm;
+    if (!(stiffness >= 0.0 && isfinite(stiffness) && damping >= 0.0 && isfinite(damping))) {
+        return false;
+    }
+    contact->stiffness = stiffness;
+    contact->damping = damping;
+    return true;
+}
+
+static bool invert_textbook(ErpCfm row, MapContact *contact)
+{
+    return take_pair(contact, row.erp / (contact->step * row.cfm), row.rest / row.cfm);
+}
+
+static bool invert_corrected(ErpCfm row, MapContact *contact)
+{
+    return take_pair(contact, row.erp / (contact->step * row.cfm), 1.0 / row.cfm);
+}
+
+static bool invert_midpoint(ErpCfm row, MapContact *contact)
+{
+    assert(contact->depth > 0.0);
+    const double half = 1.0 / row.cfm;
+    const double spring = row.erp * half / contact->step; // F0 / d
+    return take_pair(contact, spring - half * contact->closing / contact->depth, 2.0 * half);
+}
+
+static bool invert_exact(ErpCfm row, MapContact *contact)
+{
+    assert(contact->mass > 0.0);
+    const double h = contact->step;
+    const double r = row.cfm * contact->mass / h; // a / (1 - a)
+    const double decay = 0.5 * log1p(1.0 / r);
+    const double fade = expm1(-decay);
+    // beta h less (1 - e^-x)^2 is 4 e^-x sin^2(y/2), and with it y^2 is known
+    const double swing = row.erp / (1.0 + r) - fade * fade;
+    const double half_turn = 0.5 * sqrt(fabs(swing)) * exp(0.5 * decay);
+    if (swing > 0.0 && half_turn > 1.0) {
+        return false; // no oscillator turns by more than half in a step
+    }
+    const double turn = 2.0 * (swing >= 0.0 ? asin(half_turn) : asinh(half_turn));
+    const double square = decay * decay + copysign(turn * turn, swing); // (omega h)^2
+    return take_pair(contact, contact->mass * square / (h * h), 2.0 * contact->mass * decay / h);
 }
 
 double map_poisson_cfm(double penalty)
@@ -109,51 +156,15 @@ double map_bounce_delivered(double restitution, double cfm, double mass, double 
     return (restitution - r) / (1.0 + r);
 }
 
-MapImpact map_impact(const Map *map, double mass, double stiffness, double damping, double step,
-                     double speed, double first_overlap)
-{
-    MapContact contact = {.stiffness = stiffness, .damping = damping, .step = step, .mass = mass};
-    MapImpact impact = {0};
-    double depth = first_overlap * speed * step; // m
-    double rate = speed;                         // closing speed, m/s
-    while (depth >= 0.0 && impact.steps < STEP_MAX) {
-        contact.depth = fmax(depth, DBL_MIN);
-        contact.closing = rate;
-        const ErpCfm row = map->convert(&contact);
-        // the row, solved for the force; the wall never pulls
-        const double wanted = (row.erp / step * depth + rate) / (row.cfm + step / mass);
-        const double force = fmax(wanted, 0.0);
-        rate -= step * force / mass;
-        depth += step * rate;
-        impact.force_max = fmax(impact.force_max, force);
-        impact.penetration_max = fmax(impact.penetration_max, depth);
-        impact.steps++;
-    }
-    impact.restitution = depth < 0.0 ? -rate / speed : 0.0;
-    return impact;
-}
-
-double map_delivered_restitution(const Map *map, double mass, double stiffness, double damping,
-                                 double step)
-{
-    double sum = 0.0;
-    for (int i = 0; i < PHASE_COUNT; i++) {
-        const double overlap = (i + 0.5) / PHASE_COUNT;
-        // the spring is linear, so any speed gives the same
-        sum += map_impact(map, mass, stiffness, damping, step, 1.0, overlap).restitution;
-    }
-    return sum / PHASE_COUNT;
-}
-
 static const Map MAPS[] = {
     [ODE_MAP_TEXTBOOK] = {"textbook", "implicit Euler: always stable, adds damping h k", INFINITY,
-                          0.0, false, textbook},
+                          0.0, false, textbook, invert_textbook},
     [ODE_MAP_CORRECTED] = {"corrected", "spring explicit, damper implicit: adds no damping", 2.0,
-                           STAND_IN_SHARE, false, corrected},
+                           STAND_IN_SHARE, false, corrected, invert_corrected},
     [ODE_MAP_MIDPOINT] = {"midpoint", "damper on the mean of old and new speed: second order", 2.0,
-                          STAND_IN_SHARE, false, midpoint},
+                          STAND_IN_SHARE, false, midpoint, invert_midpoint},
     [ODE_MAP_EXACT] = {"exact", "frequency and decay of the continuous oscillator, for its mass",
-                       M_PI, STAND_IN_SHARE, true, exact},
+                       M_PI, STAND_IN_SHARE, true, exact, invert_exact},
 };
 
 const Map *map_get(OdeMap kind)

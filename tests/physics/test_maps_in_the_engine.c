@@ -20,7 +20,7 @@ static Scenario make(OdeMap map, int law)
 static OneImpact over_law(const Scenario *scenario, double steps_a_contact)
 {
     OneImpact impact = one_impact_run(*scenario, one_impact_duration(scenario) / steps_a_contact);
-    assert_true(impact.is_complete);
+    assert_true(impact.is_single);
     impact.restitution /= one_impact_law_restitution(scenario);
     impact.force_max /= one_impact_law_force(scenario);
     return impact;

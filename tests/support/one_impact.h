@@ -29,8 +29,7 @@ double one_impact_law_force(const Scenario *scenario);
 typedef struct OneImpact {
     double restitution;   // 1
     double force_max;     // N
-    bool is_complete;     // no run failed
-    bool is_single;       // nor saw more or less than one contact
+    bool is_single;       // no run failed, nor saw more or less than one contact
     size_t fallback_rows; // of all runs, where the map would not have been stable
 } OneImpact;
 

@@ -1,0 +1,194 @@
+// Which ERP, CFM and step for a joint with play, and what do they deliver?
+#include "cli/command.h"
+#include "cli/idle_settings.h"
+#include "cli/map_files.h"
+#include "cli/map_options.h"
+#include "cli/output.h"
+#include "cli/run_files.h"
+#include "cli/status_line.h"
+
+#include "base/clock.h"
+#include "casefile/casefile.h"
+#include "compare/mapping_inverse.h"
+#include "report/mapping_inverse.h"
+#include "report/mapping_json.h"
+#include "report/mapping_text.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+// What is told while it works.
+typedef struct Telling {
+    StatusLine line;
+    double started_s;
+    const char *doing; // of a run or of many
+} Telling;
+
+static void tell(Telling *telling, const char *words)
+{
+    if (status_line_is_due(&telling->line, clock_now_s() - telling->started_s)) {
+        status_line_show(&telling->line, words);
+    }
+}
+
+static void tell_row(size_t done, size_t total, void *context)
+{
+    char words[64];
+    snprintf(words, sizeof words, "%zu of %zu settings run in ODE", done, total);
+    tell(context, words);
+}
+
+static void tell_run(double share, double wall_s, void *context)
+{
+    (void)wall_s;
+    Telling *telling = context;
+    char words[96];
+    snprintf(words, sizeof words, "%s: %.0f %%", telling->doing, 100.0 * share);
+    tell(telling, words);
+}
+
+static void print_text(Text *text)
+{
+    printf("%s\n", text->data);
+    text_finish(text);
+}
+
+static void print_report(const MappingReport *report, bool is_json)
+{
+    if (is_json) {
+        output_json(mapping_json_build(report));
+        return;
+    }
+    Text text;
+    text_init(&text);
+    mapping_text_write(report, output_style(stdout), &text);
+    print_text(&text);
+}
+
+// The paper's estimate where it was asked for; a word about it where it could be.
+static bool make_penalty(const MapOptions *options, const Scenario *scenario, Telling *telling,
+                         PenaltyMap **penalty, Err *err)
+{
+    // where the step is chosen by trials, at the longest of the paper's own order
+    const double usual_s = 1e-6;
+    const double step_s = options->step_s > 0.0      ? options->step_s
+                          : scenario->run.step > 0.0 ? scenario->run.step
+                                                     : usual_s;
+    telling->doing = "the paper's penalty over its speeds";
+    return !options->with_penalty ||
+           penalty_map_make(scenario, step_s, (RunWatch){tell_run, telling}, penalty, err);
+}
+
+// A four-bar with the paper's pin is told of --penalty.
+static void say_hint(const MapOptions *options, const Scenario *scenario)
+{
+    PrintedPin pin;
+    if (!options->with_penalty && !options->is_quiet && scenario->has_fourbar &&
+        penalty_map_fits(scenario, &pin)) {
+        fprintf(stderr, "--penalty adds the paper's penalty parameter over its 15 speeds\n");
+    }
+}
+
+static bool map_scenario(const MapOptions *options, const Scenario *scenario, Err *err)
+{
+    MappingSettings settings;
+    if (!map_options_settings(options, scenario, &settings, err) ||
+        (options->folder != NULL && !run_files_make_folder(options->folder, err)) ||
+        !map_files_probe(scenario, options, err)) {
+        return false;
+    }
+    Telling telling = {status_line_start(options->is_quiet), clock_now_s(), "the reference's run"};
+    const MappingWatch watch = {tell_row, {tell_run, &telling}, &telling};
+    Mapping mapping = {0};
+    PenaltyMap *penalty = NULL;
+    bool is_done = mapping_make(scenario, &settings, watch, &mapping, err) &&
+                   make_penalty(options, scenario, &telling, &penalty, err);
+    status_line_end(&telling.line);
+    if (is_done) {
+        const MappingReport report = {scenario, &mapping, penalty};
+        print_report(&report, options->is_json);
+        is_done = map_files_write(&report, options, err);
+        say_hint(options, scenario);
+    }
+    free(penalty);
+    mapping_finish(&mapping);
+    return is_done;
+}
+
+// The masses that a row is read on: the one given, else those of the case's joints, else none.
+static bool add_masses(const MapOptions *options, const Scenario *scenario, Inverse *inverse,
+                       Err *err)
+{
+    double mass = 0.0;
+    if (options->mass != NULL &&
+        !option_values_read_quantity("mass", options->mass, DIMENSION_MASS, &mass, err)) {
+        return false;
+    }
+    if (mass > 0.0 || options->path == NULL) {
+        inverse_add_mass(inverse, "", mass);
+        return true;
+    }
+    if (!scenario_has_clearance(scenario)) {
+        return err_set(err, ERR_CASE,
+                       "no joint of %s has play, so it has no mass to offer; give "
+                       "one, such as --mass '0.1 kg'",
+                       scenario->path);
+    }
+    MappingJoint joints[LINKAGE_JOINT_MAX];
+    size_t count = 0;
+    if (!mapping_joint_measure(scenario, (RunWatch){0}, joints, &count, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < count; i++) {
+        inverse_add_mass(inverse, scenario->linkage.joints[joints[i].joint].name,
+                         joints[i].mass_median);
+    }
+    return true;
+}
+
+static bool read_row(const MapOptions *options, const Scenario *scenario, Err *err)
+{
+    Inverse *inverse = calloc(1, sizeof *inverse);
+    assert(inverse != NULL);
+    bool is_read = options->has_kp
+                       ? inverse_of_pair(options->kp, options->kd, options->step_s, inverse, err)
+                       : inverse_of_row(options->erp, options->cfm, options->step_s, inverse, err);
+    is_read = is_read && add_masses(options, scenario, inverse, err);
+    if (is_read && options->is_json) {
+        output_json(mapping_inverse_json(inverse));
+    } else if (is_read) {
+        Text text;
+        text_init(&text);
+        mapping_inverse_text(inverse, output_style(stdout), &text);
+        print_text(&text);
+    }
+    free(inverse);
+    return is_read;
+}
+
+static bool map_run(int argc, char **argv, Err *err)
+{
+    MapOptions options;
+    bool is_answered;
+    if (!map_options_read(argc, argv, &options, &is_answered, err) || is_answered) {
+        return err->kind == ERR_NONE;
+    }
+    Scenario *scenario = calloc(1, sizeof *scenario);
+    assert(scenario != NULL);
+    bool is_done = options.path == NULL || casefile_load(options.path, options.overrides,
+                                                         options.override_count, scenario, err);
+    if (is_done && options.path != NULL && !options.is_quiet) {
+        idle_settings_say(scenario, options.overrides, options.override_count);
+    }
+    is_done = is_done && (options.is_inverse ? read_row(&options, scenario, err)
+                                             : map_scenario(&options, scenario, err));
+    free(scenario);
+    return is_done;
+}
+
+const Command cmd_map = {
+    .name = "map",
+    .summary = "which ERP, CFM and step for each joint, and what they deliver",
+    .run = map_run,
+};

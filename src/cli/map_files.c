@@ -1,0 +1,101 @@
+// Which files does a mapping leave behind?
+#include "cli/map_files.h"
+
+#include "cli/case_run.h"
+#include "cli/written.h"
+#include "report/file.h"
+#include "report/mapping_csv.h"
+#include "report/mapping_json.h"
+#include "report/mapping_plot.h"
+#include "report/mapping_text.h"
+
+#include <stdio.h>
+
+static bool write_csv(const MappingReport *report, const char *path, bool is_quiet, Err *err)
+{
+    return mapping_csv_write(report, path, err) && written_say(path, is_quiet);
+}
+
+static bool write_text(const char *path, Text *text, bool is_quiet, Err *err)
+{
+    const bool is_written = written_text(path, text->data, is_quiet, err);
+    text_finish(text);
+    return is_written;
+}
+
+static bool write_plot(const MappingReport *report, const char *path, bool is_quiet, Err *err)
+{
+    Text svg;
+    text_init(&svg);
+    mapping_plot_write(report, &svg);
+    return write_text(path, &svg, is_quiet, err);
+}
+
+static bool write_report(const MappingReport *report, const char *path, bool is_quiet, Err *err)
+{
+    Text text;
+    text_init(&text);
+    mapping_text_write(report, &STYLE_PLAIN, &text);
+    return write_text(path, &text, is_quiet, err);
+}
+
+static bool write_json(const MappingReport *report, const char *path, bool is_quiet, Err *err)
+{
+    json_t *object = mapping_json_build(report);
+    const bool is_written = written_json(path, object, is_quiet, err);
+    json_decref(object);
+    return is_written;
+}
+
+// What goes into the folder, by its ending.
+static const struct {
+    const char *ending;
+    bool (*write)(const MappingReport *report, const char *path, bool is_quiet, Err *err);
+} MEMBERS[] = {
+    {"txt", write_report}, {"csv", write_csv}, {"svg", write_plot}, {"json", write_json}};
+
+enum { MEMBER_COUNT = sizeof MEMBERS / sizeof *MEMBERS };
+
+// The file of that ending in the folder.
+static bool find_path(const MapOptions *options, const Scenario *scenario, const char *ending,
+                      char path[FILE_PATH_SIZE], Err *err)
+{
+    char name[SCENARIO_PATH_SIZE];
+    case_run_name(scenario, name, sizeof name);
+    const int length =
+        snprintf(path, FILE_PATH_SIZE, "%s/%s-map.%s", options->folder, name, ending);
+    return (length >= 0 && length < FILE_PATH_SIZE) ||
+           err_set(err, ERR_FILE, "the path of %s-map.%s is too long", name, ending);
+}
+
+bool map_files_probe(const Scenario *scenario, const MapOptions *options, Err *err)
+{
+    if ((options->csv != NULL && !file_probe(options->csv, err)) ||
+        (options->plot != NULL && !file_probe(options->plot, err))) {
+        return false;
+    }
+    for (int i = 0; options->folder != NULL && i < MEMBER_COUNT; i++) {
+        char path[FILE_PATH_SIZE];
+        if (!find_path(options, scenario, MEMBERS[i].ending, path, err) || !file_probe(path, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool map_files_write(const MappingReport *report, const MapOptions *options, Err *err)
+{
+    const bool is_quiet = options->is_quiet;
+    if ((options->csv != NULL && !write_csv(report, options->csv, is_quiet, err)) ||
+        (options->plot != NULL && !write_plot(report, options->plot, is_quiet, err))) {
+        return false;
+    }
+    for (int i = 0; options->folder != NULL && i < MEMBER_COUNT; i++) {
+        char path[FILE_PATH_SIZE];
+        if (!find_path(options, report->scenario, MEMBERS[i].ending, path, err) ||
+            !MEMBERS[i].write(report, path, is_quiet, err)) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,361 @@
+// What was `jointplay map` asked for?
+#include "cli/map_options.h"
+
+#include "casefile/quantity.h"
+#include "cli/arguments.h"
+#include "report/file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    KEY_STEPS = 0x200, // options without a letter of their own
+    KEY_MAPS,
+    KEY_LAWS,
+    KEY_MASS,
+    KEY_SPEED,
+    KEY_SET,
+    KEY_PENALTY,
+    KEY_ERP,
+    KEY_CFM,
+    KEY_KP,
+    KEY_KD,
+    KEY_STEP,
+    KEY_JSON,
+    KEY_CSV,
+    KEY_PLOT,
+    KEY_OUT,
+    KEY_QUIET = 'q',
+};
+
+enum { PART_SIZE = 64 };
+
+// from where a steel contact is hardly seen to where the textbook map sees it right
+static const double DEFAULT_STEPS[] = {3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7};
+
+static const struct argp_option OPTIONS[] = {
+    {"steps", KEY_STEPS, "LIST", 0,
+     "The steps, such as '10 us, 3 us, 1 us' (default: 30 to 0.1 us and the case's own)", 1},
+    {"maps", KEY_MAPS, "LIST", 0, "Only these of textbook, corrected, midpoint, exact, impulse", 1},
+    {"laws", KEY_LAWS, "LIST", 0,
+     "These elastic laws in place of the case's, with its damping; 'all' for every one", 1},
+    {"mass", KEY_MASS, "MASS", 0,
+     "The effective mass: 'median' (default) or 'most' of the case's run, or such as '0.1 kg'", 1},
+    {"speed", KEY_SPEED, "SPEED", 0,
+     "The closing speed: 'median' (default) or 'most' of the case's contacts, or '0.1 m/s'", 1},
+    {"set", KEY_SET, "KEY=VALUE", 0,
+     "Replace a value of the case, such as contact.restitution=0.8; may be given often", 1},
+    {"penalty", KEY_PENALTY, NULL, 0,
+     "Also the paper's penalty parameter over its 15 speeds, read both ways", 1},
+    {"erp", KEY_ERP, "X", 0, "With --cfm and --step: which spring and damper is that?", 2},
+    {"cfm", KEY_CFM, "X", 0, "The CFM of --erp, m/(N s)", 2},
+    {"kp", KEY_KP, "K", 0, "With --kd and --step: a spring as Gazebo has it, such as '1e7 N/m'", 2},
+    {"kd", KEY_KD, "C", 0, "The damper of --kp, such as '10 N s/m'", 2},
+    {"step", KEY_STEP, "TIME", 0, "The step of --erp or --kp; else the only step of the mapping",
+     2},
+    {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 3},
+    {"csv", KEY_CSV, "FILE.csv", 0, "Write a row a joint, law, map and step", 3},
+    {"plot", KEY_PLOT, "FILE.svg", 0, "Draw the errors of restitution and peak force", 3},
+    {"out", KEY_OUT, "DIR", 0, "Write <case>-map.txt, .csv, .svg and .json there", 3},
+    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 3},
+    {0},
+};
+
+// A plain number is in SI.
+static bool read_number(const char *name, const char *text, bool *is_given, double *value, Err *err)
+{
+    Complaint complaint;
+    if (!quantity_number(text, value, &complaint)) {
+        return err_set(err, ERR_USAGE, "--%s: %s%s%s", name, complaint.text,
+                       complaint.allowed[0] != '\0' ? "; allowed: " : "", complaint.allowed);
+    }
+    *is_given = true;
+    return true;
+}
+
+static bool read_kp(const char *text, MapOptions *options, Err *err)
+{
+    Complaint complaint;
+    double exponent = 1.0;
+    if (!quantity_number(text, &options->kp, &complaint) &&
+        !quantity_stiffness(text, &options->kp, &exponent, &complaint)) {
+        return err_set(err, ERR_USAGE, "--kp: %s; allowed: a stiffness such as 1e7 N/m",
+                       complaint.text);
+    }
+    options->has_kp = true;
+    return exponent == 1.0 ||
+           err_set(err, ERR_USAGE, "--kp: a row is a linear spring; allowed: N/m or N/mm");
+}
+
+static bool read_kd(const char *text, MapOptions *options, Err *err)
+{
+    Complaint complaint;
+    if (!quantity_number(text, &options->kd, &complaint) &&
+        !quantity_parse(text, DIMENSION_DAMPING, &options->kd, &complaint)) {
+        return err_set(err, ERR_USAGE, "--kd: %s; allowed: a damper such as 10 N s/m",
+                       complaint.text);
+    }
+    options->has_kd = true;
+    return true;
+}
+
+static bool take_case(MapOptions *options, const char *path, Err *err)
+{
+    if (options->path != NULL) {
+        return err_set(err, ERR_USAGE, "map takes one case, not %s and %s", options->path, path);
+    }
+    options->path = path;
+    return true;
+}
+
+// Of the options that are kept as they are written; NULL for any other.
+static const char **place_of(MapOptions *options, int key)
+{
+    switch (key) {
+    case KEY_STEPS:
+        return &options->steps;
+    case KEY_MAPS:
+        return &options->maps;
+    case KEY_LAWS:
+        return &options->laws;
+    case KEY_MASS:
+        return &options->mass;
+    case KEY_SPEED:
+        return &options->speed;
+    case KEY_CSV:
+        return &options->csv;
+    case KEY_PLOT:
+        return &options->plot;
+    case KEY_OUT:
+        return &options->folder;
+    default:
+        return NULL;
+    }
+}
+
+static bool take_option(int key, const char *value, void *target, Err *err)
+{
+    MapOptions *options = target;
+    const char **place = place_of(options, key);
+    if (place != NULL) {
+        *place = value;
+        return true;
+    }
+    switch (key) {
+    case KEY_SET:
+        return option_values_take_setting(value, options->overrides, &options->override_count, err);
+    case KEY_PENALTY:
+        options->with_penalty = true;
+        return true;
+    case KEY_ERP:
+        return read_number("erp", value, &options->has_erp, &options->erp, err);
+    case KEY_CFM:
+        return read_number("cfm", value, &options->has_cfm, &options->cfm, err);
+    case KEY_KP:
+        return read_kp(value, options, err);
+    case KEY_KD:
+        return read_kd(value, options, err);
+    case KEY_STEP:
+        return option_values_read_time("step", value, &options->step_s, err);
+    case KEY_JSON:
+        options->is_json = true;
+        return true;
+    case KEY_QUIET:
+        options->is_quiet = true;
+        return true;
+    default:
+        return take_case(options, value, err);
+    }
+}
+
+// What reading a row needs, and what it has no use for.
+static bool check_inverse(const MapOptions *options, Err *err)
+{
+    const bool is_row = options->has_erp || options->has_cfm;
+    const bool is_pair = options->has_kp || options->has_kd;
+    if (is_row && is_pair) {
+        return err_set(err, ERR_USAGE, "--erp and --cfm, or --kp and --kd, and not of both");
+    }
+    if (is_row && !(options->has_erp && options->has_cfm)) {
+        return err_set(err, ERR_USAGE, "--erp and --cfm are read together; --%s is missing",
+                       options->has_erp ? "cfm" : "erp");
+    }
+    if (is_pair && !(options->has_kp && options->has_kd)) {
+        return err_set(err, ERR_USAGE, "--kp and --kd are read together; --%s is missing",
+                       options->has_kp ? "kd" : "kp");
+    }
+    if (!(options->step_s > 0.0)) {
+        return err_set(err, ERR_USAGE,
+                       "a row stands for a spring and damper at one step only; "
+                       "give it, such as --step '1 ms'");
+    }
+    if (options->steps != NULL || options->maps != NULL || options->laws != NULL ||
+        options->speed != NULL || options->with_penalty || options->csv != NULL ||
+        options->plot != NULL || options->folder != NULL) {
+        return err_set(err, ERR_USAGE,
+                       "--%s reads one row: of the other options only --step, --mass, --set, "
+                       "--json and --quiet go with it",
+                       is_row ? "erp" : "kp");
+    }
+    return true;
+}
+
+bool map_options_read(int argc, char **argv, MapOptions *options, bool *is_answered, Err *err)
+{
+    static const Arguments ARGUMENTS = {
+        .program = "jointplay map",
+        .usage = "CASE\n--erp X --cfm Y --step TIME [--mass MASS] [CASE]\n"
+                 "--kp K --kd C --step TIME [--mass MASS] [CASE]",
+        .doc = "Tells which ERP, CFM and step to use for each joint with play, and what they "
+               "deliver, predicted and measured in ODE; or which spring, damper and restitution "
+               "an ERP and a CFM are.",
+        .options = OPTIONS,
+        .take = take_option,
+    };
+    *options = (MapOptions){0};
+    if (!arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err)) {
+        return false;
+    }
+    if (*is_answered) {
+        return true;
+    }
+    options->is_inverse =
+        options->has_erp || options->has_cfm || options->has_kp || options->has_kd;
+    if (options->is_inverse) {
+        return check_inverse(options, err);
+    }
+    if (options->steps != NULL && options->step_s > 0.0) {
+        return err_set(err, ERR_USAGE, "--step is one of --steps; give either");
+    }
+    if (file_is_same(options->csv, options->plot)) {
+        return err_set(err, ERR_USAGE, "--csv and --plot would both write %s", options->plot);
+    }
+    return options->path != NULL ||
+           err_set(err, ERR_USAGE,
+                   "no case given: jointplay map CASE.yaml, or --erp X --cfm Y --step TIME");
+}
+
+// Reads a list of words of the choices; each one once.
+static bool read_words(const char *name, const char *list, const char *const *choices, int *words,
+                       size_t room, size_t *count, Err *err)
+{
+    *count = 0;
+    while (*list != '\0') {
+        char part[PART_SIZE];
+        list += strspn(list, " ");
+        const size_t length = strcspn(list, ",");
+        size_t end = length;
+        for (; end > 0 && list[end - 1] == ' '; end--) {
+        }
+        snprintf(part, sizeof part, "%.*s", (int)end, list);
+        list += length + (list[length] == ',' ? 1 : 0);
+        int word = 0;
+        while (choices[word] != NULL && strcmp(choices[word], part) != 0) {
+            word++;
+        }
+        bool is_twice = false;
+        for (size_t i = 0; i < *count; i++) {
+            is_twice = is_twice || words[i] == word;
+        }
+        if (choices[word] == NULL || is_twice || *count == room) {
+            Text allowed;
+            text_init(&allowed);
+            for (int i = 0; choices[i] != NULL; i++) {
+                text_append(&allowed, "%s%s", i == 0 ? "" : ", ", choices[i]);
+            }
+            err_set(err, ERR_USAGE, "--%s: '%s' %s; allowed: %s", name, part,
+                    is_twice ? "stands there twice" : "is none of them", allowed.data);
+            text_finish(&allowed);
+            return false;
+        }
+        words[(*count)++] = word;
+    }
+    return *count > 0 || err_set(err, ERR_USAGE, "--%s: the list is empty", name);
+}
+
+// A source by its word, or a value of its own.
+static bool read_source(const char *name, const char *text, Dimension dimension,
+                        MappingSource *source, double *value, Err *err)
+{
+    *source = MAPPING_MEDIAN;
+    if (text == NULL || strcmp(text, "median") == 0) {
+        return true;
+    }
+    if (strcmp(text, "most") == 0) {
+        *source = MAPPING_MOST;
+        return true;
+    }
+    *source = MAPPING_GIVEN;
+    return option_values_read_quantity(name, text, dimension, value, err);
+}
+
+static bool read_steps(const MapOptions *options, const Scenario *scenario,
+                       MappingSettings *settings, Err *err)
+{
+    if (options->steps != NULL) {
+        return option_values_read_times("steps", options->steps, MAPPING_STEP_MAX, settings->steps,
+                                        &settings->step_count, err);
+    }
+    if (options->step_s > 0.0) {
+        settings->steps[settings->step_count++] = options->step_s;
+        return true;
+    }
+    // the usual ones, coarse to fine, and the case's own in its place
+    double own = scenario->run.step;
+    for (size_t i = 0; i < sizeof DEFAULT_STEPS / sizeof *DEFAULT_STEPS; i++) {
+        const double usual = DEFAULT_STEPS[i];
+        const bool is_same = fabs(own - usual) < 1e-9 * usual;
+        if (own > 0.0 && (own > usual || is_same)) {
+            settings->steps[settings->step_count++] = own;
+            own = 0.0;
+        }
+        if (!is_same) {
+            settings->steps[settings->step_count++] = usual;
+        }
+    }
+    if (own > 0.0) {
+        settings->steps[settings->step_count++] = own;
+    }
+    return true;
+}
+
+bool map_options_settings(const MapOptions *options, const Scenario *scenario,
+                          MappingSettings *settings, Err *err)
+{
+    *settings = (MappingSettings){0};
+    int words[MAPPING_LAW_MAX];
+    const bool is_poisson = scenario->contact.model == CONTACT_POISSON;
+    if (is_poisson && (options->maps != NULL || options->laws != NULL)) {
+        return err_set(err, ERR_USAGE,
+                       "--%s: the case's contact model is poisson, whose rows know no map and no "
+                       "elastic law; --set contact.model=impact has them",
+                       options->maps != NULL ? "maps" : "laws");
+    }
+    if (options->maps == NULL) {
+        settings->map_count = MAPPING_MAP_COUNT;
+    } else if (!read_words("maps", options->maps, OPTIONS_ODE_MAPS, words, MAPPING_MAP_COUNT,
+                           &settings->map_count, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < settings->map_count; i++) {
+        settings->maps[i] = options->maps == NULL ? (OdeMap)i : (OdeMap)words[i];
+    }
+    if (options->laws != NULL && strcmp(options->laws, "all") == 0) {
+        for (int i = 0; OPTIONS_LAWS[i] != NULL; i++) {
+            settings->laws[settings->law_count++] = (LawKind)i;
+        }
+    } else if (options->laws != NULL) {
+        if (!read_words("laws", options->laws, OPTIONS_LAWS, words, MAPPING_LAW_MAX,
+                        &settings->law_count, err)) {
+            return false;
+        }
+        for (size_t i = 0; i < settings->law_count; i++) {
+            settings->laws[i] = (LawKind)words[i];
+        }
+    }
+    return read_steps(options, scenario, settings, err) &&
+           read_source("mass", options->mass, DIMENSION_MASS, &settings->mass_source,
+                       &settings->mass, err) &&
+           read_source("speed", options->speed, DIMENSION_SPEED, &settings->speed_source,
+                       &settings->speed, err);
+}

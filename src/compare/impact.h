@@ -1,0 +1,44 @@
+// One impact of a lone pin on the wall of its hole: what is asked of it, what ODE is predicted to
+// deliver, and what it delivers when it is run.
+#pragma once
+
+#include "contact/map_impact.h"
+#include "model/scenario.h"
+
+// A number over the accident of where the steps fall.
+typedef struct ImpactSpread {
+    double mean;
+    double least;
+    double most;
+} ImpactSpread;
+
+// What an impact gives, over MAP_IMPACT_PHASES phases.
+typedef struct ImpactFigures {
+    ImpactSpread restitution;     // 1
+    ImpactSpread force_max;       // N
+    ImpactSpread penetration_max; // m
+    ImpactSpread duration;        // s, of the overlap
+    size_t fallbacks;             // rows of all phases where the map would not have been stable
+    bool is_ended;                // in every phase
+} ImpactFigures;
+
+// Figures without any spread: those of the law itself.
+ImpactFigures impact_figures_of(const MapImpact *impact);
+
+// What ODE is predicted to deliver, from the contact row alone.
+ImpactFigures impact_predict(const MapImpactCase *impact);
+
+// What a run in ODE delivered.
+typedef struct ImpactDelivered {
+    bool is_measured;
+    char message[ERR_TEXT_SIZE]; // why it could not be
+    ImpactFigures figures;
+} ImpactDelivered;
+
+// Runs a lone pin of a mass, kg, in the hole of a joint of the scenario, without gravity, at a
+// closing speed, m/s, and the scenario's own step, contact and map, over all phases. `contact_s` is
+// the longest that the contact is expected to last, s. Nothing is measured, and the message says
+// why, where a step takes the pin across the hole, a run would be too long or failed, or had
+// another number of contacts than one.
+ImpactDelivered impact_deliver(const Scenario *scenario, int joint, double mass, double speed,
+                               double contact_s);

@@ -1,0 +1,280 @@
+// Does `jointplay map` print, write and end as it should?
+#include "program.h"
+
+static const char PAPER[] = "map $cases/paper/impact-k66.yaml ";
+
+static void run_words(Program *program, const char *start, const char *more)
+{
+    char words[PROGRAM_PATH_SIZE];
+    snprintf(words, sizeof words, "%s%s", start, more);
+    program_run(program, words);
+}
+
+static double number(const json_t *object, const char *key)
+{
+    return json_number_value(json_object_get(object, key));
+}
+
+static const char *word(const json_t *object, const char *key)
+{
+    return json_string_value(json_object_get(object, key));
+}
+
+static const json_t *first(const json_t *object, const char *key)
+{
+    return json_array_get(json_object_get(object, key), 0);
+}
+
+static void settings_figures_and_verdicts_are_printed(void **state)
+{
+    Program *program = *state;
+    run_words(program, PAPER, "");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "Settings");
+    assert_says(program->output, "Predicted and delivered");
+    assert_says(program->output, "over-damped: asked 0.913, delivers 0.67; use corrected, or h <=");
+    assert_says(program->output, "valid");
+    assert_says(program->output, "the median of");
+    assert_null(strchr(program->output, '\x1b'));
+    assert_string_equal(program->errors,
+                        "--penalty adds the paper's penalty parameter over its 15 speeds\n");
+}
+
+static void json_holds_every_setting(void **state)
+{
+    Program *program = *state;
+    run_words(program, PAPER, "--json -q --steps '1 us, 10 us' --maps 'textbook, exact, impulse'");
+    assert_int_equal(program->status, 0);
+    assert_string_equal(program->errors, "");
+    json_t *root = program_json(program);
+    assert_non_null(json_object_get(root, "tool"));
+    assert_non_null(json_object_get(root, "settings"));
+    const json_t *contact = first(root, "contacts");
+    assert_string_equal(word(contact, "joint"), "crank-coupler");
+    assert_string_equal(word(contact, "mass_from"), "median");
+    assert_true(number(contact, "mass_kg") == number(contact, "mass_median_kg"));
+    assert_near(number(json_object_get(contact, "asked"), "restitution"), 0.9132, 1e-4);
+    const json_t *rows = json_object_get(contact, "rows");
+    assert_int_equal(json_array_size(rows), 6);
+    for (size_t i = 0; i < 6; i++) {
+        const json_t *row = json_array_get(rows, i);
+        const json_t *predicted = json_object_get(row, "predicted");
+        const json_t *delivered = json_object_get(row, "delivered");
+        assert_string_equal(word(delivered, "status"), "ok");
+        assert_near(number(row, "step_s"), i % 2 == 0 ? 1e-5 : 1e-6, 1e-18);
+        assert_close(number(json_object_get(delivered, "force_max_N"), "mean"),
+                     number(json_object_get(predicted, "force_max_N"), "mean"), 0.01);
+    }
+    assert_string_equal(word(json_array_get(rows, 0), "verdict"), "over-damped");
+    assert_string_equal(word(json_array_get(rows, 1), "verdict"), "valid");
+    assert_true(json_is_null(json_object_get(json_array_get(rows, 5), "erp")));
+    json_decref(root);
+}
+
+static void mass_speed_and_law_can_be_given(void **state)
+{
+    Program *program = *state;
+    run_words(program, PAPER,
+              "--json --mass '0.2 kg' --speed '100 mm/s' --laws 'johnson, hertz-socket' "
+              "--step '1 us' --maps corrected");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *contacts = json_object_get(root, "contacts");
+    assert_int_equal(json_array_size(contacts), 2);
+    assert_string_equal(word(json_array_get(contacts, 0), "law"), "johnson");
+    assert_string_equal(word(json_array_get(contacts, 1), "law"), "hertz-socket");
+    for (size_t i = 0; i < 2; i++) {
+        const json_t *contact = json_array_get(contacts, i);
+        assert_near(number(contact, "mass_kg"), 0.2, 0.0);
+        assert_near(number(contact, "speed_m_s"), 0.1, 0.0);
+        assert_string_equal(word(contact, "speed_from"), "given");
+        assert_int_equal(json_array_size(json_object_get(contact, "rows")), 1);
+    }
+    json_decref(root);
+}
+
+static void files_are_written_where_they_are_wanted(void **state)
+{
+    Program *program = *state;
+    run_words(program, PAPER, "--out made/here --csv rows.csv --plot curves.svg --steps '10 us'");
+    assert_int_equal(program->status, 0);
+    static const char *const NAMES[] = {"made/here/impact-k66-map.txt",
+                                        "rows.csv",
+                                        "curves.svg",
+                                        "made/here/impact-k66-map.csv",
+                                        "made/here/impact-k66-map.svg",
+                                        "made/here/impact-k66-map.json"};
+    for (size_t i = 0; i < sizeof NAMES / sizeof *NAMES; i++) {
+        char path[PROGRAM_PATH_SIZE];
+        program_path(program, NAMES[i], path);
+        assert_int_equal(access(path, R_OK), 0);
+        assert_says(program->errors, NAMES[i]);
+    }
+    static char rows[PROGRAM_OUTPUT_SIZE];
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "rows.csv", path);
+    program_read(path, rows);
+    assert_says(rows, "joint,law,map,step_s,mass_kg");
+    assert_says(rows, "crank-coupler,stiffness,corrected,1");
+    size_t commas = 0;
+    for (const char *at = rows; *at != '\n'; at++) {
+        commas += *at == ',' ? 1 : 0;
+    }
+    assert_int_equal(commas, 26);
+}
+
+static void the_velocity_level_model_has_rows_of_its_own(void **state)
+{
+    Program *program = *state;
+    program_run(program, "map $cases/paper/stackup-poisson.yaml --json -q");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *contact = first(root, "contacts");
+    assert_string_equal(word(contact, "law"), "poisson");
+    const json_t *row = first(contact, "rows");
+    assert_string_equal(word(row, "map"), "poisson");
+    assert_near(number(row, "cfm_m_N_s"), 1.0 / 973330.0, 1e-18);
+    json_decref(root);
+    program_fails_usage(program, "map $cases/paper/stackup-poisson.yaml --maps textbook",
+                        "know no map and no elastic law");
+}
+
+static void the_papers_penalty_stands_beside_its_approach(void **state)
+{
+    Program *program = *state;
+    run_words(program, PAPER, "--penalty --json -q --step '1 us' --maps textbook");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *penalty = json_object_get(root, "penalty");
+    const json_t *rows = json_object_get(penalty, "rows");
+    assert_int_equal(json_array_size(rows), 15);
+    const json_t *row = json_array_get(rows, 9);
+    assert_near(number(row, "speed_rpm"), 1000.0, 1e-9);
+    // Tables II and III at 1000 rpm
+    assert_near(number(row, "penalty_printed_N"), 973.33, 5e-3);
+    assert_near(number(row, "approach_m"), 0.194e-6, 5e-11);
+    assert_close(number(row, "penalty_cfm_m_N_s"), 1.0 / 973330.0, 1e-5);
+    // a stiffness of P is soft: the pin goes in a hundred times the approach
+    const json_t *delivered = json_object_get(row, "delivered_as_stiffness");
+    const double depth = number(json_object_get(delivered, "penetration_max_m"), "mean");
+    assert_close(depth, number(json_object_get(row, "asked"), "penetration_max_m"), 0.01);
+    assert_true(depth > 100.0 * number(row, "approach_m"));
+    json_decref(root);
+    run_words(program, "map $cases/literature/pin-in-hole-drop.yaml ", "--penalty --step '1 us'");
+    assert_int_equal(program->status, 3);
+    assert_says(program->errors, "--penalty is for a driven four-bar");
+}
+
+static void a_row_is_read_as_spring_and_damper(void **state)
+{
+    Program *program = *state;
+    program_run(program, "map --erp 0.2 --cfm 1e-5 --step '1 ms' --mass '0.1 kg' --json");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *mass = first(root, "masses");
+    const json_t *textbook = first(mass, "readings");
+    assert_close(number(textbook, "stiffness_N_m"), 2e7, 1e-12);
+    assert_close(number(textbook, "damping_N_s_m"), 8e4, 1e-12);
+    assert_close(number(mass, "delivered_restitution"), number(mass, "predicted_restitution"),
+                 1e-6);
+    json_decref(root);
+    // Gazebo's pair, on the masses of a case
+    program_run(program, "map --kp '1e7 N/m' --kd 10 --step '1 us' $cases/paper/impact-k66.yaml");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "ERP = 0.5, CFM = 0.05");
+    assert_says(program->output, "the median of crank-coupler");
+}
+
+static void what_stands_for_no_spring_is_said_to(void **state)
+{
+    Program *program = *state;
+    program_run(program, "map --erp 1.5 --cfm 1e-5 --step '1 ms' --mass '0.1 kg'");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "an ERP above 1 would be a negative damper");
+    program_run(program, "map --erp 0 --cfm 1e-5 --step '1 ms' --mass '0.1 kg'");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "no spring: nothing is pressed out again");
+    program_run(program, "map --erp 0.2 --cfm 1e-5 --step '1 ms'");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "needs the mass");
+    program_fails_usage(program, "map --erp 0.2 --cfm 0 --step '1 ms'", "--cfm is 0");
+    program_fails_usage(program, "map --erp -1 --cfm 1 --step '1 ms'", "--erp is -1");
+    program_fails_usage(program, "map --kp 0 --kd 0 --step '1 ms'", "--kp and --kd");
+}
+
+static void wrong_command_lines_end_with_status_2(void **state)
+{
+    Program *program = *state;
+    program_fails_usage(program, "map", "no case given");
+    program_fails_usage(program, "map a.yaml b.yaml", "map takes one case");
+    program_fails_usage(program, "map --erp 0.2 --step '1 ms'", "--cfm is missing");
+    program_fails_usage(program, "map --kd 1 --step '1 ms'", "--kp is missing");
+    program_fails_usage(program, "map --erp .2 --cfm 1 --kp 1 --kd 1", "not of both");
+    program_fails_usage(program, "map --erp .2 --cfm 1", "at one step only");
+    program_fails_usage(program, "map --erp .2 --cfm 1 --step '1 s' --plot a.svg", "reads one row");
+    program_fails_usage(program, "map a.yaml --step '1 us' --steps '2 us'", "give either");
+    program_fails_usage(program, "map a.yaml --csv x --plot x", "would both write x");
+    program_fails_usage(program, "map --kp '1e7 N/m^1.5' --kd 1 --step '1 s'", "linear spring");
+    program_fails_usage(program, "map --kp soft --kd 1 --step '1 s'", "--kp:");
+    static const struct {
+        const char *more;
+        const char *message;
+    } WRONG[] = {
+        {"--steps ''", "the list is empty"},
+        {"--steps '1 us, 1 us'", "stands there twice"},
+        {"--steps '1 kg'", "--steps:"},
+        {"--maps texbook", "'texbook' is none of them; allowed: textbook"},
+        {"--maps 'exact, exact'", "stands there twice"},
+        {"--laws hooke", "'hooke' is none of them"},
+        {"--mass heavy", "--mass:"},
+        {"--mass '-1 kg'", "--mass:"},
+        {"--speed '0 m/s'", "is not above 0"},
+        {"--set contact.restituion=1", "restitution"},
+    };
+    for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++) {
+        char words[PROGRAM_PATH_SIZE];
+        snprintf(words, sizeof words, "%s%s", PAPER, WRONG[i].more);
+        program_fails_usage(program, words, WRONG[i].message);
+    }
+}
+
+static void a_case_without_play_has_nothing_to_map(void **state)
+{
+    Program *program = *state;
+    program_run(program, "map $cases/paper/ideal-nominal.yaml");
+    assert_int_equal(program->status, 3);
+    assert_says(program->errors, "no joint of");
+    assert_says(program->errors, "has play");
+    assert_string_equal(program->output, "");
+    program_run(program, "map missing.yaml");
+    assert_int_equal(program->status, 5);
+    run_words(program, PAPER, "--csv /nowhere/x.csv");
+    assert_int_equal(program->status, 5);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(settings_figures_and_verdicts_are_printed, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(json_holds_every_setting, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(mass_speed_and_law_can_be_given, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(files_are_written_where_they_are_wanted, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(the_velocity_level_model_has_rows_of_its_own,
+                                        program_set_up, program_tear_down),
+        cmocka_unit_test_setup_teardown(the_papers_penalty_stands_beside_its_approach,
+                                        program_set_up, program_tear_down),
+        cmocka_unit_test_setup_teardown(a_row_is_read_as_spring_and_damper, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(what_stands_for_no_spring_is_said_to, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(wrong_command_lines_end_with_status_2, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(a_case_without_play_has_nothing_to_map, program_set_up,
+                                        program_tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
