@@ -20,7 +20,7 @@ enum { ITERATION_MAX = 50 };
 static const double CLOSED = 1e-13;
 
 // pivots of a linkage that moves freely are above 1e-3 of the largest; below this it is stuck
-static const double INDEPENDENT = 1e-9;
+static const double LOOP_INDEPENDENT = 1e-9;
 
 static void fill_body(Jacobian *jacobian, size_t row, const Motion *motions, int body, Vec2 local,
                       double sign)
@@ -66,7 +66,8 @@ size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool i
     }
     Jacobian jacobian;
     kinematics_jacobian(linkage, motions, include, false, &jacobian);
-    const size_t rank = dense_rank(jacobian.rows, jacobian.columns, jacobian.entries, INDEPENDENT);
+    const size_t rank =
+        dense_rank(jacobian.rows, jacobian.columns, jacobian.entries, LOOP_INDEPENDENT);
     return jacobian.columns - rank;
 }
 

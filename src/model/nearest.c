@@ -11,9 +11,9 @@
 
 enum { STEP_MAX = 12 }; // Newton doubles the digits: from a clearance to rounding takes about 3
 
-static const double SOFT = 1e-12;   // on the diagonal of ones: a second pass leaves its square
-static const double CLOSED = 1e-14; // m, rounding of a metre is a hundredth of it
-static const double AGREES = 1e-9;  // of the largest speed of a joint: what written digits leave
+static const double SOFT = 1e-12; // on the diagonal of ones: a second pass leaves its square
+static const double NEAREST_CLOSED = 1e-14; // m, rounding of a metre is a hundredth of it
+static const double AGREES = 1e-9; // of the largest speed of a joint: what written digits leave
 
 // The rows that are asked for, and what each is to change by.
 typedef struct Demand {
@@ -24,7 +24,7 @@ typedef struct Demand {
 } Demand;
 
 // Asks for two more rows; true where more is missing there than anywhere before.
-static bool add_rows(Demand *demand, Vec2 missing)
+static bool add_demand_rows(Demand *demand, Vec2 missing)
 {
     demand->wanted[demand->rows++] = missing.x;
     demand->wanted[demand->rows++] = missing.y;
@@ -92,13 +92,13 @@ static bool demand_places(const Linkage *linkage, const Motion *motions, Demand 
         const Vec2 pin = linkage_point(motions, joint->body_b, joint->anchor_b);
         demand->include[i] = true;
         // an ideal joint starts at 0
-        add_rows(demand, vec2_sub(joint->clearance.start, vec2_sub(pin, hole)));
+        add_demand_rows(demand, vec2_sub(joint->clearance.start, vec2_sub(pin, hole)));
     }
     if (linkage->driver.is_present) {
         const double angle = motions[linkage_driven_body(linkage)].angle;
         demand->wanted[demand->rows] = linkage->driver.start - angle;
     }
-    return demand->distance > CLOSED;
+    return demand->distance > NEAREST_CLOSED;
 }
 
 bool nearest_places(const Linkage *linkage, Motion *motions)
@@ -133,7 +133,7 @@ static int demand_speeds(const Linkage *linkage, const Motion *motions, bool wit
         const Vec2 b = linkage_point_velocity(motions, joint->body_b, joint->anchor_b);
         demand->include[i] = with_play || joint->kind == JOINT_REVOLUTE;
         largest = fmax(largest, fmax(vec2_length(a), vec2_length(b)));
-        if (demand->include[i] && add_rows(demand, vec2_sub(a, b))) {
+        if (demand->include[i] && add_demand_rows(demand, vec2_sub(a, b))) {
             worst = (int)i;
         }
     }

@@ -28,15 +28,15 @@ static const double REACH = 2.0;
 static const double CONVERGING = 0.6;
 
 // first steps: of the drive's turn, or of a run without one
-static const double FIRST_STEPS = 200.0;
+static const double FIRST_TRIAL_STEPS = 200.0;
 static const double FIRST_CONTACTS = 4.0; // half-periods of a contact, if that is less
-static const double FIRST_STEPS_SMOOTH = 120.0;
+static const double FIRST_TRIAL_STEPS_SMOOTH = 120.0;
 
 static const double SHRINK_MOST = 8.0; // from one trial to the next
 static const double MOST_EXPLAINED = 63.0;
 
 // distances below this that do not fall any more are rounding; steps beyond the second are hours
-static const double ROUNDING = 1e-8;
+static const double TRIAL_ROUNDING = 1e-8;
 static const double STEPS_MOST = 1e8;
 
 enum { TRIAL_MAX = 24 }; // twice finer each: far below any rounding
@@ -119,7 +119,7 @@ static void choose_stepping(Chosen *chosen)
     chosen->grid = distance_grid(scenario);
     chosen->pilots.solver = has_play ? &STEPPING_IMPULSE : &STEPPING_EXTRAPOLATED;
     chosen->order = has_play ? 2.0 : (double)scenario->ode.levels + 1.0;
-    chosen->first_step_s = turn_s / (has_play ? FIRST_STEPS : FIRST_STEPS_SMOOTH);
+    chosen->first_step_s = turn_s / (has_play ? FIRST_TRIAL_STEPS : FIRST_TRIAL_STEPS_SMOOTH);
     chosen->first_step_s = fmin(chosen->first_step_s, scenario_duration(scenario) / 10.0);
     chosen->first_step_s = fmin(chosen->first_step_s, FIRST_CONTACTS * contact_time(scenario));
     chosen->window_s = scenario_duration(scenario);
@@ -189,7 +189,7 @@ static void judge(const Chosen *chosen, Trials *trials)
     const double before = trial_distance(chosen, runs[1], runs[2]);
     if (!isnan(before)) {
         const double error_before = error_of(chosen, before, runs[2]->step_s / runs[1]->step_s);
-        trials->is_rounding = distance >= before && before < ROUNDING;
+        trials->is_rounding = distance >= before && before < TRIAL_ROUNDING;
         const double fallen = log(error_before / trials->error) / log(ratio);
         // two steps below the tolerance need not fall as h^p to be good enough
         trials->is_converging = fallen >= CONVERGING * chosen->order ||

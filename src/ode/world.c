@@ -20,7 +20,7 @@
 enum { BALL_ROWS = 3, BODY_FREEDOMS = 6 };
 
 // rows that differ by less than this share are one row twice: rounding leaves 1e-15
-static const double INDEPENDENT = 1e-9;
+static const double WORLD_INDEPENDENT = 1e-9;
 
 static void fill_block(double *row, size_t columns, int body, Vec2 arm, double sign)
 {
@@ -69,7 +69,7 @@ static bool check_rows(const Scenario *scenario, const Motion *motions, size_t *
         }
         rows += BALL_ROWS;
     }
-    const size_t rank = dense_rank(rows, columns, matrix, INDEPENDENT);
+    const size_t rank = dense_rank(rows, columns, matrix, WORLD_INDEPENDENT);
     free(matrix);
     if (rank != rows) {
         return err_set(err, ERR_SOLVER,

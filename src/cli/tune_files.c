@@ -1,0 +1,136 @@
+// Which files does a search leave behind?
+#include "cli/tune_files.h"
+
+#include "cli/case_run.h"
+#include "cli/written.h"
+#include "report/file.h"
+#include "report/tune_carriers.h"
+#include "report/tune_gazebo.h"
+#include "report/tune_json.h"
+#include "report/tune_mujoco.h"
+#include "report/tune_text.h"
+
+#include <stdio.h>
+
+// Appends what a file holds; false where there is nothing to be written or, the error set, nothing
+// can be.
+typedef bool (*Writer)(const TuneReport *report, Text *text, Err *err);
+
+typedef struct Kind {
+    const char *ending;
+    const char *nothing; // what is said where there is nothing to write
+    Writer write;
+} Kind;
+
+static bool write_code(const TuneReport *report, Text *text, Err *err)
+{
+    return tune_carriers_trial(report) != NULL && tune_carriers_code(report, text, err);
+}
+
+static bool write_sdf(const TuneReport *report, Text *text, Err *err)
+{
+    (void)err;
+    tune_gazebo_write(report, text);
+    return text->length > 0;
+}
+
+static bool write_mjcf(const TuneReport *report, Text *text, Err *err)
+{
+    (void)err;
+    tune_mujoco_write(report, text);
+    return text->length > 0;
+}
+
+static bool write_text(const TuneReport *report, Text *text, Err *err)
+{
+    (void)err;
+    tune_text_write(report, &STYLE_PLAIN, text);
+    return true;
+}
+
+enum { CODE, SDF, MJCF, TEXT, KIND_COUNT };
+
+static const Kind KINDS[KIND_COUNT] = {
+    [CODE] = {"c", "no run has an error that means anything", write_code},
+    [SDF] = {"sdf", "no contact with constants that was tried is stable", write_sdf},
+    [MJCF] = {"xml", "no contact with constants that was tried is stable", write_mjcf},
+    [TEXT] = {"txt", "", write_text},
+};
+
+static bool write_file(const TuneReport *report, const Kind *kind, const char *path, bool is_quiet,
+                       Err *err)
+{
+    Text text;
+    text_init(&text);
+    bool is_done = kind->write(report, &text, err);
+    if (is_done) {
+        is_done = written_text(path, text.data, is_quiet, err);
+    } else if (err->kind == ERR_NONE) {
+        const bool has_play = scenario_has_clearance(report->scenario);
+        if (!is_quiet) {
+            fprintf(stderr, "not written: %s (%s)\n", path,
+                    has_play ? kind->nothing : "no joint of the case has play");
+        }
+        is_done = true;
+    }
+    text_finish(&text);
+    return is_done;
+}
+
+static bool find_path(const TuneOptions *options, const Scenario *scenario, const char *ending,
+                      char path[FILE_PATH_SIZE], Err *err)
+{
+    char name[SCENARIO_PATH_SIZE];
+    case_run_name(scenario, name, sizeof name);
+    const int length =
+        snprintf(path, FILE_PATH_SIZE, "%s/%s-tune.%s", options->folder, name, ending);
+    return (length >= 0 && length < FILE_PATH_SIZE) ||
+           err_set(err, ERR_FILE, "the path of %s-tune.%s is too long", name, ending);
+}
+
+static bool write_folder(const TuneReport *report, const TuneOptions *options, Err *err)
+{
+    char path[FILE_PATH_SIZE];
+    for (int i = 0; i < KIND_COUNT; i++) {
+        if (!find_path(options, report->scenario, KINDS[i].ending, path, err) ||
+            !write_file(report, &KINDS[i], path, options->is_quiet, err)) {
+            return false;
+        }
+    }
+    if (!find_path(options, report->scenario, "json", path, err)) {
+        return false;
+    }
+    json_t *object = tune_json_build(report);
+    const bool is_written = written_json(path, object, options->is_quiet, err);
+    json_decref(object);
+    return is_written;
+}
+
+bool tune_files_probe(const Scenario *scenario, const TuneOptions *options, Err *err)
+{
+    const char *const paths[] = {options->code, options->sdf, options->mjcf};
+    for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
+        if (paths[i] != NULL && !file_probe(paths[i], err)) {
+            return false;
+        }
+    }
+    char path[FILE_PATH_SIZE];
+    for (int i = 0; options->folder != NULL && i < KIND_COUNT; i++) {
+        if (!find_path(options, scenario, KINDS[i].ending, path, err) || !file_probe(path, err)) {
+            return false;
+        }
+    }
+    return options->folder == NULL ||
+           (find_path(options, scenario, "json", path, err) && file_probe(path, err));
+}
+
+bool tune_files_write(const TuneReport *report, const TuneOptions *options, Err *err)
+{
+    const bool is_quiet = options->is_quiet;
+    return (options->code == NULL ||
+            write_file(report, &KINDS[CODE], options->code, is_quiet, err)) &&
+           (options->sdf == NULL || write_file(report, &KINDS[SDF], options->sdf, is_quiet, err)) &&
+           (options->mjcf == NULL ||
+            write_file(report, &KINDS[MJCF], options->mjcf, is_quiet, err)) &&
+           (options->folder == NULL || write_folder(report, options, err));
+}

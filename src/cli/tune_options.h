@@ -1,0 +1,35 @@
+// What `jointplay tune` was asked for.
+#pragma once
+
+#include "base/err.h"
+#include "cli/option_values.h"
+#include "compare/tune.h"
+
+#include <stdbool.h>
+
+typedef struct TuneOptions {
+    const char *path; // of the case
+    const char *overrides[OPTION_SETTING_MAX];
+    size_t override_count;
+    double error; // 1; 0 until it is given
+    TuneCost cost;
+    TuneLimit limit;
+    const char *schemes; // as given, or NULL
+    size_t jobs;
+    double time_limit_s; // of one run
+    bool is_json;
+    const char *code;
+    const char *sdf;
+    const char *mjcf;
+    const char *folder;
+    bool is_quiet;
+} TuneOptions;
+
+// Reads the command line; where help was asked for it is printed and *is_answered is true.
+// ERR_USAGE.
+bool tune_options_read(int argc, char **argv, TuneOptions *options, bool *is_answered, Err *err);
+
+// The search that the options ask for, with nothing run yet. Fails with ERR_USAGE for schemes that
+// the case does not have, with ERR_CASE for a case in which nothing could be tuned.
+bool tune_options_search(const TuneOptions *options, const Scenario *scenario, Tune **tune,
+                         Err *err);

@@ -1,0 +1,16 @@
+// Where else a setting can go: C code, a loop of one's own, Gazebo, MuJoCo.
+#pragma once
+
+#include "base/text.h"
+#include "report/style.h"
+#include "report/tune_report.h"
+
+// The setting to hand on: the cheapest that meets the error, or what comes nearest to it; NULL
+// where no run has an error.
+const TuneTrial *tune_carriers_trial(const TuneReport *report);
+
+// Appends the C program of that setting. Fails with ERR_CASE where a law does not fit its joint.
+bool tune_carriers_code(const TuneReport *report, Text *text, Err *err);
+
+// For people, one section each.
+void tune_carriers_write(const TuneReport *report, const Style *style, Text *text);

@@ -1,0 +1,69 @@
+// What do solref and solimp have to be so that MuJoCo makes the linear contact of them?
+//
+// One row of MuJoCo, r < 0 the gap, v its rate, a0 its acceleration without the force, W the true
+// and A the approximate inverse mass of the row (documentation, "Computation" and "Modeling"):
+//     f = (a_ref - a0) / (W + R) >= 0,  R = A (1 - d) / d,  a_ref = -b v - k r
+//     direct format, d constant: solref = (-s, -c'), b = c' / d, k = s / d
+// For d -> 0, R outweighs W and   f = (d / A) (-b v - k r - a0) = -(s r + c' v) / A  - d a0 / A:
+// a spring s / A and a damper c' / A, whatever the mass that is met, but for a share d of a0. So
+//     s = A K,  c' = A C,  d as small as is allowed, 1e-4
+// A is what the compiler of MuJoCo finds at qpos0: the sum of both bodies' body_invweight0, 1/m of
+// a body with a free joint and 0 of one that is welded to the world or moved as mocap. f and the
+// forces here: N; K N/m; C N s/m.
+#include "report/tune_mujoco.h"
+
+#include "report/number.h"
+#include <math.h>
+
+static const double LEAST_IMPEDANCE = 1e-4; // mjMINIMP
+
+static double inverse_mass(const Linkage *linkage, int body)
+{
+    return body == LINKAGE_GROUND || body == linkage_driven_body(linkage)
+               ? 0.0
+               : 1.0 / linkage->bodies[body].mass;
+}
+
+bool tune_mujoco_find(const TuneReport *report, TuneMujoco *mujoco)
+{
+    const Tune *tune = report->tune;
+    if (tune->linear == TUNE_NONE) {
+        return false;
+    }
+    const Linkage *linkage = &report->scenario->linkage;
+    const Joint *joint = &linkage->joints[tune->contact.joint];
+    const TuneLinear *linear = &tune->linears[tune->linear];
+    const double weight =
+        inverse_mass(linkage, joint->body_a) + inverse_mass(linkage, joint->body_b);
+    *mujoco = (TuneMujoco){
+        .weight = weight,
+        .impedance = LEAST_IMPEDANCE,
+        .solref = {-weight * linear->stiffness, -weight * linear->damping},
+        .stiffness = linear->stiffness,
+        .damping = linear->damping,
+    };
+    return weight > 0.0;
+}
+
+void tune_mujoco_write(const TuneReport *report, Text *text)
+{
+    TuneMujoco mujoco;
+    if (!tune_mujoco_find(report, &mujoco)) {
+        return;
+    }
+    const Tune *tune = report->tune;
+    text_append(text,
+                "<!-- spring %.4g N/m, damper %.4g N s/m, not run here; for bodies with free "
+                "joints, held by connect\n     equalities: A = %.6g 1/kg. In any other model "
+                "multiply solref by (invweight0 of both bodies) / A. -->\n",
+                mujoco.stiffness, mujoco.damping, mujoco.weight);
+    text_append(text,
+                "<option timestep=\"%s\" integrator=\"Euler\" cone=\"elliptic\"/>\n"
+                "<pair geom1=\"pin\" geom2=\"hole\" condim=\"%d\" margin=\"0\" gap=\"0\"\n"
+                "      solref=\"%s %s\"\n"
+                "      solimp=\"%s %s 1 0.5 1\"/>\n",
+                number_shortest(tune->linears[tune->linear].step_s).text,
+                report->scenario->contact.friction > 0.0 ? 3 : 1,
+                number_shortest(mujoco.solref[0]).text, number_shortest(mujoco.solref[1]).text,
+                number_shortest(mujoco.impedance).text, number_shortest(mujoco.impedance).text);
+}

@@ -1,0 +1,250 @@
+// Does `jointplay tune` find what it says, and does what it hands on do the same by itself?
+#include "program.h"
+
+static const char K66[] = "$cases/paper/impact-k66.yaml";
+static const char IDEAL[] = "$cases/paper/ideal-nominal.yaml";
+
+static double number(const json_t *object, const char *key)
+{
+    return json_number_value(json_object_get(object, key));
+}
+
+static const char *words(const json_t *object, const char *key)
+{
+    const char *text = json_string_value(json_object_get(object, key));
+    assert_non_null(text);
+    return text;
+}
+
+static json_t *tune(Program *program, const char *options, int status)
+{
+    char line[3 * PROGRAM_PATH_SIZE];
+    snprintf(line, sizeof line, "tune %s --json --quiet", options);
+    program_run(program, line);
+    if (program->status != status) {
+        fail_msg("%s: status %d: %s", line, program->status, program->errors);
+    }
+    return program_json(program);
+}
+
+// The run of ODE among those that the printed command line makes.
+static json_t *run_again(Program *program, const json_t *setting, const char *more)
+{
+    static const char PROGRAM_NAME[] = "jointplay ";
+    char line[2 * PROGRAM_PATH_SIZE];
+    const char *command = words(setting, "command");
+    assert_int_equal(strncmp(command, PROGRAM_NAME, sizeof PROGRAM_NAME - 1), 0);
+    snprintf(line, sizeof line, "%s --json --quiet %s", command + sizeof PROGRAM_NAME - 1, more);
+    program_run(program, line);
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    json_t *runs = json_object_get(root, "runs");
+    json_t *run = json_incref(json_array_get(runs, json_array_size(runs) - 1));
+    json_decref(root);
+    assert_string_equal(words(run, "backend"), "ode");
+    return run;
+}
+
+static void the_error_is_met_on_running_again(void **state)
+{
+    Program *program = *state;
+    static const char *const CASES[] = {K66, IDEAL};
+    for (int i = 0; i < 2; i++) {
+        char options[PROGRAM_PATH_SIZE];
+        snprintf(options, sizeof options, "%s --error 3e-3", CASES[i]);
+        json_t *root = tune(program, options, 0);
+        const json_t *cheapest = json_object_get(root, "cheapest");
+        json_t *run = run_again(program, cheapest, "");
+        assert_string_equal(words(run, "hash"), words(cheapest, "hash"));
+        const json_t *error = json_object_get(run, "error");
+        assert_true(number(error, "omega_max") <= 3e-3);
+        assert_close(number(error, "omega_max"), number(cheapest, "error_omega"), 1e-12);
+        // and the plain rows as well, where there are contacts
+        const json_t *loop = json_object_get(root, "own_loop");
+        if (i == 0) {
+            json_t *plain = run_again(program, loop, "");
+            assert_true(number(json_object_get(plain, "error"), "omega_max") <= 3e-3);
+            json_decref(plain);
+        } else {
+            assert_true(json_is_null(loop));
+        }
+        json_decref(run);
+        json_decref(root);
+    }
+}
+
+// Compiles the code with ODE alone and not a warning, runs it, and holds it against the program.
+static void check_code(Program *program, const char *options)
+{
+    char line[3 * PROGRAM_PATH_SIZE];
+    char with_code[PROGRAM_PATH_SIZE];
+    snprintf(with_code, sizeof with_code, "%s --code setting.c", options);
+    json_t *root = tune(program, with_code, 0);
+    const char *command = words(json_object_get(root, "cheapest"), "command");
+    snprintf(line, sizeof line,
+             "cd '%s' && $JOINTPLAY_CC -Wall -Werror -o setting setting.c -lode -lm && "
+             "./setting >setting.csv 2>words",
+             program->folder);
+    assert_int_equal(system(line), 0);
+    snprintf(line, sizeof line, "%s --set 'run.backends=[ode]' --series own.csv --quiet",
+             strchr(command, ' ') + 1);
+    program_run(program, line);
+    assert_int_equal(program->status, 0);
+    snprintf(line, sizeof line, "cd '%s' && cmp setting.csv own.csv", program->folder);
+    assert_int_equal(system(line), 0);
+    // the run as a whole, not only its samples
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "words", path);
+    program_read(path, program->errors);
+    assert_says(program->errors, words(json_object_get(root, "cheapest"), "hash"));
+    json_decref(root);
+}
+
+static void the_code_gives_the_same_run_bit_for_bit(void **state)
+{
+    Program *program = *state;
+    static const char *const SCHEMES[] = {"direct/plain/textbook", "direct/staggered/midpoint",
+                                          "quick/staggered/impulse", "auto"};
+    for (int i = 0; i < 4; i++) {
+        char options[PROGRAM_PATH_SIZE];
+        snprintf(options, sizeof options, "%s --error 3e-2 --schemes %s", K66, SCHEMES[i]);
+        check_code(program, options);
+    }
+}
+
+static void the_code_of_ideal_joints_and_other_mechanisms_too(void **state)
+{
+    Program *program = *state;
+    check_code(program, "$cases/paper/ideal-nominal.yaml --error 1e-3 --schemes extrapolated");
+    check_code(program, "$cases/literature/pin-in-hole-drop.yaml --error 1e-2 "
+                        "--schemes direct/plain/corrected");
+}
+
+// The cheapest point of a comparison that meets an error, by world steps.
+static double cheapest_steps(const json_t *root, double error)
+{
+    double least = INFINITY;
+    const json_t *schemes = json_object_get(root, "schemes");
+    for (size_t i = 0; i < json_array_size(schemes); i++) {
+        const json_t *scheme = json_array_get(schemes, i);
+        const json_t *points = json_object_get(scheme, "points");
+        for (size_t k = 0; k < json_array_size(points); k++) {
+            const json_t *point = json_array_get(points, k);
+            const json_t *reached = json_object_get(point, "error_omega");
+            if (strcmp(words(scheme, "backend"), "ode") == 0 && json_is_number(reached) &&
+                json_number_value(reached) <= error) {
+                least = fmin(least, number(point, "steps"));
+            }
+        }
+    }
+    return least;
+}
+
+static void nothing_much_cheaper_is_found_by_running_everything(void **state)
+{
+    Program *program = *state;
+    char line[2 * PROGRAM_PATH_SIZE];
+    snprintf(line, sizeof line, "%s --error 1e-2 --cost steps --schemes direct/staggered", K66);
+    json_t *root = tune(program, line, 0);
+    const double found = number(json_object_get(root, "cheapest"), "steps");
+    json_decref(root);
+    // twice as fine as the grid of the search
+    snprintf(line, sizeof line,
+             "compare %s --quiet --json --store s.jsonl --schemes direct/staggered/impulse,"
+             "direct/staggered/midpoint --steps '500us, 450us, 400us, 355us, 315us, 280us, 250us, "
+             "224us, 200us, 25us, 20us, 18us'",
+             K66);
+    program_run(program, line);
+    assert_int_equal(program->status, 0);
+    root = program_json(program);
+    assert_true(found <= 1.5 * cheapest_steps(root, 1e-2));
+    json_decref(root);
+}
+
+static void a_cost_that_is_too_small_ends_with_status_1(void **state)
+{
+    Program *program = *state;
+    json_t *root = tune(program, "$cases/paper/impact-k66.yaml --error 1e-3 --max-cost 400", 1);
+    assert_true(json_is_false(json_object_get(root, "is_met")));
+    const json_t *least = json_object_get(root, "least_error");
+    assert_true(number(least, "steps") <= 400.0);
+    assert_true(number(least, "error_omega") > 1e-3);
+    assert_true(number(json_object_get(root, "cheapest"), "steps") > 400.0);
+    json_decref(root);
+    program_run(program, "tune $cases/paper/impact-k66.yaml --error 1e-3 --max-cost 400 -q");
+    assert_int_equal(program->status, 1);
+    assert_says(program->output, "none within the cost");
+    assert_says(program->errors, "no setting within --max-cost meets an error of 0.001");
+}
+
+static void files_hold_what_was_asked_for(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_run(program, "tune $cases/paper/impact-k66.yaml --error 3e-2 --schemes "
+                         "direct/plain/corrected --sdf c.sdf --mjcf c.xml --out out --quiet");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "soft_cfm");
+    program_path(program, "c.sdf", path);
+    program_read(path, program->output);
+    assert_says(program->output, "<max_step_size>");
+    assert_says(program->output, "<kp>");
+    program_path(program, "c.xml", path);
+    program_read(path, program->output);
+    assert_says(program->output, "solref=\"-");
+    static const char *const ENDINGS[] = {"txt", "json", "c", "sdf", "xml"};
+    for (int i = 0; i < 5; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "out/impact-k66-tune.%s", ENDINGS[i]);
+        program_path(program, name, path);
+        assert_int_equal(access(path, R_OK), 0);
+    }
+    // ideal joints have no contact to hand on
+    program_run(program, "tune $cases/paper/ideal-nominal.yaml --error 1e-2 --sdf none.sdf");
+    assert_int_equal(program->status, 0);
+    assert_says(program->errors, "not written: none.sdf (no joint of the case has play)");
+}
+
+static void what_cannot_be_asked_is_refused(void **state)
+{
+    Program *program = *state;
+    program_fails_usage(program, "tune", "no case given");
+    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml", "no error given");
+    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --error 0",
+                        "--error is 0; allowed: a number above 0, up to 0.5");
+    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --error 1e-3 --max-cost 50kg",
+                        "--max-cost is 50kg; allowed: a time above 0");
+    program_fails_usage(program,
+                        "tune $cases/paper/impact-k66.yaml --error 1e-3 --cost steps --max-cost 1s",
+                        "--cost steps and a --max-cost in time do not go together");
+    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --error 1e-3 --schemes plian",
+                        "no scheme of this case is 'plian'");
+    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --error 1e-14 --quiet",
+                        "is below ten times the uncertainty of the reference");
+    program_fails_usage(program, "tune a.yaml --error 1e-3 --code x --sdf x",
+                        "two options would both write x");
+    program_run(program, "tune $cases/paper/stackup-poisson.yaml --error 1e-3");
+    assert_int_equal(program->status, 3);
+    assert_says(program->errors, "contact.model poisson has no spring");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(the_error_is_met_on_running_again, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(the_code_gives_the_same_run_bit_for_bit, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(the_code_of_ideal_joints_and_other_mechanisms_too,
+                                        program_set_up, program_tear_down),
+        cmocka_unit_test_setup_teardown(nothing_much_cheaper_is_found_by_running_everything,
+                                        program_set_up, program_tear_down),
+        cmocka_unit_test_setup_teardown(a_cost_that_is_too_small_ends_with_status_1, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(files_hold_what_was_asked_for, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(what_cannot_be_asked_is_refused, program_set_up,
+                                        program_tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
