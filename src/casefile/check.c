@@ -2,6 +2,7 @@
 #include "casefile/check.h"
 
 #include "casefile/build.h"
+#include "casefile/keys.h"
 #include "casefile/wanted.h"
 
 #include <math.h>
@@ -54,8 +55,7 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
     } else {
         wanted_describe(entries, row, &allowed);
     }
-    source_error(group->source, entries_key_span(group->node), allowed.data, err, "%s is missing",
-                 path);
+    source_error(group->source, keys_span(group->node), allowed.data, err, "%s is missing", path);
     text_finish(&allowed);
     return false;
 }
@@ -139,9 +139,9 @@ static bool check_joint(const Entries *entries, size_t index, const Scenario *sc
     }
     if (needs_width(scenario) && joint->clearance.width == 0.0) {
         const Entry *law = entries_find(entries, "contact.law", 0);
-        const bool law_is_new = law != NULL && law->source->is_option;
+        const bool law_is_new = law != NULL && law->source->is_override;
         return source_error(law_is_new ? law->source : group->source,
-                            law_is_new ? law->node->span : entries_key_span(group->node),
+                            law_is_new ? law->node->span : keys_span(group->node),
                             "width: 13 mm, or a law without it", err,
                             "the law %s needs the width of joint %s",
                             OPTIONS_LAWS[scenario->contact.law], joint->name);
@@ -325,7 +325,7 @@ bool check_values(const Entries *entries, const Scenario *scenario, Err *err)
     const Linkage *linkage = &scenario->linkage;
     const EntryGroup *bodies = entries_group(entries, "bodies", 0);
     if (linkage->body_count == 0) {
-        return source_error(bodies->source, entries_key_span(bodies->node),
+        return source_error(bodies->source, keys_span(bodies->node),
                             "pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm]}", err,
                             "a case needs a body");
     }

@@ -18,8 +18,8 @@ static const double MARGIN = 1e-9;
 
 static const double DEGREE = M_PI / 180.0;
 
-// Where a message points: at the first of these from the command line, else at the first given. The
-// start is not to blame for a turn, nor the revolutions for the start.
+// Where a message points: at the first of these that overrides the case, else at the first given.
+// The start is not to blame for a turn, nor the revolutions for the start.
 enum { BLAMED_COUNT = 5 };
 static const char *const BLAMED[BLAMED_COUNT + 1] = {
     "drive.start",
@@ -102,7 +102,7 @@ static bool check_start(const Entries *entries, const Scenario *scenario, const 
     const Entry *blamed = entries_blame(entries, BLAMED, BLAMED_COUNT, 0);
     // a start that nobody gave is not to blame: the longest link is
     const bool is_at_home =
-        strcmp(blamed->row->path, "drive.start") != 0 && !blamed->source->is_option;
+        strcmp(blamed->row->path, "drive.start") != 0 && !blamed->source->is_override;
     const Entry *entry = is_at_home ? link : blamed;
     char allowed[ALLOWED_SIZE];
     describe_starts(reach, allowed, sizeof allowed);

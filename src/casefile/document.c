@@ -11,7 +11,7 @@
 #include <string.h>
 #include <yaml.h>
 
-enum { DEPTH_MAX = 8 }; // a case needs 4: document, group, link, list
+enum { DEPTH_MAX = 8 }; // a case needs 4: document, group, link, list; a study one more
 
 typedef struct Builder {
     yaml_parser_t parser;
@@ -65,15 +65,15 @@ static bool check_event(const Builder *builder, const yaml_event_t *event, size_
     }
     if (anchor != NULL || event->type == YAML_ALIAS_EVENT) {
         return source_error(builder->source, span, "the value itself", builder->err,
-                            "a case has no anchors (&) and aliases (*)");
+                            "a %s has no anchors (&) and aliases (*)", builder->source->what);
     }
     if (tag != NULL) {
         return source_error(builder->source, span, "the value without its tag", builder->err,
-                            "a case has no tags (!)");
+                            "a %s has no tags (!)", builder->source->what);
     }
     if (depth > DEPTH_MAX) {
-        return source_error(builder->source, span, NULL, builder->err,
-                            "nested deeper than any case");
+        return source_error(builder->source, span, NULL, builder->err, "nested deeper than any %s",
+                            builder->source->what);
     }
     if (event->type == YAML_SCALAR_EVENT &&
         !source_is_one_line((const char *)event->data.scalar.value, event->data.scalar.length)) {

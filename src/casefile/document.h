@@ -1,7 +1,7 @@
 // A YAML document as a tree of nodes that know where they stand.
 //
-// Anchors, aliases and tags are refused: a case has no use for them, and without them a tree is
-// never larger than its text. So are documents nested deeper than any case.
+// Anchors, aliases and tags are refused: a case or a study has no use for them, and without them a
+// tree is never larger than its text. So are documents nested deeper than any of these.
 #pragma once
 
 #include "casefile/source.h"

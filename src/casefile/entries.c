@@ -1,6 +1,8 @@
 // Which keys does the case give, and is each one known, single and without a rival?
 #include "casefile/entries.h"
 
+#include "casefile/keys.h"
+
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
@@ -55,8 +57,8 @@ const Entry *entries_blame(const Entries *entries, const char *const *paths, siz
     const Entry *blamed = NULL;
     for (size_t i = 0; i < count; i++) {
         const Entry *entry = entries_find(entries, paths[i], index);
-        const bool is_new = entry != NULL && entry->source->is_option;
-        if (entry != NULL && (blamed == NULL || (is_new && !blamed->source->is_option))) {
+        const bool is_new = entry != NULL && entry->source->is_override;
+        if (entry != NULL && (blamed == NULL || (is_new && !blamed->source->is_override))) {
             blamed = entry;
         }
     }
@@ -93,32 +95,6 @@ bool entries_has_play(const Entries *entries, size_t joint)
                         entries_blame(entries, KEYS, sizeof KEYS / sizeof KEYS[0], joint) != NULL);
 }
 
-Span entries_key_span(const Node *node)
-{
-    return node->key != NULL ? node->key->span : node->span;
-}
-
-// Says that a word is none of the choices: which one is nearest, and all of them.
-static bool refuse_word(const Source *source, Span span, const char *what, const char *name,
-                        const char *const *choices, size_t count, Err *err)
-{
-    Text allowed;
-    text_init(&allowed);
-    for (size_t i = 0; i < count; i++) {
-        text_append(&allowed, "%s%s", i > 0 ? ", " : "", choices[i]);
-    }
-    const char *nearest = text_nearest(name, choices, count);
-    // 14,5 mm inside braces is a value 14 and a key 5 mm
-    const bool is_number = nearest == NULL && name[0] >= '0' && name[0] <= '9';
-    source_error(source, span, allowed.data, err, "unknown %s '%.40s'%s%s%s", what, name,
-                 nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-                 nearest != NULL ? "'?"
-                 : is_number     ? "; numbers have a decimal point"
-                                 : "");
-    text_finish(&allowed);
-    return false;
-}
-
 bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFamily family,
                          bool may_be_ground, const char *name, Span span, Err *err)
 {
@@ -130,7 +106,7 @@ bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFam
     for (size_t i = first; i < names->count; i++) {
         choices[count++] = names->names[i];
     }
-    return refuse_word(source, span, SCHEMA_FAMILIES[family].what, name, choices, count, err);
+    return keys_refuse(source, span, SCHEMA_FAMILIES[family].what, name, choices, count, err);
 }
 
 // Refuses what is no key here: of the other form, or of none.
@@ -153,7 +129,7 @@ static bool refuse_key(const Walk *walk, const Position *below, const char *grou
     if (strpbrk(name, ".*") == NULL && schema_knows(below->pattern, other)) {
         snprintf(what, sizeof what, "key in a case with %s:", SCHEMA_FORM_KEYS[form]);
     }
-    return refuse_word(walk->source, span, what, name, choices, count, walk->err);
+    return keys_refuse(walk->source, span, what, name, choices, count, walk->err);
 }
 
 // The number of the member of that name; where the case names the family, a new name gets the next.
@@ -232,10 +208,10 @@ static bool settle_rivals(const Walk *walk, const Entry *entry)
         const Entry *other = &entries->entries[i];
         const bool is_rival =
             other->index == entry->index && schema_are_rivals(entry->row, other->row);
-        if (is_rival && !walk->source->is_option) {
-            const size_t line = source_line(other->source, entries_key_span(other->node).start);
-            return source_error(walk->source, entries_key_span(entry->node), "one of the two",
-                                walk->err, "'%s' and '%s' (line %zu) exclude each other",
+        if (is_rival && other->source == walk->source && !walk->source->is_option) {
+            const size_t line = source_line(other->source, keys_span(other->node).start);
+            return source_error(walk->source, keys_span(entry->node), "one of the two", walk->err,
+                                "'%s' and '%s' (line %zu) exclude each other",
                                 strrchr(entry->row->path, '.') + 1,
                                 strrchr(other->row->path, '.') + 1, line);
         }
@@ -274,22 +250,6 @@ static void add_group(const Walk *walk, const Position *position, const Node *no
     group->source = walk->source;
 }
 
-static bool check_doubled(const Walk *walk, const Node *map, const Node *node)
-{
-    for (const Node *other = map->first; other != node; other = other->next) {
-        if (strcmp(other->key->text, node->key->text) == 0) {
-            const size_t first = source_line(walk->source, other->key->span.start);
-            const size_t second = source_line(walk->source, node->key->span.start);
-            char lines[64];
-            snprintf(lines, sizeof lines, first == second ? "line %zu" : "lines %zu and %zu", first,
-                     second);
-            return source_error(walk->source, node->key->span, "one of them", walk->err,
-                                "the key '%s' is given twice, in %s", node->key->text, lines);
-        }
-    }
-    return true;
-}
-
 // Takes what stands at a position: a value, or the keys below a group.
 static bool walk_node(const Walk *walk, const Position *here, const Node *node)
 {
@@ -297,20 +257,15 @@ static bool walk_node(const Walk *walk, const Position *here, const Node *node)
     if (row != NULL) {
         return add_entry(walk, row, here->index, node);
     }
-    if (node->kind != NODE_MAP) {
-        const bool is_missing = node->kind == NODE_SCALAR && node->text[0] == '\0';
-        return source_error(walk->source, is_missing ? entries_key_span(node) : node->span,
-                            "key: value, on lines of their own or as {key: value}", walk->err,
-                            "expected a mapping of keys here, found %s",
-                            is_missing                ? "nothing"
-                            : node->kind == NODE_LIST ? "a list"
-                                                      : "a single value");
+    if (!keys_check_map(walk->source, node, walk->err)) {
+        return false;
     }
     add_group(walk, here, node);
     for (const Node *child = node->first; child != NULL; child = child->next) {
         Position below;
         if (!descend(walk, here, child->key->text, child->key->span, &below) ||
-            !check_doubled(walk, node, child) || !walk_node(walk, &below, child)) {
+            !keys_check_single(walk->source, node, child, walk->err) ||
+            !walk_node(walk, &below, child)) {
             return false;
         }
     }
@@ -350,15 +305,15 @@ bool entries_read(Entries *entries, const Node *root, const Source *source, Err 
     return walk_node(&walk, &top, root);
 }
 
-bool entries_override(Entries *entries, const char *key, const Node *value, const Source *source,
-                      Err *err)
+// Follows the whole path of a key. Its groups are known by the value, unless that is NULL.
+static bool follow(const Walk *walk, const char *key, size_t key_start, const Node *value,
+                   Position *here)
 {
-    const Walk walk = {entries, source, err};
     // a name of the key that is wrong is shown in the key
-    Source in_key = *source;
-    in_key.shift = source->key_start;
-    const Walk key_walk = {entries, &in_key, err};
-    Position here = {.pattern = ""};
+    Source in_key = *walk->source;
+    in_key.shift = key_start;
+    const Walk key_walk = {walk->entries, &in_key, walk->err};
+    *here = (Position){.pattern = ""};
     const char *rest = key;
     for (;;) {
         char name[SCHEMA_PATH_SIZE];
@@ -367,16 +322,37 @@ bool entries_override(Entries *entries, const char *key, const Node *value, cons
         const size_t start = source_count(key, (size_t)(rest - key));
         const Span span = {start, start + source_count(name, length)};
         Position below;
-        if (!descend(&key_walk, &here, name, span, &below)) {
+        if (!descend(&key_walk, here, name, span, &below)) {
             return false;
         }
-        here = below;
+        *here = below;
         if (rest[length] == '\0') {
-            break;
+            return true;
         }
-        // a group that only an override names is known by the override's value
-        add_group(&walk, &here, value);
+        if (value != NULL) {
+            add_group(walk, here, value);
+        }
         rest += length + 1;
     }
-    return walk_node(&walk, &here, value);
+}
+
+bool entries_override(Entries *entries, const char *key, size_t key_start, const Node *value,
+                      const Source *source, Err *err)
+{
+    const Walk walk = {entries, source, err};
+    Position here;
+    return follow(&walk, key, key_start, value, &here) && walk_node(&walk, &here, value);
+}
+
+bool entries_key(Entries *entries, const char *key, size_t key_start, const Source *source,
+                 const SchemaRow **row, size_t *index, Err *err)
+{
+    const Walk walk = {entries, source, err};
+    Position here;
+    if (!follow(&walk, key, key_start, NULL, &here)) {
+        return false;
+    }
+    *row = schema_find(here.pattern);
+    *index = here.index;
+    return true;
 }

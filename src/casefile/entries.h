@@ -44,16 +44,22 @@ typedef struct Entries {
 // then not to be used.
 bool entries_read(Entries *entries, const Node *root, const Source *source, Err *err);
 
-// Takes one override: its key and the node of its value. It replaces what was said before about
-// the key and about the key's rivals.
-bool entries_override(Entries *entries, const char *key, const Node *value, const Source *source,
-                      Err *err);
+// Takes one override: its key, which stands so many characters into the source's text, and the
+// node of its value. It replaces what was said before about the key, and what another source said
+// about the key's rivals. Fails as entries_read does.
+bool entries_override(Entries *entries, const char *key, size_t key_start, const Node *value,
+                      const Source *source, Err *err);
+
+// The row of a key that an override would have, and the member of its family; NULL for the key of a
+// group. A name that is new takes its place, as an override's does. Fails on an unknown key.
+bool entries_key(Entries *entries, const char *key, size_t key_start, const Source *source,
+                 const SchemaRow **row, size_t *index, Err *err);
 
 // The entry of a row's path (with `*`), or NULL where the key was not given.
 const Entry *entries_find(const Entries *entries, const char *path, size_t index);
 
 // The entry to point at where several keys do not fit together: of those given, the first that
-// comes from the command line, else the first. NULL where none is given.
+// overrides the case, else the first. NULL where none is given.
 const Entry *entries_blame(const Entries *entries, const char *const *paths, size_t count,
                            size_t index);
 
@@ -76,6 +82,3 @@ bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFam
 
 // Whether the case gives a key of that joint which only a joint with play has.
 bool entries_has_play(const Entries *entries, size_t joint);
-
-// Where a message about a whole node points: at its key, or at itself where it has none.
-Span entries_key_span(const Node *node);

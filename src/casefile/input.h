@@ -1,17 +1,19 @@
-// Reading a case file as a whole, and refusing what cannot be one.
+// Reading a case file or another one of its kind as a whole, and refusing what cannot be one.
+//
+// `what` it is stands in messages: "case", "study".
 #pragma once
 
-#include "base/err.h"
-
-#include <stddef.h>
+#include "casefile/document.h"
 
 enum { INPUT_SIZE_MAX = 1 << 20 }; // bytes; a case has some thousand
 
 // Reads the file into *text (owned by the caller, ends in a zero). Fails with ERR_FILE where it is
 // missing or unreadable, and with ERR_CASE where it is a directory or larger than INPUT_SIZE_MAX;
 // the outputs are then untouched.
-bool input_read(const char *path, char **text, size_t *size, Err *err);
+bool input_read(const char *what, const char *path, char **text, size_t *size, Err *err);
 
-// Whether it is text: not empty, valid UTF-8, no control characters. Fails with ERR_CASE and the
-// offset of the first byte that is not.
-bool input_check(const char *name, const char *text, size_t size, Err *err);
+// Parses a text into a tree that the caller destroys; the source, which borrows name and text, says
+// where its nodes stand. Fails with ERR_CASE where it is no text (empty, not valid UTF-8, with
+// control characters), no YAML, or holds no document; *root is then untouched.
+bool input_parse(const char *what, const char *name, const char *text, size_t size, Source *source,
+                 Node **root, Err *err);

@@ -3,6 +3,7 @@
 
 #include "base/dense.h"
 #include "casefile/build.h"
+#include "casefile/keys.h"
 #include "model/kinematics.h"
 #include "model/nearest.h"
 
@@ -56,7 +57,7 @@ static bool check_redundancy(const Entries *entries, const Linkage *linkage, con
     const size_t rank = dense_rank(rows, jacobian.columns, jacobian.entries, INDEPENDENT);
     const EntryGroup *joints = entries_group(entries, "joints", 0);
     return rank == rows ||
-           source_error(joints->source, entries_key_span(joints->node),
+           source_error(joints->source, keys_span(joints->node),
                         "play in one of them, one joint less, or another start", err,
                         "ideal joints%s hold what others hold already: %zu of their %zu "
                         "constraints are independent at the start",

@@ -17,8 +17,9 @@ typedef struct Source {
     const char *text; // valid UTF-8
     size_t size;      // bytes
     size_t shift;     // characters in front of the part that spans count from (the key of --set)
-    size_t key_start; // of an option: characters in front of its key
+    const char *what; // it is, where a document is parsed from it: "case", "study"
     bool is_option;   // given on the command line: messages name no line and are ERR_USAGE
+    bool is_override; // it says other than a case did: messages point at it first
 } Source;
 
 // Sets the error to the sentence, with its place in front, and below it the line, a caret with a

@@ -23,6 +23,7 @@ static const DimensionWords DIMENSIONS[DIMENSION_COUNT] = {
     [DIMENSION_SPEED]         = {"a speed",            "1 mm/s",         "m/s"},
     [DIMENSION_PRESSURE]      = {"a pressure",         "207 GPa",        "Pa"},
     [DIMENSION_DAMPING]       = {"a damping coefficient", "973.33 N s/mm", "N s/m"},
+    [DIMENSION_MEMORY]        = {"an amount of memory", "2 GB",         "B"},
     [DIMENSION_STIFFNESS]     = {"a stiffness",        "6.6e10 N/m^1.5", "N/m^n"},
 };
 
@@ -57,6 +58,10 @@ static const Unit UNITS[] = {
     {"N/mm^2",  DIMENSION_PRESSURE,      1e6,    1.0},
     {"N s/m",   DIMENSION_DAMPING,       1.0,    1.0},
     {"N s/mm",  DIMENSION_DAMPING,       1e3,    1.0},
+    {"GB",      DIMENSION_MEMORY,        1e9,    1.0},
+    {"MB",      DIMENSION_MEMORY,        1e6,    1.0},
+    {"kB",      DIMENSION_MEMORY,        1e3,    1.0},
+    {"B",       DIMENSION_MEMORY,        1.0,    1.0},
     {"N/m^n",   DIMENSION_STIFFNESS,     1.0,    1.0},
     {"N/mm^n",  DIMENSION_STIFFNESS,     1.0,    1.0},
     {"N/m",     DIMENSION_STIFFNESS,     1.0,    1.0},

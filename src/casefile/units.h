@@ -20,6 +20,7 @@ typedef enum Dimension {
     DIMENSION_SPEED,
     DIMENSION_PRESSURE,
     DIMENSION_DAMPING,
+    DIMENSION_MEMORY,
     DIMENSION_STIFFNESS, // N/m^n; read by quantity_stiffness, listed here for its words only
     DIMENSION_COUNT,
 } Dimension;

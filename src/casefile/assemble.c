@@ -1,0 +1,93 @@
+// Which scenario do the entries of a case make?
+//
+// presence -> values in SI -> checks that need several values -> linkage at its start.
+#include "casefile/assemble.h"
+
+#include "casefile/build.h"
+#include "casefile/check.h"
+#include "casefile/closure.h"
+#include "casefile/place.h"
+#include "casefile/store.h"
+
+#include <string.h>
+
+// What follows from the keys that are given and not from their values.
+static void store_presence(const Entries *entries, Scenario *scenario)
+{
+    Linkage *linkage = &scenario->linkage;
+    const EntryNames *names = entries->names;
+    linkage->body_count = names[SCHEMA_BODY].count;
+    linkage->joint_count = names[SCHEMA_JOINT].count;
+    scenario->point_count = names[SCHEMA_POINT].count;
+    for (size_t i = 0; i < LINKAGE_JOINT_MAX; i++) {
+        Joint *joint = &linkage->joints[i];
+        text_copy(joint->name, LINKAGE_NAME_SIZE, names[SCHEMA_JOINT].names[i]);
+        joint->kind = entries_has_play(entries, i) ? JOINT_CLEARANCE : JOINT_REVOLUTE;
+    }
+    for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
+        text_copy(linkage->bodies[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_BODY].names[i]);
+    }
+    for (size_t i = 0; i < SCENARIO_POINT_MAX; i++) {
+        text_copy(scenario->points[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_POINT].names[i]);
+    }
+    linkage->driver.is_present =
+        entries->form == SCHEMA_SHORT || entries_group(entries, "drive", 0) != NULL;
+    if (entries->form == SCHEMA_LONG) {
+        // the closed form knows four-bars only
+        scenario->run.backend_count = 2;
+        scenario->run.backends[0] = BACKEND_REFERENCE;
+        scenario->run.backends[1] = BACKEND_ODE;
+    }
+}
+
+// Stores every value in the order of the schema, so that the same mistake is told first wherever
+// the keys stand.
+static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
+{
+    store_presence(entries, scenario);
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        const SchemaRow *row = &SCHEMA_ROWS[i];
+        const size_t members = entries_family_size(entries, row);
+        for (size_t index = 0; index < members; index++) {
+            const Entry *entry = entries_find(entries, row->path, index);
+            if (entry != NULL && !store_value(entries, entry, scenario, err)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+// What remains is wrong as a whole; it is shown at the drive, or at the top where there is none.
+static bool build(const Entries *entries, Scenario *scenario, Err *err)
+{
+    Err own = {0};
+    const bool is_built = entries->form == SCHEMA_SHORT ? closure_check(entries, scenario, &own) &&
+                                                              build_fourbar(scenario, &own)
+                                                        : place_linkage(entries, scenario, &own);
+    if (is_built && scenario_check(scenario, &own)) {
+        return true;
+    }
+    if (!is_built && own.kind != ERR_SOLVER) {
+        *err = own; // it has its place already
+        return false;
+    }
+    const Entry *speed = entries_find(entries, "drive.speed", 0);
+    const EntryGroup *top = entries_group(entries, "", 0);
+    return source_error(speed != NULL ? speed->source : top->source,
+                        speed != NULL ? speed->node->span : top->node->span, NULL, err,
+                        "the mechanism cannot be solved at its start: %s", own.text);
+}
+
+bool assemble_scenario(const Entries *entries, Scenario *scenario, Err *err)
+{
+    Scenario built = scenario_default();
+    if (!check_required(entries, err) || !store_entries(entries, &built, err) ||
+        !check_values(entries, &built, err) || !build(entries, &built, err)) {
+        return false;
+    }
+    const Source *source = entries_group(entries, "", 0)->source;
+    text_copy(built.path, sizeof built.path, source->name);
+    *scenario = built;
+    return true;
+}

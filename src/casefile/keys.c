@@ -1,0 +1,95 @@
+// Is each key of a mapping known, and there once?
+#include "casefile/keys.h"
+
+#include "base/text.h"
+
+#include <stdio.h>
+#include <string.h>
+
+Span keys_span(const Node *node)
+{
+    return node->key != NULL ? node->key->span : node->span;
+}
+
+size_t keys_text_start(const Node *node)
+{
+    const Span span = node->key->span;
+    const size_t length = source_count(node->key->text, strlen(node->key->text));
+    return span.start + (span.end - span.start > length ? 1 : 0);
+}
+
+bool keys_refuse(const Source *source, Span span, const char *what, const char *name,
+                 const char *const *choices, size_t count, Err *err)
+{
+    Text allowed;
+    text_init(&allowed);
+    for (size_t i = 0; i < count; i++) {
+        text_append(&allowed, "%s%s", i > 0 ? ", " : "", choices[i]);
+    }
+    const char *nearest = text_nearest(name, choices, count);
+    // 14,5 mm inside braces is a value 14 and a key 5 mm
+    const bool is_number = nearest == NULL && name[0] >= '0' && name[0] <= '9';
+    source_error(source, span, allowed.data, err, "unknown %s '%.40s'%s%s%s", what, name,
+                 nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+                 nearest != NULL ? "'?"
+                 : is_number     ? "; numbers have a decimal point"
+                                 : "");
+    text_finish(&allowed);
+    return false;
+}
+
+bool keys_check_map(const Source *source, const Node *node, Err *err)
+{
+    if (node->kind == NODE_MAP) {
+        return true;
+    }
+    const bool is_missing = node->kind == NODE_SCALAR && node->text[0] == '\0';
+    return source_error(source, is_missing ? keys_span(node) : node->span,
+                        "key: value, on lines of their own or as {key: value}", err,
+                        "expected a mapping of keys here, found %s",
+                        is_missing                ? "nothing"
+                        : node->kind == NODE_LIST ? "a list"
+                                                  : "a single value");
+}
+
+bool keys_check_single(const Source *source, const Node *map, const Node *node, Err *err)
+{
+    for (const Node *other = map->first; other != node; other = other->next) {
+        if (strcmp(other->key->text, node->key->text) == 0) {
+            const size_t first = source_line(source, other->key->span.start);
+            const size_t second = source_line(source, node->key->span.start);
+            char lines[64];
+            snprintf(lines, sizeof lines, first == second ? "line %zu" : "lines %zu and %zu", first,
+                     second);
+            return source_error(source, node->key->span, "one of them", err,
+                                "the key '%s' is given twice, in %s", node->key->text, lines);
+        }
+    }
+    return true;
+}
+
+bool keys_sort(const Source *source, const Node *map, const char *const *names, size_t count,
+               const Node **values, Err *err)
+{
+    for (size_t i = 0; i < count; i++) {
+        values[i] = NULL;
+    }
+    if (!keys_check_map(source, map, err)) {
+        return false;
+    }
+    for (const Node *child = map->first; child != NULL; child = child->next) {
+        size_t number = 0;
+        while (number < count && strcmp(names[number], child->key->text) != 0) {
+            number++;
+        }
+        if (number == count) {
+            return keys_refuse(source, child->key->span, "key", child->key->text, names, count,
+                               err);
+        }
+        if (!keys_check_single(source, map, child, err)) {
+            return false;
+        }
+        values[number] = child;
+    }
+    return true;
+}

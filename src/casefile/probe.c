@@ -1,0 +1,178 @@
+// What would a case make of a key or a value that another file has for it?
+//
+// The key is taken as an override of the case, and the value is stored into a scenario that nobody
+// sees: so the words of a mistake are those of a mistake in the case itself.
+#include "casefile/probe.h"
+
+#include "casefile/assemble.h"
+#include "casefile/check.h"
+#include "casefile/input.h"
+#include "casefile/keys.h"
+#include "casefile/quantity.h"
+#include "casefile/store.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct Probe {
+    Source source;
+    Node *root;
+    Entries entries;
+};
+
+Probe *probe_open(const char *name, const char *text, size_t size, Err *err)
+{
+    Probe *probe = calloc(1, sizeof *probe);
+    assert(probe != NULL);
+    if (!input_parse("case", name, text, size, &probe->source, &probe->root, err) ||
+        !entries_read(&probe->entries, probe->root, &probe->source, err)) {
+        probe_close(probe);
+        return NULL;
+    }
+    return probe;
+}
+
+void probe_close(Probe *probe)
+{
+    if (probe != NULL) {
+        document_destroy(probe->root);
+        free(probe);
+    }
+}
+
+bool probe_set(Probe *probe, const Source *source, const Node *value, Err *err)
+{
+    return entries_override(&probe->entries, value->key->text, keys_text_start(value), value,
+                            source, err);
+}
+
+static ProbeKind kind_of(SchemaType type)
+{
+    switch (type) {
+    case SCHEMA_INTEGER:
+        return PROBE_WHOLE;
+    case SCHEMA_CHOICE:
+    case SCHEMA_BODY_NAME:
+    case SCHEMA_JOINT_NAME:
+        return PROBE_WORD;
+    case SCHEMA_BACKENDS:
+    case SCHEMA_TEXT:
+    case SCHEMA_VECTOR:
+    case SCHEMA_ANCHOR:
+    case SCHEMA_BETWEEN:
+        return PROBE_OTHER;
+    default:
+        return PROBE_NUMBER;
+    }
+}
+
+// A group is no key; its keys are what is allowed.
+static bool refuse_group(const Probe *probe, const Source *source, const Node *value, Err *err)
+{
+    return source_error(source, keys_span(value), "the path of a key, such as drive.speed", err,
+                        "'%.60s' is a group of keys in a case with %s", value->key->text,
+                        SCHEMA_FORM_KEYS[probe->entries.form]);
+}
+
+bool probe_key(const Probe *probe, const Source *source, const Node *value, ProbeKey *key, Err *err)
+{
+    // a name that is new must not stay
+    Entries *entries = malloc(sizeof *entries);
+    assert(entries != NULL);
+    *entries = probe->entries;
+    ProbeKey found = {0};
+    bool is_good = entries_key(entries, value->key->text, keys_text_start(value), source,
+                               &found.row, &found.index, err);
+    if (is_good && found.row == NULL) {
+        is_good = refuse_group(probe, source, value, err);
+    }
+    if (is_good) {
+        text_copy(found.path, sizeof found.path, value->key->text);
+        found.kind = kind_of(found.row->type);
+        *key = found;
+    }
+    free(entries);
+    return is_good;
+}
+
+bool probe_check(const Probe *probe, const Source *source, const ProbeKey *key, const Node *value,
+                 Err *err)
+{
+    const Entry entry = {key->row, key->index, value, source};
+    Scenario *scratch = malloc(sizeof *scratch);
+    assert(scratch != NULL);
+    *scratch = scenario_default();
+    const bool is_good = store_value(&probe->entries, &entry, scratch, err);
+    free(scratch);
+    return is_good;
+}
+
+static bool read_number(const ProbeKey *key, const char *text, ProbeNumber *number,
+                        Complaint *complaint)
+{
+    ToleratedLength length;
+    double exponent;
+    size_t whole;
+    text_copy(number->unit, sizeof number->unit, units_si(key->row->dimension));
+    switch (key->row->type) {
+    case SCHEMA_INTEGER:
+        if (!quantity_integer(text, &whole, complaint)) {
+            return false;
+        }
+        number->value = (double)whole;
+        return true;
+    case SCHEMA_STIFFNESS:
+        if (!quantity_stiffness(text, &number->value, &exponent, complaint)) {
+            return false;
+        }
+        snprintf(number->unit, sizeof number->unit, exponent == 1.0 ? "N/m" : "N/m^%.17g",
+                 exponent);
+        return true;
+    case SCHEMA_TOLERATED:
+        if (!quantity_tolerated(text, &length, complaint)) {
+            return false;
+        }
+        if (length.lower < length.upper) {
+            snprintf(complaint->text, sizeof complaint->text, "this value has a tolerance");
+            snprintf(complaint->allowed, sizeof complaint->allowed, "a length alone");
+            return false;
+        }
+        number->value = length.nominal;
+        return true;
+    default:
+        return quantity_parse(text, key->row->dimension, &number->value, complaint);
+    }
+}
+
+bool probe_number(const Source *source, const ProbeKey *key, const Node *value, ProbeNumber *number,
+                  Err *err)
+{
+    ProbeNumber read = {0};
+    Complaint complaint = {0};
+    if (value->kind != NODE_SCALAR || value->text[0] == '\0') {
+        return source_error(source, keys_span(value), units_example(key->row->dimension), err,
+                            "expected a single value");
+    }
+    if (!read_number(key, value->text, &read, &complaint)) {
+        return source_error(source, value->span, complaint.allowed, err, "%s", complaint.text);
+    }
+    *number = read;
+    return true;
+}
+
+bool probe_is_whole(const Probe *probe, Err *err)
+{
+    return check_required(&probe->entries, err);
+}
+
+bool probe_has_play(const Probe *probe, size_t joint)
+{
+    return entries_has_play(&probe->entries, joint);
+}
+
+bool probe_scenario(const Probe *probe, Scenario *scenario, Err *err)
+{
+    return assemble_scenario(&probe->entries, scenario, err);
+}

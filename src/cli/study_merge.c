@@ -1,0 +1,154 @@
+// How do the shards of a study become one store?
+#include "cli/arguments.h"
+#include "cli/study_commands.h"
+#include "cli/study_place.h"
+#include "study/store.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { KEY_QUIET = 'q' };
+
+typedef struct MergeOptions {
+    size_t count;
+    const char **words; // owned; a study file alone, or a store and those that go into it
+    bool is_quiet;
+} MergeOptions;
+
+static const struct argp_option OPTIONS[] = {
+    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 1},
+    {0},
+};
+
+static bool take_option(int key, const char *value, void *target, Err *err)
+{
+    (void)err;
+    MergeOptions *options = target;
+    if (key == KEY_QUIET) {
+        options->is_quiet = true;
+    } else {
+        options->words[options->count++] = value;
+    }
+    return true;
+}
+
+// What there is in a store now.
+static bool say_count(const char *path, uint64_t added, bool is_quiet, Err *err)
+{
+    StoreCount count = {0};
+    Store *store = store_view(path, err);
+    const bool is_counted = store != NULL && store_count(store, &count, err);
+    if (is_counted && !is_quiet) {
+        fprintf(stderr, "merged %" PRIu64 " runs into %s, which holds %" PRIu64 " of %" PRIu64 "\n",
+                added, path, count.rows, count.run_count);
+    }
+    return store_close(store, err) && is_counted;
+}
+
+static bool merge(const char *target, const char *const *sources, size_t count, bool is_quiet,
+                  Err *err)
+{
+    uint64_t added;
+    return store_merge(target, sources, count, &added, err) &&
+           say_count(target, added, is_quiet, err);
+}
+
+// The usual name of a shard's store, which must be there.
+static char *find_shard(const char *study, Shard shard, Err *err)
+{
+    char *path = malloc(FILE_PATH_SIZE);
+    assert(path != NULL);
+    if (!study_place_store(study, shard, path, err) ||
+        (access(path, F_OK) != 0 &&
+         !err_set(err, ERR_FILE,
+                  "there is no %s in the working folder; make it with --shard %" PRIu64 "/%" PRIu64
+                  ", or name the stores to be merged",
+                  path, shard.index + 1, shard.count))) {
+        free(path);
+        return NULL;
+    }
+    return path;
+}
+
+static bool merge_shards(const char *study, uint64_t shards, const char *target, bool is_quiet,
+                         Err *err)
+{
+    char **paths = calloc(shards, sizeof *paths);
+    assert(paths != NULL);
+    bool are_there = true;
+    for (uint64_t i = 0; i < shards && are_there; i++) {
+        paths[i] = find_shard(study, (Shard){i, shards}, err);
+        are_there = paths[i] != NULL;
+    }
+    const bool is_merged =
+        are_there && merge(target, (const char *const *)paths, shards, is_quiet, err);
+    for (uint64_t i = 0; i < shards; i++) {
+        free(paths[i]);
+    }
+    free(paths);
+    return is_merged;
+}
+
+// All shards of a study file, by their usual names.
+static bool merge_study(const char *study, bool is_quiet, Err *err)
+{
+    char target[FILE_PATH_SIZE];
+    uint64_t shards;
+    if (!study_place_store(study, (Shard){0, 1}, target, err) ||
+        !study_place_count_shards(study, &shards, err)) {
+        return false;
+    }
+    if (shards == 0) {
+        char shard[FILE_PATH_SIZE];
+        return study_place_store(study, (Shard){0, 2}, shard, err) &&
+               err_set(err, ERR_FILE,
+                       "there are no parts of %s in the working folder, such as %s; 'jointplay "
+                       "study %s --shard 1/2' makes one",
+                       study, shard, study);
+    }
+    return merge_shards(study, shards, target, is_quiet, err);
+}
+
+static bool merge_words(const MergeOptions *options, Err *err)
+{
+    if (options->count == 1 && study_place_is_study(options->words[0])) {
+        return merge_study(options->words[0], options->is_quiet, err);
+    }
+    if (options->count < 2 || study_place_is_study(options->words[0])) {
+        return err_set(err, ERR_USAGE,
+                       "nothing to merge given: jointplay study merge STUDY.yaml, or "
+                       "jointplay study merge OUT.sqlite IN.sqlite...");
+    }
+    return merge(options->words[0], options->words + 1, options->count - 1, options->is_quiet, err);
+}
+
+static bool run(int argc, char **argv, Err *err)
+{
+    static const Arguments ARGUMENTS = {
+        .program = "jointplay study merge",
+        .usage = "FILE\nOUT.sqlite IN.sqlite...",
+        .doc = "Gathers the shards of a study into one store: those of a study file by their usual "
+               "names in the working folder, or those that are named."
+               "\vRuns that are there already are left alone. Stores of different studies or "
+               "programs are refused, and nothing is written then.",
+        .options = OPTIONS,
+        .take = take_option,
+    };
+    MergeOptions options = {.words = calloc((size_t)argc, sizeof *options.words)};
+    assert(options.words != NULL);
+    bool is_answered;
+    const bool is_done = arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) &&
+                         (is_answered || merge_words(&options, err));
+    free(options.words);
+    return is_done;
+}
+
+const Command study_command_merge = {
+    .name = "merge",
+    .summary = "the shards of a study into one store",
+    .run = run,
+};

@@ -1,0 +1,137 @@
+// What was `jointplay study FILE` asked for?
+#include "cli/study_options.h"
+
+#include "casefile/quantity.h"
+#include "cli/arguments.h"
+#include "cli/option_values.h"
+#include "cli/study_place.h"
+#include "study/sweep.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    KEY_JOBS = 0x200, // options without a letter of their own
+    KEY_SHARD,
+    KEY_STORE,
+    KEY_FRESH,
+    KEY_RETRY,
+    KEY_DRY,
+    KEY_JSON,
+    KEY_QUIET = 'q',
+};
+
+enum { NUMBER_SIZE = 24 };
+
+static const struct argp_option OPTIONS[] = {
+    {"jobs", KEY_JOBS, "N", 0, "Runs at a time (default: one a core)", 1},
+    {"shard", KEY_SHARD, "I/N", 0, "Only the I-th of N parts, into a store of its own", 1},
+    {"store", KEY_STORE, "FILE", 0,
+     "Keep the runs there (default: <study>.sqlite in the working folder)", 1},
+    {"fresh", KEY_FRESH, NULL, 0, "Forget what the store holds", 1},
+    {"retry-failed", KEY_RETRY, NULL, 0, "Make the runs again that failed", 1},
+    {"dry-run", KEY_DRY, NULL, 0, "Say what would be run, and run nothing", 2},
+    {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 2},
+    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 2},
+    {0},
+};
+
+bool study_options_read_shard(const char *text, Shard *shard, Err *err)
+{
+    const char *slash = strchr(text, '/');
+    char first[NUMBER_SIZE] = "";
+    size_t index = 0;
+    size_t count = 0;
+    Complaint complaint;
+    if (slash != NULL && slash - text < NUMBER_SIZE) {
+        snprintf(first, sizeof first, "%.*s", (int)(slash - text), text);
+    }
+    if (slash == NULL || !quantity_integer(first, &index, &complaint) ||
+        !quantity_integer(slash + 1, &count, &complaint) || index < 1 || index > count) {
+        return err_set(err, ERR_USAGE,
+                       "--shard is %s; allowed: I/N, the I-th of N parts, such as 1/4 to 4/4",
+                       text);
+    }
+    *shard = (Shard){index - 1, count};
+    return true;
+}
+
+static bool take_study(StudyOptions *options, const char *path, Err *err)
+{
+    if (options->path != NULL) {
+        return err_set(err, ERR_USAGE, "study takes one file, not %s and %s", options->path, path);
+    }
+    options->path = path;
+    return true;
+}
+
+static bool take_store(StudyOptions *options, const char *path, Err *err)
+{
+    return snprintf(options->store, sizeof options->store, "%s", path) <
+               (int)sizeof options->store ||
+           err_set(err, ERR_USAGE, "--store: the path is too long");
+}
+
+static bool take_option(int key, const char *value, void *target, Err *err)
+{
+    StudyOptions *options = target;
+    switch (key) {
+    case KEY_JOBS:
+        return option_values_read_count("jobs", value, 1, SWEEP_JOB_MAX, &options->jobs, err);
+    case KEY_SHARD:
+        return study_options_read_shard(value, &options->shard, err);
+    case KEY_STORE:
+        return take_store(options, value, err);
+    case KEY_FRESH:
+        options->is_fresh = true;
+        return true;
+    case KEY_RETRY:
+        options->is_retrying = true;
+        return true;
+    case KEY_DRY:
+        options->is_dry = true;
+        return true;
+    case KEY_JSON:
+        options->is_json = true;
+        return true;
+    case KEY_QUIET:
+        options->is_quiet = true;
+        return true;
+    default:
+        return take_study(options, value, err);
+    }
+}
+
+bool study_options_read(int argc, char **argv, StudyOptions *options, bool *is_answered, Err *err)
+{
+    static const Arguments ARGUMENTS = {
+        .program = "jointplay study",
+        .usage = "FILE\nstatus FILE-or-STORE...\nexport FILE-or-STORE\nmerge FILE\n"
+                 "merge OUT.sqlite IN.sqlite...\nplot FILE-or-STORE FILE.svg\nslurm FILE",
+        .doc = "Makes the runs of a study that its store does not hold yet, each in a process of "
+               "its own, and keeps them in the store."
+               "\vWhoever ends the program at any moment goes on where it stood with the same "
+               "command. 'jointplay study status --help' and so on tell more of the others.",
+        .options = OPTIONS,
+        .take = take_option,
+    };
+    const size_t cores = option_values_count_cores();
+    *options =
+        (StudyOptions){.jobs = cores < SWEEP_JOB_MAX ? cores : SWEEP_JOB_MAX, .shard = {0, 1}};
+    if (!arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err)) {
+        return false;
+    }
+    if (*is_answered) {
+        return true;
+    }
+    if (options->path == NULL) {
+        return err_set(err, ERR_USAGE, "no study given: jointplay study STUDY.yaml");
+    }
+    if (options->is_fresh && options->is_retrying) {
+        return err_set(err, ERR_USAGE,
+                       "--fresh makes all runs again, --retry-failed only some: "
+                       "one of them, not both");
+    }
+    return options->store[0] != '\0' ||
+           study_place_store(options->path, options->shard, options->store, err);
+}

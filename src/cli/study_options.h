@@ -1,0 +1,25 @@
+// What `jointplay study FILE` was asked for.
+#pragma once
+
+#include "base/err.h"
+#include "report/file.h"
+#include "study/design.h"
+
+typedef struct StudyOptions {
+    const char *path; // of the study file
+    size_t jobs;
+    Shard shard;
+    char store[FILE_PATH_SIZE]; // as given, or the usual one
+    bool is_fresh;
+    bool is_retrying;
+    bool is_dry;
+    bool is_json;
+    bool is_quiet;
+} StudyOptions;
+
+// Reads the command line; where help was asked for it is printed and *is_answered is true.
+// ERR_USAGE.
+bool study_options_read(int argc, char **argv, StudyOptions *options, bool *is_answered, Err *err);
+
+// Reads a part of a study, "2/3" being the second of three. ERR_USAGE.
+bool study_options_read_shard(const char *text, Shard *shard, Err *err);

@@ -1,0 +1,167 @@
+// Does `jointplay study` say, write and refuse what it should?
+#include "program.h"
+
+// Two speeds, and the steps; a revolution takes 120 and 40 ms, which no step may be longer than.
+static void write_study(const Program *program, const char *name, const char *steps,
+                        const char *truth)
+{
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, name, path);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fprintf(stream,
+            "title: Four runs\ncase: %s/paper/ideal-nominal.yaml\nset: {run.samples: 36}\n"
+            "vary:\n  drive.speed: [500 rpm, 1500 rpm]\n  run.step: [%s]\ntruth: %s\n",
+            getenv("JOINTPLAY_CASES"), steps, truth);
+    fclose(stream);
+}
+
+static void run_well(Program *program, const char *words)
+{
+    program_run(program, words);
+    if (program->status != 0) {
+        fail_msg("%s: status %d: %s", words, program->status, program->errors);
+    }
+}
+
+static int set_up(void **state)
+{
+    const int status = program_set_up(state);
+    write_study(*state, "s.yaml", "50 us, 100 us", "true");
+    return status;
+}
+
+static void a_dry_run_tells_all_and_writes_nothing(void **state)
+{
+    Program *program = *state;
+    run_well(program, "study s.yaml --dry-run");
+    assert_says(program->output, "2 variables, 4 runs, 2 truths");
+    assert_says(program->output, "drive_speed_rad_s");
+    assert_says(program->output, "of them no valid case: 0.");
+    run_well(program, "study s.yaml --dry-run --shard 2/2");
+    assert_says(program->output, "4 runs, 2 of them in part 2 of 2");
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "s.sqlite", path);
+    assert_int_not_equal(access(path, F_OK), 0);
+    write_study(program, "long.yaml", "50 us, 200 ms", "true");
+    run_well(program, "study long.yaml --dry-run");
+    assert_says(program->output, "of them no valid case: 2; the first is run 1: ");
+}
+
+static void what_came_of_it_is_printed(void **state)
+{
+    Program *program = *state;
+    run_well(program, "study s.yaml --jobs 2");
+    assert_says(program->output, "4 of 4 runs are over");
+    assert_says(program->output, "They are kept in s.sqlite.");
+    assert_says(program->output, "error_omega_max");
+    assert_string_equal(program->errors, "");
+    run_well(program, "study s.yaml --json");
+    json_t *root = program_json(program);
+    assert_int_equal(json_integer_value(json_object_get(root, "runs")), 4);
+    assert_int_equal(json_integer_value(json_object_get(root, "done")), 4);
+    assert_true(json_is_null(json_object_get(json_object_get(root, "now"), "inside_share")));
+    json_decref(root);
+    run_well(program, "study s.yaml --retry-failed");
+    assert_says(program->errors, "making 0 failed runs again");
+}
+
+static void rows_are_exported_and_drawn(void **state)
+{
+    Program *program = *state;
+    run_well(program, "study s.yaml");
+    run_well(program, "study export s.sqlite");
+    assert_int_equal(strncmp(program->output, "run,drive_speed_rad_s,run_step_s,fate,reason,", 45),
+                     0);
+    run_well(program, "study export s.yaml --csv a.csv --jsonl a.jsonl");
+    assert_string_equal(program->output, "");
+    assert_says(program->errors, "wrote a.csv");
+    assert_says(program->errors, "wrote a.jsonl");
+    run_well(program, "study plot s.yaml --x run_step_s --y error_omega_max --by drive_speed_rad_s "
+                      "a.svg --title Words -q");
+    assert_string_equal(program->errors, "");
+    program_run(program, "study plot s.yaml --x nothing a.svg");
+    assert_int_equal(program->status, 2);
+    run_well(program, "study status s.yaml s.sqlite");
+    assert_says(program->output, "4 of 4 runs are over");
+}
+
+static void a_study_of_which_every_run_fails_ends_with_status_4(void **state)
+{
+    Program *program = *state;
+    write_study(program, "s.yaml", "200 ms", "false");
+    program_run(program, "study s.yaml");
+    assert_int_equal(program->status, 4);
+    assert_says(program->output, "refused");
+    assert_says(program->errors, "every run of the study failed");
+    // one that goes well is enough
+    write_study(program, "t.yaml", "50 us, 200 ms", "true");
+    run_well(program, "study t.yaml");
+    assert_says(program->output, "refused");
+}
+
+static void shards_of_several_divisions_are_not_guessed_at(void **state)
+{
+    Program *program = *state;
+    run_well(program, "study s.yaml --shard 1/2");
+    run_well(program, "study s.yaml --shard 1/3");
+    program_run(program, "study merge s.yaml");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "there are stores of 2 and of 3 parts of s.yaml here");
+    run_well(program, "study s.yaml --shard 2/2");
+    run_well(program, "study merge out.sqlite s.1-of-2.sqlite s.2-of-2.sqlite");
+    assert_says(program->errors, "merged 4 runs into out.sqlite, which holds 4 of 4");
+}
+
+static void what_is_wrong_on_the_command_line_is_told(void **state)
+{
+    Program *program = *state;
+    program_fails_usage(program, "study", "no study given");
+    program_fails_usage(program, "study statsu", "did you mean 'jointplay study status'?");
+    program_fails_usage(program, "study s.yaml t.yaml", "study takes one file");
+    program_fails_usage(program, "study s.yaml --shard 0/3", "the I-th of N parts");
+    program_fails_usage(program, "study s.yaml --shard 4/3", "--shard is 4/3");
+    program_fails_usage(program, "study s.yaml --shard 1", "--shard is 1;");
+    program_fails_usage(program, "study s.yaml --jobs 0", "--jobs is 0; allowed: a whole number");
+    program_fails_usage(program, "study s.yaml --fresh --retry-failed", "not both");
+    program_fails_usage(program, "study status", "no study given");
+    program_fails_usage(program, "study export", "no store given");
+    program_fails_usage(program, "study export a b", "export takes one store");
+    program_fails_usage(program, "study export a --csv b --jsonl b", "would both write b");
+    program_fails_usage(program, "study merge a.sqlite", "nothing to merge given");
+    program_fails_usage(program, "study plot a", "a store and a file are needed");
+    program_fails_usage(program, "study plot a b", "no --x given");
+    program_fails_usage(program, "study plot a b c", "'c' is one more");
+    program_run(program, "study nothing.yaml");
+    assert_int_equal(program->status, 5);
+    program_run(program, "study status nothing.sqlite");
+    assert_int_equal(program->status, 5);
+}
+
+static void each_part_has_its_help(void **state)
+{
+    Program *program = *state;
+    const char *const parts[] = {"", "status ", "export ", "merge ", "plot ", "slurm "};
+    for (int i = 0; i < 6; i++) {
+        char words[64];
+        snprintf(words, sizeof words, "study %s--help", parts[i]);
+        run_well(program, words);
+        assert_says(program->output, "Usage: jointplay study");
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+#define STUDY_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, program_tear_down)
+        STUDY_TEST(a_dry_run_tells_all_and_writes_nothing),
+        STUDY_TEST(what_came_of_it_is_printed),
+        STUDY_TEST(rows_are_exported_and_drawn),
+        STUDY_TEST(a_study_of_which_every_run_fails_ends_with_status_4),
+        STUDY_TEST(shards_of_several_divisions_are_not_guessed_at),
+        STUDY_TEST(what_is_wrong_on_the_command_line_is_told),
+        STUDY_TEST(each_part_has_its_help),
+#undef STUDY_TEST
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

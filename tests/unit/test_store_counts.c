@@ -1,0 +1,167 @@
+// Are counts, reasons, values and quantiles of a store those of its rows?
+#include "study/store.h"
+
+#include "base/sorted.h"
+
+#include "study_store.h"
+
+static void counts_are_those_of_the_rows(void **state)
+{
+    (void)state;
+    Err err = {0};
+    StoreCount count;
+    double wall_s = 0.0;
+    const Layout layout = study_layout();
+    make_store(110);
+    for (uint64_t run = 0; run < 110; run++) {
+        wall_s += study_record(&layout, run).wall_s;
+    }
+    Store *store = store_view(path, &err);
+    assert_true(store_count(store, &count, &err));
+    assert_int_equal(count.run_count, RUNS);
+    assert_int_equal(count.rows, 110);
+    // 7 and 107 failed, 57 took too long
+    assert_int_equal(count.fates[FATE_OK], 107);
+    assert_int_equal(count.fates[FATE_FAILED], 2);
+    assert_int_equal(count.fates[FATE_TIMED_OUT], 1);
+    assert_int_equal(count.fates[FATE_REFUSED] + count.fates[FATE_ENDED], 0);
+    // sums of one sign differ by rounding alone
+    assert_close(count.wall_s, wall_s, 1e-13);
+    store_close(store, &err);
+}
+
+static void an_empty_store_counts_nothing(void **state)
+{
+    (void)state;
+    Err err = {0};
+    StoreCount count;
+    StoreReason reasons[2];
+    size_t reason_count = 9;
+    StoreSpread spread;
+    make_store(0);
+    Store *store = store_view(path, &err);
+    assert_true(store_count(store, &count, &err));
+    assert_int_equal(count.rows + count.fates[FATE_OK], 0);
+    assert_near(count.wall_s, 0.0, 0.0);
+    assert_true(store_reasons(store, 2, reasons, &reason_count, &err));
+    assert_int_equal(reason_count, 0);
+    assert_true(store_spread(store, 4, 0, NULL, &spread, &err));
+    assert_int_equal(spread.count, 0);
+    assert_true(isnan(spread.least) && isnan(spread.median) && isnan(spread.most));
+    store_close(store, &err);
+}
+
+static void reasons_come_with_the_most_frequent_first(void **state)
+{
+    (void)state;
+    Err err = {0};
+    StoreReason reasons[3];
+    size_t count = 0;
+    make_store(110);
+    Store *store = store_view(path, &err);
+    assert_true(store_reasons(store, 3, reasons, &count, &err));
+    assert_int_equal(count, 2);
+    assert_int_equal(reasons[0].fate, FATE_FAILED);
+    assert_string_equal(reasons[0].reason, "a number is not finite at 0.0125 s");
+    assert_int_equal(reasons[0].count, 2);
+    assert_int_equal(reasons[0].example, 7);
+    assert_int_equal(reasons[1].fate, FATE_TIMED_OUT);
+    assert_int_equal(reasons[1].example, 57);
+    assert_true(store_reasons(store, 1, reasons, &count, &err));
+    assert_int_equal(count, 1);
+    store_close(store, &err);
+}
+
+static void columns_are_found_by_name(void **state)
+{
+    (void)state;
+    const Layout layout = study_layout();
+    assert_int_equal(store_column(&layout, "scheme"), 2);
+    assert_int_equal(store_column(&layout, "coupler_omega_max_rad_s"), 4);
+    assert_int_equal(store_column(&layout, "evaluations"), 28);
+    assert_int_equal(store_column(&layout, "Scheme"), 29);
+}
+
+static void values_come_in_order_and_each_once(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Cell values[4];
+    size_t count = 0;
+    make_store(RUNS);
+    Store *store = store_view(path, &err);
+    assert_true(store_values(store, 2, 4, values, &count, &err));
+    assert_int_equal(count, 2);
+    assert_string_equal(values[0].word, "direct/plain/textbook");
+    assert_string_equal(values[1].word, "direct/staggered/impulse");
+    assert_true(store_values(store, 0, 4, values, &count, &err));
+    assert_int_equal(count, 5);
+    for (int i = 0; i < 4; i++) {
+        assert_near(values[i].number, 10.471975511965978 * (i + 1), 0.0);
+    }
+    store_close(store, &err);
+}
+
+// The numbers of a result over the runs that went well, in order; of all speeds or of one.
+static size_t list_values(size_t result, bool is_one_speed, double speed, double values[RUNS])
+{
+    const Layout layout = study_layout();
+    size_t count = 0;
+    for (uint64_t run = 0; run < RUNS; run++) {
+        const Record record = study_record(&layout, run);
+        if (record.fate == FATE_OK && (!is_one_speed || record.settings[0].number == speed)) {
+            values[count++] = record.results[result];
+        }
+    }
+    sorted_make(values, count);
+    return count;
+}
+
+static void expect_spread(const StoreSpread *spread, const double *values, size_t count)
+{
+    assert_int_equal(spread->count, count);
+    assert_near(spread->least, values[0], 0.0);
+    assert_near(spread->low, values[(size_t)ceil(0.05 * (double)count) - 1], 0.0);
+    assert_near(spread->median, values[(count + 1) / 2 - 1], 0.0);
+    assert_near(spread->high, values[(size_t)ceil(0.95 * (double)count) - 1], 0.0);
+    assert_near(spread->most, values[count - 1], 0.0);
+}
+
+static void quantiles_are_values_of_their_rank(void **state)
+{
+    (void)state;
+    Err err = {0};
+    double values[RUNS];
+    StoreSpread spread;
+    make_store(RUNS);
+    Store *store = store_view(path, &err);
+    // a real result, then a whole one
+    for (size_t result = 3; result < 25; result += 20) {
+        assert_true(store_spread(store, 4 + result, 0, NULL, &spread, &err));
+        expect_spread(&spread, values, list_values(result, false, 0.0, values));
+    }
+    const Cell speed = {.number = 10.471975511965978 * 2.0};
+    assert_true(store_spread(store, 9, 0, &speed, &spread, &err));
+    expect_spread(&spread, values, list_values(5, true, speed.number, values));
+    assert_true(spread.count < RUNS / 5);
+    Cell scheme;
+    strcpy(scheme.word, "no such scheme");
+    assert_true(store_spread(store, 9, 2, &scheme, &spread, &err));
+    assert_int_equal(spread.count, 0);
+    store_close(store, &err);
+}
+
+#define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        STORE_TEST(counts_are_those_of_the_rows),
+        STORE_TEST(an_empty_store_counts_nothing),
+        STORE_TEST(reasons_come_with_the_most_frequent_first),
+        cmocka_unit_test(columns_are_found_by_name),
+        STORE_TEST(values_come_in_order_and_each_once),
+        STORE_TEST(quantiles_are_values_of_their_rank),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
