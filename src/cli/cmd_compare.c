@@ -75,12 +75,12 @@ static bool check_points(const Ladder *ladder, Err *err)
 static bool compare_ladder(const CompareOptions *options, const Scenario *scenario, Ladder *ladder,
                            Err *err)
 {
-    Listening listening = {.progress = compare_progress_start(ladder, options->is_quiet)};
+    Listening listening = {.progress = compare_progress_start(ladder, options->common.is_quiet)};
     const Runner runner = {
         .ladder = ladder,
         .scenario = scenario,
-        .jobs = options->jobs,
-        .time_limit_s = options->time_limit_s,
+        .jobs = options->common.jobs,
+        .time_limit_s = options->common.time_limit_s,
         .listener = {keep_truth, keep_run, keep_ensemble, wait, &listening},
     };
     const bool is_run = compare_store_open(&listening.store, options, scenario, ladder, err) &&
@@ -92,7 +92,7 @@ static bool compare_ladder(const CompareOptions *options, const Scenario *scenar
     }
     ladder_conclude(ladder);
     const CompareReport report = {scenario, ladder, listening.store.machine};
-    print_report(&report, options->is_json);
+    print_report(&report, options->common.is_json);
     return compare_files_write(&report, options, err) && check_points(ladder, err);
 }
 
@@ -108,7 +108,7 @@ static void say_idle(const CompareOptions *options, const Scenario *scenario)
         whole->run.backends[i] = (BackendKind)i;
     }
     whole->ode.solver = ODE_QUICK;
-    idle_settings_say(whole, options->overrides, options->override_count);
+    idle_settings_say(whole, options->common.overrides, options->common.override_count);
     free(whole);
 }
 
@@ -116,11 +116,12 @@ static bool compare_case(const CompareOptions *options, Scenario *scenario, Err 
 {
     Ladder *ladder = NULL;
     bool is_done =
-        casefile_load(options->path, options->overrides, options->override_count, scenario, err) &&
+        casefile_load(options->common.path, options->common.overrides,
+                      options->common.override_count, scenario, err) &&
         compare_options_ladder(options, scenario, &ladder, err) &&
-        (options->folder == NULL || run_files_make_folder(options->folder, err)) &&
+        (options->common.folder == NULL || run_files_make_folder(options->common.folder, err)) &&
         compare_files_probe(scenario, options, err);
-    if (is_done && !options->is_quiet) {
+    if (is_done && !options->common.is_quiet) {
         say_idle(options, scenario);
     }
     is_done = is_done && compare_ladder(options, scenario, ladder, err);

@@ -84,7 +84,7 @@ static bool make_penalty(const MapOptions *options, const Scenario *scenario, Te
 static void say_hint(const MapOptions *options, const Scenario *scenario)
 {
     PrintedPin pin;
-    if (!options->with_penalty && !options->is_quiet && scenario->has_fourbar &&
+    if (!options->with_penalty && !options->common.is_quiet && scenario->has_fourbar &&
         penalty_map_fits(scenario, &pin)) {
         fprintf(stderr, "--penalty adds the paper's penalty parameter over its 15 speeds\n");
     }
@@ -94,11 +94,12 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario, Er
 {
     MappingSettings settings;
     if (!map_options_settings(options, scenario, &settings, err) ||
-        (options->folder != NULL && !run_files_make_folder(options->folder, err)) ||
+        (options->common.folder != NULL && !run_files_make_folder(options->common.folder, err)) ||
         !map_files_probe(scenario, options, err)) {
         return false;
     }
-    Telling telling = {status_line_start(options->is_quiet), clock_now_s(), "the reference's run"};
+    Telling telling = {status_line_start(options->common.is_quiet), clock_now_s(),
+                       "the reference's run"};
     const MappingWatch watch = {tell_row, {tell_run, &telling}, &telling};
     Mapping mapping = {0};
     PenaltyMap *penalty = NULL;
@@ -107,7 +108,7 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario, Er
     status_line_end(&telling.line);
     if (is_done) {
         const MappingReport report = {scenario, &mapping, penalty};
-        print_report(&report, options->is_json);
+        print_report(&report, options->common.is_json);
         is_done = map_files_write(&report, options, err);
         say_hint(options, scenario);
     }
@@ -125,7 +126,7 @@ static bool add_masses(const MapOptions *options, const Scenario *scenario, Inve
         !option_values_read_quantity("mass", options->mass, DIMENSION_MASS, &mass, err)) {
         return false;
     }
-    if (mass > 0.0 || options->path == NULL) {
+    if (mass > 0.0 || options->common.path == NULL) {
         inverse_add_mass(inverse, "", mass);
         return true;
     }
@@ -155,7 +156,7 @@ static bool read_row(const MapOptions *options, const Scenario *scenario, Err *e
                        ? inverse_of_pair(options->kp, options->kd, options->step_s, inverse, err)
                        : inverse_of_row(options->erp, options->cfm, options->step_s, inverse, err);
     is_read = is_read && add_masses(options, scenario, inverse, err);
-    if (is_read && options->is_json) {
+    if (is_read && options->common.is_json) {
         output_json(mapping_inverse_json(inverse));
     } else if (is_read) {
         Text text;
@@ -176,10 +177,11 @@ static bool map_run(int argc, char **argv, Err *err)
     }
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
-    bool is_done = options.path == NULL || casefile_load(options.path, options.overrides,
-                                                         options.override_count, scenario, err);
-    if (is_done && options.path != NULL && !options.is_quiet) {
-        idle_settings_say(scenario, options.overrides, options.override_count);
+    bool is_done =
+        options.common.path == NULL || casefile_load(options.common.path, options.common.overrides,
+                                                     options.common.override_count, scenario, err);
+    if (is_done && options.common.path != NULL && !options.common.is_quiet) {
+        idle_settings_say(scenario, options.common.overrides, options.common.override_count);
     }
     is_done = is_done && (options.is_inverse ? read_row(&options, scenario, err)
                                              : map_scenario(&options, scenario, err));

@@ -49,7 +49,7 @@ static bool run(int argc, char **argv, Err *err)
     if (!study_options_read(argc, argv, &options, &is_answered, err) || is_answered) {
         return err->kind == ERR_NONE;
     }
-    return check_word(options.path, err) && study_run(&options, err);
+    return check_word(options.common.path, err) && study_run(&options, err);
 }
 
 const Command cmd_study = {

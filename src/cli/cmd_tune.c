@@ -73,13 +73,14 @@ static bool check_met(const TuneReport *report, Err *err)
 
 static bool search(const TuneOptions *options, const Scenario *scenario, Tune *tune, Err *err)
 {
-    Watching watching = {
-        .tune = tune, .line = status_line_start(options->is_quiet), .started_s = clock_now_s()};
+    Watching watching = {.tune = tune,
+                         .line = status_line_start(options->common.is_quiet),
+                         .started_s = clock_now_s()};
     const TuneSearch work = {
         .tune = tune,
         .scenario = scenario,
-        .jobs = options->jobs,
-        .time_limit_s = options->time_limit_s,
+        .jobs = options->common.jobs,
+        .time_limit_s = options->common.time_limit_s,
         .wait = wait,
         .context = &watching,
     };
@@ -97,11 +98,11 @@ static void say_idle(const TuneOptions *options, const Scenario *scenario)
     *whole = *scenario;
     // the search tries both solvers, whatever the case says
     whole->ode.solver = ODE_QUICK;
-    idle_settings_say(whole, options->overrides, options->override_count);
+    idle_settings_say(whole, options->common.overrides, options->common.override_count);
     free(whole);
-    for (size_t i = 0; i < options->override_count; i++) {
-        if (tune_setting_replaces(options->overrides[i])) {
-            const char *given = options->overrides[i];
+    for (size_t i = 0; i < options->common.override_count; i++) {
+        if (tune_setting_replaces(options->common.overrides[i])) {
+            const char *given = options->common.overrides[i];
             fprintf(stderr, "without effect: %.*s (it is what tune searches for)\n",
                     (int)strcspn(given, "="), given);
         }
@@ -112,18 +113,19 @@ static bool tune_case(const TuneOptions *options, Scenario *scenario, Err *err)
 {
     Tune *tune = NULL;
     bool is_done =
-        casefile_load(options->path, options->overrides, options->override_count, scenario, err) &&
+        casefile_load(options->common.path, options->common.overrides,
+                      options->common.override_count, scenario, err) &&
         tune_options_search(options, scenario, &tune, err) &&
-        (options->folder == NULL || run_files_make_folder(options->folder, err)) &&
+        (options->common.folder == NULL || run_files_make_folder(options->common.folder, err)) &&
         tune_files_probe(scenario, options, err);
-    if (is_done && !options->is_quiet) {
+    if (is_done && !options->common.is_quiet) {
         say_idle(options, scenario);
     }
     is_done = is_done && search(options, scenario, tune, err);
     if (is_done) {
-        const TuneReport report = {scenario, tune, options->overrides, options->override_count,
-                                   options->time_limit_s};
-        print_report(&report, options->is_json);
+        const TuneReport report = {scenario, tune, options->common.overrides,
+                                   options->common.override_count, options->common.time_limit_s};
+        print_report(&report, options->common.is_json);
         is_done = tune_files_write(&report, options, err) && check_met(&report, err);
     }
     tune_destroy(tune);

@@ -58,7 +58,7 @@ static bool find_path(const CompareOptions *options, const Scenario *scenario, c
     char name[SCENARIO_PATH_SIZE];
     case_run_name(scenario, name, sizeof name);
     const int length =
-        snprintf(path, FILE_PATH_SIZE, "%s/%s-compare.%s", options->folder, name, ending);
+        snprintf(path, FILE_PATH_SIZE, "%s/%s-compare.%s", options->common.folder, name, ending);
     return (length >= 0 && length < FILE_PATH_SIZE) ||
            err_set(err, ERR_FILE, "the path of %s-compare.%s is too long", name, ending);
 }
@@ -70,7 +70,7 @@ static bool write_folder(const CompareReport *report, const CompareOptions *opti
     char path[FILE_PATH_SIZE];
     for (int i = 0; i < ENDING_COUNT; i++) {
         if (!find_path(options, report->scenario, ENDINGS[i], path, err) ||
-            !WRITERS[i](report, path, options->is_quiet, err)) {
+            !WRITERS[i](report, path, options->common.is_quiet, err)) {
             return false;
         }
     }
@@ -83,7 +83,7 @@ bool compare_files_probe(const Scenario *scenario, const CompareOptions *options
         (options->plot != NULL && !file_probe(options->plot, err))) {
         return false;
     }
-    for (int i = 0; options->folder != NULL && i < ENDING_COUNT; i++) {
+    for (int i = 0; options->common.folder != NULL && i < ENDING_COUNT; i++) {
         char path[FILE_PATH_SIZE];
         if (!find_path(options, scenario, ENDINGS[i], path, err) || !file_probe(path, err)) {
             return false;
@@ -94,8 +94,8 @@ bool compare_files_probe(const Scenario *scenario, const CompareOptions *options
 
 bool compare_files_write(const CompareReport *report, const CompareOptions *options, Err *err)
 {
-    const bool is_quiet = options->is_quiet;
+    const bool is_quiet = options->common.is_quiet;
     return (options->csv == NULL || write_csv(report, options->csv, is_quiet, err)) &&
            (options->plot == NULL || write_plot(report, options->plot, is_quiet, err)) &&
-           (options->folder == NULL || write_folder(report, options, err));
+           (options->common.folder == NULL || write_folder(report, options, err));
 }

@@ -7,18 +7,11 @@
 
 enum {
     KEY_STEPS = 0x200, // options without a letter of their own
-    KEY_SCHEMES,
     KEY_REPEATS,
-    KEY_JOBS,
-    KEY_SET,
-    KEY_TIME_LIMIT,
     KEY_STORE,
     KEY_FRESH,
-    KEY_JSON,
     KEY_CSV,
     KEY_PLOT,
-    KEY_OUT,
-    KEY_QUIET = 'q',
 };
 
 // three decades, from where a steel contact is hardly seen; the fine end is thinner, for it costs
@@ -30,35 +23,22 @@ static const double DEFAULT_TIME_LIMIT = 600.0; // s: some hundred times the lon
 static const struct argp_option OPTIONS[] = {
     {"steps", KEY_STEPS, "LIST", 0, "The steps, such as '10 us, 3 us, 1 us' (default: 30 to 0.03)",
      1},
-    {"schemes", KEY_SCHEMES, "LIST", 0,
-     "Only these schemes of ODE: 'direct/corrected' is every one with both words, 'all' every one",
-     1},
-    {"set", KEY_SET, "KEY=VALUE", 0,
-     "Replace a value of the case, such as contact.restitution=0.8; may be given often", 1},
+    COMMON_ROW_SCHEMES(1),
+    COMMON_ROW_SET(1),
     {"repeats", KEY_REPEATS, "N", 0, "Timing runs of each point, at least 5 (default: 5)", 2},
-    {"jobs", KEY_JOBS, "N", 0,
+    {"jobs", COMMON_JOBS, "N", 0,
      "Error runs at a time (default: one a core); timing runs always go one by one", 2},
-    {"time-limit", KEY_TIME_LIMIT, "TIME", 0, "A run that takes longer has failed (default: 600 s)",
-     2},
+    {"time-limit", COMMON_TIME_LIMIT, "TIME", 0,
+     "A run that takes longer has failed (default: 600 s)", 2},
     {"store", KEY_STORE, "FILE", 0, "Keep finished runs here and take them from here", 2},
     {"fresh", KEY_FRESH, NULL, 0, "Forget what the store holds", 2},
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 3},
+    COMMON_ROW_JSON(3),
     {"csv", KEY_CSV, "FILE.csv", 0, "Write a row a point", 3},
     {"plot", KEY_PLOT, "FILE.svg", 0, "Draw error over wall time", 3},
-    {"out", KEY_OUT, "DIR", 0, "Write <case>-compare.json, .txt, .csv and .svg there", 3},
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 3},
+    {"out", COMMON_OUT, "DIR", 0, "Write <case>-compare.json, .txt, .csv and .svg there", 3},
+    COMMON_ROW_QUIET(3),
     {0},
 };
-
-static bool take_case(CompareOptions *options, const char *path, Err *err)
-{
-    if (options->path != NULL) {
-        return err_set(err, ERR_USAGE, "compare takes one case, not %s and %s", options->path,
-                       path);
-    }
-    options->path = path;
-    return true;
-}
 
 static bool take_option(int key, const char *value, void *target, Err *err)
 {
@@ -67,27 +47,14 @@ static bool take_option(int key, const char *value, void *target, Err *err)
     case KEY_STEPS:
         options->steps = value;
         return true;
-    case KEY_SCHEMES:
-        options->schemes = value;
-        return true;
-    case KEY_SET:
-        return option_values_take_setting(value, options->overrides, &options->override_count, err);
     case KEY_REPEATS:
         return option_values_read_count("repeats", value, LADDER_REPEAT_LEAST, LADDER_REPEAT_MAX,
                                         &options->repeats, err);
-    case KEY_JOBS:
-        return option_values_read_count("jobs", value, 1, option_values_count_cores(),
-                                        &options->jobs, err);
-    case KEY_TIME_LIMIT:
-        return option_values_read_time("time-limit", value, &options->time_limit_s, err);
     case KEY_STORE:
         options->store = value;
         return true;
     case KEY_FRESH:
         options->is_fresh = true;
-        return true;
-    case KEY_JSON:
-        options->is_json = true;
         return true;
     case KEY_CSV:
         options->csv = value;
@@ -95,14 +62,10 @@ static bool take_option(int key, const char *value, void *target, Err *err)
     case KEY_PLOT:
         options->plot = value;
         return true;
-    case KEY_OUT:
-        options->folder = value;
-        return true;
-    case KEY_QUIET:
-        options->is_quiet = true;
-        return true;
+    case ARGP_KEY_ARG:
+        return common_options_take_path(value, &options->common, "compare takes one case", err);
     default:
-        return take_case(options, value, err);
+        return common_options_take(key, value, &options->common, err);
     }
 }
 
@@ -120,8 +83,8 @@ bool compare_options_read(int argc, char **argv, CompareOptions *options, bool *
         .take = take_option,
     };
     *options = (CompareOptions){.repeats = LADDER_REPEAT_LEAST,
-                                .jobs = option_values_count_cores(),
-                                .time_limit_s = DEFAULT_TIME_LIMIT};
+                                .common.jobs = option_values_count_cores(),
+                                .common.time_limit_s = DEFAULT_TIME_LIMIT};
     if (!arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err)) {
         return false;
     }
@@ -131,14 +94,14 @@ bool compare_options_read(int argc, char **argv, CompareOptions *options, bool *
     if (file_is_same(options->csv, options->plot)) {
         return err_set(err, ERR_USAGE, "--csv and --plot would both write %s", options->plot);
     }
-    return options->path != NULL ||
+    return options->common.path != NULL ||
            err_set(err, ERR_USAGE, "no case given: jointplay compare CASE.yaml");
 }
 
 static bool check_step(const CompareOptions *options, double step_s, Err *err)
 {
-    return option_values_check_step(options->path, options->overrides, options->override_count,
-                                    step_s, err);
+    return option_values_check_step(options->common.path, options->common.overrides,
+                                    options->common.override_count, step_s, err);
 }
 
 static bool read_steps(const CompareOptions *options, double *steps, size_t *count, Err *err)
@@ -177,12 +140,10 @@ bool compare_options_ladder(const CompareOptions *options, const Scenario *scena
         return false;
     }
     Scheme schemes[SCHEME_MAX];
-    size_t scheme_count = scheme_list(scenario, schemes);
+    size_t scheme_count;
     double steps[LADDER_STEP_MAX];
     size_t step_count;
-    if (options->schemes == NULL) {
-        scheme_keep_usual(schemes, &scheme_count);
-    } else if (!scheme_filter(options->schemes, schemes, &scheme_count, err)) {
+    if (!common_options_list_schemes(&options->common, scenario, schemes, &scheme_count, err)) {
         return false;
     }
     if (options->steps == NULL) {

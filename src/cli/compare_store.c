@@ -102,7 +102,7 @@ bool compare_store_open(CompareStore *store, const CompareOptions *options,
         journal_open(&store->journal, options->store != NULL ? options->store : path, key,
                      options->is_fresh, err);
     json_decref(key);
-    return is_open && take_all(store, ladder, options->is_quiet, err);
+    return is_open && take_all(store, ladder, options->common.is_quiet, err);
 }
 
 bool compare_store_keep_truth(const LadderTruth *truth, void *context, Err *err)

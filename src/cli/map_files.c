@@ -63,7 +63,7 @@ static bool find_path(const MapOptions *options, const Scenario *scenario, const
     char name[SCENARIO_PATH_SIZE];
     case_run_name(scenario, name, sizeof name);
     const int length =
-        snprintf(path, FILE_PATH_SIZE, "%s/%s-map.%s", options->folder, name, ending);
+        snprintf(path, FILE_PATH_SIZE, "%s/%s-map.%s", options->common.folder, name, ending);
     return (length >= 0 && length < FILE_PATH_SIZE) ||
            err_set(err, ERR_FILE, "the path of %s-map.%s is too long", name, ending);
 }
@@ -74,7 +74,7 @@ bool map_files_probe(const Scenario *scenario, const MapOptions *options, Err *e
         (options->plot != NULL && !file_probe(options->plot, err))) {
         return false;
     }
-    for (int i = 0; options->folder != NULL && i < MEMBER_COUNT; i++) {
+    for (int i = 0; options->common.folder != NULL && i < MEMBER_COUNT; i++) {
         char path[FILE_PATH_SIZE];
         if (!find_path(options, scenario, MEMBERS[i].ending, path, err) || !file_probe(path, err)) {
             return false;
@@ -85,12 +85,12 @@ bool map_files_probe(const Scenario *scenario, const MapOptions *options, Err *e
 
 bool map_files_write(const MappingReport *report, const MapOptions *options, Err *err)
 {
-    const bool is_quiet = options->is_quiet;
+    const bool is_quiet = options->common.is_quiet;
     if ((options->csv != NULL && !write_csv(report, options->csv, is_quiet, err)) ||
         (options->plot != NULL && !write_plot(report, options->plot, is_quiet, err))) {
         return false;
     }
-    for (int i = 0; options->folder != NULL && i < MEMBER_COUNT; i++) {
+    for (int i = 0; options->common.folder != NULL && i < MEMBER_COUNT; i++) {
         char path[FILE_PATH_SIZE];
         if (!find_path(options, report->scenario, MEMBERS[i].ending, path, err) ||
             !MEMBERS[i].write(report, path, is_quiet, err)) {

@@ -14,18 +14,14 @@ enum {
     KEY_LAWS,
     KEY_MASS,
     KEY_SPEED,
-    KEY_SET,
     KEY_PENALTY,
     KEY_ERP,
     KEY_CFM,
     KEY_KP,
     KEY_KD,
     KEY_STEP,
-    KEY_JSON,
     KEY_CSV,
     KEY_PLOT,
-    KEY_OUT,
-    KEY_QUIET = 'q',
 };
 
 enum { PART_SIZE = 64 };
@@ -43,8 +39,7 @@ static const struct argp_option OPTIONS[] = {
      "The effective mass: 'median' (default) or 'most' of the case's run, or such as '0.1 kg'", 1},
     {"speed", KEY_SPEED, "SPEED", 0,
      "The closing speed: 'median' (default) or 'most' of the case's contacts, or '0.1 m/s'", 1},
-    {"set", KEY_SET, "KEY=VALUE", 0,
-     "Replace a value of the case, such as contact.restitution=0.8; may be given often", 1},
+    COMMON_ROW_SET(1),
     {"penalty", KEY_PENALTY, NULL, 0,
      "Also the paper's penalty parameter over its 15 speeds, read both ways", 1},
     {"erp", KEY_ERP, "X", 0, "With --cfm and --step: which spring and damper is that?", 2},
@@ -53,11 +48,11 @@ static const struct argp_option OPTIONS[] = {
     {"kd", KEY_KD, "C", 0, "The damper of --kp, such as '10 N s/m'", 2},
     {"step", KEY_STEP, "TIME", 0, "The step of --erp or --kp; else the only step of the mapping",
      2},
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 3},
+    COMMON_ROW_JSON(3),
     {"csv", KEY_CSV, "FILE.csv", 0, "Write a row a joint, law, map and step", 3},
     {"plot", KEY_PLOT, "FILE.svg", 0, "Draw the errors of restitution and peak force", 3},
-    {"out", KEY_OUT, "DIR", 0, "Write <case>-map.txt, .csv, .svg and .json there", 3},
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 3},
+    {"out", COMMON_OUT, "DIR", 0, "Write <case>-map.txt, .csv, .svg and .json there", 3},
+    COMMON_ROW_QUIET(3),
     {0},
 };
 
@@ -99,15 +94,6 @@ static bool read_kd(const char *text, MapOptions *options, Err *err)
     return true;
 }
 
-static bool take_case(MapOptions *options, const char *path, Err *err)
-{
-    if (options->path != NULL) {
-        return err_set(err, ERR_USAGE, "map takes one case, not %s and %s", options->path, path);
-    }
-    options->path = path;
-    return true;
-}
-
 // Of the options that are kept as they are written; NULL for any other.
 static const char **place_of(MapOptions *options, int key)
 {
@@ -126,8 +112,6 @@ static const char **place_of(MapOptions *options, int key)
         return &options->csv;
     case KEY_PLOT:
         return &options->plot;
-    case KEY_OUT:
-        return &options->folder;
     default:
         return NULL;
     }
@@ -142,8 +126,6 @@ static bool take_option(int key, const char *value, void *target, Err *err)
         return true;
     }
     switch (key) {
-    case KEY_SET:
-        return option_values_take_setting(value, options->overrides, &options->override_count, err);
     case KEY_PENALTY:
         options->with_penalty = true;
         return true;
@@ -157,14 +139,10 @@ static bool take_option(int key, const char *value, void *target, Err *err)
         return read_kd(value, options, err);
     case KEY_STEP:
         return option_values_read_time("step", value, &options->step_s, err);
-    case KEY_JSON:
-        options->is_json = true;
-        return true;
-    case KEY_QUIET:
-        options->is_quiet = true;
-        return true;
+    case ARGP_KEY_ARG:
+        return common_options_take_path(value, &options->common, "map takes one case", err);
     default:
-        return take_case(options, value, err);
+        return common_options_take(key, value, &options->common, err);
     }
 }
 
@@ -191,7 +169,7 @@ static bool check_inverse(const MapOptions *options, Err *err)
     }
     if (options->steps != NULL || options->maps != NULL || options->laws != NULL ||
         options->speed != NULL || options->with_penalty || options->csv != NULL ||
-        options->plot != NULL || options->folder != NULL) {
+        options->plot != NULL || options->common.folder != NULL) {
         return err_set(err, ERR_USAGE,
                        "--%s reads one row: of the other options only --step, --mass, --set, "
                        "--json and --quiet go with it",
@@ -230,7 +208,7 @@ bool map_options_read(int argc, char **argv, MapOptions *options, bool *is_answe
     if (file_is_same(options->csv, options->plot)) {
         return err_set(err, ERR_USAGE, "--csv and --plot would both write %s", options->plot);
     }
-    return options->path != NULL ||
+    return options->common.path != NULL ||
            err_set(err, ERR_USAGE,
                    "no case given: jointplay map CASE.yaml, or --erp X --cfm Y --step TIME");
 }

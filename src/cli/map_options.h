@@ -1,14 +1,12 @@
 // What `jointplay map` was asked for.
 #pragma once
 
-#include "cli/option_values.h"
+#include "cli/common_options.h"
 #include "compare/mapping.h"
 
 typedef struct MapOptions {
-    const char *path; // of the case; NULL where a row alone is to be read
-    const char *overrides[OPTION_SETTING_MAX];
-    size_t override_count;
-    const char *steps; // as given, or NULL; likewise the next four
+    CommonOptions common; // without a path where a row alone is to be read
+    const char *steps;    // as given, or NULL; likewise the next four
     const char *maps;
     const char *laws;
     const char *mass;
@@ -20,11 +18,8 @@ typedef struct MapOptions {
     double erp, cfm;       // 1, m/(N s)
     double kp, kd;         // N/m, N s/m
     double step_s;         // of --step; 0 where it was not given
-    bool is_json;
     const char *csv;
     const char *plot;
-    const char *folder;
-    bool is_quiet;
 } MapOptions;
 
 // Reads the command line; where help was asked for it is printed and *is_answered is true.

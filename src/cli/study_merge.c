@@ -1,7 +1,9 @@
 // How do the shards of a study become one store?
 #include "cli/arguments.h"
+#include "cli/common_options.h"
 #include "cli/study_commands.h"
 #include "cli/study_place.h"
+#include "cli/study_words.h"
 #include "study/store.h"
 
 #include <assert.h>
@@ -11,30 +13,10 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { KEY_QUIET = 'q' };
-
-typedef struct MergeOptions {
-    size_t count;
-    const char **words; // owned; a study file alone, or a store and those that go into it
-    bool is_quiet;
-} MergeOptions;
-
 static const struct argp_option OPTIONS[] = {
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 1},
+    COMMON_ROW_QUIET(1),
     {0},
 };
-
-static bool take_option(int key, const char *value, void *target, Err *err)
-{
-    (void)err;
-    MergeOptions *options = target;
-    if (key == KEY_QUIET) {
-        options->is_quiet = true;
-    } else {
-        options->words[options->count++] = value;
-    }
-    return true;
-}
 
 // What there is in a store now.
 static bool say_count(const char *path, uint64_t added, bool is_quiet, Err *err)
@@ -113,17 +95,18 @@ static bool merge_study(const char *study, bool is_quiet, Err *err)
     return merge_shards(study, shards, target, is_quiet, err);
 }
 
-static bool merge_words(const MergeOptions *options, Err *err)
+// A study file alone, or a store and those that go into it.
+static bool merge_words(const StudyWords *words, Err *err)
 {
-    if (options->count == 1 && study_place_is_study(options->words[0])) {
-        return merge_study(options->words[0], options->is_quiet, err);
+    if (words->count == 1 && study_place_is_study(words->words[0])) {
+        return merge_study(words->words[0], words->is_quiet, err);
     }
-    if (options->count < 2 || study_place_is_study(options->words[0])) {
+    if (words->count < 2 || study_place_is_study(words->words[0])) {
         return err_set(err, ERR_USAGE,
                        "nothing to merge given: jointplay study merge STUDY.yaml, or "
                        "jointplay study merge OUT.sqlite IN.sqlite...");
     }
-    return merge(options->words[0], options->words + 1, options->count - 1, options->is_quiet, err);
+    return merge(words->words[0], words->words + 1, words->count - 1, words->is_quiet, err);
 }
 
 static bool run(int argc, char **argv, Err *err)
@@ -136,15 +119,9 @@ static bool run(int argc, char **argv, Err *err)
                "\vRuns that are there already are left alone. Stores of different studies or "
                "programs are refused, and nothing is written then.",
         .options = OPTIONS,
-        .take = take_option,
+        .take = study_words_take,
     };
-    MergeOptions options = {.words = calloc((size_t)argc, sizeof *options.words)};
-    assert(options.words != NULL);
-    bool is_answered;
-    const bool is_done = arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) &&
-                         (is_answered || merge_words(&options, err));
-    free(options.words);
-    return is_done;
+    return study_words_run(&ARGUMENTS, argc, argv, merge_words, err);
 }
 
 const Command study_command_merge = {

@@ -11,28 +11,25 @@
 #include <string.h>
 
 enum {
-    KEY_JOBS = 0x200, // options without a letter of their own
-    KEY_SHARD,
+    KEY_SHARD = 0x200, // options without a letter of their own
     KEY_STORE,
     KEY_FRESH,
     KEY_RETRY,
     KEY_DRY,
-    KEY_JSON,
-    KEY_QUIET = 'q',
 };
 
 enum { NUMBER_SIZE = 24 };
 
 static const struct argp_option OPTIONS[] = {
-    {"jobs", KEY_JOBS, "N", 0, "Runs at a time (default: one a core)", 1},
+    {"jobs", COMMON_JOBS, "N", 0, "Runs at a time (default: one a core)", 1},
     {"shard", KEY_SHARD, "I/N", 0, "Only the I-th of N parts, into a store of its own", 1},
     {"store", KEY_STORE, "FILE", 0,
      "Keep the runs there (default: <study>.sqlite in the working folder)", 1},
     {"fresh", KEY_FRESH, NULL, 0, "Forget what the store holds", 1},
     {"retry-failed", KEY_RETRY, NULL, 0, "Make the runs again that failed", 1},
     {"dry-run", KEY_DRY, NULL, 0, "Say what would be run, and run nothing", 2},
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 2},
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 2},
+    COMMON_ROW_JSON(2),
+    COMMON_ROW_QUIET(2),
     {0},
 };
 
@@ -56,15 +53,6 @@ bool study_options_read_shard(const char *text, Shard *shard, Err *err)
     return true;
 }
 
-static bool take_study(StudyOptions *options, const char *path, Err *err)
-{
-    if (options->path != NULL) {
-        return err_set(err, ERR_USAGE, "study takes one file, not %s and %s", options->path, path);
-    }
-    options->path = path;
-    return true;
-}
-
 static bool take_store(StudyOptions *options, const char *path, Err *err)
 {
     return snprintf(options->store, sizeof options->store, "%s", path) <
@@ -76,8 +64,9 @@ static bool take_option(int key, const char *value, void *target, Err *err)
 {
     StudyOptions *options = target;
     switch (key) {
-    case KEY_JOBS:
-        return option_values_read_count("jobs", value, 1, SWEEP_JOB_MAX, &options->jobs, err);
+    case COMMON_JOBS:
+        return option_values_read_count("jobs", value, 1, SWEEP_JOB_MAX, &options->common.jobs,
+                                        err);
     case KEY_SHARD:
         return study_options_read_shard(value, &options->shard, err);
     case KEY_STORE:
@@ -91,14 +80,10 @@ static bool take_option(int key, const char *value, void *target, Err *err)
     case KEY_DRY:
         options->is_dry = true;
         return true;
-    case KEY_JSON:
-        options->is_json = true;
-        return true;
-    case KEY_QUIET:
-        options->is_quiet = true;
-        return true;
+    case ARGP_KEY_ARG:
+        return common_options_take_path(value, &options->common, "study takes one file", err);
     default:
-        return take_study(options, value, err);
+        return common_options_take(key, value, &options->common, err);
     }
 }
 
@@ -116,15 +101,15 @@ bool study_options_read(int argc, char **argv, StudyOptions *options, bool *is_a
         .take = take_option,
     };
     const size_t cores = option_values_count_cores();
-    *options =
-        (StudyOptions){.jobs = cores < SWEEP_JOB_MAX ? cores : SWEEP_JOB_MAX, .shard = {0, 1}};
+    *options = (StudyOptions){.common.jobs = cores < SWEEP_JOB_MAX ? cores : SWEEP_JOB_MAX,
+                              .shard = {0, 1}};
     if (!arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err)) {
         return false;
     }
     if (*is_answered) {
         return true;
     }
-    if (options->path == NULL) {
+    if (options->common.path == NULL) {
         return err_set(err, ERR_USAGE, "no study given: jointplay study STUDY.yaml");
     }
     if (options->is_fresh && options->is_retrying) {
@@ -133,5 +118,5 @@ bool study_options_read(int argc, char **argv, StudyOptions *options, bool *is_a
                        "one of them, not both");
     }
     return options->store[0] != '\0' ||
-           study_place_store(options->path, options->shard, options->store, err);
+           study_place_store(options->common.path, options->shard, options->store, err);
 }

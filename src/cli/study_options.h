@@ -2,19 +2,17 @@
 #pragma once
 
 #include "base/err.h"
+#include "cli/common_options.h"
 #include "report/file.h"
 #include "study/design.h"
 
 typedef struct StudyOptions {
-    const char *path; // of the study file
-    size_t jobs;
+    CommonOptions common; // its path that of the study file
     Shard shard;
     char store[FILE_PATH_SIZE]; // as given, or the usual one
     bool is_fresh;
     bool is_retrying;
     bool is_dry;
-    bool is_json;
-    bool is_quiet;
 } StudyOptions;
 
 // Reads the command line; where help was asked for it is printed and *is_answered is true.

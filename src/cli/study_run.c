@@ -111,7 +111,7 @@ static bool prepare_store(const StudyOptions *options, Store *store, Err *err)
     if (options->is_retrying && !store_forget_failed(store, &forgotten, err)) {
         return false;
     }
-    if (options->is_retrying && !options->is_quiet) {
+    if (options->is_retrying && !options->common.is_quiet) {
         fprintf(stderr, "making %" PRIu64 " failed runs again\n", forgotten);
     }
     return true;
@@ -124,12 +124,12 @@ static bool sweep(const StudyOptions *options, const Spec *spec, const Layout *l
     StudyKey *key = malloc(sizeof *key);
     assert(key != NULL);
     key_make(spec, layout, key);
-    StatusLine line = status_line_start(options->is_quiet);
+    StatusLine line = status_line_start(options->common.is_quiet);
     Sweep order = {
         .spec = spec,
         .layout = layout,
         .shard = options->shard,
-        .jobs = options->jobs,
+        .jobs = options->common.jobs,
         .store = store_open(options->store, &key->head, options->is_fresh, err),
         .tell = tell,
         .should_stop = should_stop,
@@ -156,14 +156,16 @@ static double cpu_time(int who)
 
 static bool make_runs(const StudyOptions *options, const Spec *spec, const Layout *layout, Err *err)
 {
-    StudyReport report = {
-        .spec = spec, .store = options->store, .shard = options->shard, .jobs = options->jobs};
+    StudyReport report = {.spec = spec,
+                          .store = options->store,
+                          .shard = options->shard,
+                          .jobs = options->common.jobs};
     SweepEnd end;
     if (!sweep(options, spec, layout, &end, &report.state, err)) {
         return false;
     }
     if (end == SWEEP_STOPPED) {
-        if (!options->is_quiet) {
+        if (!options->common.is_quiet) {
             fprintf(stderr,
                     "stopped; %" PRIu64 " of %" PRIu64 " runs are kept in %s, and the same "
                     "command goes on from there\n",
@@ -174,7 +176,7 @@ static bool make_runs(const StudyOptions *options, const Spec *spec, const Layou
     }
     report.children_cpu_s = cpu_time(RUSAGE_CHILDREN);
     report.own_cpu_s = cpu_time(RUSAGE_SELF);
-    return print_report(&report, options->is_json, err) && check_runs(&report, err);
+    return print_report(&report, options->common.is_json, err) && check_runs(&report, err);
 }
 
 bool study_run(const StudyOptions *options, Err *err)
@@ -182,7 +184,8 @@ bool study_run(const StudyOptions *options, Err *err)
     Spec *spec = calloc(1, sizeof *spec);
     Layout *layout = calloc(1, sizeof *layout);
     assert(spec != NULL && layout != NULL);
-    const bool is_done = spec_read(options->path, spec, err) && find_layout(spec, layout, err) &&
+    const bool is_done = spec_read(options->common.path, spec, err) &&
+                         find_layout(spec, layout, err) &&
                          (options->is_dry ? study_run_dry(options, spec, layout, err)
                                           : make_runs(options, spec, layout, err));
     spec_finish(spec);

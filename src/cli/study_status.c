@@ -3,17 +3,13 @@
 #include "cli/output.h"
 #include "cli/study_commands.h"
 #include "cli/study_place.h"
+#include "cli/study_words.h"
 #include "report/study_text.h"
 
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-typedef struct StatusOptions {
-    size_t count;
-    const char **words; // owned; the words themselves are the command line's
-} StatusOptions;
 
 // Stores of one study, whether they are there or not.
 typedef struct Parts {
@@ -23,15 +19,6 @@ typedef struct Parts {
 } Parts;
 
 static const struct argp_option OPTIONS[] = {{0}};
-
-static bool take_word(int key, const char *value, void *target, Err *err)
-{
-    (void)key;
-    (void)err;
-    StatusOptions *options = target;
-    options->words[options->count++] = value;
-    return true;
-}
 
 // Adds a store; one that is not there holds nothing yet. `wanted` is 0 where only it knows.
 static bool add_part(Parts *parts, const char *path, uint64_t wanted, Err *err)
@@ -110,12 +97,15 @@ static bool print_parts(const Parts *parts, Err *err)
     return is_written;
 }
 
-static bool tell(const StatusOptions *options, Err *err)
+static bool tell(const StudyWords *words, Err *err)
 {
+    if (words->count == 0) {
+        return err_set(err, ERR_USAGE, "no study given: jointplay study status STUDY.yaml");
+    }
     bool is_told = true;
-    for (size_t i = 0; i < options->count && is_told; i++) {
+    for (size_t i = 0; i < words->count && is_told; i++) {
         Parts parts = {0};
-        const char *word = options->words[i];
+        const char *word = words->words[i];
         is_told = (study_place_is_study(word) ? add_study(&parts, word, err)
                                               : add_part(&parts, word, 0, err)) &&
                   print_parts(&parts, err);
@@ -132,19 +122,9 @@ static bool run(int argc, char **argv, Err *err)
         .doc = "Says how far a study has come: of a study file, by the usual names of its stores "
                "in the working folder. It may be at work at the time.",
         .options = OPTIONS,
-        .take = take_word,
+        .take = study_words_take,
     };
-    StatusOptions options = {.words = calloc((size_t)argc, sizeof *options.words)};
-    assert(options.words != NULL);
-    bool is_answered;
-    bool is_done = arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err);
-    if (is_done && !is_answered) {
-        is_done = options.count > 0 ? tell(&options, err)
-                                    : err_set(err, ERR_USAGE,
-                                              "no study given: jointplay study status STUDY.yaml");
-    }
-    free(options.words);
-    return is_done;
+    return study_words_run(&ARGUMENTS, argc, argv, tell, err);
 }
 
 const Command study_command_status = {

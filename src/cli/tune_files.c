@@ -83,7 +83,7 @@ static bool find_path(const TuneOptions *options, const Scenario *scenario, cons
     char name[SCENARIO_PATH_SIZE];
     case_run_name(scenario, name, sizeof name);
     const int length =
-        snprintf(path, FILE_PATH_SIZE, "%s/%s-tune.%s", options->folder, name, ending);
+        snprintf(path, FILE_PATH_SIZE, "%s/%s-tune.%s", options->common.folder, name, ending);
     return (length >= 0 && length < FILE_PATH_SIZE) ||
            err_set(err, ERR_FILE, "the path of %s-tune.%s is too long", name, ending);
 }
@@ -93,7 +93,7 @@ static bool write_folder(const TuneReport *report, const TuneOptions *options, E
     char path[FILE_PATH_SIZE];
     for (int i = 0; i < KIND_COUNT; i++) {
         if (!find_path(options, report->scenario, KINDS[i].ending, path, err) ||
-            !write_file(report, &KINDS[i], path, options->is_quiet, err)) {
+            !write_file(report, &KINDS[i], path, options->common.is_quiet, err)) {
             return false;
         }
     }
@@ -101,7 +101,7 @@ static bool write_folder(const TuneReport *report, const TuneOptions *options, E
         return false;
     }
     json_t *object = tune_json_build(report);
-    const bool is_written = written_json(path, object, options->is_quiet, err);
+    const bool is_written = written_json(path, object, options->common.is_quiet, err);
     json_decref(object);
     return is_written;
 }
@@ -115,22 +115,22 @@ bool tune_files_probe(const Scenario *scenario, const TuneOptions *options, Err 
         }
     }
     char path[FILE_PATH_SIZE];
-    for (int i = 0; options->folder != NULL && i < KIND_COUNT; i++) {
+    for (int i = 0; options->common.folder != NULL && i < KIND_COUNT; i++) {
         if (!find_path(options, scenario, KINDS[i].ending, path, err) || !file_probe(path, err)) {
             return false;
         }
     }
-    return options->folder == NULL ||
+    return options->common.folder == NULL ||
            (find_path(options, scenario, "json", path, err) && file_probe(path, err));
 }
 
 bool tune_files_write(const TuneReport *report, const TuneOptions *options, Err *err)
 {
-    const bool is_quiet = options->is_quiet;
+    const bool is_quiet = options->common.is_quiet;
     return (options->code == NULL ||
             write_file(report, &KINDS[CODE], options->code, is_quiet, err)) &&
            (options->sdf == NULL || write_file(report, &KINDS[SDF], options->sdf, is_quiet, err)) &&
            (options->mjcf == NULL ||
             write_file(report, &KINDS[MJCF], options->mjcf, is_quiet, err)) &&
-           (options->folder == NULL || write_folder(report, options, err));
+           (options->common.folder == NULL || write_folder(report, options, err));
 }

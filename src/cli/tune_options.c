@@ -11,16 +11,9 @@ enum {
     KEY_ERROR = 0x300, // options without a letter of their own
     KEY_MAX_COST,
     KEY_COST,
-    KEY_SCHEMES,
-    KEY_SET,
-    KEY_JOBS,
-    KEY_TIME_LIMIT,
     KEY_CODE,
     KEY_SDF,
     KEY_MJCF,
-    KEY_JSON,
-    KEY_OUT,
-    KEY_QUIET = 'q',
 };
 
 // s: what takes longer is no cheap setting, and a search makes many runs
@@ -37,32 +30,20 @@ static const struct argp_option OPTIONS[] = {
      "What one run may cost: a time such as '50 ms', or world steps such as 2000", 1},
     {"cost", KEY_COST, "time|steps", 0,
      "What is to be least (default: time, or the unit of --max-cost)", 1},
-    {"schemes", KEY_SCHEMES, "LIST", 0,
-     "Only these schemes of ODE: 'direct/corrected' is every one with both words, 'all' every one",
-     1},
-    {"set", KEY_SET, "KEY=VALUE", 0,
-     "Replace a value of the case, such as contact.restitution=0.8; may be given often", 1},
-    {"jobs", KEY_JOBS, "N", 0,
+    COMMON_ROW_SCHEMES(1),
+    COMMON_ROW_SET(1),
+    {"jobs", COMMON_JOBS, "N", 0,
      "Runs at a time while searching (default: one a core); timing runs always go one by one", 2},
-    {"time-limit", KEY_TIME_LIMIT, "TIME", 0,
+    {"time-limit", COMMON_TIME_LIMIT, "TIME", 0,
      "A run that takes longer is not tried (default: 60 s)", 2},
     {"code", KEY_CODE, "FILE.c", 0, "Write the setting as a C program that needs ODE alone", 3},
     {"sdf", KEY_SDF, "FILE.sdf", 0, "Write the contact as Gazebo can have it", 3},
     {"mjcf", KEY_MJCF, "FILE.xml", 0, "Write the contact as MuJoCo can have it", 3},
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 3},
-    {"out", KEY_OUT, "DIR", 0, "Write <case>-tune.json, .txt, .c, .sdf and .xml there", 3},
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 3},
+    COMMON_ROW_JSON(3),
+    {"out", COMMON_OUT, "DIR", 0, "Write <case>-tune.json, .txt, .c, .sdf and .xml there", 3},
+    COMMON_ROW_QUIET(3),
     {0},
 };
-
-static bool take_case(TuneOptions *options, const char *path, Err *err)
-{
-    if (options->path != NULL) {
-        return err_set(err, ERR_USAGE, "tune takes one case, not %s and %s", options->path, path);
-    }
-    options->path = path;
-    return true;
-}
 
 static bool read_error(const char *text, double *error, Err *err)
 {
@@ -125,16 +106,6 @@ static bool take_option(int key, const char *value, void *target, Err *err)
         return read_limit(value, options, err);
     case KEY_COST:
         return read_cost(value, &reading->cost, err);
-    case KEY_SCHEMES:
-        options->schemes = value;
-        return true;
-    case KEY_SET:
-        return option_values_take_setting(value, options->overrides, &options->override_count, err);
-    case KEY_JOBS:
-        return option_values_read_count("jobs", value, 1, option_values_count_cores(),
-                                        &options->jobs, err);
-    case KEY_TIME_LIMIT:
-        return option_values_read_time("time-limit", value, &options->time_limit_s, err);
     case KEY_CODE:
         options->code = value;
         return true;
@@ -144,17 +115,10 @@ static bool take_option(int key, const char *value, void *target, Err *err)
     case KEY_MJCF:
         options->mjcf = value;
         return true;
-    case KEY_JSON:
-        options->is_json = true;
-        return true;
-    case KEY_OUT:
-        options->folder = value;
-        return true;
-    case KEY_QUIET:
-        options->is_quiet = true;
-        return true;
+    case ARGP_KEY_ARG:
+        return common_options_take_path(value, &options->common, "tune takes one case", err);
     default:
-        return take_case(options, value, err);
+        return common_options_take(key, value, &options->common, err);
     }
 }
 
@@ -200,8 +164,8 @@ bool tune_options_read(int argc, char **argv, TuneOptions *options, bool *is_ans
         .options = OPTIONS,
         .take = take_option,
     };
-    *options =
-        (TuneOptions){.jobs = option_values_count_cores(), .time_limit_s = DEFAULT_TIME_LIMIT};
+    *options = (TuneOptions){.common.jobs = option_values_count_cores(),
+                             .common.time_limit_s = DEFAULT_TIME_LIMIT};
     Reading reading = {.options = options};
     if (!arguments_parse(&ARGUMENTS, argc, argv, &reading, is_answered, err)) {
         return false;
@@ -209,12 +173,12 @@ bool tune_options_read(int argc, char **argv, TuneOptions *options, bool *is_ans
     if (*is_answered) {
         return true;
     }
-    if (options->path == NULL) {
+    if (options->common.path == NULL) {
         return err_set(err, ERR_USAGE, "no case given: jointplay tune CASE.yaml --error 1e-3");
     }
     if (options->error == 0.0) {
         return err_set(err, ERR_USAGE, "no error given: jointplay tune %s --error 1e-3",
-                       options->path);
+                       options->common.path);
     }
     return settle_cost(reading.cost, options, err) && check_paths(options, err);
 }
@@ -232,10 +196,8 @@ bool tune_options_search(const TuneOptions *options, const Scenario *scenario, T
                        "allowed: contact.model impact");
     }
     Scheme schemes[SCHEME_MAX];
-    size_t scheme_count = scheme_list(scenario, schemes);
-    if (options->schemes == NULL) {
-        scheme_keep_usual(schemes, &scheme_count);
-    } else if (!scheme_filter(options->schemes, schemes, &scheme_count, err)) {
+    size_t scheme_count;
+    if (!common_options_list_schemes(&options->common, scenario, schemes, &scheme_count, err)) {
         return false;
     }
     *tune = tune_create(scenario, schemes, scheme_count, options->error);

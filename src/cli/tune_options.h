@@ -2,27 +2,19 @@
 #pragma once
 
 #include "base/err.h"
-#include "cli/option_values.h"
+#include "cli/common_options.h"
 #include "compare/tune.h"
 
 #include <stdbool.h>
 
 typedef struct TuneOptions {
-    const char *path; // of the case
-    const char *overrides[OPTION_SETTING_MAX];
-    size_t override_count;
+    CommonOptions common;
     double error; // 1; 0 until it is given
     TuneCost cost;
     TuneLimit limit;
-    const char *schemes; // as given, or NULL
-    size_t jobs;
-    double time_limit_s; // of one run
-    bool is_json;
     const char *code;
     const char *sdf;
     const char *mjcf;
-    const char *folder;
-    bool is_quiet;
 } TuneOptions;
 
 // Reads the command line; where help was asked for it is printed and *is_answered is true.

@@ -1,0 +1,22 @@
+// The words of a command of `jointplay study` that takes any number of them.
+#pragma once
+
+#include "base/err.h"
+#include "cli/arguments.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct StudyWords {
+    size_t count;
+    const char **words; // the words themselves are the command line's
+    bool is_quiet;
+} StudyWords;
+
+// For the Arguments of such a command, whose only option may be --quiet.
+bool study_words_take(int key, const char *value, void *target, Err *err);
+
+// Reads the command line and does the work with its words, unless help was all that was asked for.
+// Fails as arguments_parse does, or the work.
+bool study_words_run(const Arguments *arguments, int argc, char **argv,
+                     bool (*work)(const StudyWords *words, Err *err), Err *err);
