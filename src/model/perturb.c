@@ -4,18 +4,9 @@
 // driver allow are taken.
 #include "model/perturb.h"
 
+#include "base/lcg.h"
 #include "model/nearest.h"
 #include "model/scale.h"
-
-#include <stdint.h>
-
-// A number in [-1, 1): Knuth's 64-bit linear congruential generator, whose high bits are good
-// enough for a handful of draws.
-static double draw(uint64_t *seed)
-{
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*seed >> 11) * 0x1p-52 - 1.0;
-}
 
 void perturb_start(Scenario *scenario, double relative, unsigned member)
 {
@@ -27,9 +18,9 @@ void perturb_start(Scenario *scenario, double relative, unsigned member)
     for (size_t i = 0; i < linkage->body_count; i++) {
         motions[i] = linkage->bodies[i].start;
         if ((int)i != driven) {
-            motions[i].velocity.x += relative * scale.moving * draw(&seed);
-            motions[i].velocity.y += relative * scale.moving * draw(&seed);
-            motions[i].omega += relative * scale.turning * draw(&seed);
+            motions[i].velocity.x += relative * scale.moving * lcg_draw(&seed);
+            motions[i].velocity.y += relative * scale.moving * lcg_draw(&seed);
+            motions[i].omega += relative * scale.turning * lcg_draw(&seed);
         }
     }
     nearest_speeds(linkage, false, motions);

@@ -1,0 +1,163 @@
+// How is a baseline made?
+//
+// truth, for the horizon -> the case's own start and 8 beside it, in full -> bands -> where one is
+// statistical a sample of 32 starts -> the file. What the new one says of the old one is a check.
+#include "cli/check_run.h"
+
+#include "base/text.h"
+#include "cli/check_progress.h"
+#include "compare/check_work.h"
+#include "compare/truth_child.h"
+#include "report/baseline_json.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+// The measures of a baseline in the making.
+typedef struct Making {
+    const CheckItem *item;
+    const CheckOptions *options;
+    CheckProgress progress;
+    CheckPlan plan;
+    char no_truth[CHECK_NOTE_SIZE]; // why there are no errors; empty where there are
+    CheckMeasure *measures;         // the case's own, then the members of an ensemble
+} Making;
+
+static void wait_for_truth(const char *doing, void *context)
+{
+    (void)doing;
+    check_progress_show(0, 1 + BASELINE_MEMBERS, context);
+}
+
+// A mechanism that the reference cannot take has numbers all the same, and no errors.
+static void find_plan(Making *making)
+{
+    Truth truth;
+    const TruthChild work = {.scenario = making->item->scenario,
+                             .run_limit_s = making->options->common.time_limit_s,
+                             .wait = wait_for_truth,
+                             .context = &making->progress};
+    Err own = {0};
+    const bool is_made = truth_child_make(&work, &truth, &own);
+    making->plan = is_made ? check_plan(&truth) : (CheckPlan){.is_full = true};
+    if (!making->plan.has_truth) {
+        snprintf(making->no_truth, sizeof making->no_truth, "without errors: %.200s",
+                 is_made ? truth.message : own.text);
+    }
+    truth_finish(&truth);
+}
+
+// Measures so many starts; the first of a list of works is the number of the member given.
+static bool measure(Making *making, CheckStart (*start_of)(unsigned member), unsigned first,
+                    size_t count, CheckMeasure *measures, Err *err)
+{
+    CheckWork *works = calloc(count, sizeof *works);
+    assert(works != NULL);
+    for (size_t i = 0; i < count; i++) {
+        const unsigned member = first + (unsigned)i;
+        works[i] = (CheckWork){.scenario = making->item->scenario, .plan = making->plan};
+        works[i].start = member > 0 ? start_of(member) : (CheckStart){0, 0.0, 0};
+        works[i].measure = &measures[i];
+    }
+    const CheckWorkers workers = {making->options->common.jobs,
+                                  making->options->common.time_limit_s, check_progress_show,
+                                  &making->progress};
+    bool is_done = check_work_do(&workers, works, count, err);
+    for (size_t i = 0; is_done && i < count; i++) {
+        is_done =
+            measures[i].is_complete ||
+            err_set(err, ERR_SOLVER, "no baseline of a run that fails: %s", measures[i].message);
+    }
+    free(works);
+    return is_done;
+}
+
+// The baseline; `run` receives the case's own measure, the sample stays in the making.
+static bool make_baseline(Making *making, Baseline *made, CheckMeasure *run, size_t *sample_count,
+                          Err *err)
+{
+    CheckMeasure *measures = making->measures;
+    *sample_count = 0;
+    find_plan(making);
+    if (!measure(making, baseline_rounding_start, 0, 1 + BASELINE_MEMBERS, measures, err)) {
+        return false;
+    }
+    *run = measures[0];
+    baseline_set_head(made, making->item->scenario, &making->plan);
+    text_copy(made->case_path, sizeof made->case_path, making->item->relative);
+    if (!baseline_set_metrics(made, run, &measures[1], BASELINE_MEMBERS, err)) {
+        return false;
+    }
+    const size_t tests = check_test_count(made);
+    if (tests == 0) {
+        return true;
+    }
+    *sample_count = BASELINE_SAMPLE_SIZE;
+    return measure(making, baseline_sample_start, 1, BASELINE_SAMPLE_SIZE, measures, err) &&
+           baseline_set_sample(made, measures, BASELINE_SAMPLE_SIZE,
+                               CHECK_FALSE_ALARM_RATE / (double)tests, err);
+}
+
+// What the old baseline, which may be none, says of the new measures.
+static void hold_against_old(const Making *making, const Baseline *made, const CheckMeasure *run,
+                             size_t sample_count, CheckCase *result)
+{
+    const Baseline *old = &making->item->baseline;
+    const size_t tests = check_test_count(old);
+    const CheckEvidence evidence = {
+        .run = run,
+        .sample = making->measures,
+        .sample_count = sample_count,
+        .now = made,
+        .is_full = tests == 0 || sample_count > 0,
+        .rate = CHECK_FALSE_ALARM_RATE / (double)(tests > 0 ? tests : 1),
+    };
+    if (making->item->baseline_err.kind != ERR_NONE) {
+        snprintf(result->note, sizeof result->note, "a new baseline of %zu numbers%s%.190s",
+                 made->count, making->no_truth[0] != '\0' ? ", " : "", making->no_truth);
+        return;
+    }
+    text_copy(result->note, sizeof result->note, making->no_truth);
+    CheckRow *rows = calloc(check_row_max(old, &evidence), sizeof *rows);
+    assert(rows != NULL);
+    result->row_count = check_judge(old, &evidence, rows);
+    result->rows = rows;
+}
+
+static void bless_item(const CheckOptions *options, const CheckItem *item, CheckCase *result)
+{
+    *result = (CheckCase){.path = item->path, .baseline = item->baseline_path, .err = item->err};
+    if (item->err.kind != ERR_NONE) {
+        return;
+    }
+    Making making = {.item = item, .options = options};
+    making.measures = calloc(1 + BASELINE_MEMBERS + BASELINE_SAMPLE_SIZE, sizeof *making.measures);
+    CheckMeasure *run = malloc(sizeof *run);
+    assert(making.measures != NULL && run != NULL);
+    making.progress = check_progress_start(item->path, options->common.is_quiet);
+    Baseline made = {.settings = NULL};
+    size_t sample_count;
+    const bool is_made = make_baseline(&making, &made, run, &sample_count, &result->err);
+    check_progress_end(&making.progress);
+    if (is_made && baseline_json_write(item->baseline_path, &made, &result->err)) {
+        hold_against_old(&making, &made, run, sample_count, result);
+    }
+    baseline_finish(&made);
+    free(making.measures);
+    free(run);
+}
+
+void check_run_bless(const CheckOptions *options, CheckItem *items, size_t count, CheckRun *run)
+{
+    *run = (CheckRun){.cases = calloc(count + 1, sizeof *run->cases)};
+    assert(run->cases != NULL);
+    for (size_t i = 0; i < count; i++) {
+        bless_item(options, &items[i], &run->cases[i]);
+    }
+    run->report = (CheckReport){.case_count = count,
+                                .cases = run->cases,
+                                .is_full = true,
+                                .is_blessed = true,
+                                .rate = CHECK_FALSE_ALARM_RATE};
+}

@@ -1,0 +1,133 @@
+// Have the numbers of any case moved by more than they may?
+#include "cli/check_options.h"
+#include "cli/check_run.h"
+#include "cli/command.h"
+#include "cli/output.h"
+#include "cli/run_files.h"
+#include "cli/written.h"
+
+#include "report/check_json.h"
+#include "report/check_junit.h"
+#include "report/check_markdown.h"
+#include "report/check_text.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static bool write_with(void (*write)(const CheckReport *report, Text *text),
+                       const CheckReport *report, const char *path, bool is_quiet, Err *err)
+{
+    if (path == NULL) {
+        return true;
+    }
+    Text text;
+    text_init(&text);
+    write(report, &text);
+    const bool is_written = written_text(path, text.data, is_quiet || file_is_stream(path), err);
+    text_finish(&text);
+    return is_written;
+}
+
+// A comment that is printed takes the place of the tables.
+static bool prints_markdown(const CheckOptions *options)
+{
+    return options->markdown != NULL && file_is_stream(options->markdown);
+}
+
+static void print_report(const CheckReport *report, const CheckOptions *options)
+{
+    if (options->common.is_json) {
+        output_json(check_json_build(report));
+        return;
+    }
+    if (prints_markdown(options)) {
+        return;
+    }
+    Text text;
+    text_init(&text);
+    check_text_write(report, options->is_all, output_style(stdout), &text);
+    fputs(text.data, stdout);
+    text_finish(&text);
+}
+
+// How it ends: a case that could not be checked weighs more than a number that moved.
+static bool conclude(const CheckReport *report, Err *err)
+{
+    for (size_t i = 0; i < report->case_count; i++) {
+        const CheckCase *item = &report->cases[i];
+        if (item->err.kind != ERR_NONE) {
+            err_set(err, item->err.kind, "%s", item->err.text);
+            if (item->err.kind == ERR_SOLVER) {
+                err_prefix(err, item->path);
+            }
+            return false;
+        }
+    }
+    const size_t differing = check_report_differing(report);
+    for (size_t i = 0; !report->is_blessed && i < report->case_count; i++) {
+        const CheckCase *item = &report->cases[i];
+        if (check_report_count(item).out == 0) {
+            continue;
+        }
+        char words[CHECK_WORDS_SIZE];
+        const CheckRow *worst = &item->rows[0];
+        check_report_words(worst, words);
+        return err_set(err, ERR_DIFFERS, "%zu of %zu cases differ from their baselines; %s: %s%s%s",
+                       differing, report->case_count, item->path,
+                       worst->verdict == CHECK_SETTING ? "" : worst->name,
+                       worst->verdict == CHECK_SETTING ? "" : " ", words);
+    }
+    return true;
+}
+
+static bool probe(const CheckOptions *options, Err *err)
+{
+    return (options->junit == NULL || file_probe(options->junit, err)) &&
+           (options->markdown == NULL || file_probe(options->markdown, err)) &&
+           (!options->is_blessing || run_files_make_folder(options->folder, err));
+}
+
+static bool check_items(const CheckOptions *options, CheckItem *items, size_t count, Err *err)
+{
+    CheckRun run = {.cases = NULL};
+    bool is_done = true;
+    if (options->is_blessing) {
+        check_run_bless(options, items, count, &run);
+    } else {
+        is_done = check_run_execute(options, items, count, &run, err);
+    }
+    if (is_done) {
+        print_report(&run.report, options);
+        is_done = write_with(check_junit_write, &run.report, options->junit,
+                             options->common.is_quiet, err) &&
+                  write_with(check_markdown_write, &run.report, options->markdown,
+                             options->common.is_quiet, err) &&
+                  conclude(&run.report, err);
+    }
+    check_run_finish(&run);
+    return is_done;
+}
+
+static bool run_check(int argc, char **argv, Err *err)
+{
+    CheckOptions *options = calloc(1, sizeof *options);
+    assert(options != NULL);
+    bool is_answered;
+    bool is_done = check_options_read(argc, argv, options, &is_answered, err);
+    if (is_done && !is_answered) {
+        CheckItem *items = NULL;
+        size_t count = 0;
+        is_done = probe(options, err) && check_list_make(options, &items, &count, err) &&
+                  check_items(options, items, count, err);
+        check_list_destroy(items, count);
+    }
+    free(options);
+    return is_done;
+}
+
+const Command cmd_check = {
+    .name = "check",
+    .summary = "regression of spikes and all other numbers against baselines",
+    .run = run_check,
+};

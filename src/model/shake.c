@@ -1,0 +1,96 @@
+// How does a scenario look whose every number has been rounded once more?
+//
+// Each number x becomes x - ulp, x or x + ulp with equal chance. Where a length stands twice in a
+// scenario, as that of a link does in the four-bar and in its anchors, the two are moved apart: by
+// what rounding does when one is worked out from the other.
+#include "model/shake.h"
+
+#include "base/lcg.h"
+
+#include <math.h>
+
+// the first draws of neighbouring seeds are alike in nothing once the seed has been stirred
+enum { STIR = 4 };
+
+static void shake(double *value, uint64_t *seed)
+{
+    const double drawn = lcg_draw(seed);
+    if (*value != 0.0 && fabs(drawn) > 1.0 / 3.0) {
+        *value = nextafter(*value, copysign(INFINITY, drawn));
+    }
+}
+
+static void shake_vector(Vec2 *vector, uint64_t *seed)
+{
+    shake(&vector->x, seed);
+    shake(&vector->y, seed);
+}
+
+static void shake_body(Body *body, uint64_t *seed)
+{
+    shake(&body->mass, seed);
+    shake(&body->inertia, seed);
+    shake_vector(&body->start.position, seed);
+    shake(&body->start.angle, seed);
+    shake_vector(&body->start.velocity, seed);
+    shake(&body->start.omega, seed);
+}
+
+static void shake_joint(Joint *joint, uint64_t *seed)
+{
+    shake_vector(&joint->anchor_a, seed);
+    shake_vector(&joint->anchor_b, seed);
+    shake(&joint->clearance.hole_radius, seed);
+    shake(&joint->clearance.pin_radius, seed);
+    shake(&joint->clearance.width, seed);
+    shake_vector(&joint->clearance.start, seed);
+}
+
+static void shake_world(Scenario *scenario, uint64_t *seed)
+{
+    double *const values[] = {
+        &scenario->fourbar.ground.nominal,
+        &scenario->fourbar.crank.nominal,
+        &scenario->fourbar.coupler.nominal,
+        &scenario->fourbar.follower.nominal,
+        &scenario->linkage.driver.speed,
+        &scenario->linkage.driver.start,
+        &scenario->gravity,
+        &scenario->material.youngs_modulus,
+        &scenario->material.poisson_ratio,
+        &scenario->contact.stiffness,
+        &scenario->contact.viscous_coefficient,
+        &scenario->contact.restitution,
+        &scenario->contact.friction,
+        &scenario->contact.friction_speed,
+        &scenario->contact.impact_speed_floor,
+        &scenario->contact.penalty,
+        &scenario->contact.bounce_speed,
+        &scenario->run.step,
+        &scenario->ode.erp,
+        &scenario->ode.cfm,
+        &scenario->ode.push_out,
+        &scenario->ode.over_relaxation,
+        &scenario->ode.contact_phase,
+    };
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+        shake(values[i], seed);
+    }
+    // more than everything no contact gives back
+    scenario->contact.restitution = fmin(scenario->contact.restitution, 1.0);
+}
+
+void shake_inputs(Scenario *scenario, unsigned seed)
+{
+    uint64_t drawn = seed;
+    for (int i = 0; i < STIR; i++) {
+        lcg_draw(&drawn);
+    }
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        shake_body(&scenario->linkage.bodies[i], &drawn);
+    }
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        shake_joint(&scenario->linkage.joints[i], &drawn);
+    }
+    shake_world(scenario, &drawn);
+}

@@ -1,0 +1,95 @@
+// What should who reads a change see of a regression check?
+#include "report/check_markdown.h"
+
+#include <string.h>
+
+enum { WORST_ROWS = 10 }; // of a case: a comment is no log
+
+// Text in a cell: a bar would end it.
+static void append_cell(Text *text, const char *words)
+{
+    text_append(text, "| ");
+    for (const char *c = words; *c != '\0'; c++) {
+        text_append(text, strchr("|`<>\\*_", *c) != NULL ? "\\%c" : "%c", *c == '\n' ? ' ' : *c);
+    }
+    text_append(text, " ");
+}
+
+static void append_headline(const CheckReport *report, Text *text)
+{
+    const size_t errors = check_report_errors(report);
+    const size_t differing = check_report_differing(report);
+    text_append(text, "### jointplay check: ");
+    if (errors + differing == 0) {
+        text_append(text, "%zu %s within %s\n", report->case_count,
+                    report->case_count == 1 ? "case" : "cases",
+                    report->case_count == 1 ? "its bands" : "their bands");
+        return;
+    }
+    text_append(text, "%zu of %zu cases %s", differing, report->case_count,
+                report->is_blessed ? "moved" : "out of their bands");
+    if (errors > 0) {
+        text_append(text, ", %zu not checked", errors);
+    }
+    text_append(text, "\n");
+}
+
+static void append_out(const CheckCase *item, Text *text)
+{
+    const size_t out = check_report_count(item).out;
+    text_append(text,
+                "\n**%s**\n\n| metric | baseline | now | difference | band | bands off |\n"
+                "|---|---:|---:|---:|---:|---:|\n",
+                item->path);
+    for (size_t i = 0; i < out && i < WORST_ROWS; i++) {
+        const CheckRow *row = &item->rows[i];
+        const CheckCells cells = check_report_cells(row);
+        append_cell(text, row->name);
+        append_cell(text, cells.was);
+        append_cell(text, cells.now);
+        append_cell(text, cells.difference);
+        append_cell(text, cells.band);
+        append_cell(text,
+                    row->verdict == CHECK_OUT ? cells.severity : CHECK_VERDICT_WORDS[row->verdict]);
+        text_append(text, "|\n");
+    }
+    if (out > WORST_ROWS) {
+        text_append(text, "\nand %zu more.\n", out - WORST_ROWS);
+    }
+}
+
+static void append_all(const CheckReport *report, Text *text)
+{
+    text_append(text,
+                "\n<details><summary>All cases (%s check)</summary>\n\n"
+                "| case | within | out | left out | nearest to its band |\n"
+                "|---|---:|---:|---:|---|\n",
+                report->is_full ? "full" : "quick");
+    for (size_t i = 0; i < report->case_count; i++) {
+        const CheckCase *item = &report->cases[i];
+        const CheckCounts counts = check_report_count(item);
+        append_cell(text, item->path);
+        if (item->err.kind != ERR_NONE) {
+            text_append(text, "| | | | not checked |\n");
+            continue;
+        }
+        text_append(text, "| %zu | %zu | %zu ", counts.within, counts.out, counts.left_out);
+        append_cell(text, item->row_count > 0 ? item->rows[0].name : "");
+        text_append(text, "|\n");
+    }
+    text_append(text, "\n</details>\n");
+}
+
+void check_markdown_write(const CheckReport *report, Text *text)
+{
+    append_headline(report, text);
+    for (size_t i = 0; i < report->case_count; i++) {
+        const CheckCase *item = &report->cases[i];
+        if (item->err.kind != ERR_NONE) {
+            text_append(text, "\n**%s** was not checked: %s\n", item->path, item->err.text);
+        } else if (check_report_count(item).out > 0) {
+            append_out(item, text);
+        }
+    }
+    append_all(report, text);
+}

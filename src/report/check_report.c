@@ -1,0 +1,106 @@
+// How is a number that moved put into words?
+#include "report/check_report.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+CheckCounts check_report_count(const CheckCase *item)
+{
+    CheckCounts counts = {0};
+    for (size_t i = 0; i < item->row_count; i++) {
+        const CheckVerdict verdict = item->rows[i].verdict;
+        counts.within += verdict == CHECK_WITHIN ? 1 : 0;
+        counts.left_out += verdict == CHECK_LEFT_OUT ? 1 : 0;
+        counts.out += check_row_is_out(&item->rows[i]) ? 1 : 0;
+    }
+    return counts;
+}
+
+size_t check_report_errors(const CheckReport *report)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < report->case_count; i++) {
+        count += report->cases[i].err.kind != ERR_NONE ? 1 : 0;
+    }
+    return count;
+}
+
+size_t check_report_differing(const CheckReport *report)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < report->case_count; i++) {
+        count += check_report_count(&report->cases[i]).out > 0 ? 1 : 0;
+    }
+    return count;
+}
+
+// What there is to say of a setting, of what came or went, and of a hash. False for a number.
+static bool say_other(const CheckRow *row, char words[CHECK_WORDS_SIZE])
+{
+    if (row->verdict == CHECK_SETTING) {
+        snprintf(words, CHECK_WORDS_SIZE, "setting %s was %s, is %s", row->name, row->was_text,
+                 row->now_text);
+    } else if (row->verdict == CHECK_NEW) {
+        snprintf(words, CHECK_WORDS_SIZE, "is %.17g and not in the baseline", row->now);
+    } else if (row->verdict == CHECK_GONE) {
+        snprintf(words, CHECK_WORDS_SIZE, "was %.17g and is not measured any more", row->was);
+    } else if (row->verdict == CHECK_LEFT_OUT) {
+        snprintf(words, CHECK_WORDS_SIZE, "not looked at: %s", row->why);
+    } else if (row->kind == CHECK_HASH) {
+        snprintf(words, CHECK_WORDS_SIZE,
+                 "was %016" PRIx64 ", is %016" PRIx64 " in the same build of the program",
+                 row->hash_was, row->hash_now);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+void check_report_words(const CheckRow *row, char words[CHECK_WORDS_SIZE])
+{
+    const char *kind = BASELINE_BAND_WORDS[row->band_kind];
+    if (say_other(row, words)) {
+        return;
+    }
+    if (row->band_kind == BAND_STATISTICAL) {
+        snprintf(words, CHECK_WORDS_SIZE,
+                 "median was %.9g, is %.9g: %+.3g; p = %.2g of the rank test (%s: %s)", row->was,
+                 row->now, row->deviation, row->p, kind, row->why);
+    } else if (isfinite(row->severity)) {
+        snprintf(words, CHECK_WORDS_SIZE, "was %.17g, is %.17g: %+.3g, %.3g bands of %.3g (%s: %s)",
+                 row->was, row->now, row->deviation, row->severity, row->band, kind, row->why);
+    } else {
+        snprintf(words, CHECK_WORDS_SIZE, "was %.17g, is %.17g: %+.3g (%s: %s)", row->was, row->now,
+                 row->deviation, kind, row->why);
+    }
+}
+
+static void number(char *cell, const char *format, double value)
+{
+    // the format is one of those below
+    snprintf(cell, CHECK_CELL_SIZE, isfinite(value) ? format : "-", value);
+}
+
+CheckCells check_report_cells(const CheckRow *row)
+{
+    CheckCells cells;
+    if (row->verdict == CHECK_SETTING) {
+        snprintf(cells.was, sizeof cells.was, "%.60s", row->was_text);
+        snprintf(cells.now, sizeof cells.now, "%.60s", row->now_text);
+    } else if (row->kind == CHECK_HASH) {
+        snprintf(cells.was, sizeof cells.was, "%08" PRIx64 "...", row->hash_was >> 32);
+        snprintf(cells.now, sizeof cells.now, "%08" PRIx64 "...", row->hash_now >> 32);
+    } else {
+        number(cells.was, "%.6g", row->was);
+        number(cells.now, "%.6g", row->now);
+    }
+    const bool is_number = row->verdict != CHECK_SETTING && row->kind != CHECK_HASH;
+    number(cells.difference, "%+.2g", is_number ? row->deviation : NAN);
+    number(cells.band, "%.2g", is_number ? row->band : NAN);
+    number(cells.severity, "%.2g", is_number ? row->severity : NAN);
+    if (is_number && row->band_kind == BAND_STATISTICAL && isfinite(row->p)) {
+        snprintf(cells.severity, sizeof cells.severity, "p %.2g", row->p);
+    }
+    return cells;
+}

@@ -1,0 +1,51 @@
+// Everything there is to tell about a regression check: plain pointers, nothing owned.
+#pragma once
+
+#include "compare/check_judge.h"
+
+enum { CHECK_NOTE_SIZE = 256, CHECK_WORDS_SIZE = 1024 };
+
+typedef struct CheckCase {
+    const char *path;           // of the case
+    const char *baseline;       // of its baseline
+    Err err;                    // why it could not be checked; ERR_NONE where it was
+    char note[CHECK_NOTE_SIZE]; // of another version of a library; empty where there is none
+    size_t row_count;
+    const CheckRow *rows; // worst first
+} CheckCase;
+
+typedef struct CheckReport {
+    size_t case_count;
+    const CheckCase *cases;
+    bool is_full;
+    bool is_blessed;   // the rows are what a new baseline changes of the old one
+    size_t test_count; // statistical tests in all cases
+    double rate;       // false-alarm rate of all of them together
+} CheckReport;
+
+typedef struct CheckCounts {
+    size_t within;
+    size_t out;
+    size_t left_out;
+} CheckCounts;
+
+CheckCounts check_report_count(const CheckCase *item);
+
+// Cases that could not be checked, and cases with a number out.
+size_t check_report_errors(const CheckReport *report);
+size_t check_report_differing(const CheckReport *report);
+
+// The numbers of a row as one sentence: "was 1, is 2: 1 more, 4.0 bands of 0.25 (rounding: ...)".
+void check_report_words(const CheckRow *row, char words[CHECK_WORDS_SIZE]);
+
+// The cells of a row: baseline, now, difference, band, and by how many bands it is off.
+enum { CHECK_CELL_SIZE = 64 };
+typedef struct CheckCells {
+    char was[CHECK_CELL_SIZE];
+    char now[CHECK_CELL_SIZE];
+    char difference[CHECK_CELL_SIZE];
+    char band[CHECK_CELL_SIZE];
+    char severity[CHECK_CELL_SIZE];
+} CheckCells;
+
+CheckCells check_report_cells(const CheckRow *row);

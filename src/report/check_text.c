@@ -1,0 +1,97 @@
+// Which numbers of which case have moved, and how near are the others to their bands?
+#include "report/check_text.h"
+
+#include "report/run_section.h"
+
+enum {
+    WORST_WITHIN = 5, // rows of a case in which nothing is out
+    WORST_OUT = 20,   // rows that are out: who sees twenty sees what happened
+};
+
+// Rows that are out, and of those within the worst that moved at all.
+static size_t rows_to_show(const CheckCase *item, bool is_all)
+{
+    const size_t out = check_report_count(item).out;
+    size_t shown = out > WORST_OUT ? WORST_OUT : out;
+    while (shown < WORST_WITHIN && shown < item->row_count && item->rows[shown].severity > 0.0) {
+        shown++;
+    }
+    return is_all ? item->row_count : shown;
+}
+
+static void write_rows(const CheckCase *item, size_t count, const Style *style, Text *text)
+{
+    if (count == 0) {
+        text_append(text, "\n%s%s%s\n\n", style->heading, item->path, style->end);
+        return;
+    }
+    static const RunSectionHead HEADS[] = {
+        {"metric", "", TABLE_LEFT},       {"baseline", "", TABLE_RIGHT},
+        {"now", "", TABLE_RIGHT},         {"difference", "", TABLE_RIGHT},
+        {"band", "", TABLE_RIGHT},        {"bands off", "", TABLE_RIGHT},
+        {"why the band", "", TABLE_LEFT}, {"verdict", "", TABLE_LEFT},
+    };
+    Table *table = run_section_begin(item->path, 8, HEADS, style, text);
+    for (size_t i = 0; i < count; i++) {
+        const CheckRow *row = &item->rows[i];
+        const CheckCells cells = check_report_cells(row);
+        table_cell(table, "%s", row->name);
+        table_cell(table, "%s", cells.was);
+        table_cell(table, "%s", cells.now);
+        table_cell(table, "%s", cells.difference);
+        table_cell(table, "%s", cells.band);
+        table_cell(table, "%s", cells.severity);
+        table_cell(table, "%s",
+                   row->verdict == CHECK_SETTING ? "" : BASELINE_BAND_WORDS[row->band_kind]);
+        table_cell(table, "%s", CHECK_VERDICT_WORDS[row->verdict]);
+    }
+    run_section_end(table, text);
+}
+
+static void write_case(const CheckReport *report, const CheckCase *item, bool is_all,
+                       const Style *style, Text *text)
+{
+    if (item->err.kind != ERR_NONE) {
+        text_append(text, "\n%s%s%s\n\n  %snot checked: %s%s\n", style->heading, item->path,
+                    style->end, style->failure, item->err.text, style->end);
+        return;
+    }
+    const CheckCounts counts = check_report_count(item);
+    const size_t shown = rows_to_show(item, is_all);
+    write_rows(item, shown, style, text);
+    if (item->row_count == 0) {
+        text_append(text, "  %s\n", item->note);
+        return;
+    }
+    text_append(text, "  %s%zu within, %zu %s%s", counts.out > 0 ? style->failure : "",
+                counts.within, counts.out, report->is_blessed ? "moved" : "out",
+                counts.out > 0 ? style->end : "");
+    if (counts.left_out > 0) {
+        text_append(text, ", %zu left out", counts.left_out);
+    }
+    if (shown < item->row_count) {
+        text_append(text, "; %zu more rows with --all", item->row_count - shown);
+    }
+    text_append(text, "%s%s\n", item->note[0] != '\0' ? "\n  " : "", item->note);
+}
+
+void check_text_write(const CheckReport *report, bool is_all, const Style *style, Text *text)
+{
+    for (size_t i = 0; i < report->case_count; i++) {
+        write_case(report, &report->cases[i], is_all, style, text);
+    }
+    const size_t errors = check_report_errors(report);
+    const size_t differing = check_report_differing(report);
+    text_append(text, "\n%zu %s: ", report->case_count, report->case_count == 1 ? "case" : "cases");
+    text_append(text, "%zu %s, %zu %s", report->case_count - errors - differing,
+                report->is_blessed ? "as before" : "within", differing,
+                report->is_blessed ? "moved" : "out");
+    if (errors > 0) {
+        text_append(text, ", %zu not checked", errors);
+    }
+    if (report->is_full && report->test_count > 0) {
+        text_append(text, "; %zu rank tests, false-alarm rate %.2g together", report->test_count,
+                    report->rate);
+    }
+    text_append(text, "%s\n", report->is_full ? "" : "; quick: no ensembles, no orders");
+}

@@ -1,0 +1,290 @@
+// Does `jointplay check` see what moved, name it, and never pass what it could not look at?
+#include "program.h"
+
+// A pin that bounces in its hole: some milliseconds of work.
+static const char CASE[] =
+    "title: A pin\n"
+    "bodies:\n  pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm]}\n"
+    "joints:\n  hole: {between: [ground, pin], at: [0 mm, 0 mm], hole: 20.2 mm, pin: 20 mm, "
+    "width: 15 mm}\n"
+    "gravity: 9.80665 m/s^2\n"
+    "contact: {stiffness: 6.6e10 N/m^1.5, damping: lankarani-nikravesh, restitution: 0.9}\n"
+    "run: {duration: 12 ms, samples: 100, step: 5 us, backends: [reference, ode]}\n";
+
+static void write_file(const Program *program, const char *name, const char *text)
+{
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, name, path);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fputs(text, stream);
+    fclose(stream);
+}
+
+static void read_file(const Program *program, const char *name, char *target)
+{
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, name, path);
+    program_read(path, target);
+}
+
+// A folder with a case and its baseline.
+static int set_up(void **state)
+{
+    if (program_set_up(state) != 0) {
+        return -1;
+    }
+    Program *program = *state;
+    write_file(program, "pin.yaml", CASE);
+    program_run(program, "check --bless --baselines b pin.yaml");
+    return program->status;
+}
+
+static void a_case_that_has_not_changed_is_within(void **state)
+{
+    Program *program = *state;
+    assert_says(program->output, "a new baseline of");
+    program_run(program, "check --baselines b");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "pin.yaml");
+    assert_says(program->output, "1 case: 1 within, 0 out");
+    assert_string_equal(program->errors, "");
+    program_run(program, "check --baselines b pin.yaml --quick --all");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "ode/hole/force_max_N");
+    assert_says(program->output, "left out");
+    assert_says(program->output, "quick: no ensembles, no orders");
+}
+
+static void another_machine_is_no_difference(void **state)
+{
+    Program *program = *state;
+    for (int seed = 1; seed <= 5; seed++) {
+        char words[PROGRAM_PATH_SIZE];
+        snprintf(words, sizeof words, "check --baselines b --quick --shake %d --all", seed);
+        program_run(program, words);
+        assert_int_equal(program->status, 0);
+        assert_says(program->output, "left out");
+    }
+}
+
+static void what_moved_is_named_with_status_1(void **state)
+{
+    Program *program = *state;
+    program_run(program, "check --baselines b --set contact.restitution=0.89");
+    assert_int_equal(program->status, 1);
+    assert_says(program->errors, "1 of 1 cases differ from their baselines; pin.yaml: setting "
+                                 "contact.restitution was 0.9, is 0.89");
+    assert_says(program->output, "ode/hole/impulse_N_s");
+    assert_says(program->output, "1 case: 0 within, 1 out");
+    program_run(program, "check --baselines b --json --quick --set contact.restitution=0.89");
+    assert_int_equal(program->status, 1);
+    json_t *root = program_json(program);
+    const json_t *item = json_array_get(json_object_get(root, "cases"), 0);
+    assert_string_equal(json_string_value(json_object_get(item, "status")), "out");
+    const json_t *worst = json_array_get(json_object_get(item, "metrics"), 0);
+    assert_string_equal(json_string_value(json_object_get(worst, "verdict")), "setting");
+    json_decref(root);
+}
+
+static void a_number_edited_in_the_file_is_named(void **state)
+{
+    Program *program = *state;
+    static char text[PROGRAM_OUTPUT_SIZE];
+    read_file(program, "b/pin.json", text);
+    char *line = strstr(text, "\"ode/hole/force_max_N\": {\"value\": ");
+    assert_non_null(line);
+    // the digit behind the third: 1 in 1000 or more
+    char *digit = line + strlen("\"ode/hole/force_max_N\": {\"value\": ") + 4;
+    *digit = *digit == '9' ? '8' : (char)(*digit + 1);
+    write_file(program, "b/pin.json", text);
+    program_run(program, "check --baselines b --quick");
+    assert_int_equal(program->status, 1);
+    assert_says(program->errors, "pin.yaml: ode/hole/force_max_N was ");
+    assert_says(program->errors, " bands of ");
+    // and blessing says what it moved back
+    program_run(program, "check --baselines b --bless");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "ode/hole/force_max_N");
+    assert_says(program->output, "1 moved");
+    program_run(program, "check --baselines b --quick");
+    assert_int_equal(program->status, 0);
+}
+
+static void what_cannot_be_checked_never_passes(void **state)
+{
+    Program *program = *state;
+    write_file(program, "other.yaml", CASE);
+    program_run(program, "check --baselines b other.yaml");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "there is no baseline b/other.json");
+    program_run(program, "check --baselines nowhere");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "there is no folder of baselines nowhere");
+    program_run(program, "check --baselines .");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "there is no baseline in .");
+
+    // of another case
+    assert_int_equal(system("true"), 0);
+    char words[2 * PROGRAM_PATH_SIZE];
+    snprintf(words, sizeof words, "mkdir '%s/far' && cp '%s/pin.yaml' '%s/far/'", program->folder,
+             program->folder, program->folder);
+    assert_int_equal(system(words), 0);
+    program_run(program, "check --baselines b far/pin.yaml");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "is of another case: of ../pin.yaml");
+    program_run(program, "check --baselines b far/pin.yaml pin.yaml");
+    assert_int_equal(program->status, 2);
+    assert_says(program->errors, "would both have the baseline");
+
+    // whose case is gone
+    snprintf(words, sizeof words, "mv '%s/pin.yaml' '%s/moved.yaml'", program->folder,
+             program->folder);
+    assert_int_equal(system(words), 0);
+    program_run(program, "check --baselines b");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "is not there");
+    // that is no case any more
+    write_file(program, "pin.yaml", "title: nothing\n");
+    program_run(program, "check --baselines b");
+    assert_int_equal(program->status, 3);
+    // damaged, beside one that is whole: the whole one is checked all the same
+    write_file(program, "pin.yaml", CASE);
+    write_file(program, "b/a.json", "{}");
+    program_run(program, "check --baselines b");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "the baseline b/a.json is not one of this program, or damaged");
+    assert_says(program->output, "1 within, 0 out, 1 not checked");
+}
+
+static void a_run_that_fails_is_an_error_and_blesses_nothing(void **state)
+{
+    Program *program = *state;
+    static char before[PROGRAM_OUTPUT_SIZE];
+    static char after[PROGRAM_OUTPUT_SIZE];
+    read_file(program, "b/pin.json", before);
+    // ODE leaves the range of the law
+    program_run(program, "check --bless --baselines b $cases/paper/stackup-impact.yaml "
+                         "--set run.step=1ms --set contact.stiffness='1e11 N/m^1.5'");
+    assert_int_equal(program->status, 4);
+    assert_says(program->errors,
+                "stackup-impact.yaml: no baseline of a run that fails: ode failed");
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "b/stackup-impact.json", path);
+    assert_int_equal(access(path, F_OK), -1);
+    program_run(program, "check --baselines b --time-limit 1us");
+    assert_int_equal(program->status, 4);
+    assert_says(program->errors, "pin.yaml: its process took longer than its limit");
+    program_run(program, "check --bless --baselines b --time-limit 1us");
+    assert_int_equal(program->status, 4);
+    read_file(program, "b/pin.json", after);
+    assert_string_equal(after, before);
+}
+
+// Whether xmllint, where there is one, finds a file to be as the schema says.
+static void assert_valid(const Program *program, const char *name)
+{
+    if (getenv("JOINTPLAY_XMLLINT") == NULL || getenv("JOINTPLAY_XMLLINT")[0] == '\0') {
+        print_message("# no xmllint: %s was not held against the schema\n", name);
+        return;
+    }
+    char words[4 * PROGRAM_PATH_SIZE];
+    snprintf(words, sizeof words,
+             "\"$JOINTPLAY_XMLLINT\" --noout --schema \"$JOINTPLAY_JUNIT\" '%s/%s' 2>/dev/null",
+             program->folder, name);
+    assert_int_equal(system(words), 0);
+    // the control: a report of which a name is missing is not valid
+    snprintf(
+        words, sizeof words,
+        "cd '%s' && sed 's/ classname=/ class=/' '%s' >broken.xml && "
+        "! \"$JOINTPLAY_XMLLINT\" --noout --schema \"$JOINTPLAY_JUNIT\" broken.xml 2>/dev/null",
+        program->folder, name);
+    assert_int_equal(system(words), 0);
+}
+
+static void junit_is_valid_and_has_the_numbers_of_a_failure(void **state)
+{
+    Program *program = *state;
+    static char text[PROGRAM_OUTPUT_SIZE];
+    program_run(program, "check --baselines b --quick --junit good.xml");
+    assert_int_equal(program->status, 0);
+    assert_says(program->errors, "wrote good.xml");
+    assert_valid(program, "good.xml");
+    read_file(program, "good.xml", text);
+    assert_says(text, "failures=\"0\" errors=\"0\"");
+    assert_says(text, "<testcase classname=\"pin.yaml\" name=\"ode/hole/force_max_N\"/>");
+    assert_says(text, "<skipped message=");
+
+    program_run(program, "check --baselines b -q --junit bad.xml --set run.step='5.5 us'");
+    assert_int_equal(program->status, 1);
+    assert_string_equal(strstr(program->errors, "wrote") == NULL ? "" : "wrote", "");
+    assert_valid(program, "bad.xml");
+    read_file(program, "bad.xml", text);
+    assert_says(text, "name=\"run.step\"");
+    assert_says(text, "setting run.step was 5e-06 s, is 5.5");
+    assert_says(text, "<failure message=\"ode/hole/impulse_N_s was ");
+    assert_says(text, " bands of ");
+
+    // a case in error is there as well
+    write_file(program, "b/a&b.json", "{}");
+    program_run(program, "check --baselines b -q --quick --junit error.xml");
+    assert_int_equal(program->status, 5);
+    assert_valid(program, "error.xml");
+    read_file(program, "error.xml", text);
+    assert_says(text, "<error message=");
+    assert_says(text, "b/a&amp;b.json");
+    program_run(program, "check --baselines b --junit nowhere/x.xml");
+    assert_int_equal(program->status, 5);
+    assert_string_equal(program->output, "");
+}
+
+static void a_comment_is_short_and_folds_the_rest(void **state)
+{
+    Program *program = *state;
+    static char text[PROGRAM_OUTPUT_SIZE];
+    program_run(program, "check --baselines b --quick --markdown -");
+    assert_int_equal(program->status, 0);
+    assert_int_equal(strncmp(program->output, "### jointplay check: 1 case within its bands\n", 45),
+                     0);
+    assert_says(program->output, "<details><summary>All cases (quick check)</summary>");
+    program_run(program, "check --baselines b --quick --markdown c.md --set gravity='9.8 m/s^2'");
+    assert_int_equal(program->status, 1);
+    read_file(program, "c.md", text);
+    assert_says(text, "### jointplay check: 1 of 1 cases out of their bands");
+    assert_says(text, "| gravity | 9.80665 m/s^2 | 9.8");
+    assert_says(text, "and ");
+}
+
+static void a_wrong_command_line_is_answered(void **state)
+{
+    Program *program = *state;
+    program_fails_usage(program, "check --quik", "did you mean '--quick'?");
+    program_fails_usage(program, "check --bless --quick", "--bless measures in full");
+    program_fails_usage(program, "check --shake 0", "--shake is 0");
+    program_fails_usage(program, "check --junit x --markdown x", "would both write x");
+    program_fails_usage(program, "check --baselines b --set run.stp=1us", "run.stp");
+    program_run(program, "check nowhere.yaml");
+    assert_int_equal(program->status, 5);
+    program_run(program, "check --help");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "Usage: jointplay check [OPTION...] [CASE...]");
+}
+
+#define CHECK_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, program_tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CHECK_TEST(a_case_that_has_not_changed_is_within),
+        CHECK_TEST(another_machine_is_no_difference),
+        CHECK_TEST(what_moved_is_named_with_status_1),
+        CHECK_TEST(a_number_edited_in_the_file_is_named),
+        CHECK_TEST(what_cannot_be_checked_never_passes),
+        CHECK_TEST(a_run_that_fails_is_an_error_and_blesses_nothing),
+        CHECK_TEST(junit_is_valid_and_has_the_numbers_of_a_failure),
+        CHECK_TEST(a_comment_is_short_and_folds_the_rest),
+        CHECK_TEST(a_wrong_command_line_is_answered),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
