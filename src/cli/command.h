@@ -15,6 +15,10 @@ typedef struct Command {
 
 extern const Command cmd_run;
 extern const Command cmd_compare;
+extern const Command cmd_check;
+extern const Command cmd_tune;
+extern const Command cmd_map;
+extern const Command cmd_study;
 extern const Command cmd_paper;
 extern const Command cmd_help;
 

@@ -3,7 +3,7 @@
 # shows in its own place alone. Prints TAP.
 set -u
 root=$1
-layers="base model casefile contact analytic reference ode run compare paper report cli"
+layers="base model casefile contact analytic reference ode run compare study paper report cli"
 
 rank_of() {
     rank=0
@@ -37,9 +37,10 @@ broken_wall() {
 broken_walls() {
     broken_wall "$1" 'ode/' '/ode/'
     broken_wall "$1" 'ccd/' '/ode/'
-    broken_wall "$1" 'gsl/' '/base/root\.c$'
+    broken_wall "$1" 'gsl/' '/base/(normal|root)\.c$'
     broken_wall "$1" 'yaml\.h' '/casefile/document\.c$'
     broken_wall "$1" 'jansson\.h' '/report/'
+    broken_wall "$1" 'sqlite3\.h' '/study/store[a-z_]*\.c$'
     broken_wall "$1" 'argp\.h' '/cli/'
 }
 
@@ -65,17 +66,24 @@ report() {
 # the control: a tree with one fault of each kind must be caught
 control=$(mktemp -d)
 trap 'rm -rf "$control"' EXIT
-mkdir -p "$control/model" "$control/run"
+mkdir -p "$control/model" "$control/run" "$control/walls/study"
 printf '#include "run/run.h"\n#include <ode/ode.h>\n' >"$control/model/bad.c"
+# and only the one of two files that is outside the library's place
+for name in sweep store_rows; do
+    printf '#include <sqlite3.h>\n' >"$control/walls/study/$name.c"
+done
 
 caught() {
     if [ -n "$1" ]; then echo ''; else echo 'nothing was found'; fi
 }
 
-echo 1..6
+echo 1..7
 report "a file includes only its own folder and those above it" "$(broken_layers "$root/src")"
 report "each library is included in its own place alone" "$(broken_walls "$root/src")"
 report "no file has more than 400 lines" "$(long_files "$root/src")"
 report "every header guards itself" "$(unguarded_headers "$root/src")"
 report "a file that includes a lower layer is caught" "$(caught "$(broken_layers "$control")")"
 report "a library outside its place is caught" "$(caught "$(broken_walls "$control")")"
+found=$(broken_walls "$control/walls" | sed 's|.*/||')
+report "SQLite is caught outside the store alone" \
+    "$([ "$found" = 'sweep.c: includes <sqlite3.h' ] || echo "found: $found")"
