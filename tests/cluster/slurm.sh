@@ -21,8 +21,8 @@ leave() {
 trap leave EXIT
 trap 'exit 1' INT TERM HUP
 
-JOB_WAIT=120 # s for an array and what gathers it: some 15 s on two free cores
-RUNS=84      # of the study below, some 0.1 s each
+JOB_WAIT=240 # s for an array and what gathers it: some 30 s on two free cores
+RUNS=240     # of the study below, some 0.1 s each: a shard takes longer than it takes to hit it
 number=0
 
 # A sentence, and whether it is true: the status of the command behind it.
@@ -46,7 +46,7 @@ set: {run.step: 1 us}
 vary:
   drive.speed: {from: 300 rpm, to: 1500 rpm, count: 6}
 draw:
-  count: 14
+  count: 40
   method: random
   seed: 1
   keys:
@@ -121,9 +121,9 @@ hit_shards() {
     scontrol update nodename="$node" state=down reason=dead || return 1
     # as a minute before the time limit
     await_rows hit 3 && scancel --signal=TERM --batch "${array}_3" || return 1
-    cluster_node_begin "$node" || return 1
     # as when the node is wanted for something else
-    await_rows hit 4 && scontrol requeue "${array}_4"
+    await_rows hit 4 && scontrol requeue "${array}_4" || return 1
+    cluster_node_begin "$node"
 }
 
 was_tried_twice() {
