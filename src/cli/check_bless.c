@@ -13,6 +13,7 @@
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 // The measures of a baseline in the making.
 typedef struct Making {
@@ -31,7 +32,9 @@ static void wait_for_truth(const char *doing, void *context)
 }
 
 // A mechanism that the reference cannot take has numbers all the same, and no errors.
-static void find_plan(Making *making)
+// But where the old baseline has errors, their loss is no baseline's affair: a reference that was
+// killed or timed out would take the most sensitive numbers with it.
+static bool find_plan(Making *making, Err *err)
 {
     Truth truth;
     const TruthChild work = {.scenario = making->item->scenario,
@@ -46,6 +49,11 @@ static void find_plan(Making *making)
                  is_made ? truth.message : own.text);
     }
     truth_finish(&truth);
+    const CheckItem *item = making->item;
+    const bool had_truth = item->baseline_err.kind == ERR_NONE && item->baseline.plan.has_truth;
+    return making->plan.has_truth || !had_truth ||
+           err_set(err, ERR_SOLVER, "the old baseline has errors, and now there is no truth: %s",
+                   making->no_truth);
 }
 
 // Measures so many starts; the first of a list of works is the number of the member given.
@@ -79,8 +87,8 @@ static bool make_baseline(Making *making, Baseline *made, CheckMeasure *run, siz
 {
     CheckMeasure *measures = making->measures;
     *sample_count = 0;
-    find_plan(making);
-    if (!measure(making, baseline_rounding_start, 0, 1 + BASELINE_MEMBERS, measures, err)) {
+    if (!find_plan(making, err) ||
+        !measure(making, baseline_rounding_start, 0, 1 + BASELINE_MEMBERS, measures, err)) {
         return false;
     }
     *run = measures[0];
@@ -114,8 +122,11 @@ static void hold_against_old(const Making *making, const Baseline *made, const C
         .rate = CHECK_FALSE_ALARM_RATE / (double)(tests > 0 ? tests : 1),
     };
     if (making->item->baseline_err.kind != ERR_NONE) {
-        snprintf(result->note, sizeof result->note, "a new baseline of %zu numbers%s%.190s",
-                 made->count, making->no_truth[0] != '\0' ? ", " : "", making->no_truth);
+        // one that was there and cannot be read is no reason to keep it, but one to tell
+        const bool is_bad = access(making->item->baseline_path, F_OK) == 0;
+        snprintf(result->note, sizeof result->note, "a new baseline of %zu numbers%s%s%.150s",
+                 made->count, is_bad ? " in place of one that could not be read" : "",
+                 making->no_truth[0] != '\0' ? ", " : "", making->no_truth);
         return;
     }
     text_copy(result->note, sizeof result->note, making->no_truth);

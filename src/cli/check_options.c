@@ -96,6 +96,17 @@ static bool check_together(const CheckOptions *options, Err *err)
                        "--bless measures in full and unshaken: it goes with "
                        "neither --quick nor --shake");
     }
+    if (options->is_blessing && options->common.override_count > 0) {
+        return err_set(err, ERR_USAGE,
+                       "--bless makes the baseline of a case as its file has it: it does not go "
+                       "with --set");
+    }
+    const bool has_stream = (options->junit != NULL && file_is_stream(options->junit)) ||
+                            (options->markdown != NULL && file_is_stream(options->markdown));
+    if (options->common.is_json && has_stream) {
+        return err_set(err, ERR_USAGE,
+                       "--json prints its object alone: give --junit and --markdown files");
+    }
     if (file_is_same(options->junit, options->markdown)) {
         return err_set(err, ERR_USAGE, "--junit and --markdown would both write %s",
                        options->junit);

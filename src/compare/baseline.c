@@ -8,7 +8,8 @@
 //              largest would still be 2.5 s. They are a hundred times larger where joints have
 //              play.
 // statistical  the ensemble spreads over more than 1e-4 of the number: what rounding does to it is
-//              no longer small, and only its distribution can be held against another.
+//              no longer small, and only its distribution can be held against another. So it is
+//              then with every number of that run that is not exact.
 #include "compare/baseline.h"
 
 #include "base/sorted.h"
@@ -145,7 +146,8 @@ static void set_band(BaselineMetric *metric, const CheckMetric *measured, double
         metric->band_kind = BAND_STATISTICAL;
         return;
     }
-    if (measured->kind != CHECK_REAL && deviation == 0.0) {
+    // steps that a solver chooses by itself have a floor, and so no exact count
+    if (measured->kind != CHECK_REAL && deviation == 0.0 && measured->floor == 0.0) {
         metric->band_kind = BAND_EXACT;
         snprintf(metric->why, sizeof metric->why, "a whole number that %zu starts left alone",
                  member_count);
@@ -160,6 +162,28 @@ static void set_band(BaselineMetric *metric, const CheckMetric *measured, double
     } else {
         snprintf(metric->why, sizeof metric->why, "what rounding does; %zu starts moved it %.2g",
                  member_count, deviation);
+    }
+}
+
+// Whether two metrics are of one run: of one backend, to the end or to the horizon.
+static bool are_of_one_run(const char *name, const char *other)
+{
+    const size_t length = strcspn(name, "/");
+    return length == strcspn(other, "/") && strncmp(name, other, length) == 0;
+}
+
+// A run of which one number cannot be predicted has none that can: what 8 starts hardly moved may
+// be far off in a ninth that takes another course. Whole numbers that none of them moved stay
+// exact.
+static void spread_doubt(BaselineMetric *metrics, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = 0; metrics[i].band_kind == BAND_ROUNDING && k < count; k++) {
+            if (metrics[k].band_kind == BAND_STATISTICAL &&
+                are_of_one_run(metrics[k].name, metrics[i].name)) {
+                metrics[i].band_kind = BAND_STATISTICAL;
+            }
+        }
     }
 }
 
@@ -188,6 +212,7 @@ bool baseline_set_metrics(Baseline *baseline, const CheckMeasure *run, const Che
         const double deviation = largest_deviation(members, member_count, i, measured->value);
         set_band(metric, measured, deviation, member_count);
     }
+    spread_doubt(baseline->metrics, baseline->count);
     return true;
 }
 
@@ -209,6 +234,25 @@ static double to_digits(double value)
     return strtod(words, NULL);
 }
 
+// The numbers of a sample, in ascending order, and their mean.
+static bool fill_sample(BaselineMetric *metric, const CheckMeasure *members, size_t member_count,
+                        Err *err)
+{
+    metric->sample_count = member_count;
+    metric->mean = 0.0;
+    for (size_t k = 0; k < member_count; k++) {
+        const size_t place = baseline_find(&members[k], metric->name);
+        if (place == members[k].count) {
+            return err_set(err, ERR_SOLVER, "a start beside the case's own does not measure %s",
+                           metric->name);
+        }
+        metric->sample[k] = to_digits(members[k].metrics[place].value);
+        metric->mean += metric->sample[k] / (double)member_count;
+    }
+    sorted_make(metric->sample, member_count);
+    return true;
+}
+
 bool baseline_set_sample(Baseline *baseline, const CheckMeasure *members, size_t member_count,
                          double rate, Err *err)
 {
@@ -218,24 +262,21 @@ bool baseline_set_sample(Baseline *baseline, const CheckMeasure *members, size_t
         if (metric->band_kind != BAND_STATISTICAL) {
             continue;
         }
-        metric->sample_count = member_count;
-        metric->mean = 0.0;
-        for (size_t k = 0; k < member_count; k++) {
-            const size_t place = baseline_find(&members[k], metric->name);
-            if (place == members[k].count) {
-                return err_set(err, ERR_SOLVER, "a start beside the case's own does not measure %s",
-                               metric->name);
-            }
-            metric->sample[k] = to_digits(members[k].metrics[place].value);
-            metric->mean += metric->sample[k] / (double)member_count;
+        if (!fill_sample(metric, members, member_count, err)) {
+            return false;
         }
-        sorted_make(metric->sample, member_count);
-        metric->value = sorted_median(metric->sample, member_count);
-        metric->band = rank_test_shift(metric->sample, member_count, rate);
-        if (!isfinite(metric->band)) {
+        const double shift = rank_test_shift(metric->sample, member_count, rate);
+        if (!isfinite(shift) && metric->band > 0.0) {
+            // the run's other numbers cast doubt on it, and it did not move: its band holds
+            metric->band_kind = BAND_ROUNDING;
+            continue;
+        }
+        if (!isfinite(shift)) {
             return err_set(err, ERR_SOLVER, "%s takes too few values for a rank test to tell any",
                            metric->name);
         }
+        metric->value = sorted_median(metric->sample, member_count);
+        metric->band = shift;
         snprintf(metric->why, sizeof metric->why,
                  "not to be predicted: %zu starts, rank test; the band is a shift it tells",
                  member_count);

@@ -10,6 +10,7 @@
 #include "base/text.h"
 
 #include <assert.h>
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,15 +54,32 @@ static const char *find_setting(const Baseline *baseline, const char *key)
     return NULL;
 }
 
+// Reads a number where one can begin: not within a word, and none of the words that strtod takes
+// for numbers. False where there is none.
+static bool read_number(const char *text, const char *at, double *number, const char **end)
+{
+    const bool is_within = at > text && isalnum((unsigned char)at[-1]);
+    const char *digit = at + strspn(at, "+-.");
+    char *behind;
+    if (is_within || !isdigit((unsigned char)*digit)) {
+        return false;
+    }
+    *number = strtod(at, &behind);
+    *end = behind;
+    return behind > at && isfinite(*number);
+}
+
 // The largest number in a value.
 static double largest_number(const char *value)
 {
     double largest = 0.0;
-    while (*value != '\0') {
-        char *end;
-        const double number = strtod(value, &end);
-        largest = end > value ? fmax(largest, fabs(number)) : largest;
-        value = end > value ? end : value + 1;
+    for (const char *at = value; *at != '\0';) {
+        double number;
+        const char *end = at + 1;
+        if (read_number(value, at, &number, &end)) {
+            largest = fmax(largest, fabs(number));
+        }
+        at = end;
     }
     return largest;
 }
@@ -71,22 +89,25 @@ static double largest_number(const char *value)
 static bool settings_agree(const char *was, const char *now)
 {
     const double near = SETTING_AGREES * largest_number(was);
-    while (*was != '\0' && *now != '\0') {
-        char *was_end;
-        char *now_end;
-        const double was_number = strtod(was, &was_end);
-        const double now_number = strtod(now, &now_end);
-        if (was_end > was && now_end > now) {
+    const char *at_was = was;
+    const char *at_now = now;
+    while (*at_was != '\0' && *at_now != '\0') {
+        double was_number;
+        double now_number;
+        const char *was_end;
+        const char *now_end;
+        if (read_number(was, at_was, &was_number, &was_end) &&
+            read_number(now, at_now, &now_number, &now_end)) {
             if (!(fabs(was_number - now_number) <= near)) {
                 return false;
             }
-            was = was_end;
-            now = now_end;
-        } else if (*was++ != *now++) {
+            at_was = was_end;
+            at_now = now_end;
+        } else if (*at_was++ != *at_now++) {
             return false;
         }
     }
-    return *was == *now;
+    return *at_was == *at_now;
 }
 
 // A setting that is another now, or is not made use of any more. One that the baseline does not
@@ -186,6 +207,10 @@ static void judge_metric(const Baseline *baseline, const BaselineMetric *metric,
     }
     const size_t place = baseline_find(evidence->run, metric->name);
     if (place == evidence->run->count) {
+        row->verdict = CHECK_GONE;
+        row->severity = INFINITY;
+    } else if ((metric->kind == CHECK_HASH) != (evidence->run->metrics[place].kind == CHECK_HASH)) {
+        // one is a fingerprint and the other a number: not of one measurement
         row->verdict = CHECK_GONE;
         row->severity = INFINITY;
     } else if (metric->kind == CHECK_HASH) {

@@ -39,7 +39,8 @@ const char *const VERDICT_NAMES[VERDICT_COUNT] = {
 
 static bool is_off(double value, double asked)
 {
-    return !(fabs(value - asked) <= MAPPING_VALID_SHARE * asked);
+    // a restitution of 0 has no share of its own
+    return !(fabs(value - asked) <= MAPPING_VALID_SHARE * fmax(asked, MAPPING_VALID_SHARE));
 }
 
 static bool is_spread_off(const ImpactSpread *spread, double asked)

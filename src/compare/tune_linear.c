@@ -139,7 +139,7 @@ static int choose_linear(const Tune *tune)
     for (size_t i = 0; i < tune->linear_count; i++) {
         least = fmin(least, tune->linears[i].error); // fmin passes over NAN
     }
-    const double enough = fmax(AS_GOOD * least, tune->target);
+    const double enough = fmax(AS_GOOD * least, tune->target - tune->truth.uncertainty);
     int chosen = TUNE_NONE;
     for (size_t i = 0; i < tune->linear_count; i++) {
         const TuneLinear *linear = &tune->linears[i];

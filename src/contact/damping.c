@@ -103,7 +103,7 @@ static double exact(double e)
 
 double damping_factor(DampingKind kind, double restitution)
 {
-    assert(restitution > 0.0 && restitution <= 1.0);
+    assert(restitution >= 0.0 && restitution <= 1.0);
     return damping_get(kind)->factor(restitution);
 }
 

@@ -84,7 +84,9 @@ bool law_build(const ContactOptions *contact, const MaterialOptions *material,
         }
     }
     built.impact_speed_floor = contact->impact_speed_floor;
-    if (contact->damping == DAMPING_VISCOUS) {
+    if (contact->model == CONTACT_POISSON && contact->restitution == 0.0) {
+        built.hysteresis = 0.0; // some factors are infinite there, and its loss is the bounce
+    } else if (contact->damping == DAMPING_VISCOUS) {
         built.viscous = contact->viscous_coefficient;
     } else {
         built.hysteresis = damping_factor(contact->damping, contact->restitution);

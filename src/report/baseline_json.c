@@ -265,6 +265,13 @@ static bool read_sample(const json_t *object, BaselineMetric *metric, Err *err)
     return is_whole || fail(metric->name, "'sample' is not the one of 'value' and 'mean'", err);
 }
 
+static bool is_hash_name(const char *name)
+{
+    static const char END[] = "/hash";
+    const size_t length = strlen(name);
+    return length >= strlen(END) && strcmp(name + length - strlen(END), END) == 0;
+}
+
 static bool read_metric(const char *name, const json_t *object, BaselineMetric *metric, Err *err)
 {
     static const char *const KEYS[] = {"value", "band", "why", "?full", "?mean", "?sample", NULL};
@@ -280,7 +287,18 @@ static bool read_metric(const char *name, const json_t *object, BaselineMetric *
     metric->kind = json_is_string(value)    ? CHECK_HASH
                    : json_is_integer(value) ? CHECK_COUNT
                                             : CHECK_REAL;
-    metric->is_slow = json_is_true(json_object_get(object, "full"));
+    const json_t *full = json_object_get(object, "full");
+    metric->is_slow = full != NULL;
+    if (full != NULL && !json_is_true(full)) {
+        return fail(name, "'full' is true or not there", err);
+    }
+    if ((metric->kind == CHECK_HASH) != is_hash_name(name)) {
+        return fail(name, "16 hexadecimal digits belong to what ends in /hash, and to that alone",
+                    err);
+    }
+    if (metric->kind == CHECK_HASH && metric->band_kind != BAND_EXACT) {
+        return fail(name, "a hash is exact", err);
+    }
     if (metric->band < 0.0) {
         return fail(name, "'band' is negative", err);
     }

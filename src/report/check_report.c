@@ -41,6 +41,10 @@ static bool say_other(const CheckRow *row, char words[CHECK_WORDS_SIZE])
     if (row->verdict == CHECK_SETTING) {
         snprintf(words, CHECK_WORDS_SIZE, "setting %s was %s, is %s", row->name, row->was_text,
                  row->now_text);
+    } else if (row->kind == CHECK_HASH &&
+               (row->verdict == CHECK_NEW || row->verdict == CHECK_GONE)) {
+        snprintf(words, CHECK_WORDS_SIZE, "a hash that is %s",
+                 row->verdict == CHECK_NEW ? "not in the baseline" : "not measured any more");
     } else if (row->verdict == CHECK_NEW) {
         snprintf(words, CHECK_WORDS_SIZE, "is %.17g and not in the baseline", row->now);
     } else if (row->verdict == CHECK_GONE) {

@@ -125,9 +125,9 @@ static void write_linears(const Tune *tune, const Style *style, Text *text)
             table_cell(table, "-");
         }
         table_cell(table, "%.60s",
-                   (int)i == tune->linear          ? "taken"
-                   : linear->error <= tune->target ? "meets it"
-                                                   : linear->reason);
+                   (int)i == tune->linear                                    ? "taken"
+                   : linear->error + tune->truth.uncertainty <= tune->target ? "met in this run"
+                                                                             : linear->reason);
     }
     run_section_end(table, text);
 }

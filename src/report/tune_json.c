@@ -155,6 +155,7 @@ static json_t *mujoco_object(const TuneReport *report)
     json_value_set(object, "inverse_mass_1_kg", mujoco.weight);
     json_value_set(object, "stiffness_N_m", mujoco.stiffness);
     json_value_set(object, "damping_N_s_m", mujoco.damping);
+    json_value_set(object, "step_s", mujoco.step_s);
     Text text;
     text_init(&text);
     tune_mujoco_write(report, &text);

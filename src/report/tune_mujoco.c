@@ -10,12 +10,25 @@
 // A is what the compiler of MuJoCo finds at qpos0: the sum of both bodies' body_invweight0, 1/m of
 // a body with a free joint and 0 of one that is welded to the world or moved as mocap. f and the
 // forces here: N; K N/m; C N s/m.
+//
+// r and v are those before the step: the spring is explicit, where the textbook's row in ODE is
+// implicit and stable at any step. So omega h and C h / m, m the effective mass, stay below a
+// tenth.
 #include "report/tune_mujoco.h"
 
 #include "report/number.h"
+
+#include <float.h>
 #include <math.h>
+#include <stdio.h>
+
+enum { FRICTION_SIZE = 128 };
 
 static const double LEAST_IMPEDANCE = 1e-4; // mjMINIMP
+
+// of the explicit limit 2 for the effective mass at the deepest contact: the lightest that a pin of
+// a linkage meets was seen to be a sixth of that, where omega h is then 0.25
+static const double STEP_SHARE = 0.1;
 
 static double inverse_mass(const Linkage *linkage, int body)
 {
@@ -41,6 +54,9 @@ bool tune_mujoco_find(const TuneReport *report, TuneMujoco *mujoco)
         .solref = {-weight * linear->stiffness, -weight * linear->damping},
         .stiffness = linear->stiffness,
         .damping = linear->damping,
+        .step_s = fmin(linear->step_s,
+                       STEP_SHARE * fmin(sqrt(tune->contact.mass / linear->stiffness),
+                                         tune->contact.mass / fmax(linear->damping, DBL_MIN))),
     };
     return weight > 0.0;
 }
@@ -51,7 +67,14 @@ void tune_mujoco_write(const TuneReport *report, Text *text)
     if (!tune_mujoco_find(report, &mujoco)) {
         return;
     }
-    const Tune *tune = report->tune;
+    const double friction = report->scenario->contact.friction;
+    char slides[FRICTION_SIZE] = "";
+    if (friction > 0.0) {
+        // both directions of sliding; MuJoCo's own numbers for torsion and rolling, which a planar
+        // pin does not do
+        snprintf(slides, sizeof slides, "\n      friction=\"%s %s 0.005 0.0001 0.0001\"",
+                 number_shortest(friction).text, number_shortest(friction).text);
+    }
     text_append(text,
                 "<!-- spring %.4g N/m, damper %.4g N s/m, not run here; for bodies with free "
                 "joints, held by connect\n     equalities: A = %.6g 1/kg. In any other model "
@@ -59,11 +82,10 @@ void tune_mujoco_write(const TuneReport *report, Text *text)
                 mujoco.stiffness, mujoco.damping, mujoco.weight);
     text_append(text,
                 "<option timestep=\"%s\" integrator=\"Euler\" cone=\"elliptic\"/>\n"
-                "<pair geom1=\"pin\" geom2=\"hole\" condim=\"%d\" margin=\"0\" gap=\"0\"\n"
+                "<pair geom1=\"pin\" geom2=\"hole\" condim=\"%d\" margin=\"0\" gap=\"0\"%s\n"
                 "      solref=\"%s %s\"\n"
                 "      solimp=\"%s %s 1 0.5 1\"/>\n",
-                number_shortest(tune->linears[tune->linear].step_s).text,
-                report->scenario->contact.friction > 0.0 ? 3 : 1,
+                number_shortest(mujoco.step_s).text, friction > 0.0 ? 3 : 1, slides,
                 number_shortest(mujoco.solref[0]).text, number_shortest(mujoco.solref[1]).text,
                 number_shortest(mujoco.impedance).text, number_shortest(mujoco.impedance).text);
 }

@@ -10,6 +10,7 @@ typedef struct TuneMujoco {
     double solref[2]; // -stiffness, 1/s^2, and -damping, 1/s
     double stiffness; // N/m, of the contact
     double damping;   // N s/m
+    double step_s;    // s: MuJoCo's contact is explicit, so that it may need a finer one than ODE's
 } TuneMujoco;
 
 // False where there is none: no joint has play, or no linear contact is stable.
