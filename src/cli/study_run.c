@@ -102,7 +102,8 @@ static bool print_report(StudyReport *report, bool is_json, Err *err)
 static bool check_runs(const StudyReport *report, Err *err)
 {
     return report->count.rows == 0 || report->count.fates[FATE_OK] > 0 ||
-           err_set(err, ERR_SOLVER, "every run of the study failed");
+           err_set(err, ERR_SOLVER, "every run of %s failed",
+                   report->shard.count > 1 ? "this part" : "the study");
 }
 
 static bool prepare_store(const StudyOptions *options, Store *store, Err *err)
@@ -168,8 +169,12 @@ static bool make_runs(const StudyOptions *options, const Spec *spec, const Layou
         if (!options->common.is_quiet) {
             fprintf(stderr,
                     "stopped; %" PRIu64 " of %" PRIu64 " runs are kept in %s, and the same "
-                    "command goes on from there\n",
-                    report.state.done, report.state.total, options->store);
+                    "command%s%s goes on from there\n",
+                    report.state.done, report.state.total, options->store,
+                    options->is_fresh ? " without --fresh" : "",
+                    !options->is_retrying ? ""
+                    : options->is_fresh   ? " and --retry-failed"
+                                          : " without --retry-failed");
         }
         interrupt_obey();
         return true;

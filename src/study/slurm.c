@@ -205,6 +205,8 @@ static const char ARRAY_BODY[] =
     "wait \"$child\"\n"
     "status=$?\n"
     "[ \"$status\" != 0 ] || { say complete; exit 0; }\n"
+    "# nothing to be tried again: the gather job says what is missing, if anything is\n"
+    "[ \"$status\" != 4 ] || { say 'over, but no run went well'; exit 4; }\n"
     "\n"
     "if [ -n \"$is_told\" ]; then\n"
     "    reason='told to end'\n"

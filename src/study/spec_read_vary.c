@@ -138,6 +138,14 @@ static bool read_range(const Reading *reading, const ProbeKey *key, const Node *
     return check_range(reading, node, parts[FROM], variable);
 }
 
+// Whether a key says how the bodies hang together: with another value the columns, which are those
+// of the first run, would hold what is of other bodies.
+static bool is_of_structure(const ProbeKey *key)
+{
+    return key->row != NULL &&
+           (key->row->type == SCHEMA_JOINT_NAME || key->row->type == SCHEMA_BETWEEN);
+}
+
 static bool read_key(Reading *reading, const Node *value)
 {
     ProbeKey key = {0};
@@ -152,6 +160,11 @@ static bool read_key(Reading *reading, const Node *value)
                             key.row->type == SCHEMA_TEXT ? "any other key"
                                                          : "scheme: [reference, auto/1e-4]",
                             reading->err, "%s cannot vary", variable->key);
+    }
+    if (is_of_structure(&key)) {
+        return source_error(
+            &reading->source, keys_span(value), "a study of its own for each value", reading->err,
+            "%s cannot vary, for the columns of a study are those of one mechanism", variable->key);
     }
     return value->kind == NODE_MAP ? read_range(reading, &key, value, variable)
                                    : read_list(reading, &key, value, variable);

@@ -102,7 +102,8 @@ typedef struct StoreSpread {
 bool store_spread(Store *store, size_t column, size_t by, const Cell *value, StoreSpread *spread,
                   Err *err);
 
-// Forgets the rows of failed runs, so that they are made again. `forgotten` is their number.
+// Forgets the rows of failed runs, so that they are made again, and in a study with a truth those
+// of runs that have missed theirs. `forgotten` is their number.
 bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err);
 
 // Hands over the rows by rising number of run. A taker that fails ends it with its error; however
@@ -113,7 +114,8 @@ bool store_each(Store *store, StoreTaker take, void *context, Err *err);
 
 // Merges shards of one study into one store, made new or added to; runs that are there already are
 // left alone, a run that two of them hold with different results is an error, as is a source that
-// is of another study or at work in another process. All or nothing. Memory does not grow with the
-// number of runs. `added` is the number of rows that are new to the target.
+// is of another study or at work in another process. A run that was cut off in one of them (ended,
+// timed out, no memory) is taken from another that has its result. All or nothing. Memory does not
+// grow with the number of runs. `added` is the number of rows that are new to the target.
 bool store_merge(const char *target, const char *const *sources, size_t source_count,
                  uint64_t *added, Err *err);

@@ -172,20 +172,38 @@ static bool reset(Store *store, Err *err)
     return is_done;
 }
 
+// Who makes a file is not yet who locks it first: whatever stands in it then is another's.
+static bool claim(Store *store, bool is_made, Err *err)
+{
+    struct stat status;
+    if (!take_lock(store, err)) {
+        return false;
+    }
+    if (fstat(store->lock, &status) != 0) {
+        return fail_system(store, "open", errno, err);
+    }
+    // whoever had the lock may have taken the file away again
+    if (status.st_nlink == 0) {
+        return err_set(err, ERR_FILE, "the store %s is at work in another process", store->path);
+    }
+    store->is_made = is_made && status.st_size == 0;
+    return true;
+}
+
 bool store_file_open(Store *store, bool is_fresh, Err *err)
 {
     if (!check_kind(store, err)) {
         return false;
     }
     store->lock = open(store->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    store->is_made = store->lock >= 0;
-    if (!store->is_made && errno == EEXIST) {
+    const bool is_made = store->lock >= 0;
+    if (!is_made && errno == EEXIST) {
         store->lock = open(store->path, O_RDWR | O_CLOEXEC);
     }
     if (store->lock < 0) {
         return fail_system(store, "open", errno, err);
     }
-    return take_lock(store, err) && check_header(store, store->lock, true, is_fresh, err) &&
+    return claim(store, is_made, err) && check_header(store, store->lock, true, is_fresh, err) &&
            open_base(store, WORK_WAIT_MS, err) && (!is_fresh || reset(store, err)) &&
            store_run_sql(store, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA", err);
 }

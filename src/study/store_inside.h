@@ -13,6 +13,9 @@ enum {
     STORE_WORDS_SIZE = 256,
 };
 
+// The first of the columns that hold a run against its truth, see study/metrics.c.
+static const char STORE_ERROR_COLUMN[] = "error_omega_max";
+
 struct Store {
     struct sqlite3 *base;
     struct sqlite3_stmt *add_run; // prepared when first needed, as all that follow
@@ -21,7 +24,7 @@ struct Store {
     struct sqlite3_stmt *rows;
     char *path;       // owned, as given
     int lock;         // file that the lock of whoever works on the store hangs on; -1: none
-    bool is_made;     // there was no file before
+    bool is_made;     // its file is of this opening: nobody else has ever written to it
     bool is_changing; // a transaction is open
     Layout *layout;   // owned
     uint64_t run_count;
@@ -84,6 +87,9 @@ bool store_row_prepare(Store *store, struct sqlite3_stmt **statement, Err *err);
 
 // Takes the row that the statement stands at. Fails with ERR_FILE where it is not what was written.
 bool store_row_take(const Store *store, struct sqlite3_stmt *statement, Record *record, Err *err);
+
+// Puts a row in the place of the one of its run, in the transaction that store_commit ends.
+bool store_replace(Store *store, const Record *record, Err *err);
 
 // Whether two rows are the same in all but their effort.
 bool store_row_is_same(const Layout *layout, const Record *a, const Record *b);

@@ -10,6 +10,7 @@
 
 #include <assert.h>
 #include <inttypes.h>
+#include <math.h>
 #include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,7 +34,6 @@ typedef struct Merge {
     size_t waiting; // of the cursors that have a row, as a heap: the lowest run first
     Cursor **heap;
     Store *target;
-    bool is_target_new;
     Record last; // the row taken last, and whose it was
     const char *last_path;
     uint64_t added;
@@ -163,9 +163,10 @@ static bool open_target(Merge *merge, const char *path, Err *err)
 {
     const Store *first = merge->cursors[0].store;
     struct stat status;
-    merge->is_target_new =
+    const bool is_empty =
         stat(path, &status) != 0 || (S_ISREG(status.st_mode) && status.st_size == 0);
-    if (!merge->is_target_new) {
+    // before it is locked, for the better message
+    if (!is_empty) {
         if (store_file_is_at_work(path)) {
             return err_set(err, ERR_FILE, "the store %s is at work in another process", path);
         }
@@ -183,15 +184,39 @@ static bool open_target(Merge *merge, const char *path, Err *err)
     return merge->target != NULL;
 }
 
-static bool check_same(const Merge *merge, const Record *record, const char *path,
-                       const Record *other, const char *other_path, Err *err)
+// What cut a run off may be the machine's fault, and is no result.
+static bool is_cut_off(const Record *record)
 {
-    return store_row_is_same(merge->target->layout, record, other) ||
+    return record->fate == FATE_ENDED || record->fate == FATE_TIMED_OUT ||
+           record->fate == FATE_NO_MEMORY;
+}
+
+// Whether a row has no errors, as where its truth could not be had.
+static bool lacks_errors(const Layout *layout, const Record *record)
+{
+    const size_t column = store_column(layout, STORE_ERROR_COLUMN);
+    return column < layout->setting_count + layout->result_count &&
+           isnan(record->results[column - layout->setting_count]);
+}
+
+// Holds a row against the one that is there of its run. Both must be the same, or one be cut off or
+// have missed its truth: the better one stays.
+static bool compare(const Merge *merge, const Record *record, const char *path, const Record *other,
+                    const char *other_path, bool *is_better, Err *err)
+{
+    const Layout *layout = merge->target->layout;
+    *is_better = is_cut_off(other) && !is_cut_off(record);
+    if (record->fate == FATE_OK && other->fate == FATE_OK && record->hash == other->hash &&
+        lacks_errors(layout, record) != lacks_errors(layout, other)) {
+        *is_better = lacks_errors(layout, other);
+        return true;
+    }
+    return is_cut_off(other) || is_cut_off(record) || store_row_is_same(layout, record, other) ||
            err_set(err, ERR_FILE, "run %" PRIu64 " has different results in %s and in %s",
                    record->run, other_path, path);
 }
 
-// Whether the target had the run before; it must then be the same.
+// Whether the target had the run before; it must then be the same, or the better one stays.
 static bool look_up(Merge *merge, const Record *record, const char *path, bool *is_there, Err *err)
 {
     Store *target = merge->target;
@@ -202,6 +227,7 @@ static bool look_up(Merge *merge, const Record *record, const char *path, bool *
         return true;
     }
     Record there;
+    bool is_better = false;
     if (!store_row_prepare(target, &target->rows, err)) {
         return false;
     }
@@ -210,20 +236,29 @@ static bool look_up(Merge *merge, const Record *record, const char *path, bool *
     const bool is_read =
         sqlite3_step(target->rows) == SQLITE_ROW || store_fail(target, "read", err);
     const bool is_same = is_read && store_row_take(target, target->rows, &there, err) &&
-                         check_same(merge, record, path, &there, target->path, err);
+                         compare(merge, record, path, &there, target->path, &is_better, err);
     sqlite3_reset(target->rows);
-    return is_same;
+    return is_same && (!is_better || store_replace(target, record, err));
 }
 
 static bool take_row(Merge *merge, const Record *record, const char *path, Err *err)
 {
+    bool is_there = false;
     if (merge->last_path != NULL && merge->last.run == record->run) {
-        return check_same(merge, record, path, &merge->last, merge->last_path, err);
+        bool is_better = false;
+        if (!compare(merge, record, path, &merge->last, merge->last_path, &is_better, err)) {
+            return false;
+        }
+        if (!is_better) {
+            return true;
+        }
+        merge->last = *record;
+        merge->last_path = path;
+        return look_up(merge, record, path, &is_there, err);
     }
     merge->last = *record;
     merge->last_path = path;
-    bool is_there = false;
-    if (!merge->is_target_new && !look_up(merge, record, path, &is_there, err)) {
+    if (!merge->target->is_made && !look_up(merge, record, path, &is_there, err)) {
         return false;
     }
     merge->added += is_there ? 0 : 1;
@@ -259,11 +294,12 @@ bool store_merge(const char *target, const char *const *sources, size_t source_c
     if (merge.target != NULL && !is_done) {
         sqlite3_exec(merge.target->base, "ROLLBACK", NULL, NULL, NULL);
         merge.target->is_changing = false;
+        // as long as it is locked: later it may be another's
+        if (merge.target->is_made) {
+            unlink(target);
+        }
     }
     is_done = store_close(merge.target, err) && is_done;
-    if (!is_done && merge.target != NULL && merge.is_target_new) {
-        unlink(target);
-    }
     for (size_t i = 0; i < merge.count; i++) {
         sqlite3_finalize(merge.cursors[i].rows);
         store_close(merge.cursors[i].store, err);

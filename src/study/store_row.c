@@ -180,13 +180,31 @@ bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err)
     if (!store_commit(store, err) || !begin(store, err)) {
         return false;
     }
-    const bool is_done =
-        store_run_sql(store,
-                      "DELETE FROM effort WHERE run IN (SELECT run FROM run WHERE fate <> 0); "
-                      "DELETE FROM run WHERE fate <> 0",
-                      err);
+    // there are errors only where the study has a truth; a run without them has missed it
+    const size_t columns = store->layout->setting_count + store->layout->result_count;
+    const bool has_errors = store_column(store->layout, STORE_ERROR_COLUMN) < columns;
+    const bool is_done = store_run_sql(
+        store,
+        has_errors ? "DELETE FROM effort WHERE run IN "
+                     "(SELECT run FROM run WHERE fate <> 0 OR error_omega_max IS NULL); "
+                     "DELETE FROM run WHERE fate <> 0 OR error_omega_max IS NULL"
+                   : "DELETE FROM effort WHERE run IN (SELECT run FROM run WHERE fate <> 0); "
+                     "DELETE FROM run WHERE fate <> 0",
+        err);
     *forgotten = is_done ? (uint64_t)sqlite3_changes64(store->base) : 0;
     return is_done ? store_commit(store, err) : take_back(store);
+}
+
+bool store_replace(Store *store, const Record *record, Err *err)
+{
+    Text sql;
+    text_init(&sql);
+    text_append(&sql,
+                "DELETE FROM effort WHERE run = %" PRIu64 "; DELETE FROM run WHERE run = %" PRIu64,
+                record->run, record->run);
+    const bool is_gone = begin(store, err) && store_run_sql(store, sql.data, err);
+    text_finish(&sql);
+    return is_gone && store_add(store, record, err);
 }
 
 bool store_row_prepare(Store *store, sqlite3_stmt **statement, Err *err)

@@ -50,7 +50,7 @@ static uint64_t find_end(const Spec *spec, uint64_t run)
     return behind;
 }
 
-// What the truth's process is to do. False where the values make no case: the runs will say so.
+// What the truth's process is to do. False where the values of that run make no case.
 static bool prepare_truth(const Spec *spec, uint64_t run, SweepGroup *group)
 {
     Cell values[RECORD_SETTING_MAX];
@@ -60,11 +60,14 @@ static bool prepare_truth(const Spec *spec, uint64_t run, SweepGroup *group)
     group->wanted = calloc(1, sizeof *group->wanted);
     assert(group->wanted != NULL);
     if (!design_scenario(spec, values, &group->wanted->task.scenario, &backend, &err)) {
+        free(group->wanted);
+        group->wanted = NULL;
         return false;
     }
     group->packed_size = truth_pack_size(&group->wanted->task.scenario);
     group->packed = malloc(group->packed_size);
-    return group->packed != NULL;
+    assert(group->packed != NULL);
+    return true;
 }
 
 void sweep_group_open(const Sweep *sweep, uint64_t run, SweepGroup *group)
@@ -76,9 +79,12 @@ void sweep_group_open(const Sweep *sweep, uint64_t run, SweepGroup *group)
         return;
     }
     group->end = find_end(spec, run);
-    if (prepare_truth(spec, run, group)) {
-        group->state = SWEEP_GROUP_WANTED;
+    // a run whose own step makes no case says so itself; the truth is that of the others, too
+    bool is_prepared = false;
+    for (uint64_t i = run; i < group->end && !is_prepared; i++) {
+        is_prepared = prepare_truth(spec, i, group);
     }
+    group->state = is_prepared ? SWEEP_GROUP_WANTED : SWEEP_GROUP_READY;
 }
 
 static void drop_preparations(SweepGroup *group)

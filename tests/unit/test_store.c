@@ -329,6 +329,28 @@ static void a_sweep_forgets_what_failed(void **state)
     assert_int_equal(count_right_rows(), RUNS - 4);
 }
 
+static void a_run_that_missed_its_truth_is_made_again(void **state)
+{
+    (void)state;
+    Err err;
+    uint64_t forgotten = 0;
+    bool has;
+    const Layout layout = study_layout();
+    Store *store = open_study(&layout, false, &err);
+    for (uint64_t run = 0; run < 3; run++) {
+        Record record = study_record(&layout, run);
+        if (run == 1) {
+            record.results[store_column(&layout, "error_omega_max") - layout.setting_count] = NAN;
+        }
+        assert_true(store_add(store, &record, &err));
+    }
+    assert_true(store_forget_failed(store, &forgotten, &err));
+    assert_int_equal(forgotten, 1);
+    assert_true(store_has(store, 1, &has, &err) && !has);
+    assert_true(store_close(store, &err));
+    assert_int_equal(count_right_rows(), 2);
+}
+
 static bool refuse_third(const Layout *layout, const Record *record, void *context, Err *err)
 {
     (void)layout;
@@ -377,6 +399,7 @@ int main(void)
         STORE_TEST(another_study_is_refused_with_what_differs),
         STORE_TEST(columns_of_one_name_are_a_mistake_of_the_case),
         STORE_TEST(a_sweep_forgets_what_failed),
+        STORE_TEST(a_run_that_missed_its_truth_is_made_again),
         STORE_TEST(a_taker_that_fails_ends_it_with_its_error),
         STORE_TEST(what_is_looked_at_cannot_be_written),
     };

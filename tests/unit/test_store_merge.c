@@ -190,6 +190,48 @@ static void a_run_with_two_results_is_told_and_nothing_is_merged(void **state)
     assert_int_equal(count_right_rows(), 67);
 }
 
+// A store of one run, as it is or cut off by the time limit.
+static void make_one(const char *name, uint64_t run, bool is_cut_off)
+{
+    Err err = {0};
+    const Layout layout = study_layout();
+    const StoreHead head = study_head(&layout, RUNS);
+    Store *store = store_open(name, &head, true, &err);
+    Record record = study_record(&layout, run);
+    if (is_cut_off) {
+        record.fate = FATE_TIMED_OUT;
+        record.hash = 0;
+        strcpy(record.reason, "took longer than its limit of 2 s");
+        for (size_t i = 0; i < layout.result_count; i++) {
+            record.results[i] = NAN;
+        }
+    }
+    assert_true(store_add(store, &record, &err));
+    assert_true(store_close(store, &err));
+}
+
+static void a_run_that_was_cut_off_gives_way_to_its_result(void **state)
+{
+    (void)state;
+    // among the sources, whichever comes first
+    for (int i = 0; i < 2; i++) {
+        make_one(shards[0], 5, i == 0);
+        make_one(shards[1], 5, i == 1);
+        assert_int_equal(merge_of(2), 1);
+        assert_int_equal(count_right_rows(), 1);
+        unlink(path);
+    }
+    // and in the target, which then keeps the result
+    make_one(shards[0], 5, true);
+    assert_int_equal(merge_of(1), 1);
+    make_one(shards[0], 5, false);
+    assert_int_equal(merge_of(1), 0);
+    assert_int_equal(count_right_rows(), 1);
+    make_one(shards[0], 5, true);
+    assert_int_equal(merge_of(1), 0);
+    assert_int_equal(count_right_rows(), 1);
+}
+
 static void stores_of_two_studies_are_not_merged(void **state)
 {
     (void)state;
@@ -351,6 +393,7 @@ int main(void)
         MERGE_TEST(a_merge_can_be_made_in_parts_and_again),
         MERGE_TEST(the_wall_time_of_a_run_made_twice_is_that_of_the_first),
         MERGE_TEST(a_run_with_two_results_is_told_and_nothing_is_merged),
+        MERGE_TEST(a_run_that_was_cut_off_gives_way_to_its_result),
         MERGE_TEST(stores_of_two_studies_are_not_merged),
         MERGE_TEST(a_source_that_is_missing_or_damaged_is_named),
         MERGE_TEST(a_source_at_work_is_waited_for_by_people),

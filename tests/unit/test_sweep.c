@@ -371,6 +371,23 @@ static void a_truth_whose_process_is_killed_is_made_again(void **state)
     assert_int_equal(study->state.without_truth, 0);
 }
 
+static void a_first_run_that_makes_no_case_costs_the_others_no_truth(void **state)
+{
+    Study *study = *state;
+    open_study(study, 2, true, "{time: 60 s}");
+    // the first step of each speed is longer than the whole run
+    for (size_t i = 0; i < study->spec.variable_count; i++) {
+        if (strcmp(study->spec.variables[i].key, "run.step") == 0) {
+            study->spec.variables[i].low = 1e6;
+        }
+    }
+    sweep(study, &WELL, 2, ALL);
+    assert_int_equal(study->row_count, 6);
+    assert_int_equal(board->certified, 3);
+    assert_true(board->with_truth >= 3);
+    assert_int_equal(study->state.without_truth, 0);
+}
+
 static void what_was_stopped_goes_on_and_makes_nothing_twice(void **state)
 {
     Study *study = *state;
@@ -472,6 +489,7 @@ int main(void)
         SWEEP_TEST(more_jobs_than_runs_do_no_harm),
         SWEEP_TEST(a_truth_that_cannot_be_had_stops_no_run_and_is_told),
         SWEEP_TEST(a_truth_whose_process_is_killed_is_made_again),
+        SWEEP_TEST(a_first_run_that_makes_no_case_costs_the_others_no_truth),
         SWEEP_TEST(what_was_stopped_goes_on_and_makes_nothing_twice),
         SWEEP_TEST(shards_share_the_runs),
         SWEEP_TEST(the_usual_work_makes_what_one_run_makes_by_itself),
