@@ -1,0 +1,15 @@
+// Random cases from a seed, for measurements on mechanisms that nobody tuned anything for: written
+// to a stream as YAML, one kind of mechanism a file.
+#pragma once
+
+#include <stdint.h>
+#include <stdio.h>
+
+typedef struct CaseKind {
+    const char *name;
+    const char *summary;
+    void (*write)(uint64_t seed, FILE *file);
+} CaseKind;
+
+extern const CaseKind CASE_FOUR_BAR;
+extern const CaseKind CASE_BODIES;
