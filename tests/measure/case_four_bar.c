@@ -32,9 +32,10 @@ static Lengths draw_lengths(Draw *draw)
             .coupler = size * draw_between(draw, 0.3, 1.8),
             .follower = size * draw_between(draw, 0.3, 1.8),
         };
-        const double least =
-            fmin(transmission(&l, fabs(l.ground - l.crank)), transmission(&l, l.ground + l.crank));
-        if (least >= LEAST_TRANSMISSION) {
+        const double folded = transmission(&l, fabs(l.ground - l.crank));
+        const double stretched = transmission(&l, l.ground + l.crank);
+        // a diagonal that cannot be has none
+        if (folded >= LEAST_TRANSMISSION && stretched >= LEAST_TRANSMISSION) {
             return l;
         }
     }

@@ -38,11 +38,11 @@ bool draw_chance(Draw *draw, double probability)
 void draw_play(Draw *draw, FILE *file)
 {
     const double clearance_um = draw_log_between(draw, 1.0, 500.0);
-    fprintf(file, "radial-clearance: %.6g um, width: %.4g mm", clearance_um,
+    fprintf(file, "radial-clearance: %.9g um, width: %.4g mm", clearance_um,
             draw_between(draw, 5.0, 30.0));
     if (draw_chance(draw, 0.3)) {
         // a little less than the play: rounding of the text must not put the pin into the wall
-        const double share = draw_chance(draw, 0.3) ? 0.999999 : draw_between(draw, 0.0, 0.99);
+        const double share = draw_chance(draw, 0.3) ? 0.9999999 : draw_between(draw, 0.0, 0.99);
         const double angle = draw_between(draw, 0.0, 2.0 * M_PI);
         fprintf(file, ", start: [%.9g um, %.9g um]", share * clearance_um * cos(angle),
                 share * clearance_um * sin(angle));
