@@ -58,13 +58,22 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
     return true;
 }
 
+static bool build_short(const Entries *entries, Scenario *scenario, Err *err)
+{
+    return closure_check(entries, scenario, err) && build_fourbar(scenario, err);
+}
+
+static bool build_long(const Entries *entries, Scenario *scenario, Err *err)
+{
+    return place_linkage(entries, scenario, err) && closure_check_ideal(entries, scenario, err);
+}
+
 // What remains is wrong as a whole; it is shown at the drive, or at the top where there is none.
 static bool build(const Entries *entries, Scenario *scenario, Err *err)
 {
     Err own = {0};
-    const bool is_built = entries->form == SCHEMA_SHORT ? closure_check(entries, scenario, &own) &&
-                                                              build_fourbar(scenario, &own)
-                                                        : place_linkage(entries, scenario, &own);
+    const bool is_built = entries->form == SCHEMA_SHORT ? build_short(entries, scenario, &own)
+                                                        : build_long(entries, scenario, &own);
     if (is_built && scenario_check(scenario, &own)) {
         return true;
     }

@@ -1,11 +1,13 @@
-// Does the four-bar close where it starts, and can the crank turn through the run?
+// Does the mechanism close where it starts, and can the crank turn through the run?
 //
-// With a crank, b coupler, c follower, g ground, coupler and follower meet at the crank angle
-// theta when the diagonal d(theta) from crank pin to follower pivot satisfies
+// In a four-bar with a crank, b coupler, c follower, g ground, coupler and follower meet at the
+// crank angle theta when the diagonal d(theta) from crank pin to follower pivot satisfies
 //     |b - c| <= d <= b + c,    d^2 = a^2 + g^2 - 2 a g cos(theta),
 // so that cos(theta) must lie between the values for d = b + c and for d = |b - c|. Where one of
-// these is a cosine, its angle is a dead centre.
+// these is a cosine, its angle is a dead centre. Play in the joints widens both ends of the range.
 #include "casefile/closure.h"
+
+#include "model/lock.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -38,10 +40,13 @@ typedef struct Reach {
     double cos_high; // at the shortest
 } Reach;
 
-static Reach find_reach(const FourBar *fourbar)
+// The reach of coupler and follower whose joints give way by some play, m.
+static Reach find_reach(const FourBar *fourbar, double play)
 {
     Reach reach;
     fourbar_diagonal_range(fourbar, &reach.shortest, &reach.longest);
+    reach.shortest = fmax(0.0, reach.shortest - play);
+    reach.longest += play;
     const double a = fourbar->crank.nominal;
     const double g = fourbar->ground.nominal;
     const double squares = a * a + g * g;
@@ -114,6 +119,17 @@ static bool check_start(const Entries *entries, const Scenario *scenario, const 
                         1e3 * reach->longest);
 }
 
+// What all joints together give way, m.
+static double total_play(const Linkage *linkage)
+{
+    double play = 0.0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        play += joint->kind == JOINT_CLEARANCE ? linkage_radial_clearance(joint) : 0.0;
+    }
+    return play;
+}
+
 // The angle the crank turns from its start until cos(theta) is the value given, rad.
 static double travel_to(double cosine, double start, double direction)
 {
@@ -131,19 +147,28 @@ static double travel_to(double cosine, double start, double direction)
     return travel;
 }
 
+// How far the crank turns from its start to a dead centre, rad.
+static double free_travel(const Reach *reach, const Driver *driver)
+{
+    const double direction = driver->speed < 0.0 ? -1.0 : 1.0;
+    return fmin(travel_to(reach->cos_low, driver->start, direction),
+                travel_to(reach->cos_high, driver->start, direction));
+}
+
 bool closure_check(const Entries *entries, const Scenario *scenario, Err *err)
 {
     const FourBar *fourbar = &scenario->fourbar;
     const Driver *driver = &scenario->linkage.driver;
-    const Reach reach = find_reach(fourbar);
+    const Reach reach = find_reach(fourbar, 0.0);
     if (!check_start(entries, scenario, &reach, err)) {
         return false;
     }
     const double direction = driver->speed < 0.0 ? -1.0 : 1.0;
-    const double travel = fmin(travel_to(reach.cos_low, driver->start, direction),
-                               travel_to(reach.cos_high, driver->start, direction));
+    const double travel = free_travel(&reach, driver);
     const double turns = travel / (2.0 * M_PI);
-    if (!(turns <= scenario->run.revolutions)) {
+    // play may be enough to let the crank pass: then the run shows whether it does
+    const Reach most = find_reach(fourbar, total_play(&scenario->linkage));
+    if (!(free_travel(&most, driver) / (2.0 * M_PI) <= scenario->run.revolutions)) {
         return true;
     }
     const Entry *entry = entries_blame(entries, BLAMED + 1, BLAMED_COUNT, 0);
@@ -157,4 +182,23 @@ bool closure_check(const Entries *entries, const Scenario *scenario, Err *err)
                         "centre at %.4g deg (the mechanism is a %s)",
                         driver->start / DEGREE, (driver->start + direction * travel) / DEGREE,
                         FOURBAR_GRASHOF_NAMES[fourbar_grashof(fourbar)]);
+}
+
+bool closure_check_ideal(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    static const char *const GIVEN[] = {"run.revolutions", "drive.speed"};
+    const Driver *driver = &scenario->linkage.driver;
+    const Lock lock =
+        lock_find(&scenario->linkage, LOCK_IDEAL_ONLY, 2.0 * M_PI * scenario->run.revolutions);
+    if (lock.state != LOCK_FOUND) {
+        return true;
+    }
+    const Entry *entry = entries_blame(entries, GIVEN, sizeof GIVEN / sizeof *GIVEN, 0);
+    char allowed[ALLOWED_SIZE];
+    snprintf(allowed, sizeof allowed, "less than %.4g revolutions, or lengths with which it turns",
+             fabs(lock.crank_angle - driver->start) / (2.0 * M_PI));
+    return source_error(entry->source, entry->node->span, allowed, err,
+                        "the crank cannot turn through the run: from %.4g deg it turns up to "
+                        "%.6g deg, where the mechanism locks",
+                        driver->start / DEGREE, lock.crank_angle / DEGREE);
 }

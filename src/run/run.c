@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "model/energy.h"
+#include "model/lock.h"
 #include "run/recorder.h"
 
 #include <stdio.h>
@@ -180,7 +181,8 @@ Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch 
     loop.recorder = recorder_start(scenario, trajectory);
     loop.probe_own = probe == NULL ? NULL : probe->begin(scenario, solver, loop.state);
     loop.started_s = clock_now_s();
-    const bool is_done = prepare(&loop, &err) && run_samples(&loop, trajectory, &err);
+    const bool is_prepared = prepare(&loop, &err);
+    const bool is_done = is_prepared && run_samples(&loop, trajectory, &err);
     trajectory->wall_s = clock_now_s() - loop.started_s;
     recorder_finish(&loop.recorder);
     fill_model(&loop, trajectory);
@@ -192,6 +194,8 @@ Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch 
         close_energy(&loop, trajectory);
     }
     trajectory->is_complete = is_done;
+    // what fails before the first step may have failed anywhere in trial runs
+    lock_explain(scenario, is_prepared ? loop.reached_s : scenario_duration(scenario), &err);
     if (loop.probe_own != NULL) {
         probe->end(loop.probe_own, trajectory);
     }

@@ -1,0 +1,31 @@
+// How far can the drive turn a linkage before its loops can no longer be closed?
+#pragma once
+
+#include "model/scenario.h"
+
+typedef enum LockState {
+    LOCK_UNKNOWN, // the drive alone does not say where the bodies are, or nothing says it anywhere
+    LOCK_NONE,    // the drive turns through the whole range
+    LOCK_FOUND,   // it does not: at an angle within it the linkage locks
+} LockState;
+
+typedef struct Lock {
+    LockState state;
+    double crank_angle; // rad, of the driven body where it locks, or up to where it does not
+} Lock;
+
+// Which joints keep bodies together.
+typedef enum LockJoints {
+    LOCK_ALL_AS_IDEAL, // all, as if none had play
+    LOCK_IDEAL_ONLY,   // those without play; the others are left open
+} LockJoints;
+
+// Turns the driver from its start through an angle, rad, and looks whether that part of the linkage
+// that it determines can follow. Change points, where two ways to go on cross, are passed. The
+// angle of a lock is right to 1e-8 rad or better. Takes some milliseconds.
+Lock lock_find(const Linkage *linkage, LockJoints joints, double turn);
+
+// Adds the cause to the error of a run that failed at a time, s, where the cause is that the
+// mechanism locks at an angle that the drive had reached or nearly reached by then. A run that
+// locks presses its pins into their walls some degrees before or, with play, beyond that angle.
+void lock_explain(const Scenario *scenario, double time_s, Err *err);
