@@ -136,13 +136,32 @@ CheckPlan check_plan(const Truth *truth)
     };
 }
 
+// What feels the play of a scenario and is measured: perturbations are relative to its motion.
+static BackendKind motion_backend(const Scenario *scenario)
+{
+    for (size_t i = 0; i < scenario->run.backend_count; i++) {
+        if (scenario->run.backends[i] != BACKEND_ANALYTIC) {
+            return scenario->run.backends[i];
+        }
+    }
+    return BACKEND_REFERENCE;
+}
+
 void check_measure_start(Scenario *scenario, CheckStart start)
 {
     if (start.shake > 0) {
         shake_inputs(scenario, start.shake);
     }
     if (start.member > 0) {
-        perturb_start(scenario, start.speed_share, start.member);
+        DistanceScale scales[LINKAGE_BODY_MAX];
+        const Solver *solver = registry_solver(motion_backend(scenario));
+        Trajectory *own = run_scenario(scenario, solver, NOBODY);
+        // a run that fails here will fail when it is measured
+        if (own->is_complete) {
+            distance_scales(own, scales);
+            perturb_start(scenario, scales, start.share, start.member);
+        }
+        trajectory_destroy(own);
     }
 }
 

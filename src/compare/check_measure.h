@@ -43,9 +43,9 @@ typedef struct CheckPlan {
 
 // How the starts of an ensemble differ from the scenario's own.
 typedef struct CheckStart {
-    unsigned member;    // 0: not at all
-    double speed_share; // 1: speeds change by so much of the scale of speeds, see model/perturb.h
-    unsigned shake;     // 0: not; else the seed with which inputs are rounded anew
+    unsigned member; // 0: not at all
+    double share;    // 1: size of the perturbation, see model/perturb.h
+    unsigned shake;  // 0: not; else the seed with which inputs are rounded anew
 } CheckStart;
 
 // The plan of a scenario, its truth being known. The runs are measured in full.

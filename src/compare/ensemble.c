@@ -45,17 +45,29 @@ static Distribution distribution_of(double *values, size_t count)
     return made;
 }
 
+// Runs the scenario from one start; the first of all says how fast the bodies move.
+static Trajectory *run_member(const Scenario *scenario, const Solver *solver, RunWatch watch,
+                              unsigned member, DistanceScale scales[LINKAGE_BODY_MAX])
+{
+    Scenario beside = *scenario;
+    if (member > 0) {
+        perturb_start(&beside, scales, ENSEMBLE_PERTURBATION, member);
+    }
+    Trajectory *trajectory = run_scenario(&beside, solver, watch);
+    if (member == 0) {
+        distance_scales(trajectory, scales);
+    }
+    return trajectory;
+}
+
 void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch,
                   Ensemble *ensemble)
 {
     Draws draws;
+    DistanceScale scales[LINKAGE_BODY_MAX];
     memset(ensemble, 0, sizeof *ensemble);
     for (unsigned member = 0; member < ENSEMBLE_MEMBERS; member++) {
-        Scenario beside = *scenario;
-        if (member > 0) {
-            perturb_start(&beside, ENSEMBLE_PERTURBATION, member);
-        }
-        Trajectory *trajectory = run_scenario(&beside, solver, watch);
+        Trajectory *trajectory = run_member(scenario, solver, watch, member, scales);
         if (trajectory->is_complete) {
             take_member(trajectory, ensemble->members++, &draws);
         } else if (ensemble->failed++ == 0) {

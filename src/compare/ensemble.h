@@ -5,7 +5,8 @@
 
 enum { ENSEMBLE_MEMBERS = 16 };
 
-extern const double ENSEMBLE_PERTURBATION; // of the speeds at the start
+// Size of the differences between the starts: of each body's speeds relative to its own largest.
+extern const double ENSEMBLE_PERTURBATION;
 
 // What is compared of a joint with play.
 typedef enum EnsembleMetric {
@@ -32,7 +33,7 @@ typedef struct Ensemble {
     Distribution joints[LINKAGE_JOINT_MAX][ENSEMBLE_METRIC_COUNT]; // of joints with play
 } Ensemble;
 
-// Runs the scenario from ENSEMBLE_MEMBERS starts that differ by ENSEMBLE_PERTURBATION of the
-// speeds, the first one unperturbed.
+// Runs the scenario from ENSEMBLE_MEMBERS starts that differ by ENSEMBLE_PERTURBATION, the first
+// one unperturbed.
 void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch,
                   Ensemble *ensemble);

@@ -80,9 +80,11 @@ static void certify(const Scenario *fine, const Scenario *other, RunWatch watch,
     truth->is_limited = false;
     truth->horizon_s = scenario_duration(fine);
     shorten_horizon(second, first, truth);
+    DistanceScale scales[LINKAGE_BODY_MAX];
+    distance_scales(second, scales);
     for (unsigned member = 1; member <= DISTANCE_TWINS && truth->message[0] == '\0'; member++) {
         Scenario beside = *other;
-        perturb_start(&beside, DISTANCE_TWIN, member);
+        perturb_start(&beside, scales, DISTANCE_TWIN, member);
         Trajectory *twin = run_for(&beside, watch, truth);
         const double distance = shorten_horizon(second, twin, truth);
         truth->growth = fmax(truth->growth, distance / DISTANCE_TWIN);

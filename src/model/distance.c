@@ -1,16 +1,17 @@
 // How far are two motions of one linkage apart, in numbers that mean the same for all bodies?
 //
 //     d(t) = max over bodies |omega_b(t) - ref_b(t)| / max over t |ref_b|
-// over every body whose speed is not prescribed. A body that hardly turns is measured by a
-// thousandth of the fastest body's speed: its own would be rounding. Where no drive turns anything,
-// bodies may not turn at all: the speeds of their centres then take the place of omega, and their
-// accelerations that of alpha.
+// over every body whose speed is not prescribed. A body that hardly turns is measured by the omega
+// with which its furthest joint would move at a thousandth of the speed of the fastest point of the
+// linkage: its own would be rounding. Sizes are those of the body itself, so that a pivot far away
+// changes nothing. Where no drive turns anything, bodies may not turn at all: the speeds of their
+// centres then take the place of omega, and their accelerations that of alpha.
 #include "model/distance.h"
 
 enum { LEAST_SAMPLES = 1000 }; // fewer steps of a horizon would say little
 
 static const double SMALLEST_SCALE =
-    1e-3; // of the fastest body's: below it lies no motion to speak of
+    1e-3; // of the fastest point's: below it lies no motion to speak of
 
 bool distance_is_by_velocity(const Trajectory *reference)
 {
@@ -29,44 +30,51 @@ double distance_of_changes(const Motion *motion, const Motion *truth, bool is_ve
                        : fabs(motion->alpha - truth->alpha);
 }
 
-static DistanceScale body_scales(const Trajectory *reference, size_t body)
+// The largest rates of one body. A point of it moves with |v| + |omega| reach at most.
+static DistanceScale body_scale(const Trajectory *reference, size_t body)
 {
     const Motion still = {.omega = 0.0};
     const bool is_velocity = distance_is_by_velocity(reference);
-    DistanceScale scales = {0.0, 0.0};
+    const double reach = reference->reach[body];
+    DistanceScale scale = {.omega = 0.0};
     for (size_t k = 0; k < reference->sample_count; k++) {
         const Motion *truth = trajectory_motion(reference, k, body);
-        scales.omega = fmax(scales.omega, distance_of_rates(truth, &still, is_velocity));
-        scales.alpha = fmax(scales.alpha, distance_of_changes(truth, &still, is_velocity));
+        scale.omega = fmax(scale.omega, distance_of_rates(truth, &still, is_velocity));
+        scale.alpha = fmax(scale.alpha, distance_of_changes(truth, &still, is_velocity));
+        scale.moving =
+            fmax(scale.moving, vec2_length(truth->velocity) + fabs(truth->omega) * reach);
+        scale.changing =
+            fmax(scale.changing, vec2_length(truth->acceleration) + fabs(truth->alpha) * reach);
     }
-    return scales;
+    return scale;
 }
 
-static DistanceScale smallest_scales(const DistanceScale *scales, size_t body_count)
+// A share of a rate of the fastest point of all, as a rate of one body; 1 where nothing moves.
+static double least_rate(double fastest, double reach, bool is_velocity)
 {
-    DistanceScale largest = {0.0, 0.0};
-    for (size_t i = 0; i < body_count; i++) {
-        largest.omega = fmax(largest.omega, scales[i].omega);
-        largest.alpha = fmax(largest.alpha, scales[i].alpha);
-    }
-    // where nothing turns at all, errors are absolute
-    return (DistanceScale){
-        .omega = largest.omega > 0.0 ? SMALLEST_SCALE * largest.omega : 1.0,
-        .alpha = largest.alpha > 0.0 ? SMALLEST_SCALE * largest.alpha : 1.0,
-    };
+    return fastest > 0.0 ? SMALLEST_SCALE * fastest / (is_velocity ? 1.0 : reach) : 1.0;
 }
 
 void distance_scales(const Trajectory *reference, DistanceScale scales[LINKAGE_BODY_MAX])
 {
+    const bool is_velocity = distance_is_by_velocity(reference);
+    double moving = 0.0;
+    double changing = 0.0;
     for (size_t i = 0; i < reference->body_count; i++) {
-        scales[i] = body_scales(reference, i);
+        scales[i] = body_scale(reference, i);
+        moving = fmax(moving, scales[i].moving);
+        changing = fmax(changing, scales[i].changing);
     }
-    const DistanceScale smallest = smallest_scales(scales, reference->body_count);
     for (size_t i = 0; i < reference->body_count; i++) {
-        scales[i].omega = fmax(scales[i].omega, smallest.omega);
-        scales[i].alpha = fmax(scales[i].alpha, smallest.alpha);
+        const double reach = reference->reach[i];
+        DistanceScale *scale = &scales[i];
+        scale->omega = fmax(scale->omega, least_rate(moving, reach, is_velocity));
+        scale->alpha = fmax(scale->alpha, least_rate(changing, reach, is_velocity));
+        scale->moving = fmax(scale->moving, least_rate(moving, reach, true));
+        scale->turning = scale->moving / reach;
         if ((int)i == reference->driven_body) {
-            scales[i] = (DistanceScale){0.0, 0.0};
+            scale->omega = 0.0;
+            scale->alpha = 0.0;
         }
     }
 }

@@ -14,10 +14,14 @@ enum { DISTANCE_TWINS = 4 }; // a single one may lie in a direction that hardly 
 // The scenario with samples fine enough to compare on, its own among them.
 Scenario distance_grid(const Scenario *scenario);
 
-// What distances of a body are measured in; 0 for the driven body, which does not count.
+// How fast a body moves: its largest rates over a trajectory, all above 0 but where noted.
 typedef struct DistanceScale {
-    double omega; // rad/s, or m/s
-    double alpha; // rad/s^2, or m/s^2
+    double omega;    // rad/s, or m/s: what distances are measured in; 0 for the driven body, which
+                     // does not count
+    double alpha;    // rad/s^2, or m/s^2; likewise
+    double moving;   // m/s, of the body's fastest point
+    double turning;  // rad/s, with which its furthest joint moves that fast
+    double changing; // m/s^2, acceleration of the body's fastest point; 0 where there is none
 } DistanceScale;
 
 void distance_scales(const Trajectory *reference, DistanceScale scales[LINKAGE_BODY_MAX]);

@@ -26,6 +26,22 @@ double linkage_period(const Linkage *linkage)
     return driver->is_present ? 2.0 * M_PI / fabs(driver->speed) : 0.0;
 }
 
+double linkage_reach(const Linkage *linkage, int body)
+{
+    const Body *own = &linkage->bodies[body];
+    double reach = sqrt(own->inertia / own->mass);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint->body_a == body) {
+            reach = fmax(reach, vec2_length(joint->anchor_a));
+        }
+        if (joint->body_b == body) {
+            reach = fmax(reach, vec2_length(joint->anchor_b));
+        }
+    }
+    return reach;
+}
+
 int linkage_find_body(const Linkage *linkage, const char *name)
 {
     for (size_t i = 0; i < linkage->body_count; i++) {

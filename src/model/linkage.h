@@ -85,6 +85,10 @@ double linkage_crank_angle(const Linkage *linkage, double time_s);
 // Time of one turn of the driver, s; 0 where there is no driver.
 double linkage_period(const Linkage *linkage);
 
+// How far a body's points go from its centre of mass, m: the distance of its furthest joint, at
+// least its radius of gyration.
+double linkage_reach(const Linkage *linkage, int body);
+
 // The number of a body or joint by its name, or -1.
 int linkage_find_body(const Linkage *linkage, const char *name);
 int linkage_find_joint(const Linkage *linkage, const char *name);

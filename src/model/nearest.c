@@ -157,6 +157,31 @@ void nearest_speeds(const Linkage *linkage, bool with_play, Motion *motions)
     }
 }
 
+void nearest_change(const Linkage *linkage, const Motion *motions, SpeedChange *changes)
+{
+    Motion moved[LINKAGE_BODY_MAX];
+    double change[KINEMATICS_COLUMN_MAX] = {0.0};
+    // the first pass leaves the softness of redundant rows, the second its square
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < linkage->body_count; i++) {
+            moved[i] = motions[i];
+            moved[i].velocity = changes[i].velocity;
+            moved[i].omega = changes[i].omega;
+        }
+        Demand demand;
+        demand_speeds(linkage, moved, false, &demand);
+        if (linkage->driver.is_present) {
+            demand.wanted[demand.rows] = -moved[linkage_driven_body(linkage)].omega;
+        }
+        const bool is_solved = least_change(linkage, motions, &demand, change);
+        for (size_t i = 0; i < linkage->body_count; i++) {
+            changes[i].velocity.x = is_solved ? changes[i].velocity.x + change[3 * i] : 0.0;
+            changes[i].velocity.y = is_solved ? changes[i].velocity.y + change[3 * i + 1] : 0.0;
+            changes[i].omega = is_solved ? changes[i].omega + change[3 * i + 2] : 0.0;
+        }
+    }
+}
+
 bool nearest_check(const Linkage *linkage, const Motion *motions, int *joint, double *distance)
 {
     Demand demand;

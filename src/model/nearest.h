@@ -12,6 +12,16 @@ bool nearest_places(const Linkage *linkage, Motion *motions);
 // follows the driver. Where it cannot be solved nothing changes.
 void nearest_speeds(const Linkage *linkage, bool with_play, Motion *motions);
 
+// A change of a body's speeds.
+typedef struct SpeedChange {
+    Vec2 velocity; // m/s, of the centre
+    double omega;  // rad/s
+} SpeedChange;
+
+// Alters changes of the bodies' speeds as little as keeps the ideal joints closed and the driver as
+// it is. All are 0 where nothing is free.
+void nearest_change(const Linkage *linkage, const Motion *motions, SpeedChange *changes);
+
 // Whether the speeds keep the ideal joints closed and follow the driver, to 1e-9 of the largest.
 // Else *joint is the number of the joint that opens fastest, with *distance in m/s, or -1 where it
 // is the driver.

@@ -1,31 +1,111 @@
-// Which start lies beside a start without opening any ideal joint?
+// Which start lies beside a start, and at what distance?
 //
-// Random speeds are added to all bodies; then the nearest speeds that the ideal joints and the
-// driver allow are taken.
+// Each body draws a change of its velocity and its omega, each of the size of the body's own
+// largest; the nearest change w that ideal joints and driver allow (in the norm w' M w of kinetic
+// energy) is taken, and multiplied so that
+//     max over bodies max(|w_omega| / omega_b, |w_v| / v_b)  =  size.
+// Draws are along directions that the geometry gives, not along the axes of a frame: turned with
+// its mechanism a scenario draws the same changes, turned.
 #include "model/perturb.h"
 
 #include "base/lcg.h"
 #include "model/nearest.h"
-#include "model/scale.h"
 
-void perturb_start(Scenario *scenario, double relative, unsigned member)
+// of what was drawn: what rounding leaves where joints and driver allow nothing
+static const double ALLOWED = 1e-8;
+
+// of the body's reach: two points that make a direction
+static const double APART = 1e-6;
+
+// What one body's changes are measured in.
+typedef struct Unit {
+    double moving;  // m/s
+    double turning; // rad/s
+} Unit;
+
+// As errors are measured, and what errors do not measure by the speed of the body's points.
+static Unit unit_of(const Linkage *linkage, const DistanceScale *scale)
 {
-    Linkage *linkage = &scenario->linkage;
-    const SpeedScale scale = scale_speeds(scenario);
-    const int driven = linkage_driven_body(linkage);
-    Motion motions[LINKAGE_BODY_MAX];
-    uint64_t seed = member;
+    return linkage->driver.is_present ? (Unit){scale->moving, scale->omega}
+                                      : (Unit){scale->omega, scale->turning};
+}
+
+static double change_size(const Linkage *linkage, const DistanceScale *scales,
+                          const SpeedChange *changes)
+{
+    double size = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        motions[i] = linkage->bodies[i].start;
-        if ((int)i != driven) {
-            motions[i].velocity.x += relative * scale.moving * lcg_draw(&seed);
-            motions[i].velocity.y += relative * scale.moving * lcg_draw(&seed);
-            motions[i].omega += relative * scale.turning * lcg_draw(&seed);
+        if ((int)i != linkage_driven_body(linkage)) {
+            const Unit unit = unit_of(linkage, &scales[i]);
+            size = fmax(size, vec2_length(changes[i].velocity) / unit.moving);
+            size = fmax(size, fabs(changes[i].omega) / unit.turning);
         }
     }
-    nearest_speeds(linkage, false, motions);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        linkage->bodies[i].start.velocity = motions[i].velocity;
-        linkage->bodies[i].start.omega = motions[i].omega;
+    return size;
+}
+
+// A direction that turns with the mechanism: from a body's centre to the first joint that is not
+// there, or of its velocity, or of gravity. Without any, all directions are the same.
+static Vec2 own_direction(const Scenario *scenario, const Motion *motions, size_t body)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const Vec2 centre = motions[body].position;
+    Vec2 arms[2 * LINKAGE_JOINT_MAX];
+    size_t count = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        arms[count++] = vec2_sub(linkage_point(motions, joint->body_a, joint->anchor_a), centre);
+        arms[count++] = vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b), centre);
     }
+    const double reach = linkage_reach(linkage, (int)body);
+    for (size_t i = 0; i < count; i++) {
+        const double length = vec2_length(arms[i]);
+        if (length > APART * reach) {
+            return vec2_scale(1.0 / length, arms[i]);
+        }
+    }
+    const double speed = vec2_length(motions[body].velocity);
+    return speed > 0.0 ? vec2_scale(1.0 / speed, motions[body].velocity) : (Vec2){0.0, -1.0};
+}
+
+static void draw_changes(const Scenario *scenario, const DistanceScale *scales,
+                         const Motion *motions, unsigned member, SpeedChange *changes)
+{
+    const Linkage *linkage = &scenario->linkage;
+    uint64_t seed = lcg_stirred(member);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        changes[i] = (SpeedChange){{0.0, 0.0}, 0.0};
+        if ((int)i != linkage_driven_body(linkage)) {
+            const Unit unit = unit_of(linkage, &scales[i]);
+            const Vec2 along = vec2_scale(unit.moving, own_direction(scenario, motions, i));
+            const double ahead = lcg_draw(&seed);
+            const double aside = lcg_draw(&seed);
+            changes[i].velocity =
+                vec2_add(vec2_scale(ahead, along), vec2_scale(aside, vec2_perp(along)));
+            changes[i].omega = unit.turning * lcg_draw(&seed);
+        }
+    }
+}
+
+bool perturb_start(Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_MAX], double size,
+                   unsigned member)
+{
+    Linkage *linkage = &scenario->linkage;
+    Motion motions[LINKAGE_BODY_MAX];
+    SpeedChange changes[LINKAGE_BODY_MAX];
+    linkage_start(linkage, motions);
+    draw_changes(scenario, scales, motions, member, changes);
+    const double drawn = change_size(linkage, scales, changes);
+    nearest_change(linkage, motions, changes);
+    const double allowed = change_size(linkage, scales, changes);
+    if (!(allowed > ALLOWED * drawn)) {
+        return false;
+    }
+    const double factor = size / allowed;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        Motion *start = &linkage->bodies[i].start;
+        start->velocity = vec2_add(start->velocity, vec2_scale(factor, changes[i].velocity));
+        start->omega += factor * changes[i].omega;
+    }
+    return true;
 }

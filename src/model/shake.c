@@ -9,9 +9,6 @@
 
 #include <math.h>
 
-// the first draws of neighbouring seeds are alike in nothing once the seed has been stirred
-enum { STIR = 4 };
-
 static void shake(double *value, uint64_t *seed)
 {
     const double drawn = lcg_draw(seed);
@@ -82,10 +79,7 @@ static void shake_world(Scenario *scenario, uint64_t *seed)
 
 void shake_inputs(Scenario *scenario, unsigned seed)
 {
-    uint64_t drawn = seed;
-    for (int i = 0; i < STIR; i++) {
-        lcg_draw(&drawn);
-    }
+    uint64_t drawn = lcg_stirred(seed);
     for (size_t i = 0; i < scenario->linkage.body_count; i++) {
         shake_body(&scenario->linkage.bodies[i], &drawn);
     }

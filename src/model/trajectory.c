@@ -14,6 +14,9 @@ Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
     trajectory->body_count = scenario->linkage.body_count;
     trajectory->joint_count = scenario->linkage.joint_count;
     trajectory->driven_body = linkage_driven_body(&scenario->linkage);
+    for (size_t i = 0; i < trajectory->body_count; i++) {
+        trajectory->reach[i] = linkage_reach(&scenario->linkage, (int)i);
+    }
     trajectory->sample_count = samples;
     trajectory->times = calloc(samples, sizeof *trajectory->times);
     trajectory->crank_angles = calloc(samples, sizeof *trajectory->crank_angles);

@@ -76,7 +76,8 @@ typedef struct Trajectory {
     char message[ERR_TEXT_SIZE];       // why it failed
     size_t body_count;
     size_t joint_count;
-    int driven_body; // whose motion is prescribed, or LINKAGE_GROUND
+    int driven_body;                // whose motion is prescribed, or LINKAGE_GROUND
+    double reach[LINKAGE_BODY_MAX]; // m, of each body's points from its centre: linkage_reach
     size_t sample_count;
     double *times;        // s, by sample; owned, like the three below
     double *crank_angles; // rad, by sample, not wrapped

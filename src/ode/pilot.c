@@ -117,7 +117,7 @@ double pilot_horizon(Pilots *pilots, const Scenario *scenario, const Scenario *g
     }
     for (unsigned member = 1; member <= DISTANCE_TWINS; member++) {
         Scenario twin = *scenario;
-        perturb_start(&twin, DISTANCE_TWIN, member);
+        perturb_start(&twin, scales, DISTANCE_TWIN, member);
         until_s = twin_horizon(pilots, &twin, grid, beside, scales, until_s);
     }
     trajectory_destroy(beside);
