@@ -13,7 +13,6 @@
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 // The measures of a baseline in the making.
 typedef struct Making {
@@ -121,19 +120,18 @@ static void hold_against_old(const Making *making, const Baseline *made, const C
         .is_full = tests == 0 || sample_count > 0,
         .rate = CHECK_FALSE_ALARM_RATE / (double)(tests > 0 ? tests : 1),
     };
+    text_copy(result->note, sizeof result->note, making->no_truth);
+    result->made_count = made->count;
     if (making->item->baseline_err.kind != ERR_NONE) {
-        // one that was there and cannot be read is no reason to keep it, but one to tell
-        const bool is_bad = access(making->item->baseline_path, F_OK) == 0;
-        snprintf(result->note, sizeof result->note, "a new baseline of %zu numbers%s%s%.150s",
-                 made->count, is_bad ? " in place of one that could not be read" : "",
-                 making->no_truth[0] != '\0' ? ", " : "", making->no_truth);
+        // one that was there and cannot be read is no reason to keep it, but one to say so
+        result->change = making->item->is_there ? CHECK_CHANGE_UNREADABLE : CHECK_CHANGE_NEW;
         return;
     }
-    text_copy(result->note, sizeof result->note, making->no_truth);
     CheckRow *rows = calloc(check_row_max(old, &evidence), sizeof *rows);
     assert(rows != NULL);
     result->row_count = check_judge(old, &evidence, rows);
     result->rows = rows;
+    result->change = check_report_count(result).out > 0 ? CHECK_CHANGE_REPLACED : CHECK_CHANGE_NONE;
 }
 
 static void bless_item(const CheckOptions *options, const CheckItem *item, CheckCase *result)

@@ -65,6 +65,7 @@ static void show_path(const char *whole, char target[FILE_PATH_SIZE])
 static void read_baseline(CheckItem *item, bool is_blessing)
 {
     Err *err = is_blessing ? &item->baseline_err : &item->err;
+    item->is_there = access(item->baseline_path, F_OK) == 0;
     baseline_json_read(item->baseline_path, &item->baseline, err);
 }
 

@@ -15,7 +15,8 @@ typedef struct CheckItem {
     Baseline baseline;                  // empty where it could not be read
     Baseline now;                       // head of what this program makes of the case
     Err err;                            // of the case or its baseline
-    Err baseline_err;                   // when blessing: why there is no old one
+    bool is_there;                      // a file stands where the baseline belongs
+    Err baseline_err;                   // when blessing: why there is no old one to read
 } CheckItem;
 
 // Lists the cases, reads them and their baselines. A case or a baseline that cannot be read is an

@@ -126,7 +126,7 @@ bool check_options_read(int argc, char **argv, CheckOptions *options, bool *is_a
         .take = take_option,
     };
     *options = (CheckOptions){.folder = DEFAULT_FOLDER,
-                              .common.jobs = option_values_count_cores(),
+                              .common.jobs = option_values_count_jobs(),
                               .common.time_limit_s = DEFAULT_TIME_LIMIT};
     return arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err) &&
            (*is_answered || check_together(options, err));

@@ -12,8 +12,7 @@ bool common_options_take(int key, const char *value, CommonOptions *options, Err
         options->schemes = value;
         return true;
     case COMMON_JOBS:
-        return option_values_read_count("jobs", value, 1, option_values_count_cores(),
-                                        &options->jobs, err);
+        return option_values_read_count("jobs", value, 1, OPTION_JOB_MAX, &options->jobs, err);
     case COMMON_TIME_LIMIT:
         return option_values_read_time("time-limit", value, &options->time_limit_s, err);
     case COMMON_JSON:

@@ -83,7 +83,7 @@ bool compare_options_read(int argc, char **argv, CompareOptions *options, bool *
         .take = take_option,
     };
     *options = (CompareOptions){.repeats = LADDER_REPEAT_LEAST,
-                                .common.jobs = option_values_count_cores(),
+                                .common.jobs = option_values_count_jobs(),
                                 .common.time_limit_s = DEFAULT_TIME_LIMIT};
     if (!arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err)) {
         return false;

@@ -106,8 +106,9 @@ bool option_values_check_step(const char *path, const char *const *settings, siz
     return is_right;
 }
 
-size_t option_values_count_cores(void)
+size_t option_values_count_jobs(void)
 {
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    return cores > 0 ? (size_t)cores : 1;
+    const long most = OPTION_JOB_MAX;
+    return cores < 1 ? 1 : (size_t)(cores < most ? cores : most);
 }

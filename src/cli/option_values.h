@@ -11,6 +11,10 @@
 // The most values that --set may give on one command line.
 enum { OPTION_SETTING_MAX = 256 };
 
+// The most processes at a time that --jobs may ask for: more than the processors are allowed, for
+// the number is often written for another machine.
+enum { OPTION_JOB_MAX = 256 };
+
 // Reads --name, a whole number from least to most. Fails with ERR_USAGE.
 bool option_values_read_count(const char *name, const char *text, size_t least, size_t most,
                               size_t *count, Err *err);
@@ -35,5 +39,5 @@ bool option_values_take_setting(const char *value, const char **settings, size_t
 bool option_values_check_step(const char *path, const char *const *settings, size_t count,
                               double step_s, Err *err);
 
-// The processors of the machine, at least 1.
-size_t option_values_count_cores(void);
+// Processes at a time where nothing is said: one a processor, OPTION_JOB_MAX at most.
+size_t option_values_count_jobs(void);

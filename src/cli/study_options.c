@@ -100,9 +100,8 @@ bool study_options_read(int argc, char **argv, StudyOptions *options, bool *is_a
         .options = OPTIONS,
         .take = take_option,
     };
-    const size_t cores = option_values_count_cores();
-    *options = (StudyOptions){.common.jobs = cores < SWEEP_JOB_MAX ? cores : SWEEP_JOB_MAX,
-                              .shard = {0, 1}};
+    _Static_assert((int)SWEEP_JOB_MAX >= (int)OPTION_JOB_MAX, "a default that is refused");
+    *options = (StudyOptions){.common.jobs = option_values_count_jobs(), .shard = {0, 1}};
     if (!arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err)) {
         return false;
     }

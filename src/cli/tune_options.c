@@ -164,7 +164,7 @@ bool tune_options_read(int argc, char **argv, TuneOptions *options, bool *is_ans
         .options = OPTIONS,
         .take = take_option,
     };
-    *options = (TuneOptions){.common.jobs = option_values_count_cores(),
+    *options = (TuneOptions){.common.jobs = option_values_count_jobs(),
                              .common.time_limit_s = DEFAULT_TIME_LIMIT};
     Reading reading = {.options = options};
     if (!arguments_parse(&ARGUMENTS, argc, argv, &reading, is_answered, err)) {

@@ -55,18 +55,23 @@ static const char *find_setting(const Baseline *baseline, const char *key)
 }
 
 // Reads a number where one can begin: not within a word, and none of the words that strtod takes
-// for numbers. False where there is none.
+// for numbers. False where there is none; `end` is then as it was.
 static bool read_number(const char *text, const char *at, double *number, const char **end)
 {
     const bool is_within = at > text && isalnum((unsigned char)at[-1]);
     const char *digit = at + strspn(at, "+-.");
-    char *behind;
     if (is_within || !isdigit((unsigned char)*digit)) {
         return false;
     }
-    *number = strtod(at, &behind);
+    // "--2" has a digit, and yet strtod finds no number at its start
+    char *behind;
+    const double read = strtod(at, &behind);
+    if (behind == at || !isfinite(read)) {
+        return false;
+    }
+    *number = read;
     *end = behind;
-    return behind > at && isfinite(*number);
+    return true;
 }
 
 // The largest number in a value.

@@ -4,7 +4,7 @@
 #include "base/child.h"
 #include "compare/task.h"
 
-enum { TUNE_POOL_MAX = 64 };
+enum { TUNE_POOL_MAX = 256 };
 
 typedef struct TunePoolJob {
     bool is_busy;

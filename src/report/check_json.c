@@ -40,7 +40,7 @@ static json_t *row_object(const CheckRow *row)
     return object;
 }
 
-static json_t *case_object(const CheckCase *item)
+static json_t *case_object(const CheckReport *report, const CheckCase *item)
 {
     const CheckCounts counts = check_report_count(item);
     const char *status = item->err.kind != ERR_NONE ? "failed" : counts.out > 0 ? "out" : "within";
@@ -48,19 +48,24 @@ static json_t *case_object(const CheckCase *item)
     for (size_t i = 0; i < item->row_count; i++) {
         json_array_append_new(rows, row_object(&item->rows[i]));
     }
-    return json_pack("{s:o, s:o, s:s, s:o, s:o, s:I, s:I, s:I, s:o}", "case",
-                     json_value_text(item->path), "baseline", json_value_text(item->baseline),
-                     "status", status, "message", json_value_text(item->err.text), "note",
-                     json_value_text(item->note), "within", (json_int_t)counts.within, "out",
-                     (json_int_t)counts.out, "left_out", (json_int_t)counts.left_out, "metrics",
-                     rows);
+    json_t *object =
+        json_pack("{s:o, s:o, s:s, s:o, s:o, s:I, s:I, s:I, s:o}", "case",
+                  json_value_text(item->path), "baseline", json_value_text(item->baseline),
+                  "status", status, "message", json_value_text(item->err.text), "note",
+                  json_value_text(item->note), "within", (json_int_t)counts.within, "out",
+                  (json_int_t)counts.out, "left_out", (json_int_t)counts.left_out, "metrics", rows);
+    if (report->is_blessed && item->err.kind == ERR_NONE) {
+        json_object_set_new(object, "change", json_string(CHECK_CHANGE_WORDS[item->change]));
+        json_object_set_new(object, "numbers", json_integer((json_int_t)item->made_count));
+    }
+    return object;
 }
 
 json_t *check_json_build(const CheckReport *report)
 {
     json_t *cases = json_array();
     for (size_t i = 0; i < report->case_count; i++) {
-        json_array_append_new(cases, case_object(&report->cases[i]));
+        json_array_append_new(cases, case_object(report, &report->cases[i]));
     }
     return json_pack("{s:o, s:s, s:b, s:I, s:f, s:o}", "tool", settings_json_tool(), "mode",
                      report->is_full ? "full" : "quick", "blessed", (int)report->is_blessed,

@@ -15,8 +15,26 @@ static void append_cell(Text *text, const char *words)
     text_append(text, " ");
 }
 
+static void append_blessed(const CheckReport *report, Text *text)
+{
+    const size_t errors = check_report_errors(report);
+    text_append(text, "### jointplay check --bless: %zu new, %zu replaced, %zu unchanged",
+                check_report_changes(report, CHECK_CHANGE_NEW) +
+                    check_report_changes(report, CHECK_CHANGE_UNREADABLE),
+                check_report_changes(report, CHECK_CHANGE_REPLACED),
+                check_report_changes(report, CHECK_CHANGE_NONE));
+    if (errors > 0) {
+        text_append(text, ", %zu not made", errors);
+    }
+    text_append(text, "\n");
+}
+
 static void append_headline(const CheckReport *report, Text *text)
 {
+    if (report->is_blessed) {
+        append_blessed(report, text);
+        return;
+    }
     const size_t errors = check_report_errors(report);
     const size_t differing = check_report_differing(report);
     text_append(text, "### jointplay check: ");
@@ -26,8 +44,7 @@ static void append_headline(const CheckReport *report, Text *text)
                     report->case_count == 1 ? "its bands" : "their bands");
         return;
     }
-    text_append(text, "%zu of %zu cases %s", differing, report->case_count,
-                report->is_blessed ? "moved" : "out of their bands");
+    text_append(text, "%zu of %zu cases out of their bands", differing, report->case_count);
     if (errors > 0) {
         text_append(text, ", %zu not checked", errors);
     }
@@ -86,7 +103,9 @@ void check_markdown_write(const CheckReport *report, Text *text)
     for (size_t i = 0; i < report->case_count; i++) {
         const CheckCase *item = &report->cases[i];
         if (item->err.kind != ERR_NONE) {
-            text_append(text, "\n**%s** was not checked: %s\n", item->path, item->err.text);
+            text_append(text, "\n**%s** %s: %s\n", item->path,
+                        report->is_blessed ? "has no new baseline" : "was not checked",
+                        item->err.text);
         } else if (check_report_count(item).out > 0) {
             append_out(item, text);
         }

@@ -5,6 +5,50 @@
 #include <math.h>
 #include <stdio.h>
 
+const char *const CHECK_CHANGE_WORDS[CHECK_CHANGE_COUNT] = {
+    [CHECK_CHANGE_NONE] = "unchanged",
+    [CHECK_CHANGE_NEW] = "new",
+    [CHECK_CHANGE_UNREADABLE] = "unreadable",
+    [CHECK_CHANGE_REPLACED] = "replaced",
+};
+
+size_t check_report_changes(const CheckReport *report, CheckChange change)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < report->case_count; i++) {
+        const CheckCase *item = &report->cases[i];
+        count += item->err.kind == ERR_NONE && item->change == change ? 1 : 0;
+    }
+    return count;
+}
+
+void check_report_change(const CheckCase *item, Text *text)
+{
+    size_t settings = 0;
+    for (size_t i = 0; i < item->row_count; i++) {
+        settings += item->rows[i].verdict == CHECK_SETTING ? 1 : 0;
+    }
+    switch (item->change) {
+    case CHECK_CHANGE_NEW:
+        text_append(text, "new baseline: %zu numbers", item->made_count);
+        break;
+    case CHECK_CHANGE_UNREADABLE:
+        text_append(text, "new baseline: %zu numbers, in place of a file that could not be read",
+                    item->made_count);
+        break;
+    case CHECK_CHANGE_REPLACED:
+        text_append(text, "replaced: %zu of %zu numbers moved",
+                    check_report_count(item).out - settings, item->made_count);
+        if (settings > 0) {
+            text_append(text, ", %zu %s changed", settings, settings == 1 ? "setting" : "settings");
+        }
+        break;
+    default:
+        text_append(text, "unchanged: %zu numbers within the bands of the old baseline",
+                    item->made_count);
+    }
+}
+
 CheckCounts check_report_count(const CheckCase *item)
 {
     CheckCounts counts = {0};

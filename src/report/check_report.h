@@ -1,15 +1,29 @@
 // Everything there is to tell about a regression check: plain pointers, nothing owned.
 #pragma once
 
+#include "base/text.h"
 #include "compare/check_judge.h"
 
 enum { CHECK_NOTE_SIZE = 256, CHECK_WORDS_SIZE = 1024 };
+
+// What a new baseline is to the one before it.
+typedef enum CheckChange {
+    CHECK_CHANGE_NONE,       // every number stands in the bands of the one before
+    CHECK_CHANGE_NEW,        // there was none before
+    CHECK_CHANGE_UNREADABLE, // the one before could not be read
+    CHECK_CHANGE_REPLACED,   // numbers or settings moved
+    CHECK_CHANGE_COUNT,
+} CheckChange;
+
+extern const char *const CHECK_CHANGE_WORDS[CHECK_CHANGE_COUNT];
 
 typedef struct CheckCase {
     const char *path;           // of the case
     const char *baseline;       // of its baseline
     Err err;                    // why it could not be checked; ERR_NONE where it was
     char note[CHECK_NOTE_SIZE]; // of another version of a library; empty where there is none
+    CheckChange change;         // where is_blessed and without an error
+    size_t made_count;          // likewise: numbers in the new baseline
     size_t row_count;
     const CheckRow *rows; // worst first
 } CheckCase;
@@ -30,6 +44,12 @@ typedef struct CheckCounts {
 } CheckCounts;
 
 CheckCounts check_report_count(const CheckCase *item);
+
+// Cases of which the new baseline is that to the one before.
+size_t check_report_changes(const CheckReport *report, CheckChange change);
+
+// The change of a case in words: "new baseline: 114 numbers", "replaced: 3 of 114 numbers moved".
+void check_report_change(const CheckCase *item, Text *text);
 
 // Cases that could not be checked, and cases with a number out.
 size_t check_report_errors(const CheckReport *report);

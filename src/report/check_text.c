@@ -48,26 +48,32 @@ static void write_rows(const CheckCase *item, size_t count, const Style *style, 
     run_section_end(table, text);
 }
 
+static void write_counts(const CheckCase *item, const Style *style, Text *text)
+{
+    const CheckCounts counts = check_report_count(item);
+    text_append(text, "%s%zu within, %zu out%s", counts.out > 0 ? style->failure : "",
+                counts.within, counts.out, counts.out > 0 ? style->end : "");
+    if (counts.left_out > 0) {
+        text_append(text, ", %zu left out", counts.left_out);
+    }
+}
+
 static void write_case(const CheckReport *report, const CheckCase *item, bool is_all,
                        const Style *style, Text *text)
 {
     if (item->err.kind != ERR_NONE) {
-        text_append(text, "\n%s%s%s\n\n  %snot checked: %s%s\n", style->heading, item->path,
-                    style->end, style->failure, item->err.text, style->end);
+        text_append(text, "\n%s%s%s\n\n  %s%s: %s%s\n", style->heading, item->path, style->end,
+                    style->failure, report->is_blessed ? "no new baseline" : "not checked",
+                    item->err.text, style->end);
         return;
     }
-    const CheckCounts counts = check_report_count(item);
     const size_t shown = rows_to_show(item, is_all);
     write_rows(item, shown, style, text);
-    if (item->row_count == 0) {
-        text_append(text, "  %s\n", item->note);
-        return;
-    }
-    text_append(text, "  %s%zu within, %zu %s%s", counts.out > 0 ? style->failure : "",
-                counts.within, counts.out, report->is_blessed ? "moved" : "out",
-                counts.out > 0 ? style->end : "");
-    if (counts.left_out > 0) {
-        text_append(text, ", %zu left out", counts.left_out);
+    text_append(text, "  ");
+    if (report->is_blessed) {
+        check_report_change(item, text);
+    } else {
+        write_counts(item, style, text);
     }
     if (shown < item->row_count) {
         text_append(text, "; %zu more rows with --all", item->row_count - shown);
@@ -83,11 +89,18 @@ void check_text_write(const CheckReport *report, bool is_all, const Style *style
     const size_t errors = check_report_errors(report);
     const size_t differing = check_report_differing(report);
     text_append(text, "\n%zu %s: ", report->case_count, report->case_count == 1 ? "case" : "cases");
-    text_append(text, "%zu %s, %zu %s", report->case_count - errors - differing,
-                report->is_blessed ? "as before" : "within", differing,
-                report->is_blessed ? "moved" : "out");
+    if (report->is_blessed) {
+        const size_t unreadable = check_report_changes(report, CHECK_CHANGE_UNREADABLE);
+        text_append(text, "%zu new, %zu replaced, %zu unchanged",
+                    check_report_changes(report, CHECK_CHANGE_NEW) + unreadable,
+                    check_report_changes(report, CHECK_CHANGE_REPLACED),
+                    check_report_changes(report, CHECK_CHANGE_NONE));
+    } else {
+        text_append(text, "%zu within, %zu out", report->case_count - errors - differing,
+                    differing);
+    }
     if (errors > 0) {
-        text_append(text, ", %zu not checked", errors);
+        text_append(text, ", %zu %s", errors, report->is_blessed ? "not made" : "not checked");
     }
     if (report->is_full && report->test_count > 0) {
         text_append(text, "; %zu rank tests, false-alarm rate %.2g together", report->test_count,

@@ -55,7 +55,11 @@ static int set_up(void **state)
 static void a_case_that_has_not_changed_is_within(void **state)
 {
     Program *program = *state;
-    assert_says(program->output, "a new baseline of");
+    // made by the set-up: of a first baseline nothing has moved, and nothing was unreadable
+    assert_says(program->output, "  new baseline: ");
+    assert_says(program->output, "1 case: 1 new, 0 replaced, 0 unchanged");
+    assert_true(strstr(program->output, "could not be read") == NULL);
+    assert_true(strstr(program->output, "moved") == NULL);
     program_run(program, "check --baselines b");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "pin.yaml");
@@ -135,9 +139,53 @@ static void a_number_edited_in_the_file_is_named(void **state)
     program_run(program, "check --baselines b --bless");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "ode/hole/force_max_N");
-    assert_says(program->output, "1 moved");
+    assert_says(program->output, "  replaced: 1 of ");
+    assert_says(program->output, " numbers moved");
+    assert_says(program->output, "1 case: 0 new, 1 replaced, 0 unchanged");
     program_run(program, "check --baselines b --quick");
     assert_int_equal(program->status, 0);
+}
+
+static void a_baseline_says_what_it_is_to_the_one_before(void **state)
+{
+    Program *program = *state;
+    program_run(program, "check --baselines b --bless");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "  unchanged: ");
+    assert_says(program->output, "1 case: 0 new, 0 replaced, 1 unchanged");
+    write_file(program, "b/pin.json", "{}");
+    program_run(program, "check --baselines b --bless --json pin.yaml");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *item = json_array_get(json_object_get(root, "cases"), 0);
+    assert_string_equal(json_string_value(json_object_get(item, "change")), "unreadable");
+    assert_true(json_integer_value(json_object_get(item, "numbers")) > 10);
+    json_decref(root);
+}
+
+// A word of which strtod makes no number although a digit stands in it.
+static void a_name_of_dashes_and_a_digit_ends(void **state)
+{
+    Program *program = *state;
+    char named[sizeof CASE + 64];
+    const char *pin = strstr(CASE, "pin: {mass");
+    snprintf(named, sizeof named, "%.*s--2%s", (int)(pin - CASE), CASE, pin + 3);
+    memcpy(strstr(named, "[ground, pin]"), "[ground, --2]", 13);
+    write_file(program, "dashes.yaml", named);
+    program_run(program, "check --bless --baselines c dashes.yaml");
+    assert_int_equal(program->status, 0);
+    program_run(program, "check --baselines c --quick dashes.yaml");
+    assert_int_equal(program->status, 0);
+}
+
+// The number of --jobs is often written for another machine.
+static void more_jobs_than_processors_are_allowed(void **state)
+{
+    Program *program = *state;
+    program_run(program, "check --baselines b --quick --jobs 256");
+    assert_int_equal(program->status, 0);
+    assert_string_equal(program->errors, "");
+    program_fails_usage(program, "check --jobs 257", "--jobs is 257; allowed: a whole number");
 }
 
 static void what_cannot_be_checked_never_passes(void **state)
@@ -311,6 +359,9 @@ int main(void)
         CHECK_TEST(a_name_is_no_number),
         CHECK_TEST(what_moved_is_named_with_status_1),
         CHECK_TEST(a_number_edited_in_the_file_is_named),
+        CHECK_TEST(a_baseline_says_what_it_is_to_the_one_before),
+        CHECK_TEST(a_name_of_dashes_and_a_digit_ends),
+        CHECK_TEST(more_jobs_than_processors_are_allowed),
         CHECK_TEST(what_cannot_be_checked_never_passes),
         CHECK_TEST(a_run_that_fails_is_an_error_and_blesses_nothing),
         CHECK_TEST(junit_is_valid_and_has_the_numbers_of_a_failure),
