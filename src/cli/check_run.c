@@ -105,6 +105,9 @@ static void finish_item(const CheckOptions *options, const CheckItem *item, cons
                         Share share, const CheckReport *report, CheckCase *result)
 {
     *result = (CheckCase){.path = item->path, .baseline = item->baseline_path, .err = item->err};
+    for (size_t i = share.first; i < share.first + share.count; i++) {
+        result->wall_s += works[i].wall_s;
+    }
     if (result->err.kind != ERR_NONE || !check_share(works, share, &result->err)) {
         return;
     }
@@ -138,6 +141,12 @@ static CheckRun begin(const CheckOptions *options, const CheckItem *items, size_
     return run;
 }
 
+static bool wait(const CheckWorkState *state, void *context)
+{
+    check_progress_show(context, state);
+    return true;
+}
+
 bool check_run_execute(const CheckOptions *options, CheckItem *items, size_t count, CheckRun *run,
                        Err *err)
 {
@@ -151,8 +160,8 @@ bool check_run_execute(const CheckOptions *options, CheckItem *items, size_t cou
         total += shares[i].count;
     }
     CheckProgress progress = check_progress_start("checking", options->common.is_quiet);
-    const CheckWorkers workers = {options->common.jobs, options->common.time_limit_s,
-                                  check_progress_show, &progress};
+    const CheckWorkers workers = {options->common.jobs, options->common.time_limit_s, wait, NULL,
+                                  &progress};
     const bool is_done = check_work_do(&workers, works, total, err);
     check_progress_end(&progress);
     for (size_t i = 0; is_done && i < count; i++) {

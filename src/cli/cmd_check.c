@@ -2,6 +2,7 @@
 #include "cli/check_options.h"
 #include "cli/check_run.h"
 #include "cli/command.h"
+#include "cli/interrupt.h"
 #include "cli/output.h"
 #include "cli/run_files.h"
 #include "cli/written.h"
@@ -88,6 +89,13 @@ static bool probe(const CheckOptions *options, Err *err)
            (!options->is_blessing || run_files_make_folder(options->folder, err));
 }
 
+// Who was stopped while making baselines has been told what is kept, and ends by the same signal.
+static void end_if_stopped(void)
+{
+    fflush(stdout);
+    interrupt_obey();
+}
+
 static bool check_items(const CheckOptions *options, CheckItem *items, size_t count, Err *err)
 {
     CheckRun run = {.cases = NULL};
@@ -102,8 +110,9 @@ static bool check_items(const CheckOptions *options, CheckItem *items, size_t co
         is_done = write_with(check_junit_write, &run.report, options->junit,
                              options->common.is_quiet, err) &&
                   write_with(check_markdown_write, &run.report, options->markdown,
-                             options->common.is_quiet, err) &&
-                  conclude(&run.report, err);
+                             options->common.is_quiet, err);
+        end_if_stopped();
+        is_done = is_done && conclude(&run.report, err);
     }
     check_run_finish(&run);
     return is_done;

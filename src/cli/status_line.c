@@ -24,6 +24,20 @@ bool status_line_is_due(StatusLine *line, double wall_s)
     return true;
 }
 
+void status_line_append_left(Text *words, double left_s)
+{
+    const double minute = 60.0;
+    const double hour = 3600.0;
+    // two digits, as many as a guess has
+    if (left_s < 2.0 * minute) {
+        text_append(words, ", some %.0f s left", left_s);
+    } else if (left_s < 2.0 * hour) {
+        text_append(words, ", some %.0f min left", left_s / minute);
+    } else {
+        text_append(words, ", some %.1f h left", left_s / hour);
+    }
+}
+
 void status_line_show(StatusLine *line, const char *words)
 {
     fprintf(stderr, line->is_terminal ? "\r%s\x1b[K" : "%s\n", words);

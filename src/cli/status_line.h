@@ -2,6 +2,8 @@
 // line on a terminal, a plain line now and then elsewhere.
 #pragma once
 
+#include "base/text.h"
+
 #include <stdbool.h>
 
 typedef struct StatusLine {
@@ -15,6 +17,9 @@ StatusLine status_line_start(bool is_quiet);
 
 // Whether it is time for a line, so many seconds after the start; if so it counts as written.
 bool status_line_is_due(StatusLine *line, double wall_s);
+
+// Appends ", some 40 s left", in seconds, minutes or hours.
+void status_line_append_left(Text *words, double left_s);
 
 // Writes the line.
 void status_line_show(StatusLine *line, const char *words);

@@ -23,6 +23,10 @@ static bool certify(const TruthChild *work, void *packed, size_t size, Err *err)
     while (is_done && child.end == CHILD_RUNNING) {
         work->wait("making and certifying the reference", work->context);
         child_wait(&child, 1, PAUSE_S);
+        if (work->should_stop != NULL && work->should_stop(work->context)) {
+            child_kill(&child);
+            is_done = err_set(err, ERR_SOLVER, "stopped");
+        }
     }
     if (is_done && child.end != CHILD_DONE) {
         char words[CHILD_TEXT_SIZE];

@@ -262,7 +262,10 @@ static bool check_target(const Tune *tune, Err *err)
 bool tune_search_execute(const TuneSearch *search, Err *err)
 {
     Tune *tune = search->tune;
-    const TruthChild work = {search->scenario, search->time_limit_s, search->wait, search->context};
+    const TruthChild work = {.scenario = search->scenario,
+                             .run_limit_s = search->time_limit_s,
+                             .wait = search->wait,
+                             .context = search->context};
     const double started_s = clock_now_s();
     Truth truth = {.trajectory = NULL};
     bool is_done = truth_child_make(&work, &truth, err);

@@ -1,9 +1,16 @@
 // What does a CI system read of a regression check?
 //
-// testsuites > testsuite, one a case > testcase, one a number: classname is the case, name the
-// metric. A number out is a failure, whose message has the numbers; one not looked at is skipped; a
-// case that could not be checked is one test in error.
+// testsuites > testsuite, one a case > testcase: first one for the runs, whose time is theirs, then
+// one a number, which takes none. A number out is a failure, whose message has the numbers; one not
+// looked at is skipped; of a case that could not be checked the runs are in error.
+//
+// Jenkins takes what stands before the last dot of a class name for its package: the class of
+// cases/paper/impact-k66.yaml is cases.paper.impact-k66, and no other dot stands in a name.
 #include "report/check_junit.h"
+
+#include <string.h>
+
+static const char RUNS[] = "runs"; // name of the test that is the runs themselves
 
 // Text for an attribute or between tags. What XML cannot hold becomes a question mark.
 static void append_escaped(Text *text, const char *words)
@@ -39,11 +46,56 @@ static void append_attribute(Text *text, const char *name, const char *value)
     text_append(text, "\"");
 }
 
-static void begin_test(Text *text, const CheckCase *item, const char *name)
+// The class of a case: folders with dots between them, without the ending of its file.
+static void append_class(Text *text, const char *path)
 {
-    text_append(text, "    <testcase");
-    append_attribute(text, "classname", item->path);
-    append_attribute(text, "name", name);
+    Text name;
+    text_init(&name);
+    const char *slash = strrchr(path, '/');
+    const char *file = slash != NULL ? slash + 1 : path;
+    const char *ending = strrchr(file, '.');
+    const char *end = ending != NULL && ending > file ? ending : path + strlen(path);
+    while (path < end) {
+        const size_t length = strcspn(path, "/");
+        const size_t kept = path + length < end ? length : (size_t)(end - path);
+        // . and .. name no folder
+        if (strspn(path, ".") < kept) {
+            text_append(&name, "%s", name.length > 0 ? "." : "");
+            for (size_t i = 0; i < kept; i++) {
+                text_append(&name, "%c", path[i] == '.' ? '_' : path[i]);
+            }
+        }
+        path += length + (path[length] == '/' ? 1 : 0);
+    }
+    append_escaped(text, name.data);
+    text_finish(&name);
+}
+
+// The name of a row's test: that of a setting and of a limit says what it is.
+static void append_name(Text *text, const CheckRow *row)
+{
+    Text name;
+    text_init(&name);
+    text_append(&name, "%s", row->verdict == CHECK_SETTING ? "setting/" : "");
+    for (const char *c = row->name; *c != '\0'; c++) {
+        text_append(&name, "%c", *c == '.' ? '/' : *c);
+    }
+    append_escaped(text, name.data);
+    text_finish(&name);
+}
+
+// A test up to its outcome; the row is NULL for that of the runs.
+static void begin_test(Text *text, const CheckCase *item, const CheckRow *row)
+{
+    text_append(text, "    <testcase classname=\"");
+    append_class(text, item->path);
+    text_append(text, "\" name=\"");
+    if (row == NULL) {
+        text_append(text, "%s", RUNS);
+    } else {
+        append_name(text, row);
+    }
+    text_append(text, "\" time=\"%.3f\"", row == NULL ? item->wall_s : 0.0);
 }
 
 // <tag message="..." type="...">...</tag> in a test; some systems show the one, some the other.
@@ -59,7 +111,7 @@ static void append_outcome(Text *text, const char *tag, const char *type, const 
 
 static void append_row(Text *text, const CheckCase *item, const CheckRow *row)
 {
-    begin_test(text, item, row->name);
+    begin_test(text, item, row);
     if (row->verdict == CHECK_WITHIN) {
         text_append(text, "/>\n");
         return;
@@ -82,13 +134,17 @@ static void append_case(Text *text, const CheckCase *item)
 {
     const CheckCounts counts = check_report_count(item);
     const bool is_failed = item->err.kind != ERR_NONE;
-    text_append(text, "  <testsuite");
-    append_attribute(text, "name", item->path);
-    text_append(text, " tests=\"%zu\" failures=\"%zu\" errors=\"%d\" skipped=\"%zu\">\n",
-                is_failed ? 1 : item->row_count, counts.out, is_failed ? 1 : 0, counts.left_out);
+    text_append(text, "  <testsuite name=\"");
+    append_class(text, item->path);
+    text_append(text,
+                "\" tests=\"%zu\" failures=\"%zu\" errors=\"%d\" skipped=\"%zu\" "
+                "time=\"%.3f\">\n",
+                1 + item->row_count, counts.out, is_failed ? 1 : 0, counts.left_out, item->wall_s);
+    begin_test(text, item, NULL);
     if (is_failed) {
-        begin_test(text, item, "check");
         append_outcome(text, "error", "not checked", item->err.text);
+    } else {
+        text_append(text, "/>\n");
     }
     for (size_t i = 0; i < item->row_count; i++) {
         append_row(text, item, &item->rows[i]);
@@ -100,15 +156,17 @@ void check_junit_write(const CheckReport *report, Text *text)
 {
     size_t tests = 0;
     size_t failures = 0;
+    double wall_s = 0.0;
     for (size_t i = 0; i < report->case_count; i++) {
         const CheckCase *item = &report->cases[i];
-        tests += item->err.kind != ERR_NONE ? 1 : item->row_count;
+        tests += 1 + item->row_count;
         failures += check_report_count(item).out;
+        wall_s += item->wall_s;
     }
     text_append(text,
                 "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"jointplay check\" "
-                "tests=\"%zu\" failures=\"%zu\" errors=\"%zu\">\n",
-                tests, failures, check_report_errors(report));
+                "tests=\"%zu\" failures=\"%zu\" errors=\"%zu\" time=\"%.3f\">\n",
+                tests, failures, check_report_errors(report), wall_s);
     for (size_t i = 0; i < report->case_count; i++) {
         append_case(text, &report->cases[i]);
     }

@@ -22,6 +22,7 @@ typedef struct CheckCase {
     const char *baseline;       // of its baseline
     Err err;                    // why it could not be checked; ERR_NONE where it was
     char note[CHECK_NOTE_SIZE]; // of another version of a library; empty where there is none
+    double wall_s;              // of its runs, added up; when blessing, of all that was done
     CheckChange change;         // where is_blessed and without an error
     size_t made_count;          // likewise: numbers in the new baseline
     size_t row_count;

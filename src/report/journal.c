@@ -11,16 +11,24 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { READ_SIZE = 1 << 16 };
+enum { READ_SIZE = 1 << 16, OPENING_SIZE = 64 };
 
 // 17 digits bring back every number as it was
 static const size_t LINE_FLAGS = JSON_REAL_PRECISION(17) | JSON_COMPACT | JSON_SORT_KEYS;
-static const char KEY_NAME[] = "compare";
+
+const JournalKind JOURNAL_COMPARE = {"compare", "store", "comparison", "; --fresh starts it over"};
+const JournalKind JOURNAL_BLESS = {"check", "file of kept starts", "baseline", ""};
 
 static bool fail(const Journal *journal, const char *what, Err *err)
 {
-    return err_set(err, ERR_FILE, "cannot %s the store %s: %s", what, journal->path,
-                   strerror(errno));
+    return err_set(err, ERR_FILE, "cannot %s the %s %s: %s", what, journal->kind->what,
+                   journal->path, strerror(errno));
+}
+
+static bool refuse_stranger(const Journal *journal, Err *err)
+{
+    return err_set(err, ERR_FILE, "%s is not a %s of jointplay %s", journal->path,
+                   journal->kind->what, journal->kind->name);
 }
 
 static bool read_all(const Journal *journal, Text *text, Err *err)
@@ -83,16 +91,16 @@ static bool check_key(const Journal *journal, const char *line, const json_t *ke
                       Err *err)
 {
     json_t *head = json_loads(line, 0, NULL);
-    const json_t *stored = json_object_get(head, KEY_NAME);
+    const JournalKind *kind = journal->kind;
+    const json_t *stored = json_object_get(head, kind->name);
     Text text;
     text_init(&text);
     bool is_right = true;
     if (stored == NULL) {
-        is_right = err_set(err, ERR_FILE, "%s is not a store of jointplay compare", journal->path);
+        is_right = refuse_stranger(journal, err);
     } else if (!is_fresh && find_difference(stored, key, "", &text)) {
-        is_right = err_set(err, ERR_FILE,
-                           "the store %s is of another comparison: %s; --fresh starts it over",
-                           journal->path, text.data);
+        is_right = err_set(err, ERR_FILE, "the %s %s is of another %s: %s%s", kind->what,
+                           journal->path, kind->work, text.data, kind->remedy);
     }
     text_finish(&text);
     json_decref(head);
@@ -105,9 +113,8 @@ static bool read_entries(Journal *journal, char *rest, Err *err)
     for (char *line = next_line(&rest); line != NULL; line = next_line(&rest), number++) {
         json_t *entry = json_loads(line, 0, NULL);
         if (entry == NULL) {
-            return err_set(err, ERR_FILE,
-                           "line %zu of the store %s is damaged; --fresh starts it over", number,
-                           journal->path);
+            return err_set(err, ERR_FILE, "line %zu of the %s %s is damaged%s", number,
+                           journal->kind->what, journal->path, journal->kind->remedy);
         }
         json_array_append_new(journal->entries, entry);
     }
@@ -126,22 +133,27 @@ static bool take_in(Journal *journal, json_t *key, bool is_fresh, Err *err)
     char *head = whole > 0 ? next_line(&rest) : NULL;
     // a first line without an end is our own where it begins like one
     const bool is_started = head == NULL && text.length > 0;
-    if (is_started && strncmp(text.data, "{\"compare\":", strnlen(text.data, 11)) != 0) {
-        is_done = err_set(err, ERR_FILE, "%s is not a store of jointplay compare", journal->path);
+    char opening[OPENING_SIZE];
+    snprintf(opening, sizeof opening, "{\"%s\":", journal->kind->name);
+    const size_t begun = text.length < strlen(opening) ? text.length : strlen(opening);
+    if (is_started && strncmp(text.data, opening, begun) != 0) {
+        is_done = refuse_stranger(journal, err);
     }
     is_done = is_done && (head == NULL || check_key(journal, head, key, is_fresh, err)) &&
               (is_fresh || read_entries(journal, rest, err)) &&
               (ftruncate(journal->file, is_fresh ? 0 : whole) == 0 || fail(journal, "cut", err));
     if (is_done && (is_fresh || head == NULL)) {
-        is_done = journal_add(journal, json_pack("{s:O}", KEY_NAME, key), err);
+        is_done = journal_add(journal, json_pack("{s:O}", journal->kind->name, key), err);
     }
     text_finish(&text);
     return is_done;
 }
 
-bool journal_open(Journal *journal, const char *path, json_t *key, bool is_fresh, Err *err)
+bool journal_open(Journal *journal, const JournalKind *kind, const char *path, json_t *key,
+                  bool is_fresh, Err *err)
 {
     *journal = (Journal){
+        .kind = kind,
         .file = open(path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666),
         .path = strdup(path),
         .entries = json_array(),
@@ -149,7 +161,8 @@ bool journal_open(Journal *journal, const char *path, json_t *key, bool is_fresh
     assert(journal->path != NULL && journal->entries != NULL);
     bool is_open = journal->file >= 0 || fail(journal, "open", err);
     if (is_open && work_lock_take(journal->file, 0) != 0) {
-        is_open = err_set(err, ERR_FILE, "the store %s is at work in another process", path);
+        is_open =
+            err_set(err, ERR_FILE, "the %s %s is at work in another process", kind->what, path);
     }
     is_open = is_open && take_in(journal, key, is_fresh, err);
     if (!is_open) {
@@ -188,4 +201,12 @@ void journal_close(Journal *journal)
     free(journal->path);
     json_decref(journal->entries);
     *journal = (Journal){.file = -1};
+}
+
+void journal_discard(Journal *journal)
+{
+    if (journal->path != NULL && journal->file >= 0) {
+        unlink(journal->path);
+    }
+    journal_close(journal);
 }

@@ -1,6 +1,8 @@
 // Does `jointplay check` see what moved, name it, and never pass what it could not look at?
 #include "program.h"
 
+#include <signal.h>
+
 // A pin that bounces in its hole: some milliseconds of work.
 static const char CASE[] =
     "title: A pin\n"
@@ -188,6 +190,101 @@ static void more_jobs_than_processors_are_allowed(void **state)
     program_fails_usage(program, "check --jobs 257", "--jobs is 257; allowed: a whole number");
 }
 
+// Starts the program by itself, making a baseline with one process at a time.
+static pid_t start_blessing(const Program *program)
+{
+    const pid_t process = fork();
+    if (process == 0) {
+        const char *path = getenv("JOINTPLAY_PROGRAM");
+        if (chdir(program->folder) != 0 || freopen(".output", "w", stdout) == NULL ||
+            freopen(".errors", "w", stderr) == NULL) {
+            _exit(99);
+        }
+        signal(SIGINT, SIG_DFL);
+        execl(path, path, "check", "--bless", "--baselines", "c", "slow.yaml", "--jobs", "1",
+              (char *)NULL);
+        _exit(99);
+    }
+    return process;
+}
+
+// Lines of the file of kept starts: its key, the plan, then a start each.
+static size_t count_lines(const Program *program)
+{
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "c/slow.json.partial", path);
+    FILE *stream = fopen(path, "r");
+    size_t lines = 0;
+    for (int c = EOF; stream != NULL && (c = getc(stream)) != EOF;) {
+        lines += c == '\n' ? 1 : 0;
+    }
+    if (stream != NULL) {
+        fclose(stream);
+    }
+    return lines;
+}
+
+// Ends the making of a baseline by a signal as soon as two more starts are kept.
+static int stop_blessing(const Program *program, int number)
+{
+    int status = 0;
+    const size_t before = count_lines(program);
+    const pid_t process = start_blessing(program);
+    while (count_lines(program) < (before < 2 ? 4 : before + 2) &&
+           waitpid(process, &status, WNOHANG) == 0) {
+        usleep(5000);
+    }
+    kill(process, number);
+    waitpid(process, &status, 0);
+    return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+}
+
+static void a_baseline_that_was_stopped_goes_on_where_it_stood(void **state)
+{
+    Program *program = *state;
+    static char first[PROGRAM_OUTPUT_SIZE];
+    static char second[PROGRAM_OUTPUT_SIZE];
+    char path[PROGRAM_PATH_SIZE];
+    char slow[sizeof CASE + 8];
+    const char *step = strstr(CASE, "step: 5 us");
+    snprintf(slow, sizeof slow, "%.*sstep: 0.5 us%s", (int)(step - CASE), CASE, step + 10);
+    write_file(program, "slow.yaml", slow);
+
+    // killed without a word, and told to stop
+    assert_int_equal(stop_blessing(program, SIGKILL), SIGKILL);
+    assert_int_equal(stop_blessing(program, SIGINT), SIGINT);
+    program_path(program, ".errors", path);
+    program_read(path, program->errors);
+    assert_says(program->errors, "slow.yaml: 2 measured starts are kept in c/slow.json.partial: "
+                                 "going on from there");
+    program_path(program, ".output", path);
+    program_read(path, program->output);
+    assert_says(program->output, "no new baseline: stopped; ");
+    assert_says(program->output, " measured starts are kept in c/slow.json.partial, and the same "
+                                 "command goes on from there");
+    program_path(program, "c/slow.json", path);
+    assert_int_equal(access(path, F_OK), -1);
+
+    // what was kept is not measured again, and the baseline is that of nobody who was stopped
+    program_run(program, "check --bless --baselines c slow.yaml");
+    assert_int_equal(program->status, 0);
+    assert_says(program->errors, " measured starts are kept in c/slow.json.partial: going on");
+    assert_int_equal(count_lines(program), 0);
+    read_file(program, "c/slow.json", first);
+    program_run(program, "check --bless --baselines d slow.yaml -q");
+    assert_int_equal(program->status, 0);
+    read_file(program, "d/slow.json", second);
+    assert_string_equal(first, second);
+
+    // starts of another state of the case are none of this one
+    assert_int_equal(stop_blessing(program, SIGKILL), SIGKILL);
+    write_file(program, "slow.yaml", CASE);
+    program_run(program, "check --bless --baselines c slow.yaml");
+    assert_int_equal(program->status, 0);
+    assert_true(strstr(program->errors, "going on") == NULL);
+    assert_says(program->output, "1 setting changed");
+}
+
 static void what_cannot_be_checked_never_passes(void **state)
 {
     Program *program = *state;
@@ -288,7 +385,9 @@ static void junit_is_valid_and_has_the_numbers_of_a_failure(void **state)
     assert_valid(program, "good.xml");
     read_file(program, "good.xml", text);
     assert_says(text, "failures=\"0\" errors=\"0\"");
-    assert_says(text, "<testcase classname=\"pin.yaml\" name=\"ode/hole/force_max_N\"/>");
+    assert_says(text, "<testcase classname=\"pin\" name=\"ode/hole/force_max_N\" time=\"0.000\"/>");
+    assert_says(text, "<testcase classname=\"pin\" name=\"runs\" time=\"");
+    assert_true(strstr(text, "name=\"runs\" time=\"0.000\"") == NULL);
     assert_says(text, "<skipped message=");
 
     program_run(program, "check --baselines b -q --junit bad.xml --set run.step='5.5 us'");
@@ -296,7 +395,7 @@ static void junit_is_valid_and_has_the_numbers_of_a_failure(void **state)
     assert_string_equal(strstr(program->errors, "wrote") == NULL ? "" : "wrote", "");
     assert_valid(program, "bad.xml");
     read_file(program, "bad.xml", text);
-    assert_says(text, "name=\"run.step\"");
+    assert_says(text, "name=\"setting/run/step\"");
     assert_says(text, "setting run.step was 5e-06 s, is 5.5");
     assert_says(text, "<failure message=\"ode/hole/impulse_N_s was ");
     assert_says(text, " bands of ");
@@ -308,10 +407,28 @@ static void junit_is_valid_and_has_the_numbers_of_a_failure(void **state)
     assert_valid(program, "error.xml");
     read_file(program, "error.xml", text);
     assert_says(text, "<error message=");
-    assert_says(text, "b/a&amp;b.json");
+    assert_says(text, "classname=\"b.a&amp;b\" name=\"runs\"");
     program_run(program, "check --baselines b --junit nowhere/x.xml");
     assert_int_equal(program->status, 5);
     assert_string_equal(program->output, "");
+}
+
+// Jenkins takes what stands before the last dot for a package.
+static void the_class_of_a_case_has_dots_between_folders_alone(void **state)
+{
+    Program *program = *state;
+    static char text[PROGRAM_OUTPUT_SIZE];
+    char words[4 * PROGRAM_PATH_SIZE];
+    snprintf(words, sizeof words, "mkdir -p '%s/some.cases' && cp '%s/pin.yaml' '%s/%s'",
+             program->folder, program->folder, program->folder, "some.cases/pin.v2.yaml");
+    assert_int_equal(system(words), 0);
+    program_run(program, "check --bless -q --baselines c ./some.cases/../some.cases/pin.v2.yaml "
+                         "--junit new.xml");
+    assert_int_equal(program->status, 0);
+    assert_valid(program, "new.xml");
+    read_file(program, "new.xml", text);
+    assert_says(text, "<testsuite name=\"some_cases.some_cases.pin_v2\" tests=\"1\"");
+    assert_says(text, "classname=\"some_cases.some_cases.pin_v2\" name=\"runs\"");
 }
 
 static void a_comment_is_short_and_folds_the_rest(void **state)
@@ -362,9 +479,11 @@ int main(void)
         CHECK_TEST(a_baseline_says_what_it_is_to_the_one_before),
         CHECK_TEST(a_name_of_dashes_and_a_digit_ends),
         CHECK_TEST(more_jobs_than_processors_are_allowed),
+        CHECK_TEST(a_baseline_that_was_stopped_goes_on_where_it_stood),
         CHECK_TEST(what_cannot_be_checked_never_passes),
         CHECK_TEST(a_run_that_fails_is_an_error_and_blesses_nothing),
         CHECK_TEST(junit_is_valid_and_has_the_numbers_of_a_failure),
+        CHECK_TEST(the_class_of_a_case_has_dots_between_folders_alone),
         CHECK_TEST(a_comment_is_short_and_folds_the_rest),
         CHECK_TEST(a_wrong_command_line_is_answered),
     };

@@ -57,7 +57,7 @@ static int open_store(int samples, bool is_fresh, Err *err)
     json_t *key = make_key(samples);
     *err = (Err){0};
     int count = -1;
-    if (journal_open(&journal, path, key, is_fresh, err)) {
+    if (journal_open(&journal, &JOURNAL_COMPARE, path, key, is_fresh, err)) {
         count = (int)json_array_size(journal.entries);
         journal_close(&journal);
     }
@@ -70,7 +70,7 @@ static void write_two(void)
     Journal journal;
     Err err = {0};
     json_t *key = make_key(10);
-    assert_true(journal_open(&journal, path, key, false, &err));
+    assert_true(journal_open(&journal, &JOURNAL_COMPARE, path, key, false, &err));
     assert_true(journal_add(&journal, json_pack("{s:f}", "a", 1.0 / 3.0), &err));
     assert_true(journal_add(&journal, json_pack("{s:f}", "a", 2.0), &err));
     journal_close(&journal);
@@ -84,7 +84,7 @@ static void entries_come_back_as_they_were(void **state)
     Journal journal;
     Err err = {0};
     json_t *key = make_key(10);
-    assert_true(journal_open(&journal, path, key, false, &err));
+    assert_true(journal_open(&journal, &JOURNAL_COMPARE, path, key, false, &err));
     assert_int_equal(json_array_size(journal.entries), 2);
     const json_t *first = json_array_get(journal.entries, 0);
     assert_near(json_number_value(json_object_get(first, "a")), 1.0 / 3.0, 0.0);
@@ -165,7 +165,7 @@ static void a_store_at_work_is_not_opened_twice(void **state)
     Journal journal;
     Err err = {0};
     json_t *key = make_key(10);
-    assert_true(journal_open(&journal, path, key, false, &err));
+    assert_true(journal_open(&journal, &JOURNAL_COMPARE, path, key, false, &err));
     assert_int_equal(open_store(10, false, &err), -1);
     assert_non_null(strstr(err.text, "at work in another process"));
     journal_close(&journal);
@@ -179,10 +179,10 @@ static void a_place_that_cannot_be_written_is_told(void **state)
     Journal journal;
     Err err = {0};
     json_t *key = make_key(10);
-    assert_false(journal_open(&journal, "/nowhere/at/all", key, false, &err));
+    assert_false(journal_open(&journal, &JOURNAL_COMPARE, "/nowhere/at/all", key, false, &err));
     assert_int_equal(err.kind, ERR_FILE);
     err = (Err){0};
-    assert_false(journal_open(&journal, "/dev/full", key, false, &err));
+    assert_false(journal_open(&journal, &JOURNAL_COMPARE, "/dev/full", key, false, &err));
     assert_int_equal(err.kind, ERR_FILE);
     json_decref(key);
 }
