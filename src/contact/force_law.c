@@ -28,6 +28,9 @@ enum { ITERATION_COUNT = 2 };
 // below this L the expansion about the end of the branch is the better starting value
 static const double SERIES_LIMIT = 2.2;
 
+// of L, a difference of logarithms of some tens each: at the depth limit itself there is a force
+static const double LEVEL_ROUNDING = 1e-13;
+
 ForceLaw force_law_power(double stiffness, double exponent)
 {
     assert(stiffness > 0.0 && exponent > 0.0);
@@ -54,9 +57,10 @@ ForceLaw force_law_logarithmic(double compliance, double offset)
 // The root y >= 1 of y - ln y = L; NaN where L < 1.
 static double solve_branch(double level)
 {
-    if (!(level >= 1.0)) {
+    if (!(level >= 1.0 - LEVEL_ROUNDING)) {
         return NAN;
     }
+    level = fmax(level, 1.0);
     // start: the expansion about y = 1, or the one for large y
     double y;
     if (level < SERIES_LIMIT) {
