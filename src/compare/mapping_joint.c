@@ -104,7 +104,22 @@ static void add_record(Gathering *gathering, const StepRecord *record)
     }
 }
 
-// Runs the reference from instant to instant.
+// Steps the reference to a time and takes every record on the way.
+static bool step_to(Gathering *gathering, void *state, double time_s, double *reached_s, Err *err)
+{
+    const Solver *solver = registry_solver(BACKEND_REFERENCE);
+    while (*reached_s < time_s) {
+        if (!solver->step(state, time_s, err)) {
+            return false;
+        }
+        const StepRecord record = solver->record(state);
+        add_record(gathering, &record);
+        *reached_s = record.end_s;
+    }
+    return true;
+}
+
+// Runs the reference from instant to instant, and from the last one to the end of the run.
 static bool gather(Gathering *gathering, RunWatch watch, Err *err)
 {
     const Scenario *scenario = gathering->scenario;
@@ -117,18 +132,9 @@ static bool gather(Gathering *gathering, RunWatch watch, Err *err)
     }
     bool is_right = true;
     double reached_s = 0.0;
-    bool is_begun = false;
     for (int k = 0; is_right && k < INSTANT_COUNT; k++) {
         const double time_s = duration_s * (k + 0.5) / INSTANT_COUNT;
-        while (is_right && (reached_s < time_s || !is_begun)) {
-            is_right = solver->step(state, time_s, err);
-            if (is_right) {
-                const StepRecord record = solver->record(state);
-                add_record(gathering, &record);
-                reached_s = record.end_s;
-                is_begun = true;
-            }
-        }
+        is_right = step_to(gathering, state, time_s, &reached_s, err);
         if (is_right) {
             Sample sample;
             solver->observe(state, fmin(time_s, reached_s), &sample);
@@ -138,6 +144,7 @@ static bool gather(Gathering *gathering, RunWatch watch, Err *err)
             watch.progress(reached_s / duration_s, clock_now_s() - started_s, watch.context);
         }
     }
+    is_right = is_right && step_to(gathering, state, duration_s, &reached_s, err);
     solver->close(state);
     return is_right;
 }

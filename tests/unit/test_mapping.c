@@ -5,6 +5,7 @@
 #include "compare/mapping_inverse.h"
 #include "compare/mapping_verdict.h"
 #include "contact/damping.h"
+#include "run/registry.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -62,6 +63,38 @@ static void in_a_linkage_the_mass_depends_on_where_it_is_pushed(void **state)
     const double rod = 1.0 / (1.0 / coupler->mass + arm * arm / coupler->inertia);
     assert_close(joints[0].mass_least, rod, 0.02);
     assert_close(joints[0].mass_most, coupler->mass, 0.02);
+}
+
+// Every contact of the run, up to its very end: as many as the run itself counts, and those of the
+// half-interval behind the last look at the masses. Control: a run that ends before the last
+// contact has one fewer.
+static void every_contact_of_the_run_is_counted(void **state)
+{
+    (void)state;
+    Scenario scenario = thrown_pin(0.3);
+    scenario.contact.restitution = 1.0;
+    // across the hole and back: walls are met at 1 mm, 3 mm, 5 mm of the way, the last of them
+    // (two contacts of 76 us later) within the last 240th of the run
+    scenario.run.duration = 5e-3 / 0.3 * 1.0105;
+    MappingJoint joints[LINKAGE_JOINT_MAX];
+    size_t count = 0;
+    Err err = {ERR_NONE, ""};
+    assert_true(mapping_joint_measure(&scenario, (RunWatch){0}, joints, &count, &err));
+    assert_int_equal(joints[0].onsets, 3);
+    scenario.run.duration = 5e-3 / 0.3 * 0.98;
+    assert_true(mapping_joint_measure(&scenario, (RunWatch){0}, joints, &count, &err));
+    assert_int_equal(joints[0].onsets, 2);
+    for (size_t loose = 1; loose <= 3; loose++) {
+        const Scenario linkage = mechanism_loose(loose);
+        Trajectory *run = run_scenario(&linkage, registry_solver(BACKEND_REFERENCE), (RunWatch){0});
+        assert_true(run->is_complete);
+        assert_true(mapping_joint_measure(&linkage, (RunWatch){0}, joints, &count, &err));
+        assert_int_equal(count, loose);
+        for (size_t i = 0; i < count; i++) {
+            assert_int_equal(joints[i].onsets, run->joints[joints[i].joint].impacts);
+        }
+        trajectory_destroy(run);
+    }
 }
 
 static void what_is_given_is_taken_and_needs_no_run(void **state)
@@ -224,6 +257,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lone_pin_has_its_own_mass_and_speed),
         cmocka_unit_test(in_a_linkage_the_mass_depends_on_where_it_is_pushed),
+        cmocka_unit_test(every_contact_of_the_run_is_counted),
         cmocka_unit_test(what_is_given_is_taken_and_needs_no_run),
         cmocka_unit_test(a_pin_that_lays_itself_on_the_wall_is_mapped_at_the_floor),
         cmocka_unit_test(what_cannot_be_mapped_is_said_so),
