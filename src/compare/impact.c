@@ -40,6 +40,14 @@ static void add_phase(ImpactFigures *figures, int number, const MapImpact *impac
     widen(&figures->penetration_max, number, impact->penetration_max);
     widen(&figures->duration, number, impact->duration);
     figures->fallbacks += impact->fallbacks;
+    if (impact->omega_h_max > figures->omega_h_max) {
+        figures->omega_h_max = impact->omega_h_max;
+        figures->omega_h_depth = impact->omega_h_depth;
+    }
+    if (impact->is_past_end) {
+        figures->is_past_end = true;
+        figures->past_end_depth = fmax(figures->past_end_depth, impact->penetration_max);
+    }
     figures->is_ended = (number == 0 || figures->is_ended) && impact->is_ended;
 }
 
@@ -52,6 +60,7 @@ ImpactFigures impact_figures_of(const MapImpact *impact)
         .force_max = {values[1], values[1], values[1]},
         .penetration_max = {values[2], values[2], values[2]},
         .duration = {values[3], values[3], values[3]},
+        .is_past_end = impact->is_past_end,
         .is_ended = impact->is_ended,
     };
 }
@@ -62,7 +71,7 @@ ImpactFigures impact_predict(const MapImpactCase *impact)
     for (int i = 0; i < MAP_IMPACT_PHASES; i++) {
         const MapImpact phase = map_impact(impact, map_impact_phase(i));
         add_phase(&figures, i, &phase);
-        if (!phase.is_ended) {
+        if (!phase.is_ended && !phase.is_past_end) {
             break; // nor would the others
         }
     }

@@ -19,6 +19,11 @@ typedef struct ImpactFigures {
     ImpactSpread penetration_max; // m
     ImpactSpread duration;        // s, of the overlap
     size_t fallbacks;             // rows of all phases where the map would not have been stable
+    double omega_h_max;           // 1, predicted, over the steps of all phases
+    double omega_h_depth;         // m, where that was
+    bool is_past_end;             // in some phase the pin goes past the end of the law
+    double past_end_depth;        // m, how deep it is there
+    bool is_too_fine;             // more steps than are tried: nothing else is known
     bool is_ended;                // in every phase
 } ImpactFigures;
 

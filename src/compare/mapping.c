@@ -9,6 +9,7 @@
 // damper is 2 zeta sqrt(k m), zeta the damping ratio of the same restitution.
 #include "compare/mapping.h"
 
+#include "base/text.h"
 #include "compare/mapping_verdict.h"
 #include "contact/damping.h"
 #include "contact/law.h"
@@ -19,6 +20,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+// as many as a run of one impact may have: the maps are right long before
+const double MAPPING_STEPS_MOST = 1e5;
 
 static bool is_poisson(const MappingContact *contact)
 {
@@ -42,6 +46,9 @@ MapImpactCase mapping_case(const MappingContact *contact, OdeMap map, double ste
     MapImpactCase impact = contact->impact;
     const ContactOptions *options = &contact->scenario.contact;
     impact.step = step_s;
+    // where the engine ends a run
+    impact.end = law_depth_max(
+        &impact.law, contact->scenario.linkage.joints[contact->joint.joint].clearance.pin_radius);
     if (is_poisson(contact)) {
         impact.rows = (MapImpactRows){
             .cfm = map_poisson_cfm(options->penalty),
@@ -60,6 +67,9 @@ ImpactFigures mapping_predict(const MappingContact *contact, OdeMap map, double 
     if (map == ODE_MAP_IMPULSE) {
         return impact_figures_of(&contact->asked);
     }
+    if (contact->asked.duration > MAPPING_STEPS_MOST * step_s) {
+        return (ImpactFigures){.is_too_fine = true};
+    }
     const MapImpactCase impact = mapping_case(contact, map, step_s);
     return impact_predict(&impact);
 }
@@ -76,13 +86,41 @@ static void fill_deepest(MappingContact *contact)
     contact->equivalent = 2.0 * ratio * sqrt(contact->secant * contact->impact.mass);
 }
 
+static const char *law_name(const Scenario *scenario)
+{
+    return scenario->contact.stiffness > 0.0 ? "stiffness" : OPTIONS_LAWS[scenario->contact.law];
+}
+
+// The law's own impact, with and without damping.
+static bool ask(MappingContact *contact, const Joint *at, Err *err)
+{
+    const MapImpactCase *impact = &contact->impact;
+    const double holds = law_depth_max(&impact->law, at->clearance.pin_radius); // m
+    MapImpactCase undamped = *impact;
+    undamped.law.viscous = undamped.law.hysteresis = 0.0;
+    contact->asked = map_impact_law(impact);
+    contact->half_period_s = map_impact_law(&undamped).duration;
+    if (!(contact->half_period_s > 0.0) || contact->asked.penetration_max > holds) {
+        return err_set(err, ERR_SOLVER,
+                       "%s: an impact of %.4g kg at %.4g m/s goes past the end of the law %s, "
+                       "which holds to a depth of %.4g um",
+                       at->name, impact->mass, impact->speed, contact->law_name, 1e6 * holds);
+    }
+    if (!contact->asked.is_ended || !(contact->asked.restitution > 0.0)) {
+        return err_set(err, ERR_SOLVER,
+                       "%s: after an impact of %.4g kg at %.4g m/s the damping of the law %s keeps "
+                       "the pin at the wall",
+                       at->name, impact->mass, impact->speed, contact->law_name);
+    }
+    return true;
+}
+
 bool mapping_contact_make(const Scenario *scenario, const MappingJoint *joint, double mass,
                           double speed, MappingContact *contact, Err *err)
 {
     const Joint *at = &scenario->linkage.joints[joint->joint];
     MappingContact made = {.joint = *joint, .scenario = *scenario};
-    made.law_name =
-        scenario->contact.stiffness > 0.0 ? "stiffness" : OPTIONS_LAWS[scenario->contact.law];
+    made.law_name = law_name(scenario);
     made.impact.mass = mass;
     made.impact.speed = speed;
     if (is_poisson(&made)) {
@@ -105,17 +143,7 @@ bool mapping_contact_make(const Scenario *scenario, const MappingJoint *joint, d
         made.scenario.contact.stiffness = made.impact.law.stiffness;
         made.scenario.contact.exponent = made.impact.law.exponent;
     }
-    made.asked = map_impact_law(&made.impact);
-    MapImpactCase undamped = made.impact;
-    undamped.law.viscous = undamped.law.hysteresis = 0.0;
-    made.half_period_s = map_impact_law(&undamped).duration;
-    if (!made.asked.is_ended || !(made.asked.restitution > 0.0)) {
-        return err_set(err, ERR_SOLVER,
-                       "%s: under the law %s an impact of %.4g kg at %.4g m/s has no end", at->name,
-                       made.law_name, mass, speed);
-    }
-    if (!law_check_depth(&made.impact.law, at, made.asked.penetration_max, 1.0, err)) {
-        err_prefix(err, made.law_name);
+    if (!ask(&made, at, err)) {
         return false;
     }
     fill_deepest(&made);
@@ -144,6 +172,25 @@ static void find_hardest(const MappingContact *contact, double *steps)
 static double choose(MappingSource source, double given, double median, double most)
 {
     return source == MAPPING_GIVEN ? given : source == MAPPING_MOST ? most : median;
+}
+
+// The contact of a joint under a law, or why there is none.
+static void add_contact(Mapping *mapping, const Scenario *scenario, const MappingJoint *joint,
+                        double mass, double speed, MappingSource speed_source)
+{
+    MappingContact *contact = &mapping->contacts[mapping->contact_count++];
+    Err lack = {ERR_NONE, ""};
+    if (!mapping_contact_make(scenario, joint, mass, speed, contact, &lack)) {
+        *contact = (MappingContact){
+            .joint = *joint,
+            .law_name = law_name(scenario),
+            .scenario = *scenario,
+            .impact = {.mass = mass, .speed = speed},
+            .lack_kind = lack.kind,
+        };
+        text_copy(contact->lack, sizeof contact->lack, lack.text);
+    }
+    contact->speed_source = speed_source;
 }
 
 // The contacts of one joint, a law each.
@@ -179,12 +226,7 @@ static bool add_joint(Mapping *mapping, const MappingJoint *joint, Err *err)
             return err_set(err, ERR_USAGE, "more than %d joints and laws; choose some with --laws",
                            MAPPING_CONTACT_MAX);
         }
-        MappingContact *contact = &mapping->contacts[mapping->contact_count];
-        if (!mapping_contact_make(&scenario, joint, mass, speed, contact, err)) {
-            return false;
-        }
-        contact->speed_source = speed_source;
-        mapping->contact_count++;
+        add_contact(mapping, &scenario, joint, mass, speed, speed_source);
     }
     return true;
 }
@@ -215,7 +257,12 @@ static bool make_contacts(Mapping *mapping, MappingWatch watch, Err *err)
             return false;
         }
     }
-    return true;
+    for (size_t i = 0; i < mapping->contact_count; i++) {
+        if (mapping->contacts[i].lack[0] == '\0') {
+            return true;
+        }
+    }
+    return err_set(err, mapping->contacts[0].lack_kind, "%s", mapping->contacts[0].lack);
 }
 
 static void fill_soft(const MappingContact *contact, MappingRow *row)
@@ -243,8 +290,11 @@ static void fill_row(const MappingContact *contact, MappingRow *row)
     row->predicted = mapping_predict(contact, row->map, row->step_s);
     row->verdict = verdict_judge(contact, row->map, row->step_s, &row->predicted);
     verdict_describe(contact, row);
-    if (!row->predicted.is_ended) {
-        snprintf(row->delivered.message, ERR_TEXT_SIZE, "it would not end");
+    if (!row->predicted.is_ended && !row->predicted.is_past_end) {
+        snprintf(row->delivered.message, ERR_TEXT_SIZE,
+                 row->predicted.is_too_fine ? "it would take more than %.0e steps"
+                                            : "the contact would not end",
+                 MAPPING_STEPS_MOST);
         return;
     }
     const Scenario scenario = mapping_scenario(contact, row->map, row->step_s);
@@ -263,6 +313,9 @@ static void make_rows(Mapping *mapping, MappingWatch watch)
     assert(mapping->rows != NULL);
     for (size_t i = 0; i < mapping->contact_count; i++) {
         MappingContact *contact = &mapping->contacts[i];
+        if (contact->lack[0] != '\0') {
+            continue;
+        }
         verdict_find_steps(contact);
         find_hardest(contact, contact->hardest_s);
         contact->first_row = mapping->row_count;

@@ -38,6 +38,8 @@ typedef struct MappingSettings {
 
 typedef enum VerdictKind {
     VERDICT_VALID,
+    VERDICT_TOO_FINE,     // more steps than are tried
+    VERDICT_PAST_END,     // the pin goes past the end of the law
     VERDICT_UNSTABLE,     // omega h beyond the map's limit: rows fall back to the textbook's
     VERDICT_STICKS,       // the contact does not end
     VERDICT_TOO_COARSE,   // fewer steps than a contact can be seen in
@@ -69,7 +71,9 @@ typedef struct MappingRow {
 // One joint under one law.
 typedef struct MappingContact {
     MappingJoint joint;
-    const char *law_name; // as in a case, or "stiffness" where the case gives that
+    const char *law_name;     // as in a case, or "stiffness" where the case gives that
+    char lack[ERR_TEXT_SIZE]; // why the law has no such impact; then mass and speed alone are set
+    ErrKind lack_kind;
     Scenario scenario;    // with this law
     MapImpactCase impact; // mass and speed used; of the step and rows nothing
     MappingSource speed_source;
@@ -104,8 +108,9 @@ typedef struct MappingWatch {
 } MappingWatch;
 
 // Works it all out. Fails with ERR_CASE where no joint has play, with ERR_USAGE where mass or speed
-// are neither given nor to be had from a run, with ERR_SOLVER where the reference fails. A row that
-// could not be run says so and is no failure. mapping_finish accepts a zeroed mapping.
+// are neither given nor to be had from a run, with ERR_SOLVER where the reference fails or where no
+// law has such an impact: one of several that has none says so and hides no other. A row that could
+// not be run says so too and is no failure. mapping_finish accepts a zeroed mapping.
 bool mapping_make(const Scenario *scenario, const MappingSettings *settings, MappingWatch watch,
                   Mapping *mapping, Err *err);
 void mapping_finish(Mapping *mapping);
@@ -113,7 +118,9 @@ void mapping_finish(Mapping *mapping);
 // The impact of a contact at a step under a map, as ODE makes it. Not of ODE_MAP_IMPULSE.
 MapImpactCase mapping_case(const MappingContact *contact, OdeMap map, double step_s);
 
-// The prediction, of any map: the impulse map delivers the law.
+// The prediction, of any map: the impulse map delivers the law. Not tried with more than
+// MAPPING_STEPS_MOST steps to the contact.
+extern const double MAPPING_STEPS_MOST;
 ImpactFigures mapping_predict(const MappingContact *contact, OdeMap map, double step_s);
 
 // Fills in a contact's law, mass and speed and all that follows from them. Fails with ERR_CASE

@@ -3,7 +3,8 @@
 // Valid means: restitution, peak force and depth of an impact are each within MAPPING_VALID_SHARE
 // of what the law asks, wherever the steps fall. A mechanism does not choose where they do, so that
 // a right mean alone is not enough. The judgement is made on the prediction, before anything runs;
-// the same judgement on what was delivered is how it is tested.
+// the same judgement on what was delivered is how it is tested. Every number that is judged is a
+// ratio, so that the same impact at another mass, length or time has the same verdict.
 //
 // A step is searched from two steps a contact down to ten thousand, in ratios of 2^(1/4): the
 // longest from which on every step tried over a factor of two is valid, and from there by bisection
@@ -13,6 +14,8 @@
 // r = CFM m / h, so that r <= (e - e') / (1 + e') holds for the least e' allowed: there the penalty
 // and the step have a least and not a largest value.
 #include "compare/mapping_verdict.h"
+
+#include "contact/law.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -33,13 +36,19 @@ static const double SEARCH_FINEST = 1e4;              // steps a contact
 enum { SEARCH_STREAK = 5, SEARCH_BISECTIONS = 12 };   // over a factor of two; to 1e-4 of the step
 
 const char *const VERDICT_NAMES[VERDICT_COUNT] = {
-    "valid",       "unstable",     "sticks", "too-coarse", "gains-speed",
-    "over-damped", "under-damped", "peak",   "depth",      "scatters",
+    "valid",       "too-fine",    "past-end",     "unstable", "sticks", "too-coarse",
+    "gains-speed", "over-damped", "under-damped", "peak",     "depth",  "scatters",
 };
 
+// Of a number that has a unit: nothing but its own share will do.
 static bool is_off(double value, double asked)
 {
-    // a restitution of 0 has no share of its own
+    return !(fabs(value - asked) <= MAPPING_VALID_SHARE * asked);
+}
+
+// Of a restitution, which has no unit; one of 0 has no share of its own.
+static bool is_restitution_off(double value, double asked)
+{
     return !(fabs(value - asked) <= MAPPING_VALID_SHARE * fmax(asked, MAPPING_VALID_SHARE));
 }
 
@@ -51,7 +60,8 @@ static bool is_spread_off(const ImpactSpread *spread, double asked)
 static bool is_valid(const MappingContact *contact, const ImpactFigures *figures)
 {
     const MapImpact *asked = &contact->asked;
-    if (is_spread_off(&figures->restitution, asked->restitution)) {
+    if (is_restitution_off(figures->restitution.least, asked->restitution) ||
+        is_restitution_off(figures->restitution.most, asked->restitution)) {
         return false;
     }
     return contact->scenario.contact.model == CONTACT_POISSON ||
@@ -64,6 +74,12 @@ VerdictKind verdict_judge(const MappingContact *contact, OdeMap map, double step
 {
     const MapImpact *asked = &contact->asked;
     const bool is_poisson = contact->scenario.contact.model == CONTACT_POISSON;
+    if (figures->is_too_fine) {
+        return VERDICT_TOO_FINE;
+    }
+    if (figures->is_past_end) {
+        return VERDICT_PAST_END;
+    }
     if (!figures->is_ended) {
         return VERDICT_STICKS;
     }
@@ -78,10 +94,10 @@ VerdictKind verdict_judge(const MappingContact *contact, OdeMap map, double step
     }
     const double restitution = figures->restitution.mean;
     if (figures->restitution.most > 1.0 + GAIN_SHARE &&
-        is_off(figures->restitution.most, asked->restitution)) {
+        is_restitution_off(figures->restitution.most, asked->restitution)) {
         return VERDICT_GAINS;
     }
-    if (is_off(restitution, asked->restitution)) {
+    if (is_restitution_off(restitution, asked->restitution)) {
         return restitution < asked->restitution ? VERDICT_OVER_DAMPED : VERDICT_UNDER_DAMPED;
     }
     if (!is_poisson && is_off(figures->force_max.mean, asked->force_max)) {
@@ -169,14 +185,30 @@ __attribute__((format(printf, 2, 3))) static void add(Words *words, const char *
     }
 }
 
+static double law_end(const MappingContact *contact)
+{
+    const int joint = contact->joint.joint;
+    return law_depth_max(&contact->impact.law,
+                         contact->scenario.linkage.joints[joint].clearance.pin_radius);
+}
+
 static void say_fault(const MappingContact *contact, const MappingRow *row, Words *words)
 {
     const ImpactFigures *figures = &row->predicted;
     const MapImpact *asked = &contact->asked;
     switch (row->verdict) {
     case VERDICT_UNSTABLE:
-        add(words, "unstable: omega h = %.3g, the limit is %.3g; the textbook's rows stand in",
-            row->omega_h, map_get(row->map)->stability_limit);
+        add(words,
+            "unstable: omega h reaches %.3g where the limit is %.3g, at a depth of %.3g um; the "
+            "textbook's rows stand in",
+            figures->omega_h_max, map_get(row->map)->stability_limit, 1e6 * figures->omega_h_depth);
+        return;
+    case VERDICT_TOO_FINE:
+        add(words, "too fine to try: the contact takes %.2g steps", row->steps_a_contact);
+        return;
+    case VERDICT_PAST_END:
+        add(words, "the pin goes past the end of the law: %.3g um, and it holds to %.3g um",
+            1e6 * figures->past_end_depth, 1e6 * law_end(contact));
         return;
     case VERDICT_STICKS:
         add(words, "sticks: the contact does not end");
@@ -234,6 +266,12 @@ static void say_advice(const MappingContact *contact, const MappingRow *row, Wor
     }
     const OdeMap other = other_map(contact, row);
     const double largest_s = contact->largest_s[row->map];
+    if (row->verdict == VERDICT_TOO_FINE) {
+        if (largest_s > 0.0) {
+            add(words, "; h = %.3g us is enough", 1e6 * largest_s);
+        }
+        return;
+    }
     if (other != row->map) {
         add(words, "; use %s", OPTIONS_ODE_MAPS[other]);
     }

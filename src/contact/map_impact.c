@@ -50,8 +50,9 @@ double map_impact_phase(int number)
 
 // ODE's row at a depth and closing speed: what the pin is to leave with, and the CFM.
 typedef struct Row {
-    double speed; // m/s
-    double cfm;   // m/(N s)
+    double speed;   // m/s
+    double cfm;     // m/(N s)
+    double omega_h; // 1; 0 of rows that are not made by a map
     bool falls_back;
 } Row;
 
@@ -73,11 +74,12 @@ static Row map_row_of(const MapImpactCase *impact, double depth, double closing)
         .depth = depth,
         .closing = closing,
     };
-    const double frequency = sqrt(force_law_tangent(&impact->law, depth) / impact->mass);
+    const double omega_h =
+        sqrt(force_law_tangent(&impact->law, depth) / impact->mass) * impact->step;
     const Map *map = impact->rows.map;
-    const bool falls_back = !(frequency * impact->step < map->stability_limit);
+    const bool falls_back = !(omega_h < map->stability_limit);
     const ErpCfm soft = (falls_back ? map_get(ODE_MAP_TEXTBOOK) : map)->convert(&contact);
-    return (Row){soft.erp / impact->step * depth, soft.cfm, falls_back};
+    return (Row){soft.erp / impact->step * depth, soft.cfm, omega_h, falls_back};
 }
 
 MapImpact map_impact(const MapImpactCase *impact, double first_overlap)
@@ -85,7 +87,8 @@ MapImpact map_impact(const MapImpactCase *impact, double first_overlap)
     MapImpact result = {0};
     double depth = fmax(first_overlap * impact->speed * impact->step, DBL_MIN); // m
     double closing = impact->speed;                                             // m/s
-    while (depth > 0.0 && result.steps < STEP_MAX) {
+    const double end = impact->end > 0.0 ? impact->end : INFINITY;
+    while (depth > 0.0 && depth <= end && result.steps < STEP_MAX) {
         const Row row = impact->rows.map != NULL ? map_row_of(impact, depth, closing)
                                                  : poisson_row(impact, depth, closing);
         // the row, solved for the force; the wall never pulls
@@ -94,11 +97,17 @@ MapImpact map_impact(const MapImpactCase *impact, double first_overlap)
         result.force_max = fmax(result.force_max, force);
         result.penetration_max = fmax(result.penetration_max, depth);
         result.fallbacks += row.falls_back ? 1 : 0;
+        if (row.omega_h > result.omega_h_max) {
+            result.omega_h_max = row.omega_h;
+            result.omega_h_depth = depth;
+        }
         result.steps++;
         closing -= impact->step * force / impact->mass;
         depth += impact->step * closing;
     }
     result.is_ended = depth <= 0.0;
+    result.is_past_end = !result.is_ended && !(depth <= end);
+    result.penetration_max = result.is_past_end ? depth : result.penetration_max;
     result.restitution = result.is_ended ? -closing / impact->speed : 0.0;
     result.duration = (double)result.steps * impact->step;
     return result;

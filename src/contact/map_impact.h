@@ -18,6 +18,7 @@ typedef struct MapImpactCase {
     double mass;  // kg, effective along the normal
     double speed; // m/s, closing, > 0
     double step;  // s; of the law itself it is not looked at
+    double end;   // m: the depth beyond which the law means nothing; 0 where it has no end
     MapImpactRows rows;
 } MapImpactCase;
 
@@ -29,7 +30,10 @@ typedef struct MapImpact {
     double duration;        // s, from the first overlap to the last
     size_t steps;           // with overlap
     size_t fallbacks;       // of those, beyond the map's limit: their row was the textbook's
-    bool is_ended;          // false: it goes on for longer than anyone would wait
+    double omega_h_max;     // 1, over the steps; 0 where no map was used
+    double omega_h_depth;   // m, where that was
+    bool is_past_end;       // the pin went past the end of the law, and the rest is not known
+    bool is_ended; // false: it is past the end, or goes on for longer than anyone would wait
 } MapImpact;
 
 // The impact in ODE. first_overlap is the penetration at the first overlapping step as a share of

@@ -32,7 +32,11 @@ static void set_figures(json_t *object, const ImpactFigures *figures)
 static json_t *predicted_object(const ImpactFigures *figures)
 {
     json_t *object = json_object();
-    json_object_set_new(object, "status", json_string(figures->is_ended ? "ok" : "sticks"));
+    json_object_set_new(object, "status",
+                        json_string(figures->is_ended      ? "ok"
+                                    : figures->is_past_end ? "past-end"
+                                    : figures->is_too_fine ? "too-fine"
+                                                           : "sticks"));
     if (figures->is_ended) {
         set_figures(object, figures);
     }
@@ -119,6 +123,9 @@ static json_t *contact_object(const MappingReport *report, const MappingContact 
     json_t *object = json_object();
     json_object_set_new(object, "joint", json_string(mapping_report_joint(report, contact)->name));
     json_object_set_new(object, "law", json_string(contact->law_name));
+    const bool is_mapped = contact->lack[0] == '\0';
+    json_object_set_new(object, "status", json_string(is_mapped ? "ok" : "not mapped"));
+    json_object_set_new(object, "message", json_value_text(contact->lack));
     json_value_set(object, "mass_kg", contact->impact.mass);
     json_object_set_new(object, "mass_from", json_string(SOURCES[settings->mass_source]));
     json_value_set(object, "mass_least_kg", is_run ? joint->mass_least : NAN);
@@ -132,7 +139,9 @@ static json_t *contact_object(const MappingReport *report, const MappingContact 
     json_value_set(object, "run_force_max_N", joint->onsets > 0 ? joint->force_max : NAN);
     json_value_set(object, "run_penetration_max_m",
                    joint->onsets > 0 ? joint->penetration_max : NAN);
-    set_law(report, contact, object);
+    if (is_mapped) {
+        set_law(report, contact, object);
+    }
     json_t *rows = json_array();
     for (size_t i = 0; i < contact->row_count; i++) {
         const MappingRow *row = &report->mapping->rows[contact->first_row + i];

@@ -149,6 +149,10 @@ static void draw_contact(const MappingReport *report, size_t number, Text *svg)
              mapping_report_joint(report, contact)->name, law, contact->impact.mass,
              contact->impact.speed, contact->asked.restitution);
     plot_text(svg, PANEL_LEFT, top - 14.0, "start", "", words);
+    if (contact->lack[0] != '\0') {
+        plot_text(svg, PANEL_LEFT, top + 14.0, "start", "note", "not mapped: see the tables");
+        return;
+    }
     const Shown restitution = {"largest error of restitution, relative", restitution_of};
     draw_panel(report, contact, PANEL_LEFT, top, &restitution, svg);
     if (!mapping_report_is_poisson(report)) {

@@ -1,6 +1,8 @@
 // Does `jointplay map` print, write and end as it should?
 #include "program.h"
 
+#include <stdbool.h>
+
 static const char PAPER[] = "map $cases/paper/impact-k66.yaml ";
 
 static void run_words(Program *program, const char *start, const char *more)
@@ -32,7 +34,7 @@ static void settings_figures_and_verdicts_are_printed(void **state)
     assert_int_equal(program->status, 0);
     assert_says(program->output, "Settings");
     assert_says(program->output, "Predicted and delivered");
-    assert_says(program->output, "over-damped: asked 0.913, delivers 0.67; use corrected, or h <=");
+    assert_says(program->output, "textbook, 10 us: over-damped: asked 0.913, delivers 0.675; use");
     assert_says(program->output, "valid");
     assert_says(program->output, "the median of");
     assert_null(strchr(program->output, '\x1b'));
@@ -91,6 +93,97 @@ static void mass_speed_and_law_can_be_given(void **state)
         assert_int_equal(json_array_size(json_object_get(contact, "rows")), 1);
     }
     json_decref(root);
+}
+
+// What once ended in an assertion: steps that take the pin past the end of a law, and laws that
+// have no such impact at all.
+static void a_law_that_ends_hides_no_other(void **state)
+{
+    Program *program = *state;
+    run_words(program, PAPER, "-q --steps '1 ms, 10 us' --set contact.law=esdu-78035 --json");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *row = first(first(root, "contacts"), "rows");
+    assert_string_equal(word(row, "verdict"), "past-end");
+    assert_says(word(row, "words"), "the pin goes past the end of the law: ");
+    assert_string_equal(word(json_object_get(row, "predicted"), "status"), "past-end");
+    json_decref(root);
+    run_words(program, PAPER,
+              "-q --laws all --step '1 us' --mass '5 kg' --speed '2 m/s' --maps corrected --json");
+    assert_int_equal(program->status, 0);
+    root = program_json(program);
+    const json_t *contacts = json_object_get(root, "contacts");
+    assert_int_equal(json_array_size(contacts), 7);
+    size_t mapped = 0;
+    for (size_t i = 0; i < 7; i++) {
+        const json_t *contact = json_array_get(contacts, i);
+        const bool is_mapped = strcmp(word(contact, "status"), "ok") == 0;
+        mapped += is_mapped ? 1 : 0;
+        assert_int_equal(json_array_size(json_object_get(contact, "rows")), is_mapped ? 1 : 0);
+        if (!is_mapped) {
+            assert_says(word(contact, "message"), "goes past the end of the law");
+        }
+    }
+    assert_true(mapped >= 3 && mapped <= 6);
+    json_decref(root);
+    run_words(program, PAPER, "-q --laws all --step '1 s'");
+    assert_int_equal(program->status, 0);
+    // where no law has it, there is nothing to map
+    run_words(program, PAPER, "-q --laws johnson --mass '200 kg' --speed '9 m/s'");
+    assert_int_equal(program->status, 4);
+    assert_says(program->errors, "goes past the end of the law johnson");
+    assert_string_equal(program->output, "");
+}
+
+// The sentence names the place where the limit is passed.
+static void an_unstable_setting_says_where(void **state)
+{
+    Program *program = *state;
+    run_words(program, PAPER, "--json -q --step '50 us' --maps corrected");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *row = first(first(root, "contacts"), "rows");
+    assert_string_equal(word(row, "verdict"), "unstable");
+    double reaches = 0.0;
+    double limit = 0.0;
+    assert_int_equal(sscanf(word(row, "words"),
+                            "unstable: omega h reaches %lf where the limit is %lf", &reaches,
+                            &limit),
+                     2);
+    assert_true(number(row, "omega_h") < limit && reaches >= limit);
+    json_decref(root);
+}
+
+static void no_step_is_so_fine_that_it_is_tried_for_ever(void **state)
+{
+    Program *program = *state;
+    run_words(program, PAPER, "--json -q --steps '1e-9 s, 1e-17 s' --maps corrected");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *rows = json_object_get(first(root, "contacts"), "rows");
+    for (size_t i = 0; i < 2; i++) {
+        const json_t *row = json_array_get(rows, i);
+        assert_string_equal(word(row, "verdict"), "too-fine");
+        assert_string_equal(word(json_object_get(row, "delivered"), "status"), "not run");
+    }
+    json_decref(root);
+}
+
+static void every_line_fits_a_terminal(void **state)
+{
+    Program *program = *state;
+    static const char *const MORE[] = {"-q", "-q --laws all --steps '1 ms, 60 us, 10 us'"};
+    for (size_t i = 0; i < sizeof MORE / sizeof *MORE; i++) {
+        run_words(program, PAPER, MORE[i]);
+        assert_int_equal(program->status, 0);
+        for (const char *line = program->output; *line != '\0';) {
+            const size_t length = strcspn(line, "\n");
+            if (length > 80) {
+                fail_msg("%zu columns: %.*s", length, (int)length, line);
+            }
+            line += length + (line[length] == '\n' ? 1 : 0);
+        }
+    }
 }
 
 static void files_are_written_where_they_are_wanted(void **state)
@@ -260,6 +353,14 @@ int main(void)
         cmocka_unit_test_setup_teardown(json_holds_every_setting, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(mass_speed_and_law_can_be_given, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(a_law_that_ends_hides_no_other, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(an_unstable_setting_says_where, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(no_step_is_so_fine_that_it_is_tried_for_ever,
+                                        program_set_up, program_tear_down),
+        cmocka_unit_test_setup_teardown(every_line_fits_a_terminal, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(files_are_written_where_they_are_wanted, program_set_up,
                                         program_tear_down),
