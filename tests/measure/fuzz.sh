@@ -1,0 +1,111 @@
+#!/usr/bin/env bash
+# Does any command, case, study, baseline or store bring the program down? Makes seeded random ones and
+# runs them with the address and undefined-behaviour sanitizers. A finding is an exit status that the
+# program does not have, a report of a sanitizer, a number that is none in what it printed or wrote with
+# status 0, or more than 20 s without a word. Prints each finding with its seed, and ends with status 1
+# where there was one.
+#
+# tests/measure/fuzz.sh [SECONDS [FIRST [BUILD]]]
+#   SECONDS  of processor time (default 3600)
+#   FIRST    the first seed (default 1)
+#   BUILD    a build folder to keep; else a temporary one
+set -u
+root=$(cd "$(dirname "$0")/../.." && pwd)
+seconds=${1:-3600}
+seed=${2:-1}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+build=${3:-$work/build}
+longest=60 # s of one command: what announces that it takes long is ended there
+silent=20  # s without a word
+
+if [ ! -f "$build/build.ninja" ]; then
+    meson setup "$build" "$root" -Dtests=enabled -Dbuildtype=debugoptimized \
+        -Db_sanitize=address,undefined -Db_lundef=false >/dev/null || exit 2
+fi
+ninja -C "$build" --quiet >/dev/null || exit 2
+program=$build/src/cli/jointplay
+maker=$build/tests/measure/random_command
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+export ASAN_OPTIONS=abort_on_error=0:exitcode=99:detect_leaks=1
+export LSAN_OPTIONS=suppressions=$root/tests/support/lsan.supp:print_suppressions=0
+
+# the options as the program itself tells them
+for command in run compare map tune study check paper help; do
+    "$program" "$command" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+(=[A-Za-z0-9/|.=]+)?' |
+        sed -E "s/^ +(-[a-z], )?/$command /"
+done | grep -v -- '--help' >"$work/options"
+
+findings=0
+commands=0
+find_fault() {
+    findings=$((findings + 1))
+    echo "seed $seed: $1: jointplay $(printf '%q ' "${arguments[@]}")"
+    tail -n 4 error | sed 's/^/    /'
+}
+
+# Runs the program with the arguments, and looks at what it left behind.
+run_step() {
+    local status=0
+    commands=$((commands + 1))
+    timeout --kill-after=5 "$longest" "$program" "${arguments[@]}" >printed 2>error </dev/null &
+    local child=$!
+    for ((waited = 0; waited < silent * 10; waited++)); do
+        kill -0 "$child" 2>/dev/null || break
+        sleep 0.1
+    done
+    if kill -0 "$child" 2>/dev/null && [ ! -s error ] && [ ! -s printed ]; then
+        find_fault "$silent s without a word"
+        kill "$child"
+    fi
+    wait "$child" || status=$?
+    case $status in
+    [0-5] | 124 | 130 | 143) ;;
+    *) find_fault "status $status" ;;
+    esac
+    if grep -qE 'ERROR: (Address|Leak)Sanitizer|runtime error|Assertion' error; then
+        find_fault "report of a sanitizer or an assertion"
+    fi
+    if [ "$status" = 0 ] &&
+        grep -rlqwE -- '-?(nan|inf|NaN|Infinity)' printed ./*.csv ./*.svg out 2>/dev/null; then
+        find_fault "a number that is none, with status 0"
+    fi
+}
+
+# The steps of one seed, in a folder of their own.
+run_plan() {
+    local kind line
+    while IFS= read -r kind; do
+        arguments=()
+        while IFS= read -r line && [ -n "$line" ]; do
+            arguments+=("$line")
+        done
+        if [ "$kind" = damage ]; then
+            "$maker" damage "$seed" "${arguments[0]}"
+        else
+            run_step
+        fi
+    done <plan
+}
+
+# Processor time of all finished children, s; 'times' counts them only in this very shell.
+used() {
+    times >"$work/times"
+    used_s=$(awk 'NR == 2 { split($1, u, /[ms]/); split($2, s, /[ms]/)
+                            print int(60 * (u[1] + s[1]) + u[2] + s[2]) }' "$work/times")
+}
+
+first=$seed
+used
+end_s=$((used_s + seconds)) # the build does not count
+while [ "$used_s" -lt "$end_s" ]; do
+    rm -rf "$work/place"
+    mkdir -p "$work/place"
+    cd "$work/place" || exit 2
+    "$maker" plan "$seed" "$work/options" >plan || exit 2
+    run_plan
+    seed=$((seed + 1))
+    used
+done
+echo "$commands commands of seeds $first to $((seed - 1)), $findings findings"
+[ "$findings" = 0 ]
