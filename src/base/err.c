@@ -1,8 +1,12 @@
 // How is an error carried to the one place that prints it?
 #include "base/err.h"
 
+#include "base/shorten.h"
+
+#include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 bool err_set(Err *err, ErrKind kind, const char *format, ...)
@@ -13,7 +17,7 @@ bool err_set(Err *err, ErrKind kind, const char *format, ...)
     err->kind = kind;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(err->text, sizeof err->text, format, arguments);
+    shorten_list(err->text, sizeof err->text, format, arguments);
     va_end(arguments);
     return false;
 }
@@ -23,10 +27,10 @@ void err_prefix(Err *err, const char *prefix)
     if (err->kind == ERR_NONE) {
         return;
     }
-    char text[ERR_TEXT_SIZE];
-    memcpy(text, err->text, sizeof text);
-    const int written = snprintf(err->text, sizeof err->text, "%s: ", prefix);
-    if (written >= 0 && (size_t)written < sizeof err->text) {
-        snprintf(err->text + written, sizeof err->text - (size_t)written, "%s", text);
-    }
+    const size_t size = strlen(prefix) + strlen(err->text) + sizeof ": ";
+    char *text = malloc(size);
+    assert(text != NULL);
+    snprintf(text, size, "%s: %s", prefix, err->text);
+    shorten_copy(err->text, sizeof err->text, text);
+    free(text);
 }

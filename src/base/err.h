@@ -24,7 +24,7 @@ typedef struct Err {
 } Err;
 
 // Sets the error if none is set yet. Always returns false, so that a function can
-// `return err_set(err, ...)`. A text too long for the buffer is cut.
+// `return err_set(err, ...)`. A text too long for the buffer is shortened to whole words.
 bool err_set(Err *err, ErrKind kind, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 // Puts "prefix: " in front of the text of an error that is set.

@@ -5,6 +5,8 @@
 
 #include "base/last_words.h"
 
+#include "base/shorten.h"
+
 #include <ctype.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -73,10 +75,9 @@ void last_words_read(int place, char *line, size_t size)
     while (start > 0 && tail[start - 1] != '\n') {
         start--;
     }
-    const size_t length = end - start < size - 1 ? end - start : size - 1;
-    for (size_t i = 0; i < length; i++) {
-        const char c = tail[start + i];
-        line[i] = (char)(c >= ' ' && c <= '~' ? c : '?');
+    tail[end] = '\0';
+    for (size_t i = start; i < end; i++) {
+        tail[i] = (char)(tail[i] >= ' ' && tail[i] <= '~' ? tail[i] : '?');
     }
-    line[length] = '\0';
+    shorten_copy(line, size, tail + start);
 }

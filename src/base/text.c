@@ -2,7 +2,6 @@
 #include "base/text.h"
 
 #include <assert.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,10 +42,15 @@ void text_append(Text *text, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
+    text_append_list(text, format, arguments);
+    va_end(arguments);
+}
+
+void text_append_list(Text *text, const char *format, va_list arguments)
+{
     va_list again;
     va_copy(again, arguments);
     const int needed = vsnprintf(NULL, 0, format, arguments);
-    va_end(arguments);
     assert(needed >= 0);
     text_reserve(text, (size_t)needed);
     vsnprintf(text->data + text->length, (size_t)needed + 1, format, again);

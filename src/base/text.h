@@ -1,6 +1,7 @@
 // Growing text, and the small questions about words that messages need.
 #pragma once
 
+#include <stdarg.h>
 #include <stddef.h>
 
 typedef struct Text {
@@ -12,9 +13,20 @@ typedef struct Text {
 void text_init(Text *text);
 void text_finish(Text *text);
 void text_append(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void text_append_list(Text *text, const char *format, va_list arguments)
+    __attribute__((format(printf, 2, 0)));
 
 // The shortest decimal that reads back as the same number, which is finite.
 void text_append_number(Text *text, double value);
+
+// The characters of so many bytes of UTF-8, without what only colours a terminal.
+size_t text_width(const char *text, size_t size);
+
+// Breaks every line that is longer than so many characters between its words; 0 breaks none. What
+// follows stands under the line's own beginning, and of "  name   words" under the words. Rows of
+// tables, and lines that are indented by four and more, which are code or quote a file, stay as
+// they are; so does a word that is too long for any line.
+void text_fold(Text *text, size_t width);
 
 // Copies a name into a fixed buffer, cut if it is too long.
 void text_copy(char *target, size_t size, const char *source);

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { DESCRIBE_WIDTH = 96, DESCRIBE_INDENT = 8 };
+enum { DESCRIBE_WIDTH = 80, DESCRIBE_INDENT = 8 };
 
 static const char EXAMPLE[] =
     "title: Crank-rocker at 1000 rpm with play in the crank-coupler pin\n"

@@ -5,6 +5,8 @@
 //     tolerated  = number [unit] [ (+- | +/- | PLUS-MINUS) number unit | +number/-number unit ]
 #include "casefile/quantity.h"
 
+#include "base/shorten.h"
+
 #include <assert.h>
 #include <ctype.h>
 #include <errno.h>
@@ -25,7 +27,7 @@ __attribute__((format(printf, 2, 3))) static bool complain(Complaint *complaint,
 {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(complaint->text, sizeof complaint->text, format, arguments);
+    shorten_list(complaint->text, sizeof complaint->text, format, arguments);
     va_end(arguments);
     return false;
 }

@@ -6,6 +6,7 @@
 //     allowed: a pin below 10.015 mm
 #include "casefile/source.h"
 
+#include "base/shorten.h"
 #include "base/text.h"
 
 #include <stdarg.h>
@@ -14,8 +15,8 @@
 
 enum {
     MESSAGE_SIZE = 512,
-    WINDOW_WIDTH = 96, // characters of a line that are shown
-    WINDOW_LEAD = 60,  // of these, so many in front of a caret that would stand outside
+    WINDOW_WIDTH = 70, // characters of a line that are shown
+    WINDOW_LEAD = 44,  // of these, so many in front of a caret that would stand outside
 };
 
 // One place: the line it is on, and where that line is in the text.
@@ -113,7 +114,7 @@ bool source_error(const Source *source, Span span, const char *allowed, Err *err
     char message[MESSAGE_SIZE];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
+    shorten_list(message, sizeof message, format, arguments);
     va_end(arguments);
     mend(message);
 

@@ -1,6 +1,7 @@
 // What does a value mean, and is it in its range?
 #include "casefile/store.h"
 
+#include "base/shorten.h"
 #include "casefile/quantity.h"
 #include "casefile/wanted.h"
 
@@ -29,7 +30,7 @@ __attribute__((format(printf, 3, 4))) static bool refuse(const Target *target, S
     char message[QUANTITY_TEXT_SIZE];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
+    shorten_list(message, sizeof message, format, arguments);
     va_end(arguments);
     Text allowed;
     text_init(&allowed);

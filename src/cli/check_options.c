@@ -32,6 +32,7 @@ static const struct argp_option OPTIONS[] = {
      "A start that takes longer has failed (default: 600 s)", 2},
     {"all", KEY_ALL, NULL, 0, "Every number in the tables, not the worst alone", 3},
     COMMON_ROW_JSON(3),
+    COMMON_ROW_WIDE(3),
     {"junit", KEY_JUNIT, "FILE", 0, "Write JUnit XML, a test a number", 3},
     {"markdown", KEY_MARKDOWN, "FILE", 0,
      "Write a comment for a change; '-' prints it instead of tables", 3},

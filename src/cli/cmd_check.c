@@ -47,8 +47,9 @@ static void print_report(const CheckReport *report, const CheckOptions *options)
     }
     Text text;
     text_init(&text);
-    check_text_write(report, options->is_all, output_style(stdout), &text);
-    fputs(text.data, stdout);
+    const Style style = output_style(stdout, options->common.is_wide);
+    check_text_write(report, options->is_all, &style, &text);
+    output_text(&text, &style);
     text_finish(&text);
 }
 

@@ -43,16 +43,18 @@ static void wait(const char *doing, void *context)
     compare_progress_show(&((Listening *)context)->progress, doing);
 }
 
-static void print_report(const CompareReport *report, bool is_json)
+static void print_report(const CompareReport *report, const CommonOptions *options)
 {
-    if (is_json) {
+    if (options->is_json) {
         output_json(compare_json_build(report));
         return;
     }
     Text text;
     text_init(&text);
-    compare_text_write(report, output_style(stdout), &text);
-    printf("%s\n", text.data);
+    const Style style = output_style(stdout, options->is_wide);
+    compare_text_write(report, &style, &text);
+    text_append(&text, "\n");
+    output_text(&text, &style);
     text_finish(&text);
 }
 
@@ -92,7 +94,7 @@ static bool compare_ladder(const CompareOptions *options, const Scenario *scenar
     }
     ladder_conclude(ladder);
     const CompareReport report = {scenario, ladder, listening.store.machine};
-    print_report(&report, options->common.is_json);
+    print_report(&report, &options->common);
     return compare_files_write(&report, options, err) && check_points(ladder, err);
 }
 

@@ -81,6 +81,6 @@ static bool run_help(int argc, char **argv, Err *err)
 
 const Command cmd_help = {
     .name = "help",
-    .summary = "tells how a command is used, or with 'case' how a case file is written",
+    .summary = "explains a command, or with 'case' the format of a case file",
     .run = run_help,
 };

@@ -48,22 +48,24 @@ static void tell_run(double share, double wall_s, void *context)
     tell(telling, words);
 }
 
-static void print_text(Text *text)
+static void print_text(Text *text, const Style *style)
 {
-    printf("%s\n", text->data);
+    text_append(text, "\n");
+    output_text(text, style);
     text_finish(text);
 }
 
-static void print_report(const MappingReport *report, bool is_json)
+static void print_report(const MappingReport *report, const CommonOptions *options)
 {
-    if (is_json) {
+    if (options->is_json) {
         output_json(mapping_json_build(report));
         return;
     }
     Text text;
     text_init(&text);
-    mapping_text_write(report, output_style(stdout), &text);
-    print_text(&text);
+    const Style style = output_style(stdout, options->is_wide);
+    mapping_text_write(report, &style, &text);
+    print_text(&text, &style);
 }
 
 // The paper's estimate where it was asked for; a word about it where it could be.
@@ -108,7 +110,7 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario, Er
     status_line_end(&telling.line);
     if (is_done) {
         const MappingReport report = {scenario, &mapping, penalty};
-        print_report(&report, options->common.is_json);
+        print_report(&report, &options->common);
         is_done = map_files_write(&report, options, err);
         say_hint(options, scenario);
     }
@@ -161,8 +163,9 @@ static bool read_row(const MapOptions *options, const Scenario *scenario, Err *e
     } else if (is_read) {
         Text text;
         text_init(&text);
-        mapping_inverse_text(inverse, output_style(stdout), &text);
-        print_text(&text);
+        const Style style = output_style(stdout, options->common.is_wide);
+        mapping_inverse_text(inverse, &style, &text);
+        print_text(&text, &style);
     }
     free(inverse);
     return is_read;

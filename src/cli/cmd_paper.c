@@ -12,13 +12,15 @@
 
 typedef struct PaperOptions {
     bool is_json;
+    bool is_wide;
     bool is_quiet;
 } PaperOptions;
 
-enum { KEY_JSON = 'j', KEY_QUIET = 'q' };
+enum { KEY_JSON = 0x100, KEY_WIDE, KEY_QUIET = 'q' };
 
 static const struct argp_option OPTIONS[] = {
     {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 0},
+    {"wide", KEY_WIDE, NULL, 0, "All columns of the tables, however wide the terminal is", 0},
     {"quiet", KEY_QUIET, NULL, 0, "No progress on standard error", 0},
     {0},
 };
@@ -30,6 +32,9 @@ static bool take_option(int key, const char *value, void *target, Err *err)
     case KEY_JSON:
         options->is_json = true;
         return true;
+    case KEY_WIDE:
+        options->is_wide = true;
+        return true;
     case KEY_QUIET:
         options->is_quiet = true;
         return true;
@@ -39,16 +44,17 @@ static bool take_option(int key, const char *value, void *target, Err *err)
     }
 }
 
-static void print_result(const PaperResult *result, bool is_json)
+static void print_result(const PaperResult *result, const PaperOptions *options)
 {
-    if (is_json) {
+    if (options->is_json) {
         output_json(paper_json_make(result));
         return;
     }
     Text text;
     text_init(&text);
-    paper_text_write(result, output_style(stdout), &text);
-    fputs(text.data, stdout);
+    const Style style = output_style(stdout, options->is_wide);
+    paper_text_write(result, &style, &text);
+    output_text(&text, &style);
     text_finish(&text);
 }
 
@@ -73,7 +79,7 @@ static bool run_paper(int argc, char **argv, Err *err)
     const bool is_computed = paper_compute(result, watch, err);
     progress_end(&progress);
     if (is_computed) {
-        print_result(result, options.is_json);
+        print_result(result, &options);
     }
     const bool is_reproduced = is_computed && paper_check(result, err);
     free(result);

@@ -25,6 +25,7 @@ enum {
     KEY_JSON,
     KEY_OUT,
     KEY_PLOT,
+    KEY_WIDE,
     KEY_QUIET = 'q',
 };
 
@@ -38,6 +39,7 @@ typedef struct RunCommand {
     const char *plot;
     const char *folder;
     bool is_json;
+    bool is_wide;
     bool is_quiet;
 } RunCommand;
 
@@ -50,6 +52,7 @@ static const struct argp_option OPTIONS[] = {
      "contact.restitution=0.8; may be given often",
      1},
     {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 2},
+    {"wide", KEY_WIDE, NULL, 0, "All columns of the tables, however wide the terminal is", 2},
     {"series", KEY_SERIES, "FILE.csv", 0,
      "Write every sample; with several backends to "
      "FILE-<backend>.csv each",
@@ -108,6 +111,9 @@ static bool take_option(int key, const char *value, void *target, Err *err)
     case KEY_JSON:
         command->is_json = true;
         return true;
+    case KEY_WIDE:
+        command->is_wide = true;
+        return true;
     case KEY_QUIET:
         command->is_quiet = true;
         return true;
@@ -148,8 +154,10 @@ static bool report_case(const RunCommand *command, const CaseRun *run, json_t *o
     } else {
         Text text;
         text_init(&text);
-        run_text_write(&run->report, output_style(stdout), &text);
-        printf("%s\n", text.data);
+        const Style style = output_style(stdout, command->is_wide);
+        run_text_write(&run->report, &style, &text);
+        text_append(&text, "\n");
+        output_text(&text, &style);
         text_finish(&text);
     }
     const bool is_quiet = command->is_quiet;

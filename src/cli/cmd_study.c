@@ -54,6 +54,6 @@ static bool run(int argc, char **argv, Err *err)
 
 const Command cmd_study = {
     .name = "study",
-    .summary = "a sweep over a case's values into a store, that goes on where it was ended",
+    .summary = "sweeps values of a case into a store; resumes where it was stopped",
     .run = run,
 };

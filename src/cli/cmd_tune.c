@@ -39,16 +39,17 @@ static void wait(const char *doing, void *context)
     }
 }
 
-static void print_report(const TuneReport *report, bool is_json)
+static void print_report(const TuneReport *report, const CommonOptions *options)
 {
-    if (is_json) {
+    if (options->is_json) {
         output_json(tune_json_build(report));
         return;
     }
     Text text;
     text_init(&text);
-    tune_text_write(report, output_style(stdout), &text);
-    printf("%s", text.data);
+    const Style style = output_style(stdout, options->is_wide);
+    tune_text_write(report, &style, &text);
+    output_text(&text, &style);
     text_finish(&text);
 }
 
@@ -125,7 +126,7 @@ static bool tune_case(const TuneOptions *options, Scenario *scenario, Err *err)
     if (is_done) {
         const TuneReport report = {scenario, tune, options->common.overrides,
                                    options->common.override_count, options->common.time_limit_s};
-        print_report(&report, options->common.is_json);
+        print_report(&report, &options->common);
         is_done = tune_files_write(&report, options, err) && check_met(&report, err);
     }
     tune_destroy(tune);

@@ -29,13 +29,13 @@ const Command *command_find(const char *name, Err *err)
 
 void command_list(void)
 {
-    printf("jointplay: how far can ODE be trusted with a joint that has play, and at what cost?\n\n"
+    printf("jointplay: how far can ODE be trusted with a joint that has play, at what cost?\n\n"
            "Usage: jointplay COMMAND [OPTION...] [ARGUMENT...]\n\nCommands:\n");
     for (size_t i = 0; COMMANDS[i] != NULL; i++) {
         printf("  %-8s %s\n", COMMANDS[i]->name, COMMANDS[i]->summary);
     }
-    printf("\n'jointplay COMMAND --help' tells more of a command, 'jointplay help case' how a case "
-           "file\nis written, 'jointplay --version' which versions are at work.\n"
-           "\nExit status: 0 done, 1 the numbers differ, 2 usage, 3 bad case file, 4 a solver "
-           "failed,\n5 a file could not be read or written.\n");
+    printf("\n'jointplay COMMAND --help' explains a command, 'jointplay help case' the format of\n"
+           "a case file; 'jointplay --version' prints the versions of program and libraries.\n"
+           "\nExit status: 0 done, 1 the numbers differ, 2 usage, 3 bad case file, 4 a solver\n"
+           "failed, 5 a file could not be read or written.\n");
 }

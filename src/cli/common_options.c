@@ -18,6 +18,9 @@ bool common_options_take(int key, const char *value, CommonOptions *options, Err
     case COMMON_JSON:
         options->is_json = true;
         return true;
+    case COMMON_WIDE:
+        options->is_wide = true;
+        return true;
     case COMMON_OUT:
         options->folder = value;
         return true;

@@ -18,6 +18,7 @@ enum {
     COMMON_TIME_LIMIT,
     COMMON_JSON,
     COMMON_OUT,
+    COMMON_WIDE,
     COMMON_QUIET = 'q',
 };
 
@@ -39,6 +40,11 @@ enum {
     {                                                                                              \
         "json", COMMON_JSON, NULL, 0, "Print one JSON object instead of tables", group             \
     }
+#define COMMON_ROW_WIDE(group)                                                                     \
+    {                                                                                              \
+        "wide", COMMON_WIDE, NULL, 0, "All columns of the tables, however wide the terminal is",   \
+            group                                                                                  \
+    }
 #define COMMON_ROW_QUIET(group)                                                                    \
     {                                                                                              \
         "quiet", COMMON_QUIET, NULL, 0, "Nothing on standard error but errors", group              \
@@ -53,6 +59,7 @@ typedef struct CommonOptions {
     double time_limit_s; // of one run
     const char *folder;  // of --out, or NULL
     bool is_json;
+    bool is_wide; // tables need not fit the terminal
     bool is_quiet;
 } CommonOptions;
 

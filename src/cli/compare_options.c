@@ -33,6 +33,7 @@ static const struct argp_option OPTIONS[] = {
     {"store", KEY_STORE, "FILE", 0, "Keep finished runs here and take them from here", 2},
     {"fresh", KEY_FRESH, NULL, 0, "Forget what the store holds", 2},
     COMMON_ROW_JSON(3),
+    COMMON_ROW_WIDE(3),
     {"csv", KEY_CSV, "FILE.csv", 0, "Write a row a point", 3},
     {"plot", KEY_PLOT, "FILE.svg", 0, "Draw error over wall time", 3},
     {"out", COMMON_OUT, "DIR", 0, "Write <case>-compare.json, .txt, .csv and .svg there", 3},

@@ -52,6 +52,18 @@ static bool run_program(int argc, char **argv, Err *err)
     return command != NULL && command->run(argc - 1, argv + 1, err);
 }
 
+// One line, as compilers have it, but on a terminal, which would break it in mid-word.
+static void print_error(const Err *err)
+{
+    const Style style = output_style(stderr, false);
+    Text text;
+    text_init(&text);
+    text_append(&text, "%sjointplay:%s %s\n", style.failure, style.end, err->text);
+    text_fold(&text, output_is_terminal(stderr) ? style.width : 0);
+    fputs(text.data, stderr);
+    text_finish(&text);
+}
+
 int main(int argc, char **argv)
 {
     // a reader that goes away shows as a failed write, and a failed write has an exit status
@@ -61,8 +73,7 @@ int main(int argc, char **argv)
     run_program(argc, argv, &err);
     output_end(&err);
     if (err.kind != ERR_NONE && err.text[0] != '\0') {
-        const Style *style = output_style(stderr);
-        fprintf(stderr, "%sjointplay:%s %s\n", style->failure, style->end, err.text);
+        print_error(&err);
     }
     return err.kind;
 }

@@ -36,6 +36,7 @@ static bool write_report(const MappingReport *report, const char *path, bool is_
     Text text;
     text_init(&text);
     mapping_text_write(report, &STYLE_PLAIN, &text);
+    text_fold(&text, STYLE_WIDTH);
     return write_text(path, &text, is_quiet, err);
 }
 

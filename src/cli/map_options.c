@@ -49,6 +49,7 @@ static const struct argp_option OPTIONS[] = {
     {"step", KEY_STEP, "TIME", 0, "The step of --erp or --kp; else the only step of the mapping",
      2},
     COMMON_ROW_JSON(3),
+    COMMON_ROW_WIDE(3),
     {"csv", KEY_CSV, "FILE.csv", 0, "Write a row a joint, law, map and step", 3},
     {"plot", KEY_PLOT, "FILE.svg", 0, "Draw the errors of restitution and peak force", 3},
     {"out", COMMON_OUT, "DIR", 0, "Write <case>-map.txt, .csv, .svg and .json there", 3},

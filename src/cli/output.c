@@ -4,20 +4,45 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
+
+// Characters: what a terminal says of itself beyond these is no width for a table.
+enum { WIDTH_MIN = 40, WIDTH_MAX = 1000 };
 
 bool output_is_terminal(FILE *stream)
 {
     return isatty(fileno(stream)) == 1;
 }
 
-const Style *output_style(FILE *stream)
+// The columns of the terminal that a stream goes to.
+static size_t terminal_width(FILE *stream)
+{
+    const char *columns = getenv("COLUMNS");
+    struct winsize size;
+    size_t width = columns != NULL ? strtoul(columns, NULL, 10) : 0;
+    if (width == 0 && ioctl(fileno(stream), TIOCGWINSZ, &size) == 0) {
+        width = size.ws_col;
+    }
+    return width >= WIDTH_MIN && width <= WIDTH_MAX ? width : STYLE_WIDTH;
+}
+
+Style output_style(FILE *stream, bool is_wide)
 {
     const char *no_color = getenv("NO_COLOR");
     const char *terminal = getenv("TERM");
     const bool is_refused = no_color != NULL && no_color[0] != '\0';
     const bool is_dumb = terminal != NULL && strcmp(terminal, "dumb") == 0;
-    return output_is_terminal(stream) && !is_refused && !is_dumb ? &STYLE_TERMINAL : &STYLE_PLAIN;
+    const bool is_terminal = output_is_terminal(stream);
+    Style style = is_terminal && !is_refused && !is_dumb ? STYLE_TERMINAL : STYLE_PLAIN;
+    style.width = is_wide ? 0 : is_terminal ? terminal_width(stream) : STYLE_WIDTH;
+    return style;
+}
+
+void output_text(Text *text, const Style *style)
+{
+    text_fold(text, style->width > 0 ? style->width : STYLE_WIDTH);
+    fputs(text->data, stdout);
 }
 
 void output_json(json_t *object)

@@ -2,19 +2,25 @@
 #pragma once
 
 #include "base/err.h"
+#include "base/text.h"
 #include "report/run_json.h"
 #include "report/style.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 
-// Marked for a terminal, plain for anything else and where NO_COLOR is set.
-const Style *output_style(FILE *stream);
+// Marked for a terminal, plain for anything else and where NO_COLOR is set. Lines are as wide as
+// the terminal is, by COLUMNS or by its own word, and STYLE_WIDTH elsewhere; of any width for who
+// asks for wide tables.
+Style output_style(FILE *stream, bool is_wide);
 
 bool output_is_terminal(FILE *stream);
 
 // Prints one JSON object to standard output; takes the reference.
 void output_json(json_t *object);
+
+// Prints a text for people to standard output, with its sentences broken at the style's width.
+void output_text(Text *text, const Style *style);
 
 // Sees that all of standard output has been written. Fails with ERR_FILE; the text is empty where
 // the reader has gone away, which needs no words.

@@ -111,6 +111,7 @@ static bool write_report(const CaseRun *run, const char *path, bool is_quiet, Er
     Text text;
     text_init(&text);
     run_text_write(&run->report, &STYLE_PLAIN, &text);
+    text_fold(&text, STYLE_WIDTH);
     const bool is_written = written_text(path, text.data, is_quiet, err);
     text_finish(&text);
     return is_written;

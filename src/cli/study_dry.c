@@ -37,9 +37,10 @@ static void append_cell(Table *table, const Column *column, const Cell *cell)
 }
 
 static void append_runs(const StudyOptions *options, const Spec *spec, const Layout *layout,
-                        Text *text)
+                        size_t width, Text *text)
 {
     Table *table = table_create(layout->setting_count + 1);
+    table_fit(table, width);
     table_head(table, 0, "run", "", TABLE_RIGHT);
     for (size_t i = 0; i < layout->setting_count; i++) {
         const bool is_word = layout->settings[i].kind == COLUMN_WORD;
@@ -103,12 +104,12 @@ static double store_bytes(const Layout *layout, uint64_t runs)
 bool study_run_dry(const StudyOptions *options, const Spec *spec, const Layout *layout, Err *err)
 {
     (void)err;
-    const Style *style = output_style(stdout);
+    const Style style = output_style(stdout, options->common.is_wide);
     const uint64_t end = design_run_count(spec);
     const uint64_t runs = design_shard_count(spec, options->shard);
     Text text;
     text_init(&text);
-    text_append(&text, "%s%s%s\n\n", style->heading, spec->title, style->end);
+    text_append(&text, "%s%s%s\n\n", style.heading, spec->title, style.end);
     text_append(&text, "Case %s, %zu variables, %" PRIu64 " runs", spec->case_path,
                 spec->variable_count, end);
     if (options->shard.count > 1) {
@@ -121,9 +122,9 @@ bool study_run_dry(const StudyOptions *options, const Spec *spec, const Layout *
     text_append(&text, ".\nThe store %s would take some %.2g MB.\n", options->store,
                 1e-6 * store_bytes(layout, runs));
     append_trials(options, spec, &text);
-    text_append(&text, "\n%sFirst runs%s\n", style->heading, style->end);
-    append_runs(options, spec, layout, &text);
-    fputs(text.data, stdout);
+    text_append(&text, "\n%sFirst runs%s\n", style.heading, style.end);
+    append_runs(options, spec, layout, style.width, &text);
+    output_text(&text, &style);
     text_finish(&text);
     return true;
 }

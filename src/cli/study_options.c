@@ -29,6 +29,7 @@ static const struct argp_option OPTIONS[] = {
     {"retry-failed", KEY_RETRY, NULL, 0, "Make the runs again that failed", 1},
     {"dry-run", KEY_DRY, NULL, 0, "Say what would be run, and run nothing", 2},
     COMMON_ROW_JSON(2),
+    COMMON_ROW_WIDE(2),
     COMMON_ROW_QUIET(2),
     {0},
 };

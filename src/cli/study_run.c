@@ -69,32 +69,32 @@ static void append_effort(const StudyReport *report, Text *text)
     }
 }
 
-static bool print_text(const StudyReport *report, Store *store, Err *err)
+static bool print_text(const StudyReport *report, Store *store, bool is_wide, Err *err)
 {
-    const Style *style = output_style(stdout);
+    const Style style = output_style(stdout, is_wide);
     const StudyPart part = {report->store, store, report->state.total};
     Text text;
     text_init(&text);
-    bool is_written = study_text_status(&part, 1, style, &text, err);
+    bool is_written = study_text_status(&part, 1, &style, &text, err);
     if (is_written) {
         append_effort(report, &text);
-        is_written = study_text_summary(store, NULL, style, &text, err);
+        is_written = study_text_summary(store, NULL, &style, &text, err);
     }
     if (is_written) {
-        fputs(text.data, stdout);
+        output_text(&text, &style);
     }
     text_finish(&text);
     return is_written;
 }
 
-static bool print_report(StudyReport *report, bool is_json, Err *err)
+static bool print_report(StudyReport *report, const CommonOptions *options, Err *err)
 {
     Store *store = store_view(report->store, err);
     bool is_printed = store != NULL && store_count(store, &report->count, err);
-    if (is_printed && is_json) {
+    if (is_printed && options->is_json) {
         output_json(study_json_build(report));
     } else {
-        is_printed = is_printed && print_text(report, store, err);
+        is_printed = is_printed && print_text(report, store, options->is_wide, err);
     }
     return store_close(store, err) && is_printed;
 }
@@ -181,7 +181,7 @@ static bool make_runs(const StudyOptions *options, const Spec *spec, const Layou
     }
     report.children_cpu_s = cpu_time(RUSAGE_CHILDREN);
     report.own_cpu_s = cpu_time(RUSAGE_SELF);
-    return print_report(&report, options->common.is_json, err) && check_runs(&report, err);
+    return print_report(&report, &options->common, err) && check_runs(&report, err);
 }
 
 bool study_run(const StudyOptions *options, Err *err)

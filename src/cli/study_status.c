@@ -1,5 +1,6 @@
 // How far has a study come?
 #include "cli/arguments.h"
+#include "cli/common_options.h"
 #include "cli/output.h"
 #include "cli/study_commands.h"
 #include "cli/study_place.h"
@@ -18,7 +19,7 @@ typedef struct Parts {
     StudyPart *parts; // owned, as their stores are and their paths
 } Parts;
 
-static const struct argp_option OPTIONS[] = {{0}};
+static const struct argp_option OPTIONS[] = {COMMON_ROW_WIDE(0), {0}};
 
 // Adds a store; one that is not there holds nothing yet. `wanted` is 0 where only it knows.
 static bool add_part(Parts *parts, const char *path, uint64_t wanted, Err *err)
@@ -84,14 +85,14 @@ static bool add_study(Parts *parts, const char *study, Err *err)
     return is_added;
 }
 
-static bool print_parts(const Parts *parts, Err *err)
+static bool print_parts(const Parts *parts, bool is_wide, Err *err)
 {
     Text text;
     text_init(&text);
-    const bool is_written =
-        study_text_status(parts->parts, parts->count, output_style(stdout), &text, err);
+    const Style style = output_style(stdout, is_wide);
+    const bool is_written = study_text_status(parts->parts, parts->count, &style, &text, err);
     if (is_written) {
-        fputs(text.data, stdout);
+        output_text(&text, &style);
     }
     text_finish(&text);
     return is_written;
@@ -108,7 +109,7 @@ static bool tell(const StudyWords *words, Err *err)
         const char *word = words->words[i];
         is_told = (study_place_is_study(word) ? add_study(&parts, word, err)
                                               : add_part(&parts, word, 0, err)) &&
-                  print_parts(&parts, err);
+                  print_parts(&parts, words->is_wide, err);
         is_told = finish_parts(&parts, err) && is_told;
     }
     return is_told;

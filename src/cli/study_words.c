@@ -12,6 +12,8 @@ bool study_words_take(int key, const char *value, void *target, Err *err)
     StudyWords *words = target;
     if (key == COMMON_QUIET) {
         words->is_quiet = true;
+    } else if (key == COMMON_WIDE) {
+        words->is_wide = true;
     } else {
         words->words[words->count++] = value;
     }

@@ -10,10 +10,11 @@
 typedef struct StudyWords {
     size_t count;
     const char **words; // the words themselves are the command line's
+    bool is_wide;
     bool is_quiet;
 } StudyWords;
 
-// For the Arguments of such a command, whose only option may be --quiet.
+// For the Arguments of such a command, whose only options may be --quiet and --wide.
 bool study_words_take(int key, const char *value, void *target, Err *err);
 
 // Reads the command line and does the work with its words, unless help was all that was asked for.

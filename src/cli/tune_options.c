@@ -40,6 +40,7 @@ static const struct argp_option OPTIONS[] = {
     {"sdf", KEY_SDF, "FILE.sdf", 0, "Write the contact as Gazebo can have it", 3},
     {"mjcf", KEY_MJCF, "FILE.xml", 0, "Write the contact as MuJoCo can have it", 3},
     COMMON_ROW_JSON(3),
+    COMMON_ROW_WIDE(3),
     {"out", COMMON_OUT, "DIR", 0, "Write <case>-tune.json, .txt, .c, .sdf and .xml there", 3},
     COMMON_ROW_QUIET(3),
     {0},

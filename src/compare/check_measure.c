@@ -5,6 +5,8 @@
 // The error is then measured in the latter alone.
 #include "compare/check_measure.h"
 
+#include "base/shorten.h"
+#include "base/text.h"
 #include "compare/check_add.h"
 #include "model/perturb.h"
 #include "model/shake.h"
@@ -26,8 +28,11 @@ static Trajectory *run_backend(CheckAdd *work, const Scenario *scenario, Backend
     if (!run->is_complete) {
         CheckMeasure *measure = work->measure;
         measure->is_complete = false;
-        snprintf(measure->message, sizeof measure->message, "%s failed: %.400s", solver->name,
-                 run->message);
+        Text words;
+        text_init(&words);
+        text_append(&words, "%s failed: %s", solver->name, run->message);
+        shorten_copy(measure->message, sizeof measure->message, words.data);
+        text_finish(&words);
         trajectory_destroy(run);
         return NULL;
     }

@@ -2,6 +2,7 @@
 #include "compare/task.h"
 
 #include "base/clock.h"
+#include "base/shorten.h"
 #include "run/registry.h"
 
 #include <math.h>
@@ -33,8 +34,7 @@ void task_measure(const void *context, void *result)
     Trajectory *trajectory = run_scenario(&task->scenario, registry_solver(task->backend), NOBODY);
     run->processor_s = clock_processor_s() - started_s;
     run->is_complete = trajectory->is_complete;
-    snprintf(run->message, sizeof run->message, "%.*s", LADDER_MESSAGE_SIZE - 1,
-             trajectory->message);
+    shorten_copy(run->message, sizeof run->message, trajectory->message);
     run->steps = trajectory->steps;
     run->evaluations = trajectory->evaluations;
     run->wall_s = trajectory->wall_s;

@@ -149,7 +149,7 @@ static void bound_row(Table *table, const Stackup *stackup, int quantity, bool i
 }
 
 // What each source does alone.
-static void write_shares(const RunReport *report, Text *text)
+static void write_shares(const RunReport *report, const Style *style, Text *text)
 {
     const Stackup *stackup = report->stackup;
     size_t sources = 0;
@@ -157,6 +157,7 @@ static void write_shares(const RunReport *report, Text *text)
         sources += stackup->is_source[i] ? 1 : 0;
     }
     Table *table = table_create(2 + sources);
+    table_fit(table, style->width);
     table_head(table, 0, "each alone", "", TABLE_LEFT);
     table_head(table, 1, "", "", TABLE_LEFT);
     size_t column = 2;
@@ -186,10 +187,13 @@ static void write_shares(const RunReport *report, Text *text)
 void analytic_text_stackup(const RunReport *report, const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
-        {"quantity", "", TABLE_LEFT},    {"", "", TABLE_LEFT},
-        {"unit", "", TABLE_LEFT},        {"nominal", "", TABLE_RIGHT},
-        {"worst case", "", TABLE_RIGHT}, {"change", "", TABLE_RIGHT},
-        {"where", "", TABLE_LEFT},
+        {"quantity", "", TABLE_LEFT},
+        {"", "", TABLE_LEFT},
+        {"unit", "", TABLE_LEFT},
+        {"nominal", "", TABLE_RIGHT},
+        {"worst case", "", TABLE_RIGHT},
+        {"change", "", TABLE_RIGHT},
+        {"where", "", TABLE_LEFT | TABLE_DETAIL},
     };
     const Stackup *stackup = report->stackup;
     if (report->no_stackup != NULL) {
@@ -207,7 +211,7 @@ void analytic_text_stackup(const RunReport *report, const Style *style, Text *te
     }
     run_section_end(table, text);
     text_append(text, "\n");
-    write_shares(report, text);
+    write_shares(report, style, text);
     text_append(text,
                 "  Play counts as a link of its radial clearance; impacts are not part of it.\n");
 }

@@ -26,10 +26,14 @@ static void write_rows(const CheckCase *item, size_t count, const Style *style, 
         return;
     }
     static const RunSectionHead HEADS[] = {
-        {"metric", "", TABLE_LEFT},       {"baseline", "", TABLE_RIGHT},
-        {"now", "", TABLE_RIGHT},         {"difference", "", TABLE_RIGHT},
-        {"band", "", TABLE_RIGHT},        {"bands off", "", TABLE_RIGHT},
-        {"why the band", "", TABLE_LEFT}, {"verdict", "", TABLE_LEFT},
+        {"metric", "", TABLE_LEFT},
+        {"baseline", "", TABLE_RIGHT},
+        {"now", "", TABLE_RIGHT},
+        {"difference", "", TABLE_RIGHT | TABLE_MINOR},
+        {"band", "", TABLE_RIGHT | TABLE_DETAIL},
+        {"bands off", "", TABLE_RIGHT},
+        {"why the band", "", TABLE_LEFT | TABLE_DETAIL},
+        {"verdict", "", TABLE_LEFT},
     };
     Table *table = run_section_begin(item->path, 8, HEADS, style, text);
     for (size_t i = 0; i < count; i++) {

@@ -66,6 +66,7 @@ void compare_spread_write(const CompareReport *report, const Style *style, Text 
         "\n%sThe whole run from %d starts, their speeds a little apart: median [least, most]%s\n\n",
         style->heading, ENSEMBLE_MEMBERS, style->end);
     Table *table = table_create(3 + COLUMN_COUNT);
+    table_fit(table, style->width);
     table_head(table, 0, "joint", "", TABLE_LEFT);
     table_head(table, 1, "scheme", "", TABLE_LEFT);
     table_head(table, 2, "step", "us", TABLE_RIGHT);

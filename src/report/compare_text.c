@@ -34,14 +34,14 @@ static void write_head(const CompareReport *report, const Style *style, Text *te
     if (truth->is_limited && truth->message[0] == '\0') {
         text_append(text,
                     "  horizon     %.4g ms of %.4g ms: beyond it no trajectory can be told, and "
-                    "errors are\n              those up to it (a start 1e-10 beside has grown "
+                    "errors are those up to it (a start 1e-10 beside has grown "
                     "%.2g times by then)\n",
                     truth->horizon_s * UNITS_MS, scenario_duration(scenario) * UNITS_MS,
                     truth->growth);
     }
     if (compare_report_mixes_models(report)) {
         text_append(text, "  contact     the reference has the elastic law, ODE the POISSON model: "
-                          "errors contain the\n              difference of the two models\n");
+                          "errors contain the difference of the two models\n");
     }
     text_append(text, "  times       median of %zu runs, taken in turn, on %s\n", ladder->repeats,
                 report->machine);
@@ -110,11 +110,16 @@ static void write_failures(const CompareReport *report, const Style *style, Text
 static void write_points(const CompareReport *report, const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
-        {"scheme", "", TABLE_LEFT},         {"step", "us", TABLE_RIGHT},
-        {"steps", "", TABLE_RIGHT},         {"evaluations", "", TABLE_RIGHT},
-        {"error", "of omega", TABLE_RIGHT}, {"wall time", "ms", TABLE_RIGHT},
-        {"least", "ms", TABLE_RIGHT},       {"most", "ms", TABLE_RIGHT},
-        {"a step", "us", TABLE_RIGHT},      {"", "", TABLE_LEFT},
+        {"scheme", "", TABLE_LEFT},
+        {"step", "us", TABLE_RIGHT},
+        {"steps", "", TABLE_RIGHT | TABLE_MINOR},
+        {"evaluations", "", TABLE_RIGHT | TABLE_DETAIL},
+        {"error", "of omega", TABLE_RIGHT},
+        {"wall time", "ms", TABLE_RIGHT},
+        {"least", "ms", TABLE_RIGHT | TABLE_DETAIL},
+        {"most", "ms", TABLE_RIGHT | TABLE_DETAIL},
+        {"a step", "us", TABLE_RIGHT | TABLE_MINOR},
+        {"", "", TABLE_LEFT},
     };
     const Ladder *ladder = report->ladder;
     Table *table = run_section_begin("Speed against error", 10, HEADS, style, text);

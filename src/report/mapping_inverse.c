@@ -39,7 +39,7 @@ static void write_mass(const Inverse *inverse, const InverseMass *mass, const St
         {"zeta", "1", TABLE_RIGHT},
         {"omega h", "1", TABLE_RIGHT},
         {"restitution", "of k and c", TABLE_RIGHT},
-        {"", "", TABLE_LEFT},
+        {"", "", TABLE_WRAP},
     };
     char heading[LINKAGE_NAME_SIZE + 64];
     if (mass->mass > 0.0) {

@@ -54,7 +54,7 @@ static void write_stiffness(const PenaltyMap *map, const Style *style, Text *tex
     text_append(
         text,
         "  P in N/mm with the viscous damper of the restitution asked for, %s map, %.4g us; "
-        "Table III is\n  static, and so is F / P; delivered is the depth of an impact of "
+        "Table III is static, and so is F / P; delivered is the depth of an impact of "
         "the joint's effective mass.\n",
         OPTIONS_ODE_MAPS[map->map], map->step_s * UNITS_US);
 }
@@ -85,7 +85,7 @@ static void write_penalty(const PenaltyMap *map, const Style *style, Text *text)
     run_section_end(table, text);
     text_append(text,
                 "  F = P d', CFM = 1 / P, with ODE's bounce, %.4g us: the depth is what the pin "
-                "flies in the step that\n  finds the wall, and follows the step and not P.\n",
+                "flies in the step that finds the wall, and follows the step and not P.\n",
                 map->step_s * UNITS_US);
 }
 

@@ -31,9 +31,12 @@ static void write_settings(const MappingReport *report, const MappingContact *co
                            const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
-        {"map", "", TABLE_LEFT},      {"step", "us", TABLE_RIGHT},
-        {"Tc / h", "1", TABLE_RIGHT}, {"omega h", "1", TABLE_RIGHT},
-        {"ERP", "1", TABLE_RIGHT},    {"CFM", "1/(N s/m)", TABLE_RIGHT},
+        {"map", "", TABLE_LEFT},
+        {"step", "us", TABLE_RIGHT},
+        {"Tc / h", "1", TABLE_RIGHT | TABLE_MINOR},
+        {"omega h", "1", TABLE_RIGHT | TABLE_DETAIL},
+        {"ERP", "1", TABLE_RIGHT},
+        {"CFM", "1/(N s/m)", TABLE_RIGHT},
         {"verdict", "", TABLE_LEFT},
     };
     const bool is_poisson = mapping_report_is_poisson(report);
@@ -96,7 +99,7 @@ static void write_figures(const MappingReport *report, const MappingContact *con
     // the length of the contact is in the JSON and the CSV: 80 columns have no room for it
     static const RunSectionHead HEADS[] = {
         {"map", "", TABLE_LEFT},
-        {"step", "us", TABLE_RIGHT},
+        {"step", "us", TABLE_RIGHT | TABLE_KEY},
         {"restitution", "predicted", TABLE_RIGHT},
         {"", "in ODE", TABLE_RIGHT},
         {"peak, N", "predicted", TABLE_RIGHT},

@@ -5,6 +5,7 @@
 #include "report/units.h"
 
 #include <math.h>
+#include <string.h>
 
 // the columns of physics beside one of Tables I to III
 typedef struct PhysicsColumn {
@@ -68,7 +69,10 @@ static void write_typos(TypoPlace place, Text *text)
     for (size_t i = 0; i < TYPOS_COUNT; i++) {
         const Typo *typo = &TYPOS[i];
         if (typo->place == place) {
-            text_append(text, "  typo in %s: \"%s\"\n    read as: %s\n    because: %s\n",
+            const bool is_below_blank =
+                text->length > 1 && strcmp(text->data + text->length - 2, "\n\n") == 0;
+            text_append(text, is_below_blank ? "" : "\n");
+            text_append(text, "  typo        in %s: \"%s\"\n  read as     %s\n  because     %s\n",
                         typo->where, typo->printed, typo->reading, typo->evidence);
         }
     }
@@ -121,6 +125,7 @@ static void write_estimate(const PaperResult *result, int index, const Style *st
     const EstimateTable *ours = &result->tables[index];
     begin_section(printed->name, printed->title, style, text);
     Table *table = table_create(1 + PRINTED_PIN_COUNT * (3 + physics_count(index)));
+    table_fit(table, style->width);
     head_estimate(table, index);
     for (int row = 0; row < PRINTED_SPEED_COUNT; row++) {
         estimate_row(table, result, index, row);
@@ -138,6 +143,7 @@ static void write_laws(const PaperResult *result, const Style *style, Text *text
     text_append(text, "\n%sWhat physics gives: %s pin at 1000 rpm%s\n\n", style->heading,
                 PRINTED_PIN_NAMES[PRINTED_CRANK_COUPLER], style->end);
     Table *table = table_create(5);
+    table_fit(table, style->width);
     table_head(table, 0, "law", "", TABLE_LEFT);
     table_head(table, 1, "paper's force", "um", TABLE_RIGHT);
     table_head(table, 2, "tangent", "N/m", TABLE_RIGHT);
@@ -156,20 +162,21 @@ static void write_laws(const PaperResult *result, const Style *style, Text *text
         physical->pins[PHYSICAL_BASE_ROW][PRINTED_CRANK_COUPLER].half_angle * UNITS_DEG;
     text_append(text,
                 "  Approach under the paper's %.4g N and under the real %.5g N, %.0f times more.\n"
-                "  At the real force the contact's half-angle is %.0f degrees, so Hertz's and the\n"
-                "  cylinder laws, made for narrow contacts, are only approximate there.\n",
+                "  At the real force the contact's half-angle is %.0f degrees, so Hertz's and the "
+                "cylinder laws, made for narrow contacts, are only approximate there.\n",
                 physical->estimated_force, physical->real_force,
                 physical->real_force / physical->estimated_force, half_angle);
 }
 
 // One of Tables VII (first = 0) and VIII (first = 4).
-static void write_extremes(const PaperResult *result, int first, Text *text)
+static void write_extremes(const PaperResult *result, int first, size_t width, Text *text)
 {
     const int decimals = printed_decimals(first);
     const char *unit = first == 0 ? "rad/s" : "rad/s^2";
     static const char *const TITLES[] = {"coupler max", "coupler min", "follower max",
                                          "follower min"};
     Table *table = table_create(6);
+    table_fit(table, width);
     table_head(table, 0, "row", "", TABLE_LEFT);
     table_head(table, 1, "", "", TABLE_LEFT);
     for (int i = 0; i < 4; i++) {
@@ -233,13 +240,13 @@ void paper_text_write(const PaperResult *result, const Style *style, Text *text)
     }
     write_laws(result, style, text);
     begin_section("Table VII", "angular velocity, crank clockwise at 1000 rpm", style, text);
-    write_extremes(result, 0, text);
+    write_extremes(result, 0, style->width, text);
     begin_section("Table VIII", "angular acceleration, crank clockwise at 1000 rpm", style, text);
-    write_extremes(result, 4, text);
+    write_extremes(result, 4, style->width, text);
     write_origins(result, style, text);
     text_append(text,
-                "  The paper gives no step, damping, restitution, friction or sampling for its\n"
-                "  stack-up rows: compare their orders of magnitude, not their digits.\n");
+                "  The paper gives no step, damping, restitution, friction or sampling for its "
+                "stack-up rows: compare their orders of magnitude, not their digits.\n");
     write_typos(TYPO_TABLES_7_8, text);
     begin_section("Elsewhere", "typos of no one table", style, text);
     write_typos(TYPO_MODEL, text);

@@ -9,6 +9,7 @@ Table *run_section_begin(const char *heading, size_t columns, const RunSectionHe
 {
     text_append(text, "\n%s%s%s\n\n", style->heading, heading, style->end);
     Table *table = table_create(columns);
+    table_fit(table, style->width);
     for (size_t i = 0; i < columns; i++) {
         table_head(table, i, heads[i].title, heads[i].unit, heads[i].align);
     }

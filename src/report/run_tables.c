@@ -101,7 +101,7 @@ void run_tables_contacts(const RunReport *report, const Style *style, Text *text
     static const RunSectionHead HEADS[] = {
         {"joint", "", TABLE_LEFT},      {"backend", "", TABLE_LEFT},
         {"impacts", "", TABLE_RIGHT},   {"force max", "N", TABLE_RIGHT},
-        {"", "", TABLE_RIGHT},          {"impulse", "N s", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},          {"impulse", "N s", TABLE_RIGHT | TABLE_DETAIL},
         {"deepest", "um", TABLE_RIGHT}, {"in contact", "%", TABLE_RIGHT},
     };
     const Linkage *linkage = &report->scenario->linkage;

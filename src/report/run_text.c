@@ -17,8 +17,9 @@ static void write_freedoms(const Linkage *linkage, bool has_play, Text *text)
 {
     Motion motions[LINKAGE_BODY_MAX];
     linkage_start(linkage, motions);
-    text_append(text, "  mechanism   %zu bodies, %zu joints, mobility %zu", linkage->body_count,
-                linkage->joint_count, kinematics_mobility(linkage, motions, false));
+    text_append(text, "  mechanism   %zu %s, %zu joint%s, mobility %zu", linkage->body_count,
+                linkage->body_count == 1 ? "body" : "bodies", linkage->joint_count,
+                linkage->joint_count == 1 ? "" : "s", kinematics_mobility(linkage, motions, false));
     if (has_play) {
         text_append(text, " (%zu with the play open)", kinematics_mobility(linkage, motions, true));
     }
@@ -152,16 +153,17 @@ void run_text_write(const RunReport *report, const Style *style, Text *text)
     write_drive(scenario, text);
     write_contact(scenario, text);
     write_models(report, style, text);
-    analytic_text_kinematics(report, style, text);
-    analytic_text_forces(report, style, text);
-    analytic_text_stackup(report, style, text);
+    // what was asked comes first, how far it can be believed beside it, and theory last
+    run_truth_errors(report, style, text);
     run_tables_extremes(report, style, text);
     run_tables_contacts(report, style, text);
     run_tables_spikes(report, RUN_TEXT_SPIKES, style, text);
     spike_tables_write(report, RUN_TEXT_SPIKES, style, text);
-    run_truth_errors(report, style, text);
     run_truth_matches(report, style, text);
     run_truth_ensembles(report, style, text);
     run_truth_energy(report, style, text);
     run_tables_cost(report, style, text);
+    analytic_text_kinematics(report, style, text);
+    analytic_text_forces(report, style, text);
+    analytic_text_stackup(report, style, text);
 }

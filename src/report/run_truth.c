@@ -45,7 +45,7 @@ static void write_horizon(const RunReport *report, Text *text)
         text_append(
             text,
             "  The motion cannot be predicted beyond %.4g of %.4g ms: by then a start 1e-10 "
-            "beside this one is %.3g\n  times as far away. Errors after it mean nothing; "
+            "beside this one is %.3g times as far away. Errors after it mean nothing; "
             "distributions over many starts can be compared.\n",
             truth->horizon_s * UNITS_MS, end_ms, truth->growth);
     } else if (!(truth->uncertainty <= HOLDS)) {
@@ -89,11 +89,16 @@ static void write_truth_alone(const RunReport *report, const Style *style, Text 
 void run_truth_errors(const RunReport *report, const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
-        {"backend", "", TABLE_LEFT},       {"against", "", TABLE_LEFT},
-        {"omega max", "1", TABLE_RIGHT},   {"at time", "ms", TABLE_RIGHT},
-        {"in horizon", "1", TABLE_RIGHT},  {"reference +-", "1", TABLE_RIGHT},
-        {"omega rms", "1", TABLE_RIGHT},   {"alpha max", "1", TABLE_RIGHT},
-        {"angle max", "deg", TABLE_RIGHT}, {"", "", TABLE_LEFT},
+        {"backend", "", TABLE_LEFT},
+        {"against", "", TABLE_LEFT},
+        {"omega max", "1", TABLE_RIGHT},
+        {"at time", "ms", TABLE_RIGHT | TABLE_MINOR},
+        {"in horizon", "1", TABLE_RIGHT},
+        {"reference +-", "1", TABLE_RIGHT},
+        {"omega rms", "1", TABLE_RIGHT | TABLE_MINOR},
+        {"alpha max", "1", TABLE_RIGHT | TABLE_DETAIL},
+        {"angle max", "deg", TABLE_RIGHT | TABLE_DETAIL},
+        {"", "", TABLE_LEFT},
     };
     Table *table = NULL;
     bool includes_play = false;
@@ -138,10 +143,10 @@ static bool has_drive_work(const Linkage *linkage, const Trajectory *run)
 void run_truth_energy(const RunReport *report, const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
-        {"backend", "", TABLE_LEFT},          {"drive work", "J", TABLE_RIGHT},
-        {"change", "J", TABLE_RIGHT},         {"dissipated", "J", TABLE_RIGHT},
-        {"friction", "J", TABLE_RIGHT},       {"residual", "J", TABLE_RIGHT},
-        {"residual/drive", "1", TABLE_RIGHT},
+        {"backend", "", TABLE_LEFT},           {"drive work", "J", TABLE_RIGHT},
+        {"change", "J", TABLE_RIGHT},          {"dissipated", "J", TABLE_RIGHT},
+        {"friction", "J", TABLE_RIGHT},        {"residual", "J", TABLE_RIGHT},
+        {"residual", "of drive", TABLE_RIGHT},
     };
     Table *table = NULL;
     for (size_t i = 0; i < report->run_count; i++) {

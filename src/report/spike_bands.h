@@ -18,7 +18,7 @@ typedef struct SpikeBandSums {
 
 SpikeBandSums spike_bands_sums(const SignalSpikes *spikes);
 
-// Whether the bands mean anything: a four-bar with play.
+// Whether the bands mean anything: in the paper's four-bar with the paper's play, and in no other.
 bool spike_bands_apply(const RunReport *report);
 
 // The two ends of a band, degrees.

@@ -131,15 +131,19 @@ static void write_strongest(const RunReport *report, const Trajectory *run, size
                             const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
-        {"body", "", TABLE_LEFT},           {"peak", "ms", TABLE_RIGHT},
-        {"crank", "deg", TABLE_RIGHT},      {"alpha", "rad/s^2", TABLE_RIGHT},
-        {"height", "rad/s^2", TABLE_RIGHT}, {"width", "us", TABLE_RIGHT},
-        {"duration", "us", TABLE_RIGHT},    {"impulse", "rad/s", TABLE_RIGHT},
+        {"body", "", TABLE_LEFT},
+        {"peak", "ms", TABLE_RIGHT},
+        {"crank", "deg", TABLE_RIGHT},
+        {"alpha", "rad/s^2", TABLE_RIGHT},
+        {"height", "rad/s^2", TABLE_RIGHT | TABLE_DETAIL},
+        {"width", "us", TABLE_RIGHT},
+        {"duration", "us", TABLE_RIGHT},
+        {"impulse", "rad/s", TABLE_RIGHT},
         {"joint", "", TABLE_LEFT},
     };
     static const RunSectionHead FREE_HEADS[] = {
         {"body", "", TABLE_LEFT},          {"peak", "ms", TABLE_RIGHT},
-        {"alpha", "rad/s^2", TABLE_RIGHT}, {"height", "rad/s^2", TABLE_RIGHT},
+        {"alpha", "rad/s^2", TABLE_RIGHT}, {"height", "rad/s^2", TABLE_RIGHT | TABLE_DETAIL},
         {"width", "us", TABLE_RIGHT},      {"duration", "us", TABLE_RIGHT},
         {"impulse", "rad/s", TABLE_RIGHT}, {"joint", "", TABLE_LEFT},
     };

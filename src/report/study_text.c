@@ -128,7 +128,7 @@ static void write_reasons(const Progress *progress, const Style *style, Text *te
 {
     static const RunSectionHead HEADS[] = {{"runs", "", TABLE_RIGHT},
                                            {"fate", "", TABLE_LEFT},
-                                           {"reason", "", TABLE_LEFT},
+                                           {"reason", "", TABLE_WRAP},
                                            {"such as run", "", TABLE_RIGHT}};
     if (progress->reason_count == 0) {
         return;

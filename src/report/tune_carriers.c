@@ -67,7 +67,7 @@ static void write_code(const TuneReport *report, const Style *style, Text *text)
         return;
     }
     text_append(text, "  --code FILE.c writes the setting as one C file that needs ODE alone and "
-                      "gives the same run,\n  bit for bit: cc FILE.c -o run -lode -lm\n");
+                      "gives the same run, bit for bit: cc FILE.c -o run -lode -lm\n");
 }
 
 // What a loop that is not to be changed has to pay.
@@ -110,7 +110,7 @@ static void write_linears(const Tune *tune, const Style *style, Text *text)
     static const RunSectionHead HEADS[] = {
         {"spring at", "um", TABLE_RIGHT},   {"spring", "N/m", TABLE_RIGHT},
         {"damper", "N s/m", TABLE_RIGHT},   {"step", "us", TABLE_RIGHT},
-        {"error", "of omega", TABLE_RIGHT}, {"", "", TABLE_LEFT},
+        {"error", "of omega", TABLE_RIGHT}, {"", "", TABLE_WRAP},
     };
     Table *table = run_section_begin("A contact with constants", 6, HEADS, style, text);
     for (size_t i = 0; i < tune->linear_count; i++) {
@@ -124,7 +124,7 @@ static void write_linears(const Tune *tune, const Style *style, Text *text)
         } else {
             table_cell(table, "-");
         }
-        table_cell(table, "%.60s",
+        table_cell(table, "%s",
                    (int)i == tune->linear                                    ? "taken"
                    : linear->error + tune->truth.uncertainty <= tune->target ? "met in this run"
                                                                              : linear->reason);
@@ -139,12 +139,11 @@ static void write_gazebo(const TuneReport *report, const Style *style, Text *tex
         return;
     }
     write_linears(tune, style, text);
-    text_append(
-        text,
-        "  Gazebo and MuJoCo have a constant spring and damper a contact, and plain steps. "
-        "These were run\n  in ODE with the textbook map, against the law itself; the damper "
-        "gives an impact on %.4g kg the\n  law's own restitution.\n",
-        tune->contact.mass);
+    text_append(text,
+                "  Gazebo and MuJoCo have a constant spring and damper a contact, and plain steps. "
+                "These were run in ODE with the textbook map, against the law itself; the damper "
+                "gives an impact on %.4g kg the law's own restitution.\n",
+                tune->contact.mass);
     TuneGazebo gazebo;
     text_append(text, "\n%sAs Gazebo SDF%s\n\n", style->heading, style->end);
     if (!tune_gazebo_find(tune, &gazebo)) {
@@ -158,7 +157,7 @@ static void write_gazebo(const TuneReport *report, const Style *style, Text *tex
         text_append(
             text,
             "  Gazebo's constants do not reach %.3g here: of those in the table the best is %.2g "
-            "off, at a step of\n  %.4g us.\n\n",
+            "off, at a step of %.4g us.\n\n",
             tune->target, gazebo.error, gazebo.step_s * UNITS_US);
     }
     Text lines;
@@ -178,7 +177,7 @@ static void write_mujoco(const TuneReport *report, const Style *style, Text *tex
     text_append(
         text,
         "  The same spring and damper. Not run here. What does not carry over: the exponent "
-        "of the law, damping\n  that grows with depth, and a share %.1g of the acceleration "
+        "of the law, damping that grows with depth, and a share %.1g of the acceleration "
         "without contact.\n\n",
         mujoco.impedance);
     Text lines;

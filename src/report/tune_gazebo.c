@@ -44,8 +44,8 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
     }
     const TuneLinear *linear = &report->tune->linears[report->tune->linear];
     text_append(text,
-                "<!-- error of omega with these constants, measured: %.2g; spring of the law at "
-                "%.4g um -->\n",
+                "<!-- error of omega with these constants, measured: %.2g;\n"
+                "     spring of the law at %.4g um -->\n",
                 gazebo.error, linear->depth * UNITS_UM);
     text_append(text,
                 "<physics type=\"ode\">\n"
@@ -68,7 +68,7 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
                 "<surface>\n"
                 "  <contact>\n"
                 "    <ode>\n"
-                "      <soft_erp>%s</soft_erp> <!-- what kp and kd come to; not used -->\n"
+                "      <soft_erp>%s</soft_erp> <!-- of kp and kd; not used -->\n"
                 "      <soft_cfm>%s</soft_cfm>\n"
                 "      <kp>%s</kp> <!-- two in a row make %.4g N/m -->\n"
                 "      <kd>%s</kd> <!-- two together make %.4g N s/m -->\n"

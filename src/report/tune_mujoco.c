@@ -76,9 +76,9 @@ void tune_mujoco_write(const TuneReport *report, Text *text)
                  number_shortest(friction).text, number_shortest(friction).text);
     }
     text_append(text,
-                "<!-- spring %.4g N/m, damper %.4g N s/m, not run here; for bodies with free "
-                "joints, held by connect\n     equalities: A = %.6g 1/kg. In any other model "
-                "multiply solref by (invweight0 of both bodies) / A. -->\n",
+                "<!-- spring %.4g N/m, damper %.4g N s/m, not run here; for bodies\n"
+                "     with free joints, held by connect equalities: A = %.6g 1/kg. In any\n"
+                "     other model multiply solref by (invweight0 of both bodies) / A. -->\n",
                 mujoco.stiffness, mujoco.damping, mujoco.weight);
     text_append(text,
                 "<option timestep=\"%s\" integrator=\"Euler\" cone=\"elliptic\"/>\n"

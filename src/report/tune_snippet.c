@@ -35,8 +35,8 @@ static void write_damping(const ForceLaw *law, Text *text)
 {
     if (law->hysteresis > 0.0) {
         text_append(text,
-                    "    // v0: the closing speed when this contact began, m/s, which you keep\n"
-                    "    const double c = %s * k * depth / fmax(v0, %s); // N s/m\n",
+                    "    // N s/m; v0: closing speed when this contact began, m/s, which you keep\n"
+                    "    const double c =\n        %s * k * depth / fmax(v0, %s);\n",
                     number_shortest(law->hysteresis).text,
                     number_shortest(law->impact_speed_floor).text);
     } else {
@@ -74,7 +74,7 @@ static void write_surface(const Joint *joint, const ForceLaw *law, const Scenari
                               (*letter >= '0' && *letter <= '9');
         text_append(text, "%c", is_plain ? *letter : '_');
     }
-    text_append(text, "(dSurfaceParameters *surface, double depth, double v0)\n{\n");
+    text_append(text, "(\n    dSurfaceParameters *surface, double depth, double v0)\n{\n");
     write_elastic(law, text);
     write_damping(law, text);
     if (scenario->contact.friction > 0.0) {
@@ -100,8 +100,8 @@ static void write_loop(const Scenario *scenario, Text *text)
                       "dWorldSetContactMaxCorrectingVel(world, dInfinity);\n"
                       "// of each body\ndBodySetFiniteRotationMode(body, 1);\n"
                       "// each step; a driven body is kinematic and put on its path first\n"
-                      "dSpaceCollide(space, NULL, near_callback); // calls set_surface_..., one "
-                      "point a joint\n"
+                      "// calls set_surface_..., one point a joint\n"
+                      "dSpaceCollide(space, NULL, near_callback);\n"
                       "dWorldStep(world, H);\n"
                       "dJointGroupEmpty(contacts);\n");
 }

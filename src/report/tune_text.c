@@ -7,6 +7,7 @@
 #include "report/units.h"
 
 #include <math.h>
+#include <string.h>
 
 static void write_head(const TuneReport *report, const Style *style, Text *text)
 {
@@ -59,6 +60,22 @@ static void write_cost(const Tune *tune, const TuneTrial *trial, Text *text)
     }
 }
 
+// A setting a line, as a shell takes it.
+static void append_command(const TuneReport *report, const TuneTrial *trial, Text *text)
+{
+    static const char OPTION[] = " --set ";
+    Text command;
+    text_init(&command);
+    tune_setting_command(report, trial, &command);
+    const char *from = command.data;
+    for (const char *to = strstr(from, OPTION); to != NULL; to = strstr(from + 1, OPTION)) {
+        text_append(text, "%.*s \\\n               ", (int)(to - from), from);
+        from = to;
+    }
+    text_append(text, "%s\n", from);
+    text_finish(&command);
+}
+
 static void write_setting(const TuneReport *report, const TuneTrial *trial, Text *text)
 {
     text_append(text, "  setting     ");
@@ -68,8 +85,7 @@ static void write_setting(const TuneReport *report, const TuneTrial *trial, Text
     text_append(text, "\n  in a case   ");
     tune_setting_keys(report, trial, "\n              ", text);
     text_append(text, "\n  run it      ");
-    tune_setting_command(report, trial, text);
-    text_append(text, "\n");
+    append_command(report, trial, text);
 }
 
 // What there is to say where nothing meets what was asked for.
@@ -158,10 +174,13 @@ static void scheme_row(const TuneReport *report, int number, Table *table)
 static void write_schemes(const TuneReport *report, const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
-        {"scheme", "", TABLE_LEFT},        {"runs", "", TABLE_RIGHT},
-        {"best setting", "", TABLE_RIGHT}, {"error", "of omega", TABLE_RIGHT},
-        {"world steps", "", TABLE_RIGHT},  {"processor", "ms", TABLE_RIGHT},
-        {"how it ended", "", TABLE_LEFT},
+        {"scheme", "", TABLE_LEFT},
+        {"runs", "", TABLE_RIGHT | TABLE_DETAIL},
+        {"setting", "", TABLE_RIGHT},
+        {"error", "of omega", TABLE_RIGHT},
+        {"world steps", "", TABLE_RIGHT | TABLE_DETAIL},
+        {"CPU", "ms", TABLE_RIGHT},
+        {"how it ended", "", TABLE_WRAP},
     };
     Table *table = run_section_begin("Schemes", 7, HEADS, style, text);
     for (int i = 0; i < (int)report->tune->scheme_count; i++) {
@@ -249,7 +268,7 @@ static void write_trials(const TuneReport *report, const Style *style, Text *tex
     static const RunSectionHead HEADS[] = {
         {"scheme", "", TABLE_LEFT},         {"setting", "", TABLE_RIGHT},
         {"error", "of omega", TABLE_RIGHT}, {"world steps", "", TABLE_RIGHT},
-        {"processor", "ms", TABLE_RIGHT},   {"", "", TABLE_LEFT},
+        {"CPU", "ms", TABLE_RIGHT},         {"", "", TABLE_LEFT},
     };
     const Tune *tune = report->tune;
     Table *table = run_section_begin("What was tried", 6, HEADS, style, text);
@@ -259,7 +278,7 @@ static void write_trials(const TuneReport *report, const Style *style, Text *tex
     run_section_end(table, text);
     text_append(text,
                 "  Settings are of the R10 series, ten a decade. Those left out are too coarse "
-                "for any order that\n  the scheme could have. Wall times here are of single "
+                "for any order that the scheme could have. Wall times here are of single "
                 "runs, several at a time.\n\n");
     for (size_t i = 0; i < tune->scheme_count; i++) {
         write_failure(tune, i, text);

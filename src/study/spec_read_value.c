@@ -1,6 +1,7 @@
 // What does a value of a study file say, by itself?
 #include "study/spec_read.h"
 
+#include "base/shorten.h"
 #include "base/text.h"
 #include "casefile/quantity.h"
 
@@ -16,7 +17,7 @@ bool spec_read_refuse(const Reading *reading, const Node *node, const char *allo
     char message[MESSAGE_SIZE];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
+    shorten_list(message, sizeof message, format, arguments);
     va_end(arguments);
     const bool is_missing = node->kind == NODE_SCALAR && node->text[0] == '\0';
     return source_error(&reading->source, is_missing ? keys_span(node) : node->span, allowed,

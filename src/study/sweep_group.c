@@ -4,6 +4,8 @@
 // halving, whatever lies in between.
 #include "study/sweep_group.h"
 
+#include "base/shorten.h"
+
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -110,8 +112,8 @@ bool sweep_group_take(SweepGroup *group, const Child *child, char *reason)
     if (!group->has_truth) {
         char words[CHILD_TEXT_SIZE];
         child_describe(child, words);
-        snprintf(reason, RECORD_REASON_SIZE, "%.*s", RECORD_REASON_SIZE - 1,
-                 child->end == CHILD_DONE ? group->truth.trajectory->message : words);
+        shorten_copy(reason, RECORD_REASON_SIZE,
+                     child->end == CHILD_DONE ? group->truth.trajectory->message : words);
     }
     group->lacks_truth = !group->has_truth;
     drop_preparations(group);

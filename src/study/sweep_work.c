@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/last_words.h"
+#include "base/shorten.h"
 #include "run/registry.h"
 #include "study/design.h"
 #include "study/lane.h"
@@ -23,7 +24,7 @@ static const RunWatch NOBODY = {NULL, NULL};
 static void give_reason(Record *record, Fate fate, const char *reason)
 {
     record->fate = fate;
-    snprintf(record->reason, sizeof record->reason, "%.*s", RECORD_REASON_SIZE - 1, reason);
+    shorten_copy(record->reason, sizeof record->reason, reason);
 }
 
 // No number that is not finite becomes a data point; NAN alone says that there is none.

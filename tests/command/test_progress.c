@@ -125,19 +125,19 @@ static void colours_are_for_terminals_that_want_them(void **state)
     }
     setenv("TERM", "xterm", 1);
     unsetenv("NO_COLOR");
-    const Style *wanted = output_style(stderr);
+    const Style wanted = output_style(stderr, false);
     setenv("NO_COLOR", "", 1);
-    const Style *empty = output_style(stderr);
+    const Style empty = output_style(stderr, false);
     setenv("NO_COLOR", "1", 1);
-    const Style *refused = output_style(stderr);
+    const Style refused = output_style(stderr, false);
     unsetenv("NO_COLOR");
     setenv("TERM", "dumb", 1);
-    const Style *dumb = output_style(stderr);
+    const Style dumb = output_style(stderr, false);
     stop_listening(&listener);
-    assert_true(wanted->heading[0] == '\x1b');
-    assert_true(empty->heading[0] == '\x1b');
-    assert_string_equal(refused->heading, "");
-    assert_string_equal(dumb->heading, "");
+    assert_true(wanted.heading[0] == '\x1b');
+    assert_true(empty.heading[0] == '\x1b');
+    assert_string_equal(refused.heading, "");
+    assert_string_equal(dumb.heading, "");
 }
 
 int main(void)

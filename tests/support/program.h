@@ -5,6 +5,7 @@
 #include "close.h"
 
 #include <jansson.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,10 +76,30 @@ static inline int program_tear_down(void **state)
 
 #define assert_says(text, words) program_check_words((text), (words), __FILE__, __LINE__)
 
+// Each run of blanks and line breaks as one blank: sentences break where a line is full.
+static inline char *program_one_line(const char *text)
+{
+    char *line = malloc(strlen(text) + 1);
+    size_t length = 0;
+    for (; *text != '\0'; text++) {
+        const bool is_blank = *text == ' ' || *text == '\n';
+        if (!is_blank || length == 0 || line[length - 1] != ' ') {
+            line[length++] = is_blank ? ' ' : *text;
+        }
+    }
+    line[length] = '\0';
+    return line;
+}
+
 static inline void program_check_words(const char *text, const char *words, const char *file,
                                        int line)
 {
-    if (strstr(text, words) == NULL) {
+    char *said = program_one_line(text);
+    char *wanted = program_one_line(words);
+    const bool is_said = strstr(said, wanted) != NULL;
+    free(said);
+    free(wanted);
+    if (!is_said) {
         print_error("'%s' is not in:\n%.600s\n", words, text);
         _fail(file, line);
     }

@@ -39,7 +39,7 @@ static void a_prefix_without_an_error_does_nothing(void **state)
     assert_string_equal(err.text, "");
 }
 
-static void a_text_too_long_is_cut_and_ends(void **state)
+static void a_text_too_long_ends_behind_a_whole_word(void **state)
 {
     (void)state;
     char long_text[2 * ERR_TEXT_SIZE];
@@ -53,6 +53,13 @@ static void a_text_too_long_is_cut_and_ends(void **state)
     assert_memory_equal(err.text, "a: xxx", 6);
     err_prefix(&err, long_text);
     assert_int_equal(strlen(err.text), ERR_TEXT_SIZE - 1);
+    Err words = {0};
+    for (size_t i = 0; i < sizeof long_text - 1; i++) {
+        long_text[i] = i % 5 == 4 ? ' ' : 'w';
+    }
+    err_set(&words, ERR_CASE, "%s", long_text);
+    assert_true(strlen(words.text) > ERR_TEXT_SIZE - 10);
+    assert_string_equal(words.text + strlen(words.text) - 9, " wwww ...");
 }
 
 static void kinds_are_the_exit_statuses_that_are_documented(void **state)
@@ -72,7 +79,7 @@ int main(void)
         cmocka_unit_test(the_first_error_wins),
         cmocka_unit_test(a_prefix_stands_in_front),
         cmocka_unit_test(a_prefix_without_an_error_does_nothing),
-        cmocka_unit_test(a_text_too_long_is_cut_and_ends),
+        cmocka_unit_test(a_text_too_long_ends_behind_a_whole_word),
         cmocka_unit_test(kinds_are_the_exit_statuses_that_are_documented),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -223,6 +223,10 @@ static void spikes_stand_below_their_body_or_joint(void **state)
     Fixture *fixture = *state;
     add_spikes(fixture);
     fixture->scenario.has_fourbar = true;
+    fixture->scenario.fourbar.ground.nominal = 0.254;
+    fixture->scenario.fourbar.crank.nominal = 0.108;
+    fixture->scenario.fourbar.coupler.nominal = 0.2794;
+    fixture->scenario.fourbar.follower.nominal = 0.2705;
     json_t *root = run_json_build(&fixture->report);
     const json_t *run = json_array_get(json_object_get(root, "runs"), 1);
     const json_t *body = json_object_get(json_object_get(run, "bodies"), "coupler");

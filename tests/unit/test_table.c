@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -132,6 +133,120 @@ static void many_rows_and_rules_are_kept(void **state)
     table_destroy(table);
 }
 
+// Key, two numbers and a detail: 2 + 4 + 2 + 6 + 2 + 6 + 2 + 6 = 30 characters.
+static Table *four_columns(void)
+{
+    Table *table = table_create(4);
+    table_head(table, 0, "name", "", TABLE_LEFT);
+    table_head(table, 1, "first!", "", TABLE_RIGHT);
+    table_head(table, 2, "detail", "", TABLE_RIGHT | TABLE_DETAIL);
+    table_head(table, 3, "minor!", "", TABLE_RIGHT | TABLE_MINOR);
+    table_cell(table, "a");
+    table_cell(table, "1");
+    table_cell(table, "2");
+    table_cell(table, "3");
+    return table;
+}
+
+static void a_table_that_fits_is_left_alone(void **state)
+{
+    (void)state;
+    Table *table = four_columns();
+    table_fit(table, 30);
+    expect_table(table, "  name  first!  detail  minor!\n"
+                        "  ----------------------------\n"
+                        "  a          1       2       3\n");
+    table_destroy(table);
+}
+
+static void the_least_important_columns_go_first_and_are_named(void **state)
+{
+    (void)state;
+    Table *table = four_columns();
+    table_fit(table, 29);
+    expect_table(table, "  name  first!  minor!\n"
+                        "  --------------------\n"
+                        "  a          1       3\n"
+                        "  Columns left out, --wide shows them: detail.\n");
+    table_fit(table, 21);
+    expect_table(table, "  name  first!\n"
+                        "  ------------\n"
+                        "  a          1\n"
+                        "  Columns left out, --wide shows them: detail, minor!.\n");
+    table_destroy(table);
+}
+
+static void what_is_still_too_wide_is_written_in_parts_with_all_columns(void **state)
+{
+    (void)state;
+    Table *table = table_create(4);
+    table_head(table, 0, "name", "", TABLE_LEFT);
+    table_head(table, 1, "one...", "", TABLE_RIGHT);
+    table_head(table, 2, "two...", "", TABLE_RIGHT);
+    table_head(table, 3, "detail", "", TABLE_RIGHT | TABLE_DETAIL);
+    table_cell(table, "a");
+    table_cell(table, "1");
+    table_cell(table, "2");
+    table_cell(table, "3");
+    table_rule(table);
+    table_fit(table, 15);
+    expect_table(table, "  name  one...\n"
+                        "  ------------\n"
+                        "  a          1\n"
+                        "  ------------\n"
+                        "\n"
+                        "  name  two...\n"
+                        "  ------------\n"
+                        "  a          2\n"
+                        "  ------------\n"
+                        "\n"
+                        "  name  detail\n"
+                        "  ------------\n"
+                        "  a          3\n"
+                        "  ------------\n");
+    table_destroy(table);
+}
+
+static void a_key_column_stands_in_every_part(void **state)
+{
+    (void)state;
+    Table *table = table_create(4);
+    for (int i = 0; i < 4; i++) {
+        table_cell(table, "%d%d%d%d%d%d", i, i, i, i, i, i);
+    }
+    table_head(table, 1, "key", "", TABLE_RIGHT | TABLE_KEY);
+    table_fit(table, 24);
+    Text text;
+    text_init(&text);
+    table_write(table, &text);
+    const char *first = strstr(text.data, "000000  111111  222222\n");
+    assert_non_null(first);
+    assert_non_null(strstr(first, "000000  111111  333333\n"));
+    text_finish(&text);
+    table_destroy(table);
+}
+
+static void words_are_broken_into_lines_of_their_own_column(void **state)
+{
+    (void)state;
+    Table *table = table_create(2);
+    table_cell(table, "a");
+    table_cell(table, "the pin is too deep in the wall");
+    table_head(table, 0, "n", "", TABLE_LEFT);
+    table_head(table, 1, "why", "", TABLE_WRAP);
+    table_fit(table, 26);
+    expect_table(table, "  n  why\n"
+                        "  ------------------------\n"
+                        "  a  the pin is too deep\n"
+                        "     in the wall\n");
+    // the control: with room they stay in one
+    table_fit(table, 80);
+    expect_table(table, "  n  why\n"
+                        "  ----------------------------------\n"
+                        "  a  the pin is too deep in the wall\n");
+    table_destroy(table);
+}
+
 static void destroying_nothing_does_nothing(void **state)
 {
     (void)state;
@@ -149,6 +264,11 @@ int main(void)
         cmocka_unit_test(a_character_of_two_bytes_is_one_wide),
         cmocka_unit_test(a_head_can_be_replaced),
         cmocka_unit_test(many_rows_and_rules_are_kept),
+        cmocka_unit_test(a_table_that_fits_is_left_alone),
+        cmocka_unit_test(the_least_important_columns_go_first_and_are_named),
+        cmocka_unit_test(what_is_still_too_wide_is_written_in_parts_with_all_columns),
+        cmocka_unit_test(a_key_column_stands_in_every_part),
+        cmocka_unit_test(words_are_broken_into_lines_of_their_own_column),
         cmocka_unit_test(destroying_nothing_does_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

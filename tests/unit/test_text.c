@@ -80,6 +80,54 @@ static void the_nearest_word_is_found_and_a_far_one_is_not(void **state)
     assert_null(text_nearest("run", commands, 0));
 }
 
+static void expect_folded(const char *source, size_t width, const char *expected)
+{
+    Text text;
+    text_init(&text);
+    text_append(&text, "%s", source);
+    text_fold(&text, width);
+    assert_string_equal(text.data, expected);
+    text_finish(&text);
+}
+
+static void sentences_are_broken_between_words(void **state)
+{
+    (void)state;
+    expect_folded("  one two three four\n", 11, "  one two\n  three\n  four\n");
+    expect_folded("  one two three four\n", 20, "  one two three four\n");
+    expect_folded("  one two three four\n", 0, "  one two three four\n");
+    // without an end, as it was
+    expect_folded("one two", 4, "one\ntwo");
+    // a word that is too long stays whole
+    expect_folded("/a/very/long/path is not there\n", 12, "/a/very/long/path\nis not there\n");
+}
+
+static void what_has_a_name_is_broken_under_its_words(void **state)
+{
+    (void)state;
+    expect_folded("  truth   the reference of this run, sure to 1e-9 of omega\n", 32,
+                  "  truth   the reference of this\n"
+                  "          run, sure to 1e-9 of\n"
+                  "          omega\n");
+}
+
+static void a_number_stays_with_its_unit(void **state)
+{
+    (void)state;
+    expect_folded("a clearance of 14.5 um there\n", 20, "a clearance of\n14.5 um there\n");
+}
+
+static void tables_code_and_colours_are_no_words(void **state)
+{
+    (void)state;
+    static const char TABLE[] = "  name  number  what\n";
+    static const char CODE[] = "    double force = depth / 3.0;\n";
+    expect_folded(TABLE, 12, TABLE);
+    expect_folded(CODE, 12, CODE);
+    expect_folded("\x1b[1mone two\x1b[0m\n", 7, "\x1b[1mone two\x1b[0m\n");
+    expect_folded("\x1b[1mone two\x1b[0m\n", 6, "\x1b[1mone\ntwo\x1b[0m\n");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -89,6 +137,10 @@ int main(void)
         cmocka_unit_test(the_distance_counts_slips_of_the_finger),
         cmocka_unit_test(words_of_any_length_have_a_distance),
         cmocka_unit_test(the_nearest_word_is_found_and_a_far_one_is_not),
+        cmocka_unit_test(sentences_are_broken_between_words),
+        cmocka_unit_test(what_has_a_name_is_broken_under_its_words),
+        cmocka_unit_test(a_number_stays_with_its_unit),
+        cmocka_unit_test(tables_code_and_colours_are_no_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
