@@ -18,7 +18,8 @@ static double largest_entry(size_t count, const double *a)
 {
     double largest = 0.0;
     for (size_t i = 0; i < count; i++) {
-        largest = fmax(largest, fabs(a[i]));
+        const double size = fabs(a[i]);
+        largest = size > largest ? size : largest;
     }
     return largest;
 }
@@ -40,6 +41,10 @@ bool dense_solve(size_t n, double *a, double *b)
         swap_rows(a, n, k, pivot);
         swap_rows(b, 1, k, pivot);
         for (size_t i = k + 1; i < n; i++) {
+            // bodies that have nothing to do with one another leave zeros
+            if (a[i * n + k] == 0.0) {
+                continue;
+            }
             const double factor = a[i * n + k] / a[k * n + k];
             for (size_t j = k; j < n; j++) {
                 a[i * n + j] -= factor * a[k * n + j];

@@ -27,6 +27,10 @@ enum { ROOT_STEPS = 60 };
 static const double GRADED = 1.0 / 256.0;
 static const double GROWTH = 0.25; // of the time since the onset, or left to the end
 
+// of a local step: contacts that begin or end nearer to each other than this do so together, for
+// rounding of places keeps the contacts of equal mechanisms apart by no less
+static const double AT_ONCE = 1e-7;
+
 static const double FRICTION_PHASE = 0.5; // of the time in which friction takes hold
 
 Encounter encounter_start(double friction, double friction_speed, double phase)
@@ -223,26 +227,28 @@ static bool find_bracket(Encounter *encounter, size_t joint, const EncounterPoin
     return *last > 0.0;
 }
 
-// Shortens a step to where the first contact begins or ends in it. Returns the joint, or -1.
-static int find_event(Encounter *encounter, const EncounterPoint *from, const EncounterPoint *to,
-                      double *width_s)
+// Shortens a step to where the first contact begins or ends in it. Returns which do there, one bit
+// a joint.
+static uint32_t find_events(Encounter *encounter, const EncounterPoint *from,
+                            const EncounterPoint *to, double *width_s)
 {
     const double whole_s = *width_s;
-    int event = -1;
+    double crossings[LINKAGE_JOINT_MAX];
     for (size_t i = 0; i < encounter->joint_count; i++) {
         double bracket_s = whole_s;
         double first;
         double last;
-        if (!find_bracket(encounter, i, from, to, &first, &bracket_s, &last)) {
-            continue;
-        }
-        const double crossing_s = find_crossing(encounter, i, from, first, bracket_s, last);
-        if (crossing_s <= *width_s) {
-            *width_s = crossing_s;
-            event = (int)i;
+        crossings[i] = INFINITY;
+        if (find_bracket(encounter, i, from, to, &first, &bracket_s, &last)) {
+            crossings[i] = find_crossing(encounter, i, from, first, bracket_s, last);
+            *width_s = fmin(*width_s, crossings[i]);
         }
     }
-    return event;
+    uint32_t events = 0;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        events |= crossings[i] <= *width_s + AT_ONCE * whole_s ? UINT32_C(1) << i : 0;
+    }
+    return events;
 }
 
 // Shortens a flight that leads away from the wall and back to it to where it turns: from there on
@@ -264,16 +270,20 @@ static bool shorten_flight(const Encounter *encounter, const EncounterPoint *fro
     return *width_s < whole_s;
 }
 
-static void change_contact(Encounter *encounter, size_t number, const EncounterPoint *point)
+static void change_contacts(Encounter *encounter, uint32_t events, const EncounterPoint *point)
 {
-    EncounterJoint *joint = &encounter->joints[number];
-    if (joint->is_touching) {
-        joint->is_touching = false;
-        return;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        if ((events >> i & 1) == 0) {
+            continue;
+        }
+        if (encounter->joints[i].is_touching) {
+            encounter->joints[i].is_touching = false;
+        } else {
+            const PinHole pose =
+                encounter_force_pose(encounter, i, point->time_s, point->impulse, point->moment);
+            begin_contact(encounter, i, &pose);
+        }
     }
-    const PinHole pose =
-        encounter_force_pose(encounter, number, point->time_s, point->impulse, point->moment);
-    begin_contact(encounter, number, &pose);
 }
 
 bool encounter_run(Encounter *encounter, double duration)
@@ -296,8 +306,8 @@ bool encounter_run(Encounter *encounter, double duration)
         if (shorten_flight(encounter, from, to, &width_s)) {
             try_step(encounter, from, width_s, to);
         }
-        const int event = find_event(encounter, from, to, &width_s);
-        if (event >= 0) {
+        const uint32_t events = find_events(encounter, from, to, &width_s);
+        if (events != 0) {
             try_step(encounter, from, width_s, to);
         }
         for (size_t i = 0; i < encounter->joint_count; i++) {
@@ -305,8 +315,8 @@ bool encounter_run(Encounter *encounter, double duration)
         }
         complete_point(encounter, to);
         encounter_nodes_add(encounter, to);
-        if (event >= 0) {
-            change_contact(encounter, (size_t)event, to);
+        if (events != 0) {
+            change_contacts(encounter, events, to);
             complete_point(encounter, to);
             encounter_nodes_add(encounter, to);
         }

@@ -82,22 +82,36 @@ static void mark_maxima(Marks *marks, const Encounter *encounter, size_t joint, 
     }
 }
 
+// The last of the nodes at one time.
+static size_t last_at_once(const Encounter *encounter, size_t node)
+{
+    while (node + 1 < encounter->node_count &&
+           encounter->times[node + 1] == encounter->times[node]) {
+        node++;
+    }
+    return node;
+}
+
 void marks_find(Marks *marks, const Encounter *encounter)
 {
     marks->count = 0;
     marks->next = 0;
     const size_t last = encounter->node_count - 1;
     for (size_t node = 0; node < last; node++) {
-        const uint32_t touching = encounter->touching[node];
-        if (encounter->times[node] == encounter->times[node + 1]) {
-            // a contact ends or begins: the part before it ends here, and at the onset a damper
-            // may press hardest
+        const size_t behind = last_at_once(encounter, node);
+        if (behind > node) {
+            // contacts end or begin, maybe several: the part before them ends here, and at an onset
+            // a damper may press hardest
             add_mark(marks, encounter->times[node], node > 0 ? node - 1 : node);
-            if ((encounter->touching[node + 1] & ~touching) != 0) {
-                add_mark(marks, encounter->times[node], node + 1);
+            if ((encounter->touching[behind] & ~encounter->touching[node]) != 0) {
+                add_mark(marks, encounter->times[node], behind);
             }
-            continue;
+            if (behind == last) {
+                break;
+            }
+            node = behind;
         }
+        const uint32_t touching = encounter->touching[node];
         for (size_t joint = 0; touching != 0 && joint < encounter->joint_count; joint++) {
             if ((touching >> joint & 1) != 0) {
                 mark_maxima(marks, encounter, joint, node);

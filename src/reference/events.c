@@ -3,21 +3,31 @@
 // Each mode holds while its margins are not negative:
 //     apart:    -d             d the penetration
 //     pressing:  d, release    release: 1 + chi d'/v0, or the force itself with a viscous damper
-//     slack:     d, -pressing
+//     slack:     d, -release
 // A margin that is negative at one of a few points of a step has crossed zero before it. The
 // crossing is found on the step's polynomial; then the step is taken again up to there, and moved
 // by Newton's method until the penetration is zero to rounding: no step ever passes the corner of
 // d^n.
+//
+// Where an event has put a contact, its new margin is zero but for rounding, of either sign. A
+// margin counts as negative only beyond its rounding: so a pin that has just come to the wall is
+// not off it again, a contact that begins and one that ends differ by more than rounding, and no
+// contact can begin and end for ever at one instant. Contacts whose events lie nearer to each other
+// than rounding can tell change together.
 #include "reference/events.h"
 
 #include "base/root.h"
 
+#include <float.h>
 #include <math.h>
 
 enum { HALVINGS = 24, LANDINGS = 4, MARGINS = 2 };
 
 // a thousandth of the depth that rounding of positions of 0.3 m leaves uncertain
 static const double LANDED = 1e-19;
+
+// roundings of a place or a speed that the sum of a handful of terms leaves uncertain
+static const double ROUNDINGS = 4.0 * DBL_EPSILON;
 
 typedef struct Margin {
     const Dynamics *dynamics;
@@ -34,8 +44,45 @@ static double margin_of(const ContactForce *force, ContactMode mode, int which)
     case CONTACT_PRESSING:
         return which == 0 ? force->pose.penetration : force->release;
     default:
-        return which == 0 ? force->pose.penetration : -force->pressing;
+        return which == 0 ? force->pose.penetration : -force->release;
     }
+}
+
+// Sum of the lengths and of the speeds that the place and the velocity of a joint's end come from.
+static void end_size(const Tree *tree, const TreeState *state, int end, double *length,
+                     double *speed)
+{
+    const int body = tree->end_bodies[end];
+    *length += vec2_length(tree_end_point(tree, state, end));
+    *speed += vec2_length(tree_end_velocity(tree, state, end));
+    if (body != LINKAGE_GROUND) {
+        const Motion *motion = &state->motions[body];
+        const double arm = vec2_length(state->arms[end]);
+        // an angle of many turns has fewer digits left for its direction
+        *length += arm * (1.0 + fabs(motion->angle));
+        *speed += arm * fabs(motion->omega) * (1.0 + fabs(motion->angle));
+    }
+}
+
+// How far rounding alone may take a margin to either side of zero.
+static double rounding_of(const Dynamics *dynamics, const DynamicsState *state, size_t number,
+                          ContactMode mode, int which)
+{
+    const DynamicsContact *contact = &dynamics->contacts[number];
+    double length = 0.0;
+    double speed = 0.0;
+    end_size(&dynamics->tree, &state->tree, 2 * contact->joint, &length, &speed);
+    end_size(&dynamics->tree, &state->tree, 2 * contact->joint + 1, &length, &speed);
+    const double depth = ROUNDINGS * length;
+    if (mode == CONTACT_APART || which == 0) {
+        return depth;
+    }
+    if (contact->law.viscous > 0.0) {
+        const double reached = fmax(state->contacts[number].pose.penetration, depth);
+        return force_law_tangent(&contact->law, reached) * depth +
+               contact->law.viscous * ROUNDINGS * speed;
+    }
+    return contact->damping_rate * ROUNDINGS * speed;
 }
 
 static double margin_at(double time, void *context)
@@ -103,13 +150,12 @@ bool events_look(const Dynamics *dynamics, const Dop853 *integrator, EventPoints
                              &points->states[points->count - 1]);
 }
 
-// Takes note of an event, if it comes before those noted so far.
+// Takes note of an event of a contact, if it is the first of this contact.
 static void note_event(const Margin *margin, double time, Event *event)
 {
-    if (!event->is_present || time < event->time) {
+    if (time < event->time) {
         const ContactMode mode = margin->dynamics->contacts[margin->contact].mode;
         *event = (Event){
-            .is_present = true,
             .time = time,
             .contact = margin->contact,
             .mode = mode_after(mode, margin->which),
@@ -128,28 +174,32 @@ static double approach_at(double time, void *context)
 // A free pin that went towards its wall and comes back may have been there in between: where the
 // penetration has its maximum it is looked at once more.
 static bool has_been_there(Margin *margin, double first, double first_speed, double last,
-                           double last_speed, double *top)
+                           double last_speed, double rounding, double *top)
 {
     return first_speed > 0.0 && last_speed < 0.0 &&
-           root_find(approach_at, margin, first, last, 0.0, top) && margin_at(*top, margin) < 0.0;
+           root_find(approach_at, margin, first, last, 0.0, top) &&
+           margin_at(*top, margin) < -rounding;
 }
 
 static void look_at(Margin *margin, const EventPoints *points, Event *event)
 {
-    const ContactMode mode = margin->dynamics->contacts[margin->contact].mode;
+    const Dynamics *dynamics = margin->dynamics;
+    const ContactMode mode = dynamics->contacts[margin->contact].mode;
     const bool is_free = mode == CONTACT_APART;
     double before = margin->integrator->time;
     double speed = is_free ? approach_at(before, margin) : 0.0;
     for (size_t i = 0; i < points->count; i++) {
         const double time = events_point_time(margin->integrator, points, i);
-        const ContactForce *force = &points->states[i].contacts[margin->contact];
+        const DynamicsState *state = &points->states[i];
+        const ContactForce *force = &state->contacts[margin->contact];
+        const double rounding = rounding_of(dynamics, state, margin->contact, mode, margin->which);
         double top = time;
-        if (is_free &&
-            has_been_there(margin, before, speed, time, force->pose.approach_speed, &top)) {
+        if (is_free && has_been_there(margin, before, speed, time, force->pose.approach_speed,
+                                      rounding, &top)) {
             note_event(margin, crossing(margin, before, top), event);
             return;
         }
-        if (margin_of(force, mode, margin->which) < 0.0) {
+        if (margin_of(force, mode, margin->which) < -rounding) {
             note_event(margin, crossing(margin, before, time), event);
             return;
         }
@@ -158,23 +208,41 @@ static void look_at(Margin *margin, const EventPoints *points, Event *event)
     }
 }
 
-Event events_find(const Dynamics *dynamics, const Dop853 *integrator, const EventPoints *points)
+void events_find(const Dynamics *dynamics, const Dop853 *integrator, const EventPoints *points,
+                 EventList *found)
 {
-    Event event = {.is_present = false};
+    found->count = 0;
     for (size_t i = 0; i < dynamics->contact_count; i++) {
         const int margins = dynamics->contacts[i].mode == CONTACT_APART ? 1 : MARGINS;
+        Event event = {.time = INFINITY};
         for (int which = 0; which < margins; which++) {
             Margin margin = {dynamics, integrator, i, which};
             look_at(&margin, points, &event);
         }
+        if (event.time < INFINITY) {
+            found->events[found->count++] = event;
+        }
     }
-    return event;
+}
+
+const Event *events_first(const EventList *found)
+{
+    const Event *first = NULL;
+    for (size_t i = 0; i < found->count; i++) {
+        first = first == NULL || found->events[i].time < first->time ? &found->events[i] : first;
+    }
+    return first;
+}
+
+// Whether an event begins or ends at the wall.
+static bool is_at_wall(const Dynamics *dynamics, const Event *event)
+{
+    return event->mode == CONTACT_APART || dynamics->contacts[event->contact].mode == CONTACT_APART;
 }
 
 void events_land(const Dynamics *dynamics, Dop853 *integrator, Event *event)
 {
-    const bool is_depth =
-        event->mode == CONTACT_APART || dynamics->contacts[event->contact].mode == CONTACT_APART;
+    const bool is_depth = is_at_wall(dynamics, event);
     // the event lies in the step that showed it
     const double longest = integrator->tried;
     double step = fmax(0.0, event->time - integrator->time);
@@ -201,14 +269,41 @@ void events_land(const Dynamics *dynamics, Dop853 *integrator, Event *event)
     dop853_fill(integrator);
 }
 
-void events_apply(Dynamics *dynamics, const Event *event, double time_s, const double *y)
+void events_gather(const Dynamics *dynamics, const Dop853 *integrator, const Event *landed,
+                   double same_s, EventList *found)
 {
-    DynamicsContact *contact = &dynamics->contacts[event->contact];
-    if (contact->mode == CONTACT_APART) {
-        contact->impact_speed =
-            dynamics_contact(dynamics, event->contact, time_s, y).pose.approach_speed;
-        contact->damping_rate =
-            contact->law.hysteresis / fmax(contact->impact_speed, contact->law.impact_speed_floor);
+    const EventList all = *found;
+    const double time_s = integrator->time + integrator->tried;
+    DynamicsState state;
+    tree_evaluate(&dynamics->tree, time_s, integrator->next,
+                  integrator->next + dynamics->tree.coordinate_count, &state.tree);
+    found->count = 0;
+    for (size_t i = 0; i < all.count; i++) {
+        const Event *event = &all.events[i];
+        bool is_now = event->contact == landed->contact || fabs(event->time - time_s) <= same_s;
+        if (!is_now && is_at_wall(dynamics, event)) {
+            const double rounding = rounding_of(dynamics, &state, event->contact, CONTACT_APART, 0);
+            const ContactForce force =
+                dynamics_contact(dynamics, event->contact, time_s, integrator->next);
+            is_now = fabs(force.pose.penetration) <= rounding;
+        }
+        if (is_now) {
+            found->events[found->count++] = *event;
+        }
     }
-    contact->mode = event->mode;
+}
+
+void events_apply(Dynamics *dynamics, const EventList *events, double time_s, const double *y)
+{
+    for (size_t i = 0; i < events->count; i++) {
+        const Event *event = &events->events[i];
+        DynamicsContact *contact = &dynamics->contacts[event->contact];
+        if (contact->mode == CONTACT_APART) {
+            contact->impact_speed =
+                dynamics_contact(dynamics, event->contact, time_s, y).pose.approach_speed;
+            contact->damping_rate = contact->law.hysteresis /
+                                    fmax(contact->impact_speed, contact->law.impact_speed_floor);
+        }
+        contact->mode = event->mode;
+    }
 }

@@ -5,11 +5,16 @@
 #include "reference/dynamics.h"
 
 typedef struct Event {
-    bool is_present;
     double time; // s
     size_t contact;
     ContactMode mode; // the mode that begins
 } Event;
+
+// Events of a step, at most one a contact.
+typedef struct EventList {
+    size_t count;
+    Event events[LINKAGE_JOINT_MAX];
+} EventList;
 
 // A step is looked at in some points, equal parts of it, the last at its end. While nothing presses
 // steps are long, and a pin might reach its wall and leave it within one; while something does some
@@ -28,11 +33,20 @@ bool events_look(const Dynamics *dynamics, const Dop853 *integrator, EventPoints
 // The time of one point.
 double events_point_time(const Dop853 *integrator, const EventPoints *points, size_t point);
 
-// The earliest event in the step.
-Event events_find(const Dynamics *dynamics, const Dop853 *integrator, const EventPoints *points);
+// The first event of each contact in the step, as far as there is one.
+void events_find(const Dynamics *dynamics, const Dop853 *integrator, const EventPoints *points,
+                 EventList *found);
+
+// The earliest of those that were found; NULL where there is none.
+const Event *events_first(const EventList *found);
 
 // Shortens the tried step so that it ends on the event to rounding, and fills it again.
 void events_land(const Dynamics *dynamics, Dop853 *integrator, Event *event);
 
-// Changes the contact's mode at the end of the step, with its impact speed.
-void events_apply(Dynamics *dynamics, const Event *event, double time_s, const double *y);
+// Keeps of the events that were found the one that the step has landed on and those that nothing
+// but rounding keeps apart from it: within a time, s, of it, or at the wall like it.
+void events_gather(const Dynamics *dynamics, const Dop853 *integrator, const Event *landed,
+                   double same_s, EventList *found);
+
+// Changes the contacts' modes at the end of the step, with their impact speeds.
+void events_apply(Dynamics *dynamics, const EventList *events, double time_s, const double *y);

@@ -10,9 +10,6 @@
 
 #include <string.h>
 
-// events of one contact at one and the same instant: it begins, goes slack, and is off again
-enum { STANDSTILLS_EACH = 4 };
-
 // of a step: two events nearer to each other than this are one, seen with rounding
 static const double SAME = 1e-9;
 
@@ -114,7 +111,18 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     return true;
 }
 
-// Makes the end of the last step the start of the next, with the event there.
+// Whether a contact begins to press at the end of the step.
+static bool is_onset(const Stepper *stepper)
+{
+    for (size_t i = 0; i < stepper->events.count; i++) {
+        if (stepper->events.events[i].mode == CONTACT_PRESSING) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Makes the end of the last step the start of the next, with the events there.
 static void take_over(Stepper *stepper)
 {
     Dop853 *integrator = &stepper->integrator;
@@ -126,13 +134,13 @@ static void take_over(Stepper *stepper)
         loops_project(tree, integrator->time, integrator->y, integrator->y + n);
     }
     tree_rebase(tree, integrator->time, integrator->y);
-    if (stepper->event.is_present) {
-        events_apply(&stepper->dynamics, &stepper->event, integrator->time, integrator->y);
-        if (stepper->event.mode == CONTACT_PRESSING) {
+    if (stepper->events.count > 0) {
+        events_apply(&stepper->dynamics, &stepper->events, integrator->time, integrator->y);
+        if (is_onset(stepper)) {
             integrator->step = fmin(integrator->step, stepper->onset_step);
         }
     }
-    if (tree->loop_count > 0 || stepper->event.is_present) {
+    if (tree->loop_count > 0 || stepper->events.count > 0) {
         dop853_start(integrator, integrator->time, integrator->y);
     }
 }
@@ -182,19 +190,26 @@ static bool step_to_event(Stepper *stepper, Err *err)
         return fail_to_step(stepper, err);
     }
     dop853_fill(integrator);
-    stepper->event = (Event){.is_present = false};
+    const double same_s = SAME * integrator->tried;
+    Event landed = {.time = INFINITY};
+    stepper->events.count = 0;
     for (size_t i = 0; i <= dynamics->contact_count; i++) {
         if (!events_look(dynamics, integrator, &stepper->points)) {
             return err_set(err, ERR_SOLVER, "the accelerations are not determined");
         }
         // a shorter step sees better: it may show an event before the one it was cut to
-        const Event found = events_find(dynamics, integrator, &stepper->points);
-        if (!found.is_present || (stepper->event.is_present &&
-                                  found.time >= stepper->event.time - SAME * integrator->tried)) {
+        EventList found;
+        events_find(dynamics, integrator, &stepper->points, &found);
+        const Event *first = events_first(&found);
+        if (first == NULL || first->time >= landed.time - SAME * integrator->tried) {
             break;
         }
-        stepper->event = found;
-        events_land(dynamics, integrator, &stepper->event);
+        landed = *first;
+        events_land(dynamics, integrator, &landed);
+        stepper->events = found;
+    }
+    if (stepper->events.count > 0) {
+        events_gather(dynamics, integrator, &landed, same_s, &stepper->events);
     }
     return true;
 }
@@ -203,24 +218,23 @@ bool stepper_next(Stepper *stepper, Err *err)
 {
     Dop853 *integrator = &stepper->integrator;
     stepper->is_after_onset = false;
-    const size_t most = STANDSTILLS_EACH * (stepper->dynamics.contact_count + 1);
-    for (size_t standstills = 0; standstills <= most; standstills++) {
-        bool is_onset = false;
+    do {
+        bool has_begun = false;
         if (stepper->has_step) {
-            is_onset = stepper->event.is_present && stepper->event.mode == CONTACT_PRESSING;
-            stepper->is_after_onset = stepper->is_after_onset || is_onset;
+            has_begun = is_onset(stepper);
+            stepper->is_after_onset = stepper->is_after_onset || has_begun;
             take_over(stepper);
         }
-        if (!step_to_event(stepper, err)) {
+        if (!pace_keep(&stepper->pace, &stepper->dynamics, &stepper->events, integrator->time,
+                       err) ||
+            !step_to_event(stepper, err)) {
             return false;
         }
         stepper->has_step = true;
-        if (is_onset && integrator->tried > 0.0) {
+        // a step that an event has cut says nothing about the next contact
+        if (has_begun && stepper->events.count == 0) {
             stepper->onset_step = integrator->tried;
         }
-        if (integrator->tried > 0.0) {
-            return true;
-        }
-    }
-    return err_set(err, ERR_SOLVER, "contacts begin and end without end at one instant");
+    } while (integrator->tried == 0.0);
+    return true;
 }

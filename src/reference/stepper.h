@@ -4,13 +4,15 @@
 #include "model/scale.h"
 #include "reference/dop853.h"
 #include "reference/events.h"
+#include "reference/pace.h"
 
 typedef struct Stepper {
     const Scenario *scenario;
     Dynamics dynamics;
     Dop853 integrator; // its tried step is the present one
     EventPoints points;
-    Event event; // at its end
+    EventList events; // at its end
+    Pace pace;
     bool has_step;
     double duration_s;
     SpeedScale scale;    // largest speeds so far

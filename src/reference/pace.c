@@ -1,0 +1,66 @@
+// Does the motion get on, or do steps and events pile up at one instant?
+//
+// Bounces of a pin follow one another ever faster, down to heights of rounding: some hundred of
+// them at the end of 1e-8 s. A contact that is stiff or strongly damped needs steps of a share of
+// its own time. Both end by themselves; what goes on beyond the limits here would take hours.
+#include "reference/pace.h"
+
+// of a turn of the drive, or of a run without one
+static const double INSTANT = 1e-12;
+static const double STEP_LEAST = 1e-9; // a thousand million steps a turn: hours
+
+enum { EVENTS_MOST = 1000, STEPS_COUNTED = 100000 };
+
+static double turn_of(const Dynamics *dynamics)
+{
+    const Scenario *scenario = dynamics->scenario;
+    return scenario->linkage.driver.is_present ? linkage_period(&scenario->linkage)
+                                               : scenario_duration(scenario);
+}
+
+static const char *joint_name(const Dynamics *dynamics, size_t contact)
+{
+    return dynamics->scenario->linkage.joints[dynamics->contacts[contact].joint].name;
+}
+
+static bool refuse_steps(const Pace *pace, const Dynamics *dynamics, double time_s, Err *err)
+{
+    const double width_s = time_s - pace->since_s;
+    for (size_t i = 0; i < dynamics->contact_count; i++) {
+        if (dynamics->contacts[i].mode == CONTACT_PRESSING) {
+            return err_set(err, ERR_SOLVER,
+                           "%d steps took the motion on by %.3g s only: the contact of %s is too "
+                           "stiff or too strongly damped to be followed; a higher restitution, "
+                           "another damping or a lower stiffness takes longer steps",
+                           STEPS_COUNTED, width_s, joint_name(dynamics, i));
+        }
+    }
+    return err_set(err, ERR_SOLVER, "%d steps took the motion on by %.3g s only", STEPS_COUNTED,
+                   width_s);
+}
+
+bool pace_keep(Pace *pace, const Dynamics *dynamics, const EventList *events, double time_s,
+               Err *err)
+{
+    const double turn_s = turn_of(dynamics);
+    if (time_s - pace->instant_s > INSTANT * turn_s) {
+        pace->instant_s = time_s;
+        pace->events = 0;
+    }
+    pace->events += events->count;
+    if (pace->events > EVENTS_MOST * dynamics->contact_count) {
+        return err_set(err, ERR_SOLVER,
+                       "the contact of %s begins and ends without end: %zu changes within %.3g s",
+                       joint_name(dynamics, events->events[0].contact), pace->events,
+                       time_s - pace->instant_s);
+    }
+    pace->steps++;
+    if (pace->steps == STEPS_COUNTED) {
+        if (time_s - pace->since_s < STEP_LEAST * STEPS_COUNTED * turn_s) {
+            return refuse_steps(pace, dynamics, time_s, err);
+        }
+        pace->steps = 0;
+        pace->since_s = time_s;
+    }
+    return true;
+}
