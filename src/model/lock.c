@@ -13,9 +13,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { STEP_MAX = 20000, LOCATE_MAX = 80 };
+enum { WALK_STEPS_MAX = 20000, LOCATE_MAX = 80 };
 
-static const double INDEPENDENT = 1e-9; // of the largest pivot, as in model/kinematics.c
+static const double DETERMINED_PIVOT = 1e-9; // of the largest pivot, as in model/kinematics.c
 
 // turns after which nothing new is to be expected: a linkage comes back to its start in one or two
 static const double TURNS_MAX = 8.0;
@@ -25,7 +25,7 @@ static const double STANDS = 1e-5;
 
 // how far from the angle of a lock a run fails of it, rad: forces grow without bound before it, and
 // play takes the crank beyond
-static const double NEAR = 10.0 * M_PI / 180.0;
+static const double NEAR_LOCK = 10.0 * M_PI / 180.0;
 
 // The linkage with the joints that count, all ideal.
 static Linkage idealised(const Linkage *linkage, LockJoints joints)
@@ -64,7 +64,7 @@ static size_t rank_with(const Linkage *linkage, const Motion *motions, int body)
     for (size_t i = 0; body >= 0 && i < 3; i++) {
         rows[count++ * jacobian.columns + 3 * (size_t)body + i] = 1.0;
     }
-    return dense_rank(count, jacobian.columns, rows, INDEPENDENT);
+    return dense_rank(count, jacobian.columns, rows, DETERMINED_PIVOT);
 }
 
 // The number that each body has in the part that the driver determines, -1 outside it. Returns how
@@ -117,7 +117,8 @@ static void move_origin(Linkage *part, Motion *motions)
 
 // Takes out of the linkage what the driver determines. Returns whether that is more than the driven
 // body.
-static bool take_part(const Linkage *linkage, const Motion *motions, Linkage *part, Motion *start)
+static bool cut_out_part(const Linkage *linkage, const Motion *motions, Linkage *part,
+                         Motion *start)
 {
     int numbers[LINKAGE_BODY_MAX];
     *part = (Linkage){.driver = linkage->driver};
@@ -172,7 +173,7 @@ static bool locate(const ClosedPath *path, double length, double *crank_angle)
 
 // One step along the path of about a length. Next to a crossing, where nothing shorter is found
 // either, it leaps over. Returns its length, or 0 where none is possible.
-static double advance(const ClosedPath *path, double length, ClosedPath *next)
+static double find_next(const ClosedPath *path, double length, ClosedPath *next)
 {
     static const double TRIED[] = {1.0, 0.5, 0.25, 2.0, 4.0, 8.0, 0.1, 0.01, 1e-3};
     for (size_t i = 0; i < sizeof TRIED / sizeof *TRIED; i++) {
@@ -196,7 +197,7 @@ static Passage pass(ClosedPath *path, double *crank_angle)
     double length = closed_path_reach(path);
     for (int i = 0; i < LOCATE_MAX; i++) {
         ClosedPath next;
-        length = advance(path, length, &next);
+        length = find_next(path, length, &next);
         if (length == 0.0) {
             return PASSAGE_UNKNOWN;
         }
@@ -217,7 +218,7 @@ static Lock walk(ClosedPath *path, double turn)
 {
     const double start = closed_path_crank(path);
     Lock lock = {LOCK_NONE, start};
-    for (int i = 0; i < STEP_MAX && fabs(lock.crank_angle - start) < turn; i++) {
+    for (int i = 0; i < WALK_STEPS_MAX && fabs(lock.crank_angle - start) < turn; i++) {
         const Passage passage = pass(path, &lock.crank_angle);
         if (passage != PASSAGE_OPEN) {
             const bool is_inside = fabs(lock.crank_angle - start) <= turn;
@@ -243,7 +244,7 @@ Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
     Linkage part;
     ClosedPath path;
     linkage_start(&ideal, motions);
-    if (!nearest_places(&ideal, motions) || !take_part(&ideal, motions, &part, start) ||
+    if (!nearest_places(&ideal, motions) || !cut_out_part(&ideal, motions, &part, start) ||
         !closed_path_start(&part, start, &path)) {
         return unknown;
     }
@@ -256,7 +257,7 @@ void lock_explain(const Scenario *scenario, double time_s, Err *err)
     if (err->kind != ERR_SOLVER || !linkage->driver.is_present) {
         return;
     }
-    const double turned = fabs(linkage->driver.speed) * time_s + NEAR;
+    const double turned = fabs(linkage->driver.speed) * time_s + NEAR_LOCK;
     const Lock lock = lock_find(linkage, LOCK_ALL_AS_IDEAL, turned);
     const size_t length = strlen(err->text);
     if (lock.state == LOCK_FOUND) {
