@@ -1,6 +1,7 @@
 // What may stand in a case file, for people: in a terminal and as a page of the documentation.
 #include "casefile/casefile.h"
 
+#include "casefile/expect.h"
 #include "casefile/schema.h"
 
 #include <stdio.h>
@@ -29,6 +30,12 @@ static const char LONG_EXAMPLE[] =
     "joints:\n"
     "  hole: {between: [ground, pin], at: [0 mm, 0 mm], hole: 10.2 mm, pin: 10 mm, width: 10 mm}\n"
     "run: {duration: 60 ms, samples: 3600, step: 1 us, backends: [reference, ode]}\n";
+
+static const char EXPECT_EXAMPLE[] = "expect:\n"
+                                     "  joints.crank-coupler.force_max: below 1.2 kN\n"
+                                     "  joints.crank-coupler.impacts: between 3 and 12\n"
+                                     "  bodies.coupler.alpha_max: within 2 % of 7574 rad/s^2\n"
+                                     "  ode.error.omega_max: below 1e-3\n";
 
 static const char *const RULES[] = {
     "A case is one YAML document of at most 1 MiB. Every quantity carries its unit; numbers have a "
@@ -64,6 +71,9 @@ static void describe_value(const SchemaRow *row, Text *text)
     case SCHEMA_BACKENDS:
         text_append(text, row->type == SCHEMA_BACKENDS ? "a list of " : "");
         schema_list_words(row, text);
+        break;
+    case SCHEMA_EXPECT:
+        text_append(text, "a mapping of paths to limits");
         break;
     case SCHEMA_VECTOR:
     case SCHEMA_ANCHOR:
@@ -209,6 +219,66 @@ static void describe_groups(bool is_page, Text *text)
     }
 }
 
+// The paths of a group of numbers that can be limited.
+static const char *expect_path(ExpectGroup group)
+{
+    static const char *const PATHS[EXPECT_GROUP_COUNT] = {
+        [EXPECT_BODIES] = "bodies.<body>.",
+        [EXPECT_JOINTS] = "joints.<joint>.",
+        [EXPECT_ERROR] = "error.",
+        [EXPECT_ENERGY] = "energy.",
+        [EXPECT_COST] = "cost.",
+    };
+    return PATHS[group];
+}
+
+static void describe_expectation(const ExpectRow *row, bool is_page, Text *text)
+{
+    Text units;
+    text_init(&units);
+    units_list(row->dimension, &units);
+    const char *unit = units.length > 0 ? units.data : row->is_count ? "a whole number" : "plain";
+    if (is_page) {
+        text_append(text, "| `%s%s` | %s | %s%s |\n", expect_path(row->group), row->name, unit,
+                    row->doc, row->needs_play ? "; of a joint with play" : "");
+    } else {
+        text_append(text, "    %s%s\n", expect_path(row->group), row->name);
+        Text words;
+        text_init(&words);
+        text_append(&words, "%s%s; %s", row->doc, row->needs_play ? ", of a joint with play" : "",
+                    unit);
+        append_wrapped(words.data, DESCRIBE_INDENT, text);
+        text_finish(&words);
+    }
+    text_finish(&units);
+}
+
+static void describe_expect(bool is_page, Text *text)
+{
+    static const char WORDS[] =
+        "Limits of your own for numbers of the runs, each a path and a limit. `jointplay check` "
+        "judges them, with a baseline or without. A path may begin with a backend, as in "
+        "ode.joints.pin.force_max; without one the limit is for every backend of the case that "
+        "feels the play, and of an error for every one that is not the reference itself. Extremes "
+        "are those of every step of the whole run, errors those up to the horizon of "
+        "predictability.";
+    text_append(text,
+                is_page ? "\n## `expect`\n\n%s\n\nA limit is one of: `%s`. Ends belong to "
+                          "between and within, and not to below and above.\n\n"
+                          "```yaml\n%s```\n\n| path | units | meaning |\n|---|---|---|\n"
+                        : "\nexpect\n",
+                WORDS, EXPECT_FORMS, EXPECT_EXAMPLE);
+    if (!is_page) {
+        append_wrapped(WORDS, 2, text);
+        text_append(text, "  A limit is one of:\n");
+        append_wrapped(EXPECT_FORMS, 4, text);
+        text_append(text, "\n%s\n", EXPECT_EXAMPLE);
+    }
+    for (int i = 0; i < EXPECTED_NUMBER_COUNT; i++) {
+        describe_expectation(&EXPECT_ROWS[i], is_page, text);
+    }
+}
+
 void casefile_describe(Text *text)
 {
     text_append(text, "A case file\n\n");
@@ -217,6 +287,7 @@ void casefile_describe(Text *text)
     }
     text_append(text, "\n%s\nOr, for any other linkage:\n\n%s", EXAMPLE, LONG_EXAMPLE);
     describe_groups(false, text);
+    describe_expect(false, text);
 }
 
 void casefile_describe_markdown(Text *text)
@@ -230,4 +301,5 @@ void casefile_describe_markdown(Text *text)
     text_append(text, "\n```yaml\n%s```\n\nOr, for any other linkage:\n\n```yaml\n%s```\n", EXAMPLE,
                 LONG_EXAMPLE);
     describe_groups(true, text);
+    describe_expect(true, text);
 }

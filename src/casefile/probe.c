@@ -62,6 +62,7 @@ static ProbeKind kind_of(SchemaType type)
     case SCHEMA_VECTOR:
     case SCHEMA_ANCHOR:
     case SCHEMA_BETWEEN:
+    case SCHEMA_EXPECT:
         return PROBE_OTHER;
     default:
         return PROBE_NUMBER;

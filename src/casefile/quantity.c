@@ -172,8 +172,16 @@ static const Unit *read_unit(const char *text, Dimension dimension, Complaint *c
 
 bool quantity_parse(const char *text, Dimension dimension, double *si, Complaint *complaint)
 {
+    const Unit *unit;
+    return quantity_parse_unit(text, dimension, si, &unit, complaint);
+}
+
+bool quantity_parse_unit(const char *text, Dimension dimension, double *si, const Unit **unit,
+                         Complaint *complaint)
+{
     complaint->allowed[0] = '\0';
     if (dimension == DIMENSION_NONE) {
+        *unit = NULL;
         return quantity_number(text, si, complaint);
     }
     const char *rest = text;
@@ -185,15 +193,16 @@ bool quantity_parse(const char *text, Dimension dimension, double *si, Complaint
         allow_dimension(complaint, dimension);
         return complain(complaint, "'%.*s' has no unit", SHOWN_MAX, text);
     }
-    const Unit *unit = read_unit(rest, dimension, complaint);
-    if (unit == NULL) {
+    const Unit *read = read_unit(rest, dimension, complaint);
+    if (read == NULL) {
         return false;
     }
-    const double converted = value * unit->numerator / unit->denominator;
+    const double converted = value * read->numerator / read->denominator;
     if (!isfinite(converted)) {
         return complain(complaint, "'%.*s' is too large for a number", SHOWN_MAX, text);
     }
     *si = converted;
+    *unit = read;
     return true;
 }
 

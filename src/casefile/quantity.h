@@ -26,6 +26,10 @@ bool quantity_integer(const char *text, size_t *value, Complaint *complaint);
 // A number with a unit of the dimension, in SI. DIMENSION_NONE takes a plain number.
 bool quantity_parse(const char *text, Dimension dimension, double *si, Complaint *complaint);
 
+// The same, and the unit that it was written with, which lives forever; NULL for a plain number.
+bool quantity_parse_unit(const char *text, Dimension dimension, double *si, const Unit **unit,
+                         Complaint *complaint);
+
 // A length, bare or with a tolerance: `108 mm`, `108 +- 0.3 mm`, `108 mm +0.1/-0.2 mm`. A unit
 // that is missing in front is that of the tolerance.
 bool quantity_tolerated(const char *text, ToleratedLength *length, Complaint *complaint);

@@ -5,6 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
+bool schema_is_setting(const SchemaRow *row)
+{
+    return row->type != SCHEMA_EXPECT;
+}
+
 const SchemaRow *schema_find(const char *path)
 {
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {

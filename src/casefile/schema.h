@@ -25,6 +25,7 @@ typedef enum SchemaType {
     SCHEMA_BETWEEN,          // [body, body] -> Joint.body_a and body_b
     SCHEMA_BODY_NAME,        // name of a body -> int
     SCHEMA_JOINT_NAME,       // name of a joint -> int
+    SCHEMA_EXPECT,           // mapping of paths to limits -> expectations; no setting of a run
 } SchemaType;
 
 // Keys that come once, or once a body, joint or traced point. A `*` in the path stands for the
@@ -107,6 +108,9 @@ bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other);
 
 // Whether a scenario makes use of a row, of that member of its family.
 bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index);
+
+// Whether a row's value is one that a run depends on or is named by. Expectations are none.
+bool schema_is_setting(const SchemaRow *row);
 
 // The row of a path with `*` for names; NULL where it is none.
 const SchemaRow *schema_find(const char *path);

@@ -312,6 +312,9 @@ const SchemaRow SCHEMA_ROWS[] = {
             "along the body's x axis"},
     {.path = "points.*.offset", .dimension = DIMENSION_LENGTH, POINT(local.y), .low = -1e3,
      .high = 1e3, .doc = "to the left of that direction"},
+
+    {.path = "expect", .type = SCHEMA_EXPECT, AT(expectations), .default_words = "none",
+     .doc = "limits for numbers of the runs, which `jointplay check` judges: see below"},
 };
 
 const SchemaGroup SCHEMA_GROUPS[] = {

@@ -6,11 +6,17 @@
 #include <stdio.h>
 #include <string.h>
 
+// How many settings a row makes.
+static size_t member_count(const SchemaRow *row)
+{
+    return schema_is_setting(row) ? SCHEMA_FAMILIES[row->family].most : 0;
+}
+
 // The row of a setting and the number of its family's member; NULL beyond the last.
 static const SchemaRow *find_row(size_t setting, size_t *index)
 {
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-        const size_t members = SCHEMA_FAMILIES[SCHEMA_ROWS[i].family].most;
+        const size_t members = member_count(&SCHEMA_ROWS[i]);
         if (setting < members) {
             *index = setting;
             return &SCHEMA_ROWS[i];
@@ -24,7 +30,7 @@ size_t casefile_setting_count(void)
 {
     size_t count = 0;
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-        count += SCHEMA_FAMILIES[SCHEMA_ROWS[i].family].most;
+        count += member_count(&SCHEMA_ROWS[i]);
     }
     return count;
 }
@@ -166,6 +172,8 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         break;
     case SCHEMA_ALONG:
         set_number(setting, point_along(scenario, index));
+        break;
+    case SCHEMA_EXPECT: // no setting
         break;
     }
 }

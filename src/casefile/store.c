@@ -2,6 +2,7 @@
 #include "casefile/store.h"
 
 #include "base/shorten.h"
+#include "casefile/expect.h"
 #include "casefile/quantity.h"
 #include "casefile/wanted.h"
 
@@ -368,6 +369,8 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return find_name(&target, entry->node, SCHEMA_BODY, false, target.field);
     case SCHEMA_JOINT_NAME:
         return find_name(&target, entry->node, SCHEMA_JOINT, false, target.field);
+    case SCHEMA_EXPECT:
+        return expect_store(entries, entry, scenario, err);
     case SCHEMA_RADIAL_CLEARANCE:
         return store_radial_clearance(&target, target.field);
     case SCHEMA_QUANTITY:

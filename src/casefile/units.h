@@ -21,6 +21,10 @@ typedef enum Dimension {
     DIMENSION_PRESSURE,
     DIMENSION_DAMPING,
     DIMENSION_MEMORY,
+    DIMENSION_FORCE,
+    DIMENSION_IMPULSE,
+    DIMENSION_ENERGY,
+    DIMENSION_ANGULAR_ACCELERATION,
     DIMENSION_STIFFNESS, // N/m^n; read by quantity_stiffness, listed here for its words only
     DIMENSION_COUNT,
 } Dimension;

@@ -27,6 +27,9 @@ void wanted_describe(const Entries *entries, const SchemaRow *row, Text *text)
                     : is_speed                 ? "[0.5 m/s, 0 m/s]"
                                                : "[25 mm, 0 mm]");
         break;
+    case SCHEMA_EXPECT:
+        text_append(text, "a mapping of paths to limits");
+        break;
     case SCHEMA_TEXT:
         text_append(text, "text on one line");
         break;

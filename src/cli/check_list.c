@@ -69,6 +69,18 @@ static void read_baseline(CheckItem *item, bool is_blessing)
     baseline_json_read(item->baseline_path, &item->baseline, err);
 }
 
+// Whether a case is judged by its own limits alone: because that was asked for, or because it has
+// no baseline.
+static bool is_by_limits(CheckItem *item, const CheckOptions *options)
+{
+    const size_t limits = item->scenario->expectation_count;
+    if (options->is_expect_only && limits == 0) {
+        err_set(&item->err, ERR_CASE, "%s sets no limits: it has no expect:", item->path);
+    }
+    const bool is_there = access(item->baseline_path, F_OK) == 0;
+    return options->is_expect_only || (!options->is_blessing && !is_there && limits > 0);
+}
+
 static bool read_case(CheckItem *item, const CheckOptions *options)
 {
     item->scenario = calloc(1, sizeof *item->scenario);
@@ -103,6 +115,10 @@ static void add_named(CheckItem *item, const char *path, const CheckOptions *opt
         err_set(&item->err, ERR_FILE, "the path of the baseline of %s is too long", path);
         return;
     }
+    if (is_by_limits(item, options)) {
+        return;
+    }
+    item->has_baseline = true;
     read_baseline(item, options->is_blessing);
     const char *other = item->baseline.case_path;
     if (item->baseline.count > 0 && strcmp(other, item->relative) != 0) {
@@ -117,6 +133,7 @@ static void add_named(CheckItem *item, const char *path, const CheckOptions *opt
 // A baseline that was found: it names its case.
 static void add_found(CheckItem *item, const char *file, const CheckOptions *options)
 {
+    item->has_baseline = true;
     snprintf(item->baseline_path, sizeof item->baseline_path, "%s/%s", options->folder, file);
     text_copy(item->path, sizeof item->path, item->baseline_path);
     if (!baseline_json_read(item->baseline_path, &item->baseline, &item->err)) {

@@ -4,6 +4,7 @@
 #include "base/err.h"
 #include "cli/check_options.h"
 #include "compare/baseline.h"
+#include "report/check_report.h"
 #include "report/file.h"
 
 // One case of a check. What could not be had stands in the error; the rest goes on.
@@ -14,7 +15,9 @@ typedef struct CheckItem {
     Scenario *scenario;                 // owned; NULL where the case could not be read
     Baseline baseline;                  // empty where it could not be read
     Baseline now;                       // head of what this program makes of the case
+    char no_truth[CHECK_NOTE_SIZE];     // why an error that is limited is not measured
     Err err;                            // of the case or its baseline
+    bool has_baseline;                  // false: the limits of the case alone judge it
     bool is_there;                      // a file stands where the baseline belongs
     Err baseline_err;                   // when blessing: why there is no old one to read
 } CheckItem;

@@ -8,6 +8,7 @@ enum {
     KEY_BASELINES = 0x300, // options without a letter of their own
     KEY_BLESS,
     KEY_QUICK,
+    KEY_EXPECT_ONLY,
     KEY_ALL,
     KEY_SHAKE,
     KEY_JUNIT,
@@ -24,6 +25,8 @@ static const struct argp_option OPTIONS[] = {
     {"bless", KEY_BLESS, NULL, 0, "Make the baselines of what is measured now, and say what moved",
      1},
     {"quick", KEY_QUICK, NULL, 0, "One run a case: no ensembles, no orders", 1},
+    {"expect-only", KEY_EXPECT_ONLY, NULL, 0,
+     "Judge cases by their own limits (expect:) and not by baselines", 1},
     {"set", COMMON_SET, "KEY=VALUE", 0, "Replace a value of the cases; may be given often", 1},
     {"shake", KEY_SHAKE, "SEED", 0,
      "Round every input anew first, as another machine might: a way to test bands", 1},
@@ -72,6 +75,9 @@ static bool take_option(int key, const char *value, void *target, Err *err)
     case KEY_QUICK:
         options->is_quick = true;
         return true;
+    case KEY_EXPECT_ONLY:
+        options->is_expect_only = true;
+        return true;
     case KEY_ALL:
         options->is_all = true;
         return true;
@@ -97,6 +103,12 @@ static bool check_together(const CheckOptions *options, Err *err)
                        "--bless measures in full and unshaken: it goes with "
                        "neither --quick nor --shake");
     }
+    if (options->is_expect_only && (options->is_blessing || options->path_count == 0)) {
+        return err_set(err, ERR_USAGE,
+                       options->is_blessing ? "--expect-only looks at no baseline, and --bless "
+                                              "makes one: one of them, not both"
+                                            : "--expect-only takes the cases to check");
+    }
     if (options->is_blessing && options->common.override_count > 0) {
         return err_set(err, ERR_USAGE,
                        "--bless makes the baseline of a case as its file has it: it does not go "
@@ -120,9 +132,11 @@ bool check_options_read(int argc, char **argv, CheckOptions *options, bool *is_a
     static const Arguments ARGUMENTS = {
         .program = "jointplay check",
         .usage = "[CASE...]",
-        .doc = "Holds the numbers of cases against their baselines: every number in its band, or "
-               "exit status 1 and its name. Without a case, all that have a baseline."
-               "\vA baseline that is missing, damaged or of another case is an error.",
+        .doc = "Holds the numbers of cases against their baselines and against the limits that the "
+               "cases set themselves (expect:): every number in its band, or exit status 1 and its "
+               "name. Without a case, all that have a baseline."
+               "\vA baseline that is missing, damaged or of another case is an error; a case that "
+               "sets limits needs none.",
         .options = OPTIONS,
         .take = take_option,
     };

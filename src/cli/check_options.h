@@ -15,6 +15,7 @@ typedef struct CheckOptions {
     const char *folder; // of the baselines
     bool is_blessing;
     bool is_quick;
+    bool is_expect_only;
     bool is_all;
     unsigned shake; // 0: none
     const char *junit;

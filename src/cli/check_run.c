@@ -1,8 +1,11 @@
 // What has become of the numbers of some cases?
 #include "cli/check_run.h"
 
+#include "base/text.h"
 #include "cli/check_progress.h"
 #include "compare/check_work.h"
+#include "compare/expect_value.h"
+#include "compare/truth_child.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -45,8 +48,9 @@ static Share plan_item(const CheckOptions *options, const CheckItem *item, Check
         return share;
     }
     const CheckStart own = {0, 0.0, 0};
-    add_work(&works[first + share.count++], item, own, !options->is_quick, options->shake);
-    if (options->is_quick || check_test_count(&item->baseline) == 0) {
+    const bool is_full = !options->is_quick && item->has_baseline;
+    add_work(&works[first + share.count++], item, own, is_full, options->shake);
+    if (!is_full || check_test_count(&item->baseline) == 0) {
         return share;
     }
     const bool is_slow = has_slow_sample(&item->baseline);
@@ -66,6 +70,18 @@ static void note_versions(const CheckItem *item, CheckCase *result)
         snprintf(result->note, sizeof result->note,
                  "the baseline was made with ODE %s and GSL %s, this program has ODE %s and GSL %s",
                  was->ode, was->gsl, now->ode, now->gsl);
+    }
+}
+
+// Why no baseline judges a case, and why an error could not be measured.
+static void note_alone(const CheckOptions *options, const CheckItem *item, CheckCase *result)
+{
+    if (!options->is_expect_only) {
+        snprintf(result->note, sizeof result->note,
+                 "there is no baseline %.150s: judged by its limits alone", item->baseline_path);
+    }
+    if (item->no_truth[0] != '\0') {
+        text_copy(result->note, sizeof result->note, item->no_truth);
     }
 }
 
@@ -104,11 +120,21 @@ static CheckMeasure *gather(const CheckWork *works, Share share)
 static void finish_item(const CheckOptions *options, const CheckItem *item, const CheckWork *works,
                         Share share, const CheckReport *report, CheckCase *result)
 {
-    *result = (CheckCase){.path = item->path, .baseline = item->baseline_path, .err = item->err};
+    *result = (CheckCase){.path = item->path,
+                          .baseline = item->has_baseline ? item->baseline_path : "",
+                          .err = item->err};
     for (size_t i = share.first; i < share.first + share.count; i++) {
         result->wall_s += works[i].wall_s;
     }
     if (result->err.kind != ERR_NONE || !check_share(works, share, &result->err)) {
+        return;
+    }
+    CheckLimit *limits = calloc(CHECK_LIMIT_MAX, sizeof *limits);
+    assert(limits != NULL);
+    result->limit_count = check_limits_judge(item->scenario, works[share.first].measure, limits);
+    result->limits = limits;
+    if (!item->has_baseline) {
+        note_alone(options, item, result);
         return;
     }
     CheckMeasure *sample = gather(works, share);
@@ -123,6 +149,38 @@ static void finish_item(const CheckOptions *options, const CheckItem *item, cons
     };
     judge_item(item, &evidence, result);
     free(sample);
+}
+
+static void wait_for_truth(const char *doing, void *context)
+{
+    (void)doing;
+    check_progress_show(context, &(CheckWorkState){.total = 0});
+}
+
+// A case without a baseline has no truth from there; where it limits an error it needs one.
+static void find_plan(const CheckOptions *options, CheckProgress *progress, CheckItem *item)
+{
+    bool needs_truth = false;
+    for (size_t i = 0; item->err.kind == ERR_NONE && i < item->scenario->expectation_count; i++) {
+        needs_truth = needs_truth || expect_value_is_error(&item->scenario->expectations[i]);
+    }
+    if (item->has_baseline || !needs_truth) {
+        return;
+    }
+    Truth truth;
+    Err err = {0};
+    const TruthChild work = {.scenario = item->scenario,
+                             .run_limit_s = options->common.time_limit_s,
+                             .wait = wait_for_truth,
+                             .context = progress};
+    if (truth_child_make(&work, &truth, &err)) {
+        item->baseline.plan = check_plan(&truth);
+    }
+    if (!item->baseline.plan.has_truth) {
+        snprintf(item->no_truth, sizeof item->no_truth, "errors are not measured: %.200s",
+                 err.kind != ERR_NONE ? err.text : truth.message);
+    }
+    truth_finish(&truth);
 }
 
 static CheckRun begin(const CheckOptions *options, const CheckItem *items, size_t count)
@@ -155,11 +213,12 @@ bool check_run_execute(const CheckOptions *options, CheckItem *items, size_t cou
     Share *shares = calloc(count + 1, sizeof *shares);
     assert(works != NULL && shares != NULL);
     size_t total = 0;
+    CheckProgress progress = check_progress_start("checking", options->common.is_quiet);
     for (size_t i = 0; i < count; i++) {
+        find_plan(options, &progress, &items[i]);
         shares[i] = plan_item(options, &items[i], works, total);
         total += shares[i].count;
     }
-    CheckProgress progress = check_progress_start("checking", options->common.is_quiet);
     const CheckWorkers workers = {options->common.jobs, options->common.time_limit_s, wait, NULL,
                                   &progress};
     const bool is_done = check_work_do(&workers, works, total, err);
@@ -179,6 +238,7 @@ void check_run_finish(CheckRun *run)
 {
     for (size_t i = 0; run->cases != NULL && i < run->report.case_count; i++) {
         free((CheckRow *)run->cases[i].rows);
+        free((CheckLimit *)run->cases[i].limits);
     }
     free(run->cases);
     *run = (CheckRun){.cases = NULL};

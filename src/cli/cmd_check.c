@@ -53,6 +53,27 @@ static void print_report(const CheckReport *report, const CheckOptions *options)
     text_finish(&text);
 }
 
+// A limit of the case itself comes before what its baseline says.
+static bool refuse_case(const CheckReport *report, const CheckCase *item, Err *err)
+{
+    char words[CHECK_WORDS_SIZE];
+    const size_t differing = check_report_differing(report);
+    for (size_t i = 0; i < item->limit_count; i++) {
+        const CheckLimit *limit = &item->limits[i];
+        if (limit->verdict != CHECK_WITHIN) {
+            check_report_limit(limit, words);
+            return err_set(err, ERR_DIFFERS, "%zu of %zu cases out of limits or bands; %s: %s %s",
+                           differing, report->case_count, item->path, limit->name, words);
+        }
+    }
+    const CheckRow *worst = &item->rows[0];
+    check_report_words(worst, words);
+    return err_set(err, ERR_DIFFERS, "%zu of %zu cases differ from their baselines; %s: %s%s%s",
+                   differing, report->case_count, item->path,
+                   worst->verdict == CHECK_SETTING ? "" : worst->name,
+                   worst->verdict == CHECK_SETTING ? "" : " ", words);
+}
+
 // How it ends: a case that could not be checked weighs more than a number that moved.
 static bool conclude(const CheckReport *report, Err *err)
 {
@@ -66,19 +87,10 @@ static bool conclude(const CheckReport *report, Err *err)
             return false;
         }
     }
-    const size_t differing = check_report_differing(report);
     for (size_t i = 0; !report->is_blessed && i < report->case_count; i++) {
-        const CheckCase *item = &report->cases[i];
-        if (check_report_count(item).out == 0) {
-            continue;
+        if (check_report_is_out(&report->cases[i])) {
+            return refuse_case(report, &report->cases[i], err);
         }
-        char words[CHECK_WORDS_SIZE];
-        const CheckRow *worst = &item->rows[0];
-        check_report_words(worst, words);
-        return err_set(err, ERR_DIFFERS, "%zu of %zu cases differ from their baselines; %s: %s%s%s",
-                       differing, report->case_count, item->path,
-                       worst->verdict == CHECK_SETTING ? "" : worst->name,
-                       worst->verdict == CHECK_SETTING ? "" : " ", words);
     }
     return true;
 }

@@ -8,6 +8,7 @@
 #include "base/shorten.h"
 #include "base/text.h"
 #include "compare/check_add.h"
+#include "compare/expect_value.h"
 #include "model/perturb.h"
 #include "model/shake.h"
 #include "run/registry.h"
@@ -39,13 +40,6 @@ static Trajectory *run_backend(CheckAdd *work, const Scenario *scenario, Backend
     return run;
 }
 
-// What errors are taken against, as model/truth.c has it.
-static BackendKind truth_backend(const Scenario *scenario)
-{
-    return scenario->has_fourbar && !scenario_has_clearance(scenario) ? BACKEND_ANALYTIC
-                                                                      : BACKEND_REFERENCE;
-}
-
 static double find_error(CheckAdd *work, const Scenario *scenario, const Trajectory *truth)
 {
     Trajectory *run = run_backend(work, scenario, BACKEND_ODE);
@@ -72,10 +66,25 @@ static void add_orders(CheckAdd *work, const Trajectory *run, const Trajectory *
     }
 }
 
+// What the run says of the limits of its case: of errors where there is one, of all else where it
+// is the whole run.
+static void measure_expected(CheckAdd *work, BackendKind backend, const Trajectory *run,
+                             const TrajectoryError *error)
+{
+    const bool is_whole = work->group[0] == '\0';
+    for (size_t i = 0; i < work->scenario->expectation_count; i++) {
+        const Expectation *expectation = &work->scenario->expectations[i];
+        if (expect_value_is_error(expectation) ? error != NULL : is_whole && error == NULL) {
+            work->measure->expected[i][backend] = expect_value_of(expectation, run, error);
+        }
+    }
+}
+
 static void measure_run(CheckAdd *work, BackendKind backend, const Trajectory *run,
                         const Trajectory *truth, const CheckPlan *plan)
 {
     check_add_run(work, run, backend);
+    measure_expected(work, backend, run, NULL);
     if (truth == NULL || run == truth) {
         return;
     }
@@ -84,6 +93,7 @@ static void measure_run(CheckAdd *work, BackendKind backend, const Trajectory *r
         return;
     }
     check_add_error(work, run, &error);
+    measure_expected(work, backend, run, &error);
     if (plan->is_full && backend == BACKEND_ODE && work->scenario->run.step > 0.0) {
         add_orders(work, run, truth, plan);
     }
@@ -175,6 +185,9 @@ void check_measure(const Scenario *scenario, const CheckPlan *plan, CheckMeasure
     measure->count = 0;
     measure->is_complete = true;
     measure->message[0] = '\0';
+    for (size_t i = 0; i < EXPECTATION_MAX * BACKEND_COUNT; i++) {
+        measure->expected[i / BACKEND_COUNT][i % BACKEND_COUNT] = NAN;
+    }
     measure_group(scenario, "", plan->has_truth && !plan->is_limited, plan, measure);
     if (measure->is_complete && plan->is_limited && plan->horizon_s > 0.0) {
         const Scenario cut = cut_short(scenario, plan->horizon_s);

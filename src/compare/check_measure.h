@@ -29,6 +29,8 @@ typedef struct CheckMeasure {
     char message[CHECK_MESSAGE_SIZE];
     size_t count;
     CheckMetric metrics[CHECK_METRIC_MAX];
+    // SI, by expectation of the scenario and by backend; NAN where it was not measured
+    double expected[EXPECTATION_MAX][BACKEND_COUNT];
 } CheckMeasure;
 
 // What to hold the runs against, and how much to measure. It is settled when a baseline is made:

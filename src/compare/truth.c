@@ -102,10 +102,16 @@ static void certify(const Scenario *fine, const Scenario *other, RunWatch watch,
     }
 }
 
+BackendKind truth_backend(const Scenario *scenario)
+{
+    return scenario->has_fourbar && !scenario_has_clearance(scenario) ? BACKEND_ANALYTIC
+                                                                      : BACKEND_REFERENCE;
+}
+
 Truth truth_make(const Scenario *scenario, RunWatch watch)
 {
     Truth truth = {.growth = 1.0};
-    if (scenario->has_fourbar && !scenario_has_clearance(scenario)) {
+    if (truth_backend(scenario) == BACKEND_ANALYTIC) {
         certify_ideal(scenario, watch, &truth);
         return truth;
     }

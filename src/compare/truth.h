@@ -19,3 +19,6 @@ typedef struct Truth {
 // had holds an incomplete trajectory with the reason.
 Truth truth_make(const Scenario *scenario, RunWatch watch);
 void truth_finish(Truth *truth);
+
+// The backend that errors of a scenario are taken against.
+BackendKind truth_backend(const Scenario *scenario);

@@ -1,6 +1,7 @@
 // Everything a solver needs to know: the linkage, the world around it, the contact, the run.
 #pragma once
 
+#include "model/expectation.h"
 #include "model/fourbar.h"
 #include "model/linkage.h"
 #include "model/options.h"
@@ -28,6 +29,8 @@ typedef struct Scenario {
     RunOptions run;
     ReferenceOptions reference;
     OdeOptions ode;
+    size_t expectation_count;
+    Expectation expectations[EXPECTATION_MAX]; // for whoever checks the runs; no solver reads them
 } Scenario;
 
 // A scenario with every option at its default and an empty linkage.

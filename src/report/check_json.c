@@ -40,10 +40,27 @@ static json_t *row_object(const CheckRow *row)
     return object;
 }
 
+static json_t *limit_object(const CheckLimit *limit)
+{
+    char words[CHECK_WORDS_SIZE];
+    check_report_limit(limit, words);
+    json_t *object =
+        json_pack("{s:o, s:o, s:s, s:o}", "path", json_value_text(limit->name), "limit",
+                  json_value_text(limit->expectation->words), "verdict",
+                  CHECK_VERDICT_WORDS[limit->verdict], "message", json_value_text(words));
+    json_value_set(object, "value", limit->value);
+    json_value_set(object, "low", limit->expectation->low);
+    json_value_set(object, "high", limit->expectation->high);
+    json_value_set(object, "outside_by", limit->off);
+    return object;
+}
+
 static json_t *case_object(const CheckReport *report, const CheckCase *item)
 {
     const CheckCounts counts = check_report_count(item);
-    const char *status = item->err.kind != ERR_NONE ? "failed" : counts.out > 0 ? "out" : "within";
+    const char *status = item->err.kind != ERR_NONE  ? "failed"
+                         : check_report_is_out(item) ? "out"
+                                                     : "within";
     json_t *rows = json_array();
     for (size_t i = 0; i < item->row_count; i++) {
         json_array_append_new(rows, row_object(&item->rows[i]));
@@ -54,6 +71,11 @@ static json_t *case_object(const CheckReport *report, const CheckCase *item)
                   "status", status, "message", json_value_text(item->err.text), "note",
                   json_value_text(item->note), "within", (json_int_t)counts.within, "out",
                   (json_int_t)counts.out, "left_out", (json_int_t)counts.left_out, "metrics", rows);
+    json_t *limits = json_array();
+    for (size_t i = 0; i < item->limit_count; i++) {
+        json_array_append_new(limits, limit_object(&item->limits[i]));
+    }
+    json_object_set_new(object, "limits", limits);
     if (report->is_blessed && item->err.kind == ERR_NONE) {
         json_object_set_new(object, "change", json_string(CHECK_CHANGE_WORDS[item->change]));
         json_object_set_new(object, "numbers", json_integer((json_int_t)item->made_count));

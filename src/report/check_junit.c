@@ -1,8 +1,9 @@
 // What does a CI system read of a regression check?
 //
 // testsuites > testsuite, one a case > testcase: first one for the runs, whose time is theirs, then
-// one a number, which takes none. A number out is a failure, whose message has the numbers; one not
-// looked at is skipped; of a case that could not be checked the runs are in error.
+// one a limit of the case and one a number, which take none. A number out is a failure, whose
+// message has the numbers; one not looked at is skipped; of a case that could not be checked the
+// runs are in error.
 //
 // Jenkins takes what stands before the last dot of a class name for its package: the class of
 // cases/paper/impact-k66.yaml is cases.paper.impact-k66, and no other dot stands in a name.
@@ -71,31 +72,28 @@ static void append_class(Text *text, const char *path)
     text_finish(&name);
 }
 
-// The name of a row's test: that of a setting and of a limit says what it is.
-static void append_name(Text *text, const CheckRow *row)
+// A name without dots.
+static void append_name(Text *text, const char *prefix, const char *words)
 {
     Text name;
     text_init(&name);
-    text_append(&name, "%s", row->verdict == CHECK_SETTING ? "setting/" : "");
-    for (const char *c = row->name; *c != '\0'; c++) {
+    text_append(&name, "%s", prefix);
+    for (const char *c = words; *c != '\0'; c++) {
         text_append(&name, "%c", *c == '.' ? '/' : *c);
     }
     append_escaped(text, name.data);
     text_finish(&name);
 }
 
-// A test up to its outcome; the row is NULL for that of the runs.
-static void begin_test(Text *text, const CheckCase *item, const CheckRow *row)
+// A test up to its outcome.
+static void begin_test(Text *text, const CheckCase *item, const char *prefix, const char *name,
+                       double time_s)
 {
     text_append(text, "    <testcase classname=\"");
     append_class(text, item->path);
     text_append(text, "\" name=\"");
-    if (row == NULL) {
-        text_append(text, "%s", RUNS);
-    } else {
-        append_name(text, row);
-    }
-    text_append(text, "\" time=\"%.3f\"", row == NULL ? item->wall_s : 0.0);
+    append_name(text, prefix, name);
+    text_append(text, "\" time=\"%.3f\"", time_s);
 }
 
 // <tag message="..." type="...">...</tag> in a test; some systems show the one, some the other.
@@ -111,7 +109,7 @@ static void append_outcome(Text *text, const char *tag, const char *type, const 
 
 static void append_row(Text *text, const CheckCase *item, const CheckRow *row)
 {
-    begin_test(text, item, row);
+    begin_test(text, item, row->verdict == CHECK_SETTING ? "setting/" : "", row->name, 0.0);
     if (row->verdict == CHECK_WITHIN) {
         text_append(text, "/>\n");
         return;
@@ -130,6 +128,34 @@ static void append_row(Text *text, const CheckCase *item, const CheckRow *row)
     text_finish(&message);
 }
 
+static void append_limit(Text *text, const CheckCase *item, const CheckLimit *limit)
+{
+    begin_test(text, item, "expect/", limit->name, 0.0);
+    if (limit->verdict == CHECK_WITHIN) {
+        text_append(text, "/>\n");
+        return;
+    }
+    char words[CHECK_WORDS_SIZE];
+    check_report_limit(limit, words);
+    Text message;
+    text_init(&message);
+    text_append(&message, "%s %s", limit->name, words);
+    append_outcome(text, "failure", limit->verdict == CHECK_OUT ? "limit" : "not measured",
+                   message.data);
+    text_finish(&message);
+}
+
+// A case that its limits alone judge has no baseline to pass.
+static bool lacks_baseline(const CheckCase *item)
+{
+    return item->err.kind == ERR_NONE && item->baseline[0] == '\0';
+}
+
+static size_t count_tests(const CheckCase *item)
+{
+    return 1 + item->row_count + item->limit_count + (lacks_baseline(item) ? 1 : 0);
+}
+
 static void append_case(Text *text, const CheckCase *item)
 {
     const CheckCounts counts = check_report_count(item);
@@ -139,12 +165,21 @@ static void append_case(Text *text, const CheckCase *item)
     text_append(text,
                 "\" tests=\"%zu\" failures=\"%zu\" errors=\"%d\" skipped=\"%zu\" "
                 "time=\"%.3f\">\n",
-                1 + item->row_count, counts.out, is_failed ? 1 : 0, counts.left_out, item->wall_s);
-    begin_test(text, item, NULL);
+                count_tests(item), counts.out + counts.limits_out, is_failed ? 1 : 0,
+                counts.left_out + (lacks_baseline(item) ? 1 : 0), item->wall_s);
+    begin_test(text, item, "", RUNS, item->wall_s);
     if (is_failed) {
         append_outcome(text, "error", "not checked", item->err.text);
     } else {
         text_append(text, "/>\n");
+    }
+    if (lacks_baseline(item)) {
+        begin_test(text, item, "", "baseline", 0.0);
+        append_outcome(text, "skipped", "no baseline",
+                       item->note[0] != '\0' ? item->note : "judged by its limits alone");
+    }
+    for (size_t i = 0; i < item->limit_count; i++) {
+        append_limit(text, item, &item->limits[i]);
     }
     for (size_t i = 0; i < item->row_count; i++) {
         append_row(text, item, &item->rows[i]);
@@ -159,8 +194,9 @@ void check_junit_write(const CheckReport *report, Text *text)
     double wall_s = 0.0;
     for (size_t i = 0; i < report->case_count; i++) {
         const CheckCase *item = &report->cases[i];
-        tests += 1 + item->row_count;
-        failures += check_report_count(item).out;
+        const CheckCounts counts = check_report_count(item);
+        tests += count_tests(item);
+        failures += counts.out + counts.limits_out;
         wall_s += item->wall_s;
     }
     text_append(text,

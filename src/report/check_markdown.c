@@ -75,6 +75,26 @@ static void append_out(const CheckCase *item, Text *text)
     }
 }
 
+static void append_limits(const CheckCase *item, Text *text)
+{
+    text_append(text,
+                "\n**%s**: limits of its own\n\n| expected of | limit | now | outside by |\n"
+                "|---|---|---:|---:|\n",
+                item->path);
+    for (size_t i = 0; i < item->limit_count; i++) {
+        const CheckLimit *limit = &item->limits[i];
+        const CheckLimitCells cells = check_report_limit_cells(limit);
+        if (limit->verdict == CHECK_WITHIN) {
+            continue;
+        }
+        append_cell(text, limit->name);
+        append_cell(text, limit->expectation->words);
+        append_cell(text, limit->verdict == CHECK_GONE ? "not measured" : cells.value);
+        append_cell(text, cells.off);
+        text_append(text, "|\n");
+    }
+}
+
 static void append_all(const CheckReport *report, Text *text)
 {
     text_append(text,
@@ -90,7 +110,8 @@ static void append_all(const CheckReport *report, Text *text)
             text_append(text, "| | | | not checked |\n");
             continue;
         }
-        text_append(text, "| %zu | %zu | %zu ", counts.within, counts.out, counts.left_out);
+        text_append(text, "| %zu | %zu | %zu ", counts.within + counts.limits_within,
+                    counts.out + counts.limits_out, counts.left_out);
         append_cell(text, item->row_count > 0 ? item->rows[0].name : "");
         text_append(text, "|\n");
     }
@@ -106,7 +127,13 @@ void check_markdown_write(const CheckReport *report, Text *text)
             text_append(text, "\n**%s** %s: %s\n", item->path,
                         report->is_blessed ? "has no new baseline" : "was not checked",
                         item->err.text);
-        } else if (check_report_count(item).out > 0) {
+            continue;
+        }
+        const CheckCounts counts = check_report_count(item);
+        if (counts.limits_out > 0) {
+            append_limits(item, text);
+        }
+        if (counts.out > 0) {
             append_out(item, text);
         }
     }

@@ -58,7 +58,18 @@ CheckCounts check_report_count(const CheckCase *item)
         counts.left_out += verdict == CHECK_LEFT_OUT ? 1 : 0;
         counts.out += check_row_is_out(&item->rows[i]) ? 1 : 0;
     }
+    for (size_t i = 0; i < item->limit_count; i++) {
+        const bool is_within = item->limits[i].verdict == CHECK_WITHIN;
+        counts.limits_within += is_within ? 1 : 0;
+        counts.limits_out += is_within ? 0 : 1;
+    }
     return counts;
+}
+
+bool check_report_is_out(const CheckCase *item)
+{
+    const CheckCounts counts = check_report_count(item);
+    return counts.out + counts.limits_out > 0;
 }
 
 size_t check_report_errors(const CheckReport *report)
@@ -74,7 +85,7 @@ size_t check_report_differing(const CheckReport *report)
 {
     size_t count = 0;
     for (size_t i = 0; i < report->case_count; i++) {
-        count += check_report_count(&report->cases[i]).out > 0 ? 1 : 0;
+        count += check_report_is_out(&report->cases[i]) ? 1 : 0;
     }
     return count;
 }
@@ -151,4 +162,47 @@ CheckCells check_report_cells(const CheckRow *row)
         snprintf(cells.severity, sizeof cells.severity, "p %.2g", row->p);
     }
     return cells;
+}
+
+CheckLimitCells check_report_limit_cells(const CheckLimit *limit)
+{
+    const Expectation *expectation = limit->expectation;
+    const char *blank = expectation->unit[0] != '\0' ? " " : "";
+    CheckLimitCells cells = {.value = "-", .off = "-"};
+    if (isfinite(limit->value)) {
+        snprintf(cells.value, sizeof cells.value, "%.6g%s%s", limit->value / expectation->unit_si,
+                 blank, expectation->unit);
+    }
+    if (limit->verdict == CHECK_OUT) {
+        snprintf(cells.off, sizeof cells.off, "%+.3g%s%s", limit->off / expectation->unit_si, blank,
+                 expectation->unit);
+    }
+    return cells;
+}
+
+void check_report_limit(const CheckLimit *limit, char words[CHECK_WORDS_SIZE])
+{
+    const Expectation *expectation = limit->expectation;
+    const CheckLimitCells cells = check_report_limit_cells(limit);
+    if (limit->verdict == CHECK_GONE) {
+        snprintf(words, CHECK_WORDS_SIZE, "is not measured, expected %s", expectation->words);
+        return;
+    }
+    const int length =
+        snprintf(words, CHECK_WORDS_SIZE, "is %s, expected %s", cells.value, expectation->words);
+    const double end = limit->off > 0.0 ? expectation->high : expectation->low;
+    if (limit->verdict == CHECK_WITHIN) {
+        return;
+    }
+    if (limit->value == end) {
+        snprintf(words + length, CHECK_WORDS_SIZE - (size_t)length, ": the end itself is outside");
+        return;
+    }
+    char share[CHECK_CELL_SIZE] = "";
+    if (end != 0.0) {
+        snprintf(share, sizeof share, " (%.2g %%)", 100.0 * fabs(limit->off / end));
+    }
+    // the sign stands in the words
+    snprintf(words + length, CHECK_WORDS_SIZE - (size_t)length, ": %s too %s%s", cells.off + 1,
+             limit->off > 0.0 ? "high" : "low", share);
 }

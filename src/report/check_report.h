@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/text.h"
-#include "compare/check_judge.h"
+#include "compare/check_limits.h"
 
 enum { CHECK_NOTE_SIZE = 256, CHECK_WORDS_SIZE = 1024 };
 
@@ -19,7 +19,7 @@ extern const char *const CHECK_CHANGE_WORDS[CHECK_CHANGE_COUNT];
 
 typedef struct CheckCase {
     const char *path;           // of the case
-    const char *baseline;       // of its baseline
+    const char *baseline;       // of its baseline; empty where its limits alone judge it
     Err err;                    // why it could not be checked; ERR_NONE where it was
     char note[CHECK_NOTE_SIZE]; // of another version of a library; empty where there is none
     double wall_s;              // of its runs, added up; when blessing, of all that was done
@@ -27,6 +27,8 @@ typedef struct CheckCase {
     size_t made_count;          // likewise: numbers in the new baseline
     size_t row_count;
     const CheckRow *rows; // worst first
+    size_t limit_count;
+    const CheckLimit *limits; // that the case sets itself, in its order
 } CheckCase;
 
 typedef struct CheckReport {
@@ -39,9 +41,11 @@ typedef struct CheckReport {
 } CheckReport;
 
 typedef struct CheckCounts {
-    size_t within;
+    size_t within; // rows, as the two below
     size_t out;
     size_t left_out;
+    size_t limits_within;
+    size_t limits_out; // those that were not measured among them
 } CheckCounts;
 
 CheckCounts check_report_count(const CheckCase *item);
@@ -51,6 +55,9 @@ size_t check_report_changes(const CheckReport *report, CheckChange change);
 
 // The change of a case in words: "new baseline: 114 numbers", "replaced: 3 of 114 numbers moved".
 void check_report_change(const CheckCase *item, Text *text);
+
+// Whether a row or a limit of the case is out.
+bool check_report_is_out(const CheckCase *item);
 
 // Cases that could not be checked, and cases with a number out.
 size_t check_report_errors(const CheckReport *report);
@@ -70,3 +77,13 @@ typedef struct CheckCells {
 } CheckCells;
 
 CheckCells check_report_cells(const CheckRow *row);
+
+// A limit as one sentence: "is 1.31 kN, expected below 1.2 kN: 0.11 kN too high (9.2 %)"; and its
+// cells: the number and by how much it is outside, in the unit of the limit.
+typedef struct CheckLimitCells {
+    char value[CHECK_CELL_SIZE];
+    char off[CHECK_CELL_SIZE];
+} CheckLimitCells;
+
+void check_report_limit(const CheckLimit *limit, char words[CHECK_WORDS_SIZE]);
+CheckLimitCells check_report_limit_cells(const CheckLimit *limit);

@@ -3,6 +3,8 @@
 
 #include "report/run_section.h"
 
+#include <string.h>
+
 enum {
     WORST_WITHIN = 5, // rows of a case in which nothing is out
     WORST_OUT = 20,   // rows that are out: who sees twenty sees what happened
@@ -52,6 +54,37 @@ static void write_rows(const CheckCase *item, size_t count, const Style *style, 
     run_section_end(table, text);
 }
 
+// The limits of the case itself, each with what its backends say: all of them, for whoever wrote
+// them wants to see each.
+static void write_limits(const CheckCase *item, const Style *style, Text *text)
+{
+    if (item->limit_count == 0) {
+        return;
+    }
+    text_append(text, "\n%s%s%s\n", style->heading, item->path, style->end);
+    const Expectation *written = NULL;
+    for (size_t i = 0; i < item->limit_count; i++) {
+        const CheckLimit *limit = &item->limits[i];
+        const Expectation *expectation = limit->expectation;
+        const CheckLimitCells cells = check_report_limit_cells(limit);
+        const bool is_out = limit->verdict != CHECK_WITHIN;
+        if (expectation != written) {
+            text_append(text, "\n  %s: %s\n", expectation->path, expectation->words);
+            written = expectation;
+        }
+        const int backend = (int)(strlen(limit->name) - strlen(expectation->path));
+        text_append(text, "    %s%-10.*s %s%s%s%s\n", is_out ? style->failure : "",
+                    backend > 0 ? backend - 1 : 0, limit->name,
+                    limit->verdict == CHECK_GONE ? "not measured" : cells.value,
+                    limit->verdict == CHECK_OUT ? ", outside by " : "",
+                    limit->verdict == CHECK_OUT ? cells.off : "", is_out ? style->end : "");
+    }
+    text_append(text, "\n");
+    const CheckCounts counts = check_report_count(item);
+    text_append(text, "  %s%zu of %zu limits kept%s\n", counts.limits_out > 0 ? style->failure : "",
+                counts.limits_within, item->limit_count, counts.limits_out > 0 ? style->end : "");
+}
+
 static void write_counts(const CheckCase *item, const Style *style, Text *text)
 {
     const CheckCounts counts = check_report_count(item);
@@ -69,6 +102,12 @@ static void write_case(const CheckReport *report, const CheckCase *item, bool is
         text_append(text, "\n%s%s%s\n\n  %s%s: %s%s\n", style->heading, item->path, style->end,
                     style->failure, report->is_blessed ? "no new baseline" : "not checked",
                     item->err.text, style->end);
+        return;
+    }
+    write_limits(item, style, text);
+    if (item->baseline[0] == '\0') {
+        text_append(text, "%s%s%s", item->note[0] != '\0' ? "  " : "", item->note,
+                    item->note[0] != '\0' ? "\n" : "");
         return;
     }
     const size_t shown = rows_to_show(item, is_all);

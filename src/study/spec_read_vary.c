@@ -154,11 +154,12 @@ static bool read_key(Reading *reading, const Node *value)
         return false;
     }
     const bool is_fixed =
-        key.row != NULL && (key.row->type == SCHEMA_TEXT || key.row->type == SCHEMA_BACKENDS);
+        key.row != NULL && (key.row->type == SCHEMA_TEXT || key.row->type == SCHEMA_BACKENDS ||
+                            !schema_is_setting(key.row));
     if (is_fixed) {
         return source_error(&reading->source, keys_span(value),
-                            key.row->type == SCHEMA_TEXT ? "any other key"
-                                                         : "scheme: [reference, auto/1e-4]",
+                            key.row->type == SCHEMA_BACKENDS ? "scheme: [reference, auto/1e-4]"
+                                                             : "any other key",
                             reading->err, "%s cannot vary", variable->key);
     }
     if (is_of_structure(&key)) {

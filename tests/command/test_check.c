@@ -431,6 +431,86 @@ static void the_class_of_a_case_has_dots_between_folders_alone(void **state)
     assert_says(text, "classname=\"some_cases.some_cases.pin_v2\" name=\"runs\"");
 }
 
+// A case of one's own with limits, and no baseline anywhere.
+static void write_guarded(const Program *program, const char *name, const char *limits)
+{
+    char text[sizeof CASE + 1024];
+    snprintf(text, sizeof text, "%sexpect:\n%s", CASE, limits);
+    write_file(program, name, text);
+}
+
+static void limits_of_its_own_judge_a_case_without_a_baseline(void **state)
+{
+    Program *program = *state;
+    static char text[PROGRAM_OUTPUT_SIZE];
+    write_guarded(program, "guarded.yaml",
+                  "  joints.hole.force_max: below 100 kN\n"
+                  "  joints.hole.impacts: between 1 and 100\n"
+                  "  ode.joints.hole.penetration_max: above 0 um\n"
+                  "  error.omega_max: below 2\n"
+                  "  ode.cost.steps: within 10 % of 2400\n");
+    program_run(program, "check guarded.yaml --junit good.xml --baselines nowhere");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "7 of 7 limits kept");
+    assert_says(program->output, "there is no baseline nowhere/guarded.json: judged by its limits");
+    assert_valid(program, "good.xml");
+    read_file(program, "good.xml", text);
+    assert_says(text, "name=\"expect/ode/joints/hole/force_max\" time=\"0.000\"/>");
+    assert_says(text, "name=\"baseline\" time=\"0.000\">\n      <skipped message=");
+
+    // what is out, by how much, in the unit of the limit
+    write_guarded(program, "guarded.yaml",
+                  "  ode.joints.hole.force_max: below 0.1 N\n"
+                  "  ode.joints.hole.impacts: equals 0\n"
+                  "  analytic.joints.hole.force_max: below 1 kN\n");
+    program_run(program, "check guarded.yaml --expect-only --junit bad.xml");
+    assert_int_equal(program->status, 1);
+    assert_says(program->errors, "1 of 1 cases out of limits or bands; guarded.yaml: "
+                                 "ode.joints.hole.force_max is ");
+    assert_says(program->errors, " N, expected below 0.1 N: ");
+    assert_says(program->errors, " N too high (");
+    assert_says(program->output, "0 of 3 limits kept");
+    assert_says(program->output, "not measured");
+    assert_valid(program, "bad.xml");
+    read_file(program, "bad.xml", text);
+    assert_says(text, "failures=\"3\"");
+    assert_says(text, "<failure message=\"ode.joints.hole.impacts is ");
+    assert_says(text, "<failure message=\"analytic.joints.hole.force_max is not measured, expected "
+                      "below 1 kN\"");
+    program_run(program, "check guarded.yaml --expect-only --json");
+    assert_int_equal(program->status, 1);
+    json_t *root = program_json(program);
+    const json_t *item = json_array_get(json_object_get(root, "cases"), 0);
+    const json_t *limit = json_array_get(json_object_get(item, "limits"), 0);
+    assert_string_equal(json_string_value(json_object_get(limit, "verdict")), "out");
+    const double value = json_number_value(json_object_get(limit, "value"));
+    const double off = json_number_value(json_object_get(limit, "outside_by"));
+    assert_close(value - off, 0.1, 1e-9);
+    json_decref(root);
+}
+
+static void limits_stand_beside_a_baseline_and_are_no_setting_of_it(void **state)
+{
+    Program *program = *state;
+    // the baseline was made without them
+    write_guarded(program, "pin.yaml", "  joints.hole.force_max: below 100 kN\n");
+    program_run(program, "check --baselines b --quick");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "2 of 2 limits kept");
+    write_guarded(program, "pin.yaml", "  joints.hole.force_max: below 1 mN\n");
+    program_run(program, "check --baselines b --quick --markdown -");
+    assert_int_equal(program->status, 1);
+    assert_says(program->errors, "expected below 1 mN");
+    assert_says(program->output, "**pin.yaml**: limits of its own");
+    // and a case that sets none cannot be judged by them
+    write_file(program, "pin.yaml", CASE);
+    program_run(program, "check --expect-only pin.yaml");
+    assert_int_equal(program->status, 3);
+    assert_says(program->errors, "pin.yaml sets no limits: it has no expect:");
+    program_fails_usage(program, "check --expect-only", "--expect-only takes the cases to check");
+    program_fails_usage(program, "check --expect-only --bless pin.yaml", "one of them, not both");
+}
+
 static void a_comment_is_short_and_folds_the_rest(void **state)
 {
     Program *program = *state;
@@ -484,6 +564,8 @@ int main(void)
         CHECK_TEST(a_run_that_fails_is_an_error_and_blesses_nothing),
         CHECK_TEST(junit_is_valid_and_has_the_numbers_of_a_failure),
         CHECK_TEST(the_class_of_a_case_has_dots_between_folders_alone),
+        CHECK_TEST(limits_of_its_own_judge_a_case_without_a_baseline),
+        CHECK_TEST(limits_stand_beside_a_baseline_and_are_no_setting_of_it),
         CHECK_TEST(a_comment_is_short_and_folds_the_rest),
         CHECK_TEST(a_wrong_command_line_is_answered),
     };

@@ -1,0 +1,266 @@
+// Which numbers does a case set limits for?
+//
+//     path = [backend .] bodies . NAME . number | [backend .] joints . NAME . number
+//          | [backend .] error . number | [backend .] energy . number | [backend .] cost . number
+#include "casefile/expect.h"
+
+#include "casefile/expect_limit.h"
+#include "casefile/keys.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { SEGMENT_MAX = 4, CHOICE_MAX = LINKAGE_JOINT_MAX + EXPECTED_NUMBER_COUNT };
+
+const char *const EXPECT_GROUPS[EXPECT_GROUP_COUNT] = {
+    [EXPECT_BODIES] = "bodies", [EXPECT_JOINTS] = "joints", [EXPECT_ERROR] = "error",
+    [EXPECT_ENERGY] = "energy", [EXPECT_COST] = "cost",
+};
+
+// clang-format off
+#define NUMBER(id, of, word, unit, words) \
+    [id] = {.group = of, .name = word, .number = id, .dimension = unit, .doc = words}
+#define WHOLE(id, of, word, words) \
+    [id] = {.group = of, .name = word, .number = id, .is_count = true, .doc = words}
+#define PLAY(id, word, unit, whole, words) \
+    [id] = {.group = EXPECT_JOINTS, .name = word, .number = id, .dimension = unit, \
+            .is_count = whole, .needs_play = true, .doc = words}
+
+const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
+    NUMBER(EXPECTED_OMEGA_MAX, EXPECT_BODIES, "omega_max", DIMENSION_ANGULAR_SPEED,
+           "largest angular velocity"),
+    NUMBER(EXPECTED_OMEGA_MIN, EXPECT_BODIES, "omega_min", DIMENSION_ANGULAR_SPEED,
+           "smallest angular velocity"),
+    NUMBER(EXPECTED_ALPHA_MAX, EXPECT_BODIES, "alpha_max", DIMENSION_ANGULAR_ACCELERATION,
+           "largest angular acceleration"),
+    NUMBER(EXPECTED_ALPHA_MIN, EXPECT_BODIES, "alpha_min", DIMENSION_ANGULAR_ACCELERATION,
+           "smallest angular acceleration"),
+    WHOLE(EXPECTED_ALPHA_SPIKES, EXPECT_BODIES, "alpha_spikes",
+          "count of spikes of the angular acceleration"),
+    NUMBER(EXPECTED_FORCE_MAX, EXPECT_JOINTS, "force_max", DIMENSION_FORCE, "largest force"),
+    WHOLE(EXPECTED_FORCE_SPIKES, EXPECT_JOINTS, "force_spikes", "count of spikes of the force"),
+    PLAY(EXPECTED_IMPACTS, "impacts", DIMENSION_NONE, true, "contacts begun"),
+    PLAY(EXPECTED_IMPULSE, "impulse", DIMENSION_IMPULSE, false, "impulse of all contacts"),
+    PLAY(EXPECTED_PENETRATION_MAX, "penetration_max", DIMENSION_LENGTH, false,
+         "deepest penetration"),
+    PLAY(EXPECTED_CONTACT_FRACTION, "contact_fraction", DIMENSION_NONE, false,
+         "share of the time in contact"),
+    NUMBER(EXPECTED_ERROR_OMEGA_MAX, EXPECT_ERROR, "omega_max", DIMENSION_NONE,
+           "largest error of omega, relative to each body's largest omega"),
+    NUMBER(EXPECTED_ERROR_OMEGA_RMS, EXPECT_ERROR, "omega_rms", DIMENSION_NONE,
+           "root mean square of the same"),
+    NUMBER(EXPECTED_ERROR_ALPHA_MAX, EXPECT_ERROR, "alpha_max", DIMENSION_NONE,
+           "largest error of alpha, relative to each body's largest alpha"),
+    NUMBER(EXPECTED_DRIVE_WORK, EXPECT_ENERGY, "drive_work", DIMENSION_ENERGY,
+           "work of the drive"),
+    NUMBER(EXPECTED_DISSIPATED, EXPECT_ENERGY, "dissipated", DIMENSION_ENERGY,
+           "lost in the damping of contacts"),
+    NUMBER(EXPECTED_CHANGE, EXPECT_ENERGY, "change", DIMENSION_ENERGY,
+           "of kinetic, potential and elastic energy"),
+    NUMBER(EXPECTED_RESIDUAL, EXPECT_ENERGY, "residual", DIMENSION_ENERGY,
+           "what is missing: the solver's error"),
+    WHOLE(EXPECTED_STEPS, EXPECT_COST, "steps", "steps of the solver"),
+    WHOLE(EXPECTED_EVALUATIONS, EXPECT_COST, "evaluations",
+          "evaluations of the equations of motion"),
+};
+// clang-format on
+
+// A path cut at its dots, and where it stands.
+typedef struct Path {
+    const Source *source;
+    const Node *node;
+    size_t count;
+    char segments[SEGMENT_MAX][LINKAGE_NAME_SIZE];
+    size_t starts[SEGMENT_MAX]; // in characters, from the start of the key
+    size_t first;               // segment behind the backend
+} Path;
+
+static Span segment_span(const Path *path, size_t segment)
+{
+    const size_t start = keys_text_start(path->node) + path->starts[segment];
+    const char *name = path->segments[segment];
+    return (Span){start, start + source_count(name, strlen(name))};
+}
+
+static bool refuse_path(const Path *path, Err *err)
+{
+    return source_error(path->source, keys_span(path->node),
+                        "joints.NAME.NUMBER, bodies.NAME.NUMBER, error.NUMBER, energy.NUMBER, "
+                        "cost.NUMBER, each with a backend before it or none",
+                        err, "'%.60s' is not the path of a number", path->node->key->text);
+}
+
+static bool cut_path(Path *path, Err *err)
+{
+    const char *rest = path->node->key->text;
+    for (;;) {
+        const size_t length = strcspn(rest, ".");
+        if (path->count == SEGMENT_MAX || length == 0 || length >= LINKAGE_NAME_SIZE) {
+            return refuse_path(path, err);
+        }
+        const size_t before = (size_t)(rest - path->node->key->text);
+        path->starts[path->count] = source_count(path->node->key->text, before);
+        memcpy(path->segments[path->count], rest, length);
+        path->segments[path->count++][length] = '\0';
+        if (rest[length] == '\0') {
+            return true;
+        }
+        rest += length + 1;
+    }
+}
+
+static int find_word(const char *word, const char *const *words, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(word, words[i]) == 0) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+// The backend in front, if there is one.
+static void take_backend(Path *path, Expectation *expectation)
+{
+    expectation->backend = find_word(path->segments[0], OPTIONS_BACKENDS, BACKEND_COUNT);
+    path->first = expectation->backend >= 0 ? 1 : 0;
+}
+
+static bool find_group(const Path *path, ExpectGroup *group, Err *err)
+{
+    if (path->first == path->count) {
+        return refuse_path(path, err);
+    }
+    const int found = find_word(path->segments[path->first], EXPECT_GROUPS, EXPECT_GROUP_COUNT);
+    if (found < 0) {
+        const char *choices[EXPECT_GROUP_COUNT + BACKEND_COUNT];
+        size_t count = 0;
+        for (; count < EXPECT_GROUP_COUNT; count++) {
+            choices[count] = EXPECT_GROUPS[count];
+        }
+        for (int i = 0; path->first == 0 && i < BACKEND_COUNT; i++) {
+            choices[count++] = OPTIONS_BACKENDS[i];
+        }
+        return keys_refuse(path->source, segment_span(path, path->first), "part of a path",
+                           path->segments[path->first], choices, count, err);
+    }
+    *group = (ExpectGroup)found;
+    const bool has_member = *group == EXPECT_BODIES || *group == EXPECT_JOINTS;
+    return path->count == path->first + (has_member ? 3 : 2) || refuse_path(path, err);
+}
+
+static bool find_member(const Path *path, const Entries *entries, ExpectGroup group,
+                        Expectation *expectation, Err *err)
+{
+    if (group != EXPECT_BODIES && group != EXPECT_JOINTS) {
+        expectation->member = 0;
+        return true;
+    }
+    const SchemaFamily family = group == EXPECT_BODIES ? SCHEMA_BODY : SCHEMA_JOINT;
+    const EntryNames *names = &entries->names[family];
+    const char *name = path->segments[path->first + 1];
+    expectation->member = entries_number(entries, family, name);
+    if (expectation->member >= 0) {
+        return true;
+    }
+    const char *choices[LINKAGE_JOINT_MAX];
+    for (size_t i = 0; i < names->count; i++) {
+        choices[i] = names->names[i];
+    }
+    return keys_refuse(path->source, segment_span(path, path->first + 1),
+                       SCHEMA_FAMILIES[family].what, name, choices, names->count, err);
+}
+
+static bool find_number(const Path *path, ExpectGroup group, const Scenario *scenario,
+                        Expectation *expectation, Err *err)
+{
+    const size_t last = path->count - 1;
+    const bool is_ideal = group == EXPECT_JOINTS &&
+                          scenario->linkage.joints[expectation->member].kind != JOINT_CLEARANCE;
+    const char *choices[CHOICE_MAX];
+    size_t count = 0;
+    for (int i = 0; i < EXPECTED_NUMBER_COUNT; i++) {
+        const ExpectRow *row = &EXPECT_ROWS[i];
+        const bool is_it = row->group == group && strcmp(row->name, path->segments[last]) == 0;
+        if (row->group == group && !(row->needs_play && is_ideal)) {
+            choices[count++] = row->name;
+        }
+        if (is_it && !(row->needs_play && is_ideal)) {
+            expectation->number = row->number;
+            return true;
+        }
+        if (is_it) {
+            return source_error(path->source, segment_span(path, last), "force_max, force_spikes",
+                                err, "%s has no play, and so no %s", path->segments[last - 1],
+                                row->name);
+        }
+    }
+    return keys_refuse(path->source, segment_span(path, last), "number", path->segments[last],
+                       choices, count, err);
+}
+
+// A limit; what is wrong with it is shown where it stands, if the text is that of the file.
+static bool read_limit(const Path *path, Expectation *expectation, Err *err)
+{
+    const Node *node = path->node;
+    if (node->kind != NODE_SCALAR || node->text[0] == '\0') {
+        return source_error(path->source, node->kind != NODE_SCALAR ? node->span : keys_span(node),
+                            EXPECT_FORMS, err, "%.100s %s", node->key->text,
+                            node->kind != NODE_SCALAR ? "takes one limit" : "has no limit");
+    }
+    Complaint complaint = {.allowed = ""};
+    size_t start = 0;
+    size_t length = 0;
+    if (expect_limit_read(node->text, &EXPECT_ROWS[expectation->number], expectation, &complaint,
+                          &start, &length)) {
+        return true;
+    }
+    Span span = node->span;
+    if (span.end - span.start == source_count(node->text, strlen(node->text))) {
+        const size_t before = source_count(node->text, start);
+        span.start += before;
+        span.end = span.start + source_count(node->text + start, length);
+    }
+    return source_error(path->source, span, complaint.allowed, err, "%s", complaint.text);
+}
+
+static bool read_one(const Entries *entries, const Entry *entry, const Node *node,
+                     Scenario *scenario, Err *err)
+{
+    Path path = {.source = entry->source, .node = node};
+    Expectation read = {.backend = EXPECTATION_ANY_BACKEND};
+    ExpectGroup group = EXPECT_BODIES;
+    if (!cut_path(&path, err)) {
+        return false;
+    }
+    take_backend(&path, &read);
+    if (!find_group(&path, &group, err) || !find_member(&path, entries, group, &read, err) ||
+        !find_number(&path, group, scenario, &read, err) || !read_limit(&path, &read, err)) {
+        return false;
+    }
+    text_copy(read.path, sizeof read.path, node->key->text + path.starts[path.first]);
+    scenario->expectations[scenario->expectation_count++] = read;
+    return true;
+}
+
+bool expect_store(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
+{
+    const Node *map = entry->node;
+    if (!keys_check_map(entry->source, map, err)) {
+        return false;
+    }
+    scenario->expectation_count = 0;
+    for (const Node *node = map->first; node != NULL; node = node->next) {
+        if (scenario->expectation_count == EXPECTATION_MAX) {
+            char allowed[32];
+            snprintf(allowed, sizeof allowed, "at most %d", EXPECTATION_MAX);
+            return source_error(entry->source, keys_span(node), allowed, err,
+                                "one expectation too many");
+        }
+        if (!keys_check_single(entry->source, map, node, err) ||
+            !read_one(entries, entry, node, scenario, err)) {
+            return false;
+        }
+    }
+    return true;
+}

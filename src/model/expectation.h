@@ -1,0 +1,50 @@
+// A limit that a case sets for a number of its own runs: `expect:` in a case file.
+#pragma once
+
+#include "model/linkage.h"
+
+enum {
+    EXPECTATION_MAX = 48, // of one case
+    EXPECTATION_PATH_SIZE = 128,
+    EXPECTATION_WORDS_SIZE = 96,
+    EXPECTATION_UNIT_SIZE = 16,
+    EXPECTATION_ANY_BACKEND = -1,
+};
+
+// What is limited.
+typedef enum ExpectedNumber {
+    EXPECTED_OMEGA_MAX, // of a body, rad/s
+    EXPECTED_OMEGA_MIN,
+    EXPECTED_ALPHA_MAX, // rad/s^2
+    EXPECTED_ALPHA_MIN,
+    EXPECTED_ALPHA_SPIKES,
+    EXPECTED_FORCE_MAX, // of a joint, N
+    EXPECTED_FORCE_SPIKES,
+    EXPECTED_IMPACTS,          // of a joint with play
+    EXPECTED_IMPULSE,          // N s
+    EXPECTED_PENETRATION_MAX,  // m
+    EXPECTED_CONTACT_FRACTION, // 1
+    EXPECTED_ERROR_OMEGA_MAX,  // 1, as the three below up to the horizon of predictability
+    EXPECTED_ERROR_OMEGA_RMS,
+    EXPECTED_ERROR_ALPHA_MAX,
+    EXPECTED_DRIVE_WORK, // J
+    EXPECTED_DISSIPATED,
+    EXPECTED_CHANGE,
+    EXPECTED_RESIDUAL,
+    EXPECTED_STEPS, // of the cost
+    EXPECTED_EVALUATIONS,
+    EXPECTED_NUMBER_COUNT,
+} ExpectedNumber;
+
+typedef struct Expectation {
+    char path[EXPECTATION_PATH_SIZE]; // without a backend: joints.crank-coupler.force_max
+    int backend;                      // EXPECTATION_ANY_BACKEND: every one that feels the play
+    ExpectedNumber number;
+    int member;                         // of the bodies or joints; 0 where there is none
+    double low;                         // SI; -INFINITY where there is no such end
+    double high;                        // SI; INFINITY likewise
+    bool is_open;                       // the ends themselves are outside
+    char words[EXPECTATION_WORDS_SIZE]; // as the case has it: "below 1.2 kN"
+    char unit[EXPECTATION_UNIT_SIZE];   // of the words, empty for plain numbers
+    double unit_si;                     // 1 of the unit in SI
+} Expectation;
