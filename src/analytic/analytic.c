@@ -166,12 +166,12 @@ static Extreme at_angle(const Linkage *linkage, double value, double crank)
     return (Extreme){value, (crank - linkage->driver.start) / linkage->driver.speed, crank};
 }
 
-static void analytic_extremes(const void *state, BodyExtremes *bodies)
+static void analytic_extremes(const void *state, double from_s, BodyExtremes *bodies)
 {
     const Analytic *analytic = state;
     const Linkage *linkage = &analytic->scenario->linkage;
-    const double first = linkage->driver.start;
-    // the motion repeats every turn: its extremes stand in the first one
+    const double first = linkage_crank_angle(linkage, from_s);
+    // the motion repeats every turn: its extremes stand in the first one of those
     const double run = linkage_crank_angle(linkage, analytic->end_s) - first;
     const double last = first + copysign(fmin(fabs(run), 2.0 * M_PI), run);
     for (size_t i = 1; i < BODIES; i++) {

@@ -146,7 +146,7 @@ static void add_joints(CheckAdd *work, const Trajectory *run, BackendKind backen
         add_real(work, run, joint->name, "impulse_N_s", extremes->impulse, 0.0);
         add_real(work, run, joint->name, "penetration_max_m", extremes->penetration_max.value, 0.0);
         add_real(work, run, joint->name, "contact_fraction_1",
-                 extremes->contact_time / run->duration_s, 0.0);
+                 trajectory_contact_share(run, i), 0.0);
     }
 }
 

@@ -54,6 +54,8 @@ Truth truth_pack_read(const Scenario *scenario, const void *packed)
     Part parts[PART_COUNT];
     list_parts(truth.trajectory, parts);
     memcpy(truth.trajectory, source + sizeof truth, sizeof *truth.trajectory);
+    // ranges are for the pictures and series of `run`, which has its truth in the same process
+    truth.trajectory->ranges = (Ranges){0};
     truth.trajectory->times = parts[0].start;
     truth.trajectory->crank_angles = parts[1].start;
     truth.trajectory->motions = parts[2].start;

@@ -96,6 +96,8 @@ typedef struct RunOptions {
     double step;            // s; 0: chosen for the tolerance
     double tolerance;       // 1, largest error in omega wanted of a step that is chosen
     double spike_threshold; // 1, least prominence of a spike over what ideal joints show
+    double report_from;     // s, or turns of the driver; what is before is not reported
+    bool is_report_from_in_turns;
     size_t backend_count;
     BackendKind backends[BACKEND_COUNT];
 } RunOptions;

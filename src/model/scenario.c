@@ -36,6 +36,19 @@ size_t scenario_sample_count(const Scenario *scenario)
     return interval_count(scenario) + 1;
 }
 
+double scenario_report_from(const Scenario *scenario)
+{
+    const RunOptions *run = &scenario->run;
+    return run->is_report_from_in_turns ? run->report_from * linkage_period(&scenario->linkage)
+                                        : run->report_from;
+}
+
+bool scenario_reports_any(const Scenario *scenario)
+{
+    const double rounding = 1e-9;
+    return scenario_report_from(scenario) < (1.0 - rounding) * scenario_duration(scenario);
+}
+
 double scenario_sample_time(const Scenario *scenario, size_t sample)
 {
     const double turn = scenario->linkage.driver.is_present ? linkage_period(&scenario->linkage)
@@ -78,6 +91,10 @@ bool scenario_check(const Scenario *scenario, Err *err)
         scenario_sample_count(scenario) < 2) {
         return err_set(err, ERR_CASE, "the run holds no sample: %g s, %zu samples",
                        scenario_duration(scenario), run->samples);
+    }
+    if (!(run->report_from >= 0.0) || !scenario_reports_any(scenario)) {
+        return err_set(err, ERR_CASE, "reports from %g s, allowed: before the end of the run, %g s",
+                       scenario_report_from(scenario), scenario_duration(scenario));
     }
     if (!isfinite(scenario->gravity)) {
         return err_set(err, ERR_CASE, "gravity %g m/s^2, allowed: any finite number",

@@ -40,6 +40,12 @@ Scenario scenario_default(void);
 double scenario_duration(const Scenario *scenario);
 size_t scenario_sample_count(const Scenario *scenario);
 
+// The time from which on extremes, contacts and spikes are reported, s.
+double scenario_report_from(const Scenario *scenario);
+
+// Whether that is before the end of the run, by more than rounding.
+bool scenario_reports_any(const Scenario *scenario);
+
 // Time of one sample: an exact multiple of the sample interval, s.
 double scenario_sample_time(const Scenario *scenario, size_t sample);
 

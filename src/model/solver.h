@@ -63,7 +63,8 @@ typedef struct Solver {
     // The state at a time in the last step, both ends included.
     void (*observe)(const void *state, double time_s, Sample *sample);
     SolverModel (*model)(const void *state);
-    // Optional: extremes known better than from steps (a closed form). NULL: taken from records.
-    void (*extremes)(const void *state, BodyExtremes *bodies);
+    // Optional: extremes from a time on known better than from steps (a closed form), which return
+    // every turn. NULL: taken from records.
+    void (*extremes)(const void *state, double from_s, BodyExtremes *bodies);
     void (*close)(void *state);
 } Solver;

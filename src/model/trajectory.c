@@ -6,6 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+// stretches of a whole run at the least: twice the columns of a panel of a picture
+enum { STRETCHES_LEAST = 800 };
+
+static void refuse_memory(Trajectory *trajectory, size_t samples)
+{
+    trajectory->sample_count = 0;
+    snprintf(trajectory->message, sizeof trajectory->message, "there is no memory for %zu samples",
+             samples);
+}
+
 Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
 {
     Trajectory *trajectory = calloc(1, sizeof *trajectory);
@@ -26,11 +36,26 @@ Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
     snprintf(trajectory->label, sizeof trajectory->label, "%s", backend);
     if (trajectory->times == NULL || trajectory->crank_angles == NULL ||
         trajectory->motions == NULL || trajectory->states == NULL) {
-        trajectory->sample_count = 0;
-        snprintf(trajectory->message, sizeof trajectory->message,
-                 "there is no memory for %zu samples", samples);
+        refuse_memory(trajectory, samples);
     }
+    trajectory->report_from_s = scenario_report_from(scenario);
     return trajectory;
+}
+
+void trajectory_keep_ranges(Trajectory *trajectory, const Scenario *scenario)
+{
+    const size_t samples = trajectory->sample_count;
+    if (samples < 2) {
+        return;
+    }
+    const double interval_s = scenario_sample_time(scenario, 1);
+    trajectory->parts = (STRETCHES_LEAST + samples - 2) / (samples - 1);
+    // what is left of the run behind the last sample is shorter than an interval
+    trajectory->ranges = ranges_create(&scenario->linkage, samples * trajectory->parts,
+                                       interval_s / (double)trajectory->parts);
+    if (trajectory->ranges.count == 0) {
+        refuse_memory(trajectory, samples);
+    }
 }
 
 void trajectory_destroy(Trajectory *trajectory)
@@ -42,6 +67,7 @@ void trajectory_destroy(Trajectory *trajectory)
     free(trajectory->crank_angles);
     free(trajectory->motions);
     free(trajectory->states);
+    ranges_finish(&trajectory->ranges);
     free(trajectory);
 }
 
@@ -66,6 +92,55 @@ const Motion *trajectory_motion(const Trajectory *trajectory, size_t sample, siz
 const JointState *trajectory_state(const Trajectory *trajectory, size_t sample, size_t joint)
 {
     return trajectory->states + sample * trajectory->joint_count + joint;
+}
+
+static Range range_of(const Trajectory *trajectory, size_t signal, size_t sample)
+{
+    const size_t first = sample * trajectory->parts;
+    return ranges_over(&trajectory->ranges, signal, first, first + trajectory->parts);
+}
+
+// One quantity of a body at a sample.
+static double body_value(const Trajectory *trajectory, size_t sample, size_t body,
+                         RangesOfBody which)
+{
+    const Motion *motion = trajectory_motion(trajectory, sample, body);
+    return which == RANGES_OMEGA   ? motion->omega
+           : which == RANGES_ALPHA ? motion->alpha
+                                   : vec2_length(motion->acceleration);
+}
+
+Range trajectory_body_range(const Trajectory *trajectory, size_t sample, size_t body,
+                            RangesOfBody which)
+{
+    if (trajectory->ranges.count > 0) {
+        return range_of(trajectory, ranges_of_body(body, which), sample);
+    }
+    Range range = RANGE_EMPTY;
+    for (size_t i = sample; i <= sample + 1 && i < trajectory->sample_count; i++) {
+        range_add(&range, body_value(trajectory, i, body, which));
+    }
+    return range;
+}
+
+Range trajectory_joint_range(const Trajectory *trajectory, size_t sample, size_t joint,
+                             RangesOfJoint which)
+{
+    if (trajectory->ranges.count > 0) {
+        return range_of(trajectory, ranges_of_joint(&trajectory->ranges, joint, which), sample);
+    }
+    Range range = RANGE_EMPTY;
+    for (size_t i = sample; i <= sample + 1 && i < trajectory->sample_count; i++) {
+        const JointState *state = trajectory_state(trajectory, i, joint);
+        range_add(&range, which == RANGES_FORCE ? state->force : state->gap);
+    }
+    return range;
+}
+
+double trajectory_contact_share(const Trajectory *trajectory, size_t joint)
+{
+    return trajectory->joints[joint].contact_time /
+           (trajectory->duration_s - trajectory->report_from_s);
 }
 
 bool trajectory_feels_play(const Trajectory *trajectory, const Joint *joint)

@@ -1,6 +1,7 @@
 // What one solver made of one scenario: the state at every sample, and what happened in between.
 #pragma once
 
+#include "model/ranges.h"
 #include "model/scenario.h"
 #include "model/signal_spikes.h"
 
@@ -83,11 +84,14 @@ typedef struct Trajectory {
     double *crank_angles; // rad, by sample, not wrapped
     Motion *motions;      // [sample * body_count + body]
     JointState *states;   // [sample * joint_count + joint]
+    size_t parts;         // stretches of the ranges in a sample interval
+    Ranges ranges;        // between the samples, from every step; empty where not asked for
     BodyExtremes bodies[LINKAGE_BODY_MAX];
     JointExtremes joints[LINKAGE_JOINT_MAX];
     SignalSpikes alpha_spikes[LINKAGE_BODY_MAX];
     SignalSpikes force_spikes[LINKAGE_JOINT_MAX];
-    double duration_s; // simulated
+    double duration_s;    // simulated
+    double report_from_s; // extremes, contacts and spikes are those from this time on
     Energy energy;
     double step_s;          // 0 where the solver has no fixed step
     size_t steps;           // every step taken, settling and rejected ones included
@@ -108,6 +112,20 @@ void trajectory_destroy(Trajectory *trajectory);
 
 // Puts a sample into its place in the trajectory.
 void trajectory_store(Trajectory *trajectory, size_t sample_index, const Sample *sample);
+
+// Gives the trajectory ranges: one or more stretches a sample interval. Without the memory for them
+// it has none, and no samples, and a message that says so.
+void trajectory_keep_ranges(Trajectory *trajectory, const Scenario *scenario);
+
+// What a signal of a body or joint did from a sample to the next, or to the end of the run. Where
+// no ranges are kept the samples at both ends say it.
+Range trajectory_body_range(const Trajectory *trajectory, size_t sample, size_t body,
+                            RangesOfBody which);
+Range trajectory_joint_range(const Trajectory *trajectory, size_t sample, size_t joint,
+                             RangesOfJoint which);
+
+// The share of the reported time in which a joint is in contact.
+double trajectory_contact_share(const Trajectory *trajectory, size_t joint);
 
 // The state of one body or joint at one sample.
 const Motion *trajectory_motion(const Trajectory *trajectory, size_t sample, size_t body);

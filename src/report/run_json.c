@@ -71,8 +71,7 @@ static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
         set_extreme(joint, "force_max", "N", extremes->force_max);
         json_value_set(joint, "impulse_N_s", is_felt ? extremes->impulse : NAN);
         json_value_set(joint, "penetration_max_m", is_felt ? extremes->penetration_max.value : NAN);
-        json_value_set(joint, "contact_fraction",
-                       is_felt ? extremes->contact_time / run->duration_s : NAN);
+        json_value_set(joint, "contact_fraction", is_felt ? trajectory_contact_share(run, i) : NAN);
         json_object_set_new(joint, "has_play", json_boolean(has_play));
         if (has_play) {
             json_value_set(joint, "radial_clearance_m",

@@ -93,7 +93,7 @@ static void contact_row(Table *table, const RunReport *report, const Trajectory 
     when_cell(table, report, extremes->force_max);
     run_section_number(table, extremes->impulse);
     run_section_number(table, extremes->penetration_max.value * UNITS_UM);
-    table_cell(table, "%.1f", extremes->contact_time / run->duration_s * UNITS_PERCENT);
+    table_cell(table, "%.1f", trajectory_contact_share(run, number) * UNITS_PERCENT);
 }
 
 void run_tables_contacts(const RunReport *report, const Style *style, Text *text)

@@ -3,7 +3,39 @@
 
 #include "report/units.h"
 
-static void write_head(const Scenario *scenario, FILE *stream)
+static void write_range_heads(const Linkage *linkage, FILE *stream)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const char *name = linkage->bodies[i].name;
+        fprintf(stream, ",%s_omega_min_rad_s,%s_omega_max_rad_s", name, name);
+        fprintf(stream, ",%s_alpha_min_rad_s2,%s_alpha_max_rad_s2", name, name);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const char *name = linkage->joints[i].name;
+        fprintf(stream, ",%s_gap_min_m,%s_gap_max_m", name, name);
+        fprintf(stream, ",%s_force_min_N,%s_force_max_N", name, name);
+    }
+}
+
+static void write_range(Range range, FILE *stream)
+{
+    fprintf(stream, ",%.17g,%.17g", range.least, range.most);
+}
+
+// From this sample to the next.
+static void write_ranges(const Trajectory *trajectory, size_t sample, FILE *stream)
+{
+    for (size_t i = 0; i < trajectory->body_count; i++) {
+        write_range(trajectory_body_range(trajectory, sample, i, RANGES_OMEGA), stream);
+        write_range(trajectory_body_range(trajectory, sample, i, RANGES_ALPHA), stream);
+    }
+    for (size_t i = 0; i < trajectory->joint_count; i++) {
+        write_range(trajectory_joint_range(trajectory, sample, i, RANGES_GAP), stream);
+        write_range(trajectory_joint_range(trajectory, sample, i, RANGES_FORCE), stream);
+    }
+}
+
+static void write_head(const Scenario *scenario, const Trajectory *trajectory, FILE *stream)
 {
     const Linkage *linkage = &scenario->linkage;
     fputs("time_s,crank_deg", stream);
@@ -18,6 +50,9 @@ static void write_head(const Scenario *scenario, FILE *stream)
     for (size_t i = 0; i < scenario->point_count; i++) {
         const char *name = scenario->points[i].name;
         fprintf(stream, ",%s_x_m,%s_y_m", name, name);
+    }
+    if (trajectory->ranges.count > 0) {
+        write_range_heads(linkage, stream);
     }
     fputc('\n', stream);
 }
@@ -42,12 +77,15 @@ static void write_row(const Scenario *scenario, const Trajectory *trajectory, si
         const Vec2 place = linkage_point(motions, point->body, point->local);
         fprintf(stream, ",%.17g,%.17g", place.x, place.y);
     }
+    if (trajectory->ranges.count > 0) {
+        write_ranges(trajectory, sample, stream);
+    }
     fputc('\n', stream);
 }
 
 void series_rows_write(const Scenario *scenario, const Trajectory *trajectory, FILE *stream)
 {
-    write_head(scenario, stream);
+    write_head(scenario, trajectory, stream);
     for (size_t i = 0; i < trajectory->sample_count; i++) {
         write_row(scenario, trajectory, i, stream);
     }

@@ -2,17 +2,114 @@
 //
 // Every step counts: extremes of omega (at the step's end) and alpha (its mean), each contact from
 // the first step with overlap to the last: force maximum, impulse, depth, duration; and the energy
-// that went in and out.
+// that went in and out. Extremes and contacts are those of the reported time alone. The ranges hold
+// the same values, and every value that is shown, over the whole run; a step that crosses the
+// border of two stretches belongs to both where its values are means.
 #include "run/recorder.h"
 
 #include "base/hash.h"
 
 #include <string.h>
 
+// of a stretch: what ends so little behind its border ends there
+static const double BORDER_ROUNDING = 1e-9;
+
+static void empty_stretch(Recorder *recorder)
+{
+    for (size_t i = 0; i < recorder->trajectory->ranges.signal_count; i++) {
+        recorder->now[i] = RANGE_EMPTY;
+    }
+}
+
+// The end of a stretch, with room for rounding; the last one has none.
+static void set_stretch_end(Recorder *recorder)
+{
+    const Ranges *ranges = &recorder->trajectory->ranges;
+    recorder->stretch_end_s =
+        recorder->stretch + 1 < ranges->count
+            ? ((double)(recorder->stretch + 1) + BORDER_ROUNDING) * ranges->width_s
+            : INFINITY;
+}
+
 Recorder recorder_start(const Scenario *scenario, Trajectory *trajectory)
 {
     trajectory->hash = HASH_START;
-    return (Recorder){.scenario = scenario, .trajectory = trajectory, .is_empty = true};
+    Recorder recorder = {.scenario = scenario, .trajectory = trajectory, .is_empty = true};
+    set_stretch_end(&recorder);
+    empty_stretch(&recorder);
+    return recorder;
+}
+
+// The size of the acceleration of a body's centre of mass, from the forces on it.
+static double acceleration_of(const Scenario *scenario, const StepRecord *step, size_t body)
+{
+    const Linkage *linkage = &scenario->linkage;
+    Vec2 force = {0.0, -linkage->bodies[body].mass * scenario->gravity};
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage->joints[i].body_b == (int)body) {
+            force = vec2_add(force, step->joints[i].force_on_b);
+        } else if (linkage->joints[i].body_a == (int)body) {
+            force = vec2_sub(force, step->joints[i].force_on_b);
+        }
+    }
+    return vec2_length(force) / linkage->bodies[body].mass;
+}
+
+// Takes a step into the stretch under way.
+static void add_to_stretch(Recorder *recorder, const StepRecord *step)
+{
+    const Linkage *linkage = &recorder->scenario->linkage;
+    Range *range = recorder->now;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        range_add(&range[RANGES_OMEGA], step->omega[i]);
+        range_add(&range[RANGES_ALPHA], step->alpha[i]);
+        // without a drive the centres may be all that moves
+        if (!linkage->driver.is_present) {
+            range_add(&range[RANGES_ACCELERATION], acceleration_of(recorder->scenario, step, i));
+        }
+        range += RANGES_OF_BODY;
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        range_add(&range[RANGES_FORCE], step->joints[i].force);
+        range_add(&range[RANGES_GAP], step->joints[i].gap);
+        range += RANGES_OF_JOINT;
+    }
+}
+
+static void close_stretch(Recorder *recorder)
+{
+    Ranges *ranges = &recorder->trajectory->ranges;
+    Range *values = ranges->values + recorder->stretch * ranges->signal_count;
+    for (size_t i = 0; i < ranges->signal_count; i++) {
+        range_join(&values[i], &recorder->now[i]);
+    }
+    empty_stretch(recorder);
+}
+
+// Goes on to the stretch in which a step ends.
+static void turn_to_stretch(Recorder *recorder, const StepRecord *step)
+{
+    const Ranges *ranges = &recorder->trajectory->ranges;
+    const size_t target = ranges_find(ranges, step->end_s - BORDER_ROUNDING * ranges->width_s);
+    while (recorder->stretch < target) {
+        if (step->is_mean) {
+            add_to_stretch(recorder, step);
+        }
+        close_stretch(recorder);
+        recorder->stretch = step->is_mean ? recorder->stretch + 1 : target;
+    }
+    set_stretch_end(recorder);
+}
+
+static void add_ranges(Recorder *recorder, const StepRecord *step)
+{
+    if (recorder->trajectory->ranges.count == 0) {
+        return;
+    }
+    if (step->end_s > recorder->stretch_end_s) {
+        turn_to_stretch(recorder, step);
+    }
+    add_to_stretch(recorder, step);
 }
 
 static inline void raise_to(Extreme *extreme, bool is_first, double value, double sign,
@@ -42,14 +139,24 @@ static void keep_spike(JointExtremes *joint, const Spike *spike)
     joint->spikes[place] = *spike;
 }
 
+// One that began before the reported time is not a contact of it.
+static void end_contact(Recorder *recorder, size_t number)
+{
+    if (recorder->open[number].onset_s >= recorder->trajectory->report_from_s) {
+        keep_spike(&recorder->trajectory->joints[number], &recorder->open[number]);
+    }
+}
+
 static void add_contact(Recorder *recorder, size_t number, const StepRecord *step)
 {
     const JointState *state = &step->joints[number];
     JointExtremes *joint = &recorder->trajectory->joints[number];
     Spike *spike = &recorder->open[number];
     const double duration = step->end_s - step->start_s;
+    const double from_s = recorder->trajectory->report_from_s;
+    const bool is_reported = step->end_s > from_s;
     if (state->is_touching && !recorder->was_touching[number]) {
-        joint->impacts++;
+        joint->impacts += step->start_s >= from_s ? 1 : 0;
         *spike = (Spike){
             .onset_s = step->start_s,
             .crank_rad = linkage_crank_angle(&recorder->scenario->linkage, step->start_s),
@@ -61,24 +168,41 @@ static void add_contact(Recorder *recorder, size_t number, const StepRecord *ste
         spike->impulse += step->impulse[number];
         spike->force_max = fmax(spike->force_max, state->force);
         spike->penetration_max = fmax(spike->penetration_max, -state->gap);
-        joint->contact_time += duration;
-        joint->impulse += step->impulse[number];
+        joint->contact_time += is_reported ? duration : 0.0;
+        joint->impulse += is_reported ? step->impulse[number] : 0.0;
     } else if (recorder->was_touching[number]) {
-        keep_spike(joint, spike);
+        end_contact(recorder, number);
     }
     recorder->was_touching[number] = state->is_touching;
 }
 
-static void add_joint(Recorder *recorder, size_t number, const StepRecord *step)
+// Raises the extremes of one body and one joint to what they are at a time.
+static void raise_body(Recorder *recorder, size_t number, double omega, double alpha, double time_s)
 {
-    const JointState *state = &step->joints[number];
+    BodyExtremes *body = &recorder->trajectory->bodies[number];
+    raise_to(&body->omega_max, recorder->is_empty, omega, 1.0, time_s);
+    raise_to(&body->omega_min, recorder->is_empty, omega, -1.0, time_s);
+    raise_to(&body->alpha_max, recorder->is_empty, alpha, 1.0, time_s);
+    raise_to(&body->alpha_min, recorder->is_empty, alpha, -1.0, time_s);
+}
+
+static void raise_joint(Recorder *recorder, size_t number, const JointState *state, double time_s)
+{
     JointExtremes *joint = &recorder->trajectory->joints[number];
     const double depth = state->is_touching ? fmax(0.0, -state->gap) : 0.0;
-    raise_to(&joint->force_max, recorder->is_empty, state->force, 1.0, step->joint_s);
-    raise_to(&joint->penetration_max, recorder->is_empty, depth, 1.0, step->joint_s);
-    if (recorder->scenario->linkage.joints[number].kind == JOINT_CLEARANCE) {
-        add_contact(recorder, number, step);
+    raise_to(&joint->force_max, recorder->is_empty, state->force, 1.0, time_s);
+    raise_to(&joint->penetration_max, recorder->is_empty, depth, 1.0, time_s);
+}
+
+static void raise_all(Recorder *recorder, const StepRecord *step)
+{
+    for (size_t i = 0; i < recorder->trajectory->body_count; i++) {
+        raise_body(recorder, i, step->omega[i], step->alpha[i], step->end_s);
     }
+    for (size_t i = 0; i < recorder->trajectory->joint_count; i++) {
+        raise_joint(recorder, i, &step->joints[i], step->joint_s);
+    }
+    recorder->is_empty = false;
 }
 
 void recorder_add(Recorder *recorder, const StepRecord *step)
@@ -86,22 +210,50 @@ void recorder_add(Recorder *recorder, const StepRecord *step)
     Trajectory *trajectory = recorder->trajectory;
     uint64_t hash = trajectory->hash;
     for (size_t i = 0; i < trajectory->body_count; i++) {
-        BodyExtremes *body = &trajectory->bodies[i];
-        raise_to(&body->omega_max, recorder->is_empty, step->omega[i], 1.0, step->end_s);
-        raise_to(&body->omega_min, recorder->is_empty, step->omega[i], -1.0, step->end_s);
-        raise_to(&body->alpha_max, recorder->is_empty, step->alpha[i], 1.0, step->end_s);
-        raise_to(&body->alpha_min, recorder->is_empty, step->alpha[i], -1.0, step->end_s);
         hash = hash_number(hash_number(hash, step->omega[i]), step->alpha[i]);
     }
     for (size_t i = 0; i < trajectory->joint_count; i++) {
-        add_joint(recorder, i, step);
         hash = hash_number(hash, step->joints[i].force);
+        if (recorder->scenario->linkage.joints[i].kind == JOINT_CLEARANCE) {
+            add_contact(recorder, i, step);
+        }
     }
     trajectory->hash = hash;
+    if (step->end_s > trajectory->report_from_s) {
+        raise_all(recorder, step);
+    }
+    add_ranges(recorder, step);
     trajectory->energy.drive_work += step->drive_work;
     trajectory->energy.dissipated += step->dissipated;
     trajectory->energy.friction += step->friction;
-    recorder->is_empty = false;
+}
+
+void recorder_see(Recorder *recorder, const Sample *sample)
+{
+    Trajectory *trajectory = recorder->trajectory;
+    Ranges *ranges = &trajectory->ranges;
+    const double time_s = sample->time_s;
+    for (size_t i = 0; ranges->count > 0 && i < trajectory->body_count; i++) {
+        const Motion *motion = &sample->bodies[i];
+        ranges_add(ranges, ranges_of_body(i, RANGES_OMEGA), time_s, motion->omega);
+        ranges_add(ranges, ranges_of_body(i, RANGES_ALPHA), time_s, motion->alpha);
+        ranges_add(ranges, ranges_of_body(i, RANGES_ACCELERATION), time_s,
+                   vec2_length(motion->acceleration));
+    }
+    for (size_t i = 0; ranges->count > 0 && i < trajectory->joint_count; i++) {
+        const JointState *state = &sample->joints[i];
+        ranges_add(ranges, ranges_of_joint(ranges, i, RANGES_FORCE), time_s, state->force);
+        ranges_add(ranges, ranges_of_joint(ranges, i, RANGES_GAP), time_s, state->gap);
+    }
+    if (recorder->is_empty || time_s < trajectory->report_from_s) {
+        return;
+    }
+    for (size_t i = 0; i < trajectory->body_count; i++) {
+        raise_body(recorder, i, sample->bodies[i].omega, sample->bodies[i].alpha, time_s);
+    }
+    for (size_t i = 0; i < trajectory->joint_count; i++) {
+        raise_joint(recorder, i, &sample->joints[i], time_s);
+    }
 }
 
 static void set_crank(const Linkage *linkage, Extreme *extreme)
@@ -113,6 +265,9 @@ void recorder_finish(Recorder *recorder)
 {
     Trajectory *trajectory = recorder->trajectory;
     const Linkage *linkage = &recorder->scenario->linkage;
+    if (trajectory->ranges.count > 0) {
+        close_stretch(recorder);
+    }
     for (size_t i = 0; i < trajectory->body_count; i++) {
         set_crank(linkage, &trajectory->bodies[i].omega_max);
         set_crank(linkage, &trajectory->bodies[i].omega_min);
@@ -121,7 +276,7 @@ void recorder_finish(Recorder *recorder)
     }
     for (size_t i = 0; i < trajectory->joint_count; i++) {
         if (recorder->was_touching[i]) {
-            keep_spike(&trajectory->joints[i], &recorder->open[i]);
+            end_contact(recorder, i);
         }
         set_crank(linkage, &trajectory->joints[i].force_max);
         set_crank(linkage, &trajectory->joints[i].penetration_max);

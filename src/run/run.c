@@ -7,7 +7,6 @@
 #include "base/clock.h"
 #include "model/energy.h"
 #include "model/lock.h"
-#include "run/recorder.h"
 
 #include <stdio.h>
 
@@ -126,6 +125,7 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
             loop->start_energy = mechanical_energy(loop->scenario, &sample);
         }
         unwrap_angles(loop, &sample);
+        recorder_see(&loop->recorder, &sample);
         trajectory_store(trajectory, k, &sample);
     }
     // what is left after the last whole sample interval
@@ -156,6 +156,31 @@ static void fill_model(const Loop *loop, Trajectory *trajectory)
     trajectory->estimate_s = model.estimate_s;
 }
 
+// Puts an extreme into the ranges wherever it returns, turn by turn.
+static void show_extreme(const Scenario *scenario, Trajectory *trajectory, size_t signal,
+                         const Extreme *extreme)
+{
+    const double end_s = trajectory->duration_s;
+    const double turn_s =
+        scenario->linkage.driver.is_present ? linkage_period(&scenario->linkage) : INFINITY;
+    for (double time_s = extreme->time_s; time_s <= end_s; time_s += turn_s) {
+        ranges_add(&trajectory->ranges, signal, time_s, extreme->value);
+    }
+}
+
+static void show_extremes(const Scenario *scenario, Trajectory *trajectory)
+{
+    for (size_t i = 0; trajectory->ranges.count > 0 && i < trajectory->body_count; i++) {
+        const BodyExtremes *body = &trajectory->bodies[i];
+        const size_t omega = ranges_of_body(i, RANGES_OMEGA);
+        const size_t alpha = ranges_of_body(i, RANGES_ALPHA);
+        show_extreme(scenario, trajectory, omega, &body->omega_max);
+        show_extreme(scenario, trajectory, omega, &body->omega_min);
+        show_extreme(scenario, trajectory, alpha, &body->alpha_max);
+        show_extreme(scenario, trajectory, alpha, &body->alpha_min);
+    }
+}
+
 Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatch watch)
 {
     return run_probed(scenario, solver, watch, NULL);
@@ -167,6 +192,9 @@ Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch 
     Trajectory *trajectory = trajectory_create(scenario, solver->name);
     Err err = {ERR_NONE, ""};
     Loop loop = {.scenario = scenario, .solver = solver, .watch = watch, .probe = probe};
+    if (probe != NULL) {
+        trajectory_keep_ranges(trajectory, scenario);
+    }
     if (trajectory->sample_count == 0) {
         return trajectory;
     }
@@ -179,7 +207,8 @@ Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch 
         return trajectory;
     }
     loop.recorder = recorder_start(scenario, trajectory);
-    loop.probe_own = probe == NULL ? NULL : probe->begin(scenario, solver, loop.state);
+    loop.probe_own =
+        probe == NULL ? NULL : probe->begin(scenario, solver, loop.state, &loop.recorder);
     loop.started_s = clock_now_s();
     const bool is_prepared = prepare(&loop, &err);
     const bool is_done = is_prepared && run_samples(&loop, trajectory, &err);
@@ -188,7 +217,8 @@ Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch 
     fill_model(&loop, trajectory);
     trajectory->duration_s = loop.reached_s;
     if (is_done && solver->extremes != NULL) {
-        solver->extremes(loop.state, trajectory->bodies);
+        solver->extremes(loop.state, trajectory->report_from_s, trajectory->bodies);
+        show_extremes(scenario, trajectory);
     }
     if (is_done) {
         close_energy(&loop, trajectory);

@@ -1,7 +1,7 @@
 // One scenario on one solver makes one trajectory, observed at every step, timed.
 #pragma once
 
-#include "model/solver.h"
+#include "run/recorder.h"
 
 // Called now and then with the share of the run that is done, 0 to 1, and the wall time so far, s.
 typedef void (*RunProgress)(double share, double wall_s, void *context);
@@ -11,10 +11,13 @@ typedef struct RunWatch {
     void *context;
 } RunWatch;
 
-// What looks at every step of a run besides the recorder, for those who ask for more than that.
+// What looks at every step of a run besides the recorder, for those who ask for more than that. The
+// trajectory keeps ranges, too.
 typedef struct RunProbe {
-    // Once the solver is open. NULL: there is nothing to look at in this run.
-    void *(*begin)(const Scenario *scenario, const Solver *solver, const void *state);
+    // Once the solver is open; what the probe asks the solver for it shows to the recorder. NULL:
+    // there is nothing to look at in this run.
+    void *(*begin)(const Scenario *scenario, const Solver *solver, const void *state,
+                   Recorder *recorder);
     void (*look)(void *own, const StepRecord *step);
     // Fills in what it found, where the trajectory is complete, and frees its own.
     void (*end)(void *own, Trajectory *trajectory);
@@ -24,6 +27,6 @@ typedef struct RunProbe {
 // complete and says when and why. The caller destroys it.
 Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatch watch);
 
-// The same with a probe; without one where it is NULL.
+// The same with a probe and ranges; without them where it is NULL.
 Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch watch,
                        const RunProbe *probe);

@@ -10,6 +10,7 @@
 #include "run/tracer.h"
 
 #include "model/scale.h"
+#include "run/look.h"
 #include "run/spike_scale.h"
 #include "run/spikes.h"
 #include "run/trace.h"
@@ -22,8 +23,6 @@
 enum {
     // of a trace: 400 kB each; some 600 impacts of full height
     POINTS_MOST = 1 << 14,
-    // of a step; a chord of a quarter of a swing is then off by 1e-3 of its height
-    PARTS_MOST = 16,
 };
 
 // the least tolerance of a history over the least prominence of a spike
@@ -36,18 +35,9 @@ static const double OWN_SHARE = 0.1;
 // of a pin without friction
 static const double ROUNDING = 1e-6;
 
-// The signals at one instant.
-typedef struct Look {
-    double time_s;
-    double omega[LINKAGE_BODY_MAX];
-    double alpha[LINKAGE_BODY_MAX];
-    double force[LINKAGE_JOINT_MAX];
-} Look;
-
 typedef struct Tracer {
     const Scenario *scenario;
-    const Solver *solver;
-    const void *state; // of the solver
+    Looker looker;
     SpikeScale scale;
     Trace alpha[LINKAGE_BODY_MAX];
     Trace force[LINKAGE_JOINT_MAX];
@@ -61,7 +51,8 @@ static bool is_traced(const Tracer *tracer, size_t body)
     return (int)body != linkage_driven_body(&tracer->scenario->linkage);
 }
 
-static void *tracer_begin(const Scenario *scenario, const Solver *solver, const void *state)
+static void *tracer_begin(const Scenario *scenario, const Solver *solver, const void *state,
+                          Recorder *recorder)
 {
     if (!scenario_has_clearance(scenario) || solver->is_ideal) {
         return NULL;
@@ -69,8 +60,7 @@ static void *tracer_begin(const Scenario *scenario, const Solver *solver, const 
     Tracer *tracer = calloc(1, sizeof *tracer);
     assert(tracer != NULL);
     tracer->scenario = scenario;
-    tracer->solver = solver;
-    tracer->state = state;
+    tracer->looker = (Looker){scenario, solver, state, recorder};
     tracer->scale = spike_scale(scenario);
     const double fine = tracer->scale.is_known ? FINENESS * scenario->run.spike_threshold : 0.0;
     for (size_t i = 0; i < scenario->linkage.body_count; i++) {
@@ -134,53 +124,25 @@ static int count_parts(const Tracer *tracer, const StepRecord *step)
                                           step->impulse[i] / width_s, tracer->force[i].tolerance));
         }
     }
-    return (int)ceil(fmin(parts, PARTS_MOST));
-}
-
-static Look look_inside(const Tracer *tracer, double time_s)
-{
-    const Linkage *linkage = &tracer->scenario->linkage;
-    Look look = {.time_s = time_s};
-    Sample sample;
-    tracer->solver->observe(tracer->state, time_s, &sample);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        look.omega[i] = sample.bodies[i].omega;
-        look.alpha[i] = sample.bodies[i].alpha;
-    }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        look.force[i] = sample.joints[i].force;
-    }
-    return look;
-}
-
-static Look look_at_end(const Tracer *tracer, const StepRecord *step)
-{
-    const Linkage *linkage = &tracer->scenario->linkage;
-    Look look = {.time_s = step->end_s};
-    memcpy(look.omega, step->omega, linkage->body_count * sizeof *look.omega);
-    memcpy(look.alpha, step->alpha, linkage->body_count * sizeof *look.alpha);
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        look.force[i] = step->joints[i].force;
-    }
-    return look;
+    return (int)ceil(fmin(parts, LOOK_PARTS_MAX));
 }
 
 // The force of a joint at the looks. Its impulse in the parts is in proportion to what the broken
 // line holds; the impulse of a contact in the whole step is the solver's.
-static void add_forces(Tracer *tracer, size_t joint, const StepRecord *step, int parts,
+static void add_forces(Tracer *tracer, size_t joint, const StepRecord *step, int count,
                        const Look *looks)
 {
-    double sums[PARTS_MOST];
+    double sums[LOOK_MAX];
     double sum = 0.0;
     const Look *before = &tracer->last;
-    for (int k = 0; k < parts; k++) {
+    for (int k = 0; k < count; k++) {
         const double width_s = looks[k].time_s - before->time_s;
         sum += 0.5 * width_s * (before->force[joint] + looks[k].force[joint]);
         sums[k] = sum;
         before = &looks[k];
     }
     const double factor = has_play(tracer, joint) && sum > 0.0 ? step->impulse[joint] / sum : 1.0;
-    for (int k = 0; k < parts; k++) {
+    for (int k = 0; k < count; k++) {
         trace_add(&tracer->force[joint], looks[k].time_s, looks[k].force[joint],
                   tracer->impulse[joint] + factor * sums[k]);
     }
@@ -191,7 +153,7 @@ static void add_forces(Tracer *tracer, size_t joint, const StepRecord *step, int
 static void look_at_start(Tracer *tracer, const StepRecord *step)
 {
     const Linkage *linkage = &tracer->scenario->linkage;
-    const Look look = look_inside(tracer, step->start_s);
+    const Look look = look_inside(&tracer->looker, step->start_s);
     for (size_t i = 0; i < linkage->body_count; i++) {
         if (is_traced(tracer, i)) {
             trace_add(&tracer->alpha[i], look.time_s, look.alpha[i], look.omega[i]);
@@ -212,20 +174,21 @@ static void add_instants(Tracer *tracer, const StepRecord *step)
     const Linkage *linkage = &tracer->scenario->linkage;
     const int parts = count_parts(tracer, step);
     const double part_s = (step->end_s - step->start_s) / parts;
-    Look looks[PARTS_MOST];
+    Look looks[LOOK_MAX];
     for (int k = 0; k + 1 < parts; k++) {
-        looks[k] = look_inside(tracer, step->start_s + (k + 1) * part_s);
+        looks[k] = look_inside(&tracer->looker, step->start_s + (k + 1) * part_s);
     }
-    looks[parts - 1] = look_at_end(tracer, step);
+    looks[parts - 1] = look_at_end(&tracer->looker, step);
+    const int count = look_for_extremes(&tracer->looker, &tracer->last, parts, looks);
     for (size_t i = 0; i < linkage->body_count; i++) {
-        for (int k = 0; is_traced(tracer, i) && k < parts; k++) {
+        for (int k = 0; is_traced(tracer, i) && k < count; k++) {
             trace_add(&tracer->alpha[i], looks[k].time_s, looks[k].alpha[i], looks[k].omega[i]);
         }
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        add_forces(tracer, i, step, parts, looks);
+        add_forces(tracer, i, step, count, looks);
     }
-    tracer->last = looks[parts - 1];
+    tracer->last = looks[count - 1];
 }
 
 static void tracer_look(void *own, const StepRecord *step)

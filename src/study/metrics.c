@@ -191,7 +191,7 @@ static double take_joints(const Linkage *linkage, const Trajectory *run, Taker *
         take(taker, extremes->force_max.value);
         take(taker, is_felt ? extremes->impulse : NAN);
         take(taker, is_felt ? extremes->penetration_max.value : NAN);
-        take(taker, is_felt ? extremes->contact_time / run->duration_s : NAN);
+        take(taker, is_felt ? trajectory_contact_share(run, i) : NAN);
         if (is_felt) {
             impacts = (isnan(impacts) ? 0.0 : impacts) + (double)extremes->impacts;
         }

@@ -136,12 +136,86 @@ static void the_order_of_steps_is_part_of_the_hash(void **state)
     assert_true(hashes[0] != hashes[1]);
 }
 
+// What happens before the reported time is in the ranges and the hash, and in nothing else.
+static void a_start_that_is_not_reported_leaves_no_extremes(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    const double forces[] = {0.0, 90.0, 0.0, 10.0, 30.0, 0.0, 0.0, 20.0, 0.0};
+    // the second contact is under way at 4 us
+    for (int i = 0; i < 2; i++) {
+        scenario.run.report_from = i == 0 ? 4e-6 : 0.0;
+        Trajectory *trajectory = trajectory_create(&scenario, "test");
+        trajectory_keep_ranges(trajectory, &scenario);
+        Recorder recorder = recorder_start(&scenario, trajectory);
+        Steps steps = {.approach = {0.0}};
+        for (int k = 0; k < 9; k++) {
+            steps.omega[1] = k == 0 ? 1e3 : -10.0;
+            add_step(&recorder, &steps, k, forces[k], forces[k] > 0.0 ? -1e-7 : 1e-6);
+        }
+        recorder_finish(&recorder);
+        const JointExtremes *joint = &trajectory->joints[1];
+        assert_int_equal(joint->impacts, i == 0 ? 1 : 3);
+        assert_int_equal(joint->spike_count, i == 0 ? 1 : 3);
+        assert_near(joint->force_max.value, i == 0 ? 30.0 : 90.0, 0.0);
+        assert_near(joint->spikes[0].force_max, i == 0 ? 20.0 : 90.0, 0.0);
+        assert_near(joint->impulse, i == 0 ? 50e-6 : 150e-6, 1e-18);
+        assert_near(joint->contact_time, i == 0 ? 2e-6 : 4e-6, 1e-18);
+        assert_near(trajectory->bodies[1].omega_max.value, i == 0 ? -10.0 : 1e3, 0.0);
+        const Range range = trajectory_joint_range(trajectory, 0, 1, RANGES_FORCE);
+        assert_near(range.most, 90.0, 0.0);
+        trajectory_destroy(trajectory);
+    }
+}
+
+// The same steps, as means and as instants, over stretches of two and a half steps.
+static void every_step_is_in_the_range_of_its_stretch(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    for (int i = 0; i < 2; i++) {
+        Trajectory *trajectory = trajectory_create(&scenario, "test");
+        trajectory->ranges = ranges_create(&scenario.linkage, 4, 2.5e-6);
+        Recorder recorder = recorder_start(&scenario, trajectory);
+        double omega[3] = {0.0};
+        double alpha[3] = {0.0};
+        JointState joints[4] = {{.gap = 0.0}};
+        const double none[4] = {0.0};
+        for (int k = 0; k < 10; k++) {
+            alpha[1] = k == 2 ? 100.0 + k : k == 7 ? -50.0 : 1.0;
+            const StepRecord record = {.start_s = 1e-6 * k,
+                                       .end_s = 1e-6 * (k + 1),
+                                       .joint_s = 1e-6 * k,
+                                       .is_mean = i == 0,
+                                       .omega = omega,
+                                       .alpha = alpha,
+                                       .joints = joints,
+                                       .impulse = none,
+                                       .approach = none};
+            recorder_add(&recorder, &record);
+        }
+        recorder_finish(&recorder);
+        const size_t signal = ranges_of_body(1, RANGES_ALPHA);
+        const Ranges *ranges = &trajectory->ranges;
+        // a mean from 2 to 3 us belongs to both sides of 2.5 us, an instant at 3 us to one
+        assert_near(ranges_over(ranges, signal, 0, 1).most, i == 0 ? 102.0 : 1.0, 0.0);
+        assert_near(ranges_over(ranges, signal, 1, 2).most, 102.0, 0.0);
+        assert_near(ranges_over(ranges, signal, 2, 3).least, i == 0 ? -50.0 : 1.0, 0.0);
+        assert_near(ranges_over(ranges, signal, 3, 4).least, -50.0, 0.0);
+        assert_near(ranges_over(ranges, signal, 0, 4).most, 102.0, 0.0);
+        trajectory_destroy(trajectory);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contacts_are_counted_from_onset_to_end),
         cmocka_unit_test(only_the_strongest_contacts_are_kept),
         cmocka_unit_test(extremes_hold_a_single_step),
+        cmocka_unit_test(a_start_that_is_not_reported_leaves_no_extremes),
+        cmocka_unit_test(every_step_is_in_the_range_of_its_stretch),
         cmocka_unit_test(the_order_of_steps_is_part_of_the_hash),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -47,6 +47,68 @@ static void a_series_has_the_columns_that_others_rely_on(void **state)
     assert_int_equal(rows, SAMPLES);
 }
 
+// The number of a column in the head, whose end has been cut.
+static size_t column_of(const char *head, const char *name)
+{
+    size_t column = 0;
+    for (const char *word = head; *word != '\0'; word += strcspn(word, ",") + 1, column++) {
+        const size_t size = strcspn(word, ",");
+        if (size == strlen(name) && strncmp(word, name, size) == 0) {
+            return column;
+        }
+        if (word[size] == '\0') {
+            break;
+        }
+    }
+    fail_msg("no column %s", name);
+    return 0;
+}
+
+static double cell(const char *row, size_t column)
+{
+    for (; column > 0; column--) {
+        row = strchr(row, ',') + 1;
+    }
+    return strtod(row, NULL);
+}
+
+static void ranges_stand_behind_the_samples(void **state)
+{
+    Fixture *fixture = *state;
+    Trajectory *run = fixture->runs[1];
+    trajectory_keep_ranges(run, &fixture->scenario);
+    const double interval_s = scenario_sample_time(&fixture->scenario, 1);
+    const size_t alpha = ranges_of_body(1, RANGES_ALPHA);
+    const size_t force = ranges_of_joint(&run->ranges, 1, RANGES_FORCE);
+    // two spikes between the second and the third sample, and a value at the border before them
+    ranges_add(&run->ranges, alpha, 1.3 * interval_s, -7e5);
+    ranges_add(&run->ranges, alpha, 1.9 * interval_s, 2e5);
+    ranges_add(&run->ranges, force, interval_s, 123.0);
+    char path[256];
+    static char content[32768];
+    Err err = {0};
+    scratch_path("ranges.csv", path, sizeof path);
+    assert_true(series_csv_write(&fixture->scenario, run, path, &err));
+    read_whole(path, content, sizeof content);
+    unlink(path);
+    char *rows[SAMPLES + 1];
+    rows[0] = strtok(content, "\n");
+    for (int i = 1; i <= SAMPLES; i++) {
+        rows[i] = strtok(NULL, "\n");
+    }
+    assert_non_null(strstr(rows[0], ",tip_x_m,tip_y_m,crank_omega_min_rad_s,"));
+    assert_non_null(strstr(rows[0], "follower-ground_force_min_N,follower-ground_force_max_N"));
+    const size_t least = column_of(rows[0], "coupler_alpha_min_rad_s2");
+    const size_t most = column_of(rows[0], "coupler_alpha_max_rad_s2");
+    assert_true(cell(rows[2], least) == -7e5);
+    assert_true(cell(rows[2], most) == 2e5);
+    const size_t pressed = column_of(rows[0], "crank-coupler_force_max_N");
+    assert_true(cell(rows[1], pressed) == 123.0);
+    assert_true(cell(rows[2], pressed) == 123.0);
+    // the control: the samples do not know them
+    assert_true(cell(rows[2], column_of(rows[0], "coupler_alpha_rad_s2")) == 1.0 / 3.0);
+}
+
 static void a_series_of_several_runs_has_a_file_each(void **state)
 {
     (void)state;
@@ -64,6 +126,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_series_has_the_columns_that_others_rely_on,
                                         fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(ranges_stand_behind_the_samples, fixture_set_up,
+                                        fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_series_of_several_runs_has_a_file_each, fixture_set_up,
                                         fixture_tear_down),
     };

@@ -1,0 +1,64 @@
+// How far did each signal go, stretch by stretch?
+#include "model/ranges.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+// of a stretch: a time so near to a border is at it, but for rounding
+static const double AT_BORDER = 1e-9;
+
+Ranges ranges_create(const Linkage *linkage, size_t count, double width_s)
+{
+    assert(width_s > 0.0);
+    Ranges ranges = {
+        .body_count = linkage->body_count,
+        .signal_count =
+            RANGES_OF_BODY * linkage->body_count + RANGES_OF_JOINT * linkage->joint_count,
+        .count = count,
+        .width_s = width_s,
+    };
+    ranges.values = malloc(count * ranges.signal_count * sizeof *ranges.values);
+    if (ranges.values == NULL) {
+        ranges.count = 0;
+    }
+    for (size_t i = 0; i < ranges.count * ranges.signal_count; i++) {
+        ranges.values[i] = RANGE_EMPTY;
+    }
+    return ranges;
+}
+
+void ranges_finish(Ranges *ranges)
+{
+    free(ranges->values);
+    *ranges = (Ranges){0};
+}
+
+// The stretch at a place counted in stretches.
+static size_t stretch_at(const Ranges *ranges, double place)
+{
+    return place <= 0.0 ? 0 : place < (double)(ranges->count) ? (size_t)place : ranges->count - 1;
+}
+
+size_t ranges_find(const Ranges *ranges, double time_s)
+{
+    return stretch_at(ranges, time_s / ranges->width_s);
+}
+
+void ranges_add(Ranges *ranges, size_t signal, double time_s, double value)
+{
+    const double place = time_s / ranges->width_s;
+    const size_t first = stretch_at(ranges, place - AT_BORDER);
+    const size_t last = stretch_at(ranges, place + AT_BORDER);
+    for (size_t i = first; i <= last; i++) {
+        range_add(&ranges->values[i * ranges->signal_count + signal], value);
+    }
+}
+
+Range ranges_over(const Ranges *ranges, size_t signal, size_t first, size_t behind)
+{
+    Range over = RANGE_EMPTY;
+    for (size_t i = first; i < behind && i < ranges->count; i++) {
+        range_join(&over, &ranges->values[i * ranges->signal_count + signal]);
+    }
+    return over;
+}

@@ -1,0 +1,269 @@
+// Where between its ends does a step go furthest?
+//
+// A step whose values are instants may be long: its extremes stand inside. An angular velocity has
+// one where the angular acceleration changes its sign. For accelerations and forces steps that come
+// near the largest value so far are looked at in the middle and next to their ends, so that a
+// maximum has lower values on either side; parabolas through three looks lead to it. The recorder
+// sees every look.
+#include "run/look.h"
+
+#include "base/root.h"
+
+#include <string.h>
+
+// of the extreme so far: a part of a step hardly rises higher above both its ends
+static const double NEAR = 0.01;
+
+// of the extreme so far: a maximum that three points let expect is not off by more
+static const double LIKELY = 1e-3;
+
+// of the step: a maximum nearer to an end is too low by the square of it
+static const double NEXT_TO_END = 1e-3;
+
+// of a value: lower differences are rounding
+static const double ALIKE = 1e-12;
+
+enum { POINTS_MAX = LOOK_PARTS_MAX + 4 };
+
+enum { CLIMBS_MAX = 12 }; // a parabola gains half as many digits again each time
+
+Look look_inside(const Looker *looker, double time_s)
+{
+    const Linkage *linkage = &looker->scenario->linkage;
+    Look look = {.time_s = time_s};
+    Sample sample;
+    looker->solver->observe(looker->state, time_s, &sample);
+    recorder_see(looker->recorder, &sample);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        look.omega[i] = sample.bodies[i].omega;
+        look.alpha[i] = sample.bodies[i].alpha;
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        look.force[i] = sample.joints[i].force;
+    }
+    return look;
+}
+
+Look look_at_end(const Looker *looker, const StepRecord *step)
+{
+    const Linkage *linkage = &looker->scenario->linkage;
+    Look look = {.time_s = step->end_s};
+    memcpy(look.omega, step->omega, linkage->body_count * sizeof *look.omega);
+    memcpy(look.alpha, step->alpha, linkage->body_count * sizeof *look.alpha);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        look.force[i] = step->joints[i].force;
+    }
+    return look;
+}
+
+// An acceleration or a force, and whether its largest or its smallest value is looked for.
+typedef struct Aim {
+    const Looker *looker;
+    size_t signal; // alpha of each body, then the forces
+    double sign;
+    double extreme; // so far
+} Aim;
+
+// The value of a signal, with the sign that makes what is looked for a maximum.
+static double aim_value(const Aim *aim, const Look *look)
+{
+    const size_t bodies = aim->looker->scenario->linkage.body_count;
+    return aim->sign *
+           (aim->signal < bodies ? look->alpha[aim->signal] : look->force[aim->signal - bodies]);
+}
+
+static double extreme_so_far(const Looker *looker, size_t signal, double sign)
+{
+    const Trajectory *trajectory = looker->recorder->trajectory;
+    const size_t bodies = trajectory->body_count;
+    if (signal >= bodies) {
+        return trajectory->joints[signal - bodies].force_max.value;
+    }
+    const BodyExtremes *body = &trajectory->bodies[signal];
+    return sign * (sign > 0.0 ? body->alpha_max.value : body->alpha_min.value);
+}
+
+static bool is_near(const Aim *aim, double value, double share)
+{
+    return value >= aim->extreme - share * fabs(aim->extreme);
+}
+
+// The next signal with a sign to look for; false behind the last. The smallest force is nothing
+// that is reported.
+static bool next_aim(const Looker *looker, size_t *number, Aim *aim)
+{
+    const Linkage *linkage = &looker->scenario->linkage;
+    const size_t bodies = linkage->body_count;
+    if (linkage->driver.is_present && *number / 2 == (size_t)linkage_driven_body(linkage)) {
+        *number += 2;
+    }
+    const size_t i = (*number)++;
+    if (i >= 2 * bodies + linkage->joint_count) {
+        return false;
+    }
+    const size_t signal = i < 2 * bodies ? i / 2 : i - bodies;
+    const double sign = i < 2 * bodies && i % 2 == 1 ? -1.0 : 1.0;
+    *aim = (Aim){looker, signal, sign, extreme_so_far(looker, signal, sign)};
+    return true;
+}
+
+static bool any_is_near(const Looker *looker, const Look *before, int parts, const Look *looks)
+{
+    Aim aim;
+    for (size_t number = 0; next_aim(looker, &number, &aim);) {
+        double most = aim_value(&aim, before);
+        double least = most;
+        for (int k = 0; k < parts; k++) {
+            most = fmax(most, aim_value(&aim, &looks[k]));
+            least = fmin(least, aim_value(&aim, &looks[k]));
+        }
+        // what stays as it is has no maximum
+        if (is_near(&aim, most, NEAR) && most - least > ALIKE * fabs(most)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// The time at which a parabola through three looks, of which the middle one is largest, is largest,
+// and its value there.
+static double top_of_three(const Aim *aim, const Look three[3], double *value)
+{
+    const double middle = aim_value(aim, &three[1]);
+    const double before_s = three[1].time_s - three[0].time_s;
+    const double behind_s = three[2].time_s - three[1].time_s;
+    const double before = (middle - aim_value(aim, &three[0])) / before_s;
+    const double behind = (aim_value(aim, &three[2]) - middle) / behind_s;
+    const double bend = (behind - before) / (before_s + behind_s);
+    const double slope = before + bend * before_s;
+    const double ahead_s = bend < 0.0 ? -0.5 * slope / bend : 0.0;
+    *value = middle + 0.5 * slope * ahead_s;
+    return three[1].time_s + ahead_s;
+}
+
+// Narrows three looks about a maximum, the middle one largest, down to rounding.
+static void climb(const Aim *aim, Look three[3])
+{
+    for (int i = 0; i < CLIMBS_MAX; i++) {
+        double expected;
+        const double time_s = top_of_three(aim, three, &expected);
+        const double value = aim_value(aim, &three[1]);
+        if (expected - value <= ALIKE * fabs(value) || !(time_s > three[0].time_s) ||
+            !(time_s < three[2].time_s)) {
+            return;
+        }
+        const Look look = look_inside(aim->looker, time_s);
+        const bool is_behind = time_s > three[1].time_s;
+        if (aim_value(aim, &look) > value) {
+            three[is_behind ? 0 : 2] = three[1];
+            three[1] = look;
+        } else {
+            three[is_behind ? 2 : 0] = look;
+        }
+    }
+}
+
+// Puts a look between the others, in order of time; leaves it out where there is one already.
+static int insert(Look *looks, int count, const Look *look)
+{
+    int place = count;
+    while (place > 0 && looks[place - 1].time_s > look->time_s) {
+        place--;
+    }
+    if (count == LOOK_MAX || (place > 0 && looks[place - 1].time_s == look->time_s)) {
+        return count;
+    }
+    memmove(&looks[place + 1], &looks[place], (size_t)(count - place) * sizeof *looks);
+    looks[place] = *look;
+    return count + 1;
+}
+
+// Climbs to the top of a signal in a step if it may be higher than the extreme so far.
+static bool find_top(const Aim *aim, size_t count, const Look *points, Look *found)
+{
+    size_t top = 0;
+    for (size_t i = 1; i < count; i++) {
+        top = aim_value(aim, &points[i]) > aim_value(aim, &points[top]) ? i : top;
+    }
+    if (top == 0 || top + 1 == count) {
+        return false;
+    }
+    Look three[3] = {points[top - 1], points[top], points[top + 1]};
+    double expected;
+    top_of_three(aim, three, &expected);
+    if (!is_near(aim, expected, LIKELY)) {
+        return false;
+    }
+    climb(aim, three);
+    *found = three[1];
+    return true;
+}
+
+// A body whose angular velocity may have an extreme between two looks.
+typedef struct Turn {
+    const Looker *looker;
+    size_t body;
+} Turn;
+
+static double turn_rate(double time_s, void *context)
+{
+    const Turn *turn = context;
+    return look_inside(turn->looker, time_s).alpha[turn->body];
+}
+
+static void look_for_turns(const Looker *looker, const Look *first, const Look *last)
+{
+    const Trajectory *trajectory = looker->recorder->trajectory;
+    for (size_t i = 0; i < trajectory->body_count; i++) {
+        if (!(first->alpha[i] * last->alpha[i] < 0.0)) {
+            continue;
+        }
+        // omega rises above its ends by no more than a parabola of their slopes would
+        const double room = 0.5 * (last->time_s - first->time_s) *
+                            fmax(fabs(first->alpha[i]), fabs(last->alpha[i]));
+        const BodyExtremes *body = &trajectory->bodies[i];
+        Turn turn = {looker, i};
+        double time_s;
+        if ((fmax(first->omega[i], last->omega[i]) + room > body->omega_max.value ||
+             fmin(first->omega[i], last->omega[i]) - room < body->omega_min.value) &&
+            root_find(turn_rate, &turn, first->time_s, last->time_s,
+                      NEXT_TO_END * (last->time_s - first->time_s), &time_s)) {
+            look_inside(looker, time_s);
+        }
+    }
+}
+
+int look_for_extremes(const Looker *looker, const Look *before, int parts, Look looks[LOOK_MAX])
+{
+    const double end_s = looks[parts - 1].time_s;
+    const double width_s = end_s - before->time_s;
+    const Look *first = before;
+    for (int k = 0; k < parts; k++) {
+        look_for_turns(looker, first, &looks[k]);
+        first = &looks[k];
+    }
+    if (!(width_s > 0.0) || !any_is_near(looker, before, parts, looks)) {
+        return parts;
+    }
+    Look points[POINTS_MAX];
+    size_t count = 0;
+    points[count++] = *before;
+    points[count++] = look_inside(looker, before->time_s + NEXT_TO_END * width_s);
+    if (parts == 1) {
+        points[count++] = look_inside(looker, before->time_s + 0.5 * width_s);
+    }
+    for (int k = 0; k + 1 < parts; k++) {
+        points[count++] = looks[k];
+    }
+    points[count++] = look_inside(looker, end_s - NEXT_TO_END * width_s);
+    points[count++] = looks[parts - 1];
+    int look_count = parts;
+    Aim aim;
+    for (size_t number = 0; next_aim(looker, &number, &aim);) {
+        Look top;
+        if (find_top(&aim, count, points, &top)) {
+            look_count = insert(looks, look_count, &top);
+        }
+    }
+    return look_count;
+}
