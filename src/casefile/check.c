@@ -238,6 +238,35 @@ static bool check_length(const Entries *entries, bool is_driven, Err *err)
                                   : "without a drive there are no revolutions");
 }
 
+// What is reported begins before the run ends.
+static bool check_report(const Entries *entries, const Scenario *scenario, bool is_driven, Err *err)
+{
+    static const char *const KEYS[] = {"run.report-from", "run.revolutions", "run.duration"};
+    const RunOptions *run = &scenario->run;
+    const Entry *own = entries_find(entries, KEYS[0], 0);
+    if (own == NULL) {
+        return true;
+    }
+    if (run->is_report_from_in_turns && !is_driven) {
+        return source_error(own->source, own->node->span, "a time, such as 60 ms", err,
+                            "without a drive there are no revolutions");
+    }
+    if (scenario_reports_any(scenario)) {
+        return true;
+    }
+    const Entry *entry = entries_blame(entries, KEYS, 3, 0);
+    char allowed[ALLOWED_SIZE];
+    if (is_driven) {
+        snprintf(allowed, sizeof allowed, "less than the run, %g revolution%s or %.4g s",
+                 run->revolutions, run->revolutions == 1.0 ? "" : "s", scenario_duration(scenario));
+    } else {
+        snprintf(allowed, sizeof allowed, "less than the run, %.4g s", scenario_duration(scenario));
+    }
+    return source_error(entry->source, entry->node->span, allowed, err,
+                        "run.report-from (%.40s) is not before the end of the run",
+                        own->node->text);
+}
+
 static bool check_backends(const Entries *entries, const RunOptions *run, Err *err)
 {
     for (size_t i = 0; entries->form == SCHEMA_LONG && i < run->backend_count; i++) {
@@ -287,8 +316,9 @@ static bool check_run(const Entries *entries, const Scenario *scenario, Err *err
         return source_error(speed->source, speed->node->span, "any speed but 0", err,
                             "the crank does not turn");
     }
-    return check_length(entries, is_driven, err) && check_backends(entries, &scenario->run, err) &&
-           check_stepping(entries, scenario, err) &&
+    return check_length(entries, is_driven, err) &&
+           check_report(entries, scenario, is_driven, err) &&
+           check_backends(entries, &scenario->run, err) && check_stepping(entries, scenario, err) &&
            check_steps(entries, &scenario->run, scenario_duration(scenario), is_driven, err) &&
            (!is_driven || check_samples(entries, &scenario->run, err));
 }

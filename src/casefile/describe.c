@@ -83,6 +83,11 @@ static void describe_value(const SchemaRow *row, Text *text)
     case SCHEMA_BETWEEN:
         text_append(text, "[body, body]");
         break;
+    case SCHEMA_SPAN:
+        text_append(text, "a time in ");
+        units_list(row->dimension, text);
+        text_append(text, ", or in revolutions");
+        break;
     case SCHEMA_BODY_NAME:
     case SCHEMA_JOINT_NAME:
         text_append(text, row->type == SCHEMA_BODY_NAME ? "a body" : "a joint");

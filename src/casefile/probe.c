@@ -116,6 +116,7 @@ static bool read_number(const ProbeKey *key, const char *text, ProbeNumber *numb
     ToleratedLength length;
     double exponent;
     size_t whole;
+    bool is_in_turns;
     text_copy(number->unit, sizeof number->unit, units_si(key->row->dimension));
     switch (key->row->type) {
     case SCHEMA_INTEGER:
@@ -130,6 +131,12 @@ static bool read_number(const ProbeKey *key, const char *text, ProbeNumber *numb
         }
         snprintf(number->unit, sizeof number->unit, exponent == 1.0 ? "N/m" : "N/m^%.17g",
                  exponent);
+        return true;
+    case SCHEMA_SPAN:
+        if (!quantity_span(text, &number->value, &is_in_turns, complaint)) {
+            return false;
+        }
+        text_copy(number->unit, sizeof number->unit, is_in_turns ? "revolutions" : "s");
         return true;
     case SCHEMA_TOLERATED:
         if (!quantity_tolerated(text, &length, complaint)) {

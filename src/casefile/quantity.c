@@ -332,3 +332,40 @@ bool quantity_stiffness(const char *text, double *stiffness, double *exponent, C
     *exponent = read_exponent;
     return true;
 }
+
+static bool allow_span(Complaint *complaint)
+{
+    snprintf(complaint->allowed, sizeof complaint->allowed,
+             "a time such as 60 ms, or 1 revolution");
+    return false;
+}
+
+bool quantity_span(const char *text, double *span, bool *is_in_turns, Complaint *complaint)
+{
+    static const char *const TURNS[] = {"revolution", "revolutions"};
+    complaint->allowed[0] = '\0';
+    const char *rest = text;
+    char name[UNITS_NAME_SIZE];
+    double value;
+    if (!take_number(&rest, DIMENSION_TIME, &value, complaint)) {
+        return allow_span(complaint);
+    }
+    units_normalise(rest, name);
+    for (int i = 0; i < 2; i++) {
+        if (strcmp(name, TURNS[i]) == 0) {
+            *span = value;
+            *is_in_turns = true;
+            return true;
+        }
+    }
+    const char *nearest = name[0] != '\0' ? text_nearest(name, TURNS, 2) : NULL;
+    if (nearest != NULL) {
+        complain(complaint, "'%.*s' is no unit; did you mean '%s'?", SHOWN_MAX, name, nearest);
+        return allow_span(complaint);
+    }
+    if (!quantity_parse(text, DIMENSION_TIME, span, complaint)) {
+        return allow_span(complaint);
+    }
+    *is_in_turns = false;
+    return true;
+}

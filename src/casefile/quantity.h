@@ -37,3 +37,6 @@ bool quantity_tolerated(const char *text, ToleratedLength *length, Complaint *co
 // A stiffness in N/m^n or N/mm^n, and the exponent n that its unit gives (1 to 3).
 bool quantity_stiffness(const char *text, double *stiffness, double *exponent,
                         Complaint *complaint);
+
+// A time, or `1 revolution`, `2.5 revolutions`: then the number is that of turns.
+bool quantity_span(const char *text, double *span, bool *is_in_turns, Complaint *complaint);

@@ -18,6 +18,7 @@ typedef enum SchemaType {
     SCHEMA_BACKENDS,         // list of words -> run.backends and run.backend_count
     SCHEMA_TEXT,             // text -> title
     SCHEMA_STIFFNESS,        // N/m^n -> contact.stiffness and contact.exponent
+    SCHEMA_SPAN,             // time or turns of the driver -> run.report_from
     SCHEMA_VECTOR,           // [x, y], or `centred` where the row has it as default -> Vec2
     SCHEMA_RADIAL_CLEARANCE, // length -> Clearance: both radii
     SCHEMA_ALONG,            // length from a link's first joint -> double from its centre of mass

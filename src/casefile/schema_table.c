@@ -44,6 +44,7 @@ enum {
     PLAIN = 1 << 19, // the stepping of a given step
     EXTRAPOLATED = 1 << 20,
     LOCAL = 1 << 21, // the contact is integrated within the step
+    LATER = 1 << 22, // what is reported begins after the start
 };
 
 static unsigned bit(unsigned need, bool is_met)
@@ -85,7 +86,8 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
                    bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
                    bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
                    bit(FRICTION, has_play && contact->friction > 0.0) |
-                   bit(QUICK, scenario->ode.solver == ODE_QUICK) | step_bits(scenario, is_impact);
+                   bit(QUICK, scenario->ode.solver == ODE_QUICK) |
+                   bit(LATER, scenario->run.report_from > 0.0) | step_bits(scenario, is_impact);
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
         met |= bit(REFERENCE, scenario->run.backends[i] == BACKEND_REFERENCE);
         met |= bit(ODE, scenario->run.backends[i] == BACKEND_ODE);
@@ -256,6 +258,11 @@ const SchemaRow SCHEMA_ROWS[] = {
      .needs = PLAY,
      .doc = "least height of a spike, over what ideal joints show: the range of the angular "
             "acceleration, the largest force; without a drive over a tenth of the signal's range"},
+    {.path = "run.report-from", .type = SCHEMA_SPAN, .dimension = DIMENSION_TIME,
+     AT(run.report_from), .low = 0.0, .high = 1e6, .needs = LATER,
+     .doc = "extremes, contacts and spikes are those from this time on, such as 1 revolution: a "
+            "start that was only assumed is left out; errors, energy, series and picture are "
+            "those of the whole run"},
     {.path = "run.backends", .type = SCHEMA_BACKENDS, AT(run.backends),
      .words = OPTIONS_BACKENDS,
      .doc = "the solvers to run, in this order: a word or a list; reference, ode where a case "

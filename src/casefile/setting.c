@@ -151,6 +151,9 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
     case SCHEMA_STIFFNESS:
         set_stiffness(setting, field);
         break;
+    case SCHEMA_SPAN:
+        set_number(setting, scenario_report_from(scenario));
+        break;
     case SCHEMA_VECTOR:
         set_vector(setting, *(const Vec2 *)field);
         break;

@@ -249,6 +249,24 @@ static bool store_stiffness(const Target *target, ContactOptions *contact)
     return true;
 }
 
+static bool store_span(const Target *target, RunOptions *run)
+{
+    const Node *node = target->entry->node;
+    Complaint complaint;
+    double span = 0.0;
+    bool is_in_turns = false;
+    if (!check_scalar(target, node)) {
+        return false;
+    }
+    const bool is_read = quantity_span(node->text, &span, &is_in_turns, &complaint);
+    if (!accept(target, node, is_read, &complaint, span)) {
+        return false;
+    }
+    run->report_from = span;
+    run->is_report_from_in_turns = is_in_turns;
+    return true;
+}
+
 // The two items of a list of two; false for anything else.
 static bool find_pair(const Node *node, const Node *pair[2])
 {
@@ -354,6 +372,8 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return store_text(&target, target.field, SCENARIO_TITLE_SIZE);
     case SCHEMA_STIFFNESS:
         return store_stiffness(&target, &scenario->contact);
+    case SCHEMA_SPAN:
+        return store_span(&target, &scenario->run);
     case SCHEMA_VECTOR:
     case SCHEMA_ANCHOR: // moved to its body's frame once the bodies are placed
         if (!store_vector(&target)) {

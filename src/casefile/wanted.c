@@ -33,6 +33,9 @@ void wanted_describe(const Entries *entries, const SchemaRow *row, Text *text)
     case SCHEMA_TEXT:
         text_append(text, "text on one line");
         break;
+    case SCHEMA_SPAN:
+        text_append(text, "a time such as 60 ms, or 1 revolution");
+        break;
     case SCHEMA_INTEGER:
         text_append(text, "a whole number such as 100");
         break;

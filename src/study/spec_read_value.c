@@ -136,15 +136,16 @@ bool spec_read_number(const Reading *reading, const ProbeKey *key, const Node *n
     if (!probe_number(&reading->source, key, node, &read, reading->err)) {
         return false;
     }
-    // the unit of a stiffness gives the exponent of its law
-    if (key->row->type == SCHEMA_STIFFNESS && variable->unit[0] != '\0' &&
+    // the unit of a stiffness gives the exponent of its law, that of a span what it counts
+    const bool is_stiffness = key->row->type == SCHEMA_STIFFNESS;
+    if ((is_stiffness || key->row->type == SCHEMA_SPAN) && variable->unit[0] != '\0' &&
         strcmp(variable->unit, read.unit) != 0) {
-        return spec_read_refuse(reading, node, "values with one exponent",
-                                "this value is in %s, those before it in %s", read.unit,
-                                variable->unit);
+        return spec_read_refuse(
+            reading, node, is_stiffness ? "values with one exponent" : "values in one unit",
+            "this value is in %s, those before it in %s", read.unit, variable->unit);
     }
     text_copy(variable->unit, sizeof variable->unit, read.unit);
-    if (key->row->type == SCHEMA_STIFFNESS) {
+    if (is_stiffness || key->row->type == SCHEMA_SPAN) {
         text_copy(variable->column_unit, sizeof variable->column_unit, read.unit);
     }
     *number = read.value;
