@@ -254,17 +254,13 @@ static bool store_span(const Target *target, RunOptions *run)
     const Node *node = target->entry->node;
     Complaint complaint;
     double span = 0.0;
-    bool is_in_turns = false;
     if (!check_scalar(target, node)) {
         return false;
     }
-    const bool is_read = quantity_span(node->text, &span, &is_in_turns, &complaint);
-    if (!accept(target, node, is_read, &complaint, span)) {
-        return false;
-    }
+    const bool is_read =
+        quantity_span(node->text, &span, &run->is_report_from_in_turns, &complaint);
     run->report_from = span;
-    run->is_report_from_in_turns = is_in_turns;
-    return true;
+    return accept(target, node, is_read, &complaint, span);
 }
 
 // The two items of a list of two; false for anything else.
@@ -364,8 +360,7 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
     case SCHEMA_INTEGER:
         return store_integer(&target);
     case SCHEMA_CHOICE:
-        // every enumeration here has the size of int
-        return find_word(&target, entry->node, target.field);
+        return find_word(&target, entry->node, target.field); // an enumeration is an int
     case SCHEMA_BACKENDS:
         return store_backends(&target, &scenario->run);
     case SCHEMA_TEXT:
@@ -395,7 +390,7 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return store_radial_clearance(&target, target.field);
     case SCHEMA_QUANTITY:
         return store_quantity(&target, target.field);
-    default: // SCHEMA_ALONG is moved to the centre of mass once the links are known
+    default: // SCHEMA_ALONG is moved once the links are known
         if (!read_number(&target, entry->node, &number)) {
             return false;
         }

@@ -121,6 +121,13 @@ static inline void raise_to(Extreme *extreme, bool is_first, double value, doubl
     }
 }
 
+// Whether a step that ends then belongs to the reported time. The first of all may have no length.
+static bool is_after_start(const Recorder *recorder, double end_s)
+{
+    const double from_s = recorder->trajectory->report_from_s;
+    return end_s > from_s || from_s == 0.0;
+}
+
 // Puts a finished contact among the strongest, in order of force.
 static void keep_spike(JointExtremes *joint, const Spike *spike)
 {
@@ -154,7 +161,7 @@ static void add_contact(Recorder *recorder, size_t number, const StepRecord *ste
     Spike *spike = &recorder->open[number];
     const double duration = step->end_s - step->start_s;
     const double from_s = recorder->trajectory->report_from_s;
-    const bool is_reported = step->end_s > from_s;
+    const bool is_reported = is_after_start(recorder, step->end_s);
     if (state->is_touching && !recorder->was_touching[number]) {
         joint->impacts += step->start_s >= from_s ? 1 : 0;
         *spike = (Spike){
@@ -219,7 +226,7 @@ void recorder_add(Recorder *recorder, const StepRecord *step)
         }
     }
     trajectory->hash = hash;
-    if (step->end_s > trajectory->report_from_s) {
+    if (is_after_start(recorder, step->end_s)) {
         raise_all(recorder, step);
     }
     add_ranges(recorder, step);
