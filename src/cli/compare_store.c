@@ -99,8 +99,8 @@ bool compare_store_open(CompareStore *store, const CompareOptions *options,
     json_t *key = ladder_json_key(ladder, scenario, build);
     const bool is_open =
         (options->store != NULL || find_path(key, path, err)) &&
-        journal_open(&store->journal, &JOURNAL_COMPARE, options->store != NULL ? options->store : path, key,
-                     options->is_fresh, err);
+        journal_open(&store->journal, &JOURNAL_COMPARE,
+                     options->store != NULL ? options->store : path, key, options->is_fresh, err);
     json_decref(key);
     return is_open && take_all(store, ladder, options->common.is_quiet, err);
 }

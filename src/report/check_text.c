@@ -3,6 +3,7 @@
 
 #include "report/run_section.h"
 
+#include <math.h>
 #include <string.h>
 
 enum {
@@ -29,15 +30,14 @@ static void write_rows(const CheckCase *item, size_t count, const Style *style, 
     }
     static const RunSectionHead HEADS[] = {
         {"metric", "", TABLE_LEFT},
-        {"baseline", "", TABLE_RIGHT},
+        {"baseline", "", TABLE_RIGHT | TABLE_MINOR},
         {"now", "", TABLE_RIGHT},
-        {"difference", "", TABLE_RIGHT | TABLE_MINOR},
+        {"difference", "", TABLE_RIGHT | TABLE_DETAIL},
         {"band", "", TABLE_RIGHT | TABLE_DETAIL},
         {"bands off", "", TABLE_RIGHT},
         {"why the band", "", TABLE_LEFT | TABLE_DETAIL},
-        {"verdict", "", TABLE_LEFT},
     };
-    Table *table = run_section_begin(item->path, 8, HEADS, style, text);
+    Table *table = run_section_begin(item->path, 7, HEADS, style, text);
     for (size_t i = 0; i < count; i++) {
         const CheckRow *row = &item->rows[i];
         const CheckCells cells = check_report_cells(row);
@@ -46,10 +46,12 @@ static void write_rows(const CheckCase *item, size_t count, const Style *style, 
         table_cell(table, "%s", cells.now);
         table_cell(table, "%s", cells.difference);
         table_cell(table, "%s", cells.band);
-        table_cell(table, "%s", cells.severity);
+        // what has no count of bands says what it is
+        const bool is_counted =
+            row->verdict == CHECK_WITHIN || (row->verdict == CHECK_OUT && isfinite(row->severity));
+        table_cell(table, "%s", is_counted ? cells.severity : CHECK_VERDICT_WORDS[row->verdict]);
         table_cell(table, "%s",
                    row->verdict == CHECK_SETTING ? "" : BASELINE_BAND_WORDS[row->band_kind]);
-        table_cell(table, "%s", CHECK_VERDICT_WORDS[row->verdict]);
     }
     run_section_end(table, text);
 }
