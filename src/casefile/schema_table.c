@@ -254,6 +254,9 @@ const SchemaRow SCHEMA_ROWS[] = {
      .needs = ODE | CHOSEN_STEP,
      .doc = "of step auto: the largest error in omega, relative to each body's largest omega, up "
             "to the predictability horizon"},
+    {.path = "run.most-steps", .type = SCHEMA_INTEGER, AT(run.most_steps), .low = 1e3, .high = 1e12,
+     .needs = ODE | CHOSEN_STEP,
+     .doc = "of step auto: world steps of all trials together; what they do not reach is said"},
     {.path = "run.spike-threshold", AT(run.spike_threshold), .low = 1e-3, .high = 1e3,
      .needs = PLAY,
      .doc = "least height of a spike, over what ideal joints show: the range of the angular "

@@ -2,6 +2,7 @@
 #include "cli/case_run.h"
 
 #include "cli/progress.h"
+#include "compare/backend_run.h"
 #include "run/registry.h"
 #include "run/tracer.h"
 
@@ -42,15 +43,17 @@ static void make_truth(CaseRun *run, bool is_quiet)
 }
 
 // One run of one backend; the truth's own trajectory stands for the run of its backend.
-static Trajectory *run_backend(const CaseRun *run, const Solver *solver, bool is_quiet)
+static Trajectory *run_backend(const CaseRun *run, BackendKind backend, bool is_quiet)
 {
+    const Solver *solver = registry_solver(backend);
     Trajectory *truth = run->truth.trajectory;
     if (truth != NULL && strcmp(truth->backend, solver->name) == 0) {
         return truth;
     }
     Progress progress;
-    const RunWatch watch = progress_watch(&progress, solver->name, is_quiet);
-    Trajectory *trajectory = tracer_run(&run->scenario, solver, watch);
+    const ChosenWatch watch = progress_watch_trials(&progress, solver->name, is_quiet);
+    Trajectory *trajectory = backend_run(&run->scenario, backend,
+                                         truth == NULL ? NULL : &run->truth, watch, &TRACER_PROBE);
     progress_end(&progress);
     return trajectory;
 }
@@ -99,9 +102,9 @@ static void run_ensembles(CaseRun *run, bool is_quiet)
         Progress progress;
         const RunWatch watch = progress_watch(&progress, name, is_quiet);
         // a step that was chosen once is good for starts beside this one
-        const bool is_chosen = options->step == 0.0 && options->backends[i] == BACKEND_ODE;
+        const bool is_chosen = backend_run_is_chosen(&run->scenario, options->backends[i]);
         const Scenario scenario =
-            is_chosen ? scenario_with_step(&run->scenario, run->runs[i]->step_s) : run->scenario;
+            is_chosen ? chosen_run_scenario(&run->scenario, run->runs[i]->step_s) : run->scenario;
         ensemble_run(&scenario, solver, watch, &run->ensembles[i]);
         progress_end(&progress);
     }
@@ -139,7 +142,7 @@ void case_run_execute(CaseRun *run, bool is_quiet)
     };
     make_truth(run, is_quiet);
     for (size_t i = 0; i < options->backend_count; i++) {
-        run->runs[i] = run_backend(run, registry_solver(options->backends[i]), is_quiet);
+        run->runs[i] = run_backend(run, options->backends[i], is_quiet);
         run->failed_count += run->runs[i]->is_complete ? 0 : 1;
     }
     measure_errors(run);

@@ -2,15 +2,19 @@
 #pragma once
 
 #include "cli/status_line.h"
-#include "run/run.h"
+#include "compare/chosen_run.h"
 
 typedef struct Progress {
     const char *backend; // of the run that is watched
+    char doing[64];      // which of its trials; empty where there are none
     StatusLine line;
 } Progress;
 
 // Watches one run. The progress must outlive the run.
 RunWatch progress_watch(Progress *progress, const char *backend, bool is_quiet);
+
+// Watches one run whose step may be chosen by trials.
+ChosenWatch progress_watch_trials(Progress *progress, const char *backend, bool is_quiet);
 
 // Takes the line away again.
 void progress_end(Progress *progress);

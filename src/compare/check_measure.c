@@ -7,6 +7,7 @@
 
 #include "base/shorten.h"
 #include "base/text.h"
+#include "compare/backend_run.h"
 #include "compare/check_add.h"
 #include "compare/expect_value.h"
 #include "model/perturb.h"
@@ -19,13 +20,14 @@
 
 enum { HALVINGS = 2 }; // of the step, for the order
 
-static const RunWatch NOBODY = {NULL, NULL};
+static const ChosenWatch NOBODY = {.begin = NULL};
 
 // A run that is complete, or NULL with the reason in the measure.
-static Trajectory *run_backend(CheckAdd *work, const Scenario *scenario, BackendKind backend)
+static Trajectory *run_backend(CheckAdd *work, const Scenario *scenario, BackendKind backend,
+                               const Truth *truth)
 {
     const Solver *solver = registry_solver(backend);
-    Trajectory *run = tracer_run(scenario, solver, NOBODY);
+    Trajectory *run = backend_run(scenario, backend, truth, NOBODY, &TRACER_PROBE);
     if (!run->is_complete) {
         CheckMeasure *measure = work->measure;
         measure->is_complete = false;
@@ -42,7 +44,7 @@ static Trajectory *run_backend(CheckAdd *work, const Scenario *scenario, Backend
 
 static double find_error(CheckAdd *work, const Scenario *scenario, const Trajectory *truth)
 {
-    Trajectory *run = run_backend(work, scenario, BACKEND_ODE);
+    Trajectory *run = run_backend(work, scenario, BACKEND_ODE, NULL);
     const double error = run != NULL ? error_against(run, truth, INFINITY).omega_max : NAN;
     trajectory_destroy(run);
     return error;
@@ -99,16 +101,29 @@ static void measure_run(CheckAdd *work, BackendKind backend, const Trajectory *r
     }
 }
 
+// What a step is chosen against: as sure, and as far, as was settled with the baseline.
+static Truth settled_truth(Trajectory *truth, const CheckPlan *plan)
+{
+    return (Truth){
+        .trajectory = truth,
+        .uncertainty = plan->uncertainty,
+        .horizon_s = plan->horizon_s,
+        .is_limited = plan->is_limited,
+    };
+}
+
 static void measure_group(const Scenario *scenario, const char *group, bool has_truth,
                           const CheckPlan *plan, CheckMeasure *measure)
 {
     CheckAdd work = check_add_begin(scenario, group, measure);
     const BackendKind judge = truth_backend(scenario);
-    Trajectory *truth = has_truth ? run_backend(&work, scenario, judge) : NULL;
+    Trajectory *truth = has_truth ? run_backend(&work, scenario, judge, NULL) : NULL;
+    const Truth known = settled_truth(truth, plan);
     for (size_t i = 0; measure->is_complete && i < scenario->run.backend_count; i++) {
         const BackendKind backend = scenario->run.backends[i];
         const bool is_there = truth != NULL && backend == judge;
-        Trajectory *run = is_there ? truth : run_backend(&work, scenario, backend);
+        Trajectory *run =
+            is_there ? truth : run_backend(&work, scenario, backend, truth == NULL ? NULL : &known);
         if (run != NULL) {
             measure_run(&work, backend, run, truth, plan);
         }

@@ -3,10 +3,12 @@
 
 #include "base/clock.h"
 #include "base/shorten.h"
+#include "compare/backend_run.h"
 #include "run/registry.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const RunWatch NOBODY = {NULL, NULL};
 
@@ -18,8 +20,7 @@ Task task_make(const Ladder *ladder, const Scenario *scenario, LadderRun run, co
         .scenario = *scenario,
         .backend = scheme->backend,
         .run = run,
-        .truth = truth == NULL ? NULL : truth->trajectory,
-        .horizon_s = truth != NULL && truth->is_limited ? truth->horizon_s : INFINITY,
+        .truth = truth,
     };
     scheme_apply(scheme, point->step_s, &task.scenario);
     return task;
@@ -30,8 +31,16 @@ void task_measure(const void *context, void *result)
     const Task *task = context;
     LadderRun *run = result;
     *run = task->run;
+    // what a step is chosen against is made once, whatever it is used for: no part of the time
+    Truth own = {.trajectory = NULL};
+    const Truth *truth = task->truth;
+    if (truth == NULL && backend_run_is_chosen(&task->scenario, task->backend)) {
+        own = truth_make(&task->scenario, NOBODY);
+        truth = &own;
+    }
     const double started_s = clock_processor_s();
-    Trajectory *trajectory = run_scenario(&task->scenario, registry_solver(task->backend), NOBODY);
+    Trajectory *trajectory =
+        backend_run(&task->scenario, task->backend, truth, (ChosenWatch){.begin = NULL}, NULL);
     run->processor_s = clock_processor_s() - started_s;
     run->is_complete = trajectory->is_complete;
     shorten_copy(run->message, sizeof run->message, trajectory->message);
@@ -40,9 +49,11 @@ void task_measure(const void *context, void *result)
     run->wall_s = trajectory->wall_s;
     run->hash = trajectory->hash;
     if (run->kind == LADDER_ERROR && trajectory->is_complete) {
-        run->error = error_against(trajectory, task->truth, task->horizon_s);
+        const double horizon_s = truth->is_limited ? truth->horizon_s : INFINITY;
+        run->error = error_against(trajectory, truth->trajectory, horizon_s);
         run->error.against = NULL;
     }
+    truth_finish(&own);
     trajectory_destroy(trajectory);
 }
 
@@ -57,5 +68,20 @@ void task_certify(const void *context, void *packed)
 void task_spread(const void *context, void *result)
 {
     const Task *task = context;
-    ensemble_run(&task->scenario, registry_solver(task->backend), NOBODY, result);
+    const Solver *solver = registry_solver(task->backend);
+    if (!backend_run_is_chosen(&task->scenario, task->backend)) {
+        ensemble_run(&task->scenario, solver, NOBODY, result);
+        return;
+    }
+    // a step that was chosen once is good for starts beside this one
+    Ensemble *ensemble = result;
+    Trajectory *run = chosen_run_make(&task->scenario, NULL, (ChosenWatch){.begin = NULL}, NULL);
+    if (run->is_complete) {
+        const Scenario scenario = chosen_run_scenario(&task->scenario, run->step_s);
+        ensemble_run(&scenario, solver, NOBODY, ensemble);
+    } else {
+        *ensemble = (Ensemble){.failed = ENSEMBLE_MEMBERS};
+        memcpy(ensemble->message, run->message, sizeof ensemble->message);
+    }
+    trajectory_destroy(run);
 }

@@ -15,9 +15,8 @@ enum { TASK_TRUTH_RUNS = 8 };
 typedef struct Task {
     Scenario scenario; // with scheme and step applied
     BackendKind backend;
-    LadderRun run;           // kind, point and round of a run that is measured
-    const Trajectory *truth; // of LADDER_ERROR
-    double horizon_s;        // likewise; INFINITY where nothing limits it
+    LadderRun run;      // kind, point and round of a run that is measured
+    const Truth *truth; // of LADDER_ERROR; a step to be chosen makes its own without it
 } Task;
 
 // The task of a run of a ladder; the truth is only needed for LADDER_ERROR.

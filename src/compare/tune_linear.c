@@ -166,8 +166,7 @@ static bool run_linears(const TuneSearch *search, const Truth *truth, Err *err)
                 .scenario = tune_linear_scenario(search->scenario, &tune->linears[next]),
                 .backend = BACKEND_ODE,
                 .run = {.kind = LADDER_ERROR},
-                .truth = truth->trajectory,
-                .horizon_s = truth->is_limited ? truth->horizon_s : INFINITY,
+                .truth = truth,
             };
             is_going = tune_pool_start(&pool, &task, next++, err);
         }

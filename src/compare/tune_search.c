@@ -42,8 +42,7 @@ static Task make_task(const TuneSearch *search, const Truth *truth, size_t schem
         .scenario = *search->scenario,
         .backend = BACKEND_ODE,
         .run = {.kind = truth != NULL ? LADDER_ERROR : LADDER_TIMING},
-        .truth = truth != NULL ? truth->trajectory : NULL,
-        .horizon_s = truth != NULL && truth->is_limited ? truth->horizon_s : INFINITY,
+        .truth = truth,
     };
     tune_apply(&search->tune->schemes[scheme], value, &task.scenario);
     return task;

@@ -95,6 +95,7 @@ typedef struct RunOptions {
     size_t samples;         // per revolution of the driver, or in the whole run without one
     double step;            // s; 0: chosen for the tolerance
     double tolerance;       // 1, largest error in omega wanted of a step that is chosen
+    size_t most_steps;      // world steps of all trials of a step that is chosen
     double spike_threshold; // 1, least prominence of a spike over what ideal joints show
     double report_from;     // s, or turns of the driver; what is before is not reported
     bool is_report_from_in_turns;

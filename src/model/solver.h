@@ -36,15 +36,7 @@ typedef struct SolverModel {
     size_t evaluations;   // of the equations of motion so far, or of the forces of contacts that it
                           // integrates by itself; 0 where it does not count them
     size_t fallback_rows; // of contacts, to which a map was applied that the case does not ask for
-    double error_estimate; // 1, of a step chosen for a tolerance; 0 without one
-    double estimate_s;     // s, up to which the estimate holds
 } SolverModel;
-
-// A sign of life from work that takes long.
-typedef struct SolverPulse {
-    void (*beat)(void *context); // NULL: nobody waits for it
-    void *context;
-} SolverPulse;
 
 typedef struct Solver {
     const char *name;    // as in a case's list of backends
@@ -52,9 +44,6 @@ typedef struct Solver {
     bool is_ideal;       // takes every joint as ideal, whatever its play
     // Makes the state at time zero. On failure *state stays NULL.
     bool (*open)(const Scenario *scenario, void **state, Err *err);
-    // Optional: what is to be done before the first step and may take long, with a beat now and
-    // then. Where it is not called the first step does it. Fails as step does.
-    bool (*prepare)(void *state, SolverPulse pulse, Err *err);
     // Takes one step of the solver's own choosing towards stop_s. It may end beyond stop_s only
     // if observe can look back into the step. Fails with ERR_SOLVER, saying when and why.
     bool (*step)(void *state, double stop_s, Err *err);

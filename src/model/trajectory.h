@@ -100,8 +100,10 @@ typedef struct Trajectory {
     size_t constraint_rows; // of the ideal joints, where the solver builds rows
     size_t contact_rows;    // most at any one step; of the reference its joints with play
     size_t fallback_rows;   // of contacts, where the map asked for would not have been stable
-    double error_estimate;  // 1, of omega, where the step was chosen for a tolerance; else 0
-    double estimate_s;      // s, up to which the estimate holds
+    size_t trials;          // made to choose the step for a tolerance, this run included; else 0
+    double error_estimate;  // 1, of omega: an upper bound, where the step was chosen; else 0
+    double estimate_s;      // s, up to which it holds
+    bool is_short;          // that is less than was asked for: the trials had no more steps
     uint64_t hash;          // of every step's velocities, accelerations and joint forces
 } Trajectory;
 

@@ -17,9 +17,6 @@ static const Solver *choose(const Scenario *scenario)
 {
     const bool is_impact =
         scenario_has_clearance(scenario) && scenario->contact.model == CONTACT_IMPACT;
-    if (scenario->run.step == 0.0) {
-        return &STEPPING_CHOSEN;
-    }
     switch (scenario->ode.stepping) {
     case ODE_EXTRAPOLATED:
         return &STEPPING_EXTRAPOLATED;
@@ -33,6 +30,8 @@ static const Solver *choose(const Scenario *scenario)
 
 static bool ode_open(const Scenario *scenario, void **state, Err *err)
 {
+    // compare/chosen_run.c finds one
+    assert(scenario->run.step > 0.0);
     Ode *ode = calloc(1, sizeof *ode);
     assert(ode != NULL);
     ode->stepping = choose(scenario);
@@ -42,12 +41,6 @@ static bool ode_open(const Scenario *scenario, void **state, Err *err)
     }
     *state = ode;
     return true;
-}
-
-static bool ode_prepare(void *state, SolverPulse pulse, Err *err)
-{
-    Ode *ode = state;
-    return ode->stepping->prepare == NULL || ode->stepping->prepare(ode->state, pulse, err);
 }
 
 static bool ode_step(void *state, double stop_s, Err *err)
@@ -87,7 +80,6 @@ const Solver ODE_SOLVER = {
     .name = "ode",
     .summary = "Open Dynamics Engine",
     .open = ode_open,
-    .prepare = ode_prepare,
     .step = ode_step,
     .record = ode_record,
     .observe = ode_observe,

@@ -10,7 +10,6 @@ extern const Solver STEPPING_PLAIN;
 extern const Solver STEPPING_STAGGERED;
 extern const Solver STEPPING_IMPULSE;
 extern const Solver STEPPING_EXTRAPOLATED;
-extern const Solver STEPPING_CHOSEN;
 
 // How the driven body moves at a time: it turns about its joint with the ground, exactly. Zero
 // where there is no driver.

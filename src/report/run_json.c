@@ -104,9 +104,13 @@ static json_t *run_object(const RunReport *report, size_t index)
     json_object_set_new(object, "constraint_rows", json_integer((json_int_t)run->constraint_rows));
     json_object_set_new(object, "contact_rows", json_integer((json_int_t)run->contact_rows));
     json_object_set_new(object, "fallback_rows", json_integer((json_int_t)run->fallback_rows));
-    const bool is_estimated = run->error_estimate > 0.0;
+    const bool is_estimated = run->trials > 0;
     json_value_set(object, "error_estimate", is_estimated ? run->error_estimate : NAN);
     json_value_set(object, "error_estimate_until_s", is_estimated ? run->estimate_s : NAN);
+    json_object_set_new(object, "trials",
+                        is_estimated ? json_integer((json_int_t)run->trials) : json_null());
+    json_object_set_new(object, "tolerance_held",
+                        is_estimated ? json_boolean(!run->is_short) : json_null());
     json_object_set_new(object, "bodies", bodies_object(linkage, run));
     json_object_set_new(object, "joints", joints_object(linkage, run));
     json_object_set_new(object, "error", run_truth_json_error(report, index));

@@ -209,6 +209,23 @@ static void cost_row(Table *table, const Trajectory *run)
     }
 }
 
+// How the step came about and what its error is; of a tolerance that could not be held to the end
+// up to when it was.
+static void write_chosen(const RunReport *report, const Trajectory *run, Text *text)
+{
+    text_append(text, "  %s: step %.4g us, chosen by %zu trial%s; the steps are those of all.\n",
+                run->backend, run->step_s * UNITS_US, run->trials, run->trials == 1 ? "" : "s");
+    if (run->is_short) {
+        text_append(text,
+                    "  The tolerance %.3g holds up to %.4g ms of %.4g ms only; for more, allow "
+                    "more steps: run.most-steps.\n",
+                    report->scenario->run.tolerance, run->estimate_s * UNITS_MS,
+                    run->duration_s * UNITS_MS);
+    }
+    text_append(text, "  Its error is at most %.2g up to %.4g ms.\n", run->error_estimate,
+                run->estimate_s * UNITS_MS);
+}
+
 void run_tables_cost(const RunReport *report, const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
@@ -229,11 +246,8 @@ void run_tables_cost(const RunReport *report, const Style *style, Text *text)
                         style->end);
             continue;
         }
-        if (run->error_estimate > 0.0) {
-            text_append(text,
-                        "  %s: step chosen by trial runs, which the steps count; its error is"
-                        " estimated as %.2g up to %.4g ms.\n",
-                        run->backend, run->error_estimate, run->estimate_s * UNITS_MS);
+        if (run->trials > 0) {
+            write_chosen(report, run, text);
         }
         if (run->fallback_rows > 0) {
             text_append(text,

@@ -1,6 +1,7 @@
 // What becomes of a setting outside this program?
 #include "report/tune_carriers.h"
 
+#include "compare/chosen_run.h"
 #include "report/run_section.h"
 #include "report/tune_code.h"
 #include "report/tune_gazebo.h"
@@ -27,6 +28,18 @@ const TuneTrial *tune_carriers_trial(const TuneReport *report)
     return best != NULL || tune->within == TUNE_NONE ? best : &tune->trials[tune->within];
 }
 
+// The code has no trials of its own: its step is the one that they choose.
+static bool choose_step(Scenario *scenario, Err *err)
+{
+    Trajectory *run = chosen_run_make(scenario, NULL, (ChosenWatch){.begin = NULL}, NULL);
+    const bool is_chosen = run->is_complete || err_set(err, ERR_SOLVER, "%s", run->message);
+    if (is_chosen) {
+        *scenario = chosen_run_scenario(scenario, run->step_s);
+    }
+    trajectory_destroy(run);
+    return is_chosen;
+}
+
 bool tune_carriers_code(const TuneReport *report, Text *text, Err *err)
 {
     const TuneTrial *trial = tune_carriers_trial(report);
@@ -35,6 +48,10 @@ bool tune_carriers_code(const TuneReport *report, Text *text, Err *err)
     assert(scenario != NULL);
     *scenario = *report->scenario;
     tune_apply(&report->tune->schemes[trial->scheme], trial->value, scenario);
+    if (scenario->run.step == 0.0 && !choose_step(scenario, err)) {
+        free(scenario);
+        return false;
+    }
     Text words;
     Text command;
     text_init(&words);

@@ -24,16 +24,12 @@ static const Stepping PLAIN = {"ode/plain.c", "STEPPING_PLAIN"};
 static const Stepping STAGGERED = {"ode/staggered.c", "STEPPING_STAGGERED"};
 static const Stepping IMPULSE = {"ode/impulse.c", "STEPPING_IMPULSE"};
 static const Stepping EXTRAPOLATED = {"ode/extrapolated.c", "STEPPING_EXTRAPOLATED"};
-static const Stepping CHOSEN = {"ode/chosen_step.c", "STEPPING_CHOSEN"};
 
 // As ode/ode_solver.c chooses.
 static Stepping stepping_of(const Scenario *scenario)
 {
     const bool is_impact =
         scenario_has_clearance(scenario) && scenario->contact.model == CONTACT_IMPACT;
-    if (scenario->run.step == 0.0) {
-        return CHOSEN;
-    }
     switch (scenario->ode.stepping) {
     case ODE_EXTRAPOLATED:
         return EXTRAPOLATED;
@@ -326,15 +322,9 @@ static void write_main(const Stepping *stepping, Text *text)
 bool tune_code_write(const TuneCode *code, Text *text, Err *err)
 {
     const Stepping stepping = stepping_of(code->scenario);
-    const char *files[] = {"run/run.c", "report/series_rows.c", stepping.file, NULL, NULL};
-    size_t file_count = 3;
-    // trials of a step that is chosen are made with either of these
-    if (code->scenario->run.step == 0.0) {
-        files[file_count++] = IMPULSE.file;
-        files[file_count++] = EXTRAPOLATED.file;
-    }
+    const char *files[] = {"run/run.c", "report/series_rows.c", stepping.file};
     write_head(code, text);
-    const bool is_whole = tune_sources_write(files, file_count, text);
+    const bool is_whole = tune_sources_write(files, sizeof files / sizeof files[0], text);
     assert(is_whole);
     // where nothing touches there is no law to ask for
     const bool has_laws = strstr(text->data, "---- contact/law.h ----") != NULL;

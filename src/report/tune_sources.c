@@ -20,7 +20,7 @@ static const char INCLUDE[] = "#include \"";
 
 // each ends in a table of functions that stands for all of it, whatever header it includes first
 static const char *const STEPPINGS[] = {"ode/plain.c", "ode/staggered.c", "ode/impulse.c",
-                                        "ode/extrapolated.c", "ode/chosen_step.c"};
+                                        "ode/extrapolated.c"};
 
 typedef struct Source {
     char name[NAME_SIZE];

@@ -20,7 +20,9 @@ typedef struct Loop {
     const RunProbe *probe;
     void *probe_own; // of the probe; NULL: it has nothing to look at
     RunWatch watch;
-    double started_s; // by the clock
+    const RunGuard *guard; // NULL: nobody ends it early
+    bool is_stopped;       // by the guard
+    double started_s;      // by the clock
     size_t steps;
     double reached_s;               // simulated
     double width_s;                 // length of the last step
@@ -94,17 +96,12 @@ static bool reach(Loop *loop, double time_s, Err *err)
     return true;
 }
 
-// Shows that something is under way before the first step.
-static void beat(void *context)
+static bool may_go_on(Loop *loop, const Trajectory *trajectory, size_t sample, Err *err)
 {
-    const Loop *loop = context;
-    loop->watch.progress(0.0, clock_now_s() - loop->started_s, loop->watch.context);
-}
-
-static bool prepare(Loop *loop, Err *err)
-{
-    const SolverPulse pulse = {loop->watch.progress != NULL ? beat : NULL, loop};
-    return loop->solver->prepare == NULL || loop->solver->prepare(loop->state, pulse, err);
+    const RunGuard *guard = loop->guard;
+    loop->is_stopped =
+        guard != NULL && !guard->may_go_on(trajectory, sample, guard->context, err);
+    return !loop->is_stopped;
 }
 
 static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
@@ -127,6 +124,9 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
         unwrap_angles(loop, &sample);
         recorder_see(&loop->recorder, &sample);
         trajectory_store(trajectory, k, &sample);
+        if (!may_go_on(loop, trajectory, k, err)) {
+            return false;
+        }
     }
     // what is left after the last whole sample interval
     return reach(loop, scenario_duration(loop->scenario), err);
@@ -152,8 +152,6 @@ static void fill_model(const Loop *loop, Trajectory *trajectory)
     trajectory->constraint_rows = model.constraint_rows;
     trajectory->contact_rows = model.contact_rows;
     trajectory->fallback_rows = model.fallback_rows;
-    trajectory->error_estimate = model.error_estimate;
-    trajectory->estimate_s = model.estimate_s;
 }
 
 // Puts an extreme into the ranges wherever it returns, turn by turn.
@@ -189,9 +187,16 @@ Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatc
 Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch watch,
                        const RunProbe *probe)
 {
+    return run_guarded(scenario, solver, watch, probe, NULL);
+}
+
+Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch watch,
+                        const RunProbe *probe, const RunGuard *guard)
+{
     Trajectory *trajectory = trajectory_create(scenario, solver->name);
     Err err = {ERR_NONE, ""};
-    Loop loop = {.scenario = scenario, .solver = solver, .watch = watch, .probe = probe};
+    Loop loop = {
+        .scenario = scenario, .solver = solver, .watch = watch, .probe = probe, .guard = guard};
     if (probe != NULL) {
         trajectory_keep_ranges(trajectory, scenario);
     }
@@ -210,8 +215,7 @@ Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch 
     loop.probe_own =
         probe == NULL ? NULL : probe->begin(scenario, solver, loop.state, &loop.recorder);
     loop.started_s = clock_now_s();
-    const bool is_prepared = prepare(&loop, &err);
-    const bool is_done = is_prepared && run_samples(&loop, trajectory, &err);
+    const bool is_done = run_samples(&loop, trajectory, &err);
     trajectory->wall_s = clock_now_s() - loop.started_s;
     recorder_finish(&loop.recorder);
     fill_model(&loop, trajectory);
@@ -224,8 +228,9 @@ Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch 
         close_energy(&loop, trajectory);
     }
     trajectory->is_complete = is_done;
-    // what fails before the first step may have failed anywhere in trial runs
-    lock_explain(scenario, is_prepared ? loop.reached_s : scenario_duration(scenario), &err);
+    if (!loop.is_stopped) {
+        lock_explain(scenario, loop.reached_s, &err);
+    }
     if (loop.probe_own != NULL) {
         probe->end(loop.probe_own, trajectory);
     }

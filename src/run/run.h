@@ -23,6 +23,14 @@ typedef struct RunProbe {
     void (*end)(void *own, Trajectory *trajectory);
 } RunProbe;
 
+// Asked at every sample whether the run is to go on: it ends where the answer is no, which is then
+// the reason that it is not complete.
+typedef struct RunGuard {
+    // The samples up to this one stand in the trajectory.
+    bool (*may_go_on)(const Trajectory *trajectory, size_t sample, void *context, Err *err);
+    void *context;
+} RunGuard;
+
 // Runs the scenario. Never fails as a function: where the solver fails, the trajectory is not
 // complete and says when and why. The caller destroys it.
 Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatch watch);
@@ -30,3 +38,7 @@ Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatc
 // The same with a probe and ranges; without them where it is NULL.
 Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch watch,
                        const RunProbe *probe);
+
+// The same with a guard; without one where it is NULL.
+Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch watch,
+                        const RunProbe *probe, const RunGuard *guard);

@@ -331,8 +331,9 @@ static void tracer_end(void *own, Trajectory *trajectory)
     free(tracer);
 }
 
+const RunProbe TRACER_PROBE = {tracer_begin, tracer_look, tracer_end};
+
 Trajectory *tracer_run(const Scenario *scenario, const Solver *solver, RunWatch watch)
 {
-    static const RunProbe PROBE = {tracer_begin, tracer_look, tracer_end};
-    return run_probed(scenario, solver, watch, &PROBE);
+    return run_probed(scenario, solver, watch, &TRACER_PROBE);
 }

@@ -235,6 +235,6 @@ void metrics_take(const Scenario *scenario, const Trajectory *trajectory, const 
     take(&taker, (double)trajectory->steps);
     take(&taker, (double)trajectory->evaluations);
     take(&taker, (double)trajectory->fallback_rows);
-    take(&taker, trajectory->error_estimate > 0.0 ? trajectory->error_estimate : NAN);
+    take(&taker, trajectory->trials > 0 ? trajectory->error_estimate : NAN);
     take_error(trajectory, truth, &taker);
 }

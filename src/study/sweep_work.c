@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/last_words.h"
 #include "base/shorten.h"
+#include "compare/backend_run.h"
 #include "run/registry.h"
 #include "study/design.h"
 #include "study/lane.h"
@@ -18,8 +19,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const RunWatch NOBODY = {NULL, NULL};
 
 static void give_reason(Record *record, Fate fate, const char *reason)
 {
@@ -49,7 +48,8 @@ static void forget_results(Record *record)
 static void measure(const SweepRun *task, const Scenario *scenario, BackendKind backend,
                     Record *record)
 {
-    const Trajectory *trajectory = run_scenario(scenario, registry_solver(backend), NOBODY);
+    const Trajectory *trajectory =
+        backend_run(scenario, backend, task->truth, (ChosenWatch){.begin = NULL}, NULL);
     if (!trajectory->is_complete) {
         const bool is_starved = child_lacks_memory();
         give_reason(record, is_starved ? FATE_NO_MEMORY : FATE_FAILED, trajectory->message);

@@ -1,0 +1,98 @@
+// Which step is to be tried next?
+//
+// Errors of order p fall as h^p, so that after a trial of error e the step
+//     h' = h (a X / e)^(1/p),    X the tolerance, a < 1 room for errors that do not fall smoothly
+// should do. Grazing impacts make errors fall in jumps: each trial is measured, and the order is
+// only used to come near.
+#include "compare/step_choice.h"
+
+#include "contact/law.h"
+#include "model/response.h"
+
+#include <math.h>
+
+// of the tolerance: what the next trial is to come to
+static const double AIM = 0.6;
+
+// the next step over the last one, at most and at least
+static const double FINER_LEAST = 0.7;
+static const double FINER_MOST = 0.125;
+
+// a trial that is so many times above the tolerance leads to FINER_MOST
+static const double GIVE_UP = 30.0;
+
+// a trial that failed says nothing of the step that will not
+static const double AFTER_FAILURE = 0.5;
+
+// first steps: of the drive's turn, or of a run without one
+static const double FIRST_STEPS = 200.0;
+static const double FIRST_CONTACTS = 4.0; // half-periods of a contact, if that is less
+static const double FIRST_STEPS_SMOOTH = 120.0;
+static const double LEAST_STEPS = 10.0; // of any run
+
+// rad, of the contacts' own steps at the first trial; their errors of order 4 fall as h^2 do
+static const double FIRST_PHASE = 0.2;
+
+// The half-period of the stiffest contact at a tenth of its clearance, s.
+static double contact_time(const Scenario *scenario)
+{
+    static const double DEPTH = 0.1;
+    const Linkage *linkage = &scenario->linkage;
+    Motion motions[LINKAGE_BODY_MAX];
+    Response response;
+    Err unused = {ERR_NONE, ""};
+    linkage_start(linkage, motions);
+    if (!response_init(linkage, false, &response, &unused) || !response_place(&response, motions)) {
+        return INFINITY; // opening the world says what is wrong
+    }
+    double shortest_s = INFINITY;
+    for (size_t row = 0; row < response_play_rows(&response); row += 2) {
+        const Joint *joint = &linkage->joints[response_joint(&response, row)];
+        ForceLaw law;
+        if (law_of_joint(scenario, joint, &law, &unused)) {
+            const double mass = fmin(response_mass(&response, row, (Vec2){1.0, 0.0}),
+                                     response_mass(&response, row, (Vec2){0.0, 1.0}));
+            const double depth =
+                fmin(DEPTH * linkage_radial_clearance(joint), 0.5 * force_law_depth_limit(&law));
+            shortest_s = fmin(shortest_s, M_PI * sqrt(mass / force_law_tangent(&law, depth)));
+        }
+    }
+    return shortest_s;
+}
+
+StepChoice step_choice_begin(const Scenario *scenario)
+{
+    const bool has_play = scenario_has_clearance(scenario);
+    const Linkage *linkage = &scenario->linkage;
+    const double duration_s = scenario_duration(scenario);
+    const double turn_s = linkage->driver.is_present ? linkage_period(linkage) : duration_s;
+    const double first_s = turn_s / (has_play ? FIRST_STEPS : FIRST_STEPS_SMOOTH);
+    return (StepChoice){
+        .scenario = scenario,
+        .order = has_play ? 2.0 : (double)scenario->ode.levels + 1.0,
+        .first_step_s =
+            fmin(fmin(first_s, duration_s / LEAST_STEPS), FIRST_CONTACTS * contact_time(scenario)),
+    };
+}
+
+Scenario step_choice_scenario(const StepChoice *choice, double step_s)
+{
+    Scenario trial = scenario_with_step(choice->scenario, step_s);
+    trial.ode.contact_phase = FIRST_PHASE * fmin(1.0, sqrt(step_s / choice->first_step_s));
+    return trial;
+}
+
+double step_choice_give_up(const StepChoice *choice, double tolerance)
+{
+    (void)choice;
+    return GIVE_UP * tolerance;
+}
+
+double step_choice_finer(const StepChoice *choice, const StepTrial *trial, double tolerance)
+{
+    if (isinf(trial->error)) {
+        return AFTER_FAILURE * trial->step_s;
+    }
+    const double wanted = pow(AIM * tolerance / trial->error, 1.0 / choice->order);
+    return trial->step_s * fmin(FINER_LEAST, fmax(FINER_MOST, wanted));
+}

@@ -1,0 +1,29 @@
+// One run of ODE held against the truth as it goes, for a step that is to be chosen.
+#pragma once
+
+#include "compare/truth.h"
+
+// What a trial is held against, and when it is not worth running on.
+typedef struct TrialRule {
+    const Truth *truth;
+    double window_s;   // up to when errors count
+    double tolerance;  // 1, of omega
+    double give_up;    // 1: no trial with an error beyond this is run on
+    size_t most_steps; // a trial is not run on past these
+} TrialRule;
+
+typedef struct Trial {
+    double step_s;
+    Trajectory *run;   // owned; incomplete where it failed or was given up
+    bool is_given_up;  // the rule ended it
+    double error;      // 1, largest within the window, as far as it came
+    double held_error; // 1, largest while it held the tolerance
+    double held_s;     // the last sample up to which it did; 0: not even the first
+    double reached_s;  // the last sample that was held against the truth
+    bool holds;        // the tolerance, on the whole window
+} Trial;
+
+// Runs the scenario, which has its step, and looks at every sample of it. The probe may be NULL.
+Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatch watch,
+                 const RunProbe *probe);
+void trial_finish(Trial *trial);
