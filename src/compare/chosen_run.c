@@ -14,7 +14,6 @@
 #include "compare/trial.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -25,7 +24,7 @@ static const double TRUTH_SHARE = 0.1;
 static const double COST_AT_FIRST = 2.0;
 
 // trials that fail at one place, within a share of the run
-enum { FAILURES_ALIKE = 4 };
+enum { FAILURES_ALIKE = 5 };
 static const double ONE_PLACE = 0.01;
 
 // a step so near that of a trial known to be good is not tried in its place
@@ -166,8 +165,7 @@ static Trial make_trial(Chosen *chosen, double step_s, bool is_last)
         .truth = chosen->truth,
         .window_s = chosen->window_s,
         .tolerance = tolerance,
-        .give_up = is_last ? INFINITY : step_choice_give_up(&chosen->choice, tolerance),
-        .most_steps = SIZE_MAX,
+        .is_last = is_last,
     };
     const Trial trial =
         trial_make(&scenario, &rule, begin(chosen, ++chosen->trials, step_s), chosen->probe);
@@ -205,13 +203,15 @@ static Trajectory *end_trials(const Chosen *chosen, Trial *trial)
     }
     if (trial->run->is_complete) {
         snprintf(message, sizeof message,
-                 "no step gives the error %.3g within %zu world steps: at %.3g us it is %.2g; "
-                 "allow more (run.most-steps), or a larger run.tolerance",
+                 "no step gives the error %.3g within %zu world steps: at %.3g us the first sample "
+                 "has %.2g; allow more (run.most-steps), or a larger run.tolerance",
                  chosen->scenario->run.tolerance, chosen->scenario->run.most_steps,
                  1e6 * trial->step_s, trial->error);
     } else {
-        snprintf(message, sizeof message, "%s, and so it was at every step tried: %.300s",
-                 chosen->failures > 1 ? "no step will do" : "no trial came to its end",
+        snprintf(message, sizeof message, "%s: %.300s",
+                 chosen->failures == FAILURES_ALIKE
+                     ? "no step will do, for trials at finer and finer ones fail at one place"
+                     : "no trial came to its end within run.most-steps",
                  trial->run->message);
     }
     Trajectory *none = fail(chosen, message);
@@ -221,6 +221,7 @@ static Trajectory *end_trials(const Chosen *chosen, Trial *trial)
 
 static Trajectory *choose(Chosen *chosen)
 {
+    const double duration_s = scenario_duration(chosen->scenario);
     double step_s = chosen->choice.first_step_s;
     for (;;) {
         const bool is_last = 2.0 * cost_of(chosen, step_s) > steps_left(chosen);
@@ -229,13 +230,8 @@ static Trajectory *choose(Chosen *chosen)
         if (trial.holds || is_last || chosen->failures == FAILURES_ALIKE) {
             return end_trials(chosen, &trial);
         }
-        const StepTrial found = {
-            .step_s = step_s,
-            .error = trial.run->is_complete || trial.is_given_up ? trial.error : INFINITY,
-            .is_whole = trial.run->is_complete,
-            .share = trial.reached_s / chosen->window_s,
-        };
-        step_s = step_choice_finer(&chosen->choice, &found, chosen->scenario->run.tolerance);
+        step_s = trial.is_given_up ? step_choice_finer(step_s, trial.held_s / duration_s)
+                                   : step_choice_after_failure(step_s);
         trial_finish(&trial);
     }
 }

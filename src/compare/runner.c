@@ -176,6 +176,22 @@ static bool make_truth(const Runner *runner, Truth *truth, Err *err)
     return runner->listener.keep_truth(known, runner->listener.context, err);
 }
 
+// Errors are taken against the truth, and steps that are chosen are chosen by it, whatever is then
+// measured of them.
+static bool needs_truth(const Runner *runner)
+{
+    const Ladder *ladder = runner->ladder;
+    const size_t total = ladder_run_total(ladder);
+    for (size_t i = ladder_next(ladder, 0); i < total; i = ladder_next(ladder, i + 1)) {
+        const LadderRun run = ladder_run(ladder, i);
+        const Scheme *scheme = &ladder->schemes[ladder->points[run.point].scheme];
+        if (run.kind == LADDER_ERROR || scheme_is_chosen(scheme)) {
+            return true;
+        }
+    }
+    return !ladder->truth.is_known;
+}
+
 bool runner_execute(const Runner *runner, Err *err)
 {
     const Ladder *ladder = runner->ladder;
@@ -189,11 +205,10 @@ bool runner_execute(const Runner *runner, Err *err)
                             ladder->scheme_count, next_ensemble,    make_ensemble,
                             task_spread,          sizeof(Ensemble), finish_ensemble};
     Truth truth = {0};
-    const bool needs_truth = !ladder->truth.is_known || ladder_next(ladder, 0) < errors.end;
-    const bool is_done = (!needs_truth || make_truth(runner, &truth, err)) &&
+    const bool is_done = (!needs_truth(runner) || make_truth(runner, &truth, err)) &&
                          do_work(runner, &errors, &truth, err) &&
-                         do_work(runner, &timings, NULL, err) &&
-                         (!ladder->truth.is_limited || do_work(runner, &ensembles, NULL, err));
+                         do_work(runner, &timings, &truth, err) &&
+                         (!ladder->truth.is_limited || do_work(runner, &ensembles, &truth, err));
     truth_finish(&truth);
     return is_done;
 }

@@ -146,6 +146,11 @@ size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX])
     return count;
 }
 
+bool scheme_is_chosen(const Scheme *scheme)
+{
+    return scheme->backend == BACKEND_ODE && scheme->tolerance > 0.0;
+}
+
 bool scheme_has_step(const Scheme *scheme)
 {
     return scheme->backend == BACKEND_ODE && scheme->tolerance == 0.0;

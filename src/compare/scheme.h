@@ -28,6 +28,9 @@ bool scheme_check(const Scenario *scenario, Err *err);
 // four-bar without play, the closed form.
 size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX]);
 
+// Whether the scheme is ODE with a step chosen for a tolerance.
+bool scheme_is_chosen(const Scheme *scheme);
+
 // Whether the scheme takes steps of a length that it is told.
 bool scheme_has_step(const Scheme *scheme);
 

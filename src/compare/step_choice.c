@@ -1,9 +1,10 @@
 // Which step is to be tried next?
 //
-// Errors of order p fall as h^p, so that after a trial of error e the step
-//     h' = h (a X / e)^(1/p),    X the tolerance, a < 1 room for errors that do not fall smoothly
-// should do. Grazing impacts make errors fall in jumps: each trial is measured, and the order is
-// only used to come near.
+// One that is a little finer. A trial ends at the first sample that is above the tolerance, which
+// is mostly soon: on random mechanisms a walk in small steps comes to the coarsest step that will
+// do at the cost of little more than that one run. To jump ahead as the order says takes fewer
+// trials and more world steps, for errors do not fall as the order says: grazing impacts come and
+// go.
 #include "compare/step_choice.h"
 
 #include "contact/law.h"
@@ -11,15 +12,9 @@
 
 #include <math.h>
 
-// of the tolerance: what the next trial is to come to
-static const double AIM = 0.6;
-
-// the next step over the last one, at most and at least
-static const double FINER_LEAST = 0.7;
-static const double FINER_MOST = 0.125;
-
-// a trial that is so many times above the tolerance leads to FINER_MOST
-static const double GIVE_UP = 30.0;
+// the next step over the last one, where that missed at once and where it missed at the end
+static const double FINER_EARLY = 0.8;
+static const double FINER_LATE = 0.7;
 
 // a trial that failed says nothing of the step that will not
 static const double AFTER_FAILURE = 0.5;
@@ -69,7 +64,6 @@ StepChoice step_choice_begin(const Scenario *scenario)
     const double first_s = turn_s / (has_play ? FIRST_STEPS : FIRST_STEPS_SMOOTH);
     return (StepChoice){
         .scenario = scenario,
-        .order = has_play ? 2.0 : (double)scenario->ode.levels + 1.0,
         .first_step_s =
             fmin(fmin(first_s, duration_s / LEAST_STEPS), FIRST_CONTACTS * contact_time(scenario)),
     };
@@ -82,17 +76,12 @@ Scenario step_choice_scenario(const StepChoice *choice, double step_s)
     return trial;
 }
 
-double step_choice_give_up(const StepChoice *choice, double tolerance)
+double step_choice_finer(double step_s, double share)
 {
-    (void)choice;
-    return GIVE_UP * tolerance;
+    return step_s * (FINER_EARLY + (FINER_LATE - FINER_EARLY) * fmin(1.0, share));
 }
 
-double step_choice_finer(const StepChoice *choice, const StepTrial *trial, double tolerance)
+double step_choice_after_failure(double step_s)
 {
-    if (isinf(trial->error)) {
-        return AFTER_FAILURE * trial->step_s;
-    }
-    const double wanted = pow(AIM * tolerance / trial->error, 1.0 / choice->order);
-    return trial->step_s * fmin(FINER_LEAST, fmax(FINER_MOST, wanted));
+    return AFTER_FAILURE * step_s;
 }

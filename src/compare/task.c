@@ -20,7 +20,7 @@ Task task_make(const Ladder *ladder, const Scenario *scenario, LadderRun run, co
         .scenario = *scenario,
         .backend = scheme->backend,
         .run = run,
-        .truth = truth,
+        .truth = truth == NULL || truth->trajectory == NULL ? NULL : truth,
     };
     scheme_apply(scheme, point->step_s, &task.scenario);
     return task;
@@ -75,7 +75,8 @@ void task_spread(const void *context, void *result)
     }
     // a step that was chosen once is good for starts beside this one
     Ensemble *ensemble = result;
-    Trajectory *run = chosen_run_make(&task->scenario, NULL, (ChosenWatch){.begin = NULL}, NULL);
+    Trajectory *run =
+        chosen_run_make(&task->scenario, task->truth, (ChosenWatch){.begin = NULL}, NULL);
     if (run->is_complete) {
         const Scenario scenario = chosen_run_scenario(&task->scenario, run->step_s);
         ensemble_run(&scenario, solver, NOBODY, ensemble);

@@ -16,10 +16,11 @@ typedef struct Task {
     Scenario scenario; // with scheme and step applied
     BackendKind backend;
     LadderRun run;      // kind, point and round of a run that is measured
-    const Truth *truth; // of LADDER_ERROR; a step to be chosen makes its own without it
+    const Truth *truth; // NULL where there is none at hand
 } Task;
 
-// The task of a run of a ladder; the truth is only needed for LADDER_ERROR.
+// The task of a run of a ladder; the truth is needed for LADDER_ERROR, and a step that is chosen
+// for a tolerance makes its own without it.
 Task task_make(const Ladder *ladder, const Scenario *scenario, LadderRun run, const Truth *truth);
 
 // Each is a ChildWork and takes a Task. What comes of it is, in this order: a LadderRun; a packed

@@ -6,20 +6,18 @@
 // What a trial is held against, and when it is not worth running on.
 typedef struct TrialRule {
     const Truth *truth;
-    double window_s;   // up to when errors count
-    double tolerance;  // 1, of omega
-    double give_up;    // 1: no trial with an error beyond this is run on
-    size_t most_steps; // a trial is not run on past these
+    double window_s;  // up to when errors count
+    double tolerance; // 1, of omega
+    bool is_last;     // it is run to its end, though it misses the tolerance
 } TrialRule;
 
 typedef struct Trial {
     double step_s;
     Trajectory *run;   // owned; incomplete where it failed or was given up
-    bool is_given_up;  // the rule ended it
-    double error;      // 1, largest within the window, as far as it came
+    bool is_given_up;  // it missed the tolerance
     double held_error; // 1, largest while it held the tolerance
     double held_s;     // the last sample up to which it did; 0: not even the first
-    double reached_s;  // the last sample that was held against the truth
+    double error;      // 1, at the sample after that; 0 where there is none
     bool holds;        // the tolerance, on the whole window
 } Trial;
 

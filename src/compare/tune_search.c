@@ -36,12 +36,13 @@ typedef struct Pass {
     double limit_s;
 } Pass;
 
-static Task make_task(const TuneSearch *search, const Truth *truth, size_t scheme, double value)
+static Task make_task(const TuneSearch *search, LadderKind kind, const Truth *truth, size_t scheme,
+                      double value)
 {
     Task task = {
         .scenario = *search->scenario,
         .backend = BACKEND_ODE,
-        .run = {.kind = truth != NULL ? LADDER_ERROR : LADDER_TIMING},
+        .run = {.kind = kind},
         .truth = truth,
     };
     tune_apply(&search->tune->schemes[scheme], value, &task.scenario);
@@ -111,7 +112,8 @@ static bool run_pass(const TuneSearch *search, const Truth *truth, const Pass *p
     while (is_going && (next != TUNE_NONE || pool.busy > 0)) {
         while (is_going && next != TUNE_NONE && tune_pool_has_place(&pool)) {
             TuneScheme *scheme = &tune->schemes[next];
-            const Task task = make_task(search, truth, (size_t)next, tune_value(scheme->next));
+            const Task task =
+                make_task(search, LADDER_ERROR, truth, (size_t)next, tune_value(scheme->next));
             is_going = tune_pool_start(&pool, &task, (size_t)next, err);
             scheme->is_busy = is_going;
             next = choose(search, pass);
@@ -182,7 +184,7 @@ static bool search_within(const TuneSearch *search, const Truth *truth, Err *err
         if (is_known || scheme->trials == 0) {
             continue;
         }
-        const Task task = make_task(search, truth, i, tune_value(notch));
+        const Task task = make_task(search, LADDER_ERROR, truth, i, tune_value(notch));
         is_going = tune_pool_start(&pool, &task, i, err);
         size_t tag;
         LadderRun run;
@@ -211,7 +213,7 @@ static bool is_finalist(const Tune *tune, int scheme, double best)
 
 // Times the finalists in turn, one run at a time, so that whatever slows the machine down slows
 // all.
-static bool time_finalists(const TuneSearch *search, Err *err)
+static bool time_finalists(const TuneSearch *search, const Truth *truth, Err *err)
 {
     Tune *tune = search->tune;
     const TuneTrial *winner = tune_best(tune, tune->winner);
@@ -225,7 +227,8 @@ static bool time_finalists(const TuneSearch *search, Err *err)
             if (!is_finalist(tune, i, best)) {
                 continue;
             }
-            const Task task = make_task(search, NULL, (size_t)i, tune_best(tune, i)->value);
+            const Task task =
+                make_task(search, LADDER_TIMING, truth, (size_t)i, tune_best(tune, i)->value);
             is_going = tune_pool_start(&pool, &task, (size_t)i, err);
             size_t tag;
             LadderRun run;
@@ -278,7 +281,7 @@ bool tune_search_execute(const TuneSearch *search, Err *err)
     }
     if (is_done) {
         tune_conclude(tune, search->scenario);
-        is_done = time_finalists(search, err) && tune_linear_run(search, &truth, err);
+        is_done = time_finalists(search, &truth, err) && tune_linear_run(search, &truth, err);
         tune_conclude(tune, search->scenario);
     }
     truth_finish(&truth);

@@ -99,8 +99,7 @@ static bool reach(Loop *loop, double time_s, Err *err)
 static bool may_go_on(Loop *loop, const Trajectory *trajectory, size_t sample, Err *err)
 {
     const RunGuard *guard = loop->guard;
-    loop->is_stopped =
-        guard != NULL && !guard->may_go_on(trajectory, sample, guard->context, err);
+    loop->is_stopped = guard != NULL && !guard->may_go_on(trajectory, sample, guard->context, err);
     return !loop->is_stopped;
 }
 

@@ -1,0 +1,320 @@
+// Is a run at `step: auto` ever above its tolerance, or above what it says its error is?
+//
+// auto_error KIND FIRST LAST [LADDER]
+// Runs the random cases of those seeds, cut to a quarter turn or 0.1 s, at four tolerances. The
+// judge is not the reference that the steps were chosen against: it is made at another tolerance
+// and in another frame, so that its rounding is another. Every LADDER-th case (0: none) is also run
+// at fixed steps, each 1.26 times finer, for the work of the best of them.
+// One line a run; a summary at the end.
+#include "random_case.h"
+
+#include "base/child.h"
+#include "base/clock.h"
+#include "casefile/casefile.h"
+#include "compare/chosen_run.h"
+#include "compare/error.h"
+#include "compare/step_choice.h"
+#include "model/distance.h"
+#include "run/registry.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TOLERANCE_COUNT = 4, RUN_MAX = 4096, LADDER_MAX = 64 };
+
+static const double TOLERANCES[TOLERANCE_COUNT] = {1e-3, 1e-4, 1e-5, 1e-6};
+static const double JUDGE_TOLERANCE = 1e-14;
+static const double RATIO = 1.26; // of two steps of the ladder
+static const double LADDER_STEPS_MOST = 5e5;
+static const double LADDER_PHASE = 0.05;
+static const double TIME_LIMIT_S = 120.0; // of one case
+
+typedef struct Run {
+    char message[160];
+    bool is_complete;
+    bool is_short;
+    size_t trials;
+    size_t steps;
+    double step_s;
+    double estimate;
+    double until_s;
+    double error; // against the judge, up to there
+    size_t best;  // world steps of the best fixed step; 0: not looked for, or not found
+} Run;
+
+typedef struct Result {
+    char message[160]; // why the case could not be judged
+    double uncertainty;
+    double horizon_s;
+    double duration_s;
+    double truth_s; // of the clock, like the next two
+    double runs_s;
+    double ladder_s;
+    Run runs[TOLERANCE_COUNT];
+} Result;
+
+typedef struct Work {
+    const CaseKind *kind;
+    uint64_t seed;
+    bool with_ladder;
+} Work;
+
+static bool load(const Work *work, Scenario *scenario, Err *err)
+{
+    static const char *const CUT[] = {"run.step=auto"};
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert(file != NULL);
+    work->kind->write(work->seed, file);
+    fclose(file);
+    const bool is_loaded = casefile_load_text("random case", text, size, CUT, 1, scenario, err);
+    free(text);
+    scenario->run.revolutions = fmin(scenario->run.revolutions, 0.25);
+    if (!scenario->linkage.driver.is_present) {
+        scenario->run.duration = fmin(scenario->run.duration, 0.1);
+    }
+    return is_loaded;
+}
+
+// The same mechanism elsewhere: its coordinates are other numbers.
+static Scenario moved(const Scenario *scenario)
+{
+    static const Vec2 BY = {0.0721, -0.0413}; // m
+    Scenario other = *scenario;
+    Linkage *linkage = &other.linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        linkage->bodies[i].start.position = vec2_add(linkage->bodies[i].start.position, BY);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        Joint *joint = &linkage->joints[i];
+        if (joint->body_a == LINKAGE_GROUND) {
+            joint->anchor_a = vec2_add(joint->anchor_a, BY);
+        }
+        if (joint->body_b == LINKAGE_GROUND) {
+            joint->anchor_b = vec2_add(joint->anchor_b, BY);
+        }
+    }
+    other.has_fourbar = false;
+    other.reference.tolerance = JUDGE_TOLERANCE;
+    return other;
+}
+
+// Relative to the speeds that the run's own error is relative to: past the horizon the judge may
+// move faster.
+static double error_until(const Trajectory *run, const Trajectory *judge, const Truth *truth,
+                          double until_s)
+{
+    DistanceScale scales[LINKAGE_BODY_MAX];
+    distance_scales(truth->trajectory, scales);
+    double largest = 0.0;
+    for (size_t k = 0; k < judge->sample_count && judge->times[k] <= until_s; k++) {
+        const double error = distance_at(run, judge, k, scales);
+        largest = error <= largest ? largest : error;
+    }
+    return largest;
+}
+
+static void run_auto(const Scenario *scenario, const Truth *truth, const Trajectory *judge,
+                     Run *result)
+{
+    Trajectory *run = chosen_run_make(scenario, truth, (ChosenWatch){.begin = NULL}, NULL);
+    result->is_complete = run->is_complete;
+    snprintf(result->message, sizeof result->message, "%.150s", run->message);
+    result->trials = run->trials;
+    result->steps = run->steps;
+    if (run->is_complete) {
+        result->is_short = run->is_short;
+        result->step_s = run->step_s;
+        result->estimate = run->error_estimate;
+        result->until_s = run->estimate_s;
+        result->error = error_until(run, judge, truth, run->estimate_s);
+    }
+    trajectory_destroy(run);
+}
+
+// World steps of the coarsest fixed steps that hold the tolerances.
+static void run_ladder(const Scenario *scenario, const Truth *truth, const Trajectory *judge,
+                       Result *result)
+{
+    const StepChoice choice = step_choice_begin(scenario);
+    double step_s = choice.first_step_s;
+    size_t missing = TOLERANCE_COUNT;
+    for (int i = 0; i < LADDER_MAX && missing > 0; i++, step_s /= RATIO) {
+        if (result->duration_s / step_s > LADDER_STEPS_MOST) {
+            break;
+        }
+        Scenario fixed = scenario_with_step(scenario, step_s);
+        fixed.ode.gear = 1;
+        fixed.ode.contact_phase = LADDER_PHASE;
+        Trajectory *run =
+            run_scenario(&fixed, registry_solver(BACKEND_ODE), (RunWatch){NULL, NULL});
+        const double error =
+            run->is_complete ? error_until(run, judge, truth, result->horizon_s) : INFINITY;
+        for (int k = 0; k < TOLERANCE_COUNT; k++) {
+            if (error <= TOLERANCES[k] && result->runs[k].best == 0) {
+                result->runs[k].best = run->steps;
+                missing--;
+            }
+        }
+        trajectory_destroy(run);
+    }
+}
+
+static void measure(const void *context, void *target)
+{
+    const Work *work = context;
+    Result *result = target;
+    Scenario scenario;
+    Err err = {ERR_NONE, ""};
+    memset(result, 0, sizeof *result);
+    if (!load(work, &scenario, &err)) {
+        snprintf(result->message, sizeof result->message, "%.150s", err.text);
+        return;
+    }
+    result->duration_s = scenario_duration(&scenario);
+    double started_s = clock_now_s();
+    Truth truth = truth_make(&scenario, (RunWatch){NULL, NULL});
+    result->truth_s = clock_now_s() - started_s;
+    result->uncertainty = truth.uncertainty;
+    result->horizon_s = truth.is_limited ? truth.horizon_s : result->duration_s;
+    const Scenario other = moved(&scenario);
+    Trajectory *judge =
+        run_scenario(&other, registry_solver(BACKEND_REFERENCE), (RunWatch){NULL, NULL});
+    if (!judge->is_complete) {
+        snprintf(result->message, sizeof result->message, "judge: %.140s", judge->message);
+    }
+    started_s = clock_now_s();
+    for (int i = 0; result->message[0] == '\0' && i < TOLERANCE_COUNT; i++) {
+        scenario.run.tolerance = TOLERANCES[i];
+        run_auto(&scenario, &truth, judge, &result->runs[i]);
+    }
+    result->runs_s = clock_now_s() - started_s;
+    started_s = clock_now_s();
+    if (work->with_ladder && result->message[0] == '\0' && truth.trajectory->is_complete) {
+        run_ladder(&scenario, &truth, judge, result);
+    }
+    result->ladder_s = clock_now_s() - started_s;
+    trajectory_destroy(judge);
+    truth_finish(&truth);
+}
+
+typedef struct Summary {
+    size_t cases;
+    size_t unjudged;
+    size_t whole;
+    size_t shorter;
+    size_t failed;
+    size_t above;     // the tolerance
+    size_t above_own; // what the run says
+    double worst;     // error over tolerance
+    double worst_own; // error over estimate
+    size_t ratio_count;
+    double ratios[RUN_MAX];
+} Summary;
+
+static int compare(const void *a, const void *b)
+{
+    const double first = *(const double *)a;
+    const double second = *(const double *)b;
+    return (first > second) - (first < second);
+}
+
+static void add(Summary *summary, const Run *run, double tolerance)
+{
+    if (!run->is_complete) {
+        summary->failed++;
+        return;
+    }
+    summary->whole += run->is_short ? 0 : 1;
+    summary->shorter += run->is_short ? 1 : 0;
+    summary->above += run->error <= tolerance ? 0 : 1;
+    summary->above_own += run->error <= run->estimate ? 0 : 1;
+    summary->worst = fmax(summary->worst, run->error / tolerance);
+    summary->worst_own = fmax(summary->worst_own, run->error / run->estimate);
+    if (run->best > 0 && summary->ratio_count < RUN_MAX) {
+        summary->ratios[summary->ratio_count++] = (double)run->steps / (double)run->best;
+    }
+}
+
+static void print_case(const Work *work, const Result *result)
+{
+    printf("case %s %llu: %s horizon %.4g of %.4g ms, uncertainty %.2g; truth %.2f s, runs %.2f s, "
+           "ladder %.2f s\n",
+           work->kind->name, (unsigned long long)work->seed, result->message,
+           1e3 * result->horizon_s, 1e3 * result->duration_s, result->uncertainty, result->truth_s,
+           result->runs_s, result->ladder_s);
+    for (int i = 0; result->message[0] == '\0' && i < TOLERANCE_COUNT; i++) {
+        const Run *run = &result->runs[i];
+        printf("  %.0e %s h %.4g us, %zu trials, %zu steps (best %zu), estimate %.3g to %.4g ms, "
+               "error %.3g %s\n",
+               TOLERANCES[i],
+               !run->is_complete ? "FAILED"
+               : run->is_short   ? "short"
+                                 : "whole",
+               1e6 * run->step_s, run->trials, run->steps, run->best, run->estimate,
+               1e3 * run->until_s, run->error, run->message);
+    }
+    fflush(stdout);
+}
+
+static void print_summary(const Summary *summaries)
+{
+    printf("tolerance  whole  short  failed  above tol  above est  worst/tol  worst/est  "
+           "work median  worst (of)\n");
+    for (int i = 0; i < TOLERANCE_COUNT; i++) {
+        Summary summary = summaries[i];
+        qsort(summary.ratios, summary.ratio_count, sizeof(double), compare);
+        const size_t count = summary.ratio_count;
+        printf("%9.0e  %5zu  %5zu  %6zu  %9zu  %9zu  %9.4f  %9.6f  %11.2f  %.2f (%zu)\n",
+               TOLERANCES[i], summary.whole, summary.shorter, summary.failed, summary.above,
+               summary.above_own, summary.worst, summary.worst_own,
+               count > 0 ? summary.ratios[count / 2] : NAN,
+               count > 0 ? summary.ratios[count - 1] : NAN, count);
+    }
+    printf("cases %zu, of which %zu could not be judged\n", summaries[0].cases,
+           summaries[0].unjudged);
+}
+
+int main(int argc, char **argv)
+{
+    const CaseKind *kind =
+        argc > 1 && strcmp(argv[1], CASE_BODIES.name) == 0 ? &CASE_BODIES : &CASE_FOUR_BAR;
+    if (argc < 4) {
+        fprintf(stderr, "usage: auto_error KIND FIRST LAST [LADDER]\n");
+        return 2;
+    }
+    static Summary summaries[TOLERANCE_COUNT];
+    const uint64_t first = strtoull(argv[2], NULL, 10);
+    const uint64_t last = strtoull(argv[3], NULL, 10);
+    const uint64_t ladder = argc > 4 ? strtoull(argv[4], NULL, 10) : 0;
+    for (uint64_t seed = first; seed <= last; seed++) {
+        const Work work = {kind, seed, ladder > 0 && seed % ladder == 0};
+        Result result;
+        Child child = {0};
+        Err err = {ERR_NONE, ""};
+        const ChildLimits limits = {.time_s = TIME_LIMIT_S, .memory_bytes = (size_t)4 << 30};
+        if (!child_start(&child, measure, &work, &result, sizeof result, limits, &err)) {
+            fprintf(stderr, "%s\n", err.text);
+            return 4;
+        }
+        while (child.end == CHILD_RUNNING) {
+            child_wait(&child, 1, 1.0);
+        }
+        if (child.end != CHILD_DONE) {
+            char words[CHILD_TEXT_SIZE];
+            child_describe(&child, words);
+            memset(&result, 0, sizeof result);
+            snprintf(result.message, sizeof result.message, "its process %.100s", words);
+        }
+        print_case(&work, &result);
+        summaries[0].cases++;
+        summaries[0].unjudged += result.message[0] != '\0' ? 1 : 0;
+        for (int i = 0; result.message[0] == '\0' && i < TOLERANCE_COUNT; i++) {
+            add(&summaries[i], &result.runs[i], TOLERANCES[i]);
+        }
+    }
+    print_summary(summaries);
+    return 0;
+}
