@@ -184,8 +184,7 @@ void check_measure_start(Scenario *scenario, CheckStart start)
     }
     if (start.member > 0) {
         DistanceScale scales[LINKAGE_BODY_MAX];
-        const Solver *solver = registry_solver(motion_backend(scenario));
-        Trajectory *own = run_scenario(scenario, solver, NOBODY);
+        Trajectory *own = backend_run(scenario, motion_backend(scenario), NULL, NOBODY, NULL);
         // a run that fails here will fail when it is measured
         if (own->is_complete) {
             distance_scales(own, scales);
