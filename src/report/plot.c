@@ -8,6 +8,9 @@
 static const double TICK_LENGTH = 5.0; // pixels, as everything about the look of the picture
 static const double COLUMN = 0.5;      // what is nearer than this cannot be told apart
 
+static const double LEAST_STROKE = 0.1; // a shorter one is a point
+static const double MARK_SIZE = 7.0;
+
 static const char STYLE_SHEET[] =
     "text{font-family:'DejaVu Sans','Liberation Sans',Arial,sans-serif;font-size:12px;"
     "fill:#222}"
@@ -235,16 +238,85 @@ void plot_line(const PlotPanel *panel, size_t count, const double *x, const doub
     text_append(svg, "/>\n");
 }
 
-void plot_stem(const PlotPanel *panel, double x, double y, PlotStyle style)
+static void append_title(Text *svg, const char *title)
+{
+    text_append(svg, "><title>");
+    append_escaped(svg, title);
+    text_append(svg, "</title></path>\n");
+}
+
+// One column of a band, from the end that is nearer to where the line is.
+static double append_column(Text *svg, bool is_first, double x, double low, double high, double at)
+{
+    const double near = fabs(at - low) <= fabs(at - high) ? low : high;
+    const double far = near == low ? high : low;
+    text_append(svg, "%c%.1f %.1f", is_first ? 'M' : 'L', x, near);
+    if (fabs(far - near) >= LEAST_STROKE) {
+        text_append(svg, "V%.1f", far);
+        return far;
+    }
+    return near;
+}
+
+void plot_band(const PlotPanel *panel, size_t count, const double *x, const double *least,
+               const double *most, const char *title, PlotStyle style)
 {
     Text *svg = panel->svg;
-    const double at_x = plot_x(panel, x);
-    const double at_y = plot_y(panel, y);
-    text_append(svg, "<path class=\"line\" d=\"M%.2f %.2fV%.2f\" ", at_x,
-                panel->top + panel->height, at_y);
+    text_append(svg, "<path class=\"line\" d=\"");
+    double at = 0.0;
+    bool is_first = true;
+    for (size_t i = 0; i < count;) {
+        const double at_x = plot_x(panel, x[i]);
+        const double column = floor(at_x / COLUMN);
+        double low = plot_y(panel, least[i]);
+        double high = plot_y(panel, most[i]);
+        for (i++; i < count && floor(plot_x(panel, x[i]) / COLUMN) == column; i++) {
+            low = fmax(low, plot_y(panel, least[i]));
+            high = fmin(high, plot_y(panel, most[i]));
+        }
+        at = append_column(svg, is_first, at_x, low, high, is_first ? low : at);
+        is_first = false;
+    }
+    text_append(svg, "\" ");
     append_stroke(svg, style);
-    text_append(svg, "/><circle cx=\"%.2f\" cy=\"%.2f\" r=\"3.5\" fill=\"%s\"/>\n", at_x, at_y,
-                style.colour);
+    append_title(svg, title);
+}
+
+void plot_dot(const PlotPanel *panel, double x, double y, PlotStyle style)
+{
+    text_append(panel->svg, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"2.5\" fill=\"%s\"/>\n",
+                plot_x(panel, x), plot_y(panel, y), style.colour);
+}
+
+static void append_triangle(Text *svg, double x, double y, double height, PlotStyle style)
+{
+    text_append(svg,
+                "<path class=\"mark\" d=\"M%.1f %.1fl%.1f %.1fh%.1fz\" fill=\"#fff\" "
+                "stroke=\"%s\"",
+                x, y, -0.5 * MARK_SIZE, -height, MARK_SIZE, style.colour);
+}
+
+void plot_mark(const PlotPanel *panel, double x, double y, bool is_below, const char *title,
+               PlotStyle style)
+{
+    append_triangle(panel->svg, plot_x(panel, x), plot_y(panel, y),
+                    is_below ? -MARK_SIZE : MARK_SIZE, style);
+    append_title(panel->svg, title);
+}
+
+void plot_mark_sample(Text *svg, double x, double y, PlotStyle style)
+{
+    append_triangle(svg, x, y, MARK_SIZE, style);
+    text_append(svg, "/>\n");
+}
+
+void plot_shade(const PlotPanel *panel, double from, double to)
+{
+    text_append(panel->svg,
+                "<rect class=\"shade\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" "
+                "height=\"%.1f\" fill=\"#888\" fill-opacity=\"0.18\"/>\n",
+                plot_x(panel, from), panel->top, plot_x(panel, to) - plot_x(panel, from),
+                panel->height);
 }
 
 void plot_circle(const PlotPanel *panel, double radius, PlotStyle style)

@@ -4,6 +4,8 @@
 #include "base/text.h"
 #include "report/axis.h"
 
+#include <stdbool.h>
+
 // A rectangle of the picture, in pixels, with the axes it shows.
 typedef struct PlotPanel {
     Text *svg; // written to; not owned
@@ -50,8 +52,24 @@ void plot_leave(const PlotPanel *panel);
 void plot_line(const PlotPanel *panel, size_t count, const double *x, const double *y,
                PlotStyle style);
 
-// A line from the lower edge up to the point, with a dot on it.
-void plot_stem(const PlotPanel *panel, double x, double y, PlotStyle style);
+// A band from the least to the largest value at each x, drawn for each half pixel column as a
+// stroke, the strokes joined to a line. Every value shows; the size is bounded by the pixels. The
+// title is what a viewer shows of it.
+void plot_band(const PlotPanel *panel, size_t count, const double *x, const double *least,
+               const double *most, const char *title, PlotStyle style);
+
+// A dot at a point.
+void plot_dot(const PlotPanel *panel, double x, double y, PlotStyle style);
+
+// A triangle whose tip is at a point: above it, or below where `is_below`.
+void plot_mark(const PlotPanel *panel, double x, double y, bool is_below, const char *title,
+               PlotStyle style);
+
+// The same for a legend, with its tip at a place of the picture.
+void plot_mark_sample(Text *svg, double x, double y, PlotStyle style);
+
+// A grey ground from one x to another.
+void plot_shade(const PlotPanel *panel, double from, double to);
 
 // A circle about the origin, in units of the axes.
 void plot_circle(const PlotPanel *panel, double radius, PlotStyle style);

@@ -21,40 +21,58 @@ static double force_of(const RunReport *report, const Trajectory *run, size_t sa
     return trajectory_state(run, sample, joint)->force;
 }
 
-// Whether the run has forces of this joint at all: none act in a drive that is prescribed.
-static bool knows_force(const Trajectory *run, size_t joint)
+static size_t force_signal(const Trajectory *run, size_t joint)
 {
-    for (size_t i = 0; run->is_complete && i < run->sample_count; i++) {
-        if (trajectory_state(run, i, joint)->force > 0.0) {
+    return ranges_of_joint(&run->ranges, joint, RANGES_FORCE);
+}
+
+static const PlotQuantity FORCE = {"force", plot_look_joint_colour, plot_look_joint_name,
+                                   force_signal, force_of};
+
+// Whether the run has forces of this joint at all: none act in a drive that is prescribed.
+static bool knows_force(const RunReport *report, const Trajectory *run, size_t joint)
+{
+    const size_t count = run->is_complete ? plot_look_stretch_count(run, FORCE) : 0;
+    for (size_t i = 0; i < count; i++) {
+        if (plot_look_stretch(report, run, FORCE, i, joint).range.most > 0.0) {
             return true;
         }
     }
     return false;
 }
 
+// Widens the range of the forces that are drawn by those of one joint in one run.
+static void widen_force_range(const RunReport *report, const Trajectory *run, size_t joint,
+                              Range *forces)
+{
+    const size_t count = plot_look_stretch_count(run, FORCE);
+    for (size_t i = 0; i < count; i++) {
+        const Range range = plot_look_stretch(report, run, FORCE, i, joint).range;
+        forces->most = fmax(forces->most, range.most);
+        forces->least = range.most > 0.0 ? fmin(forces->least, range.most) : forces->least;
+        forces->least = range.least > 0.0 ? fmin(forces->least, range.least) : forces->least;
+    }
+    const JointExtremes *extremes = &run->joints[joint];
+    if (extremes->spike_count > 0) {
+        forces->most = fmax(forces->most, extremes->spikes[0].force_max);
+    }
+}
+
 // The range of the forces that are drawn, in whole decades.
 static void choose_force_range(const RunReport *report, Axis *axis)
 {
-    double low = INFINITY;
-    double high = 0.0;
+    Range forces = {INFINITY, 0.0};
     for (size_t run = 0; run < report->run_count; run++) {
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
-            if (!trajectory->is_complete || !plot_look_shows_joint(report, joint)) {
-                continue;
-            }
-            const JointExtremes *extremes = &trajectory->joints[joint];
-            high = extremes->spike_count > 0 ? fmax(high, extremes->spikes[0].force_max) : high;
-            for (size_t i = 0; i < trajectory->sample_count; i++) {
-                const double force = force_of(report, trajectory, i, joint);
-                low = force > 0.0 ? fmin(low, force) : low;
-                high = fmax(high, force);
+            if (trajectory->is_complete && plot_look_shows_joint(report, joint)) {
+                widen_force_range(report, trajectory, joint, &forces);
             }
         }
     }
-    axis->high = high > 0.0 ? pow(10.0, ceil(log10(high))) : 1.0;
-    axis->low =
-        fmax(pow(10.0, floor(log10(fmin(low, 0.1 * axis->high)))), FORCE_DEPTH * axis->high);
+    axis->high = forces.most > 0.0 ? pow(10.0, ceil(log10(forces.most))) : 1.0;
+    axis->low = fmax(pow(10.0, floor(log10(fmin(forces.least, 0.1 * axis->high)))),
+                     FORCE_DEPTH * axis->high);
 }
 
 static void draw_spikes(const RunReport *report, const PlotPanel *panel, size_t run, size_t joint)
@@ -64,26 +82,33 @@ static void draw_spikes(const RunReport *report, const PlotPanel *panel, size_t 
     const bool is_shown = trajectory_feels_play(report->runs[run], shape);
     for (size_t i = 0; is_shown && i < extremes->spike_count; i++) {
         const Spike *spike = &extremes->spikes[i];
-        plot_stem(panel, plot_look_x(report, spike->crank_rad, spike->onset_s), spike->force_max,
-                  plot_look_line(1, plot_look_joint_colour(report, joint)));
+        plot_dot(panel, plot_look_x(report, spike->crank_rad, spike->onset_s), spike->force_max,
+                 plot_look_line(1, plot_look_joint_colour(report, joint)));
     }
 }
 
 void plot_joints_forces(const RunReport *report, PlotPanel panel)
 {
-    static const PlotQuantity FORCE = {force_of, plot_look_joint_colour};
     panel.y = (Axis){.title = "force, N", .scale = AXIS_LOG};
     choose_force_range(report, &panel.y);
     if (scenario_has_clearance(report->scenario)) {
         panel.title = "Force in the joint; dots: strongest contacts";
     }
     plot_enter(&panel);
+    plot_look_shade(report, &panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-            if (plot_look_shows_joint(report, joint) && knows_force(report->runs[run], joint)) {
+            if (plot_look_shows_joint(report, joint) &&
+                knows_force(report, report->runs[run], joint)) {
                 plot_look_draw(report, &panel, run, FORCE, joint);
                 draw_spikes(report, &panel, run, joint);
             }
+        }
+    }
+    const Trajectory *spiky = plot_look_spike_run(report);
+    for (size_t joint = 0; spiky != NULL && joint < spiky->joint_count; joint++) {
+        if (plot_look_shows_joint(report, joint)) {
+            plot_look_marks(report, &panel, &spiky->force_spikes[joint], FORCE, joint, "N");
         }
     }
     plot_leave(&panel);
@@ -206,7 +231,8 @@ static void choose_error_range(const RunReport *report, const Trajectory *truth,
 
 void plot_joints_errors(const RunReport *report, PlotPanel panel)
 {
-    static const PlotQuantity ERROR = {omega_error, plot_look_body_colour};
+    static const PlotQuantity ERROR = {"difference of omega", plot_look_body_colour,
+                                       plot_look_body_name, NULL, omega_error};
     const Trajectory *truth = find_truth(report);
     char title[128];
     snprintf(title, sizeof title, "%s%s",

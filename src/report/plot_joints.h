@@ -3,8 +3,8 @@
 
 #include "report/plot_look.h"
 
-// Joint forces over the crank angle, each contact kept as a stem of its full height: most last
-// shorter than the distance of two samples.
+// Joint forces over the crank angle, every step of them, with a dot for the strongest contacts and
+// marks for the spikes of the table.
 void plot_joints_forces(const RunReport *report, PlotPanel panel);
 
 // The path of each pin in its hole, as the eccentricity over the radial clearance where several

@@ -4,9 +4,11 @@
 #include "report/plot_joints.h"
 #include "report/plot_look.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double PICTURE_WIDTH = 1000.0; // pixels, as all that follow
@@ -18,8 +20,10 @@ static const double PANEL_TOP[2] = {146.0, 530.0};
 static const double LEGEND_TOP = 62.0;
 static const double LEGEND_ROW = 22.0;
 
-// a symmetric logarithmic scale is used where one backend goes so many times beyond another
+// a symmetric logarithmic scale is used where one backend goes so many times beyond another, or
+// beyond what the greater part of its run stays below
 static const double SPIKY = 8.0;
+static const double USUAL = 0.9;
 
 static double omega_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
 {
@@ -46,6 +50,24 @@ static double acceleration_of(const RunReport *report, const Trajectory *run, si
     (void)report;
     const Vec2 acceleration = trajectory_motion(run, sample, body)->acceleration;
     return hypot(acceleration.x, acceleration.y);
+}
+
+static size_t omega_signal(const Trajectory *run, size_t body)
+{
+    (void)run;
+    return ranges_of_body(body, RANGES_OMEGA);
+}
+
+static size_t alpha_signal(const Trajectory *run, size_t body)
+{
+    (void)run;
+    return ranges_of_body(body, RANGES_ALPHA);
+}
+
+static size_t acceleration_signal(const Trajectory *run, size_t body)
+{
+    (void)run;
+    return ranges_of_body(body, RANGES_ACCELERATION);
 }
 
 // Does any body turn by more than rounding? A body without friction in a round hole does not, and
@@ -88,20 +110,43 @@ static PlotPanel place_panel(const RunReport *report, Text *svg, int row, int pl
     };
 }
 
-// The range of a quantity in one run, over all samples and all bodies that are shown.
-static void find_range(const RunReport *report, const Trajectory *run, PlotQuantity quantity,
-                       double *low, double *high)
+// How far a quantity goes in one run, over all bodies that are shown.
+typedef struct Reach {
+    double low;
+    double high;
+    double usual; // what most of the run stays below on either side of zero
+} Reach;
+
+static int by_size(const void *a, const void *b)
 {
-    for (size_t body = 0; body < run->body_count; body++) {
-        for (size_t i = 0; plot_look_shows_body(report, body) && i < run->sample_count; i++) {
-            const double value = quantity.at(report, run, i, body);
-            *low = fmin(*low, value);
-            *high = fmax(*high, value);
-        }
-    }
+    const double first = *(const double *)a;
+    const double second = *(const double *)b;
+    return (first > second) - (first < second);
 }
 
-// A linear scale, unless one backend dwarfs another.
+static Reach find_reach(const RunReport *report, const Trajectory *run, PlotQuantity quantity)
+{
+    Reach reach = {0};
+    const size_t count = plot_look_stretch_count(run, quantity);
+    double *sizes = calloc(count, sizeof *sizes);
+    assert(sizes != NULL);
+    for (size_t body = 0; body < run->body_count; body++) {
+        for (size_t i = 0; plot_look_shows_body(report, body) && i < count; i++) {
+            const Range range = plot_look_stretch(report, run, quantity, i, body).range;
+            if (range.least <= range.most) {
+                reach.low = fmin(reach.low, range.least);
+                reach.high = fmax(reach.high, range.most);
+                sizes[i] = fmax(sizes[i], fmax(-range.least, range.most));
+            }
+        }
+    }
+    qsort(sizes, count, sizeof *sizes, by_size);
+    reach.usual = sizes[(size_t)(USUAL * (double)(count - 1))];
+    free(sizes);
+    return reach;
+}
+
+// A linear scale, unless one backend dwarfs another, or spikes dwarf the rest of a run.
 static void choose_scale(const RunReport *report, PlotQuantity quantity, Axis *axis)
 {
     double least = INFINITY;
@@ -109,13 +154,12 @@ static void choose_scale(const RunReport *report, PlotQuantity quantity, Axis *a
         if (!report->runs[i]->is_complete) {
             continue;
         }
-        double low = 0.0;
-        double high = 0.0;
-        find_range(report, report->runs[i], quantity, &low, &high);
-        const double size = fmax(-low, high);
+        const Reach reach = find_reach(report, report->runs[i], quantity);
+        const double size = fmax(-reach.low, reach.high);
         least = size > 0.0 ? fmin(least, size) : least;
-        axis->low = fmin(axis->low, low);
-        axis->high = fmax(axis->high, high);
+        least = reach.usual > 0.0 ? fmin(least, reach.usual) : least;
+        axis->low = fmin(axis->low, reach.low);
+        axis->high = fmax(axis->high, reach.high);
     }
     const double most = fmax(-axis->low, axis->high);
     if (most > SPIKY * least) {
@@ -128,15 +172,23 @@ static void choose_scale(const RunReport *report, PlotQuantity quantity, Axis *a
     }
 }
 
-static void draw_motion(const RunReport *report, PlotPanel panel, PlotQuantity quantity)
+static void draw_motion(const RunReport *report, PlotPanel panel, PlotQuantity quantity,
+                        bool has_spikes)
 {
     choose_scale(report, quantity, &panel.y);
     plot_enter(&panel);
+    plot_look_shade(report, &panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t body = 0; body < report->scenario->linkage.body_count; body++) {
             if (plot_look_shows_body(report, body) && report->runs[run]->is_complete) {
                 plot_look_draw(report, &panel, run, quantity, body);
             }
+        }
+    }
+    const Trajectory *spiky = has_spikes ? plot_look_spike_run(report) : NULL;
+    for (size_t body = 0; spiky != NULL && body < spiky->body_count; body++) {
+        if (plot_look_shows_body(report, body)) {
+            plot_look_marks(report, &panel, &spiky->alpha_spikes[body], quantity, body, "rad/s^2");
         }
     }
     plot_leave(&panel);
@@ -170,6 +222,16 @@ static void name_run(const Trajectory *run, char *words, size_t size)
              run->label, run->is_complete ? "" : " (failed)");
 }
 
+static void add_marks(Legend *legend, const Trajectory *run)
+{
+    char words[LINKAGE_NAME_SIZE + 64];
+    snprintf(words, sizeof words, "spikes of the table, %s", run->backend);
+    add_entry(legend, (PlotStyle){"#333333", 0.0, 0.0, NULL}, words);
+    const double width = 37.0 + 7.2 * (double)strlen(words) + 22.0;
+    plot_mark_sample(legend->svg, legend->x - width + 20.0, legend->y,
+                     (PlotStyle){"#333333", 1.0, 1.0, NULL});
+}
+
 static void draw_legend(const RunReport *report, Text *svg)
 {
     Legend legend = {svg, PANEL_LEFT[0], LEGEND_TOP};
@@ -200,24 +262,33 @@ static void draw_legend(const RunReport *report, Text *svg)
             add_entry(&legend, style, words);
         }
     }
+    const Trajectory *spiky = plot_look_spike_run(report);
+    if (spiky != NULL) {
+        add_marks(&legend, spiky);
+    }
 }
 
 // The rotation of the bodies, or the motion of their centres where nothing turns.
 static void draw_motions(const RunReport *report, Text *svg)
 {
-    static const PlotQuantity OMEGA = {omega_of, plot_look_body_colour};
-    static const PlotQuantity ALPHA = {alpha_of, plot_look_body_colour};
-    static const PlotQuantity SPEED = {speed_of, plot_look_body_colour};
-    static const PlotQuantity ACCELERATION = {acceleration_of, plot_look_body_colour};
+    static const PlotQuantity OMEGA = {"omega", plot_look_body_colour, plot_look_body_name,
+                                       omega_signal, omega_of};
+    static const PlotQuantity ALPHA = {"alpha", plot_look_body_colour, plot_look_body_name,
+                                       alpha_signal, alpha_of};
+    static const PlotQuantity SPEED = {"speed", plot_look_body_colour, plot_look_body_name, NULL,
+                                       speed_of};
+    static const PlotQuantity ACCELERATION = {"acceleration", plot_look_body_colour,
+                                              plot_look_body_name, acceleration_signal,
+                                              acceleration_of};
     const bool turns = report->scenario->linkage.driver.is_present || any_turns(report);
     PlotPanel panel =
         place_panel(report, svg, 0, 0, turns ? "Angular velocity" : "Speed of the centre of mass");
     panel.y.title = turns ? "omega, rad/s" : "speed, m/s";
-    draw_motion(report, panel, turns ? OMEGA : SPEED);
+    draw_motion(report, panel, turns ? OMEGA : SPEED, false);
     panel = place_panel(report, svg, 0, 1,
                         turns ? "Angular acceleration" : "Acceleration of the centre of mass");
     panel.y.title = turns ? "alpha, rad/s^2" : "acceleration, m/s^2";
-    draw_motion(report, panel, turns ? ALPHA : ACCELERATION);
+    draw_motion(report, panel, turns ? ALPHA : ACCELERATION, turns);
 }
 
 void plot_run_write(const RunReport *report, Text *svg)

@@ -17,7 +17,7 @@ static void set_extreme(json_t *object, const char *name, const char *unit, Extr
     snprintf(key, sizeof key, "%s_%s", name, unit);
     json_value_set(object, key, extreme.value);
     snprintf(key, sizeof key, "%s_crank_deg", name);
-    json_value_set(object, key, units_wrapped_deg(extreme.crank_rad));
+    json_value_set(object, key, extreme.crank_rad * UNITS_DEG);
 }
 
 static json_t *bodies_object(const Linkage *linkage, const Trajectory *run)
@@ -46,7 +46,7 @@ static json_t *spikes_array(const JointExtremes *extremes, bool is_felt)
         const Spike *spike = &extremes->spikes[i];
         json_t *object = json_object();
         json_value_set(object, "onset_s", spike->onset_s);
-        json_value_set(object, "crank_deg", units_wrapped_deg(spike->crank_rad));
+        json_value_set(object, "crank_deg", spike->crank_rad * UNITS_DEG);
         json_value_set(object, "approach_speed_m_s", spike->approach_speed);
         json_value_set(object, "force_max_N", spike->force_max);
         json_value_set(object, "duration_s", spike->duration_s);

@@ -19,7 +19,7 @@ static void head_when(Table *table, size_t column, const RunReport *report)
 static void when_cell(Table *table, const RunReport *report, Extreme extreme)
 {
     if (report->scenario->linkage.driver.is_present) {
-        table_cell(table, "%.1f", units_wrapped_deg(extreme.crank_rad));
+        table_cell(table, "%.1f", extreme.crank_rad * UNITS_DEG);
     } else {
         table_cell(table, "%.4f", extreme.time_s * UNITS_MS);
     }
@@ -140,7 +140,7 @@ static void spike_row(Table *table, const Joint *joint, bool is_driven, const Sp
     table_cell(table, "%s", joint->name);
     table_cell(table, "%.4f", spike->onset_s * UNITS_MS);
     if (is_driven) {
-        table_cell(table, "%.1f", units_wrapped_deg(spike->crank_rad));
+        table_cell(table, "%.1f", spike->crank_rad * UNITS_DEG);
     }
     run_section_number(table, spike->approach_speed * UNITS_MM);
     run_section_number(table, spike->force_max);

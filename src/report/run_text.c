@@ -66,6 +66,10 @@ static void write_drive(const Scenario *scenario, Text *text)
     }
     text_append(text, "%.6g ms, %zu samples\n", scenario_duration(scenario) * UNITS_MS,
                 scenario_sample_count(scenario));
+    if (scenario->run.report_from > 0.0) {
+        text_append(text, "  reported    extremes, contacts and spikes from %.6g ms on\n",
+                    scenario_report_from(scenario) * UNITS_MS);
+    }
 }
 
 static void write_damping(const ContactOptions *contact, Text *text)

@@ -22,7 +22,7 @@ static json_t *spike_object(const SignalSpike *spike, const char *unit, const ch
     json_value_set(object, "peak_s", spike->time_s);
     json_value_set(object, "end_s", spike->end_s);
     json_value_set(object, "crank_deg",
-                   linkage->driver.is_present ? units_wrapped_deg(spike->crank_rad) : NAN);
+                   linkage->driver.is_present ? spike->crank_rad * UNITS_DEG : NAN);
     set_with_unit(object, "value", unit, spike->value);
     set_with_unit(object, "prominence", unit, spike->prominence);
     json_value_set(object, "width_s", spike->width_s);

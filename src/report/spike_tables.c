@@ -33,7 +33,7 @@ static bool looked_for_any(const RunReport *report, const Trajectory *run)
 static void when_cell(Table *table, const RunReport *report, const SignalSpike *spike)
 {
     if (report->scenario->linkage.driver.is_present) {
-        table_cell(table, "%.1f", units_wrapped_deg(spike->crank_rad));
+        table_cell(table, "%.1f", spike->crank_rad * UNITS_DEG);
     } else {
         table_cell(table, "%.4f", spike->time_s * UNITS_MS);
     }

@@ -271,8 +271,12 @@ static void tell_signal(const Tracer *tracer, const Trace *trace, double thresho
     SignalSpike *found = NULL;
     *spikes = (SignalSpikes){
         .is_known = true, .threshold = threshold, .resolution = 2.0 * trace->tolerance};
-    spikes->count = threshold > 0.0 ? spikes_find(trace, threshold, &found) : 0;
-    for (size_t i = 0; i < spikes->count; i++) {
+    const size_t count = threshold > 0.0 ? spikes_find(trace, threshold, &found) : 0;
+    for (size_t i = 0; i < count; i++) {
+        if (found[i].time_s < scenario_report_from(tracer->scenario)) {
+            continue;
+        }
+        spikes->count++;
         found[i].crank_rad = linkage_crank_angle(linkage, found[i].time_s);
         found[i].joint = is_body ? find_joint(tracer, &found[i]) : -1;
         keep_spike(spikes, &found[i]);
@@ -286,8 +290,9 @@ static void tell_signal(const Tracer *tracer, const Trace *trace, double thresho
 // Thresholds of a case without a known scale: a share of the signal's own range.
 static double own_threshold(const Tracer *tracer, const Trace *trace, double least)
 {
+    const double from_s = scenario_report_from(tracer->scenario);
     return OWN_SHARE * tracer->scenario->run.spike_threshold *
-           fmax(range_within(trace, -INFINITY, INFINITY), least);
+           fmax(range_within(trace, from_s, INFINITY), least);
 }
 
 static void tell_all(Tracer *tracer, Trajectory *trajectory)
