@@ -2,11 +2,12 @@
 #include "base/text.h"
 
 #include <assert.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { TEXT_FIRST_CAPACITY = 256, TEXT_WORD_MAX = 64 };
+enum { TEXT_FIRST_CAPACITY = 256, TEXT_WORD_MAX = 64, TEXT_BEGUN_MIN = 3 };
 
 void text_init(Text *text)
 {
@@ -117,6 +118,11 @@ const char *text_nearest(const char *word, const char *const *choices, size_t co
             best_distance = distance;
             best = choices[i];
         }
+    }
+    // a word that was begun
+    for (size_t i = 0; i < count && best == NULL; i++) {
+        const bool is_begun = strlen(word) >= TEXT_BEGUN_MIN;
+        best = is_begun && strncmp(word, choices[i], strlen(word)) == 0 ? choices[i] : NULL;
     }
     return best;
 }

@@ -5,6 +5,7 @@
 
 #include "casefile/build.h"
 #include "casefile/check.h"
+#include "casefile/check_mechanism.h"
 #include "casefile/closure.h"
 #include "casefile/place.h"
 #include "casefile/store.h"
@@ -92,7 +93,8 @@ bool assemble_scenario(const Entries *entries, Scenario *scenario, Err *err)
 {
     Scenario built = scenario_default();
     if (!check_required(entries, err) || !store_entries(entries, &built, err) ||
-        !check_values(entries, &built, err) || !build(entries, &built, err)) {
+        !check_values(entries, &built, err) || !check_mechanism(entries, &built, err) ||
+        !build(entries, &built, err)) {
         return false;
     }
     const Source *source = entries_group(entries, "", 0)->source;

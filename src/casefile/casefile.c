@@ -112,11 +112,13 @@ bool casefile_load(const char *path, const char *const *overrides, size_t overri
 {
     char *text;
     size_t size;
-    if (!input_read("case", path, &text, &size, err)) {
+    const bool is_stdin = strcmp(path, "-") == 0;
+    if (!(is_stdin ? input_read_stdin("case", &text, &size, err)
+                   : input_read("case", path, &text, &size, err))) {
         return false;
     }
-    const bool is_good =
-        casefile_load_text(path, text, size, overrides, override_count, scenario, err);
+    const bool is_good = casefile_load_text(is_stdin ? INPUT_STDIN : path, text, size, overrides,
+                                            override_count, scenario, err);
     free(text);
     return is_good;
 }

@@ -6,10 +6,10 @@
 
 enum { CASEFILE_KEY_SIZE = 160, CASEFILE_UNIT_SIZE = 24, CASEFILE_TEXT_SIZE = 256 };
 
-// Reads a case file, applies the overrides (each KEY=VALUE, such as "run.step=2 us", with the
-// value as the case file would have it; of two for one key the later holds), checks everything
-// and builds the scenario, start motions included. An override of one of two keys that exclude
-// each other replaces the other.
+// Reads a case file, or standard input where the path is "-", applies the overrides (each
+// KEY=VALUE, such as "run.step=2 us", with the value as the case file would have it; of two for one
+// key the later holds), checks everything and builds the scenario, start motions included. An
+// override of one of two keys that exclude each other replaces the other.
 //
 // Fails with ERR_FILE where the file is missing or unreadable, with ERR_CASE where its content is
 // wrong (a directory, an empty, binary or huge file included), and with ERR_USAGE where the fault

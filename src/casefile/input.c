@@ -1,4 +1,5 @@
 // Can the file be read, and is it text?
+#define _GNU_SOURCE // memfd_create
 #include "casefile/input.h"
 
 #include <assert.h>
@@ -6,7 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 // Reads until the end of the file or one byte beyond the limit (a pipe has no size to ask for).
 static bool read_all(const char *what, const char *path, FILE *file, char **text, size_t *size,
@@ -57,6 +60,76 @@ bool input_read(const char *what, const char *path, char **text, size_t *size, E
     return is_read;
 }
 
+// Puts what a pipe still holds in its place: standard input can then be read any number of times.
+static bool keep_stdin(Err *err)
+{
+    const int kept = memfd_create(INPUT_STDIN, MFD_CLOEXEC);
+    char part[1 << 14];
+    size_t total = 0;
+    ssize_t count = 0;
+    bool is_kept = kept >= 0;
+    while (is_kept && total <= INPUT_SIZE_MAX &&
+           (count = read(STDIN_FILENO, part, sizeof part)) > 0) {
+        total += (size_t)count;
+        is_kept = write(kept, part, (size_t)count) == count;
+    }
+    is_kept = is_kept && count >= 0 && lseek(kept, 0, SEEK_SET) == 0 &&
+              dup2(kept, STDIN_FILENO) == STDIN_FILENO;
+    if (!is_kept) {
+        err_set(err, ERR_FILE, "%s: cannot be read: %s", INPUT_STDIN, strerror(errno));
+    }
+    if (kept >= 0) {
+        close(kept);
+    }
+    return is_kept;
+}
+
+bool input_read_stdin(const char *what, char **text, size_t *size, Err *err)
+{
+    off_t start = lseek(STDIN_FILENO, 0, SEEK_CUR);
+    if (start < 0) {
+        if (!keep_stdin(err)) {
+            return false;
+        }
+        start = 0;
+    }
+    const int copy = dup(STDIN_FILENO);
+    FILE *file = copy >= 0 ? fdopen(copy, "rb") : NULL;
+    if (file == NULL) {
+        return err_set(err, ERR_FILE, "%s: cannot be read: %s", INPUT_STDIN, strerror(errno));
+    }
+    const bool is_read = read_all(what, INPUT_STDIN, file, text, size, err);
+    fclose(file);
+    lseek(STDIN_FILENO, start, SEEK_SET);
+    return is_read;
+}
+
+static bool has_key(const Node *root, const char *key)
+{
+    for (const Node *value = root->kind == NODE_MAP ? root->first : NULL; value != NULL;
+         value = value->next) {
+        if (value->key != NULL && value->key->text != NULL && strcmp(value->key->text, key) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A study has the file of a case, and a case a mechanism: one in place of the other has a command
+// of its own.
+static bool check_kind(const char *what, const char *name, const Node *root, Err *err)
+{
+    const bool has_mechanism = has_key(root, "four-bar") || has_key(root, "bodies");
+    const bool has_case = has_key(root, "case");
+    if (strcmp(what, "case") == 0 && has_case && !has_mechanism) {
+        return err_set(err, ERR_USAGE, "%s: is a study and not a case\nallowed: jointplay study %s",
+                       name, name);
+    }
+    return strcmp(what, "study") != 0 || has_case || !has_mechanism ||
+           err_set(err, ERR_USAGE, "%s: is a case and not a study\nallowed: jointplay run %s", name,
+                   name);
+}
+
 static bool check_text(const char *what, const char *name, const char *text, size_t size, Err *err)
 {
     if (size == 0) {
@@ -87,6 +160,11 @@ bool input_parse(const char *what, const char *name, const char *text, size_t si
     if (*root == NULL) {
         return err_set(err, ERR_CASE, "%s: the file holds no %s\nallowed: a %s in YAML", name, what,
                        what);
+    }
+    if (!check_kind(what, name, *root, err)) {
+        document_destroy(*root);
+        *root = NULL;
+        return false;
     }
     return true;
 }

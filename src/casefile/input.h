@@ -5,6 +5,8 @@
 
 #include "casefile/document.h"
 
+#define INPUT_STDIN "stdin" // what messages and reports call standard input
+
 enum { INPUT_SIZE_MAX = 1 << 20 }; // bytes; a case has some thousand
 
 // Reads the file into *text (owned by the caller, ends in a zero). Fails with ERR_FILE where it is
@@ -12,8 +14,12 @@ enum { INPUT_SIZE_MAX = 1 << 20 }; // bytes; a case has some thousand
 // the outputs are then untouched.
 bool input_read(const char *what, const char *path, char **text, size_t *size, Err *err);
 
+// The same from standard input, which may be asked for again: what a pipe held is kept in memory.
+bool input_read_stdin(const char *what, char **text, size_t *size, Err *err);
+
 // Parses a text into a tree that the caller destroys; the source, which borrows name and text, says
 // where its nodes stand. Fails with ERR_CASE where it is no text (empty, not valid UTF-8, with
-// control characters), no YAML, or holds no document; *root is then untouched.
+// control characters), no YAML, or holds no document, and with ERR_USAGE where a study was given
+// for a case or a case for a study; *root is then untouched.
 bool input_parse(const char *what, const char *name, const char *text, size_t size, Source *source,
                  Node **root, Err *err);

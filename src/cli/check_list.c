@@ -85,7 +85,12 @@ static bool read_case(CheckItem *item, const CheckOptions *options)
 {
     item->scenario = calloc(1, sizeof *item->scenario);
     assert(item->scenario != NULL);
-    if (!casefile_load(item->path, options->common.overrides, options->common.override_count,
+    if (strcmp(item->path, "-") == 0) {
+        err_set(&item->err, ERR_USAGE,
+                "check takes case files and not standard input: a baseline belongs to a file");
+    }
+    if (item->err.kind != ERR_NONE ||
+        !casefile_load(item->path, options->common.overrides, options->common.override_count,
                        item->scenario, &item->err)) {
         free(item->scenario);
         item->scenario = NULL;

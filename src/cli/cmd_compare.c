@@ -4,6 +4,7 @@
 #include "cli/compare_options.h"
 #include "cli/compare_progress.h"
 #include "cli/compare_store.h"
+#include "cli/doubts.h"
 #include "cli/idle_settings.h"
 #include "cli/output.h"
 #include "cli/run_files.h"
@@ -110,6 +111,7 @@ static void say_idle(const CompareOptions *options, const Scenario *scenario)
         whole->run.backends[i] = (BackendKind)i;
     }
     whole->ode.solver = ODE_QUICK;
+    doubts_say(whole);
     idle_settings_say(whole, options->common.overrides, options->common.override_count);
     free(whole);
 }

@@ -1,5 +1,6 @@
 // Which ERP, CFM and step for a joint with play, and what do they deliver?
 #include "cli/command.h"
+#include "cli/doubts.h"
 #include "cli/idle_settings.h"
 #include "cli/map_files.h"
 #include "cli/map_options.h"
@@ -184,6 +185,7 @@ static bool map_run(int argc, char **argv, Err *err)
         options.common.path == NULL || casefile_load(options.common.path, options.common.overrides,
                                                      options.common.override_count, scenario, err);
     if (is_done && options.common.path != NULL && !options.common.is_quiet) {
+        doubts_say(scenario);
         idle_settings_say(scenario, options.common.overrides, options.common.override_count);
     }
     is_done = is_done && (options.is_inverse ? read_row(&options, scenario, err)

@@ -2,7 +2,9 @@
 #include "cli/arguments.h"
 #include "cli/case_run.h"
 #include "cli/command.h"
+#include "cli/doubts.h"
 #include "cli/idle_settings.h"
+#include "cli/option_values.h"
 #include "cli/output.h"
 #include "cli/run_files.h"
 
@@ -212,6 +214,7 @@ static bool run_cases(const RunCommand *command, CaseRun *runs, Err *err)
         return false;
     }
     for (size_t i = 0; !command->is_quiet && i < command->case_count; i++) {
+        doubts_say(&runs[i].scenario);
         idle_settings_say(&runs[i].scenario, (const char *const *)command->overrides,
                           command->override_count);
     }
@@ -236,6 +239,9 @@ static bool check_command(RunCommand *command, Err *err)
     if (command->case_count > 1 && (command->series != NULL || command->plot != NULL)) {
         return err_set(err, ERR_USAGE, "--%s takes one case; --out DIR takes several",
                        command->series != NULL ? "series" : "plot");
+    }
+    if (!option_values_check_picture("--plot", command->plot, err)) {
+        return false;
     }
     if (file_is_same(command->series, command->plot)) {
         return err_set(err, ERR_USAGE, "--series and --plot would both write %s", command->plot);

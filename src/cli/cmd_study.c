@@ -44,12 +44,15 @@ static bool run(int argc, char **argv, Err *err)
     if (part != NULL) {
         return part->run(argc - 1, argv + 1, err);
     }
+    if (argc > 1 && argv[1][0] != '-' && !check_word(argv[1], err)) {
+        return false;
+    }
     StudyOptions options;
     bool is_answered;
     if (!study_options_read(argc, argv, &options, &is_answered, err) || is_answered) {
         return err->kind == ERR_NONE;
     }
-    return check_word(options.common.path, err) && study_run(&options, err);
+    return study_run(&options, err);
 }
 
 const Command cmd_study = {

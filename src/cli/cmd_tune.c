@@ -1,5 +1,6 @@
 // Which setting of ODE is the cheapest that is accurate enough?
 #include "cli/command.h"
+#include "cli/doubts.h"
 #include "cli/idle_settings.h"
 #include "cli/output.h"
 #include "cli/run_files.h"
@@ -99,6 +100,7 @@ static void say_idle(const TuneOptions *options, const Scenario *scenario)
     *whole = *scenario;
     // the search tries both solvers, whatever the case says
     whole->ode.solver = ODE_QUICK;
+    doubts_say(whole);
     idle_settings_say(whole, options->common.overrides, options->common.override_count);
     free(whole);
     for (size_t i = 0; i < options->common.override_count; i++) {

@@ -10,13 +10,21 @@ enum { COMMAND_MAX = 32 };
 
 const Command *command_find(const char *name, Err *err)
 {
-    const char *names[COMMAND_MAX];
+    return command_find_topic(name, NULL, err);
+}
+
+const Command *command_find_topic(const char *name, const char *topic, Err *err)
+{
+    const char *names[COMMAND_MAX + 1];
     size_t count = 0;
     for (; COMMANDS[count] != NULL; count++) {
         names[count] = COMMANDS[count]->name;
         if (strcmp(name, names[count]) == 0) {
             return COMMANDS[count];
         }
+    }
+    if (topic != NULL) {
+        names[count++] = topic;
     }
     const char *nearest = text_nearest(name, names, count);
     if (nearest != NULL) {

@@ -28,5 +28,8 @@ extern const Command *const COMMANDS[];
 // The command of a name. Fails with ERR_USAGE, naming the command that may have been meant.
 const Command *command_find(const char *name, Err *err);
 
+// The same, with a topic that is no command among the names that may have been meant.
+const Command *command_find_topic(const char *name, const char *topic, Err *err);
+
 // Prints what the program does and the list of commands.
 void command_list(void);

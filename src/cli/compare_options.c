@@ -92,6 +92,9 @@ bool compare_options_read(int argc, char **argv, CompareOptions *options, bool *
     if (*is_answered) {
         return true;
     }
+    if (!option_values_check_picture("--plot", options->plot, err)) {
+        return false;
+    }
     if (file_is_same(options->csv, options->plot)) {
         return err_set(err, ERR_USAGE, "--csv and --plot would both write %s", options->plot);
     }

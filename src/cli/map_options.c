@@ -206,6 +206,9 @@ bool map_options_read(int argc, char **argv, MapOptions *options, bool *is_answe
     if (options->steps != NULL && options->step_s > 0.0) {
         return err_set(err, ERR_USAGE, "--step is one of --steps; give either");
     }
+    if (!option_values_check_picture("--plot", options->plot, err)) {
+        return false;
+    }
     if (file_is_same(options->csv, options->plot)) {
         return err_set(err, ERR_USAGE, "--csv and --plot would both write %s", options->plot);
     }

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 enum { PART_SIZE = 256 };
@@ -111,4 +112,15 @@ size_t option_values_count_jobs(void)
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     const long most = OPTION_JOB_MAX;
     return cores < 1 ? 1 : (size_t)(cores < most ? cores : most);
+}
+
+bool option_values_check_picture(const char *option, const char *path, Err *err)
+{
+    const char *name = path != NULL && strrchr(path, '/') != NULL ? strrchr(path, '/') + 1 : path;
+    const char *dot = name != NULL ? strrchr(name, '.') : NULL;
+    if (dot == NULL || dot == name || dot[1] == '\0' || strcasecmp(dot, ".svg") == 0) {
+        return true;
+    }
+    return err_set(err, ERR_USAGE, "%s: %s: pictures are written as SVG alone; allowed: %.*s.svg",
+                   option, path, (int)(dot - path), path);
 }

@@ -41,3 +41,7 @@ bool option_values_check_step(const char *path, const char *const *settings, siz
 
 // Processes at a time where nothing is said: one a processor, OPTION_JOB_MAX at most.
 size_t option_values_count_jobs(void);
+
+// Whether a picture can be written there: they are SVG, and a name that ends otherwise asks for
+// something else. NULL is no file. Fails with ERR_USAGE.
+bool option_values_check_picture(const char *option, const char *path, Err *err);

@@ -1,5 +1,6 @@
 // How does one column of a study look over another?
 #include "cli/arguments.h"
+#include "cli/option_values.h"
 #include "cli/study_commands.h"
 #include "cli/study_place.h"
 #include "cli/written.h"
@@ -94,7 +95,7 @@ static bool run(int argc, char **argv, Err *err)
                        "%s: jointplay study plot STORE --x COLUMN --y COLUMN FILE.svg",
                        options.file == NULL ? "a store and a file are needed" : "no --x given");
     }
-    return draw(&options, err);
+    return option_values_check_picture("plot", options.file, err) && draw(&options, err);
 }
 
 const Command study_command_plot = {

@@ -112,6 +112,10 @@ bool study_options_read(int argc, char **argv, StudyOptions *options, bool *is_a
     if (options->common.path == NULL) {
         return err_set(err, ERR_USAGE, "no study given: jointplay study STUDY.yaml");
     }
+    if (strcmp(options->common.path, "-") == 0) {
+        return err_set(err, ERR_USAGE,
+                       "study takes a file and not standard input: its store has the file's name");
+    }
     if (options->is_fresh && options->is_retrying) {
         return err_set(err, ERR_USAGE,
                        "--fresh makes all runs again, --retry-failed only some: "

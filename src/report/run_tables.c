@@ -8,6 +8,9 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+// Of the clearance: a pin that moves less is at rest in its hole.
+static const double UNTOUCHED_STILL = 1e-3;
+
 // When something was: by the crank's angle, or by the time where nothing drives a crank.
 static void head_when(Table *table, size_t column, const RunReport *report)
 {
@@ -96,6 +99,42 @@ static void contact_row(Table *table, const RunReport *report, const Trajectory 
     table_cell(table, "%.1f", trajectory_contact_share(run, number) * UNITS_PERCENT);
 }
 
+// The farthest that a pin was from the centre of its hole at the samples, m.
+static double farthest(const Trajectory *run, size_t joint)
+{
+    double distance = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        distance = fmax(distance, vec2_length(trajectory_state(run, i, joint)->eccentricity));
+    }
+    return distance;
+}
+
+// A run without a single contact has no spikes to tell of, and is hardly what was wanted.
+static void write_untouched(const RunReport *report, Text *text)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        const double clearance = linkage_radial_clearance(&linkage->joints[joint]) * UNITS_UM;
+        for (size_t i = 0; i < report->run_count; i++) {
+            const Trajectory *run = report->runs[i];
+            if (!trajectory_feels_play(run, &linkage->joints[joint]) ||
+                run->joints[joint].impacts > 0 || run->joints[joint].contact_time > 0.0) {
+                continue;
+            }
+            const double share = farthest(run, joint) * UNITS_UM / clearance;
+            text_append(text, "  %s, %s: no contact in the whole run. ",
+                        linkage->joints[joint].name, run->backend);
+            text_append(text,
+                        share < UNTOUCHED_STILL
+                            ? "The pin stays at %.2g of its %.4g um of play: nothing pushes it, "
+                              "or the run of %.4g ms is too short.\n"
+                            : "The pin comes no farther than %.2g of its %.4g um of play: the run "
+                              "of %.4g ms is too short, or the play too large for it.\n",
+                        share, clearance, run->duration_s * UNITS_MS);
+        }
+    }
+}
+
 void run_tables_contacts(const RunReport *report, const Style *style, Text *text)
 {
     static const RunSectionHead HEADS[] = {
@@ -122,6 +161,7 @@ void run_tables_contacts(const RunReport *report, const Style *style, Text *text
     }
     if (table != NULL) {
         run_section_end(table, text);
+        write_untouched(report, text);
     }
 }
 

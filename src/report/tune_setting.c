@@ -1,6 +1,7 @@
 // How is a setting given on?
 #include "report/tune_setting.h"
 
+#include "casefile/input.h"
 #include "report/number.h"
 #include "report/units.h"
 
@@ -57,7 +58,8 @@ bool tune_setting_replaces(const char *override)
 void tune_setting_command(const TuneReport *report, const TuneTrial *trial, Text *text)
 {
     text_append(text, "jointplay run ");
-    append_quoted(report->scenario->path, text);
+    const char *path = report->scenario->path;
+    append_quoted(strcmp(path, INPUT_STDIN) == 0 ? "-" : path, text);
     for (size_t i = 0; i < report->override_count; i++) {
         if (!tune_setting_replaces(report->overrides[i])) {
             text_append(text, " --set ");
