@@ -1,15 +1,16 @@
 // Which solution are errors measured against, how sure is it, and how far does it hold?
 //
-// Uncertainty: the distance to a run at a hundredth of the tolerance. Horizon: a twin whose start
-// is 1e-10 beside moves away; past the time at which the first of them has grown 1e5 times, two
+// Uncertainty: the distance to a run at a hundredth of the tolerance. Horizon: starts 1e-10 beside
+// move away, the fastest of all of them (model/growth.c); where that has grown 1e5 times, two
 // solutions that are right to 1e-10 have only five digits in common, and an engine's none. The same
 // holds where the second run is that far away. Both are watched on a grid of at least a thousand
 // samples, for the case's own samples may be few.
 #include "compare/truth.h"
 
+#include "base/clock.h"
 #include "compare/error.h"
 #include "model/distance.h"
-#include "model/perturb.h"
+#include "model/growth.h"
 #include "run/registry.h"
 #include "run/tracer.h"
 
@@ -36,7 +37,7 @@ static double shorten_horizon(const Trajectory *trajectory, const Trajectory *ot
     double reached = 0.0;
     size_t k = 0;
     if (error_series(other, trajectory, distance)) {
-        while (k < count && distance[k] <= DISTANCE_GROWTH * DISTANCE_TWIN &&
+        while (k < count && distance[k] <= DISTANCE_GROWTH * DISTANCE_PERTURBATION &&
                trajectory->times[k] <= truth->horizon_s) {
             largest = fmax(largest, distance[k]);
             reached = trajectory->times[k++];
@@ -69,8 +70,50 @@ static Trajectory *run_for(const Scenario *scenario, RunWatch watch, Truth *trut
     return trajectory;
 }
 
-// Compares the reference on the fine grid with a second run of another tolerance, and that with its
-// twins.
+// Who watches the perturbed runs, which go on side by side.
+typedef struct Beats {
+    RunWatch watch;
+    double started_s;
+} Beats;
+
+static void beat(void *context)
+{
+    const Beats *beats = context;
+    beats->watch.progress(0.0, clock_now_s() - beats->started_s, beats->watch.context);
+}
+
+// Shortens the horizon to where the fastest of all perturbations has grown too much.
+static void follow_growth(const Scenario *scenario, const Trajectory *beside, RunWatch watch,
+                          Truth *truth)
+{
+    Beats beats = {watch, clock_now_s()};
+    DistanceScale scales[LINKAGE_BODY_MAX];
+    PerturbBasis *basis = malloc(sizeof *basis);
+    assert(basis != NULL);
+    distance_scales(beside, scales);
+    perturb_basis(scenario, scales, basis);
+    const Growth growth = growth_find(&(GrowthWork){
+        .solver = registry_solver(BACKEND_REFERENCE),
+        .scenario = scenario,
+        .beside = beside,
+        .scales = scales,
+        .basis = basis,
+        .size = DISTANCE_PERTURBATION,
+        .most = DISTANCE_GROWTH,
+        .until_s = truth->horizon_s,
+        .pulse = {watch.progress != NULL ? beat : NULL, &beats},
+    });
+    truth->growth = growth.largest;
+    truth->is_limited = truth->is_limited || growth.is_limited;
+    truth->horizon_s = growth.until_s;
+    if (growth.is_failed) {
+        snprintf(truth->message, sizeof truth->message, "%s", growth.failure.text);
+    }
+    free(basis);
+}
+
+// Compares the reference on the fine grid with a second run of another tolerance, and that with
+// perturbed runs.
 static void certify(const Scenario *fine, const Scenario *other, RunWatch watch, Truth *truth)
 {
     // the first run is there already where the case's own samples are fine enough
@@ -80,15 +123,8 @@ static void certify(const Scenario *fine, const Scenario *other, RunWatch watch,
     truth->is_limited = false;
     truth->horizon_s = scenario_duration(fine);
     shorten_horizon(second, first, truth);
-    DistanceScale scales[LINKAGE_BODY_MAX];
-    distance_scales(second, scales);
-    for (unsigned member = 1; member <= DISTANCE_TWINS && truth->message[0] == '\0'; member++) {
-        Scenario beside = *other;
-        perturb_start(&beside, scales, DISTANCE_TWIN, member);
-        Trajectory *twin = run_for(&beside, watch, truth);
-        const double distance = shorten_horizon(second, twin, truth);
-        truth->growth = fmax(truth->growth, distance / DISTANCE_TWIN);
-        trajectory_destroy(twin);
+    if (truth->message[0] == '\0') {
+        follow_growth(other, second, watch, truth);
     }
     truth->uncertainty = shorten_horizon(second, first, truth);
     if (truth->message[0] != '\0') {

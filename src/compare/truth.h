@@ -8,13 +8,13 @@ typedef struct Truth {
     double uncertainty;     // 1: largest difference in omega, as omega_max of an error, between the
                             // reference and a second one, up to the horizon; INFINITY where unknown
     double horizon_s;       // up to when trajectories may be compared: where neither the second
-                            // run nor any of four twins with starts 1e-10 beside is too far
-    double growth;          // 1: by how much the distance of the twins grew up to the horizon
+                            // run nor the fastest of all starts 1e-10 beside is too far away
+    double growth;          // 1: by how much that one's distance grew up to the horizon
     bool is_limited;        // whether the horizon ends before the run does
     char message[ERR_TEXT_SIZE]; // why it could not be certified; empty where it was
 } Truth;
 
-// The truth of a scenario: the reference, certified by a second, tighter run and a perturbed twin.
+// The truth of a scenario: the reference, certified by a second, tighter run and perturbed ones.
 // With ideal joints alone it is the closed form, certified by the reference. A truth that cannot be
 // had holds an incomplete trajectory with the reason.
 Truth truth_make(const Scenario *scenario, RunWatch watch);

@@ -4,12 +4,11 @@
 
 #include "model/trajectory.h"
 
-// A trajectory is predictable up to where one of so many twins, whose starts are so far beside it,
-// has come so many times that distance away: past it two solutions that are right to the first
-// number have only five digits in common.
-static const double DISTANCE_TWIN = 1e-10;
+// A trajectory is predictable up to where the fastest of all perturbations of so small a size has
+// grown so many times: past it two solutions that are right to the first number have only five
+// digits in common.
+static const double DISTANCE_PERTURBATION = 1e-10;
 static const double DISTANCE_GROWTH = 1e5;
-enum { DISTANCE_TWINS = 4 }; // a single one may lie in a direction that hardly grows
 
 // The scenario with samples fine enough to compare on, its own among them.
 Scenario distance_grid(const Scenario *scenario);

@@ -9,7 +9,10 @@
 #include "model/perturb.h"
 
 #include "base/lcg.h"
-#include "model/nearest.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
 
 // of what was drawn: what rounding leaves where joints and driver allow nothing
 static const double ALLOWED = 1e-8;
@@ -101,11 +104,97 @@ bool perturb_start(Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_M
     if (!(allowed > ALLOWED * drawn)) {
         return false;
     }
-    const double factor = size / allowed;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        Motion *start = &linkage->bodies[i].start;
+    perturb_along(scenario, changes, size / allowed);
+    return true;
+}
+
+void perturb_along(Scenario *scenario, const SpeedChange changes[LINKAGE_BODY_MAX], double factor)
+{
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        Motion *start = &scenario->linkage.bodies[i].start;
         start->velocity = vec2_add(start->velocity, vec2_scale(factor, changes[i].velocity));
         start->omega += factor * changes[i].omega;
     }
-    return true;
+}
+
+static double product(const Linkage *linkage, const DistanceScale *scales, const SpeedChange *a,
+                      const SpeedChange *b)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if ((int)i != linkage_driven_body(linkage)) {
+            const Unit unit = unit_of(linkage, &scales[i]);
+            sum += vec2_dot(a[i].velocity, b[i].velocity) / (unit.moving * unit.moving) +
+                   a[i].omega * b[i].omega / (unit.turning * unit.turning);
+        }
+    }
+    return sum;
+}
+
+static void add_multiple(const Linkage *linkage, double factor, const SpeedChange *from,
+                         SpeedChange *to)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        to[i].velocity = vec2_add(to[i].velocity, vec2_scale(factor, from[i].velocity));
+        to[i].omega += factor * from[i].omega;
+    }
+}
+
+// What joints and driver allow of each single rate of each body. Returns the freedoms: the trace of
+// that projection.
+static size_t allow_each(const Linkage *linkage, const DistanceScale *scales, PerturbBasis *each)
+{
+    Motion motions[LINKAGE_BODY_MAX];
+    linkage_start(linkage, motions);
+    double trace = 0.0;
+    each->count = 0;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Unit unit = unit_of(linkage, &scales[i]);
+        for (int rate = 0; rate < 3 && (int)i != linkage_driven_body(linkage); rate++) {
+            SpeedChange *changes = each->changes[each->count++];
+            for (size_t k = 0; k < linkage->body_count; k++) {
+                changes[k] = (SpeedChange){{0.0, 0.0}, 0.0};
+            }
+            double *own = rate == 0   ? &changes[i].velocity.x
+                          : rate == 1 ? &changes[i].velocity.y
+                                      : &changes[i].omega;
+            const double asked = rate == 2 ? unit.turning : unit.moving;
+            *own = asked;
+            nearest_change(linkage, motions, changes);
+            trace += *own / asked;
+        }
+    }
+    return (size_t)lround(fmax(trace, 0.0));
+}
+
+void perturb_basis(const Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_MAX],
+                   PerturbBasis *basis)
+{
+    const Linkage *linkage = &scenario->linkage;
+    PerturbBasis *left = malloc(sizeof *left);
+    assert(left != NULL);
+    const size_t freedoms = allow_each(linkage, scales, left);
+    for (basis->count = 0; basis->count < freedoms; basis->count++) {
+        // the longest of what is left comes next
+        size_t longest = 0;
+        double square = 0.0;
+        for (size_t i = 0; i < left->count; i++) {
+            const double own = product(linkage, scales, left->changes[i], left->changes[i]);
+            if (own > square) {
+                square = own;
+                longest = i;
+            }
+        }
+        if (!(square > 0.0)) {
+            break;
+        }
+        SpeedChange *next = basis->changes[basis->count];
+        memset(next, 0, sizeof basis->changes[0]);
+        add_multiple(linkage, 1.0 / sqrt(square), left->changes[longest], next);
+        for (size_t i = 0; i < left->count; i++) {
+            const double share = product(linkage, scales, next, left->changes[i]);
+            add_multiple(linkage, -share, next, left->changes[i]);
+        }
+    }
+    free(left);
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "model/distance.h"
+#include "model/nearest.h"
 
 // Changes the speeds of the bodies in a random direction, by a change of the size given, as the
 // ideal joints and the driver let it. The scales are those of the scenario's own motion. The member
@@ -13,3 +14,19 @@
 // and driver leave no freedom.
 bool perturb_start(Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_MAX], double size,
                    unsigned member);
+
+enum { PERTURB_FREEDOM_MAX = 3 * LINKAGE_BODY_MAX };
+
+// Changes of the bodies' speeds that span all that joints and driver allow, each of length 1 in
+//     |w|^2 = sum over bodies (w_omega / omega_b)^2 + (w_v / v_b)^2
+// and at right angles to the others. Its size, as perturb_start has it, is 1 or less.
+typedef struct PerturbBasis {
+    size_t count; // freedoms
+    SpeedChange changes[PERTURB_FREEDOM_MAX][LINKAGE_BODY_MAX];
+} PerturbBasis;
+
+void perturb_basis(const Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_MAX],
+                   PerturbBasis *basis);
+
+// Adds so many times a change to the speeds of the start.
+void perturb_along(Scenario *scenario, const SpeedChange changes[LINKAGE_BODY_MAX], double factor);

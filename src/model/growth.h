@@ -1,0 +1,30 @@
+// How far small changes of the start drive two motions apart: by the fastest of all of them.
+#pragma once
+
+#include "model/perturb.h"
+#include "model/solver.h"
+
+typedef struct GrowthWork {
+    const Solver *solver;
+    const Scenario *scenario;    // unperturbed
+    const Trajectory *beside;    // its motion; growth is looked at at its samples
+    const DistanceScale *scales; // of that
+    const PerturbBasis *basis;   // the starts that are run
+    double size;                 // of their perturbations
+    double most;                 // growth at which it ends
+    double until_s;              // or here, s
+    SolverPulse pulse;
+} GrowthWork;
+
+typedef struct Growth {
+    double until_s;  // the last sample up to which the growth is not above the most, s
+    double largest;  // 1: growth up to there, at least 1
+    bool is_limited; // whether it came to the most
+    bool is_failed;  // a perturbed run failed, for which `failure` has the reason
+    Err failure;
+    size_t steps; // of all perturbed runs
+    size_t evaluations;
+} Growth;
+
+// Runs the starts of the basis side by side up to where the growth comes to the most.
+Growth growth_find(const GrowthWork *work);
