@@ -9,8 +9,6 @@
 // is that of the fastest of all perturbations. It does not depend on the directions that were run.
 #include "model/growth.h"
 
-#include "model/walk.h"
-
 #include <assert.h>
 #include <stdlib.h>
 

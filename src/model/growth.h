@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model/perturb.h"
-#include "model/solver.h"
+#include "model/walk.h"
 
 typedef struct GrowthWork {
     const Solver *solver;
@@ -13,7 +13,7 @@ typedef struct GrowthWork {
     double size;                 // of their perturbations
     double most;                 // growth at which it ends
     double until_s;              // or here, s
-    SolverPulse pulse;
+    WalkPulse pulse;
 } GrowthWork;
 
 typedef struct Growth {

@@ -4,7 +4,7 @@
 // of the time: a step that ends short of it by rounding has reached it
 static const double SAME_TIME = 1e-12;
 
-bool walk_open(Walk *walk, const Solver *solver, const Scenario *scenario, SolverPulse pulse,
+bool walk_open(Walk *walk, const Solver *solver, const Scenario *scenario, WalkPulse pulse,
                Err *err)
 {
     *walk = (Walk){.solver = solver, .pulse = pulse};

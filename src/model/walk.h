@@ -3,16 +3,22 @@
 
 #include "model/solver.h"
 
+// A sign of life from work that takes long.
+typedef struct WalkPulse {
+    void (*beat)(void *context); // NULL: nobody waits for it
+    void *context;
+} WalkPulse;
+
 typedef struct Walk {
     const Solver *solver;
-    SolverPulse pulse;
+    WalkPulse pulse;
     void *state;
     bool has_step;
     double reached_s;
 } Walk;
 
 // Opens the solver on a scenario. Fails as Solver.open does, with nothing to close.
-bool walk_open(Walk *walk, const Solver *solver, const Scenario *scenario, SolverPulse pulse,
+bool walk_open(Walk *walk, const Solver *solver, const Scenario *scenario, WalkPulse pulse,
                Err *err);
 
 // Goes on to a time, not before the last one, and looks at the bodies and joints there. Fails as
