@@ -3,6 +3,7 @@
 #include "cli/doubts.h"
 #include "cli/idle_settings.h"
 #include "cli/map_files.h"
+#include "cli/map_lone.h"
 #include "cli/map_options.h"
 #include "cli/output.h"
 #include "cli/run_files.h"
@@ -93,11 +94,10 @@ static void say_hint(const MapOptions *options, const Scenario *scenario)
     }
 }
 
-static bool map_scenario(const MapOptions *options, const Scenario *scenario, Err *err)
+static bool map_scenario(const MapOptions *options, const Scenario *scenario,
+                         const MappingSettings *settings, Err *err)
 {
-    MappingSettings settings;
-    if (!map_options_settings(options, scenario, &settings, err) ||
-        (options->common.folder != NULL && !run_files_make_folder(options->common.folder, err)) ||
+    if ((options->common.folder != NULL && !run_files_make_folder(options->common.folder, err)) ||
         !map_files_probe(scenario, options, err)) {
         return false;
     }
@@ -106,7 +106,7 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario, Er
     const MappingWatch watch = {tell_row, {tell_run, &telling}, &telling};
     Mapping mapping = {0};
     PenaltyMap *penalty = NULL;
-    bool is_done = mapping_make(scenario, &settings, watch, &mapping, err) &&
+    bool is_done = mapping_make(scenario, settings, watch, &mapping, err) &&
                    make_penalty(options, scenario, &telling, &penalty, err);
     status_line_end(&telling.line);
     if (is_done) {
@@ -172,6 +172,38 @@ static bool read_row(const MapOptions *options, const Scenario *scenario, Err *e
     return is_read;
 }
 
+// The case, where there is one.
+static bool load(const MapOptions *options, Scenario *scenario, Err *err)
+{
+    const CommonOptions *common = &options->common;
+    if (common->path == NULL) {
+        return true;
+    }
+    if (!casefile_load(common->path, common->overrides, common->override_count, scenario, err)) {
+        return false;
+    }
+    if (!common->is_quiet) {
+        doubts_say(scenario);
+        idle_settings_say(scenario, common->overrides, common->override_count);
+    }
+    return true;
+}
+
+static bool map_case(const MapOptions *options, Scenario *scenario, Err *err)
+{
+    MappingSettings settings;
+    return load(options, scenario, err) &&
+           map_options_settings(options, scenario, &settings, err) &&
+           map_scenario(options, scenario, &settings, err);
+}
+
+static bool map_lone(const MapOptions *options, Scenario *scenario, Err *err)
+{
+    MappingSettings settings;
+    return map_lone_make(options, scenario, &settings, err) &&
+           map_scenario(options, scenario, &settings, err);
+}
+
 static bool map_run(int argc, char **argv, Err *err)
 {
     MapOptions options;
@@ -181,15 +213,10 @@ static bool map_run(int argc, char **argv, Err *err)
     }
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
-    bool is_done =
-        options.common.path == NULL || casefile_load(options.common.path, options.common.overrides,
-                                                     options.common.override_count, scenario, err);
-    if (is_done && options.common.path != NULL && !options.common.is_quiet) {
-        doubts_say(scenario);
-        idle_settings_say(scenario, options.common.overrides, options.common.override_count);
-    }
-    is_done = is_done && (options.is_inverse ? read_row(&options, scenario, err)
-                                             : map_scenario(&options, scenario, err));
+    const bool is_done = options.is_inverse
+                             ? load(&options, scenario, err) && read_row(&options, scenario, err)
+                         : options.stiffness != NULL ? map_lone(&options, scenario, err)
+                                                     : map_case(&options, scenario, err);
     free(scenario);
     return is_done;
 }

@@ -63,6 +63,9 @@ static bool find_path(const MapOptions *options, const Scenario *scenario, const
 {
     char name[SCENARIO_PATH_SIZE];
     case_run_name(scenario, name, sizeof name);
+    if (name[0] == '\0') {
+        snprintf(name, sizeof name, "lone-contact");
+    }
     const int length =
         snprintf(path, FILE_PATH_SIZE, "%s/%s-map.%s", options->common.folder, name, ending);
     return (length >= 0 && length < FILE_PATH_SIZE) ||

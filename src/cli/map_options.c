@@ -14,6 +14,10 @@ enum {
     KEY_LAWS,
     KEY_MASS,
     KEY_SPEED,
+    KEY_STIFFNESS,
+    KEY_RESTITUTION,
+    KEY_DAMPING,
+    KEY_CLEARANCE,
     KEY_PENALTY,
     KEY_ERP,
     KEY_CFM,
@@ -46,14 +50,23 @@ static const struct argp_option OPTIONS[] = {
     {"cfm", KEY_CFM, "X", 0, "The CFM of --erp, m/(N s)", 2},
     {"kp", KEY_KP, "K", 0, "With --kd and --step: a spring as Gazebo has it, such as '1e7 N/m'", 2},
     {"kd", KEY_KD, "C", 0, "The damper of --kp, such as '10 N s/m'", 2},
-    {"step", KEY_STEP, "TIME", 0, "The step of --erp or --kp; else the only step of the mapping",
+    {"step", KEY_STEP, "TIME", 0,
+     "The only step, with the best constants at it: ERP and CFM, and Gazebo's kp and kd; of "
+     "--erp or --kp the step they are read at",
      2},
-    COMMON_ROW_JSON(3),
-    COMMON_ROW_WIDE(3),
-    {"csv", KEY_CSV, "FILE.csv", 0, "Write a row a joint, law, map and step", 3},
-    {"plot", KEY_PLOT, "FILE.svg", 0, "Draw the errors of restitution and peak force", 3},
-    {"out", COMMON_OUT, "DIR", 0, "Write <case>-map.txt, .csv, .svg and .json there", 3},
-    COMMON_ROW_QUIET(3),
+    {"stiffness", KEY_STIFFNESS, "K", 0,
+     "Without a case, with --mass: a lone contact of F = K d^n, such as '1e9 N/m^1.5'", 3},
+    {"restitution", KEY_RESTITUTION, "E", 0, "Of --stiffness (default: 0.9)", 3},
+    {"damping", KEY_DAMPING, "LAW", 0,
+     "Of --stiffness: a damping law (default: lankarani-nikravesh), or a damper '10 N s/m'", 3},
+    {"clearance", KEY_CLEARANCE, "C", 0,
+     "Of --stiffness: the radial clearance (default: as wide as the steps need)", 3},
+    COMMON_ROW_JSON(4),
+    COMMON_ROW_WIDE(4),
+    {"csv", KEY_CSV, "FILE.csv", 0, "Write a row a joint, law, map and step", 4},
+    {"plot", KEY_PLOT, "FILE.svg", 0, "Draw the errors of restitution and peak force", 4},
+    {"out", COMMON_OUT, "DIR", 0, "Write <case>-map.txt, .csv, .svg and .json there", 4},
+    COMMON_ROW_QUIET(4),
     {0},
 };
 
@@ -109,6 +122,14 @@ static const char **place_of(MapOptions *options, int key)
         return &options->mass;
     case KEY_SPEED:
         return &options->speed;
+    case KEY_STIFFNESS:
+        return &options->stiffness;
+    case KEY_RESTITUTION:
+        return &options->restitution;
+    case KEY_DAMPING:
+        return &options->damping;
+    case KEY_CLEARANCE:
+        return &options->clearance;
     case KEY_CSV:
         return &options->csv;
     case KEY_PLOT:
@@ -169,8 +190,9 @@ static bool check_inverse(const MapOptions *options, Err *err)
                        "give it, such as --step '1 ms'");
     }
     if (options->steps != NULL || options->maps != NULL || options->laws != NULL ||
-        options->speed != NULL || options->with_penalty || options->csv != NULL ||
-        options->plot != NULL || options->common.folder != NULL) {
+        options->speed != NULL || options->stiffness != NULL || options->restitution != NULL ||
+        options->damping != NULL || options->clearance != NULL || options->with_penalty ||
+        options->csv != NULL || options->plot != NULL || options->common.folder != NULL) {
         return err_set(err, ERR_USAGE,
                        "--%s reads one row: of the other options only --step, --mass, --set, "
                        "--json and --quiet go with it",
@@ -179,11 +201,38 @@ static bool check_inverse(const MapOptions *options, Err *err)
     return true;
 }
 
+// What a contact without a case needs, and what goes with nothing else.
+static bool check_lone(const MapOptions *options, Err *err)
+{
+    if (options->stiffness == NULL) {
+        return (options->restitution == NULL && options->damping == NULL &&
+                options->clearance == NULL) ||
+               err_set(err, ERR_USAGE,
+                       "--restitution, --damping and --clearance are of a contact without a case, "
+                       "with --stiffness; of a case --set replaces them, such as --set "
+                       "contact.restitution=0.8");
+    }
+    if (options->common.path != NULL) {
+        return err_set(err, ERR_USAGE,
+                       "--stiffness is of a contact without a case; of a case: --set "
+                       "'contact.stiffness=%s'",
+                       options->stiffness);
+    }
+    if (options->mass == NULL) {
+        return err_set(err, ERR_USAGE,
+                       "--stiffness needs the effective mass, such as --mass '0.1 kg'");
+    }
+    return (options->laws == NULL && !options->with_penalty) ||
+           err_set(err, ERR_USAGE, "%s needs a case: a stiffness has no pin and hole",
+                   options->laws != NULL ? "--laws" : "--penalty");
+}
+
 bool map_options_read(int argc, char **argv, MapOptions *options, bool *is_answered, Err *err)
 {
     static const Arguments ARGUMENTS = {
         .program = "jointplay map",
-        .usage = "CASE\n--erp X --cfm Y --step TIME [--mass MASS] [CASE]\n"
+        .usage = "CASE\n--stiffness K --mass MASS [--step TIME]\n--erp X --cfm Y --step TIME "
+                 "[--mass MASS] [CASE]\n"
                  "--kp K --kd C --step TIME [--mass MASS] [CASE]",
         .doc = "Tells which ERP, CFM and step to use for each joint with play, and what they "
                "deliver, predicted and measured in ODE; or which spring, damper and restitution "
@@ -212,9 +261,13 @@ bool map_options_read(int argc, char **argv, MapOptions *options, bool *is_answe
     if (file_is_same(options->csv, options->plot)) {
         return err_set(err, ERR_USAGE, "--csv and --plot would both write %s", options->plot);
     }
-    return options->common.path != NULL ||
+    if (!check_lone(options, err)) {
+        return false;
+    }
+    return options->common.path != NULL || options->stiffness != NULL ||
            err_set(err, ERR_USAGE,
-                   "no case given: jointplay map CASE.yaml, or --erp X --cfm Y --step TIME");
+                   "no case given: jointplay map CASE.yaml, or --stiffness K --mass M --step TIME, "
+                   "or --erp X --cfm Y --step TIME");
 }
 
 // Reads a list of words of the choices; each one once.
@@ -280,6 +333,7 @@ static bool read_steps(const MapOptions *options, const Scenario *scenario,
     }
     if (options->step_s > 0.0) {
         settings->steps[settings->step_count++] = options->step_s;
+        settings->is_held = true;
         return true;
     }
     // the usual ones, coarse to fine, and the case's own in its place

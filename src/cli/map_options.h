@@ -6,11 +6,15 @@
 
 typedef struct MapOptions {
     CommonOptions common; // without a path where a row alone is to be read
-    const char *steps;    // as given, or NULL; likewise the next four
+    const char *steps;    // as given, or NULL; likewise the next eight
     const char *maps;
     const char *laws;
     const char *mass;
     const char *speed;
+    const char *stiffness; // of a contact without a case
+    const char *restitution;
+    const char *damping;
+    const char *clearance;
     bool with_penalty;
     bool is_inverse;       // ERP and CFM, or kp and kd, are to be read
     bool has_erp, has_cfm; // which of them were given

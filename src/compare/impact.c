@@ -33,7 +33,7 @@ static void widen(ImpactSpread *spread, int number, double value)
     spread->most = number == 0 ? value : fmax(spread->most, value);
 }
 
-static void add_phase(ImpactFigures *figures, int number, const MapImpact *impact)
+void impact_add_phase(ImpactFigures *figures, int number, const MapImpact *impact)
 {
     widen(&figures->restitution, number, impact->restitution);
     widen(&figures->force_max, number, impact->force_max);
@@ -70,7 +70,7 @@ ImpactFigures impact_predict(const MapImpactCase *impact)
     ImpactFigures figures = {.is_ended = true};
     for (int i = 0; i < MAP_IMPACT_PHASES; i++) {
         const MapImpact phase = map_impact(impact, map_impact_phase(i));
-        add_phase(&figures, i, &phase);
+        impact_add_phase(&figures, i, &phase);
         if (!phase.is_ended && !phase.is_past_end) {
             break; // nor would the others
         }
@@ -162,7 +162,7 @@ ImpactDelivered impact_deliver(const Scenario *scenario, int joint, double mass,
         if (!run_phase(&lone, speed, &impact, delivered.message)) {
             return delivered;
         }
-        add_phase(&delivered.figures, i, &impact);
+        impact_add_phase(&delivered.figures, i, &impact);
     }
     delivered.is_measured = true;
     return delivered;

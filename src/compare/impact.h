@@ -30,6 +30,9 @@ typedef struct ImpactFigures {
 // Figures without any spread: those of the law itself.
 ImpactFigures impact_figures_of(const MapImpact *impact);
 
+// Adds one phase, counted from 0, to figures that begin zeroed but for is_ended.
+void impact_add_phase(ImpactFigures *figures, int number, const MapImpact *impact);
+
 // What ODE is predicted to deliver, from the contact row alone.
 ImpactFigures impact_predict(const MapImpactCase *impact);
 

@@ -10,6 +10,7 @@
 #include "compare/mapping.h"
 
 #include "base/text.h"
+#include "compare/held.h"
 #include "compare/mapping_verdict.h"
 #include "contact/damping.h"
 #include "contact/law.h"
@@ -171,7 +172,9 @@ static void find_hardest(const MappingContact *contact, double *steps)
 
 static double choose(MappingSource source, double given, double median, double most)
 {
-    return source == MAPPING_GIVEN ? given : source == MAPPING_MOST ? most : median;
+    return source == MAPPING_GIVEN || source == MAPPING_USUAL ? given
+           : source == MAPPING_MOST                           ? most
+                                                              : median;
 }
 
 // The contact of a joint under a law, or why there is none.
@@ -203,7 +206,8 @@ static bool add_joint(Mapping *mapping, const MappingJoint *joint, Err *err)
         choose(settings->speed_source, settings->speed, joint->speed_median, joint->speed_most);
     MappingSource speed_source = settings->speed_source;
     const double floor = mapping->scenario->contact.impact_speed_floor;
-    if (speed > 0.0 && speed < floor && speed_source != MAPPING_GIVEN) {
+    if (speed > 0.0 && speed < floor && speed_source != MAPPING_GIVEN &&
+        speed_source != MAPPING_USUAL) {
         // a pin that lays itself on the wall: no impact, but the wall is the same
         speed = floor;
         speed_source = MAPPING_FLOOR;
@@ -231,13 +235,19 @@ static bool add_joint(Mapping *mapping, const MappingJoint *joint, Err *err)
     return true;
 }
 
+static bool needs_run(const MappingSettings *settings)
+{
+    return settings->mass_source != MAPPING_GIVEN ||
+           (settings->speed_source != MAPPING_GIVEN && settings->speed_source != MAPPING_USUAL);
+}
+
 static bool make_contacts(Mapping *mapping, MappingWatch watch, Err *err)
 {
     const MappingSettings *settings = &mapping->settings;
     const Linkage *linkage = &mapping->scenario->linkage;
     MappingJoint joints[LINKAGE_JOINT_MAX] = {0};
     size_t count = 0;
-    if (settings->mass_source != MAPPING_GIVEN || settings->speed_source != MAPPING_GIVEN) {
+    if (needs_run(settings)) {
         if (!mapping_joint_measure(mapping->scenario, watch.run, joints, &count, err)) {
             err_prefix(err, "the run that masses and speeds are taken from (--mass and --speed "
                             "given together need none)");
@@ -329,6 +339,11 @@ static void make_rows(Mapping *mapping, MappingWatch watch)
             row->step_s = settings->steps[k % settings->step_count];
             fill_row(contact, row);
         }
+        if (settings->is_held && has_maps) {
+            contact->held = malloc(sizeof *contact->held);
+            assert(contact->held != NULL);
+            held_find(contact, settings->steps[0], contact->held);
+        }
     }
 }
 
@@ -351,6 +366,9 @@ bool mapping_make(const Scenario *scenario, const MappingSettings *settings, Map
 
 void mapping_finish(Mapping *mapping)
 {
+    for (size_t i = 0; i < mapping->contact_count; i++) {
+        free(mapping->contacts[i].held);
+    }
     free(mapping->contacts);
     free(mapping->rows);
     memset(mapping, 0, sizeof *mapping);

@@ -20,6 +20,7 @@ typedef enum MappingSource {
     MAPPING_MEDIAN, // of the case's own run
     MAPPING_MOST,   // likewise, the largest
     MAPPING_GIVEN,  // on the command line
+    MAPPING_USUAL,  // of a contact without a case, where none was given
     MAPPING_FLOOR,  // of the damping laws' impact speed: what the run has is slower
 } MappingSource;
 
@@ -32,6 +33,7 @@ typedef struct MappingSettings {
     LawKind laws[MAPPING_LAW_MAX];
     MappingSource mass_source;
     MappingSource speed_source;
+    bool is_held; // to its only step: the best constants there are wanted
     double mass;  // kg, where given
     double speed; // m/s, where given
 } MappingSettings;
@@ -89,6 +91,7 @@ typedef struct MappingContact {
                                          // run; 0 also where these are not known
     size_t first_row;
     size_t row_count;
+    struct Held *held; // owned by the mapping: the best constants at the step; NULL: not wanted
 } MappingContact;
 
 typedef struct Mapping {

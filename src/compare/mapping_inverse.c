@@ -31,12 +31,22 @@ static const double NO_BOUNCE = 1e100;
 static const double DEPTH = 1e-5;  // m
 static const double FLIGHT = 1e-5; // m
 
+// beyond the undamped rows of every map, whose ERP is 1e10
+static const double ERP_MOST = 1e12;
+
+// N/m and N s/m: with masses from 1e-50 to 1e50 kg nothing overflows
+static const double PAIR_MOST = 1e100;
+
 bool inverse_of_pair(double kp, double kd, double step_s, Inverse *inverse, Err *err)
 {
     if (!(kp >= 0.0 && kd >= 0.0 && kp + kd > 0.0)) {
         return err_set(err, ERR_USAGE,
                        "--kp and --kd must not be below 0, and one of them above: without spring "
                        "and damper there is no contact");
+    }
+    if (!(kp < PAIR_MOST && kd < PAIR_MOST)) {
+        return err_set(err, ERR_USAGE, "--kp %.4g and --kd %.4g; allowed: below %.0e", kp, kd,
+                       PAIR_MOST);
     }
     const MapContact contact = {.stiffness = kp, .damping = kd, .step = step_s};
     *inverse = (Inverse){.is_pair = true, .kp = kp, .kd = kd, .step_s = step_s};
@@ -58,6 +68,13 @@ bool inverse_of_row(double erp, double cfm, double step_s, Inverse *inverse, Err
                        "rigid, it presses as hard as it must and takes away ERP of the depth in "
                        "each step",
                        cfm);
+    }
+    const double spring = erp / (step_s * cfm);
+    if (!(erp <= ERP_MOST && cfm > 1.0 / PAIR_MOST && cfm < PAIR_MOST && spring < PAIR_MOST)) {
+        return err_set(err, ERR_USAGE,
+                       "--erp %.4g and --cfm %.4g at a step of %.4g s are no contact of numbers: "
+                       "allowed are an ERP up to %.0e, and a CFM and ERP / (h CFM) below %.0e",
+                       erp, cfm, step_s, ERP_MOST, PAIR_MOST);
     }
     *inverse = (Inverse){.step_s = step_s, .row = map_row(erp, cfm)};
     return true;

@@ -88,7 +88,8 @@ MapImpact map_impact(const MapImpactCase *impact, double first_overlap)
     double depth = fmax(first_overlap * impact->speed * impact->step, DBL_MIN); // m
     double closing = impact->speed;                                             // m/s
     const double end = impact->end > 0.0 ? impact->end : INFINITY;
-    while (depth > 0.0 && depth <= end && result.steps < STEP_MAX) {
+    const size_t step_most = impact->step_most > 0 ? impact->step_most : STEP_MAX;
+    while (depth > 0.0 && depth <= end && result.steps < step_most) {
         const Row row = impact->rows.map != NULL ? map_row_of(impact, depth, closing)
                                                  : poisson_row(impact, depth, closing);
         // the row, solved for the force; the wall never pulls

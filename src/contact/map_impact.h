@@ -15,10 +15,11 @@ typedef struct MapImpactRows {
 
 typedef struct MapImpactCase {
     ForceLaw law;
-    double mass;  // kg, effective along the normal
-    double speed; // m/s, closing, > 0
-    double step;  // s; of the law itself it is not looked at
-    double end;   // m: the depth beyond which the law means nothing; 0 where it has no end
+    double mass;      // kg, effective along the normal
+    double speed;     // m/s, closing, > 0
+    double step;      // s; of the law itself it is not looked at
+    double end;       // m: the depth beyond which the law means nothing; 0 where it has no end
+    size_t step_most; // of the row; 0 for as many as anyone would wait for
     MapImpactRows rows;
 } MapImpactCase;
 

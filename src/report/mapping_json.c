@@ -2,13 +2,12 @@
 #include "report/mapping_json.h"
 
 #include "report/json_value.h"
+#include "report/mapping_held.h"
 #include "report/settings_json.h"
 
 static const char *const SOURCES[] = {
-    [MAPPING_MEDIAN] = "median",
-    [MAPPING_MOST] = "most",
-    [MAPPING_GIVEN] = "given",
-    [MAPPING_FLOOR] = "floor",
+    [MAPPING_MEDIAN] = "median", [MAPPING_MOST] = "most",   [MAPPING_GIVEN] = "given",
+    [MAPPING_USUAL] = "usual",   [MAPPING_FLOOR] = "floor",
 };
 
 static json_t *spread_object(const ImpactSpread *spread)
@@ -148,6 +147,9 @@ static json_t *contact_object(const MappingReport *report, const MappingContact 
         json_array_append_new(rows, row_object(report, contact, row));
     }
     json_object_set_new(object, "rows", rows);
+    if (contact->held != NULL) {
+        json_object_set_new(object, "best_constants", mapping_held_json(contact));
+    }
     return object;
 }
 

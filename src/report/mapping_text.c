@@ -1,6 +1,7 @@
 // Which ERP, CFM and step for this joint, and what do they deliver?
 #include "report/mapping_text.h"
 
+#include "report/mapping_held.h"
 #include "report/mapping_penalty_text.h"
 #include "report/mapping_settings_text.h"
 #include "report/run_section.h"
@@ -17,7 +18,9 @@ static void write_head(const MappingReport *report, const Style *style, Text *te
     const Scenario *scenario = report->scenario;
     const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
     text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
-    text_append(text, "  case        %s\n", scenario->path);
+    if (scenario->path[0] != '\0') {
+        text_append(text, "  case        %s\n", scenario->path);
+    }
     wrapped_entry(text, "valid",
                   "restitution%s within %.0f %% of what is asked, wherever the steps fall",
                   mapping_report_is_poisson(report) ? "" : ", peak force and depth each",
@@ -34,6 +37,7 @@ static const char *source_words(MappingSource source)
         [MAPPING_MEDIAN] = "the median",
         [MAPPING_MOST] = "the largest",
         [MAPPING_GIVEN] = "as given",
+        [MAPPING_USUAL] = "where none is given",
         [MAPPING_FLOOR] = "the floor of the damping laws",
     };
     return WORDS[source];
@@ -56,9 +60,8 @@ static void write_sources(const MappingReport *report, const MappingContact *con
     text_init(&words);
     if (joint->onsets > 0) {
         static const char *const LINKS[] = {
-            [MAPPING_MEDIAN] = " of",
-            [MAPPING_MOST] = " of",
-            [MAPPING_GIVEN] = "; beside it",
+            [MAPPING_MEDIAN] = " of",        [MAPPING_MOST] = " of",
+            [MAPPING_GIVEN] = "; beside it", [MAPPING_USUAL] = "; beside it",
             [MAPPING_FLOOR] = ":",
         };
         const bool is_most = contact->speed_source == MAPPING_MOST;
@@ -175,6 +178,9 @@ void mapping_text_write(const MappingReport *report, const Style *style, Text *t
             write_longest(report, contact, style, text);
         }
         mapping_settings_text_write(report, contact, style, text);
+        if (contact->held != NULL) {
+            mapping_held_text(contact, style, text);
+        }
     }
     if (report->penalty != NULL) {
         mapping_penalty_text_write(report, style, text);

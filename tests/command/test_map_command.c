@@ -1,6 +1,7 @@
 // Does `jointplay map` print, write and end as it should?
 #include "program.h"
 
+#include <math.h>
 #include <stdbool.h>
 
 static const char PAPER[] = "map $cases/paper/impact-k66.yaml ";
@@ -186,6 +187,45 @@ static void every_line_fits_a_terminal(void **state)
     }
 }
 
+// Without a case: stiffness, mass and a step are enough, and a step that is held gets the best
+// constants there.
+static void a_lone_contact_needs_no_case(void **state)
+{
+    Program *program = *state;
+    program_run(program, "map --stiffness '1e9 N/m^1.5' --mass '0.1 kg' --step '1 ms' --json -q");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *contact = first(root, "contacts");
+    assert_near(number(contact, "mass_kg"), 0.1, 0.0);
+    assert_string_equal(word(contact, "speed_from"), "usual");
+    // the Hertzian impact in closed form, without its damping: within a twentieth of it
+    const double depth = pow(1.25 * 0.1 * 0.01 / 1e9, 0.4);
+    assert_close(number(json_object_get(contact, "asked"), "penetration_max_m"), depth, 0.05);
+    const json_t *best = json_object_get(contact, "best_constants");
+    assert_near(number(best, "step_s"), 1e-3, 1e-12);
+    const json_t *settings = json_object_get(best, "settings");
+    assert_int_equal(json_array_size(settings), 3);
+    for (size_t i = 0; i < 3; i++) {
+        const json_t *setting = json_array_get(settings, i);
+        const json_t *predicted = json_object_get(setting, "predicted");
+        const json_t *delivered = json_object_get(setting, "delivered");
+        assert_close(number(json_object_get(delivered, "restitution"), "mean"),
+                     number(json_object_get(predicted, "restitution"), "mean"), 1e-6);
+        assert_true(json_is_true(json_object_get(setting, "restitution_met")));
+    }
+    json_decref(root);
+    program_run(program, "map --stiffness '1e9 N/m^1.5' --mass '0.1 kg' --step '1 ms'");
+    assert_says(program->output, "Best constants at 1000 us");
+    assert_says(program->output, "Gazebo: nothing is right at 1000 us");
+    program_fails_usage(program, "map --stiffness '1e9 N/m'", "needs the effective mass");
+    program_fails_usage(program, "map --stiffness '1e9 kg' --mass '1 kg'", "a stiffness such as");
+    program_fails_usage(program, "map --stiffness '1 N/m' --mass most", "no run to take the mass");
+    program_fails_usage(program, "map a.yaml --stiffness '1 N/m'", "contact without a case");
+    program_fails_usage(program, "map a.yaml --restitution .5", "with --stiffness");
+    program_fails_usage(program, "map --stiffness '1 N/m' --mass '1 kg' --laws all",
+                        "--laws needs a case");
+}
+
 static void files_are_written_where_they_are_wanted(void **state)
 {
     Program *program = *state;
@@ -292,6 +332,8 @@ static void what_stands_for_no_spring_is_said_to(void **state)
     assert_says(program->output, "needs the mass");
     program_fails_usage(program, "map --erp 0.2 --cfm 0 --step '1 ms'", "--cfm is 0");
     program_fails_usage(program, "map --erp -1 --cfm 1 --step '1 ms'", "--erp is -1");
+    program_fails_usage(program, "map --erp 1e308 --cfm 1e308 --step '1 ms' --mass '0.1 kg'",
+                        "no contact of numbers");
     program_fails_usage(program, "map --kp 0 --kd 0 --step '1 ms'", "--kp and --kd");
 }
 
@@ -361,6 +403,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(no_step_is_so_fine_that_it_is_tried_for_ever,
                                         program_set_up, program_tear_down),
         cmocka_unit_test_setup_teardown(every_line_fits_a_terminal, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(a_lone_contact_needs_no_case, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(files_are_written_where_they_are_wanted, program_set_up,
                                         program_tear_down),
