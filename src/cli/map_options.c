@@ -24,6 +24,7 @@ enum {
     KEY_KP,
     KEY_KD,
     KEY_STEP,
+    KEY_AT_STEP,
     KEY_CSV,
     KEY_PLOT,
 };
@@ -36,6 +37,8 @@ static const double DEFAULT_STEPS[] = {3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7};
 static const struct argp_option OPTIONS[] = {
     {"steps", KEY_STEPS, "LIST", 0,
      "The steps, such as '10 us, 3 us, 1 us' (default: 30 to 0.1 us and the case's own)", 1},
+    {"at-step", KEY_AT_STEP, "TIME", 0,
+     "Held to this step: also the best constants there, ERP and CFM, and Gazebo's kp and kd", 1},
     {"maps", KEY_MAPS, "LIST", 0, "Only these of textbook, corrected, midpoint, exact, impulse", 1},
     {"laws", KEY_LAWS, "LIST", 0,
      "These elastic laws in place of the case's, with its damping; 'all' for every one", 1},
@@ -50,9 +53,7 @@ static const struct argp_option OPTIONS[] = {
     {"cfm", KEY_CFM, "X", 0, "The CFM of --erp, m/(N s)", 2},
     {"kp", KEY_KP, "K", 0, "With --kd and --step: a spring as Gazebo has it, such as '1e7 N/m'", 2},
     {"kd", KEY_KD, "C", 0, "The damper of --kp, such as '10 N s/m'", 2},
-    {"step", KEY_STEP, "TIME", 0,
-     "The only step, with the best constants at it: ERP and CFM, and Gazebo's kp and kd; of "
-     "--erp or --kp the step they are read at",
+    {"step", KEY_STEP, "TIME", 0, "The step of --erp or --kp; else the only step of the mapping",
      2},
     {"stiffness", KEY_STIFFNESS, "K", 0,
      "Without a case, with --mass: a lone contact of F = K d^n, such as '1e9 N/m^1.5'", 3},
@@ -161,6 +162,8 @@ static bool take_option(int key, const char *value, void *target, Err *err)
         return read_kd(value, options, err);
     case KEY_STEP:
         return option_values_read_time("step", value, &options->step_s, err);
+    case KEY_AT_STEP:
+        return option_values_read_time("at-step", value, &options->at_step_s, err);
     case ARGP_KEY_ARG:
         return common_options_take_path(value, &options->common, "map takes one case", err);
     default:
@@ -189,10 +192,11 @@ static bool check_inverse(const MapOptions *options, Err *err)
                        "a row stands for a spring and damper at one step only; "
                        "give it, such as --step '1 ms'");
     }
-    if (options->steps != NULL || options->maps != NULL || options->laws != NULL ||
-        options->speed != NULL || options->stiffness != NULL || options->restitution != NULL ||
-        options->damping != NULL || options->clearance != NULL || options->with_penalty ||
-        options->csv != NULL || options->plot != NULL || options->common.folder != NULL) {
+    if (options->at_step_s > 0.0 || options->steps != NULL || options->maps != NULL ||
+        options->laws != NULL || options->speed != NULL || options->stiffness != NULL ||
+        options->restitution != NULL || options->damping != NULL || options->clearance != NULL ||
+        options->with_penalty || options->csv != NULL || options->plot != NULL ||
+        options->common.folder != NULL) {
         return err_set(err, ERR_USAGE,
                        "--%s reads one row: of the other options only --step, --mass, --set, "
                        "--json and --quiet go with it",
@@ -251,6 +255,11 @@ bool map_options_read(int argc, char **argv, MapOptions *options, bool *is_answe
         options->has_erp || options->has_cfm || options->has_kp || options->has_kd;
     if (options->is_inverse) {
         return check_inverse(options, err);
+    }
+    if (options->at_step_s > 0.0 && (options->steps != NULL || options->step_s > 0.0)) {
+        return err_set(err, ERR_USAGE,
+                       "--at-step is the only step; it goes with neither --step nor "
+                       "--steps");
     }
     if (options->steps != NULL && options->step_s > 0.0) {
         return err_set(err, ERR_USAGE, "--step is one of --steps; give either");
@@ -333,6 +342,10 @@ static bool read_steps(const MapOptions *options, const Scenario *scenario,
     }
     if (options->step_s > 0.0) {
         settings->steps[settings->step_count++] = options->step_s;
+        return true;
+    }
+    if (options->at_step_s > 0.0) {
+        settings->steps[settings->step_count++] = options->at_step_s;
         settings->is_held = true;
         return true;
     }

@@ -22,6 +22,7 @@ typedef struct MapOptions {
     double erp, cfm;       // 1, m/(N s)
     double kp, kd;         // N/m, N s/m
     double step_s;         // of --step; 0 where it was not given
+    double at_step_s;      // of --at-step, likewise
     const char *csv;
     const char *plot;
 } MapOptions;

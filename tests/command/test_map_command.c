@@ -192,7 +192,8 @@ static void every_line_fits_a_terminal(void **state)
 static void a_lone_contact_needs_no_case(void **state)
 {
     Program *program = *state;
-    program_run(program, "map --stiffness '1e9 N/m^1.5' --mass '0.1 kg' --step '1 ms' --json -q");
+    program_run(program,
+                "map --stiffness '1e9 N/m^1.5' --mass '0.1 kg' --at-step '1 ms' --json -q");
     assert_int_equal(program->status, 0);
     json_t *root = program_json(program);
     const json_t *contact = first(root, "contacts");
@@ -214,13 +215,14 @@ static void a_lone_contact_needs_no_case(void **state)
         assert_true(json_is_true(json_object_get(setting, "restitution_met")));
     }
     json_decref(root);
-    program_run(program, "map --stiffness '1e9 N/m^1.5' --mass '0.1 kg' --step '1 ms'");
+    program_run(program, "map --stiffness '1e9 N/m^1.5' --mass '0.1 kg' --at-step '1 ms'");
     assert_says(program->output, "Best constants at 1000 us");
     assert_says(program->output, "Gazebo: nothing is right at 1000 us");
     program_fails_usage(program, "map --stiffness '1e9 N/m'", "needs the effective mass");
     program_fails_usage(program, "map --stiffness '1e9 kg' --mass '1 kg'", "a stiffness such as");
     program_fails_usage(program, "map --stiffness '1 N/m' --mass most", "no run to take the mass");
     program_fails_usage(program, "map a.yaml --stiffness '1 N/m'", "contact without a case");
+    program_fails_usage(program, "map a.yaml --at-step '1 ms' --step '1 s'", "the only step");
     program_fails_usage(program, "map a.yaml --restitution .5", "with --stiffness");
     program_fails_usage(program, "map --stiffness '1 N/m' --mass '1 kg' --laws all",
                         "--laws needs a case");
