@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/doubts.h"
 #include "cli/idle_settings.h"
+#include "cli/long_work.h"
 #include "cli/option_values.h"
 #include "cli/output.h"
 #include "cli/run_files.h"
@@ -221,6 +222,7 @@ static bool run_cases(const RunCommand *command, CaseRun *runs, Err *err)
     json_t *objects = command->is_json ? json_array() : NULL;
     bool is_reported = true;
     for (size_t i = 0; is_reported && i < command->case_count; i++) {
+        long_work_announce(&runs[i].scenario);
         case_run_execute(&runs[i], command->is_quiet);
         is_reported = report_case(command, &runs[i], objects, err);
     }

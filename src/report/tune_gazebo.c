@@ -68,7 +68,7 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
                 "<surface>\n"
                 "  <contact>\n"
                 "    <ode>\n"
-                "      <soft_erp>%s</soft_erp> <!-- of kp and kd; not used -->\n"
+                "      <soft_erp>%s</soft_erp> <!-- not used -->\n"
                 "      <soft_cfm>%s</soft_cfm>\n"
                 "      <kp>%s</kp> <!-- two in a row make %.4g N/m -->\n"
                 "      <kd>%s</kd> <!-- two together make %.4g N s/m -->\n"

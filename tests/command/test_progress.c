@@ -107,12 +107,27 @@ static void a_log_gets_a_line_every_ten_seconds(void **state)
     assert_string_equal(listener.output, "ode: 40 %, 10 s\node: 80 %, 20 s\n");
 }
 
-static void who_wants_quiet_is_not_watched(void **state)
+static void who_wants_quiet_is_told_of_long_work_alone(void **state)
 {
     (void)state;
+    Listener listener;
     Progress progress;
-    const RunWatch watch = progress_watch(&progress, "ode", true);
-    assert_true(watch.progress == NULL);
+    listen_on_pipe(&listener);
+    const RunWatch quick = progress_watch(&progress, "quick", true);
+    for (int i = 1; i <= 30; i++) {
+        quick.progress(i / 30.0, i, quick.context);
+    }
+    const RunWatch slow = progress_watch(&progress, "slow", true);
+    for (int i = 1; i <= 30; i++) {
+        slow.progress(i / 3600.0, i, slow.context);
+    }
+    progress_end(&progress);
+    stop_listening(&listener);
+    assert_null(strstr(listener.output, "quick"));
+    const char *warning = strstr(listener.output, "warning: slow takes about 60 min");
+    assert_non_null(warning);
+    // once
+    assert_null(strstr(warning + 1, "warning"));
 }
 
 static void colours_are_for_terminals_that_want_them(void **state)
@@ -145,7 +160,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_terminal_sees_one_line_that_goes_away),
         cmocka_unit_test(a_log_gets_a_line_every_ten_seconds),
-        cmocka_unit_test(who_wants_quiet_is_not_watched),
+        cmocka_unit_test(who_wants_quiet_is_told_of_long_work_alone),
         cmocka_unit_test(colours_are_for_terminals_that_want_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
