@@ -81,7 +81,7 @@ void tune_mujoco_write(const TuneReport *report, Text *text)
                 "     other model multiply solref by (invweight0 of both bodies) / A. -->\n",
                 mujoco.stiffness, mujoco.damping, mujoco.weight);
     text_append(text,
-                "<option timestep=\"%s\" integrator=\"Euler\" cone=\"elliptic\"/>\n"
+                "<option timestep=\"%s\"\n        integrator=\"Euler\" cone=\"elliptic\"/>\n"
                 "<pair geom1=\"pin\" geom2=\"hole\" condim=\"%d\" margin=\"0\" gap=\"0\"%s\n"
                 "      solref=\"%s %s\"\n"
                 "      solimp=\"%s %s 1 0.5 1\"/>\n",

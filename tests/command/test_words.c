@@ -44,7 +44,7 @@ static void every_line_fits_a_terminal(void **state)
         "map $cases/literature/three-clearances.yaml --steps '30 us'",
         "map --erp 0.2 --cfm 1e-6 --step '1 ms' --mass '0.1 kg'",
         "tune $cases/paper/impact-k66.yaml --error 2e-2 --schemes direct/plain",
-        "check --quick --baselines b --bless $cases/paper/ideal-nominal.yaml --all",
+        "check --baselines b --bless $cases/paper/ideal-nominal.yaml --all",
         "study $cases/studies/stackup-monte-carlo.yaml --dry-run",
         "study $cases/studies/clearance-spikes.yaml --dry-run",
         "paper",
