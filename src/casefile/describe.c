@@ -26,9 +26,11 @@ static const char EXAMPLE[] =
 static const char LONG_EXAMPLE[] =
     "title: Pin circling in its hole\n"
     "bodies:\n"
-    "  pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm], velocity: [0.5 m/s, 0 m/s]}\n"
+    "  pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm],\n"
+    "        velocity: [0.5 m/s, 0 m/s]}\n"
     "joints:\n"
-    "  hole: {between: [ground, pin], at: [0 mm, 0 mm], hole: 10.2 mm, pin: 10 mm, width: 10 mm}\n"
+    "  hole: {between: [ground, pin], at: [0 mm, 0 mm], hole: 10.2 mm, pin: 10 mm,\n"
+    "         width: 10 mm}\n"
     "run: {duration: 60 ms, samples: 3600, step: 1 us, backends: [reference, ode]}\n";
 
 static const char EXPECT_EXAMPLE[] = "expect:\n"

@@ -42,8 +42,8 @@ void command_list(void)
     for (size_t i = 0; COMMANDS[i] != NULL; i++) {
         printf("  %-8s %s\n", COMMANDS[i]->name, COMMANDS[i]->summary);
     }
-    printf("\n'jointplay COMMAND --help' explains a command, 'jointplay help case' the format of\n"
-           "a case file; 'jointplay --version' prints the versions of program and libraries.\n"
+    printf("\n'jointplay COMMAND --help' explains a command, 'jointplay help case' the format\n"
+           "of a case file; 'jointplay --version' prints the versions at work.\n"
            "\nExit status: 0 done, 1 the numbers differ, 2 usage, 3 bad case file, 4 a solver\n"
            "failed, 5 a file could not be read or written.\n");
 }
