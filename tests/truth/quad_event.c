@@ -1,10 +1,10 @@
 // When does contact begin, when does it end, and when does its force?
 //
 // An event is a root of the margin by which a joint's mode still holds:
-//     onset  -d,     end  d,     clamp  1 + chi d'/v0,     unclamp  -(1 + chi d'/v0)
-// It is looked for at the nodes of a solved step, and between two nodes where d has an extreme that
-// could reach the wall. Then it is a root in the step's length h: Newton's method for d, whose
-// rate is known, the secant's for the force's share.
+//     onset  -d,     end  d,     clamp  m,     unclamp  -m
+// with m = 1 + chi d'/v0, or d' + F_el / c. It is looked for at the nodes of a solved step, and
+// between two nodes where d has an extreme that could reach the wall. Then it is a root in the
+// step's length h: Newton's method for d, whose rate is known, the secant's for the force.
 #include "quad_event.h"
 
 enum { N = QUAD_GAUSS_NODES, LOCATE_MAX = 60, DIP_MAX = 40, MEET_MAX = 15 };
@@ -24,8 +24,8 @@ static Quad margin_of(const QuadStep *step, const QuadEvent *event, const QuadGa
     case QUAD_EVENT_END:
         return gap->penetration;
     default: {
-        const Quad share = quad_problem_share(step->problem, &step->contacts, event->joint, gap);
-        return event->kind == QUAD_EVENT_CLAMP ? share : -share;
+        const Quad margin = quad_problem_margin(step->problem, &step->contacts, event->joint, gap);
+        return event->kind == QUAD_EVENT_CLAMP ? margin : -margin;
     }
     }
 }
@@ -40,11 +40,11 @@ static QuadEventKind happened(const QuadStep *step, size_t joint, const QuadGap 
     if (gap->penetration < 0) {
         return QUAD_EVENT_END;
     }
-    const Quad share = quad_problem_share(step->problem, &step->contacts, joint, gap);
+    const Quad margin = quad_problem_margin(step->problem, &step->contacts, joint, gap);
     if (mode == QUAD_PRESSED) {
-        return share < 0 ? QUAD_EVENT_CLAMP : QUAD_EVENT_NONE;
+        return margin < 0 ? QUAD_EVENT_CLAMP : QUAD_EVENT_NONE;
     }
-    return share > 0 ? QUAD_EVENT_UNCLAMP : QUAD_EVENT_NONE;
+    return margin > 0 ? QUAD_EVENT_UNCLAMP : QUAD_EVENT_NONE;
 }
 
 static QuadGap gap_at(const QuadStep *step, size_t joint, Quad x)

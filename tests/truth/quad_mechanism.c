@@ -7,16 +7,13 @@
 // is +-[1 | perp s], perp (x, y) = (-y, x), and its part in gamma is +-omega^2 s.
 // The driven body is no unknown: its motion enters gamma as that of a moving anchor.
 // Contact: e = pin centre - hole centre, u = e / |e|, d = |e| - clearance, d' = u . e',
-//     force on the pin  -F u - mu F tanh(v_t / v_s) perp u,  F = K d^n (1 + chi d'/v0)
+//     force on the pin  -F u - mu F tanh(v_t / v_s) perp u,  F = F_el(d) (1 + chi d'/v0) + c d'
 // at the wall point, hole centre + hole radius u; v_t the relative speed of the two bodies'
-// material there along perp u. d, m; F, N; K, N/m^n; v0 closing speed at the onset, m/s.
+// material there along perp u. d, m; F, N; c, N s/m; v0 closing speed at the onset, m/s.
+// F_el: quad_law.h.
 #include "quad_mechanism.h"
 
 #include "quad_rows.h"
-
-#include "contact/damping.h"
-
-#include <assert.h>
 
 void quad_problem_drive(const QuadProblem *problem, Quad time, Quad *position, Quad *velocity)
 {
@@ -54,23 +51,22 @@ QuadGap quad_problem_gap(const QuadProblem *problem, size_t joint_index, const Q
     return gap;
 }
 
-Quad quad_problem_share(const QuadProblem *problem, const QuadContacts *contacts, size_t joint,
-                        const QuadGap *gap)
+Quad quad_problem_margin(const QuadProblem *problem, const QuadContacts *contacts, size_t joint,
+                         const QuadGap *gap)
 {
-    return 1 + problem->hysteresis * gap->rate / contacts->speed[joint];
+    const QuadLaw *law = &problem->joints[joint].law;
+    return law->viscous > 0 ? gap->rate + quad_law_force(law, gap->penetration) / law->viscous
+                            : 1 + problem->hysteresis * gap->rate / contacts->speed[joint];
 }
 
-// d^n from whole powers and one root; nothing outside the metal.
-static Quad depth_power(const QuadProblem *problem, Quad depth)
+// What presses, N.
+static Quad contact_force(const QuadProblem *problem, const QuadContacts *contacts, size_t joint,
+                          const QuadGap *gap)
 {
-    if (!(depth > 0)) {
-        return 0;
-    }
-    Quad power = problem->exponent_twice % 2 == 1 ? sqrtq(depth) : (Quad)1;
-    for (int i = 0; i < problem->exponent_twice / 2; i++) {
-        power *= depth;
-    }
-    return power;
+    const QuadLaw *law = &problem->joints[joint].law;
+    return quad_law_force(law, gap->penetration) *
+               (1 + problem->hysteresis * gap->rate / contacts->speed[joint]) +
+           law->viscous * gap->rate;
 }
 
 static void add_contact(const QuadProblem *problem, const QuadContacts *contacts, size_t index,
@@ -79,8 +75,7 @@ static void add_contact(const QuadProblem *problem, const QuadContacts *contacts
     const QuadJoint *joint = &problem->joints[index];
     const QuadGap gap = quad_problem_gap(problem, index, position, velocity);
     const QuadVec u = gap.outward;
-    const Quad force = problem->stiffness * depth_power(problem, gap.penetration) *
-                       quad_problem_share(problem, contacts, index, &gap);
+    const Quad force = contact_force(problem, contacts, index, &gap);
     quad_push(problem, joint->body_b, gap.pin_arm, (QuadVec){-force * u.x, -force * u.y},
               acceleration);
     quad_push(problem, joint->body_a, gap.hole_arm, (QuadVec){force * u.x, force * u.y},
@@ -160,14 +155,13 @@ Quad quad_problem_energy(const QuadProblem *problem, const QuadContacts *contact
     for (size_t i = 0; i < problem->joint_count; i++) {
         if (contacts->mode[i] != QUAD_FREE) {
             const Quad depth = quad_problem_gap(problem, i, position, velocity).penetration;
-            energy += problem->stiffness * depth_power(problem, depth) * depth * 2 /
-                      (problem->exponent_twice + 2);
+            energy += quad_law_energy(&problem->joints[i].law, depth);
         }
     }
     return energy;
 }
 
-static QuadJoint joint_from(const Joint *joint)
+static QuadJoint joint_from(const Scenario *scenario, const Joint *joint)
 {
     QuadJoint made = {
         .has_play = joint->kind == JOINT_CLEARANCE,
@@ -179,6 +173,7 @@ static QuadJoint joint_from(const Joint *joint)
     if (made.has_play) {
         made.hole_radius = joint->clearance.hole_radius;
         made.clearance = (Quad)joint->clearance.hole_radius - (Quad)joint->clearance.pin_radius;
+        made.law = quad_law(scenario, joint);
         made.start = (QuadVec){joint->clearance.start.x, joint->clearance.start.y};
     }
     return made;
@@ -188,9 +183,6 @@ QuadProblem quad_problem(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
     const ContactOptions *contact = &scenario->contact;
-    assert(contact->damping != DAMPING_VISCOUS);
-    const int exponent_twice = (int)(2.0 * contact->exponent);
-    assert((double)exponent_twice == 2.0 * contact->exponent && exponent_twice >= 2);
     QuadProblem problem = {
         .body_count = linkage->body_count,
         .joint_count = linkage->joint_count,
@@ -199,9 +191,7 @@ QuadProblem quad_problem(const Scenario *scenario)
         .drive_speed = linkage->driver.speed,
         .drive_start = linkage->driver.start,
         .gravity = scenario->gravity,
-        .stiffness = contact->stiffness,
-        .exponent_twice = exponent_twice,
-        .hysteresis = damping_factor(contact->damping, contact->restitution),
+        .hysteresis = quad_law_hysteresis(contact),
         .impact_speed_floor = contact->impact_speed_floor,
         .impact_speed_share = 1,
         .friction = contact->friction,
@@ -218,13 +208,14 @@ QuadProblem quad_problem(const Scenario *scenario)
         problem.start_velocity[3 * i + 2] = body->start.omega;
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        problem.joints[i] = joint_from(&linkage->joints[i]);
-        assert(!problem.joints[i].has_play || contact->stiffness > 0.0);
+        problem.joints[i] = joint_from(scenario, &linkage->joints[i]);
     }
     if (problem.driver_joint >= 0) {
         quad_problem_drive(&problem, 0, problem.start_position, problem.start_velocity);
     }
-    quad_rows_project(&problem, problem.driver_joint >= 0, problem.start_position,
-                      problem.start_velocity);
+    // the case's own speeds are the start: only what would open an ideal joint is taken from them
+    Quad spare[QUAD_COORDINATE_MAX] = {0};
+    quad_rows_project(&problem, problem.driver_joint >= 0, problem.start_position, spare);
+    quad_rows_project(&problem, false, problem.start_position, problem.start_velocity);
     return problem;
 }

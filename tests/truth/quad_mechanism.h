@@ -2,14 +2,10 @@
 // motion, its joints' gaps, and the way back onto the ideal joints.
 //
 // Written apart from the program's own solvers and sharing none of their code: only the scenario's
-// data and the damping factor chi come from there. gcc with libquadmath.
+// data come from there. gcc with libquadmath.
 #pragma once
 
-#include "model/scenario.h"
-
-#include <quadmath.h>
-
-typedef __float128 Quad;
+#include "quad_law.h"
 
 enum { QUAD_COORDINATE_MAX = 3 * LINKAGE_BODY_MAX };
 
@@ -31,11 +27,12 @@ typedef struct QuadJoint {
     QuadVec anchor_b;
     Quad clearance;   // m, radial
     Quad hole_radius; // m
+    QuadLaw law;      // of the contact
     QuadVec start;    // m, pin centre minus hole centre at time zero
 } QuadJoint;
 
-// The contact force is F = K d^n (1 + chi d'/v0), v0 = max(share * d' at the onset, floor), and
-// friction on the pin is -mu F tanh(v_t / v_s) along the wall, at the wall.
+// The contact force is F = F_el(d) (1 + chi d'/v0) + c d', v0 = max(share * d' at the onset,
+// floor), and friction on the pin is -mu F tanh(v_t / v_s) along the wall, at the wall.
 typedef struct QuadProblem {
     size_t body_count;
     QuadBody bodies[LINKAGE_BODY_MAX];
@@ -46,8 +43,6 @@ typedef struct QuadProblem {
     Quad drive_speed;                         // rad/s
     Quad drive_start;                         // rad
     Quad gravity;                             // m/s^2, along -y
-    Quad stiffness;                           // K, N/m^n
-    int exponent_twice;                       // 2 n, a whole number
     Quad hysteresis;                          // chi, 1
     Quad impact_speed_floor;                  // m/s
     Quad impact_speed_share;                  // 1; anything else is a control that must be seen
@@ -78,9 +73,9 @@ typedef struct QuadGap {
     QuadVec pin_arm;  // from the centre of mass of body b to the pin's centre, m
 } QuadGap;
 
-// The problem of a scenario with a given stiffness and hysteretic damping. With a driver the start
-// is moved onto the closed linkage with each pin at its start in the hole and at rest against it;
-// without one the bodies start as they stand.
+// The problem of a scenario. With a driver the start
+// is moved onto the closed linkage with each pin at its start in the hole; without one the bodies
+// start as they stand.
 QuadProblem quad_problem(const Scenario *scenario);
 
 // Puts the driven body, if there is one, into coordinates and velocities at a time, s.
@@ -93,9 +88,10 @@ void quad_problem_accelerate(const QuadProblem *problem, const QuadContacts *con
 QuadGap quad_problem_gap(const QuadProblem *problem, size_t joint, const Quad *position,
                          const Quad *velocity);
 
-// The share 1 + chi d'/v0 of the elastic force in a joint that is not free; F ends where it does.
-Quad quad_problem_share(const QuadProblem *problem, const QuadContacts *contacts, size_t joint,
-                        const QuadGap *gap);
+// Positive while a joint that is not free presses, and zero where its force ends: 1 + chi d'/v0,
+// or with a viscous damper d' + F_el / c, m/s.
+Quad quad_problem_margin(const QuadProblem *problem, const QuadContacts *contacts, size_t joint,
+                         const QuadGap *gap);
 
 // Moves the free bodies onto the ideal joints, positions and velocities, and returns the largest
 // distance, m, by which an ideal joint stood open before.

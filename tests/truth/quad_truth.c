@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 // s: rounding of the time would be seen in a shorter step
 static const double SHORTEST = 1e-26;
@@ -24,7 +25,6 @@ static const double AT_END = 1e-9;
 
 typedef struct Truth {
     const QuadProblem *problem;
-    size_t steps_max;
     QuadStep step;
     // where the next step begins
     Quad time_s;
@@ -222,7 +222,6 @@ static Truth *truth_create(const QuadProblem *problem, const TruthOptions *optio
     Truth *truth = calloc(1, sizeof *truth);
     assert(truth != NULL);
     truth->problem = problem;
-    truth->steps_max = options->steps_max;
     quad_step_init(&truth->step, problem, options->tolerance);
     memcpy(truth->position, problem->start_position, sizeof truth->position);
     memcpy(truth->velocity, problem->start_velocity, sizeof truth->velocity);
@@ -242,14 +241,19 @@ bool truth_run(const QuadProblem *problem, const TruthOptions *options, size_t c
                const double *times, TruthSample *samples, TruthFigures *figures)
 {
     Truth *truth = truth_create(problem, options);
+    const clock_t started = clock();
     bool is_complete = true;
     for (size_t k = 0; is_complete && k < count; k++) {
         while (is_complete && truth->time_s < times[k]) {
-            is_complete =
-                truth->figures.steps < truth->steps_max && advance(truth, times[count - 1]);
+            const double spent_s = (double)(clock() - started) / CLOCKS_PER_SEC;
+            is_complete = truth->figures.steps < options->steps_max &&
+                          !(options->seconds_max > 0.0 && spent_s > options->seconds_max) &&
+                          advance(truth, times[count - 1]);
         }
         if (is_complete) {
             write_sample(truth, times[k], samples + k * problem->body_count);
+            truth->figures.samples = k + 1;
+            truth->figures.reached_s = times[k];
         }
     }
     truth->figures.solves = truth->step.solves;

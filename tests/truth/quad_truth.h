@@ -5,8 +5,9 @@
 #include "quad_mechanism.h"
 
 typedef struct TruthOptions {
-    double tolerance; // m/s, of the velocities in one step
-    size_t steps_max; // after which the run fails
+    double tolerance;   // m/s, of the velocities in one step
+    size_t steps_max;   // after which the run fails
+    double seconds_max; // of processor time, after which it fails; 0: none
 } TruthOptions;
 
 // One body at one sample.
@@ -20,6 +21,8 @@ typedef struct TruthSample {
 } TruthSample;
 
 typedef struct TruthFigures {
+    size_t samples;     // written
+    double reached_s;   // time of the last of them, s
     size_t steps;       // accepted
     size_t solves;      // of one step's equations, accepted or not
     size_t evaluations; // of the accelerations

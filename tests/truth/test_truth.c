@@ -64,7 +64,7 @@ static void an_undamped_impact_is_hertz_impact(void **state)
     assert_quad(figures.end_speed, 1, TRUE_SHARE);
     const Quad exponent = (Quad)2 / 5;
     const Quad mass = problem.bodies[0].mass;
-    const Quad depth = powq(5 * mass / (4 * problem.stiffness), exponent);
+    const Quad depth = powq(5 * mass / (4 * problem.joints[0].law.stiffness), exponent);
     const Quad shape = 4 * sqrtq(acosq(-1)) * tgammaq(exponent) / (5 * tgammaq((Quad)9 / 10));
     assert_near((double)shape, 2.943275, 1e-6);
     assert_quad(figures.end_s - figures.onset_s, shape * depth, TRUE_SHARE);
@@ -286,7 +286,7 @@ static void friction_acts_where_the_wall_is(void **state)
 {
     (void)state;
     QuadProblem problem = two_free_bodies(0.3);
-    problem.stiffness *= 1000;
+    problem.joints[0].law.stiffness *= 1000;
     problem.joints[0].anchor_a = (QuadVec){0, 0};
     problem.joints[0].anchor_b = (QuadVec){0, 0};
     problem.start_position[3] = 0;
