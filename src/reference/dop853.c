@@ -51,6 +51,22 @@ static void stage_state(const Dop853 *integrator, int stage, double *y)
     add_stages(integrator, DOP853_COUPLING[stage], stage, integrator->tried, y);
 }
 
+// The state at the end of the step, and what is lost of it by rounding: the sum of many small steps
+// would lose more than any of them is wrong by.
+static void end_state(Dop853 *integrator)
+{
+    double change[DOP853_SIZE_MAX];
+    memcpy(change, integrator->carry, padded(integrator) * sizeof *change);
+    add_stages(integrator, DOP853_COUPLING[END_STAGE], END_STAGE, integrator->tried, change);
+    for (size_t i = 0; i < integrator->size; i++) {
+        const double y = integrator->y[i];
+        const double sum = y + change[i];
+        const double added = sum - y;
+        integrator->next[i] = sum;
+        integrator->next_carry[i] = (y - (sum - added)) + (change[i] - added);
+    }
+}
+
 static void evaluate(Dop853 *integrator, int stage, const double *y)
 {
     const double time = integrator->time + DOP853_NODE[stage] * integrator->tried;
@@ -109,7 +125,7 @@ double dop853_try(Dop853 *integrator, double step)
         stage_state(integrator, stage, y);
         evaluate(integrator, stage, y);
     }
-    stage_state(integrator, END_STAGE, integrator->next);
+    end_state(integrator);
     return error_ratio(integrator);
 }
 
@@ -132,7 +148,7 @@ bool dop853_attempt(Dop853 *integrator, double longest)
         integrator->was_rejected = true;
         step *= error > 1.0 ? fmax(SHRINK_MOST, wanted) : SHRINK_MOST;
         integrator->step = step;
-        if (!(step > 16.0 * DBL_EPSILON * fabs(integrator->time)) || !(step > DBL_MIN)) {
+        if (!(step > integrator->shortest) || !(step > DBL_MIN)) {
             return false;
         }
     }
@@ -177,6 +193,7 @@ void dop853_accept(Dop853 *integrator)
 {
     integrator->time += integrator->tried;
     memcpy(integrator->y, integrator->next, integrator->size * sizeof *integrator->y);
+    memcpy(integrator->carry, integrator->next_carry, integrator->size * sizeof *integrator->carry);
     memcpy(integrator->stages[0], integrator->stages[END_STAGE],
            integrator->size * sizeof *integrator->y);
     integrator->accepted++;

@@ -25,9 +25,12 @@ typedef struct Dop853 {
     double grown[DOP853_SIZE_MAX];
     double time; // where the next step starts
     double y[DOP853_SIZE_MAX];
-    double step;                  // length suggested for the next step
-    double tried;                 // length of the step that is tried
-    double next[DOP853_SIZE_MAX]; // state at the end of the step that is tried
+    double carry[DOP853_SIZE_MAX]; // what rounding has left out of y
+    double shortest;               // a step may be no shorter: rounding of the time would show
+    double step;                   // length suggested for the next step
+    double tried;                  // length of the step that is tried
+    double next[DOP853_SIZE_MAX];  // state at the end of the step that is tried
+    double next_carry[DOP853_SIZE_MAX];
     double stages[DOP853_STAGES][DOP853_SIZE_MAX];
     double polynomial[DOP853_POLYNOMIAL][DOP853_SIZE_MAX];
     bool was_rejected; // the step before had to be shortened: the next must not grow
@@ -45,7 +48,7 @@ double dop853_try(Dop853 *integrator, double step);
 
 // Tries steps, shortening them, until the error is allowed, beginning with the suggested length but
 // at most `longest`. Suggests the length of the following one. Returns false where the step fell
-// below the rounding of the time.
+// below the shortest.
 bool dop853_attempt(Dop853 *integrator, double longest);
 
 // Completes the tried step with the polynomial through it (four evaluations); then dop853_dense

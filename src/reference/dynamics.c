@@ -211,14 +211,14 @@ static bool solve(size_t width, double *matrix, double *right)
 }
 
 // Solves for the coordinates' second rates (and the loops' multipliers behind them).
-static bool find_rates(const Dynamics *dynamics, double time_s, const double *y,
+static bool find_rates(const Dynamics *dynamics, double since_s, const double *y,
                        DynamicsState *state, Loads *loads, double *solved)
 {
     const Tree *tree = &dynamics->tree;
     const size_t n = tree->coordinate_count;
     const size_t width = n + 2 * tree->loop_count;
     double matrix[EQUATION_MAX * EQUATION_MAX];
-    tree_evaluate(tree, time_s, y, y + n, &state->tree);
+    tree_evaluate(tree, since_s, y, y + n, &state->tree);
     start_loads(dynamics, loads);
     for (size_t i = 0; i < dynamics->contact_count; i++) {
         dynamics_contact_find(dynamics, i, &state->tree, &state->contacts[i]);
@@ -239,12 +239,12 @@ static void find_motion(const Tree *tree, const double *solved, Loads *loads, Dy
     find_reactions(tree, &state->tree, loads, state->reactions);
 }
 
-bool dynamics_evaluate(const Dynamics *dynamics, double time_s, const double *y,
+bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
                        DynamicsState *state)
 {
     double solved[EQUATION_MAX];
     Loads loads;
-    if (!find_rates(dynamics, time_s, y, state, &loads, solved)) {
+    if (!find_rates(dynamics, since_s, y, state, &loads, solved)) {
         return false;
     }
     find_motion(&dynamics->tree, solved, &loads, state);
@@ -265,7 +265,7 @@ static void fill_sums(const Dynamics *dynamics, const DynamicsState *state, doub
     }
 }
 
-void dynamics_rates(double time_s, const double *y, double *rates, void *context)
+void dynamics_rates(double since_s, const double *y, double *rates, void *context)
 {
     const Dynamics *dynamics = context;
     const Tree *tree = &dynamics->tree;
@@ -273,7 +273,7 @@ void dynamics_rates(double time_s, const double *y, double *rates, void *context
     DynamicsState state;
     Loads loads;
     double solved[EQUATION_MAX];
-    if (!find_rates(dynamics, time_s, y, &state, &loads, solved)) {
+    if (!find_rates(dynamics, since_s, y, &state, &loads, solved)) {
         for (size_t i = 0; i < dynamics_size(dynamics); i++) {
             rates[i] = NAN;
         }

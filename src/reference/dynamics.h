@@ -66,16 +66,18 @@ size_t dynamics_sum_index(const Dynamics *dynamics, size_t sum);
 // Fails with ERR_CASE where a contact law does not fit a joint.
 bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err);
 
+// Times, s, and coordinates are those since the base of the tree.
+//
 // The state at a time from the integrator's vector. Returns false where the accelerations are not
 // determined.
-bool dynamics_evaluate(const Dynamics *dynamics, double time_s, const double *y,
+bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
                        DynamicsState *state);
 
 // Rates of the integrator's vector; NaN where they are not determined. The context is a Dynamics.
-void dynamics_rates(double time_s, const double *y, double *rates, void *context);
+void dynamics_rates(double since_s, const double *y, double *rates, void *context);
 
 // One contact at a time, for events: cheaper than the whole state.
-ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double time_s,
+ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
                               const double *y);
 
 // Fails with ERR_SOLVER where a pin is deeper in its wall than a share of what its law knows.

@@ -12,12 +12,9 @@
 static PinHole contact_pose(const Dynamics *dynamics, size_t number, const TreeState *tree)
 {
     const DynamicsContact *contact = &dynamics->contacts[number];
-    const int hole = 2 * contact->joint;
-    const int pin = hole + 1;
+    const Vec2 gap = tree_joint_gap(&dynamics->tree, tree, contact->joint);
     const Vec2 moving = tree_joint_velocity(&dynamics->tree, tree, contact->joint);
-    return pin_hole_pose(tree_end_point(&dynamics->tree, tree, hole),
-                         tree_end_point(&dynamics->tree, tree, pin), moving,
-                         contact->radial_clearance);
+    return pin_hole_pose((Vec2){0.0, 0.0}, gap, moving, contact->radial_clearance);
 }
 
 Vec2 dynamics_contact_velocity(const Tree *tree, const TreeState *state, int end, Vec2 beside)
@@ -86,11 +83,11 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
     }
 }
 
-ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double time_s,
+ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
                               const double *y)
 {
     TreeState tree;
-    tree_evaluate(&dynamics->tree, time_s, y, y + dynamics->tree.coordinate_count, &tree);
+    tree_evaluate(&dynamics->tree, since_s, y, y + dynamics->tree.coordinate_count, &tree);
     ContactForce force;
     dynamics_contact_find(dynamics, contact, &tree, &force);
     return force;

@@ -12,6 +12,9 @@
 
 enum { PASSES = 2, ROW_MAX = 2 * TREE_LOOP_MAX };
 
+// m: a pin farther from its start than this was meant to be elsewhere
+static const double ROUNDED = 1e-12;
+
 // Adds the velocity of one end by each coordinate, with a sign.
 static void add_end(const Tree *tree, const TreeState *state, int end, double sign, Vec2 *row)
 {
@@ -45,8 +48,7 @@ static Vec2 loop_gap(const Tree *tree, const TreeState *state, size_t loop, bool
     if (is_rate) {
         return tree_joint_velocity(tree, state, tree->loops[loop]);
     }
-    const int end = 2 * tree->loops[loop];
-    return vec2_sub(tree_end_point(tree, state, end + 1), tree_end_point(tree, state, end));
+    return tree_joint_gap(tree, state, tree->loops[loop]);
 }
 
 // Changes x by J^T (J J^T)^-1 (-gap).
@@ -87,21 +89,46 @@ static void move_least(const Tree *tree, const TreeState *state, bool is_rate, d
     }
 }
 
-double loops_project(const Tree *tree, double time_s, double *q, double *u)
+double loops_project(const Tree *tree, double since_s, double *q, double *u)
 {
     if (tree->loop_count == 0) {
         return 0.0;
     }
     TreeState state;
     for (int pass = 0; pass < PASSES; pass++) {
-        tree_evaluate(tree, time_s, q, u, &state);
+        tree_evaluate(tree, since_s, q, u, &state);
         move_least(tree, &state, false, q);
     }
-    tree_evaluate(tree, time_s, q, u, &state);
+    tree_evaluate(tree, since_s, q, u, &state);
     move_least(tree, &state, true, u);
     double largest = 0.0;
     for (size_t loop = 0; loop < tree->loop_count; loop++) {
         largest = fmax(largest, vec2_length(loop_gap(tree, &state, loop, false)));
     }
     return largest;
+}
+
+void loops_start(Tree *tree, double *q, double *u)
+{
+    loops_project(tree, 0.0, q, u);
+    tree_rebase(tree, 0.0, q);
+    const Linkage *linkage = tree->linkage;
+    if (!linkage->driver.is_present) {
+        return;
+    }
+    // pins are brought to their starts as loops are closed, with speeds that nobody asks for
+    Tree pinned = *tree;
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        if (linkage->joints[i].kind == JOINT_CLEARANCE) {
+            pinned.loops[pinned.loop_count++] = i;
+            pinned.base_gaps[i] = vec2_sub(tree->base_gaps[i], linkage->joints[i].clearance.start);
+            if (!(vec2_length(pinned.base_gaps[i]) <= ROUNDED)) {
+                return;
+            }
+        }
+    }
+    double rates[TREE_COORDINATE_MAX] = {0.0};
+    if (loops_project(&pinned, 0.0, q, rates) <= ROUNDED) {
+        tree_rebase(tree, 0.0, q);
+    }
 }

@@ -19,7 +19,8 @@ typedef struct Reference {
     Stepper stepper;
     Peaks peaks;
     size_t point;   // of the step that comes next
-    double start_s; // of the part of the step that was handed on
+    double since_s; // end of the part of the step that was handed on, from the step's start
+    double start_s; // of that part
     double end_s;
     double y[DOP853_SIZE_MAX];      // at end_s
     double before[DOP853_SIZE_MAX]; // at start_s
@@ -105,8 +106,9 @@ static bool show_onset(Reference *reference, Err *err)
 {
     const Stepper *stepper = &reference->stepper;
     DynamicsState state;
+    memcpy(reference->y, stepper->integrator.y, stepper->integrator.size * sizeof *reference->y);
     memcpy(reference->before, reference->y, stepper->integrator.size * sizeof *reference->y);
-    if (!dynamics_evaluate(&stepper->dynamics, reference->end_s, reference->y, &state)) {
+    if (!dynamics_evaluate(&stepper->dynamics, 0.0, reference->y, &state)) {
         return err_set(err, ERR_SOLVER, "the accelerations are not determined");
     }
     reference->start_s = reference->end_s;
@@ -122,6 +124,7 @@ static bool advance(Reference *reference, Err *err)
             return false;
         }
         reference->point = 0;
+        reference->since_s = 0.0;
         if (stepper->is_after_onset) {
             return show_onset(reference, err);
         }
@@ -129,7 +132,7 @@ static bool advance(Reference *reference, Err *err)
     const Dop853 *integrator = &stepper->integrator;
     const double point_s = events_point_time(integrator, &stepper->points, reference->point);
     const DynamicsState *state = &stepper->points.states[reference->point];
-    const double end_s = peaks_next(&reference->peaks, stepper, reference->end_s, point_s, state);
+    const double end_s = peaks_next(&reference->peaks, stepper, reference->since_s, point_s, state);
     DynamicsState between;
     memcpy(reference->before, reference->y, integrator->size * sizeof *reference->y);
     dop853_dense(integrator, end_s, reference->y);
@@ -139,8 +142,9 @@ static bool advance(Reference *reference, Err *err)
     } else {
         reference->point++;
     }
+    reference->since_s = end_s;
     reference->start_s = reference->end_s;
-    reference->end_s = end_s;
+    reference->end_s = tree_time(&stepper->dynamics.tree, end_s);
     fill_record(reference, state);
     return dynamics_check_depth(&stepper->dynamics, state, 1.0, err);
 }
@@ -195,11 +199,12 @@ static void reference_observe(const void *state, double time_s, Sample *sample)
     const Linkage *linkage = &reference->stepper.scenario->linkage;
     double y[DOP853_SIZE_MAX];
     DynamicsState at;
-    dop853_dense(&reference->stepper.integrator, time_s, y);
-    // between its ends a long step keeps loops closed to its tolerance only
     const Tree *tree = &reference->stepper.dynamics.tree;
-    loops_project(tree, time_s, y, y + tree->coordinate_count);
-    const bool is_determined = dynamics_evaluate(&reference->stepper.dynamics, time_s, y, &at);
+    const double since_s = (double)(time_s - tree->base_time_s);
+    dop853_dense(&reference->stepper.integrator, since_s, y);
+    // between its ends a long step keeps loops closed to its tolerance only
+    loops_project(tree, since_s, y, y + tree->coordinate_count);
+    const bool is_determined = dynamics_evaluate(&reference->stepper.dynamics, since_s, y, &at);
     assert(is_determined);
     (void)is_determined;
     sample->time_s = time_s;

@@ -8,6 +8,7 @@
 
 #include "reference/loops.h"
 
+#include <float.h>
 #include <string.h>
 
 // of a step: two events nearer to each other than this are one, seen with rounding
@@ -20,9 +21,12 @@ static const double NEARLY = 0.99;
 // mechanism, an error of 1e-9 costs a fifth less than at 1, and no less from 8 to 32.
 static const double PLACE_SHARE = 16.0;
 
-// Rounding of places against the swing of a contact: an error in a rate that no step can avoid.
-static const double ROUNDING = 0x1p-54;
-static const double SWING_S = 1e-5;
+// 1: eight times the rounding of a number, for an estimate of the error that sees as much as it
+// allows lets no step grow
+static const double ROUNDING = 0x1p-50;
+
+// of the time: a step that rounding of the time would show in is none
+static const double SHORTEST = 16.0 * DBL_EPSILON;
 
 // Lets the sizes of errors follow the largest speeds so far.
 static void set_tolerances(Stepper *stepper)
@@ -31,10 +35,8 @@ static void set_tolerances(Stepper *stepper)
     const size_t n = tree->coordinate_count;
     const double tolerance = stepper->scenario->reference.tolerance;
     const SpeedScale *scale = &stepper->scale;
-    const double floor = ROUNDING * scale->reach / SWING_S;
-    const double moving = fmax(tolerance * scale->moving, floor);
-    const double turning =
-        fmax(tolerance * scale->turning, scale->reach > 0.0 ? floor / scale->reach : 0.0);
+    const double moving = tolerance * scale->moving;
+    const double turning = tolerance * scale->turning;
     Dop853 *integrator = &stepper->integrator;
     for (size_t i = 0; i < n; i++) {
         integrator->fixed[n + i] = moving;
@@ -58,6 +60,46 @@ static void set_tolerances(Stepper *stepper)
     for (size_t i = 0; i < stepper->dynamics.contact_count; i++) {
         sums[DYNAMICS_IMPULSES + i] = mass * moving;
     }
+}
+
+// Allows the errors that no step can avoid: rounding of a pin's position in its hole, times the
+// stiffness that it presses on there, is a force, and the rates feel it for as long as the step.
+static void allow_rounding(Stepper *stepper)
+{
+    const Tree *tree = &stepper->dynamics.tree;
+    const DynamicsState *state = &stepper->points.states[stepper->points.count - 1];
+    const size_t n = tree->coordinate_count;
+    double *fixed = stepper->integrator.fixed;
+    double *grown = stepper->integrator.grown;
+    double *sums = grown + dynamics_sum_index(&stepper->dynamics, 0);
+    const double reach = stepper->scale.reach;
+    double force = 0.0;
+    double moved = 0.0;
+    for (size_t i = 0; i < stepper->dynamics.contact_count; i++) {
+        const DynamicsContact *contact = &stepper->dynamics.contacts[i];
+        const double depth = state->contacts[i].pose.penetration;
+        const double rounding = ROUNDING * contact->radial_clearance;
+        if (contact->mode == CONTACT_PRESSING && depth > 0.0) {
+            force += rounding * force_law_tangent(&contact->law, depth);
+        }
+        moved = moved > 0.0 ? fmin(moved, rounding) : rounding;
+        sums[DYNAMICS_IMPULSES + i] = force;
+    }
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const TreeNode *node = &tree->nodes[i];
+        const Body *body = &tree->linkage->bodies[node->body];
+        if (node->joint < 0) {
+            grown[n + node->angle_column - 2] = force / body->mass;
+            grown[n + node->angle_column - 1] = force / body->mass;
+            fixed[node->angle_column - 2] = moved;
+            fixed[node->angle_column - 1] = moved;
+        }
+        grown[n + node->angle_column] = force * reach / body->inertia;
+        fixed[node->angle_column] = reach > 0.0 ? moved / reach : 0.0;
+    }
+    sums[DYNAMICS_DRIVE_WORK] = force * stepper->scale.moving;
+    sums[DYNAMICS_DISSIPATED] = force * stepper->scale.moving;
+    sums[DYNAMICS_FRICTION] = force * stepper->scale.moving;
 }
 
 // Raises the scale where a body has become faster than any before.
@@ -90,8 +132,8 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     Motion motions[LINKAGE_BODY_MAX];
     linkage_start(&scenario->linkage, motions);
     double y[DOP853_SIZE_MAX] = {0.0};
-    tree_coordinates(&stepper->dynamics.tree, motions, y, y + n);
-    loops_project(&stepper->dynamics.tree, 0.0, y, y + n);
+    tree_start(&stepper->dynamics.tree, motions, y + n);
+    loops_start(&stepper->dynamics.tree, y, y + n);
     Dop853 *integrator = &stepper->integrator;
     integrator->size = dynamics_size(&stepper->dynamics);
     integrator->motion_size = dynamics_sum_index(&stepper->dynamics, 0);
@@ -102,7 +144,6 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     // the first step finds its own length: a thousandth of the run is long enough to be shortened
     integrator->step = 1e-3 * stepper->duration_s;
     stepper->onset_step = integrator->step;
-    tree_rebase(&stepper->dynamics.tree, 0.0, y);
     dop853_start(integrator, 0.0, y);
     stepper->points.count = 1;
     if (!dynamics_evaluate(&stepper->dynamics, 0.0, y, &stepper->points.states[0])) {
@@ -129,11 +170,15 @@ static void take_over(Stepper *stepper)
     Tree *tree = &stepper->dynamics.tree;
     const size_t n = tree->coordinate_count;
     follow_speeds(stepper);
+    allow_rounding(stepper);
     dop853_accept(integrator);
     if (tree->loop_count > 0) {
         loops_project(tree, integrator->time, integrator->y, integrator->y + n);
     }
+    // time and coordinates count from here on
     tree_rebase(tree, integrator->time, integrator->y);
+    integrator->time = 0.0;
+    integrator->shortest = SHORTEST * tree_time(tree, 0.0);
     if (stepper->events.count > 0) {
         events_apply(&stepper->dynamics, &stepper->events, integrator->time, integrator->y);
         if (is_onset(stepper)) {
@@ -151,7 +196,7 @@ static double flight_limit(const Stepper *stepper)
 {
     const Tree *tree = &stepper->dynamics.tree;
     const TreeState *state = &stepper->points.states[stepper->points.count - 1].tree;
-    double limit = stepper->duration_s - stepper->integrator.time;
+    double limit = stepper->duration_s - tree_time(tree, 0.0);
     for (size_t i = 0; i < stepper->dynamics.contact_count; i++) {
         const DynamicsContact *contact = &stepper->dynamics.contacts[i];
         if (contact->mode == CONTACT_PRESSING) {
@@ -225,8 +270,8 @@ bool stepper_next(Stepper *stepper, Err *err)
             stepper->is_after_onset = stepper->is_after_onset || has_begun;
             take_over(stepper);
         }
-        if (!pace_keep(&stepper->pace, &stepper->dynamics, &stepper->events, integrator->time,
-                       err) ||
+        const double time_s = tree_time(&stepper->dynamics.tree, 0.0);
+        if (!pace_keep(&stepper->pace, &stepper->dynamics, &stepper->events, time_s, err) ||
             !step_to_event(stepper, err)) {
             return false;
         }

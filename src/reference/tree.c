@@ -88,9 +88,6 @@ void tree_build(const Linkage *linkage, Tree *tree)
 {
     *tree = (Tree){.linkage = linkage, .driven = linkage_driven_body(linkage)};
     list_ends(tree);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        tree->base_direction[i] = (Vec2){1.0, 0.0};
-    }
     bool is_known[LINKAGE_BODY_MAX + 1] = {true};
     bool is_used[LINKAGE_JOINT_MAX] = {false};
     if (tree->driven >= 0) {
@@ -117,83 +114,59 @@ void tree_build(const Linkage *linkage, Tree *tree)
     }
 }
 
-void tree_coordinates(const Tree *tree, const Motion *motions, double *q, double *u)
+// Turns a body's ends by an angle d since the base: the change of an arm s is
+//     sin d perp s - (1 - cos d) s
+// by a series while d is small. Up to 0.01 the first terms left out, d^9 / 9! and d^8 / 8!, are
+// below 3e-21.
+static inline void set_arms(const Tree *tree, int body, double d, TreeState *state)
 {
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const TreeNode *node = &tree->nodes[i];
-        const Motion *motion = &motions[node->body];
-        q[node->angle_column] = motion->angle;
-        u[node->angle_column] = motion->omega;
-        if (node->joint < 0) {
-            q[node->angle_column - 2] = motion->position.x;
-            q[node->angle_column - 1] = motion->position.y;
-            u[node->angle_column - 2] = motion->velocity.x;
-            u[node->angle_column - 1] = motion->velocity.y;
-        }
-    }
-}
-
-void tree_rebase(Tree *tree, double time_s, const double *q)
-{
-    for (size_t i = 0; i < tree->linkage->body_count; i++) {
-        const int column = tree->angle_column[i];
-        const double angle = column < 0 ? linkage_crank_angle(tree->linkage, time_s) : q[column];
-        tree->base_angle[i] = angle;
-        tree->base_direction[i] = (Vec2){cos(angle), sin(angle)};
-    }
-}
-
-// Cosine and sine of a body's angle: turned on from the base by a series while that is near. Up to
-// 0.01 the first terms left out, d^9 / 9! and d^8 / 8!, are below 3e-21.
-static inline Vec2 direction_of(const Tree *tree, int body, double angle)
-{
-    const double near = 0.01;
-    const double d = angle - tree->base_angle[body];
-    if (!(fabs(d) <= near)) {
-        return (Vec2){cos(angle), sin(angle)};
-    }
+    const double small = 0.01;
     const double e = d * d;
-    const double s =
-        d * (1.0 - e * (1.0 / 6.0) * (1.0 - e * (1.0 / 20.0) * (1.0 - e * (1.0 / 42.0))));
-    const double r = 0.5 * e * (1.0 - e * (1.0 / 12.0) * (1.0 - e * (1.0 / 30.0)));
-    const Vec2 base = tree->base_direction[body];
-    return (Vec2){base.x - (base.x * r + base.y * s), base.y + (base.x * s - base.y * r)};
-}
-
-// Turns a body's ends with it.
-static inline void set_arms(const Tree *tree, int body, double angle, TreeState *state)
-{
-    const Vec2 direction = direction_of(tree, body, angle);
-    const double c = direction.x;
-    const double s = direction.y;
+    double s = d * (1.0 - e * (1.0 / 6.0) * (1.0 - e * (1.0 / 20.0) * (1.0 - e * (1.0 / 42.0))));
+    double r = 0.5 * e * (1.0 - e * (1.0 / 12.0) * (1.0 - e * (1.0 / 30.0)));
+    if (!(fabs(d) <= small)) {
+        s = sin(d);
+        r = 2.0 * sin(0.5 * d) * sin(0.5 * d);
+    }
     for (size_t i = 0; i < tree->end_counts[body]; i++) {
         const int end = tree->ends[body][i];
-        const Vec2 anchor = tree->anchors[end];
-        state->arms[end] = (Vec2){c * anchor.x - s * anchor.y, s * anchor.x + c * anchor.y};
+        const Vec2 arm = tree->base_arms[end];
+        state->turned[end] = (Vec2){-s * arm.y - r * arm.x, s * arm.x - r * arm.y};
+        state->arms[end] = vec2_add(arm, state->turned[end]);
     }
 }
 
-static void set_driven(const Tree *tree, double time_s, TreeState *state)
+// Puts a body's centre where it has moved to.
+static inline void set_centre(const Tree *tree, int body, Vec2 moved, TreeState *state)
+{
+    const TreePoint base = tree->base_position[body];
+    state->moved[body] = moved;
+    state->motions[body].position = (Vec2){(double)base.x + moved.x, (double)base.y + moved.y};
+}
+
+static void set_driven(const Tree *tree, double since_s, TreeState *state)
 {
     const Driver *driver = &tree->linkage->driver;
     Motion *motion = &state->motions[tree->driven];
-    motion->angle = linkage_crank_angle(tree->linkage, time_s);
+    const double turned = driver->speed * since_s;
+    motion->angle = (double)tree->base_angle[tree->driven] + turned;
     motion->omega = driver->speed;
     motion->alpha = 0.0;
-    set_arms(tree, tree->driven, motion->angle, state);
-    const Vec2 arm = state->arms[2 * driver->joint + 1];
-    motion->position = vec2_sub(tree->linkage->joints[driver->joint].anchor_a, arm);
+    set_arms(tree, tree->driven, turned, state);
+    const int end = 2 * driver->joint + 1;
+    const Vec2 arm = state->arms[end];
+    set_centre(tree, tree->driven, vec2_scale(-1.0, state->turned[end]), state);
     motion->velocity = vec2_scale(-driver->speed, vec2_perp(arm));
     motion->acceleration = vec2_scale(driver->speed * driver->speed, arm);
     state->bias[tree->driven] = motion->acceleration;
 }
 
-static void set_floating(const TreeNode *node, const double *q, const double *u, Vec2 *columns,
-                         TreeState *state)
+static void set_floating(const Tree *tree, const TreeNode *node, const double *q, const double *u,
+                         Vec2 *columns, TreeState *state)
 {
     const size_t column = node->angle_column;
     Motion *motion = &state->motions[node->body];
-    motion->position = (Vec2){q[column - 2], q[column - 1]};
+    set_centre(tree, node->body, (Vec2){q[column - 2], q[column - 1]}, state);
     motion->velocity = (Vec2){u[column - 2], u[column - 1]};
     state->bias[node->body] = (Vec2){0.0, 0.0};
     columns[0] = (Vec2){1.0, 0.0};
@@ -206,7 +179,8 @@ static void set_hanging(const Tree *tree, const TreeNode *node, Vec2 *columns, T
     Motion *motion = &state->motions[node->body];
     const Vec2 arm = state->arms[node->own_end];
     const Vec2 lever = vec2_perp(arm);
-    motion->position = vec2_sub(tree_end_point(tree, state, node->parent_end), arm);
+    const Vec2 parent_moved = tree_end_moved(tree, state, node->parent_end);
+    set_centre(tree, node->body, vec2_sub(parent_moved, state->turned[node->own_end]), state);
     motion->velocity = vec2_sub(tree_end_velocity(tree, state, node->parent_end),
                                 vec2_scale(motion->omega, lever));
     state->bias[node->body] = vec2_add(tree_end_bias(tree, state, node->parent_end),
@@ -223,20 +197,20 @@ static void set_hanging(const Tree *tree, const TreeNode *node, Vec2 *columns, T
     columns[own] = vec2_scale(-1.0, lever);
 }
 
-void tree_evaluate(const Tree *tree, double time_s, const double *q, const double *u,
+void tree_evaluate(const Tree *tree, double since_s, const double *q, const double *u,
                    TreeState *state)
 {
     if (tree->driven >= 0) {
-        set_driven(tree, time_s, state);
+        set_driven(tree, since_s, state);
     }
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
         Motion *motion = &state->motions[node->body];
-        motion->angle = q[node->angle_column];
+        motion->angle = (double)tree->base_angle[node->body] + q[node->angle_column];
         motion->omega = u[node->angle_column];
-        set_arms(tree, node->body, motion->angle, state);
+        set_arms(tree, node->body, q[node->angle_column], state);
         if (node->joint < 0) {
-            set_floating(node, q, u, state->columns[i], state);
+            set_floating(tree, node, q, u, state->columns[i], state);
         } else {
             set_hanging(tree, node, state->columns[i], state);
         }

@@ -2,6 +2,9 @@
 // and angle for one that floats, and two constraint rows for each ideal joint that closes a loop.
 //
 // Ideal joints of the tree hold exactly, by construction. The driven body and the ground are known.
+// Time and coordinates are those since the base: where the linkage stood at the start of the
+// present step, kept in long double. How far a pin has moved in its hole since then carries all the
+// digits of a double, however long the links and whatever the angles.
 #pragma once
 
 #include "model/linkage.h"
@@ -25,6 +28,12 @@ typedef struct TreeNode {
     size_t chain[TREE_COORDINATE_MAX];
 } TreeNode;
 
+// m, in the world
+typedef struct TreePoint {
+    long double x;
+    long double y;
+} TreePoint;
+
 typedef struct Tree {
     const Linkage *linkage;
     int driven;        // number of the driven body or LINKAGE_GROUND
@@ -40,15 +49,20 @@ typedef struct Tree {
     bool is_driven_hung_on; // whether a body hangs on the driven one by an ideal joint
     size_t loop_count;
     int loops[TREE_LOOP_MAX]; // ideal joints that close loops
-    // where each body stood when tree_rebase was called: near there its direction comes cheap
-    double base_angle[LINKAGE_BODY_MAX];
-    Vec2 base_direction[LINKAGE_BODY_MAX];
+    // the base
+    long double base_time_s;
+    long double base_angle[LINKAGE_BODY_MAX];  // rad
+    TreePoint base_position[LINKAGE_BODY_MAX]; // of the centres
+    Vec2 base_arms[TREE_END_MAX];              // from the body's centre to each end, m
+    Vec2 base_gaps[LINKAGE_JOINT_MAX];         // from the end on body a to that on body b, m
 } Tree;
 
 // Where the tree's bodies are and how their velocities depend on the coordinates' rates.
 typedef struct TreeState {
     Motion motions[LINKAGE_BODY_MAX]; // of all bodies; accelerations after tree_accelerate
     Vec2 arms[TREE_END_MAX];          // from the body's centre to each end, m; not of ground ends
+    Vec2 turned[TREE_END_MAX];        // change of that arm since the base, m
+    Vec2 moved[LINKAGE_BODY_MAX];     // of each centre since the base, m
     Vec2 bias[LINKAGE_BODY_MAX]; // acceleration of each centre with all coordinates' rates steady
     // velocity of each node's centre by the rate of each coordinate of its chain
     Vec2 columns[LINKAGE_BODY_MAX][TREE_COORDINATE_MAX];
@@ -57,20 +71,39 @@ typedef struct TreeState {
 // Finds the tree of the linkage's ideal joints.
 void tree_build(const Linkage *linkage, Tree *tree);
 
-// Coordinates and their rates of given motions.
-void tree_coordinates(const Tree *tree, const Motion *motions, double *q, double *u);
+// Puts the base at given motions at time zero, and writes the coordinates' rates there.
+void tree_start(Tree *tree, const Motion *motions, double *u);
 
-// Says that the coming evaluations will be near these coordinates and this time.
-void tree_rebase(Tree *tree, double time_s, const double *q);
+// Moves the base on to a time and coordinates since the present one, and zeroes the coordinates.
+void tree_rebase(Tree *tree, double since_s, double *q);
 
-// Places, velocities, columns and bias at a time from coordinates and rates.
-void tree_evaluate(const Tree *tree, double time_s, const double *q, const double *u,
+// The time, s, that lies so long after the base.
+double tree_time(const Tree *tree, double since_s);
+
+// Positions, velocities, columns and bias, from time and coordinates since the base and from rates.
+void tree_evaluate(const Tree *tree, double since_s, const double *q, const double *u,
                    TreeState *state);
 
 // Fills in the accelerations from the coordinates' second rates.
 void tree_accelerate(const Tree *tree, const double *rates, TreeState *state);
 
-// An end of a joint: its place, velocity, bias and (after tree_accelerate) acceleration.
+// How far an end of a joint has moved since the base, m.
+static inline Vec2 tree_end_moved(const Tree *tree, const TreeState *state, int end)
+{
+    const int body = tree->end_bodies[end];
+    return body == LINKAGE_GROUND ? (Vec2){0.0, 0.0}
+                                  : vec2_add(state->moved[body], state->turned[end]);
+}
+
+// Where the end on body b of a joint is, seen from that on body a, m.
+static inline Vec2 tree_joint_gap(const Tree *tree, const TreeState *state, int joint)
+{
+    const Vec2 moved = vec2_sub(tree_end_moved(tree, state, 2 * joint + 1),
+                                tree_end_moved(tree, state, 2 * joint));
+    return vec2_add(tree->base_gaps[joint], moved);
+}
+
+// An end of a joint: its position, velocity, bias and (after tree_accelerate) acceleration.
 static inline Vec2 tree_end_point(const Tree *tree, const TreeState *state, int end)
 {
     const int body = tree->end_bodies[end];

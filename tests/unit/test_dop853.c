@@ -142,7 +142,13 @@ static void what_is_not_finite(double time, const double *y, double *rates, void
 static void a_right_hand_side_that_ends_stops_the_integrator(void **state)
 {
     (void)state;
-    Dop853 integrator = {.size = 1, .motion_size = 1, .rates = what_is_not_finite, .step = 0.1};
+    Dop853 integrator = {
+        .size = 1,
+        .motion_size = 1,
+        .rates = what_is_not_finite,
+        .step = 0.1,
+        .shortest = 1e-14,
+    };
     integrator.fixed[0] = 1e-9;
     const double y[DOP853_SIZE_MAX] = {0.0};
     dop853_start(&integrator, 0.0, y);
