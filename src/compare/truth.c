@@ -1,16 +1,23 @@
 // Which solution are errors measured against, how sure is it, and how far does it hold?
 //
-// Uncertainty: the distance to a run at a hundredth of the tolerance. Horizon: starts 1e-10 beside
-// move away, the fastest of all of them (model/growth.c); where that has grown 1e5 times, two
-// solutions that are right to 1e-10 have only five digits in common, and an engine's none. The same
-// holds where the second run is that far away. Both are watched on a grid of at least a thousand
-// samples, for the case's own samples may be few.
+// Uncertainty: two more runs say what the first one's error may be. The second has a thirtieth of
+// its tolerance. The third has a tenth of it, other steps therefore, and inputs rounded once more:
+// where rounding rules, which no tolerance shows, these two differ from one another as much as the
+// first may be off. With d the largest distances up to the horizon,
+//     uncertainty = max(d(1, 2), d(1, 3)) + d(2, 3), at least rounding times growth.
+// Were all three errors draws of one normal distribution, the first would be above three times that
+// in one case of 200.
+// Horizon: starts 1e-10 beside move away, the fastest of all of them (model/growth.c); where that
+// has grown 1e5 times, two solutions that are right to 1e-10 have only five digits in common, and
+// an engine's none. The same holds where the second or third run is that far away. All are watched
+// on a grid of at least a thousand samples, for the case's own samples may be few.
 #include "compare/truth.h"
 
 #include "base/clock.h"
 #include "compare/error.h"
 #include "model/distance.h"
 #include "model/growth.h"
+#include "model/shake.h"
 #include "run/registry.h"
 #include "run/tracer.h"
 
@@ -18,8 +25,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double TIGHTER = 1e-2;   // the second run's tolerance over the first's
-static const double TIGHTEST = 1e-14; // below it rounding does not let steps follow
+// tolerances of the second and third run over the first's
+static const double SECOND = 1.0 / 30.0;
+static const double THIRD = 1.0 / 10.0;
+
+enum { THIRD_SEED = 1 }; // of its inputs' rounding
+
+// 1: no speed is held to less than this share of itself
+static const double ROUNDING = 0x1p-53;
 
 static Trajectory *run(const Scenario *scenario, BackendKind backend, RunWatch watch)
 {
@@ -56,7 +69,7 @@ static void certify_ideal(const Scenario *scenario, RunWatch watch, Truth *truth
     truth->horizon_s = scenario_duration(scenario);
     Trajectory *second = run(scenario, BACKEND_REFERENCE, watch);
     const TrajectoryError error = error_against(second, truth->trajectory, truth->horizon_s);
-    truth->uncertainty = error.is_known ? error.omega_max : INFINITY;
+    truth->uncertainty = error.is_known ? error.omega_max + ROUNDING : INFINITY;
     trajectory_destroy(second);
 }
 
@@ -112,26 +125,44 @@ static void follow_growth(const Scenario *scenario, const Trajectory *beside, Ru
     free(basis);
 }
 
-// Compares the reference on the fine grid with a second run of another tolerance, and that with
-// perturbed runs.
-static void certify(const Scenario *fine, const Scenario *other, RunWatch watch, Truth *truth)
+// The scenario with another tolerance of the reference.
+static Scenario with_tolerance(const Scenario *scenario, double factor)
+{
+    Scenario other = *scenario;
+    other.reference.tolerance *= factor;
+    return other;
+}
+
+// Compares the reference on the fine grid with a second and a third run, and the second with
+// perturbed ones.
+static void certify(const Scenario *fine, RunWatch watch, Truth *truth)
 {
     // the first run is there already where the case's own samples are fine enough
     const bool is_there = scenario_sample_count(fine) == truth->trajectory->sample_count;
+    const Scenario tight = with_tolerance(fine, SECOND);
+    Scenario shaken = with_tolerance(fine, THIRD);
+    shake_inputs(&shaken, THIRD_SEED);
     Trajectory *first = is_there ? truth->trajectory : run_for(fine, watch, truth);
-    Trajectory *second = run_for(other, watch, truth);
+    Trajectory *second = run_for(&tight, watch, truth);
+    Trajectory *third = run_for(&shaken, watch, truth);
     truth->is_limited = false;
     truth->horizon_s = scenario_duration(fine);
     shorten_horizon(second, first, truth);
+    shorten_horizon(second, third, truth);
     if (truth->message[0] == '\0') {
-        follow_growth(other, second, watch, truth);
+        follow_growth(&tight, second, watch, truth);
     }
-    truth->uncertainty = shorten_horizon(second, first, truth);
+    // now that the horizon is known
+    const double to_second = shorten_horizon(second, first, truth);
+    const double to_third = shorten_horizon(first, third, truth);
+    const double between = shorten_horizon(second, third, truth);
+    truth->uncertainty = fmax(fmax(to_second, to_third) + between, ROUNDING * truth->growth);
     if (truth->message[0] != '\0') {
         truth->is_limited = true;
         truth->horizon_s = 0.0;
         truth->uncertainty = INFINITY;
     }
+    trajectory_destroy(third);
     trajectory_destroy(second);
     if (!is_there) {
         trajectory_destroy(first);
@@ -158,15 +189,8 @@ Truth truth_make(const Scenario *scenario, RunWatch watch)
     if (!truth.trajectory->is_complete) {
         return truth;
     }
-    // the second run is tighter, unless the first is as tight as can be
     const Scenario fine = distance_grid(scenario);
-    Scenario other = fine;
-    const double tolerance = scenario->reference.tolerance;
-    other.reference.tolerance = fmax(TIGHTEST, TIGHTER * tolerance);
-    if (other.reference.tolerance >= tolerance) {
-        other.reference.tolerance = tolerance / TIGHTER;
-    }
-    certify(&fine, &other, watch, &truth);
+    certify(&fine, watch, &truth);
     return truth;
 }
 

@@ -5,16 +5,16 @@
 
 typedef struct Truth {
     Trajectory *trajectory; // owned; complete, unless its message says why there is none
-    double uncertainty;     // 1: largest difference in omega, as omega_max of an error, between the
-                            // reference and a second one, up to the horizon; INFINITY where unknown
-    double horizon_s;       // up to when trajectories may be compared: where neither the second
-                            // run nor the fastest of all starts 1e-10 beside is too far away
+    double uncertainty;     // 1: of omega, as omega_max of an error, up to the horizon, from two
+                            // further runs; above 0; INFINITY where unknown
+    double horizon_s;       // up to when trajectories may be compared: where neither these two
+                            // nor the fastest of all starts 1e-10 beside is too far away
     double growth;          // 1: by how much that one's distance grew up to the horizon
     bool is_limited;        // whether the horizon ends before the run does
     char message[ERR_TEXT_SIZE]; // why it could not be certified; empty where it was
 } Truth;
 
-// The truth of a scenario: the reference, certified by a second, tighter run and perturbed ones.
+// The truth of a scenario: the reference, certified by two tighter runs and perturbed ones.
 // With ideal joints alone it is the closed form, certified by the reference. A truth that cannot be
 // had holds an incomplete trajectory with the reason.
 Truth truth_make(const Scenario *scenario, RunWatch watch);
