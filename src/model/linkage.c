@@ -1,6 +1,7 @@
 // Which bodies are joined where, and is that a linkage at all?
 #include "model/linkage.h"
 
+#include <stdio.h>
 #include <string.h>
 
 double linkage_radial_clearance(const Joint *joint)
@@ -18,6 +19,16 @@ double linkage_crank_angle(const Linkage *linkage, double time_s)
 {
     const Driver *driver = &linkage->driver;
     return driver->is_present ? driver->start + driver->speed * time_s : 0.0;
+}
+
+void linkage_describe_instant(const Linkage *linkage, double time_s,
+                              char text[LINKAGE_INSTANT_SIZE])
+{
+    const int length = snprintf(text, LINKAGE_INSTANT_SIZE, "at %.9g ms", 1e3 * time_s);
+    if (linkage->driver.is_present) {
+        snprintf(text + length, LINKAGE_INSTANT_SIZE - (size_t)length, ", crank angle %.6g deg",
+                 linkage_crank_angle(linkage, time_s) * 180.0 / M_PI);
+    }
 }
 
 double linkage_period(const Linkage *linkage)

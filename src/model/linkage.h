@@ -82,6 +82,12 @@ int linkage_driven_body(const Linkage *linkage);
 // Angle of the driven body at a time, rad; 0 where there is no driver.
 double linkage_crank_angle(const Linkage *linkage, double time_s);
 
+// Writes when something happened, for people: "at 1.5 ms, crank angle 9 deg", without the angle
+// where there is no driver.
+enum { LINKAGE_INSTANT_SIZE = 64 };
+void linkage_describe_instant(const Linkage *linkage, double time_s,
+                              char text[LINKAGE_INSTANT_SIZE]);
+
 // Time of one turn of the driver, s; 0 where there is no driver.
 double linkage_period(const Linkage *linkage);
 

@@ -77,10 +77,10 @@ double stepping_drive(const Scenario *scenario, const Motion *driven, const Vec2
 
 bool stepping_fail(const Scenario *scenario, double time_s, size_t step, double step_s, Err *err)
 {
-    char where[128];
-    const double crank = linkage_crank_angle(&scenario->linkage, time_s) * 180.0 / M_PI;
-    snprintf(where, sizeof where, "at %.6g ms, crank angle %.5g deg, step %zu of %.4g us",
-             1e3 * time_s, crank, step, 1e6 * step_s);
+    char instant[LINKAGE_INSTANT_SIZE];
+    char where[2 * LINKAGE_INSTANT_SIZE];
+    linkage_describe_instant(&scenario->linkage, time_s, instant);
+    snprintf(where, sizeof where, "%s, step %zu of %.4g us", instant, step, 1e6 * step_s);
     err_prefix(err, where);
     return false;
 }

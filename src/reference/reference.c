@@ -34,10 +34,8 @@ typedef struct Reference {
 
 static bool fail_at(const Reference *reference, double time_s, Err *err)
 {
-    char where[128];
-    const Linkage *linkage = &reference->stepper.scenario->linkage;
-    snprintf(where, sizeof where, "at %.9g ms, crank angle %.6g deg", 1e3 * time_s,
-             linkage_crank_angle(linkage, time_s) * 180.0 / M_PI);
+    char where[LINKAGE_INSTANT_SIZE];
+    linkage_describe_instant(&reference->stepper.scenario->linkage, time_s, where);
     err_prefix(err, where);
     return false;
 }

@@ -8,7 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const CaseKind *const KINDS[] = {&CASE_FOUR_BAR, &CASE_BODIES};
+static const CaseKind *const KINDS[] = {&CASE_FOUR_BAR,  &CASE_BODIES,    &CASE_PENDULA,
+                                        &CASE_FOUR_BARS, &CASE_LOCK,      &CASE_CHANGE_POINT,
+                                        &CASE_TOUCHING,  &CASE_SEPARATING};
 
 enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 

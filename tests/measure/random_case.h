@@ -13,3 +13,10 @@ typedef struct CaseKind {
 
 extern const CaseKind CASE_FOUR_BAR;
 extern const CaseKind CASE_BODIES;
+
+extern const CaseKind CASE_PENDULA;
+extern const CaseKind CASE_FOUR_BARS;
+extern const CaseKind CASE_LOCK;
+extern const CaseKind CASE_CHANGE_POINT;
+extern const CaseKind CASE_TOUCHING;
+extern const CaseKind CASE_SEPARATING;

@@ -1,0 +1,114 @@
+// Do awkward mechanisms end, with a sentence that names the cause and the crank angle where they
+// fail? A test that hangs is ended by its time limit; tests/measure/awkward.sh runs them all.
+#include "program.h"
+
+#include "random_case.h"
+
+// Writes a case of a kind and runs it on a solver with options.
+static void run_case(Program *program, const CaseKind *kind, uint64_t seed, const char *options)
+{
+    char path[PROGRAM_PATH_SIZE];
+    char words[PROGRAM_PATH_SIZE];
+    program_path(program, "case.yaml", path);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    kind->write(seed, stream);
+    fclose(stream);
+    snprintf(words, sizeof words, "run case.yaml --quiet %s", options);
+    program_run(program, words);
+}
+
+static const char REFERENCE[] = "--backend reference";
+static const char IMPULSE[] = "--backend ode --step '5 us' --set ode.stepping=staggered "
+                              "--set ode.map=impulse";
+static const char PLAIN[] = "--backend ode --step '5 us'";
+
+static void complete(Program *program, const CaseKind *kind, uint64_t seed, const char *solver,
+                     const char *options)
+{
+    char words[PROGRAM_PATH_SIZE];
+    snprintf(words, sizeof words, "%s %s", solver, options);
+    run_case(program, kind, seed, words);
+    if (program->status != 0) {
+        fail_msg("%s %d %s: status %d, %s", kind->name, (int)seed, words, program->status,
+                 program->errors);
+    }
+}
+
+static void equal_mechanisms_run_to_their_end(void **state)
+{
+    Program *program = *state;
+    const char *const short_run = "--set run.duration=30ms";
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        complete(program, &CASE_PENDULA, seed, REFERENCE, short_run);
+        complete(program, &CASE_PENDULA, seed, IMPULSE, short_run);
+        complete(program, &CASE_FOUR_BARS, seed, REFERENCE, short_run);
+        complete(program, &CASE_FOUR_BARS, seed, IMPULSE, short_run);
+    }
+}
+
+static void pins_that_start_on_the_wall_run_to_their_end(void **state)
+{
+    Program *program = *state;
+    // of seed 3 the damping is a thousand million times the usual: hours in the reference
+    const uint64_t seeds[] = {0, 1, 2, 4, 5};
+    for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++) {
+        const uint64_t seed = seeds[i];
+        complete(program, &CASE_TOUCHING, seed, REFERENCE, "--set run.duration=20ms");
+        complete(program, &CASE_TOUCHING, seed, IMPULSE, "--set run.duration=20ms");
+    }
+}
+
+static void change_points_are_passed(void **state)
+{
+    Program *program = *state;
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        complete(program, &CASE_CHANGE_POINT, seed, REFERENCE, "--set run.revolutions=1");
+    }
+}
+
+static void a_lock_is_called_a_lock_on_every_solver(void **state)
+{
+    Program *program = *state;
+    const char *const solvers[] = {REFERENCE, PLAIN, IMPULSE};
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        for (size_t i = 0; i < sizeof solvers / sizeof *solvers; i++) {
+            run_case(program, &CASE_LOCK, seed, solvers[i]);
+            assert_int_equal(program->status, 4);
+            assert_says(program->errors, "with ideal joints the mechanism locks at a crank angle");
+            assert_says(program->errors, "run fewer revolutions or change the lengths");
+        }
+    }
+    // the control: a run that ends before it gets there says nothing of the kind
+    run_case(program, &CASE_LOCK, 0, "--backend reference --set run.revolutions=0.01");
+    assert_int_equal(program->status, 0);
+}
+
+// Without a drive there is no crank angle to speak of.
+static void a_pin_through_its_wall_is_told_with_joint_and_time(void **state)
+{
+    Program *program = *state;
+    const char *const solvers[] = {REFERENCE, PLAIN, IMPULSE};
+    for (size_t i = 0; i < sizeof solvers / sizeof *solvers; i++) {
+        run_case(program, &CASE_SEPARATING, 0, solvers[i]);
+        assert_int_equal(program->status, 4);
+        assert_says(program->errors, "at ");
+        assert_says(program->errors, " ms");
+        assert_says(program->errors, "inside the wall of its hole");
+        assert_null(strstr(program->errors, "crank angle"));
+    }
+}
+
+#define COMMAND_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        COMMAND_TEST(equal_mechanisms_run_to_their_end),
+        COMMAND_TEST(pins_that_start_on_the_wall_run_to_their_end),
+        COMMAND_TEST(change_points_are_passed),
+        COMMAND_TEST(a_lock_is_called_a_lock_on_every_solver),
+        COMMAND_TEST(a_pin_through_its_wall_is_told_with_joint_and_time),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
