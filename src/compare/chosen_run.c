@@ -12,6 +12,7 @@
 #include "base/clock.h"
 #include "compare/step_choice.h"
 #include "compare/trial.h"
+#include "compare/truth_window.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -37,7 +38,7 @@ typedef struct Chosen {
     ChosenWatch watch;
     StepChoice choice;
     double started_s; // by the clock
-    double window_s;
+    TruthWindow window;
     double cost; // world steps to a step
     size_t trials;
     size_t steps; // of all trials so far
@@ -74,13 +75,19 @@ static void pass_progress(double share, double wall_s, void *context)
     chosen->watch.run.progress(share, clock_now_s() - chosen->started_s, chosen->watch.run.context);
 }
 
-// Tells what begins; what watches that run goes by the time of all.
+// What watches a run goes by the time of all.
+static RunWatch watch_of(Chosen *chosen)
+{
+    return (RunWatch){chosen->watch.run.progress != NULL ? pass_progress : NULL, chosen};
+}
+
+// Tells what begins.
 static RunWatch begin(Chosen *chosen, size_t trial, double step_s)
 {
     if (chosen->watch.begin != NULL) {
         chosen->watch.begin(trial, step_s, chosen->watch.run.context);
     }
-    return (RunWatch){chosen->watch.run.progress != NULL ? pass_progress : NULL, chosen};
+    return watch_of(chosen);
 }
 
 // Why no error can be told from this truth; false where it can.
@@ -95,7 +102,7 @@ static bool lacks_truth(const Chosen *chosen, char *message, size_t size)
                  is_made ? truth->message : truth->trajectory->message);
         return true;
     }
-    if (!(truth->uncertainty <= TRUTH_SHARE * tolerance)) {
+    if (!(chosen->window.until_s > 0.0) && truth->uncertainty > TRUTH_SHARE * tolerance) {
         snprintf(message, size,
                  "run.tolerance %.3g is below ten times the uncertainty of the reference, %.2g; "
                  "allowed: %.2g or more, or a reference.tolerance below %.2g",
@@ -103,7 +110,7 @@ static bool lacks_truth(const Chosen *chosen, char *message, size_t size)
                  chosen->scenario->reference.tolerance);
         return true;
     }
-    if (!(truth->trajectory->times[1] <= chosen->window_s)) {
+    if (!(truth->trajectory->times[1] <= chosen->window.until_s)) {
         snprintf(message, size,
                  "no step can be chosen, for the motion cannot be predicted up to the first "
                  "sample, %.4g ms; take more samples, or give run.step",
@@ -149,7 +156,7 @@ static Trajectory *finish(const Chosen *chosen, Trial *trial)
     run->evaluations = chosen->evaluations;
     run->wall_s = chosen->wall_s;
     run->error_estimate = trial->held_error;
-    run->estimate_s = trial->holds ? chosen->window_s : trial->held_s;
+    run->estimate_s = trial->holds ? chosen->window.until_s : trial->held_s;
     run->is_short = !trial->holds;
     const size_t length = strlen(run->label);
     snprintf(run->label + length, sizeof run->label - length, ", error %.3g wanted",
@@ -163,7 +170,7 @@ static Trial make_trial(Chosen *chosen, double step_s, bool is_last)
     const Scenario scenario = step_choice_scenario(&chosen->choice, step_s);
     const TrialRule rule = {
         .truth = chosen->truth,
-        .window_s = chosen->window_s,
+        .window = chosen->window,
         .tolerance = tolerance,
         .is_last = is_last,
     };
@@ -253,9 +260,10 @@ Trajectory *chosen_run_make(const Scenario *scenario, const Truth *truth, Chosen
         own = truth_make(scenario, begin(&chosen, 0, 0.0));
         chosen.truth = &own;
     }
-    const double duration_s = scenario_duration(scenario);
-    chosen.window_s =
-        chosen.truth->is_limited ? fmin(chosen.truth->horizon_s, duration_s) : duration_s;
+    if (chosen.truth->trajectory->is_complete) {
+        chosen.window = truth_window_find(scenario, chosen.truth,
+                                          TRUTH_SHARE * scenario->run.tolerance, watch_of(&chosen));
+    }
     char message[ERR_TEXT_SIZE];
     Trajectory *run =
         lacks_truth(&chosen, message, sizeof message) ? fail(&chosen, message) : choose(&chosen);

@@ -26,11 +26,11 @@ static bool look(const Trajectory *trajectory, size_t sample, void *context, Err
     const Truth *truth = rule->truth;
     Trial *trial = watcher->trial;
     const double time_s = truth->trajectory->times[sample];
-    if (watcher->is_over || time_s > rule->window_s) {
+    if (watcher->is_over || time_s > rule->window.until_s) {
         return true;
     }
     const double bound = distance_at(trajectory, truth->trajectory, sample, watcher->scales) +
-                         TRUTH_MARGIN * truth->uncertainty;
+                         TRUTH_MARGIN * rule->window.uncertainty;
     if (bound <= rule->tolerance) {
         trial->held_s = time_s;
         trial->held_error = fmax(trial->held_error, bound);

@@ -1,14 +1,14 @@
 // One run of ODE held against the truth as it goes, for a step that is to be chosen.
 #pragma once
 
-#include "compare/truth.h"
+#include "compare/truth_window.h"
 
 // What a trial is held against, and when it is not worth running on.
 typedef struct TrialRule {
     const Truth *truth;
-    double window_s;  // up to when errors count
-    double tolerance; // 1, of omega
-    bool is_last;     // it is run to its end, though it misses the tolerance
+    TruthWindow window; // in which errors count
+    double tolerance;   // 1, of omega
+    bool is_last;       // it is run to its end, though it misses the tolerance
 } TrialRule;
 
 typedef struct Trial {

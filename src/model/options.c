@@ -62,7 +62,7 @@ RunOptions run_options_default(void)
         .samples = 3600,  // a tenth of a degree
         .step = 1e-6,     // some 50 steps to a steel contact
         .tolerance = 1e-4,
-        .most_steps = 10000000, // half a minute of a four-bar's world steps
+        .most_steps = 3000000, // a minute of world steps that are full of contacts, 20 us each
         // as much as ideal joints show by themselves, so that they show no spike
         .spike_threshold = 1.0,
         .backend_count = 2,

@@ -262,8 +262,9 @@ static void write_chosen(const RunReport *report, const Trajectory *run, Text *t
                     report->scenario->run.tolerance, run->estimate_s * UNITS_MS,
                     run->duration_s * UNITS_MS);
     }
-    text_append(text, "  Its error is at most %.2g up to %.4g ms.\n", run->error_estimate,
-                run->estimate_s * UNITS_MS);
+    const bool is_whole = run->is_short || run->estimate_s >= run->duration_s;
+    text_append(text, "  Its error is at most %.2g up to %.4g ms%s.\n", run->error_estimate,
+                run->estimate_s * UNITS_MS, is_whole ? "" : "; later the reference cannot tell");
 }
 
 void run_tables_cost(const RunReport *report, const Style *style, Text *text)

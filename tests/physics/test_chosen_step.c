@@ -243,9 +243,9 @@ static void trials_tell_when_they_begin(void **state)
     trajectory_destroy(run);
 }
 
-static void assert_refused(const Scenario *scenario, const char *words)
+static void assert_refused(const Scenario *scenario, const Truth *truth, const char *words)
 {
-    Trajectory *run = chosen_run_make(scenario, NULL, NOBODY, NULL);
+    Trajectory *run = chosen_run_make(scenario, truth, NOBODY, NULL);
     assert_false(run->is_complete);
     if (strstr(run->message, words) == NULL) {
         fail_msg("no '%s' in '%s'", words, run->message);
@@ -253,17 +253,42 @@ static void assert_refused(const Scenario *scenario, const char *words)
     trajectory_destroy(run);
 }
 
+// A reference that is too loose for the tolerance at the end may do at the beginning.
+static void where_the_reference_is_not_sure_enough_the_window_ends(void **state)
+{
+    (void)state;
+    Scenario scenario = loose(1e-6, 1);
+    scenario.reference.tolerance = 1e-9;
+    Truth truth = truth_make(&scenario, NOBODY.run);
+    // the reference is surer than this; less sure it grows to more than a tenth of the tolerance
+    truth.uncertainty = 3e-6;
+    Trajectory *run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
+    assert_true(run->is_complete);
+    assert_true(run->estimate_s > 0.0 && run->estimate_s < scenario_duration(&scenario));
+    assert_true(error_of(run, &scenario, BACKEND_REFERENCE) <= run->error_estimate);
+    assert_true(run->error_estimate <= 1e-6);
+    trajectory_destroy(run);
+    // the control: as sure as it is, it holds to the end
+    truth.uncertainty = 1e-8;
+    run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
+    assert_near(run->estimate_s, scenario_duration(&scenario), 1e-12);
+    trajectory_destroy(run);
+    truth_finish(&truth);
+}
+
 static void an_error_that_cannot_be_told_is_refused(void **state)
 {
     (void)state;
     Scenario scenario = loose(1e-8, 1);
-    scenario.reference.tolerance = 1e-5;
-    assert_refused(&scenario, "is below ten times the uncertainty of the reference");
+    Truth truth = truth_make(&scenario, NOBODY.run);
+    truth.uncertainty = INFINITY;
+    assert_refused(&scenario, &truth, "is below ten times the uncertainty of the reference");
     // and one that no step within the limit comes near
     scenario = loose(1e-9, 1);
     scenario.run.most_steps = 1000;
     scenario.run.samples = 20;
-    assert_refused(&scenario, "within 1000 world steps");
+    truth_finish(&truth);
+    assert_refused(&scenario, NULL, "within 1000 world steps");
 }
 
 static void without_a_reference_its_own_words_come_first(void **state)
@@ -272,7 +297,7 @@ static void without_a_reference_its_own_words_come_first(void **state)
     Scenario scenario = loose(1e-4, 1);
     // so soft that the pin leaves the range of the law
     scenario.contact.stiffness = 1.0;
-    assert_refused(&scenario, "no step can be chosen, for the reference failed: ");
+    assert_refused(&scenario, NULL, "no step can be chosen, for the reference failed: ");
 }
 
 int main(void)
@@ -288,6 +313,7 @@ int main(void)
         cmocka_unit_test(one_truth_or_another_of_the_same_case_is_one_run),
         cmocka_unit_test(a_tolerance_that_takes_too_many_steps_is_held_as_far_as_they_go),
         cmocka_unit_test(trials_tell_when_they_begin),
+        cmocka_unit_test(where_the_reference_is_not_sure_enough_the_window_ends),
         cmocka_unit_test(an_error_that_cannot_be_told_is_refused),
         cmocka_unit_test(without_a_reference_its_own_words_come_first),
     };
