@@ -12,8 +12,8 @@
 
 enum { PASSES = 2, ROW_MAX = 2 * TREE_LOOP_MAX };
 
-// m: a pin farther from its start than this was meant to be elsewhere
-static const double ROUNDED = 1e-12;
+// m: a start is closed to some 1e-12; a pin farther from its own was meant to be elsewhere
+static const double ROUNDED = 1e-10;
 
 // Adds the velocity of one end by each coordinate, with a sign.
 static void add_end(const Tree *tree, const TreeState *state, int end, double sign, Vec2 *row)
