@@ -41,6 +41,28 @@ static void store_presence(const Entries *entries, Scenario *scenario)
     }
 }
 
+// Stepping and map where a case names neither, or only one of them: the other is its natural
+// partner, so that `map: textbook` is ODE as its manual has it. A case that names a way of
+// stepping, or whose contact model has no order to choose a step by, has a given step.
+static void store_partners(const Entries *entries, Scenario *scenario)
+{
+    OdeOptions *ode = &scenario->ode;
+    const bool is_poisson = scenario->contact.model == CONTACT_POISSON;
+    const bool has_step = entries_find(entries, "run.step", 0) != NULL;
+    const bool has_stepping = entries_find(entries, "ode.stepping", 0) != NULL;
+    const bool has_map = entries_find(entries, "ode.map", 0) != NULL;
+    if (!has_map && (is_poisson || ode->stepping == ODE_PLAIN)) {
+        ode->map = ODE_MAP_TEXTBOOK;
+    }
+    const bool is_of_staggered = ode->map == ODE_MAP_IMPULSE || ode->map == ODE_MAP_MIDPOINT;
+    if (!has_stepping && !is_of_staggered) {
+        ode->stepping = ODE_PLAIN;
+    }
+    if (!has_step && (has_stepping || has_map || is_poisson)) {
+        scenario->run.step = OPTIONS_GIVEN_STEP;
+    }
+}
+
 // Stores every value in the order of the schema, so that the same mistake is told first wherever
 // the keys stand.
 static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
@@ -56,6 +78,7 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
             }
         }
     }
+    store_partners(entries, scenario);
     return true;
 }
 

@@ -294,16 +294,16 @@ static bool check_stepping(const Entries *entries, const Scenario *scenario, Err
                             "a step such as 1 us, or contact.model: impact", err,
                             "a step can only be chosen for the impact model");
     }
+    if (has_play && ode->stepping == ODE_EXTRAPOLATED) {
+        const Entry *entry = entries_find(entries, "ode.stepping", 0);
+        return source_error(entry->source, entry->node->span, "plain, staggered", err,
+                            "extrapolated stepping is for ideal joints: contacts are not smooth");
+    }
     if (is_impact && ode->map == ODE_MAP_IMPULSE && ode->stepping != ODE_STAGGERED) {
         static const char *const KEYS[] = {"ode.map", "ode.stepping"};
         const Entry *entry = entries_blame(entries, KEYS, 2, 0);
         return source_error(entry->source, entry->node->span, "stepping: staggered, or another map",
                             err, "map impulse needs stepping staggered");
-    }
-    if (has_play && ode->stepping == ODE_EXTRAPOLATED) {
-        const Entry *entry = entries_find(entries, "ode.stepping", 0);
-        return source_error(entry->source, entry->node->span, "plain, staggered", err,
-                            "extrapolated stepping is for ideal joints: contacts are not smooth");
     }
     return true;
 }

@@ -248,6 +248,7 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "written per revolution of the drive, or in the whole run without one"},
     {.path = "run.step", .dimension = DIMENSION_TIME, AT(run.step), .low = 0.0, .high = 1.0,
      .low_is_open = true, .zero_word = "auto", .needs = ODE,
+     .default_words = "auto; 1 us where ode.stepping or ode.map is given, or the model is poisson",
      .doc = "of ode; auto: chosen so that the error is the tolerance, with stepping staggered and "
             "map impulse, or, of ideal joints, extrapolated"},
     {.path = "run.tolerance", AT(run.tolerance), .low = 1e-9, .high = 0.1,
@@ -279,10 +280,12 @@ const SchemaRow SCHEMA_ROWS[] = {
      .needs = ODE, .doc = "direct: dWorldStep; quick: dWorldQuickStep"},
     {.path = "ode.stepping", .type = SCHEMA_CHOICE, AT(ode.stepping),
      .words = OPTIONS_ODE_STEPPINGS, .needs = ODE | GIVEN_STEP,
+     .default_words = "staggered; plain with map textbook, corrected or exact, or model poisson",
      .doc = "plain: read at the end of each step; staggered: positions half a step behind the "
             "speeds, second order; extrapolated: several steps side by side, of ideal joints only"},
     {.path = "ode.map", .type = SCHEMA_CHOICE, AT(ode.map), .words = OPTIONS_ODE_MAPS,
      .needs = ODE | IMPACT | GIVEN_STEP,
+     .default_words = "impulse; textbook with stepping plain or model poisson",
      .doc = "how stiffness and damping become ERP and CFM; impulse: neither, the contact is "
             "integrated within the step, of staggered stepping only"},
     {.path = "ode.collider", .type = SCHEMA_CHOICE, AT(ode.collider),

@@ -114,6 +114,8 @@ static Scenario pin_of(const Inverse *inverse)
     scenario.contact.bounce_speed = NO_BOUNCE;
     scenario.contact.penalty = 1.0 / inverse->row.cfm;
     scenario.ode.push_out = inverse->row.erp;
+    scenario.ode.stepping = ODE_PLAIN;
+    scenario.ode.map = ODE_MAP_TEXTBOOK;
     scenario.run.step = inverse->step_s;
     return scenario;
 }

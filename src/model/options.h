@@ -124,6 +124,9 @@ typedef struct OdeOptions {
     double contact_phase;   // rad, of ODE_MAP_IMPULSE: a contact's own oscillation in a local step
 } OdeOptions;
 
+// s, the step where a case names a way of stepping but no step: one that is chosen has its own way.
+extern const double OPTIONS_GIVEN_STEP;
+
 MaterialOptions material_options_default(void);
 ContactOptions contact_options_default(void);
 RunOptions run_options_default(void);

@@ -11,7 +11,8 @@ static const char CASE[] =
     "width: 15 mm}\n"
     "gravity: 9.80665 m/s^2\n"
     "contact: {stiffness: 6.6e10 N/m^1.5, damping: lankarani-nikravesh, restitution: 0.9}\n"
-    "run: {duration: 12 ms, samples: 100, step: 5 us, backends: [reference, ode]}\n";
+    "run: {duration: 12 ms, samples: 100, step: 5 us, backends: [reference, ode]}\n"
+    "ode: {stepping: plain, map: textbook}\n";
 
 // The paper's crank-rocker at a step at which ODE leaves the range of its law.
 static const char FAILS[] =
@@ -23,7 +24,8 @@ static const char FAILS[] =
     "joints:\n  crank-coupler: {hole: 10.015 mm, pin: 9.986 mm, width: 13 mm}\n"
     "drive: {speed: 1000 rpm}\n"
     "contact: {stiffness: 1e11 N/m^1.5, damping: lankarani-nikravesh, restitution: 0.9}\n"
-    "run: {revolutions: 1, samples: 3600, step: 1 ms, backends: [reference, ode]}\n";
+    "run: {revolutions: 1, samples: 3600, step: 1 ms, backends: [reference, ode]}\n"
+    "ode: {stepping: plain, map: textbook}\n";
 
 static void write_file(const Program *program, const char *name, const char *text)
 {

@@ -37,9 +37,21 @@ static void assemble(Scenario *scenario)
     }
 }
 
-Scenario mechanism_paper(void)
+Scenario mechanism_default(void)
 {
     Scenario scenario = scenario_default();
+    scenario.run.step = 1e-6;
+    scenario.run.backend_count = 2;
+    scenario.run.backends[0] = BACKEND_ANALYTIC;
+    scenario.run.backends[1] = BACKEND_ODE;
+    scenario.ode.stepping = ODE_PLAIN;
+    scenario.ode.map = ODE_MAP_TEXTBOOK;
+    return scenario;
+}
+
+Scenario mechanism_paper(void)
+{
+    Scenario scenario = mechanism_default();
     scenario.has_fourbar = true;
     scenario.fourbar = (FourBar){
         .ground = {0.254, -5e-4, 5e-4},
@@ -90,7 +102,7 @@ Scenario mechanism_loose(size_t joints)
 
 Scenario mechanism_pin(double mass, double radial_clearance)
 {
-    Scenario scenario = scenario_default();
+    Scenario scenario = mechanism_default();
     scenario.gravity = 0.0;
     Linkage *linkage = &scenario.linkage;
     add_body(linkage, "pin", mass, 1e-6, (Vec2){0.0, 0.0}, 0.0);
@@ -108,7 +120,7 @@ Scenario mechanism_pin(double mass, double radial_clearance)
 
 Scenario mechanism_parallelogram(void)
 {
-    Scenario scenario = scenario_default();
+    Scenario scenario = mechanism_default();
     Linkage *linkage = &scenario.linkage;
     add_body(linkage, "first", 1.0, 0.1, (Vec2){0.0, 0.5}, 0.5 * M_PI);
     add_body(linkage, "second", 1.0, 0.1, (Vec2){1.0, 0.5}, 0.5 * M_PI);

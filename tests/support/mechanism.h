@@ -3,6 +3,10 @@
 
 #include "model/scenario.h"
 
+// The defaults with ODE as its manual has it, at a given step: plain stepping, the textbook's map,
+// 1 us, on analytic and ode. Tests of one solver say what differs from here.
+Scenario mechanism_default(void);
+
 // The paper's crank-rocker at 1000 rpm, counter-clockwise, crank at 0 deg: nominal lengths with
 // the tolerances of its Table IV, defaults else. All joints ideal.
 Scenario mechanism_paper(void);
