@@ -111,8 +111,10 @@ static void a_study_that_cannot_be_read_leaves_no_scripts(void **state)
     Program *program = *state;
     program_run(program, "study slurm none.yaml --shards 2 --out there");
     assert_int_equal(program->status, 5);
-    program_run(program, "study slurm $cases/paper/ideal-nominal.yaml --shards 2 --out there");
-    assert_int_equal(program->status, 3);
+    // a case in place of a study is a wrong command
+    program_fails_usage(program,
+                        "study slurm $cases/paper/ideal-nominal.yaml --shards 2 --out there",
+                        "jointplay run ");
     char path[PROGRAM_PATH_SIZE];
     program_path(program, "there", path);
     assert_int_equal(access(path, F_OK), -1);

@@ -39,8 +39,8 @@ static int set_up(void **state)
 {
     Bench *bench = calloc(1, sizeof *bench);
     assert_non_null(bench);
-    const char *coarse = "run.step=10 us";
-    bench->scenario = load("cases/literature/pin-in-hole-drop.yaml", &coarse, 1);
+    const char *const coarse[] = {"run.step=10 us", "ode.stepping=plain"};
+    bench->scenario = load("cases/literature/pin-in-hole-drop.yaml", coarse, 2);
     scratch_path("baseline.json", bench->path, sizeof bench->path);
     measure(bench, 0, &bench->run);
     measure(bench, 1, &bench->members[0]);
