@@ -39,6 +39,7 @@ static const Column RUN_COLUMNS[] = {
     {"evaluations", COLUMN_WHOLE},
     {"fallback_rows", COLUMN_WHOLE},
     {"error_estimate", COLUMN_REAL},
+    {"error_estimate_until_s", COLUMN_REAL},
 };
 static const Column ERROR_COLUMNS[] = {
     {"error_omega_max", COLUMN_REAL}, {"error_omega_max_in_horizon", COLUMN_REAL},
@@ -236,5 +237,6 @@ void metrics_take(const Scenario *scenario, const Trajectory *trajectory, const 
     take(&taker, (double)trajectory->evaluations);
     take(&taker, (double)trajectory->fallback_rows);
     take(&taker, trajectory->trials > 0 ? trajectory->error_estimate : NAN);
+    take(&taker, trajectory->trials > 0 ? trajectory->estimate_s : NAN);
     take_error(trajectory, truth, &taker);
 }
