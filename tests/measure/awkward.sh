@@ -22,7 +22,7 @@ run_one() {
         $((limit * 6)) "$program" run "$scratch/case.yaml" --quiet "$@" 2>"$scratch/time"
     status=$?
     seconds=$(tail -n 1 "$scratch/time")
-    words=$(sed 's/.*case.yaml[^:]*: *//' "$WORDS" | head -n 1)
+    words=$(grep -v 'jointplay: warning' "$WORDS" | sed 's/.*case.yaml[^:]*: *//' | head -n 1)
     printf '%-12s %2s  %-9s %7s  %3d  %s\n' "$kind" "$seed" "$solver" "$seconds" "$status" "$words"
     if [ "$status" -ne 0 ] && { [ "$status" -gt 4 ] || [ -z "$words" ]; } ||
         [ "${seconds%.*}" -ge "$limit" ]; then
