@@ -148,6 +148,13 @@ static void rebuild(QuadStep *step)
     }
 }
 
+// The larger of two sizes; not fmaxq, which would hide one that is no number, such as a force
+// beyond the end of its law at a first guess.
+static Quad larger(Quad largest, Quad size)
+{
+    return size <= largest || isnanq(largest) ? largest : size;
+}
+
 // One round of substitution; returns the largest correction of a velocity, m/s. The corrections
 // need fewer digits than what they correct.
 static Quad substitute(QuadStep *step)
@@ -171,7 +178,7 @@ static Quad substitute(QuadStep *step)
             }
             step->velocity[i][c] += sum;
             shift[i][c] = sum * (long double)step->rate[i];
-            largest = fmaxq(largest, fabsq(sum * step->lever[c]));
+            largest = larger(largest, fabsq(sum * step->lever[c]));
         }
     }
     for (int i = 0; i < N; i++) {
@@ -197,7 +204,7 @@ static Quad tail_of(const QuadStep *step)
             for (int j = 0; j < N; j++) {
                 sum += step->gauss.legendre[m][j] * step->rate[j] * step->acceleration[j][c];
             }
-            largest = fmaxq(largest, fabsq(sum) * step->lever[c]);
+            largest = larger(largest, fabsq(sum) * step->lever[c]);
         }
     }
     return largest;

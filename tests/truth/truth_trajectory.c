@@ -2,6 +2,7 @@
 #include "truth_trajectory.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 
 Trajectory *truth_trajectory(const Scenario *scenario, const QuadProblem *problem,
@@ -24,6 +25,9 @@ Trajectory *truth_trajectory(const Scenario *scenario, const QuadProblem *proble
             const TruthSample *body = &samples[k * problem->body_count + i];
             sample.bodies[i].velocity = (Vec2){(double)body->x_rate, (double)body->y_rate};
             sample.bodies[i].omega = (double)body->omega;
+            // a difference from a number that is none would count as no error
+            assert(isfinite(sample.bodies[i].omega) && isfinite(sample.bodies[i].velocity.x) &&
+                   isfinite(sample.bodies[i].velocity.y));
         }
         trajectory_store(trajectory, k, &sample);
     }
