@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "casefile/casefile.h"
 #include "compare/tune_search.h"
+#include "report/tune_held_text.h"
 #include "report/tune_json.h"
 #include "report/tune_setting.h"
 #include "report/tune_text.h"
@@ -61,6 +62,9 @@ static bool check_met(const TuneReport *report, Err *err)
     const TuneTrial *best = tune_best(tune, tune->winner);
     if (tune_report_is_met(report)) {
         return true;
+    }
+    if (tune->held_s > 0.0) {
+        return tune_held_text_unmet(report, err);
     }
     if (best == NULL) {
         return err_set(err, ERR_DIFFERS, "no setting that was tried meets an error of %.3g",

@@ -5,12 +5,14 @@
 #include "cli/arguments.h"
 #include "report/file.h"
 
+#include <math.h>
 #include <string.h>
 
 enum {
     KEY_ERROR = 0x300, // options without a letter of their own
     KEY_MAX_COST,
     KEY_COST,
+    KEY_AT_STEP,
     KEY_CODE,
     KEY_SDF,
     KEY_MJCF,
@@ -30,6 +32,10 @@ static const struct argp_option OPTIONS[] = {
      "What one run may cost: a time such as '50 ms', or world steps such as 2000", 1},
     {"cost", KEY_COST, "time|steps", 0,
      "What is to be least (default: time, or the unit of --max-cost)", 1},
+    {"at-step", KEY_AT_STEP, "TIME", 0,
+     "The only step that can be taken, such as '1 ms': the least error there, of every scheme and "
+     "of contacts with constants; --error may be left out",
+     1},
     COMMON_ROW_SCHEMES(1),
     COMMON_ROW_SET(1),
     {"jobs", COMMON_JOBS, "N", 0,
@@ -107,6 +113,8 @@ static bool take_option(int key, const char *value, void *target, Err *err)
         return read_limit(value, options, err);
     case KEY_COST:
         return read_cost(value, &reading->cost, err);
+    case KEY_AT_STEP:
+        return option_values_read_time("at-step", value, &options->at_step_s, err);
     case KEY_CODE:
         options->code = value;
         return true;
@@ -126,12 +134,23 @@ static bool take_option(int key, const char *value, void *target, Err *err)
 // What is to be least must be what is limited: nothing else could be said of it.
 static bool settle_cost(const char *cost, TuneOptions *options, Err *err)
 {
-    options->cost = options->limit.steps > 0 ? TUNE_STEPS : TUNE_TIME;
+    const bool has_steps = options->limit.steps > 0;
+    options->cost = has_steps ? TUNE_STEPS : TUNE_TIME;
+    if (options->at_step_s > 0.0 && (has_steps || options->limit.time_s > 0.0)) {
+        return err_set(err, ERR_USAGE,
+                       "--max-cost and --at-step do not go together: a step that is held leaves no "
+                       "cost to choose");
+    }
     if (cost == NULL) {
         return true;
     }
     const TuneCost asked = strcmp(cost, "steps") == 0 ? TUNE_STEPS : TUNE_TIME;
     const bool has_limit = options->limit.steps > 0 || options->limit.time_s > 0.0;
+    if (options->at_step_s > 0.0) {
+        return err_set(err, ERR_USAGE,
+                       "--cost and --at-step do not go together: a step that is held leaves no "
+                       "cost to choose");
+    }
     if (has_limit && asked != options->cost) {
         return err_set(err, ERR_USAGE, "--cost %s and a --max-cost in %s do not go together", cost,
                        options->cost == TUNE_STEPS ? "steps" : "time");
@@ -177,7 +196,7 @@ bool tune_options_read(int argc, char **argv, TuneOptions *options, bool *is_ans
     if (options->common.path == NULL) {
         return err_set(err, ERR_USAGE, "no case given: jointplay tune CASE.yaml --error 1e-3");
     }
-    if (options->error == 0.0) {
+    if (options->error == 0.0 && options->at_step_s == 0.0) {
         return err_set(err, ERR_USAGE, "no error given: jointplay tune %s --error 1e-3",
                        options->common.path);
     }
@@ -196,13 +215,29 @@ bool tune_options_search(const TuneOptions *options, const Scenario *scenario, T
                        "the elastic law its error is that of the model, and no step mends it; "
                        "allowed: contact.model impact");
     }
+    const CommonOptions *common = &options->common;
+    const bool is_held = options->at_step_s > 0.0;
     Scheme schemes[SCHEME_MAX];
     size_t scheme_count;
-    if (!common_options_list_schemes(&options->common, scenario, schemes, &scheme_count, err)) {
+    if (!common_options_list_schemes(common, scenario, schemes, &scheme_count, err) ||
+        (is_held && !option_values_check_step(common->path, common->overrides,
+                                              common->override_count, options->at_step_s, err))) {
         return false;
     }
-    *tune = tune_create(scenario, schemes, scheme_count, options->error);
-    (*tune)->cost = options->cost;
-    (*tune)->limit = options->limit;
+    Tune *made = tune_create(scenario, schemes, scheme_count,
+                             options->error > 0.0 ? options->error : INFINITY);
+    made->cost = options->cost;
+    made->limit = options->limit;
+    if (is_held) {
+        tune_hold(made, options->at_step_s);
+    }
+    if (made->scheme_count == 0) {
+        tune_destroy(made);
+        return err_set(err, ERR_USAGE,
+                       "--schemes %s chooses its steps by itself; --at-step needs one that takes "
+                       "the step it is given, such as direct/plain",
+                       common->schemes);
+    }
+    *tune = made;
     return true;
 }

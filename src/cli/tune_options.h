@@ -9,7 +9,8 @@
 
 typedef struct TuneOptions {
     CommonOptions common;
-    double error; // 1; 0 until it is given
+    double error;     // 1; 0 until it is given
+    double at_step_s; // s, the only step that can be taken; 0: any
     TuneCost cost;
     TuneLimit limit;
     const char *code;

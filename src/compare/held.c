@@ -238,29 +238,34 @@ static void find_constants(const Search *search, double *stiffness, double *damp
     *damping = exp(best[chosen].log_damping);
 }
 
+void held_apply(const HeldSetting *setting, Scenario *scenario)
+{
+    ContactOptions *options = &scenario->contact;
+    options->stiffness = setting->stiffness;
+    options->exponent = 1.0;
+    options->damping = DAMPING_VISCOUS;
+    options->viscous_coefficient = setting->damping;
+    if (setting->map != ODE_MAP_MIDPOINT) {
+        options->model = CONTACT_POISSON;
+        options->bounce_speed = NO_BOUNCE;
+        options->penalty = 1.0 / setting->row.cfm;
+        scenario->ode.push_out = setting->row.erp;
+    }
+}
+
 // A pin in a hole that leaves it room, with the constants.
 static Scenario held_scenario(const MappingContact *contact, double step_s,
                               const HeldSetting *setting)
 {
     Scenario scenario = mapping_scenario(contact, setting->map, step_s);
-    ContactOptions *options = &scenario.contact;
     Clearance *clearance = &scenario.linkage.joints[contact->joint.joint].clearance;
     const double room =
         ROOM * (contact->impact.speed * fmax(step_s, setting->predicted.duration.most) +
                 setting->predicted.penetration_max.most);
     clearance->pin_radius = PIN_PLAYS * room;
     clearance->hole_radius = clearance->pin_radius + room;
-    options->stiffness = setting->stiffness;
-    options->exponent = 1.0;
-    options->damping = DAMPING_VISCOUS;
-    options->viscous_coefficient = setting->damping;
-    options->friction = 0.0;
-    if (setting->map != ODE_MAP_MIDPOINT) {
-        options->model = CONTACT_POISSON;
-        options->bounce_speed = NO_BOUNCE;
-        options->penalty = 1.0 / setting->row.cfm;
-        scenario.ode.push_out = setting->row.erp;
-    }
+    held_apply(setting, &scenario);
+    scenario.contact.friction = 0.0;
     return scenario;
 }
 

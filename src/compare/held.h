@@ -53,3 +53,6 @@ ImpactDelivered held_deliver(const MappingContact *contact, double step_s, OdeMa
 
 // Whether one setting is better than another, as above.
 bool held_is_better(const HeldSetting *one, const HeldSetting *other);
+
+// The contact of every joint of a scenario made of the constants; friction, step and stepping stay.
+void held_apply(const HeldSetting *setting, Scenario *scenario);

@@ -40,6 +40,9 @@ static const double ORDER_STAGGERED = 6.0;
 // of settings this close in cost the first in the list: noise must not choose
 static const double TIE = 1.1;
 
+// errors this close are the same
+static const double SAME = 1.01;
+
 // speeds that are off by their own size follow nothing
 static const double UNSTABLE = 1.0;
 
@@ -105,7 +108,8 @@ Tune *tune_create(const Scenario *scenario, const Scheme *schemes, size_t scheme
     assert(tune != NULL);
     tune->target = target;
     tune->samples = scenario_sample_count(scenario);
-    tune->winner = tune->plain = tune->within = tune->linear = TUNE_NONE;
+    tune->winner = tune->plain = tune->within = TUNE_NONE;
+    tune->held = tune->held_plain = tune->linear = tune->row = TUNE_NONE;
     bool has_chosen = false;
     for (size_t i = 0; i < scheme_count; i++) {
         const bool is_chosen = !scheme_has_step(&schemes[i]);
@@ -201,7 +205,9 @@ static bool has_stalled(const Tune *tune, const TuneTrial *last)
            !(sorted_median(since, since_count) < STALL_GAIN * sorted_median(before, before_count));
 }
 
-void tune_take(Tune *tune, size_t scheme, int notch, const LadderRun *run)
+// Keeps a run as a trial of its scheme.
+static TuneTrial *add_trial(Tune *tune, size_t scheme, int notch, double value,
+                            const LadderRun *run)
 {
     if (tune->trial_count == tune->trial_room) {
         tune->trial_room = 2 * tune->trial_room + 64;
@@ -210,7 +216,7 @@ void tune_take(Tune *tune, size_t scheme, int notch, const LadderRun *run)
     }
     const int number = (int)tune->trial_count++;
     TuneTrial *trial = &tune->trials[number];
-    *trial = (TuneTrial){.scheme = scheme, .notch = notch, .value = tune_value(notch), .run = *run};
+    *trial = (TuneTrial){.scheme = scheme, .notch = notch, .value = value, .run = *run};
     trial->error = tune_error(tune, run, trial->reason);
     trial->meets = trial->error + tune->truth.uncertainty <= tune->target;
     TuneScheme *owner = &tune->schemes[scheme];
@@ -219,6 +225,14 @@ void tune_take(Tune *tune, size_t scheme, int notch, const LadderRun *run)
         (owner->least == TUNE_NONE || trial->error < tune->trials[owner->least].error)) {
         owner->least = number;
     }
+    return trial;
+}
+
+void tune_take(Tune *tune, size_t scheme, int notch, const LadderRun *run)
+{
+    const int number = (int)tune->trial_count;
+    const TuneTrial *trial = add_trial(tune, scheme, notch, tune_value(notch), run);
+    TuneScheme *owner = &tune->schemes[scheme];
     // the first that meets the target waits for its finer neighbour
     if (trial->meets && owner->pending != TUNE_NONE) {
         owner->best = owner->pending;
@@ -228,6 +242,36 @@ void tune_take(Tune *tune, size_t scheme, int notch, const LadderRun *run)
         owner->next = notch + (trial->meets ? 1 : notches_ahead(tune, owner, trial->error));
         owner->fate = !trial->meets && has_stalled(tune, trial) ? TUNE_STALLED : owner->fate;
     }
+}
+
+void tune_hold(Tune *tune, double step_s)
+{
+    assert(tune->trial_count == 0);
+    tune->held_s = step_s;
+    tune->cost = TUNE_LENGTH;
+    size_t kept = 0;
+    for (size_t i = 0; i < tune->scheme_count; i++) {
+        if (scheme_has_step(&tune->schemes[i].scheme)) {
+            tune->schemes[kept++] = tune->schemes[i];
+        }
+    }
+    tune->scheme_count = kept;
+    int below = notch_below(step_s);
+    below += tune_value(below) < step_s ? 0 : 1;
+    for (size_t i = 0; i < kept; i++) {
+        tune->schemes[i].first = tune->schemes[i].next = below;
+    }
+}
+
+void tune_take_held(Tune *tune, size_t scheme, const LadderRun *run)
+{
+    // its place is before all that may be searched after it
+    add_trial(tune, scheme, tune->schemes[scheme].first - 1, tune->held_s, run);
+}
+
+bool tune_is_met_held(const Tune *tune)
+{
+    return tune->held != TUNE_NONE && tune->trials[tune->held].meets;
 }
 
 const TuneTrial *tune_best(const Tune *tune, int scheme)
@@ -265,6 +309,29 @@ static double median_of(const double *values, size_t count)
     return sorted_median(sorted, count);
 }
 
+// The trial of the least error at the step that is held, of all schemes or of plain rows alone; of
+// those that differ by less than anybody could see the first in the list.
+static int choose_held(const Tune *tune, const Scenario *scenario, bool is_plain)
+{
+    double least = INFINITY;
+    int chosen = TUNE_NONE;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int i = 0; i < (int)tune->trial_count; i++) {
+            const TuneTrial *trial = &tune->trials[i];
+            if (trial->value != tune->held_s || !isfinite(trial->error) ||
+                (is_plain && !tune_is_plain_row(tune, scenario, trial->scheme))) {
+                continue;
+            }
+            if (pass == 1 && trial->error <= SAME * least &&
+                (chosen == TUNE_NONE || trial->scheme < tune->trials[chosen].scheme)) {
+                chosen = i;
+            }
+            least = fmin(least, trial->error);
+        }
+    }
+    return chosen;
+}
+
 void tune_conclude(Tune *tune, const Scenario *scenario)
 {
     for (size_t i = 0; i < tune->scheme_count; i++) {
@@ -280,6 +347,8 @@ void tune_conclude(Tune *tune, const Scenario *scenario)
     }
     tune->winner = choose(tune, scenario, false);
     tune->plain = choose(tune, scenario, true);
+    tune->held = choose_held(tune, scenario, false);
+    tune->held_plain = choose_held(tune, scenario, true);
     tune->within = TUNE_NONE;
     for (int i = 0; i < (int)tune->trial_count; i++) {
         const TuneTrial *trial = &tune->trials[i];

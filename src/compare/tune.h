@@ -3,8 +3,12 @@
 // Steps and tolerances come from a grid of preferred numbers, ten to a decade. A setting counts
 // only where the next finer one of its scheme meets the target as well: an error that dips by luck
 // at one step is no setting to give to anyone.
+//
+// Of a user who is held to one step the question is another: which scheme has the least error at
+// that step, and where it does not meet the target, which is the longest step that does.
 #pragma once
 
+#include "compare/held.h"
 #include "compare/ladder.h"
 #include "compare/truth.h"
 
@@ -15,8 +19,8 @@ enum {
 };
 
 // By what settings are ranked. Time is that of the processor: on an idle machine it is that of the
-// clock, and on a busy one it still is.
-typedef enum TuneCost { TUNE_TIME, TUNE_STEPS } TuneCost;
+// clock, and on a busy one it still is. By the length of the step the longest is the cheapest.
+typedef enum TuneCost { TUNE_TIME, TUNE_STEPS, TUNE_LENGTH } TuneCost;
 
 // One setting that was run.
 typedef struct TuneTrial {
@@ -62,10 +66,21 @@ typedef struct TuneLimit {
     size_t steps;
 } TuneLimit;
 
-// The contact made linear with constants, as Gazebo has them, run at one step.
+// Where constants come from.
+typedef enum TuneLinearSource {
+    TUNE_LINEAR_SECANT,  // the law's own spring at a depth
+    TUNE_LINEAR_MEDIAN,  // best for an impact of median mass and speed at the step that is held
+    TUNE_LINEAR_HARDEST, // likewise, for the hardest impact of the true motion
+} TuneLinearSource;
+
+// The contact made linear with constants, run at one step: kp and kd, as Gazebo has them, or a row
+// of one ERP and one CFM.
 typedef struct TuneLinear {
-    double depth;     // m, at which the spring gives the law's force
-    double stiffness; // kp, N/m
+    TuneLinearSource source;
+    bool is_row;      // whether no kp and kd make the row: its ERP may be above 1
+    ErpCfm row;       // that is run
+    double depth;     // m, at which the spring gives the law's force; NAN of other sources
+    double stiffness; // kp, N/m; of a row that of the corrected map
     double damping;   // kd, N s/m
     double step_s;
     LadderRun run;
@@ -84,7 +99,8 @@ typedef struct TuneContact {
 } TuneContact;
 
 typedef struct Tune {
-    double target;  // 1
+    double target;  // 1; INFINITY where any error will do
+    double held_s;  // s, the only step that its user can take; 0: any
     size_t samples; // of a run
     TuneCost cost;
     TuneLimit limit;
@@ -97,10 +113,13 @@ typedef struct Tune {
     int winner;        // scheme, or TUNE_NONE
     int plain;         // scheme: the cheapest that needs nothing but a contact's ERP and CFM
     int within;        // trial of the least error within the limit; TUNE_NONE without limit or one
+    int held;          // trial of the least error at the step that is held, or TUNE_NONE
+    int held_plain;    // likewise, of those that need nothing but a contact's ERP and CFM
     TuneContact contact;
     size_t linear_count;
     TuneLinear linears[TUNE_LINEAR_MAX];
-    int linear; // the one to take, or TUNE_NONE
+    int linear; // the kp and kd to take, or TUNE_NONE
+    int row;    // the ERP and CFM, at a step that is held
 } Tune;
 
 // The value of a notch: 1, 0.8, 0.63, 0.5, 0.4, 0.315, 0.25, 0.2, 0.16, 0.125, 0.1, ... the R10
@@ -125,6 +144,16 @@ double tune_error(const Tune *tune, const LadderRun *run, char reason[LADDER_MES
 // Takes in a run at a notch of a scheme, and moves that scheme on.
 void tune_take(Tune *tune, size_t scheme, int notch, const LadderRun *run);
 
+// Holds a search with nothing run yet to a step, s: schemes that choose their own are left out, and
+// what is searched for, should it come to that, is the longest step below it.
+void tune_hold(Tune *tune, double step_s);
+
+// Takes in the run of a scheme at the step that is held.
+void tune_take_held(Tune *tune, size_t scheme, const LadderRun *run);
+
+// Whether a run at the step that is held meets the target.
+bool tune_is_met_held(const Tune *tune);
+
 // What a setting would cost at the least, in the cost's own unit (s or steps), from the trials of
 // its scheme; 0 where there are none. Of one that was run: the least time where it was timed, else
 // its work at the rate of its scheme.
@@ -135,7 +164,7 @@ double tune_trial_cost(const Tune *tune, const TuneTrial *trial);
 // Whether the run of a trial is within the limit.
 bool tune_is_within(const Tune *tune, const TuneTrial *trial);
 
-// Chooses winner, the cheapest plain row and the least error within the limit.
+// Chooses winner, the cheapest plain row, and the least errors within the limit and at a step held.
 void tune_conclude(Tune *tune, const Scenario *scenario);
 
 // The trial of the best setting of a scheme, or NULL.

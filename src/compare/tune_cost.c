@@ -69,7 +69,9 @@ static double time_of(const Tune *tune, const TuneTrial *trial)
 
 double tune_trial_cost(const Tune *tune, const TuneTrial *trial)
 {
-    return tune->cost == TUNE_STEPS ? (double)trial->run.steps : time_of(tune, trial);
+    return tune->cost == TUNE_LENGTH  ? 1.0 / trial->value
+           : tune->cost == TUNE_STEPS ? (double)trial->run.steps
+                                      : time_of(tune, trial);
 }
 
 // The finest trial of a scheme that ended whole, or NULL.
@@ -103,6 +105,9 @@ double tune_time(const Tune *tune, size_t scheme, int notch)
 
 double tune_cost(const Tune *tune, size_t scheme, int notch)
 {
+    if (tune->cost == TUNE_LENGTH) {
+        return 1.0 / tune_value(notch);
+    }
     const TuneTrial *finest = find_finest(tune, scheme);
     if (tune->cost == TUNE_TIME || finest == NULL) {
         return tune_time(tune, scheme, notch);

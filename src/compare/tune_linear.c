@@ -8,6 +8,7 @@
 // What comes of it is not derived but run, against the truth of the law itself.
 #include "compare/tune_linear.h"
 
+#include "compare/tune_held.h"
 #include "compare/tune_pool.h"
 #include "contact/damping.h"
 #include "contact/law.h"
@@ -41,10 +42,18 @@ double tune_linear_damping(double stiffness, double mass, double restitution)
 Scenario tune_linear_scenario(const Scenario *scenario, const TuneLinear *linear)
 {
     Scenario changed = *scenario;
-    changed.contact.stiffness = linear->stiffness;
-    changed.contact.exponent = 1.0;
-    changed.contact.damping = DAMPING_VISCOUS;
-    changed.contact.viscous_coefficient = linear->damping;
+    if (linear->is_row) {
+        const HeldSetting setting = {.map = ODE_MAP_CORRECTED,
+                                     .row = linear->row,
+                                     .stiffness = linear->stiffness,
+                                     .damping = linear->damping};
+        held_apply(&setting, &changed);
+    } else {
+        changed.contact.stiffness = linear->stiffness;
+        changed.contact.exponent = 1.0;
+        changed.contact.damping = DAMPING_VISCOUS;
+        changed.contact.viscous_coefficient = linear->damping;
+    }
     changed.run.step = linear->step_s;
     changed.ode.solver = ODE_DIRECT;
     changed.ode.stepping = ODE_PLAIN;
@@ -105,6 +114,18 @@ static void find_contact(const Scenario *scenario, const Trajectory *truth, Tune
     contact->is_known = contact->is_known && isfinite(contact->mass);
 }
 
+static void add_linear(Tune *tune, double depth, double stiffness, double damping, double step_s)
+{
+    const double sum = step_s * stiffness + damping;
+    tune->linears[tune->linear_count++] = (TuneLinear){
+        .row = {.erp = step_s * stiffness / sum, .cfm = 1.0 / sum},
+        .depth = depth,
+        .stiffness = stiffness,
+        .damping = damping,
+        .step_s = step_s,
+    };
+}
+
 // Lists the constants to run: a law that is linear already has one spring.
 static void list_linears(const TuneSearch *search, const ForceLaw *law, Tune *tune)
 {
@@ -119,14 +140,13 @@ static void list_linears(const TuneSearch *search, const ForceLaw *law, Tune *tu
         const double damping =
             is_viscous ? law->viscous
                        : tune_linear_damping(stiffness, contact->mass, contact->restitution);
+        if (tune->held_s > 0.0) {
+            add_linear(tune, depth, stiffness, damping, tune->held_s);
+            continue;
+        }
         for (size_t k = 0; k < STEP_COUNT; k++) {
             if (STEPS[k] < 0.1 * scenario_duration(scenario)) {
-                tune->linears[tune->linear_count++] = (TuneLinear){
-                    .depth = depth,
-                    .stiffness = stiffness,
-                    .damping = damping,
-                    .step_s = STEPS[k],
-                };
+                add_linear(tune, depth, stiffness, damping, STEPS[k]);
             }
         }
     }
@@ -144,9 +164,23 @@ static int choose_linear(const Tune *tune)
     for (size_t i = 0; i < tune->linear_count; i++) {
         const TuneLinear *linear = &tune->linears[i];
         const TuneLinear *best = chosen == TUNE_NONE ? NULL : &tune->linears[chosen];
-        if (linear->error <= enough &&
+        if (!linear->is_row && linear->error <= enough &&
             (best == NULL || linear->step_s > best->step_s ||
              (linear->step_s == best->step_s && linear->error < best->error))) {
+            chosen = (int)i;
+        }
+    }
+    return chosen;
+}
+
+// At a step that is held: the least error, of kp and kd alone or of any ERP and CFM.
+static int choose_least(const Tune *tune, bool with_rows)
+{
+    int chosen = TUNE_NONE;
+    for (size_t i = 0; i < tune->linear_count; i++) {
+        const TuneLinear *linear = &tune->linears[i];
+        if (isfinite(linear->error) && (with_rows || !linear->is_row) &&
+            (chosen == TUNE_NONE || linear->error < tune->linears[chosen].error)) {
             chosen = (int)i;
         }
     }
@@ -194,10 +228,12 @@ bool tune_linear_run(const TuneSearch *search, const Truth *truth, Err *err)
     if (!law_of_joint(search->scenario, joint, &law, err)) {
         return false;
     }
+    const bool is_held = tune->held_s > 0.0;
     list_linears(search, &law, tune);
-    if (!run_linears(search, truth, err)) {
+    if ((is_held && !tune_held_constants(search, err)) || !run_linears(search, truth, err)) {
         return false;
     }
-    tune->linear = choose_linear(tune);
+    tune->linear = is_held ? choose_least(tune, false) : choose_linear(tune);
+    tune->row = is_held ? choose_least(tune, true) : TUNE_NONE;
     return true;
 }

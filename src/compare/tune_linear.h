@@ -11,7 +11,8 @@ double tune_linear_stiffness(const ForceLaw *law, double depth);
 // for in a free impact.
 double tune_linear_damping(double stiffness, double mass, double restitution);
 
-// The scenario with the contact made linear: textbook map, plain stepping, direct solver.
+// The scenario with the contact made linear, kp and kd by the textbook map or the row itself: plain
+// stepping, direct solver.
 Scenario tune_linear_scenario(const Scenario *scenario, const TuneLinear *linear);
 
 // Looks up the deepest contact in the truth, runs constants taken from it at several depths and

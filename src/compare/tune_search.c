@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "compare/truth_child.h"
+#include "compare/tune_held.h"
 #include "compare/tune_linear.h"
 #include "compare/tune_pool.h"
 
@@ -29,14 +30,7 @@ static const double FINALIST = 2.5;
 
 static const double TOLERANCE_LEAST = 1e-9; // what the case file allows of run.tolerance
 
-// One pass of the search: over which schemes, and how long a run may take.
-typedef struct Pass {
-    const char *doing;
-    bool is_in[SCHEME_MAX];
-    double limit_s;
-} Pass;
-
-static Task make_task(const TuneSearch *search, LadderKind kind, const Truth *truth, size_t scheme,
+Task tune_search_task(const TuneSearch *search, LadderKind kind, const Truth *truth, size_t scheme,
                       double value)
 {
     Task task = {
@@ -48,6 +42,13 @@ static Task make_task(const TuneSearch *search, LadderKind kind, const Truth *tr
     tune_apply(&search->tune->schemes[scheme], value, &task.scenario);
     return task;
 }
+
+// One pass of the search: over which schemes, and how long a run may take.
+typedef struct Pass {
+    const char *doing;
+    bool is_in[SCHEME_MAX];
+    double limit_s;
+} Pass;
 
 // The least cost of a setting that meets the target, among the schemes of a pass.
 static double best_cost(const Tune *tune, const Pass *pass)
@@ -112,8 +113,8 @@ static bool run_pass(const TuneSearch *search, const Truth *truth, const Pass *p
     while (is_going && (next != TUNE_NONE || pool.busy > 0)) {
         while (is_going && next != TUNE_NONE && tune_pool_has_place(&pool)) {
             TuneScheme *scheme = &tune->schemes[next];
-            const Task task =
-                make_task(search, LADDER_ERROR, truth, (size_t)next, tune_value(scheme->next));
+            const Task task = tune_search_task(search, LADDER_ERROR, truth, (size_t)next,
+                                               tune_value(scheme->next));
             is_going = tune_pool_start(&pool, &task, (size_t)next, err);
             scheme->is_busy = is_going;
             next = choose(search, pass);
@@ -184,7 +185,7 @@ static bool search_within(const TuneSearch *search, const Truth *truth, Err *err
         if (is_known || scheme->trials == 0) {
             continue;
         }
-        const Task task = make_task(search, LADDER_ERROR, truth, i, tune_value(notch));
+        const Task task = tune_search_task(search, LADDER_ERROR, truth, i, tune_value(notch));
         is_going = tune_pool_start(&pool, &task, i, err);
         size_t tag;
         LadderRun run;
@@ -227,8 +228,8 @@ static bool time_finalists(const TuneSearch *search, const Truth *truth, Err *er
             if (!is_finalist(tune, i, best)) {
                 continue;
             }
-            const Task task =
-                make_task(search, LADDER_TIMING, truth, (size_t)i, tune_best(tune, i)->value);
+            const Task task = tune_search_task(search, LADDER_TIMING, truth, (size_t)i,
+                                               tune_best(tune, i)->value);
             is_going = tune_pool_start(&pool, &task, (size_t)i, err);
             size_t tag;
             LadderRun run;
@@ -261,6 +262,33 @@ static bool check_target(const Tune *tune, Err *err)
                    tune->target, truth->uncertainty, least);
 }
 
+// All schemes at the step that is held; where none meets the target, the longest step that does.
+static bool search_held(const TuneSearch *search, const Truth *truth, Err *err)
+{
+    Tune *tune = search->tune;
+    bool is_done = tune_held_run(search, truth, err);
+    tune_conclude(tune, search->scenario);
+    if (is_done && !tune_is_met_held(tune)) {
+        is_done = search_all(search, truth, err);
+        tune_conclude(tune, search->scenario);
+    }
+    return is_done;
+}
+
+// The cheapest setting of all.
+static bool search_cheapest(const TuneSearch *search, const Truth *truth, Err *err)
+{
+    Tune *tune = search->tune;
+    bool is_done = search_all(search, truth, err) && search_plain(search, truth, err);
+    if (is_done && (tune->limit.steps > 0 || tune->limit.time_s > 0.0)) {
+        is_done = search_within(search, truth, err);
+    }
+    tune_conclude(tune, search->scenario);
+    is_done = is_done && time_finalists(search, truth, err);
+    tune_conclude(tune, search->scenario);
+    return is_done;
+}
+
 bool tune_search_execute(const TuneSearch *search, Err *err)
 {
     Tune *tune = search->tune;
@@ -274,16 +302,10 @@ bool tune_search_execute(const TuneSearch *search, Err *err)
     if (is_done) {
         tune->truth = ladder_truth_of(&truth, clock_now_s() - started_s);
     }
-    is_done = is_done && check_target(tune, err) && search_all(search, &truth, err) &&
-              search_plain(search, &truth, err);
-    if (is_done && (tune->limit.steps > 0 || tune->limit.time_s > 0.0)) {
-        is_done = search_within(search, &truth, err);
-    }
-    if (is_done) {
-        tune_conclude(tune, search->scenario);
-        is_done = time_finalists(search, &truth, err) && tune_linear_run(search, &truth, err);
-        tune_conclude(tune, search->scenario);
-    }
+    is_done = is_done && check_target(tune, err) &&
+              (tune->held_s > 0.0 ? search_held(search, &truth, err)
+                                  : search_cheapest(search, &truth, err)) &&
+              tune_linear_run(search, &truth, err);
     truth_finish(&truth);
     return is_done;
 }

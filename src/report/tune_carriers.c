@@ -5,6 +5,7 @@
 #include "report/run_section.h"
 #include "report/tune_code.h"
 #include "report/tune_gazebo.h"
+#include "report/tune_held_text.h"
 #include "report/tune_mujoco.h"
 #include "report/tune_setting.h"
 #include "report/tune_snippet.h"
@@ -18,6 +19,9 @@
 const TuneTrial *tune_carriers_trial(const TuneReport *report)
 {
     const Tune *tune = report->tune;
+    if (tune->held_s > 0.0) {
+        return tune->held != TUNE_NONE ? &tune->trials[tune->held] : NULL;
+    }
     if (tune_report_is_met(report)) {
         return tune_best(tune, tune->winner);
     }
@@ -87,17 +91,34 @@ static void write_code(const TuneReport *report, const Style *style, Text *text)
                       "gives the same run, bit for bit: cc FILE.c -o run -lode -lm\n");
 }
 
+const TuneTrial *tune_carriers_plain(const Tune *tune)
+{
+    if (tune->held_s > 0.0) {
+        return tune->held_plain != TUNE_NONE ? &tune->trials[tune->held_plain] : NULL;
+    }
+    return tune_best(tune, tune->plain);
+}
+
 // What a loop that is not to be changed has to pay.
 static void write_loop(const TuneReport *report, const Style *style, Text *text)
 {
     const Tune *tune = report->tune;
-    const TuneTrial *plain = tune_best(tune, tune->plain);
+    const TuneTrial *plain = tune_carriers_plain(tune);
     const TuneTrial *winner = tune_best(tune, tune->winner);
     if (!scenario_has_clearance(report->scenario)) {
         return;
     }
     text_append(text, "\n%sIn a loop of your own%s\n\n", style->heading, style->end);
+    if (tune->held_s > 0.0) {
+        tune_held_text_row(tune, text);
+        text_append(text, "\n");
+    }
     if (plain == NULL) {
+        if (tune->held_s > 0.0) {
+            text_append(text, "  No plain step with ERP and CFM alone has an error that means "
+                              "anything at this step.\n");
+            return;
+        }
         text_append(text, "  No plain step with ERP and CFM alone that was tried meets the error; "
                           "the schemes above say how far each came.\n");
         return;
@@ -105,7 +126,7 @@ static void write_loop(const TuneReport *report, const Style *style, Text *text)
     text_append(text, "  ERP and CFM alone, in a loop that steps as ODE's manual says: ");
     tune_setting_words(report, plain, text);
     text_append(text, ", error %.3g", plain->error);
-    if (winner != NULL && tune->plain != tune->winner) {
+    if (winner != NULL && tune->plain != tune->winner && tune->held_s == 0.0) {
         const double ratio = tune_trial_cost(tune, plain) / tune_trial_cost(tune, winner);
         text_append(text, "; %.3g times the %s of the cheapest", ratio,
                     tune->cost == TUNE_STEPS ? "world steps" : "time");
@@ -155,19 +176,30 @@ static void write_gazebo(const TuneReport *report, const Style *style, Text *tex
     if (tune->linear_count == 0) {
         return;
     }
-    write_linears(tune, style, text);
+    if (tune->held_s > 0.0) {
+        tune_held_text_constants(tune, style, text);
+    } else {
+        write_linears(tune, style, text);
+    }
     text_append(text,
                 "  Gazebo and MuJoCo have a constant spring and damper a contact, and plain steps. "
                 "These were run in ODE with the textbook map, against the law itself; the damper "
-                "gives an impact on %.4g kg the law's own restitution.\n",
-                tune->contact.mass);
+                "%sgives an impact on %.4g kg the law's own restitution.\n",
+                tune->held_s > 0.0 ? "beside the law's spring " : "", tune->contact.mass);
+    if (tune->held_s > 0.0) {
+        text_append(text, "  Those for an impact are the best for a lone one at this step, as by "
+                          "`map --at-step`; a row without kp and kd has no such pair.\n");
+    }
     TuneGazebo gazebo;
     text_append(text, "\n%sAs Gazebo SDF%s\n\n", style->heading, style->end);
     if (!tune_gazebo_find(tune, &gazebo)) {
         text_append(text, "  No step that was tried is stable with constants.\n");
         return;
     }
-    if (gazebo.error <= tune->target) {
+    if (!isfinite(tune->target)) {
+        text_append(text, "  At a step of %.4g us the error of the whole motion is %.2g.\n\n",
+                    gazebo.step_s * UNITS_US, gazebo.error);
+    } else if (gazebo.error + tune->truth.uncertainty <= tune->target) {
         text_append(text, "  Meets the error with a step of %.4g us: %.2g.\n\n",
                     gazebo.step_s * UNITS_US, gazebo.error);
     } else {
@@ -197,6 +229,13 @@ static void write_mujoco(const TuneReport *report, const Style *style, Text *tex
         "of the law, damping that grows with depth, and a share %.1g of the acceleration "
         "without contact.\n\n",
         mujoco.impedance);
+    if (tune_mujoco_is_finer(report, &mujoco)) {
+        text_append(
+            text,
+            "  MuJoCo's spring is explicit and needs a shorter step than the one asked for: "
+            "the timestep here is %.3g us.\n\n",
+            mujoco.step_s * UNITS_US);
+    }
     Text lines;
     text_init(&lines);
     tune_mujoco_write(report, &lines);

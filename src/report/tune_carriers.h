@@ -9,6 +9,10 @@
 // where no run has an error.
 const TuneTrial *tune_carriers_trial(const TuneReport *report);
 
+// The setting for a loop that steps plainly with ERP and CFM alone: the cheapest that meets the
+// error, or the best at the step that is held; NULL where there is none.
+const TuneTrial *tune_carriers_plain(const Tune *tune);
+
 // Appends the C program of that setting. Fails with ERR_CASE where a law does not fit its joint.
 bool tune_carriers_code(const TuneReport *report, Text *text, Err *err);
 

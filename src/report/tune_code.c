@@ -12,6 +12,7 @@
 #include "version.h"
 
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 // A way of stepping: the file it is in and the name of its table of functions.
@@ -276,8 +277,11 @@ static void write_head(const TuneCode *code, Text *text)
     write_comment(code->scenario->path, text);
     text_append(text, "// setting  ");
     write_comment(code->words, text);
-    text_append(text, "// error    %.3g measured, %.3g asked for\n// same as  ", code->error,
-                code->target);
+    text_append(text, "// error    %.3g measured", code->error);
+    if (isfinite(code->target)) {
+        text_append(text, ", %.3g asked for", code->target);
+    }
+    text_append(text, "\n// same as  ");
     write_comment(code->command, text);
     text_append(
         text, "//\n// The numbers of this mechanism stand at the end: the scenario, its contact "

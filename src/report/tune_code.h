@@ -9,7 +9,7 @@ typedef struct TuneCode {
     const char *words;        // what the setting is, in one line
     const char *command;      // the command line that does the same
     double error;             // 1, measured
-    double target;            // 1
+    double target;            // 1; INFINITY where none was asked for
 } TuneCode;
 
 // Appends the program. It prints the series as `jointplay run --series` writes it, the same numbers

@@ -10,7 +10,7 @@
 
 #include "contact/map.h"
 #include "report/number.h"
-#include "report/units.h"
+#include "report/tune_held_text.h"
 
 #include <math.h>
 
@@ -43,10 +43,14 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
         return;
     }
     const TuneLinear *linear = &report->tune->linears[report->tune->linear];
+    Text source;
+    text_init(&source);
+    tune_held_text_source(linear, &source);
     text_append(text,
                 "<!-- error of omega with these constants, measured: %.2g;\n"
-                "     spring of the law at %.4g um -->\n",
-                gazebo.error, linear->depth * UNITS_UM);
+                "     best for: %s -->\n",
+                gazebo.error, source.data);
+    text_finish(&source);
     text_append(text,
                 "<physics type=\"ode\">\n"
                 "  <max_step_size>%s</max_step_size>\n"

@@ -109,7 +109,14 @@ static json_t *text_value(bool is_there, Text *text)
 
 static json_t *linear_object(const TuneLinear *linear)
 {
+    static const char *const SOURCES[] = {[TUNE_LINEAR_SECANT] = "law",
+                                          [TUNE_LINEAR_MEDIAN] = "median-impact",
+                                          [TUNE_LINEAR_HARDEST] = "hardest-impact"};
     json_t *object = json_object();
+    json_object_set_new(object, "best_for", json_string(SOURCES[linear->source]));
+    json_object_set_new(object, "is_row", json_boolean(linear->is_row));
+    json_value_set(object, "erp", linear->row.erp);
+    json_value_set(object, "cfm_m_N_s", linear->row.cfm);
     json_value_set(object, "depth_m", linear->depth);
     json_value_set(object, "stiffness_N_m", linear->stiffness);
     json_value_set(object, "damping_N_s_m", linear->damping);
@@ -165,7 +172,7 @@ static json_t *mujoco_object(const TuneReport *report)
 
 static json_t *loop_object(const TuneReport *report)
 {
-    const TuneTrial *plain = tune_best(report->tune, report->tune->plain);
+    const TuneTrial *plain = tune_carriers_plain(report->tune);
     json_t *object = setting_object(report, plain);
     if (plain != NULL) {
         Text text;
@@ -178,8 +185,11 @@ static json_t *loop_object(const TuneReport *report)
 
 static void set_asked(json_t *object, const Tune *tune)
 {
+    static const char *const COSTS[] = {
+        [TUNE_TIME] = "time", [TUNE_STEPS] = "steps", [TUNE_LENGTH] = "step-length"};
     json_value_set(object, "error_asked", tune->target);
-    json_object_set_new(object, "cost", json_string(tune->cost == TUNE_STEPS ? "steps" : "time"));
+    json_object_set_new(object, "cost", json_string(COSTS[tune->cost]));
+    json_value_set(object, "step_held_s", tune->held_s > 0.0 ? tune->held_s : NAN);
     json_value_set(object, "max_cost_s", tune->limit.time_s > 0.0 ? tune->limit.time_s : NAN);
     json_object_set_new(object, "max_cost_steps",
                         tune->limit.steps > 0 ? json_integer((json_int_t)tune->limit.steps)
@@ -197,7 +207,13 @@ json_t *tune_json_build(const TuneReport *report)
     set_asked(object, tune);
     json_object_set_new(object, "truth", truth_object(&tune->truth));
     json_object_set_new(object, "is_met", json_boolean(tune_report_is_met(report)));
-    json_object_set_new(object, "cheapest", setting_object(report, tune_best(tune, tune->winner)));
+    const TuneTrial *winner = tune_best(tune, tune->winner);
+    const bool is_held = tune->held_s > 0.0;
+    json_object_set_new(object, "cheapest", setting_object(report, is_held ? NULL : winner));
+    json_object_set_new(
+        object, "best_at_step",
+        setting_object(report, tune->held != TUNE_NONE ? &tune->trials[tune->held] : NULL));
+    json_object_set_new(object, "longest_step", setting_object(report, is_held ? winner : NULL));
     json_object_set_new(
         object, "least_error",
         setting_object(report, tune->within != TUNE_NONE ? &tune->trials[tune->within] : NULL));
@@ -217,6 +233,9 @@ json_t *tune_json_build(const TuneReport *report)
         json_array_append_new(linears, linear_object(&tune->linears[i]));
     }
     json_object_set_new(object, "constants", linears);
+    json_object_set_new(object, "own_row",
+                        tune->row != TUNE_NONE ? linear_object(&tune->linears[tune->row])
+                                               : json_null());
     json_object_set_new(object, "gazebo", gazebo_object(report));
     json_object_set_new(object, "mujoco", mujoco_object(report));
     return object;

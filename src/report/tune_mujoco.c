@@ -61,6 +61,11 @@ bool tune_mujoco_find(const TuneReport *report, TuneMujoco *mujoco)
     return weight > 0.0;
 }
 
+bool tune_mujoco_is_finer(const TuneReport *report, const TuneMujoco *mujoco)
+{
+    return mujoco->step_s < report->tune->held_s;
+}
+
 void tune_mujoco_write(const TuneReport *report, Text *text)
 {
     TuneMujoco mujoco;

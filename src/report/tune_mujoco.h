@@ -16,5 +16,8 @@ typedef struct TuneMujoco {
 // False where there is none: no joint has play, or no linear contact is stable.
 bool tune_mujoco_find(const TuneReport *report, TuneMujoco *mujoco);
 
+// Whether a step that is held is too long for MuJoCo with these constants.
+bool tune_mujoco_is_finer(const TuneReport *report, const TuneMujoco *mujoco);
+
 // Appends the fragment of MJCF, or nothing where there is none.
 void tune_mujoco_write(const TuneReport *report, Text *text);

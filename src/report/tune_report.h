@@ -12,10 +12,14 @@ typedef struct TuneReport {
     double time_limit_s; // of one run
 } TuneReport;
 
-// Whether the error asked for is met by a setting that costs no more than what was allowed.
+// Whether the error asked for is met by a setting that costs no more than what was allowed, or at
+// the step that is held.
 static inline bool tune_report_is_met(const TuneReport *report)
 {
     const TuneTrial *best = tune_best(report->tune, report->tune->winner);
+    if (report->tune->held_s > 0.0) {
+        return tune_is_met_held(report->tune);
+    }
     return best != NULL && tune_is_within(report->tune, best);
 }
 

@@ -2,12 +2,33 @@
 #include "report/tune_text.h"
 
 #include "report/run_section.h"
+#include "report/tune_answer.h"
 #include "report/tune_carriers.h"
-#include "report/tune_setting.h"
+#include "report/tune_held_text.h"
 #include "report/units.h"
 
 #include <math.h>
 #include <string.h>
+
+static void write_asked(const Tune *tune, Text *text)
+{
+    if (tune->held_s > 0.0) {
+        text_append(text, "  asked for   the least error of omega at a step of %.4g us",
+                    tune->held_s * UNITS_US);
+        if (isfinite(tune->target)) {
+            text_append(text, ", %.3g at most", tune->target);
+        }
+        text_append(text, "\n");
+        return;
+    }
+    text_append(text, "  asked for   error of omega at most %.3g", tune->target);
+    if (tune->limit.steps > 0) {
+        text_append(text, ", in at most %zu world steps", tune->limit.steps);
+    } else if (tune->limit.time_s > 0.0) {
+        text_append(text, ", in at most %.4g ms", tune->limit.time_s * UNITS_MS);
+    }
+    text_append(text, "; the least %s\n", tune->cost == TUNE_STEPS ? "world steps" : "time");
+}
 
 static void write_head(const TuneReport *report, const Style *style, Text *text)
 {
@@ -16,13 +37,7 @@ static void write_head(const TuneReport *report, const Style *style, Text *text)
     const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
     text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
     text_append(text, "  case        %s\n", scenario->path);
-    text_append(text, "  asked for   error of omega at most %.3g", tune->target);
-    if (tune->limit.steps > 0) {
-        text_append(text, ", in at most %zu world steps", tune->limit.steps);
-    } else if (tune->limit.time_s > 0.0) {
-        text_append(text, ", in at most %.4g ms", tune->limit.time_s * UNITS_MS);
-    }
-    text_append(text, "; the least %s\n", tune->cost == TUNE_STEPS ? "world steps" : "time");
+    write_asked(tune, text);
     text_append(text, "  truth       %s, to %.2g of omega\n", tune->truth.backend,
                 tune->truth.uncertainty);
     if (tune->truth.is_limited) {
@@ -31,61 +46,6 @@ static void write_head(const TuneReport *report, const Style *style, Text *text)
                     "the whole run\n",
                     tune->truth.horizon_s * UNITS_MS, scenario_duration(scenario) * UNITS_MS);
     }
-}
-
-static bool is_timed(const Tune *tune, const TuneTrial *trial)
-{
-    return trial == tune_best(tune, (int)trial->scheme) &&
-           isfinite(tune->schemes[trial->scheme].processor_median_s);
-}
-
-// What a setting takes of the processor: a median where it was timed, else the one run that found
-// its error.
-static double time_of(const Tune *tune, const TuneTrial *trial)
-{
-    return is_timed(tune, trial) ? tune->schemes[trial->scheme].processor_median_s
-                                 : trial->run.processor_s;
-}
-
-static void write_cost(const Tune *tune, const TuneTrial *trial, Text *text)
-{
-    const TuneScheme *scheme = &tune->schemes[trial->scheme];
-    text_append(text, "%zu world steps, %.4g ms of the processor", trial->run.steps,
-                time_of(tune, trial) * UNITS_MS);
-    if (is_timed(tune, trial)) {
-        text_append(text, ", %.4g ms by the clock (medians of %zu runs taken in turn)",
-                    scheme->wall_median_s * UNITS_MS, scheme->timed);
-    } else {
-        text_append(text, " (one run)");
-    }
-}
-
-// A setting a line, as a shell takes it.
-static void append_command(const TuneReport *report, const TuneTrial *trial, Text *text)
-{
-    static const char OPTION[] = " --set ";
-    Text command;
-    text_init(&command);
-    tune_setting_command(report, trial, &command);
-    const char *from = command.data;
-    for (const char *to = strstr(from, OPTION); to != NULL; to = strstr(from + 1, OPTION)) {
-        text_append(text, "%.*s \\\n               ", (int)(to - from), from);
-        from = to;
-    }
-    text_append(text, "%s\n", from);
-    text_finish(&command);
-}
-
-static void write_setting(const TuneReport *report, const TuneTrial *trial, Text *text)
-{
-    text_append(text, "  setting     ");
-    tune_setting_words(report, trial, text);
-    text_append(text, "\n  error       %.3g\n  cost        ", trial->error);
-    write_cost(report->tune, trial, text);
-    text_append(text, "\n  in a case   ");
-    tune_setting_keys(report, trial, "\n              ", text);
-    text_append(text, "\n  run it      ");
-    append_command(report, trial, text);
 }
 
 // What there is to say where nothing meets what was asked for.
@@ -100,7 +60,7 @@ static void write_unmet(const TuneReport *report, Text *text)
                     tune->target);
     } else {
         text_append(text, "  none within the cost. The cheapest that meets the error:\n");
-        write_setting(report, best, text);
+        tune_answer_setting(report, best, text);
     }
     if (tune->within == TUNE_NONE) {
         text_append(text, tune_report_has_limit(report)
@@ -110,25 +70,28 @@ static void write_unmet(const TuneReport *report, Text *text)
     }
     text_append(text, "\n  The least error%s:\n",
                 tune_report_has_limit(report) ? " within the cost" : " of all that was tried");
-    write_setting(report, &tune->trials[tune->within], text);
+    tune_answer_setting(report, &tune->trials[tune->within], text);
 }
 
 static void write_answer(const TuneReport *report, const Style *style, Text *text)
 {
     text_append(text, "\n%sCheapest setting%s\n\n", style->heading, style->end);
     if (tune_report_is_met(report)) {
-        write_setting(report, tune_best(report->tune, report->tune->winner), text);
+        tune_answer_setting(report, tune_best(report->tune, report->tune->winner), text);
     } else {
         write_unmet(report, text);
     }
 }
 
-static const char *fate_words(const TuneScheme *scheme)
+static const char *fate_words(const Tune *tune, const TuneScheme *scheme)
 {
     switch (scheme->fate) {
     case TUNE_MEETS:
         return "meets it, and so does the next finer one";
     case TUNE_DEARER:
+        if (tune->cost == TUNE_LENGTH) {
+            return "shorter ones were not tried";
+        }
         return scheme->trials > 0 ? "finer ones cost more than the best"
                                   : "costs more than the best";
     case TUNE_STALLED:
@@ -166,9 +129,13 @@ static void scheme_row(const TuneReport *report, int number, Table *table)
         value_cell(table, scheme, shown->value);
         table_cell(table, "%.2e", shown->error);
         table_cell(table, "%zu", shown->run.steps);
-        table_cell(table, "%.4g", time_of(tune, shown) * UNITS_MS);
+        table_cell(table, "%.4g", tune_answer_time(tune, shown) * UNITS_MS);
     }
-    table_cell(table, "%s%s", number == tune->winner ? "cheapest; " : "", fate_words(scheme));
+    table_cell(table, "%s%s",
+               number != tune->winner ? ""
+               : tune->held_s > 0.0   ? "longest step; "
+                                      : "cheapest; ",
+               fate_words(tune, scheme));
 }
 
 static void write_schemes(const TuneReport *report, const Style *style, Text *text)
@@ -182,7 +149,8 @@ static void write_schemes(const TuneReport *report, const Style *style, Text *te
         {"CPU", "ms", TABLE_RIGHT},
         {"how it ended", "", TABLE_WRAP},
     };
-    Table *table = run_section_begin("Schemes", 7, HEADS, style, text);
+    const char *heading = report->tune->held_s > 0.0 ? "Schemes at shorter steps" : "Schemes";
+    Table *table = run_section_begin(heading, 7, HEADS, style, text);
     for (int i = 0; i < (int)report->tune->scheme_count; i++) {
         scheme_row(report, i, table);
     }
@@ -287,9 +255,20 @@ static void write_trials(const TuneReport *report, const Style *style, Text *tex
 
 void tune_text_write(const TuneReport *report, const Style *style, Text *text)
 {
+    const bool is_held = report->tune->held_s > 0.0;
     write_head(report, style, text);
-    write_answer(report, style, text);
-    write_schemes(report, style, text);
+    if (is_held) {
+        tune_held_text_answer(report, style, text);
+    } else {
+        write_answer(report, style, text);
+    }
+    // at a step that is held more is searched only where nothing meets the error there
+    const bool is_searched = !is_held || !tune_is_met_held(report->tune);
+    if (is_searched) {
+        write_schemes(report, style, text);
+    }
     tune_carriers_write(report, style, text);
-    write_trials(report, style, text);
+    if (is_searched) {
+        write_trials(report, style, text);
+    }
 }

@@ -181,6 +181,96 @@ static void a_cost_that_is_too_small_ends_with_status_1(void **state)
     assert_says(program->errors, "no setting within --max-cost meets an error of 0.001");
 }
 
+// Of one scheme in a comparison at one step.
+static double compared_error(Program *program, const char *scheme, const char *step)
+{
+    char line[2 * PROGRAM_PATH_SIZE];
+    snprintf(line, sizeof line,
+             "compare %s --quiet --json --schemes %s --steps '%s' --store %s.jsonl", K66, scheme,
+             step, strrchr(scheme, '/') + 1);
+    program_run(program, line);
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *first = json_array_get(json_object_get(root, "schemes"), 0);
+    const json_t *point = json_array_get(json_object_get(first, "points"), 0);
+    const double error = number(point, "error_omega");
+    json_decref(root);
+    return error;
+}
+
+// The best of the step that is held, against the same schemes compared at it.
+static void at_a_step_that_is_held_the_least_error_is_named(void **state)
+{
+    Program *program = *state;
+    char line[2 * PROGRAM_PATH_SIZE];
+    snprintf(line, sizeof line,
+             "%s --at-step '80 us' --error 3e-3 --schemes "
+             "direct/plain/textbook,direct/staggered/impulse",
+             K66);
+    json_t *root = tune(program, line, 0);
+    assert_true(json_is_true(json_object_get(root, "is_met")));
+    assert_near(number(root, "step_held_s"), 8e-5, 1e-18);
+    const json_t *best = json_object_get(root, "best_at_step");
+    assert_string_equal(words(best, "scheme"), "direct/staggered/impulse");
+    assert_near(number(best, "step_s"), 8e-5, 1e-18);
+    assert_close(number(best, "error_omega"),
+                 compared_error(program, "direct/staggered/impulse", "80 us"), 1e-9);
+    json_t *run = run_again(program, best, "");
+    assert_string_equal(words(run, "hash"), words(best, "hash"));
+    json_decref(run);
+    // control: the scheme that is not named is worse, and is that of a loop of one's own
+    const json_t *loop = json_object_get(root, "own_loop");
+    assert_string_equal(words(loop, "scheme"), "direct/plain/textbook");
+    const double plain = compared_error(program, "direct/plain/textbook", "80 us");
+    assert_close(number(loop, "error_omega"), plain, 1e-9);
+    assert_true(plain > 2.0 * number(best, "error_omega"));
+    assert_int_equal(json_array_size(json_object_get(root, "trials")), 2);
+    assert_near(number(json_object_get(root, "gazebo"), "max_step_size"), 8e-5, 1e-18);
+    // every constant is of that step, and the one handed on has the least error of all kp and kd
+    const json_t *constants = json_object_get(root, "constants");
+    const double taken = number(json_object_get(root, "gazebo"), "error_omega");
+    assert_true(json_array_size(constants) >= 5);
+    for (size_t i = 0; i < json_array_size(constants); i++) {
+        const json_t *one = json_array_get(constants, i);
+        const json_t *error = json_object_get(one, "error_omega");
+        assert_near(number(one, "step_s"), 8e-5, 1e-18);
+        assert_true(json_is_true(json_object_get(one, "is_row")) || json_is_null(error) ||
+                    json_number_value(error) >= taken);
+    }
+    json_decref(root);
+}
+
+static void where_nothing_at_the_step_will_do_the_longest_that_does_is_named(void **state)
+{
+    Program *program = *state;
+    static const char SCHEMES[] = "--schemes direct/plain/textbook,direct/staggered/impulse";
+    char line[2 * PROGRAM_PATH_SIZE];
+    snprintf(line, sizeof line, "%s --at-step '800 us' --error 1e-2 %s", K66, SCHEMES);
+    json_t *root = tune(program, line, 1);
+    assert_true(json_is_false(json_object_get(root, "is_met")));
+    assert_true(number(json_object_get(root, "best_at_step"), "error_omega") > 1e-2);
+    const json_t *longest = json_object_get(root, "longest_step");
+    assert_true(number(longest, "error_omega") <= 1e-2);
+    assert_true(number(longest, "step_s") < 8e-4);
+    // control: the next longer step of the grid does not meet it
+    char step[64];
+    snprintf(step, sizeof step, "%.4g s", 1.27 * number(longest, "step_s"));
+    assert_true(compared_error(program, "direct/staggered/impulse", step) > 1e-2);
+    json_decref(root);
+    snprintf(line, sizeof line, "tune %s --at-step '800 us' --error 1e-2 -q %s", K66, SCHEMES);
+    program_run(program, line);
+    assert_int_equal(program->status, 1);
+    assert_says(program->errors, "nothing at 800 us meets an error of 0.01; the least there is");
+    assert_says(program->errors, "the longest step that meets 0.01: direct/staggered/impulse");
+    assert_says(program->output, "Contacts with constants at 800 us");
+    // without an error to meet the same best is an answer
+    snprintf(line, sizeof line, "%s --at-step '800 us' %s", K66, SCHEMES);
+    root = tune(program, line, 0);
+    assert_true(json_is_null(json_object_get(root, "longest_step")));
+    assert_true(json_is_null(json_object_get(root, "error_asked")));
+    json_decref(root);
+}
+
 static void files_hold_what_was_asked_for(void **state)
 {
     Program *program = *state;
@@ -227,6 +317,14 @@ static void what_cannot_be_asked_is_refused(void **state)
                         "is below ten times the uncertainty of the reference");
     program_fails_usage(program, "tune a.yaml --error 1e-3 --code x --sdf x",
                         "two options would both write x");
+    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --at-step 1ms --cost steps",
+                        "--cost and --at-step do not go together");
+    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --at-step 1ms --max-cost 9",
+                        "--max-cost and --at-step do not go together");
+    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --at-step 1ms --schemes auto",
+                        "--at-step needs one that takes the step it is given");
+    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --at-step '1 s'",
+                        "is longer than the run");
     program_run(program, "tune $cases/paper/stackup-poisson.yaml --error 1e-3");
     assert_int_equal(program->status, 3);
     assert_says(program->errors, "contact.model poisson has no spring");
@@ -245,6 +343,11 @@ int main(void)
                                         program_set_up, program_tear_down),
         cmocka_unit_test_setup_teardown(a_cost_that_is_too_small_ends_with_status_1, program_set_up,
                                         program_tear_down),
+        cmocka_unit_test_setup_teardown(at_a_step_that_is_held_the_least_error_is_named,
+                                        program_set_up, program_tear_down),
+        cmocka_unit_test_setup_teardown(
+            where_nothing_at_the_step_will_do_the_longest_that_does_is_named, program_set_up,
+            program_tear_down),
         cmocka_unit_test_setup_teardown(files_hold_what_was_asked_for, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(what_cannot_be_asked_is_refused, program_set_up,
