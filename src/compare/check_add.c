@@ -55,14 +55,14 @@ static double alpha_rounding(const Trajectory *run, double omega)
     return run->step_s > 0.0 ? SPEED_ULPS * DBL_EPSILON * omega / run->step_s : 0.0;
 }
 
-static void add_alpha(CheckAdd *work, const Trajectory *run, const char *body, const char *name,
+static void add_alpha(CheckAdd *work, const Trajectory *run, size_t number, const char *name,
                       double value, const BodyExtremes *extremes)
 {
-    const double turning = work->speeds.turning;
-    const double omega =
-        fmax(turning, fmax(fabs(extremes->omega_max.value), fabs(extremes->omega_min.value)));
-    const double scale =
-        fmax(turning * turning, fmax(extremes->alpha_max.value, -extremes->alpha_min.value));
+    const double omega = fmax(work->speeds.turning[number], fmax(fabs(extremes->omega_max.value),
+                                                                 fabs(extremes->omega_min.value)));
+    const double scale = fmax(work->speeds.speeding[number],
+                              fmax(extremes->alpha_max.value, -extremes->alpha_min.value));
+    const char *body = work->scenario->linkage.bodies[number].name;
     add(work, run, body, name,
         (CheckMetric){.kind = CHECK_REAL,
                       .value = value,
@@ -109,11 +109,11 @@ static void add_bodies(CheckAdd *work, const Trajectory *run, BackendKind backen
         const char *name = work->scenario->linkage.bodies[i].name;
         const BodyExtremes body =
             is_by_samples(backend) ? extremes_of_samples(run, i) : run->bodies[i];
-        const double scale = work->speeds.turning;
+        const double scale = work->speeds.turning[i];
         add_real(work, run, name, names[0], body.omega_max.value, scale);
         add_real(work, run, name, names[1], body.omega_min.value, scale);
-        add_alpha(work, run, name, names[2], body.alpha_max.value, &body);
-        add_alpha(work, run, name, names[3], body.alpha_min.value, &body);
+        add_alpha(work, run, i, names[2], body.alpha_max.value, &body);
+        add_alpha(work, run, i, names[3], body.alpha_min.value, &body);
     }
 }
 
@@ -145,8 +145,8 @@ static void add_joints(CheckAdd *work, const Trajectory *run, BackendKind backen
         add_count(work, run, joint->name, "impacts", extremes->impacts);
         add_real(work, run, joint->name, "impulse_N_s", extremes->impulse, 0.0);
         add_real(work, run, joint->name, "penetration_max_m", extremes->penetration_max.value, 0.0);
-        add_real(work, run, joint->name, "contact_fraction_1",
-                 trajectory_contact_share(run, i), 0.0);
+        add_real(work, run, joint->name, "contact_fraction_1", trajectory_contact_share(run, i),
+                 0.0);
     }
 }
 

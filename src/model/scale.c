@@ -1,27 +1,74 @@
 // Which speeds are large and which are rounding, in a scenario that may start at rest?
 //
-//     moving = max(|v at the start|, |w| reach, sqrt(2 g reach)),   turning = moving / reach or
-//     more
+//     V = max(|v| + |w| reach at the start, |w_drive| span, min(sqrt(2 g reach), g T))
+//     A = max(V max |w|, g),   of a body  turning = V / reach,  speeding = A / reach
+// reach: of a body's furthest joint from its centre; span: of the driven body's furthest point from
+// its pivot; T: period of the drive, in which gravity alone makes no more than g T.
 #include "model/scale.h"
+
+// How far the driven body reaches from its pivot, m.
+static double driven_span(const Linkage *linkage)
+{
+    const int driven = linkage_driven_body(linkage);
+    const Vec2 pivot = linkage->joints[linkage->driver.joint].anchor_b;
+    double span = 0.0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint->body_a == driven) {
+            span = fmax(span, vec2_length(vec2_sub(joint->anchor_a, pivot)));
+        }
+        if (joint->body_b == driven) {
+            span = fmax(span, vec2_length(vec2_sub(joint->anchor_b, pivot)));
+        }
+    }
+    return span > 0.0 ? span : linkage_reach(linkage, driven);
+}
+
+static void set_bodies(const Linkage *linkage, SpeedScale *scale)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const double reach = linkage_reach(linkage, (int)i);
+        scale->turning[i] = scale->moving / reach;
+        scale->speeding[i] = scale->changing / reach;
+    }
+}
 
 SpeedScale scale_speeds(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
-    SpeedScale scale = {.turning = fabs(linkage->driver.is_present ? linkage->driver.speed : 0.0)};
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        scale.reach = fmax(scale.reach, vec2_length(joint->anchor_a));
-        scale.reach = fmax(scale.reach, vec2_length(joint->anchor_b));
-        scale.reach = fmax(scale.reach, joint->clearance.hole_radius);
-    }
+    const double gravity = fabs(scenario->gravity);
+    SpeedScale scale = {.moving = 0.0};
+    double largest = 0.0;
+    double turning = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Motion *start = &linkage->bodies[i].start;
-        scale.turning = fmax(scale.turning, fabs(start->omega));
-        scale.moving = fmax(scale.moving, vec2_length(start->velocity));
+        const double reach = linkage_reach(linkage, (int)i);
+        largest = fmax(largest, reach);
+        turning = fmax(turning, fabs(start->omega));
+        scale.moving =
+            fmax(scale.moving, vec2_length(start->velocity) + fabs(start->omega) * reach);
     }
-    scale.moving = fmax(scale.moving, scale.turning * scale.reach);
-    scale.moving = fmax(scale.moving, sqrt(2.0 * fabs(scenario->gravity) * scale.reach));
+    double fall = sqrt(2.0 * gravity * largest);
+    if (linkage->driver.is_present) {
+        const double speed = fabs(linkage->driver.speed);
+        turning = fmax(turning, speed);
+        scale.moving = fmax(scale.moving, speed * driven_span(linkage));
+        fall = fmin(fall, gravity * linkage_period(linkage));
+    }
+    scale.moving = fmax(scale.moving, fall);
     scale.moving = scale.moving > 0.0 ? scale.moving : 1.0;
-    scale.turning = fmax(scale.turning, scale.reach > 0.0 ? scale.moving / scale.reach : 1.0);
+    scale.changing = fmax(scale.moving * turning, gravity);
+    scale.changing = scale.changing > 0.0 ? scale.changing : scale.moving * scale.moving / largest;
+    set_bodies(linkage, &scale);
     return scale;
+}
+
+bool scale_raise(const Linkage *linkage, double moving, SpeedScale *scale)
+{
+    if (!(moving > scale->moving)) {
+        return false;
+    }
+    scale->moving = moving;
+    set_bodies(linkage, scale);
+    return true;
 }

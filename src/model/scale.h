@@ -1,14 +1,22 @@
-// How fast will a scenario move, before it has moved? Sizes for errors and perturbations.
+// How fast will a scenario move, before it has moved? Sizes for errors and for rounding.
 #pragma once
 
 #include "model/scenario.h"
 
 typedef struct SpeedScale {
-    double reach;   // m, largest distance of an anchor from its body's centre or the origin
-    double moving;  // m/s, of places: above 0
-    double turning; // rad/s, of angles: above 0
+    double moving;   // m/s, of the fastest point of all bodies: above 0
+    double changing; // m/s^2, of its velocity: above 0
+    // rad/s and rad/s^2, by body: with which its furthest joint moves as that point does. Of a body
+    // that hangs on a pivot far away these are small, as its own are.
+    double turning[LINKAGE_BODY_MAX];
+    double speeding[LINKAGE_BODY_MAX];
 } SpeedScale;
 
-// The largest of the speeds at the start, of the driver's at the reach, and of a fall under gravity
-// through the reach; 1 m/s where nothing moves and nothing pulls.
+// The largest of the speeds at the start, of the driven body's, and of a fall under gravity as long
+// as the largest body or one period of the drive; 1 m/s where nothing moves and nothing pulls. It
+// depends on the bodies alone: not on the origin or the frames that the case is written in.
 SpeedScale scale_speeds(const Scenario *scenario);
+
+// Raises the scale to a speed of the fastest point, m/s, that was seen. Returns whether it is one
+// above the scale.
+bool scale_raise(const Linkage *linkage, double moving, SpeedScale *scale);

@@ -9,7 +9,6 @@
 // middle, and n parts bring that down to 1 / n^2 of it.
 #include "run/tracer.h"
 
-#include "model/scale.h"
 #include "run/look.h"
 #include "run/spike_scale.h"
 #include "run/spikes.h"
@@ -295,6 +294,14 @@ static double own_threshold(const Tracer *tracer, const Trace *trace, double lea
            fmax(range_within(trace, from_s, INFINITY), least);
 }
 
+// What a force at its furthest joint makes of a body that hangs at the other end, rad/s^2.
+static double alpha_of_force(const Linkage *linkage, int number, double force)
+{
+    const Body *body = &linkage->bodies[number];
+    const double arm = linkage_reach(linkage, number);
+    return force * arm / (body->inertia + body->mass * arm * arm);
+}
+
 static void tell_all(Tracer *tracer, Trajectory *trajectory)
 {
     const Scenario *scenario = tracer->scenario;
@@ -304,9 +311,8 @@ static void tell_all(Tracer *tracer, Trajectory *trajectory)
         trace_close(&tracer->force[i]);
         largest = fmax(largest, tracer->force[i].largest);
     }
-    const double arm = scale_speeds(scenario).reach;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        const double least = ROUNDING * largest * arm / linkage->bodies[i].inertia;
+        const double least = ROUNDING * alpha_of_force(linkage, (int)i, largest);
         trace_close(&tracer->alpha[i]);
         tell_signal(tracer, &tracer->alpha[i],
                     tracer->scale.is_known ? scenario->run.spike_threshold * tracer->scale.alpha

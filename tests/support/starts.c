@@ -1,0 +1,93 @@
+#include "starts.h"
+
+#include "base/sorted.h"
+#include "model/growth.h"
+#include "run/registry.h"
+#include "run/run.h"
+
+#include <assert.h>
+
+static const RunWatch NOBODY = {NULL, NULL};
+
+static Trajectory *run(const Scenario *scenario, BackendKind backend)
+{
+    Trajectory *trajectory = run_scenario(scenario, registry_solver(backend), NOBODY);
+    assert(trajectory->is_complete);
+    return trajectory;
+}
+
+// Of a normal distribution with the same quartiles: the values of a chaotic motion come in groups,
+// so that those next to the median say little of it.
+static Median median_of(double *values, size_t count)
+{
+    const double deviations_apart = 1.349; // the quartiles
+    const double of_median = 1.253;        // over that of a mean
+    sorted_make(values, count);
+    const double quartiles = values[(3 * count) / 4] - values[count / 4];
+    return (Median){sorted_median(values, count),
+                    of_median * quartiles / deviations_apart / sqrt((double)count)};
+}
+
+static Scenario start_of(const Scenario *scenario, const DistanceScale *scales, Starts starts,
+                         size_t number)
+{
+    assert(starts.count <= STARTS_MAX);
+    Scenario beside = *scenario;
+    perturb_start(&beside, scales, starts.size, starts.seed * STARTS_MAX + (unsigned)number);
+    return beside;
+}
+
+void starts_scales(const Scenario *scenario, DistanceScale scales[LINKAGE_BODY_MAX])
+{
+    Trajectory *own = run(scenario, BACKEND_REFERENCE);
+    distance_scales(own, scales);
+    trajectory_destroy(own);
+}
+
+static double horizon_of(const Scenario *scenario)
+{
+    DistanceScale scales[LINKAGE_BODY_MAX];
+    PerturbBasis basis;
+    Trajectory *own = run(scenario, BACKEND_REFERENCE);
+    distance_scales(own, scales);
+    perturb_basis(scenario, scales, &basis);
+    const Growth growth = growth_find(&(GrowthWork){
+        .solver = registry_solver(BACKEND_REFERENCE),
+        .scenario = scenario,
+        .beside = own,
+        .scales = scales,
+        .basis = &basis,
+        .size = DISTANCE_PERTURBATION,
+        .most = DISTANCE_GROWTH,
+        .until_s = INFINITY,
+    });
+    assert(!growth.is_failed);
+    trajectory_destroy(own);
+    return growth.until_s;
+}
+
+Median starts_horizon(const Scenario *scenario, const DistanceScale *scales, Starts starts)
+{
+    double horizons[STARTS_MAX];
+    for (size_t i = 0; i < starts.count; i++) {
+        const Scenario beside = start_of(scenario, scales, starts, i);
+        horizons[i] = horizon_of(&beside);
+    }
+    return median_of(horizons, starts.count);
+}
+
+void starts_impact(const Scenario *scenario, const DistanceScale *scales, Starts starts,
+                   size_t joint, Median *force, Median *impulse)
+{
+    double forces[STARTS_MAX];
+    double impulses[STARTS_MAX];
+    for (size_t i = 0; i < starts.count; i++) {
+        const Scenario beside = start_of(scenario, scales, starts, i);
+        Trajectory *trajectory = run(&beside, BACKEND_ODE);
+        forces[i] = trajectory->joints[joint].force_max.value;
+        impulses[i] = trajectory->joints[joint].impulse;
+        trajectory_destroy(trajectory);
+    }
+    *force = median_of(forces, starts.count);
+    *impulse = median_of(impulses, starts.count);
+}
