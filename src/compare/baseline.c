@@ -226,12 +226,24 @@ bool baseline_needs_sample(const Baseline *baseline)
     return false;
 }
 
-// Nine digits: more than ranks need, and a line that can be read.
-static double to_digits(double value)
+// Rounds a sorted sample to nine digits, or as many as tell apart a thousandth of its range: a
+// check compares these with numbers that are not rounded, and a coarser sample would lie beside
+// them.
+static void round_sample(double *sample, size_t count)
 {
-    char words[32];
-    snprintf(words, sizeof words, "%.9g", value);
-    return strtod(words, NULL);
+    enum { LEAST_DIGITS = 9, MOST_DIGITS = 17 };
+    static const double SHARE = 1e-3;
+    const double range = sample[count - 1] - sample[0];
+    const double size = fmax(fabs(sample[0]), fabs(sample[count - 1]));
+    int digits = LEAST_DIGITS;
+    while (range > 0.0 && digits < MOST_DIGITS && pow(10.0, 1 - digits) * size > SHARE * range) {
+        digits++;
+    }
+    for (size_t k = 0; k < count; k++) {
+        char words[32];
+        snprintf(words, sizeof words, "%.*g", digits, sample[k]);
+        sample[k] = strtod(words, NULL);
+    }
 }
 
 // The numbers of a sample, in ascending order, and their mean.
@@ -246,10 +258,13 @@ static bool fill_sample(BaselineMetric *metric, const CheckMeasure *members, siz
             return err_set(err, ERR_SOLVER, "a start beside the case's own does not measure %s",
                            metric->name);
         }
-        metric->sample[k] = to_digits(members[k].metrics[place].value);
-        metric->mean += metric->sample[k] / (double)member_count;
+        metric->sample[k] = members[k].metrics[place].value;
     }
     sorted_make(metric->sample, member_count);
+    round_sample(metric->sample, member_count);
+    for (size_t k = 0; k < member_count; k++) {
+        metric->mean += metric->sample[k] / (double)member_count;
+    }
     return true;
 }
 

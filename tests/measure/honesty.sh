@@ -9,7 +9,11 @@
 #   KIND  of build/tests/measure/random_case (default four-bar:1:500 bodies:1:200: some 40 minutes)
 # SECONDS_EACH of processor time bound each truth (default 8); LINES=FILE keeps a line of each case.
 set -eu
-build=$1
+build=$(cd "$1" && pwd)
+[ -x "$build/tests/truth/measure_honesty" ] || {
+    echo "honesty.sh: $build has no tests/truth/measure_honesty: build it with gcc and -Dtests=enabled" >&2
+    exit 2
+}
 shift
 [ $# -gt 0 ] || set -- four-bar:1:500 bodies:1:200
 work=$(mktemp -d)

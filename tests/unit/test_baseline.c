@@ -354,13 +354,19 @@ static void a_start_beside_makes_a_band_and_a_wide_one_a_sample(void **state)
 }
 
 // A sample of a metric that cannot be predicted, of a baseline or a check.
-static void fill_sample(CheckMeasure *members, const CheckMeasure *run, size_t place, double shift,
-                        uint64_t seed)
+static void fill_narrow_sample(CheckMeasure *members, const CheckMeasure *run, size_t place,
+                               double width, double shift, uint64_t seed)
 {
     for (int i = 0; i < BASELINE_SAMPLE_SIZE; i++) {
         members[i] = *run;
-        members[i].metrics[place].value = 100.0 + lcg_draw(&seed) + shift;
+        members[i].metrics[place].value = 100.0 + width * lcg_draw(&seed) + shift;
     }
+}
+
+static void fill_sample(CheckMeasure *members, const CheckMeasure *run, size_t place, double shift,
+                        uint64_t seed)
+{
+    fill_narrow_sample(members, run, place, 1.0, shift, seed);
 }
 
 // The row of the metric when the check's own sample is shifted.
@@ -412,6 +418,21 @@ static void what_cannot_be_predicted_is_judged_by_its_distribution(void **state)
     char words[CHECK_WORDS_SIZE];
     check_report_words(&row, words);
     assert_non_null(strstr(words, " of the rank test (statistical: "));
+
+    // nor does a sample lose its distribution where that is a rounding of nine digits wide
+    fill_narrow_sample(members, &bench->run, place, 1e-9, 4.9e-8, 1);
+    assert_true(baseline_set_sample(&read, members, BASELINE_SAMPLE_SIZE, 1e-3, &err));
+    fill_narrow_sample(members, &bench->run, place, 1e-9, 4.9e-8, 2);
+    const CheckEvidence narrow = {.run = &bench->run,
+                                  .sample = members,
+                                  .sample_count = BASELINE_SAMPLE_SIZE,
+                                  .now = &bench->made,
+                                  .is_full = true,
+                                  .rate = 1e-3};
+    const size_t narrow_count = check_judge(&read, &narrow, bench->rows);
+    for (size_t i = 0; i < narrow_count; i++) {
+        assert_false(check_row_is_out(&bench->rows[i]));
+    }
 
     // a quick check does not look at it
     const CheckEvidence quick = {.run = &bench->run, .now = &bench->made, .rate = 1e-3};
