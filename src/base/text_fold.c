@@ -43,17 +43,21 @@ static size_t find_hang(const char *line, size_t indent, size_t length, size_t w
 static size_t find_break(const char *line, size_t length, size_t first, size_t room)
 {
     size_t last = 0;
+    size_t in_unit = 0; // in front of a unit, where no other blank will do
     for (size_t i = first; i < length; i++) {
-        // a number stays with its unit
-        const bool is_number = i > first && line[i] == ' ' && line[i - 1] >= '0' &&
-                               line[i - 1] <= '9' && strcspn(line + i + 1, " ,;:\n") <= UNIT_MAX;
-        if (line[i] == ' ' && !is_number && text_width(line, i) <= room) {
-            last = i;
-        } else if (line[i] == ' ' && last == 0) {
-            return i;
+        if (line[i] != ' ') {
+            continue;
         }
+        if (text_width(line, i) > room) {
+            return last > 0 ? last : in_unit > 0 ? in_unit : i;
+        }
+        // a number stays with its unit
+        const bool is_number = i > first && line[i - 1] >= '0' && line[i - 1] <= '9' &&
+                               strcspn(line + i + 1, " ,;:\n") <= UNIT_MAX;
+        last = is_number ? last : i;
+        in_unit = is_number ? i : in_unit;
     }
-    return last > 0 ? last : length;
+    return last > 0 ? last : in_unit > 0 ? in_unit : length;
 }
 
 static void fold_line(const char *line, size_t length, size_t width, Text *target)

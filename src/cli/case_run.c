@@ -1,6 +1,7 @@
 // What do the backends of one case make of it, and how far are they apart?
 #include "cli/case_run.h"
 
+#include "cli/long_work.h"
 #include "cli/progress.h"
 #include "compare/backend_run.h"
 #include "run/registry.h"
@@ -43,7 +44,8 @@ static void make_truth(CaseRun *run, bool is_quiet)
 }
 
 // One run of one backend; the truth's own trajectory stands for the run of its backend.
-static Trajectory *run_backend(const CaseRun *run, BackendKind backend, bool is_quiet)
+static Trajectory *run_backend(const CaseRun *run, BackendKind backend, bool is_announced,
+                               bool is_quiet)
 {
     const Solver *solver = registry_solver(backend);
     Trajectory *truth = run->truth.trajectory;
@@ -52,6 +54,7 @@ static Trajectory *run_backend(const CaseRun *run, BackendKind backend, bool is_
     }
     Progress progress;
     const ChosenWatch watch = progress_watch_trials(&progress, solver->name, is_quiet);
+    progress.is_warned = is_announced;
     Trajectory *trajectory = backend_run(&run->scenario, backend,
                                          truth == NULL ? NULL : &run->truth, watch, &TRACER_PROBE);
     progress_end(&progress);
@@ -140,9 +143,11 @@ void case_run_execute(CaseRun *run, bool is_quiet)
         .runs = run->runs,
         .errors = run->errors,
     };
+    const bool is_announced = long_work_announce(&run->scenario, is_quiet);
     make_truth(run, is_quiet);
     for (size_t i = 0; i < options->backend_count; i++) {
-        run->runs[i] = run_backend(run, options->backends[i], is_quiet);
+        run->runs[i] = run_backend(run, options->backends[i],
+                                   is_announced && options->backends[i] == BACKEND_ODE, is_quiet);
         run->failed_count += run->runs[i]->is_complete ? 0 : 1;
     }
     measure_errors(run);

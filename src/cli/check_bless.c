@@ -247,12 +247,15 @@ void check_run_bless(const CheckOptions *options, CheckItem *items, size_t count
     *run = (CheckRun){.cases = calloc(count + 1, sizeof *run->cases)};
     assert(run->cases != NULL);
     interrupt_watch();
+    // of all together: that it takes long is said once
+    CheckProgress progress = check_progress_start("", options->common.is_quiet);
+    progress.case_count = count;
     for (size_t i = 0; i < count; i++) {
-        Making making = {.item = &items[i], .options = options};
-        making.progress = check_progress_start(items[i].path, options->common.is_quiet);
-        making.progress.case_number = i + 1;
-        making.progress.case_count = count;
+        progress.doing = items[i].path;
+        progress.case_number = i + 1;
+        Making making = {.item = &items[i], .options = options, .progress = progress};
         bless_item(&making, &run->cases[i]);
+        progress = making.progress;
     }
     run->report = (CheckReport){.case_count = count,
                                 .cases = run->cases,

@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "cli/doubts.h"
 #include "cli/idle_settings.h"
+#include "cli/long_work.h"
 #include "cli/map_files.h"
 #include "cli/map_lone.h"
 #include "cli/map_options.h"
@@ -32,6 +33,16 @@ static void tell(Telling *telling, const char *words)
     if (status_line_is_due(&telling->line, clock_now_s() - telling->started_s)) {
         status_line_show(&telling->line, words);
     }
+}
+
+// Says it of long work, before it begins.
+static void tell_plan(double steps, void *context)
+{
+    // s of a lone pin's step, within a factor of two
+    const double step_s = 1.2e-6;
+    Telling *telling = context;
+    const bool is_warned = long_work_warn("running the settings in ODE", steps * step_s, true);
+    telling->line.is_warned = telling->line.is_warned || is_warned;
 }
 
 static void tell_row(size_t done, size_t total, void *context)
@@ -103,7 +114,7 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario,
     }
     Telling telling = {status_line_start(options->common.is_quiet), clock_now_s(),
                        "the reference's run"};
-    const MappingWatch watch = {tell_row, {tell_run, &telling}, &telling};
+    const MappingWatch watch = {tell_plan, tell_row, {tell_run, &telling}, &telling};
     Mapping mapping = {0};
     PenaltyMap *penalty = NULL;
     bool is_done = mapping_make(scenario, settings, watch, &mapping, err) &&

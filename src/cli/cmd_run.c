@@ -4,7 +4,6 @@
 #include "cli/command.h"
 #include "cli/doubts.h"
 #include "cli/idle_settings.h"
-#include "cli/long_work.h"
 #include "cli/option_values.h"
 #include "cli/output.h"
 #include "cli/run_files.h"
@@ -62,7 +61,7 @@ static const struct argp_option OPTIONS[] = {
      2},
     {"plot", KEY_PLOT, "FILE.svg", 0, "Draw motion, forces and the pin in its hole", 2},
     {"out", KEY_OUT, "DIR", 0, "Write <case>.json, .txt, .svg and <case>-<backend>.csv there", 2},
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 2},
+    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors and a warning of long work", 2},
     {0},
 };
 
@@ -222,7 +221,6 @@ static bool run_cases(const RunCommand *command, CaseRun *runs, Err *err)
     json_t *objects = command->is_json ? json_array() : NULL;
     bool is_reported = true;
     for (size_t i = 0; is_reported && i < command->case_count; i++) {
-        long_work_announce(&runs[i].scenario);
         case_run_execute(&runs[i], command->is_quiet);
         is_reported = report_case(command, &runs[i], objects, err);
     }

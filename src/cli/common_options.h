@@ -47,7 +47,8 @@ enum {
     }
 #define COMMON_ROW_QUIET(group)                                                                    \
     {                                                                                              \
-        "quiet", COMMON_QUIET, NULL, 0, "Nothing on standard error but errors", group              \
+        "quiet", COMMON_QUIET, NULL, 0,                                                            \
+            "Nothing on standard error but errors and a warning of long work", group               \
     }
 
 typedef struct CommonOptions {

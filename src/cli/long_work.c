@@ -11,9 +11,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double LEAST_STEPS = 5e6; // below it no run of ODE takes a minute
+static const double LEAST_STEPS = 2e6; // below it hardly a run of ODE takes long
 static const double TIMED_STEPS = 3e4; // some 50 ms of work
-static const double LONG = 60.0;       // s: who waits longer wants to know
+static const double LONG = 60.0;       // s: who sees progress and waits longer wants to know
+static const double LONG_QUIET = 20.0; // s: likewise, who sees none
 static const RunWatch NOBODY = {NULL, NULL};
 
 void long_work_words(double time_s, char *words, size_t size)
@@ -52,17 +53,30 @@ static double time_step(const Scenario *scenario, double share)
     return step_s;
 }
 
-void long_work_announce(const Scenario *scenario)
+double long_work_limit(bool is_quiet)
+{
+    return is_quiet ? LONG_QUIET : LONG;
+}
+
+bool long_work_warn(const char *what, double time_s, bool is_quiet)
+{
+    if (!(time_s > long_work_limit(is_quiet))) {
+        return false;
+    }
+    char words[32];
+    long_work_words(time_s, words, sizeof words);
+    fprintf(stderr, "jointplay: warning: %s takes about %s\n", what, words);
+    return true;
+}
+
+bool long_work_announce(const Scenario *scenario, bool is_quiet)
 {
     if (!uses_ode(&scenario->run) || !(scenario->run.step > 0.0)) {
-        return;
+        return false;
     }
     const double steps = scenario_duration(scenario) / scenario->run.step;
     const double step_s = steps < LEAST_STEPS ? 0.0 : time_step(scenario, TIMED_STEPS / steps);
-    if (steps * step_s > LONG) {
-        char words[32];
-        long_work_words(steps * step_s, words, sizeof words);
-        fprintf(stderr, "jointplay: warning: ode takes about %s: %.2g steps at some %.2g us\n",
-                words, steps, 1e6 * step_s);
-    }
+    char what[64];
+    snprintf(what, sizeof what, "ode, with %.2g steps at some %.2g us,", steps, 1e6 * step_s);
+    return long_work_warn(what, steps * step_s, is_quiet);
 }

@@ -1,12 +1,20 @@
-// Says how long a run will take that takes more than about a minute, before it begins.
+// Says how long work will take that takes long, before it begins or once its pace is known.
 #pragma once
 
 #include "model/scenario.h"
 
+#include <stdbool.h>
+
+// From how many seconds on work is long: less where nothing is seen of its progress.
+double long_work_limit(bool is_quiet);
+
+// Warns on standard error of work that takes long; returns whether it did.
+bool long_work_warn(const char *what, double time_s, bool is_quiet);
+
 // Where ODE has very many steps to make, a first part of them is run and timed, and the time of all
-// is written to standard error; nothing where it is short. Of a step that is chosen as the run
-// goes, and of the reference, progress_watch says it while they run.
-void long_work_announce(const Scenario *scenario);
+// is written to standard error; nothing where it is short. Returns whether it was. Of a step that
+// is chosen as the run goes, and of the reference, progress_watch says it while they run.
+bool long_work_announce(const Scenario *scenario, bool is_quiet);
 
 // A time as people say it, such as "3.2 h".
 void long_work_words(double time_s, char *words, size_t size);

@@ -8,10 +8,11 @@ typedef struct Progress {
     const char *backend; // of the run that is watched
     char doing[64];      // which of its trials; empty where there are none
     StatusLine line;
-    bool is_warned; // of a run that takes long
+    bool is_warned;   // of a run that takes long
+    double started_s; // by the clock
 } Progress;
 
-// Watches one run, a quiet one too: that it takes more than a minute is said once even then, and in
+// Watches one run, a quiet one too: that it takes long (long_work.h) is said once even then, and in
 // a log. The progress must outlive the run.
 RunWatch progress_watch(Progress *progress, const char *backend, bool is_quiet);
 

@@ -8,6 +8,7 @@
 static const double FIRST_LINE = 2.0;     // s: who waits shorter than that needs no line
 static const double TERMINAL_PAUSE = 0.2; // s, between two lines on a terminal
 static const double LOG_PAUSE = 10.0;     // s, between two lines of a log
+static const double QUIET_LINE = 15.0;    // s: who wants no lines is warned once of long work
 
 StatusLine status_line_start(bool is_quiet)
 {
@@ -17,7 +18,12 @@ StatusLine status_line_start(bool is_quiet)
 bool status_line_is_due(StatusLine *line, double wall_s)
 {
     const double pause = line->is_terminal ? TERMINAL_PAUSE : LOG_PAUSE;
-    if (line->is_quiet || wall_s < FIRST_LINE || wall_s - line->last_line_s < pause) {
+    if (line->is_quiet) {
+        const bool is_due = wall_s >= QUIET_LINE && !line->is_warned;
+        line->is_warned = line->is_warned || is_due;
+        return is_due;
+    }
+    if (wall_s < FIRST_LINE || wall_s - line->last_line_s < pause) {
         return false;
     }
     line->last_line_s = wall_s;
@@ -40,6 +46,10 @@ void status_line_append_left(Text *words, double left_s)
 
 void status_line_show(StatusLine *line, const char *words)
 {
+    if (line->is_quiet) {
+        fprintf(stderr, "jointplay: warning: long work: %s\n", words);
+        return;
+    }
     fprintf(stderr, line->is_terminal ? "\r%s\x1b[K" : "%s\n", words);
     fflush(stderr);
     line->is_shown = line->is_terminal;

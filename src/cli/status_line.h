@@ -1,5 +1,6 @@
 // A line on standard error that says how far something long has come, and is gone at its end: one
-// line on a terminal, a plain line now and then elsewhere.
+// line on a terminal, a plain line now and then elsewhere. Who wants quiet gets one line, a
+// warning, once the work takes long.
 #pragma once
 
 #include "base/text.h"
@@ -10,6 +11,7 @@ typedef struct StatusLine {
     bool is_quiet;
     bool is_terminal;
     bool is_shown;      // whether a line stands on the terminal
+    bool is_warned;     // that it takes long, where it is quiet
     double last_line_s; // wall time of the last line, s
 } StatusLine;
 

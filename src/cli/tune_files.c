@@ -2,6 +2,7 @@
 #include "cli/tune_files.h"
 
 #include "cli/case_run.h"
+#include "cli/long_work.h"
 #include "cli/written.h"
 #include "report/file.h"
 #include "report/tune_carriers.h"
@@ -24,7 +25,16 @@ typedef struct Kind {
 
 static bool write_code(const TuneReport *report, Text *text, Err *err)
 {
-    return tune_carriers_trial(report) != NULL && tune_carriers_code(report, text, err);
+    const TuneTrial *trial = tune_carriers_trial(report);
+    if (trial == NULL) {
+        return false;
+    }
+    if (!scheme_has_step(&report->tune->schemes[trial->scheme].scheme)) {
+        // its step is chosen once more, against a truth of its own
+        long_work_warn("choosing the step for the code",
+                       report->tune->truth.wall_s + trial->run.wall_s, true);
+    }
+    return tune_carriers_code(report, text, err);
 }
 
 static bool write_sdf(const TuneReport *report, Text *text, Err *err)

@@ -312,6 +312,23 @@ static void fill_row(const MappingContact *contact, MappingRow *row)
                                     contact->impact.speed, row->predicted.duration.most);
 }
 
+// The world steps of the rows: those of a contact, once a phase.
+static double count_steps(const Mapping *mapping, size_t map_count)
+{
+    const MappingSettings *settings = &mapping->settings;
+    double steps = 0.0;
+    for (size_t i = 0; i < mapping->contact_count; i++) {
+        for (size_t k = 0; k < settings->step_count; k++) {
+            const double of_one = mapping->contacts[i].asked.duration / settings->steps[k];
+            // what is too fine is not run
+            steps += of_one <= MAPPING_STEPS_MOST
+                         ? (double)map_count * MAP_IMPACT_PHASES * ceil(of_one)
+                         : 0.0;
+        }
+    }
+    return steps;
+}
+
 static void make_rows(Mapping *mapping, MappingWatch watch)
 {
     const MappingSettings *settings = &mapping->settings;
@@ -321,6 +338,9 @@ static void make_rows(Mapping *mapping, MappingWatch watch)
     const size_t total = mapping->contact_count * map_count * settings->step_count;
     mapping->rows = calloc(total + 1, sizeof *mapping->rows);
     assert(mapping->rows != NULL);
+    if (watch.plan != NULL) {
+        watch.plan(count_steps(mapping, map_count), watch.context);
+    }
     for (size_t i = 0; i < mapping->contact_count; i++) {
         MappingContact *contact = &mapping->contacts[i];
         if (contact->lack[0] != '\0') {

@@ -103,8 +103,10 @@ typedef struct Mapping {
     MappingRow *rows; // owned
 } Mapping;
 
-// Told before each row is run, with what has been done and what there is to do.
+// Who watches: of the world steps that all rows make, before the first of them, and before each row
+// of what has been done and what there is to do.
 typedef struct MappingWatch {
+    void (*plan)(double steps, void *context);             // NULL: nobody watches
     void (*row)(size_t done, size_t total, void *context); // NULL: nobody watches
     RunWatch run;                                          // of the reference
     void *context;

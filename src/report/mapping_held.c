@@ -5,7 +5,6 @@
 #include "report/json_value.h"
 #include "report/run_section.h"
 #include "report/units.h"
-#include "report/wrapped.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -51,8 +50,8 @@ static void write_table(const MappingContact *contact, const Style *style, Text 
         setting_row(contact, &contact->held->settings[i], table);
     }
     run_section_end(table, text);
-    wrapped_words(text, "textbook: ERP at most 1, Gazebo's kp and kd; corrected: any ERP and CFM; "
-                        "midpoint: with staggered stepping, its ERP follows the closing speed.");
+    text_append(text, "  textbook: ERP at most 1, Gazebo's kp and kd; corrected: any ERP and CFM; "
+                      "midpoint: with staggered stepping, its ERP follows the closing speed.\n");
 }
 
 // A number beside the one asked for: within the share that is valid it is right.
@@ -73,26 +72,25 @@ static void write_worth(const MappingContact *contact, const HeldSetting *settin
     const ImpactFigures *predicted = &setting->predicted;
     const double step_us = contact->held->step_s * UNITS_US;
     if (setting->verdict == VERDICT_VALID) {
-        wrapped_words(text,
-                      "%s: %s is right at %.4g us: restitution %.3g to %.3g where %.3g is asked, "
-                      "peak and depth within %.0f %%.",
-                      constants, values, step_us, predicted->restitution.least,
-                      predicted->restitution.most, asked->restitution,
-                      MAPPING_VALID_SHARE * UNITS_PERCENT);
+        text_append(text,
+                    "  %s: %s is right at %.4g us: restitution %.3g to %.3g where %.3g is asked, "
+                    "peak and depth within %.0f %%.\n",
+                    constants, values, step_us, predicted->restitution.least,
+                    predicted->restitution.most, asked->restitution,
+                    MAPPING_VALID_SHARE * UNITS_PERCENT);
         return;
     }
     char peak[SHARE_SIZE];
     char depth[SHARE_SIZE];
     share_words(share_of(&predicted->force_max, asked->force_max), "the peak", peak);
     share_words(share_of(&predicted->penetration_max, asked->penetration_max), "the depth", depth);
-    wrapped_words(text,
-                  "%s: nothing is right at %.4g us, where the contact lasts %.3g us, %.3g steps. "
-                  "The best, %s, gives restitution %.3g to %.3g where %.3g is asked (%s), %s and "
-                  "%s.",
-                  constants, step_us, asked->duration * UNITS_US,
-                  asked->duration / contact->held->step_s, values, predicted->restitution.least,
-                  predicted->restitution.most, asked->restitution,
-                  setting->is_restitution_met ? "right" : "off", peak, depth);
+    text_append(
+        text,
+        "  %s: nothing is right at %.4g us, where the contact lasts %.3g us, %.3g steps. The best, "
+        "%s, gives restitution %.3g to %.3g where %.3g is asked (%s), %s and %s.\n",
+        constants, step_us, asked->duration * UNITS_US, asked->duration / contact->held->step_s,
+        values, predicted->restitution.least, predicted->restitution.most, asked->restitution,
+        setting->is_restitution_met ? "right" : "off", peak, depth);
 }
 
 // What else there is to know: the way to the wall, and what is right.
@@ -101,10 +99,10 @@ static void write_beside(const MappingContact *contact, Text *text)
     const Held *held = contact->held;
     const double step_us = held->step_s * UNITS_US;
     if (held->flight > held->play) {
-        wrapped_words(text,
-                      "In a step of %.4g us the pin flies %.3g um and has %.3g um from wall to "
-                      "wall: whatever the constants, it can pass through the wall unseen.",
-                      step_us, held->flight * UNITS_UM, held->play * UNITS_UM);
+        text_append(text,
+                    "  In a step of %.4g us the pin flies %.3g um and has %.3g um from wall to "
+                    "wall: whatever the constants, it can pass through the wall unseen.\n",
+                    step_us, held->flight * UNITS_UM, held->play * UNITS_UM);
     }
     Text maps;
     text_init(&maps);
@@ -114,7 +112,8 @@ static void write_beside(const MappingContact *contact, Text *text)
         }
     }
     if (maps.length > 0) {
-        wrapped_words(text, "With numbers made anew at each depth it is right by: %s.", maps.data);
+        text_append(text, "  With numbers made anew at each depth it is right by: %s.\n",
+                    maps.data);
     }
     text_finish(&maps);
 }
@@ -131,16 +130,16 @@ void mapping_held_text(const MappingContact *contact, const Style *style, Text *
     write_worth(contact, pair, "Gazebo", values, text);
     snprintf(values, sizeof values, "ERP = %.5g, CFM = %.5g m/(N s)", row->row.erp, row->row.cfm);
     write_worth(contact, row, "ERP and CFM", values, text);
-    wrapped_words(text,
-                  "Of two equal surfaces in Gazebo each has 2 kp = %.5g N/m and kd / 2 = "
-                  "%.4g N s/m.",
-                  2.0 * pair->stiffness, 0.5 * pair->damping);
+    text_append(
+        text,
+        "  Of two equal surfaces in Gazebo each has 2 kp = %.5g N/m and kd / 2 = %.4g N s/m.\n",
+        2.0 * pair->stiffness, 0.5 * pair->damping);
     write_beside(contact, text);
     for (int i = 0; i < HELD_MAP_COUNT; i++) {
         const HeldSetting *setting = &contact->held->settings[i];
         if (!setting->delivered.is_measured) {
-            wrapped_words(text, "not run in ODE: %s: %s", OPTIONS_ODE_MAPS[setting->map],
-                          setting->delivered.message);
+            text_append(text, "  not run in ODE: %s: %s\n", OPTIONS_ODE_MAPS[setting->map],
+                        setting->delivered.message);
         }
     }
 }

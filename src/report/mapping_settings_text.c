@@ -3,7 +3,6 @@
 
 #include "report/run_section.h"
 #include "report/units.h"
-#include "report/wrapped.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -53,13 +52,13 @@ static void write_settings(const MappingReport *report, const MappingContact *co
     }
     run_section_end(table, text);
     if (!is_poisson) {
-        wrapped_words(text, "ERP and CFM at the law's deepest point%s",
-                      contact->impact.law.family == FORCE_LAW_POWER &&
-                              contact->impact.law.exponent == 1.0 &&
-                              contact->impact.law.hysteresis == 0.0
-                          ? "; of a linear spring and damper they hold at any depth, but for the "
-                            "midpoint's ERP."
-                          : "; the engine is given them anew at the depth of each step.");
+        text_append(text, "  ERP and CFM at the law's deepest point%s\n",
+                    contact->impact.law.family == FORCE_LAW_POWER &&
+                            contact->impact.law.exponent == 1.0 &&
+                            contact->impact.law.hysteresis == 0.0
+                        ? "; of a linear spring and damper they hold at any depth, but for the "
+                          "midpoint's ERP."
+                        : "; the engine is given them anew at the depth of each step.");
     }
 }
 
@@ -81,7 +80,7 @@ static void write_faults(const MappingReport *report, const MappingContact *cont
         char key[FAULT_KEY_SIZE];
         snprintf(key, sizeof key, "%s, %.4g us", mapping_report_map(report, &rows[i]),
                  rows[i].step_s * UNITS_US);
-        wrapped_words(text, "%s: %s", key, rows[i].words);
+        text_append(text, "  %s: %s\n", key, rows[i].words);
     }
 }
 
@@ -140,9 +139,9 @@ static void write_unmeasured(const MappingReport *report, const MappingContact *
     for (size_t i = 0; i < contact->row_count; i++) {
         const MappingRow *row = &report->mapping->rows[contact->first_row + i];
         if (!row->delivered.is_measured && strcmp(row->delivered.message, last) != 0) {
-            wrapped_words(text, "not run in ODE: %s at %.4g us: %s",
-                          mapping_report_map(report, row), row->step_s * UNITS_US,
-                          row->delivered.message);
+            text_append(text, "  not run in ODE: %s at %.4g us: %s\n",
+                        mapping_report_map(report, row), row->step_s * UNITS_US,
+                        row->delivered.message);
         }
         last = row->delivered.is_measured ? "" : row->delivered.message;
     }

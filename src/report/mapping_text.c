@@ -6,7 +6,6 @@
 #include "report/mapping_settings_text.h"
 #include "report/run_section.h"
 #include "report/units.h"
-#include "report/wrapped.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -21,14 +20,15 @@ static void write_head(const MappingReport *report, const Style *style, Text *te
     if (scenario->path[0] != '\0') {
         text_append(text, "  case        %s\n", scenario->path);
     }
-    wrapped_entry(text, "valid",
-                  "restitution%s within %.0f %% of what is asked, wherever the steps fall",
-                  mapping_report_is_poisson(report) ? "" : ", peak force and depth each",
-                  MAPPING_VALID_SHARE * UNITS_PERCENT);
-    wrapped_entry(text, "delivered",
-                  "by ODE: a lone pin of the joint's effective mass in its hole, means over %d "
-                  "phases; other joints that are hit or hold meanwhile are left out",
-                  MAP_IMPACT_PHASES);
+    text_append(
+        text,
+        "  valid       restitution%s within %.0f %% of what is asked, wherever the steps fall\n",
+        mapping_report_is_poisson(report) ? "" : ", peak force and depth each",
+        MAPPING_VALID_SHARE * UNITS_PERCENT);
+    text_append(text,
+                "  delivered   by ODE: a lone pin of the joint's effective mass in its hole, means "
+                "over %d phases; other joints that are hit or hold meanwhile are left out\n",
+                MAP_IMPACT_PHASES);
 }
 
 static const char *source_words(MappingSource source)
@@ -54,8 +54,8 @@ static void write_sources(const MappingReport *report, const MappingContact *con
                     settings->mass_source == MAPPING_GIVEN ? "; the joint's is" : " of",
                     joint->mass_least, joint->mass_most);
     }
-    wrapped_entry(text, "mass", "%.4g kg, %s%s", contact->impact.mass,
-                  source_words(settings->mass_source), words.data);
+    text_append(text, "  mass        %.4g kg, %s%s\n", contact->impact.mass,
+                source_words(settings->mass_source), words.data);
     text_finish(&words);
     text_init(&words);
     if (joint->onsets > 0) {
@@ -70,8 +70,8 @@ static void write_sources(const MappingReport *report, const MappingContact *con
                     is_most ? joint->speed_median : joint->speed_most,
                     is_most ? "in the median" : "at most");
     }
-    wrapped_entry(text, "speed", "%.4g m/s, %s%s", contact->impact.speed,
-                  source_words(contact->speed_source), words.data);
+    text_append(text, "  speed       %.4g m/s, %s%s\n", contact->impact.speed,
+                source_words(contact->speed_source), words.data);
     text_finish(&words);
 }
 
@@ -80,10 +80,10 @@ static void write_law(const MappingReport *report, const MappingContact *contact
     const ContactOptions *options = &contact->scenario.contact;
     const MapImpact *asked = &contact->asked;
     if (mapping_report_is_poisson(report)) {
-        wrapped_entry(text, "asks",
-                      "restitution %.4g; F = p d' with p = %.4g N s/mm: no spring, so force and "
-                      "depth are the step's",
-                      asked->restitution, options->penalty / 1e3);
+        text_append(text,
+                    "  asks        restitution %.4g; F = p d' with p = %.4g N s/mm: no spring, so "
+                    "force and depth are the step's\n",
+                    asked->restitution, options->penalty / 1e3);
         return;
     }
     char damping[LAW_DAMPING_SIZE] = "";
@@ -91,17 +91,18 @@ static void write_law(const MappingReport *report, const MappingContact *contact
         snprintf(damping, sizeof damping, " (%s for %.4g)", OPTIONS_DAMPINGS[options->damping],
                  options->restitution);
     }
-    wrapped_entry(text, "asks",
-                  "restitution %.4g, peak %.4g N, depth %.4g um, %.4g us of contact%s",
-                  asked->restitution, asked->force_max, asked->penetration_max * UNITS_UM,
-                  asked->duration * UNITS_US, damping);
-    wrapped_entry(text, "stiffness",
-                  "k = %.4g N/m at that depth (secant; tangent %.4g), Tc = %.4g us without damping",
-                  contact->secant, contact->tangent, contact->half_period_s * UNITS_US);
-    wrapped_entry(text, "damping",
-                  "c = %.4g N s/m at that depth; as much is lost to a viscous one of %.4g beside "
-                  "that k",
-                  contact->damping, contact->equivalent);
+    text_append(
+        text, "  asks        restitution %.4g, peak %.4g N, depth %.4g um, %.4g us of contact%s\n",
+        asked->restitution, asked->force_max, asked->penetration_max * UNITS_UM,
+        asked->duration * UNITS_US, damping);
+    text_append(text,
+                "  stiffness   k = %.4g N/m at that depth (secant; tangent %.4g), Tc = %.4g us "
+                "without damping\n",
+                contact->secant, contact->tangent, contact->half_period_s * UNITS_US);
+    text_append(text,
+                "  damping     c = %.4g N s/m at that depth; as much is lost to a viscous one of "
+                "%.4g beside that k\n",
+                contact->damping, contact->equivalent);
 }
 
 // How much harder the linkage's own load presses, and what that does to stability.
@@ -117,10 +118,10 @@ static void write_run(const MappingContact *contact, Text *text)
         snprintf(stable, sizeof stable, "; omega h = 2 there at h = %.3g us, for the least mass",
                  2.0 * sqrt(joint->mass_least / tangent) * UNITS_US);
     }
-    wrapped_entry(text, "the run",
-                  "%.4g N and %.4g um at most: the linkage's load is in these and not in the "
-                  "impact%s",
-                  joint->force_max, joint->penetration_max * UNITS_UM, stable);
+    text_append(text,
+                "  the run     %.4g N and %.4g um at most: the linkage's load is in these and not "
+                "in the impact%s\n",
+                joint->force_max, joint->penetration_max * UNITS_UM, stable);
 }
 
 static void write_longest(const MappingReport *report, const MappingContact *contact,
@@ -150,11 +151,11 @@ static void write_longest(const MappingReport *report, const MappingContact *con
     }
     run_section_end(table, text);
     if (joint->onsets > 0) {
-        wrapped_words(text,
-                      "hardest: %.4g kg at %.4g m/s, the lightest mass and the fastest contact of "
-                      "the run, together.",
-                      joint->mass_least,
-                      fmax(joint->speed_most, contact->impact.law.impact_speed_floor));
+        text_append(text,
+                    "  hardest: %.4g kg at %.4g m/s, the lightest mass and the fastest contact of "
+                    "the run, together.\n",
+                    joint->mass_least,
+                    fmax(joint->speed_most, contact->impact.law.impact_speed_floor));
     }
 }
 
@@ -169,7 +170,7 @@ void mapping_text_write(const MappingReport *report, const Style *style, Text *t
                     mapping_report_joint(report, contact)->name, law, style->end);
         write_sources(report, contact, text);
         if (contact->lack[0] != '\0') {
-            wrapped_entry(text, "not mapped", "%s", contact->lack);
+            text_append(text, "  not mapped  %s\n", contact->lack);
             continue;
         }
         write_law(report, contact, text);

@@ -228,6 +228,31 @@ static void a_lone_contact_needs_no_case(void **state)
                         "--laws needs a case");
 }
 
+// What takes long is said before it begins, also where no progress is wanted: nobody waits for it
+// here, the warning is read from a command that is ended.
+static void long_work_is_announced(void **state)
+{
+    Program *program = *state;
+    char line[4 * PROGRAM_PATH_SIZE];
+    static const char *const STEPS[] = {"0.0053 us, 0.0054 us, 0.0055 us, 0.0056 us", "0.2 us"};
+    for (int i = 0; i < 2; i++) {
+        snprintf(line, sizeof line,
+                 "cd '%s' && timeout 1 \"$JOINTPLAY_PROGRAM\" map -q --stiffness '1e9 N/m^1.5' "
+                 "--mass '0.1 kg' --steps '%s' >table 2>words; true",
+                 program->folder, STEPS[i]);
+        assert_int_equal(system(line), 0);
+        char path[PROGRAM_PATH_SIZE];
+        program_path(program, "words", path);
+        program_read(path, program->errors);
+        if (i == 0) {
+            assert_says(program->errors, "warning: running the settings in ODE takes about");
+        } else {
+            // control: what is short is not announced
+            assert_string_equal(program->errors, "");
+        }
+    }
+}
+
 static void files_are_written_where_they_are_wanted(void **state)
 {
     Program *program = *state;
@@ -408,6 +433,7 @@ int main(void)
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(a_lone_contact_needs_no_case, program_set_up,
                                         program_tear_down),
+        cmocka_unit_test_setup_teardown(long_work_is_announced, program_set_up, program_tear_down),
         cmocka_unit_test_setup_teardown(files_are_written_where_they_are_wanted, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(the_velocity_level_model_has_rows_of_its_own,

@@ -3,6 +3,7 @@
 
 #include "cli/progress.h"
 
+#include "cli/long_work.h"
 #include "cli/output.h"
 
 #include "close.h"
@@ -114,20 +115,68 @@ static void who_wants_quiet_is_told_of_long_work_alone(void **state)
     Progress progress;
     listen_on_pipe(&listener);
     const RunWatch quick = progress_watch(&progress, "quick", true);
-    for (int i = 1; i <= 30; i++) {
-        quick.progress(i / 30.0, i, quick.context);
+    for (int i = 1; i <= 14; i++) {
+        quick.progress(i / 14.0, i, quick.context);
     }
     const RunWatch slow = progress_watch(&progress, "slow", true);
     for (int i = 1; i <= 30; i++) {
         slow.progress(i / 3600.0, i, slow.context);
     }
+    // without a pace, and of what is made of many parts
+    const RunWatch stuck = progress_watch(&progress, "stuck", true);
+    for (int i = 1; i <= 30; i++) {
+        stuck.progress(0.0, i, stuck.context);
+    }
     progress_end(&progress);
     stop_listening(&listener);
+    assert_non_null(strstr(listener.output, "warning: stuck goes on for longer than 15 s"));
+    *strstr(listener.output, "jointplay: warning: stuck") = '\0';
     assert_null(strstr(listener.output, "quick"));
-    const char *warning = strstr(listener.output, "warning: slow takes about 60 min");
+    const char *warning =
+        strstr(listener.output, "warning: slow, at its present pace, takes about 60 min");
     assert_non_null(warning);
     // once
     assert_null(strstr(warning + 1, "warning"));
+}
+
+// The line of every command whose work is done in processes of its own.
+static void who_wants_quiet_gets_one_line_of_long_work(void **state)
+{
+    (void)state;
+    Listener listener;
+    listen_on_pipe(&listener);
+    StatusLine line = status_line_start(true);
+    for (int i = 1; i <= 60; i++) {
+        if (status_line_is_due(&line, 0.5 * i)) {
+            char words[32];
+            snprintf(words, sizeof words, "searching, %.0f s", 0.5 * i);
+            status_line_show(&line, words);
+        }
+    }
+    status_line_end(&line);
+    // control: what is short stays silent
+    StatusLine brief = status_line_start(true);
+    assert_false(status_line_is_due(&brief, 14.9));
+    stop_listening(&listener);
+    assert_string_equal(listener.output, "jointplay: warning: long work: searching, 15 s\n");
+}
+
+static void a_run_that_was_announced_is_not_warned_of_again(void **state)
+{
+    (void)state;
+    Listener listener;
+    Progress progress;
+    listen_on_pipe(&listener);
+    assert_true(long_work_warn("ode", 3600.0, true));
+    assert_false(long_work_warn("ode", 19.0, true));
+    const RunWatch watch = progress_watch(&progress, "ode", true);
+    progress.is_warned = true;
+    for (int i = 1; i <= 30; i++) {
+        watch.progress(i / 3600.0, i, watch.context);
+    }
+    progress_end(&progress);
+    stop_listening(&listener);
+    assert_string_equal(listener.output, "jointplay: warning: ode takes about 60 min\n");
 }
 
 static void colours_are_for_terminals_that_want_them(void **state)
@@ -161,6 +210,8 @@ int main(void)
         cmocka_unit_test(a_terminal_sees_one_line_that_goes_away),
         cmocka_unit_test(a_log_gets_a_line_every_ten_seconds),
         cmocka_unit_test(who_wants_quiet_is_told_of_long_work_alone),
+        cmocka_unit_test(who_wants_quiet_gets_one_line_of_long_work),
+        cmocka_unit_test(a_run_that_was_announced_is_not_warned_of_again),
         cmocka_unit_test(colours_are_for_terminals_that_want_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
