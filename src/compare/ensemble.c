@@ -21,8 +21,7 @@ static void take_member(const Trajectory *trajectory, size_t member, Draws *draw
         draws->values[i][ENSEMBLE_IMPULSE][member] = joint->impulse;
         draws->values[i][ENSEMBLE_IMPACTS][member] = (double)joint->impacts;
         draws->values[i][ENSEMBLE_PENETRATION_MAX][member] = joint->penetration_max.value;
-        draws->values[i][ENSEMBLE_CONTACT_SHARE][member] =
-            trajectory_contact_share(trajectory, i);
+        draws->values[i][ENSEMBLE_CONTACT_SHARE][member] = trajectory_contact_share(trajectory, i);
     }
 }
 

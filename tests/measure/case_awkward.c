@@ -115,7 +115,7 @@ static void write_lock(uint64_t seed, FILE *file)
             // two links of half the way between that at the start and the longest one each: the
             // follower pulls them straight
             const double reach = 0.25 * (apart + longest_way(&loop, pivot));
-            Point knee;
+            Point knee = wrist;
             is_whole = longest_way(&loop, pivot) > 1.1 * apart &&
                        draw_meet(wrist, reach, pivot, reach, true, &knee);
             const int first = scene_link(&scene, wrist, knee, 0.1);
