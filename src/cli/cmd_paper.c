@@ -21,7 +21,8 @@ enum { KEY_JSON = 0x100, KEY_WIDE, KEY_QUIET = 'q' };
 static const struct argp_option OPTIONS[] = {
     {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 0},
     {"wide", KEY_WIDE, NULL, 0, "All columns of the tables, however wide the terminal is", 0},
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors and a warning of long work", 0},
+    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors and a warning of long work",
+     0},
     {0},
 };
 

@@ -61,7 +61,8 @@ static const struct argp_option OPTIONS[] = {
      2},
     {"plot", KEY_PLOT, "FILE.svg", 0, "Draw motion, forces and the pin in its hole", 2},
     {"out", KEY_OUT, "DIR", 0, "Write <case>.json, .txt, .svg and <case>-<backend>.csv there", 2},
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors and a warning of long work", 2},
+    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors and a warning of long work",
+     2},
     {0},
 };
 
