@@ -27,7 +27,9 @@ static void warn_once(Progress *progress, double share, double wall_s)
         // a share of 0 is no pace yet
         progress->is_warned = share > 0.0 && long_work_warn(what, wall_s / share, is_quiet);
     }
-    if (!progress->is_warned && is_quiet && fmax(wall_s, in_all_s) > WARN_QUIET) {
+    // a log has lines of a run that is long itself, none of many short ones
+    const bool has_lines = !is_quiet && wall_s >= WARN_QUIET;
+    if (!progress->is_warned && !has_lines && fmax(wall_s, in_all_s) > WARN_QUIET) {
         progress->is_warned = true;
         fprintf(stderr, "jointplay: warning: %s%s goes on for longer than %.0f s\n",
                 progress->backend, progress->doing, WARN_QUIET);

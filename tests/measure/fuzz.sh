@@ -67,7 +67,8 @@ run_step() {
         find_fault "report of a sanitizer or an assertion"
     fi
     if [ "$status" = 0 ] &&
-        grep -rlqwE -- '-?(nan|inf|NaN|Infinity)' printed ./*.csv ./*.svg out 2>/dev/null; then
+        grep -rlqwE --include='*.csv' --include='*.svg' --include='*.json' --include='*.txt' \
+            --include=printed -- '-?(nan|inf|NaN|Infinity)' . 2>/dev/null; then
         find_fault "a number that is none, with status 0"
     fi
 }
