@@ -3,6 +3,7 @@
 
 #include "compare/mapping_verdict.h"
 #include "report/json_value.h"
+#include "report/mapping_json.h"
 #include "report/run_section.h"
 #include "report/units.h"
 
@@ -144,25 +145,17 @@ void mapping_held_text(const MappingContact *contact, const Style *style, Text *
     }
 }
 
-static json_t *spread_object(const ImpactSpread *spread)
-{
-    json_t *object = json_object();
-    json_value_set(object, "mean", spread->mean);
-    json_value_set(object, "least", spread->least);
-    json_value_set(object, "most", spread->most);
-    return object;
-}
-
 static json_t *figures_object(const ImpactFigures *figures, bool is_known)
 {
     if (!is_known) {
         return json_null();
     }
     json_t *object = json_object();
-    json_object_set_new(object, "restitution", spread_object(&figures->restitution));
-    json_object_set_new(object, "force_max_N", spread_object(&figures->force_max));
-    json_object_set_new(object, "penetration_max_m", spread_object(&figures->penetration_max));
-    json_object_set_new(object, "duration_s", spread_object(&figures->duration));
+    json_object_set_new(object, "restitution", mapping_spread_object(&figures->restitution));
+    json_object_set_new(object, "force_max_N", mapping_spread_object(&figures->force_max));
+    json_object_set_new(object, "penetration_max_m",
+                        mapping_spread_object(&figures->penetration_max));
+    json_object_set_new(object, "duration_s", mapping_spread_object(&figures->duration));
     return object;
 }
 

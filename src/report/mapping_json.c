@@ -10,7 +10,7 @@ static const char *const SOURCES[] = {
     [MAPPING_USUAL] = "usual",   [MAPPING_FLOOR] = "floor",
 };
 
-static json_t *spread_object(const ImpactSpread *spread)
+json_t *mapping_spread_object(const ImpactSpread *spread)
 {
     json_t *object = json_object();
     json_value_set(object, "mean", spread->mean);
@@ -21,10 +21,11 @@ static json_t *spread_object(const ImpactSpread *spread)
 
 static void set_figures(json_t *object, const ImpactFigures *figures)
 {
-    json_object_set_new(object, "restitution", spread_object(&figures->restitution));
-    json_object_set_new(object, "force_max_N", spread_object(&figures->force_max));
-    json_object_set_new(object, "penetration_max_m", spread_object(&figures->penetration_max));
-    json_object_set_new(object, "duration_s", spread_object(&figures->duration));
+    json_object_set_new(object, "restitution", mapping_spread_object(&figures->restitution));
+    json_object_set_new(object, "force_max_N", mapping_spread_object(&figures->force_max));
+    json_object_set_new(object, "penetration_max_m",
+                        mapping_spread_object(&figures->penetration_max));
+    json_object_set_new(object, "duration_s", mapping_spread_object(&figures->duration));
     json_object_set_new(object, "fallback_rows", json_integer((json_int_t)figures->fallbacks));
 }
 

@@ -7,3 +7,6 @@
 
 // New reference. Keys as docs/output.md lists them.
 json_t *mapping_json_build(const MappingReport *report);
+
+// Mean, least and most of a figure over the phases; the caller owns the object.
+json_t *mapping_spread_object(const ImpactSpread *spread);
