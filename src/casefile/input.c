@@ -2,6 +2,8 @@
 #define _GNU_SOURCE // memfd_create
 #include "casefile/input.h"
 
+#include "base/descriptors.h"
+
 #include <assert.h>
 #include <errno.h>
 #include <stdio.h>
@@ -93,8 +95,7 @@ bool input_read_stdin(const char *what, char **text, size_t *size, Err *err)
         }
         start = 0;
     }
-    const int copy = dup(STDIN_FILENO);
-    FILE *file = copy >= 0 ? fdopen(copy, "rb") : NULL;
+    FILE *file = descriptors_stream(STDIN_FILENO, "rb");
     if (file == NULL) {
         return err_set(err, ERR_FILE, "%s: cannot be read: %s", INPUT_STDIN, strerror(errno));
     }

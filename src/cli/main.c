@@ -6,6 +6,8 @@
 #include "cli/output.h"
 #include "version.h"
 
+#include "base/descriptors.h"
+
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -66,12 +68,15 @@ static void print_error(const Err *err)
 
 int main(int argc, char **argv)
 {
+    Err err = {0};
+    const bool is_ready = descriptors_reserve(&err);
     // a reader that goes away shows as a failed write, and a failed write has an exit status
     signal(SIGPIPE, SIG_IGN);
     argp_err_exit_status = ERR_USAGE;
-    Err err = {0};
-    run_program(argc, argv, &err);
-    output_end(&err);
+    if (is_ready) {
+        run_program(argc, argv, &err);
+        output_end(&err);
+    }
     if (err.kind != ERR_NONE && err.text[0] != '\0') {
         print_error(&err);
     }

@@ -4,6 +4,8 @@
 // takes what it had begun away with it.
 #include "report/file.h"
 
+#include "base/descriptors.h"
+
 #include <errno.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -114,7 +116,7 @@ bool file_begin(WholeFile *file, const char *path, Err *err)
     if (is_standard_output(path)) {
         // beside the program's own words, wherever they go
         fflush(stdout);
-        file->stream = fdopen(dup(STDOUT_FILENO), "w");
+        file->stream = descriptors_stream(STDOUT_FILENO, "w");
     } else {
         file->stream = fopen(is_regular ? file->temporary : path, is_regular ? "wx" : "w");
     }
