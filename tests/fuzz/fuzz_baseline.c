@@ -1,0 +1,71 @@
+// Does any text bring the reader of baselines down, or pass it and then not be written back, or
+// differ from itself?
+#include "compare/check_judge.h"
+#include "report/baseline_json.h"
+#include "report/check_report.h"
+
+#include "fuzz_check.h"
+#include "fuzz_file.h"
+
+static FuzzFile input;
+static FuzzFile output;
+
+// What a check would measure where nothing has moved.
+static CheckMeasure *measure_of(const Baseline *baseline)
+{
+    static CheckMeasure measure; // too large for the stack
+    measure.count = 0;
+    for (size_t i = 0; i < baseline->count && i < CHECK_METRIC_MAX; i++) {
+        const BaselineMetric *metric = &baseline->metrics[i];
+        CheckMetric *measured = &measure.metrics[measure.count++];
+        *measured =
+            (CheckMetric){.kind = metric->kind, .value = metric->value, .hash = metric->hash};
+        memcpy(measured->name, metric->name, sizeof measured->name);
+    }
+    return &measure;
+}
+
+static void judge(const Baseline *baseline)
+{
+    if (baseline->count > CHECK_METRIC_MAX) {
+        return;
+    }
+    const CheckEvidence evidence = {.run = measure_of(baseline), .now = baseline, .rate = 1e-3};
+    CheckRow *rows = calloc(check_row_max(baseline, &evidence) + 1, sizeof *rows);
+    fuzz_check(rows != NULL, "there is memory");
+    const size_t count = check_judge(baseline, &evidence, rows);
+    for (size_t i = 0; i < count; i++) {
+        char words[CHECK_WORDS_SIZE];
+        check_report_words(&rows[i], words);
+        fuzz_check(!check_row_is_out(&rows[i]), "a baseline does not differ from itself");
+    }
+    free(rows);
+}
+
+static void write_back(const Baseline *baseline)
+{
+    Err err = {0};
+    Baseline again;
+    fuzz_file_fill(&output, "", 0);
+    fuzz_check(baseline_json_write(output.path, baseline, &err), "a baseline can be written");
+    fuzz_check(baseline_json_read(output.path, &again, &err), "and read from there");
+    fuzz_check(again.count == baseline->count && again.setting_count == baseline->setting_count,
+               "with all that was in it");
+    baseline_finish(&again);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    Err err = {0};
+    Baseline baseline;
+    fuzz_file_fill(&input, data, size);
+    if (baseline_json_read(input.path, &baseline, &err)) {
+        judge(&baseline);
+        write_back(&baseline);
+        baseline_finish(&baseline);
+    } else {
+        fuzz_check_err(&err);
+        fuzz_check(err.kind == ERR_FILE, "a bad baseline is an error of its file");
+    }
+    return 0;
+}
