@@ -70,8 +70,11 @@ int main(int argc, char **argv)
 {
     Err err = {0};
     const bool is_ready = descriptors_reserve(&err);
-    // a reader that goes away shows as a failed write, and a failed write has an exit status
+    // a reader that goes away, and a file that may not become any longer, show as a failed write,
+    // and a failed write has an exit status
     signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+    output_begin();
     argp_err_exit_status = ERR_USAGE;
     if (is_ready) {
         run_program(argc, argv, &err);

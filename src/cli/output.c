@@ -1,6 +1,9 @@
 // Who is reading, and did all of it arrive?
 #include "cli/output.h"
 
+#include "base/sink.h"
+
+#include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,9 +13,24 @@
 // Characters: what a terminal says of itself beyond these is no width for a table.
 enum { WIDTH_MIN = 40, WIDTH_MAX = 1000 };
 
+// why standard output could not be written
+static Sink sink;
+
+static int descriptor_of(const FILE *stream)
+{
+    return stream == stderr ? STDERR_FILENO : STDOUT_FILENO;
+}
+
 bool output_is_terminal(FILE *stream)
 {
-    return isatty(fileno(stream)) == 1;
+    return isatty(descriptor_of(stream)) == 1;
+}
+
+void output_begin(void)
+{
+    stdout = sink_open(&sink, STDOUT_FILENO);
+    assert(stdout != NULL);
+    setvbuf(stdout, NULL, output_is_terminal(stdout) ? _IOLBF : _IOFBF, BUFSIZ);
 }
 
 // The columns of the terminal that a stream goes to.
@@ -21,7 +39,7 @@ static size_t terminal_width(FILE *stream)
     const char *columns = getenv("COLUMNS");
     struct winsize size;
     size_t width = columns != NULL ? strtoul(columns, NULL, 10) : 0;
-    if (width == 0 && ioctl(fileno(stream), TIOCGWINSZ, &size) == 0) {
+    if (width == 0 && ioctl(descriptor_of(stream), TIOCGWINSZ, &size) == 0) {
         width = size.ws_col;
     }
     return width >= WIDTH_MIN && width <= WIDTH_MAX ? width : STYLE_WIDTH;
@@ -54,13 +72,12 @@ void output_json(json_t *object)
 
 bool output_end(Err *err)
 {
-    errno = 0;
-    if (fflush(stdout) == 0 && !ferror(stdout)) {
+    fflush(stdout);
+    if (sink.reason == 0) {
         return true;
     }
-    if (errno == EPIPE) {
+    if (sink.reason == EPIPE) {
         return err_set(err, ERR_FILE, "%s", "");
     }
-    return err_set(err, ERR_FILE, "cannot write standard output: %s",
-                   errno != 0 ? strerror(errno) : "a write failed");
+    return err_set(err, ERR_FILE, "cannot write standard output: %s", strerror(sink.reason));
 }

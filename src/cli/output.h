@@ -16,6 +16,10 @@ Style output_style(FILE *stream, bool is_wide);
 
 bool output_is_terminal(FILE *stream);
 
+// From now on standard output keeps the reason why it could not be written. Once, before anything
+// is printed.
+void output_begin(void);
+
 // Prints one JSON object to standard output; takes the reference.
 void output_json(json_t *object);
 

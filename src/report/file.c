@@ -4,17 +4,22 @@
 // takes what it had begun away with it.
 #include "report/file.h"
 
-#include "base/descriptors.h"
+#include "report/file_parts.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+// A reader that has gone away has what it wanted, and needs no words.
 static bool fail_to_write(const char *path, int reason, Err *err)
 {
+    if (reason == EPIPE) {
+        return err_set(err, ERR_FILE, "%s", "");
+    }
     return err_set(err, ERR_FILE, "cannot write %s: %s", path, strerror(reason));
 }
 
@@ -99,6 +104,18 @@ static bool find_target(const char *path, char *target, bool *is_regular, Err *e
     return (written >= 0 && written < FILE_PATH_SIZE) || fail_to_write(path, ENAMETOOLONG, err);
 }
 
+// A descriptor of its own; -1, with errno set.
+static int open_target(const WholeFile *file, const char *path)
+{
+    if (is_standard_output(path)) {
+        // beside the program's own words, wherever they go
+        fflush(stdout);
+        return fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    }
+    return file->temporary[0] != '\0' ? file_parts_make(file->path, file->temporary)
+                                      : open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+}
+
 bool file_begin(WholeFile *file, const char *path, Err *err)
 {
     *file = (WholeFile){0};
@@ -106,20 +123,11 @@ bool file_begin(WholeFile *file, const char *path, Err *err)
     if (!find_target(path, file->path, &is_regular, err)) {
         return false;
     }
-    if (is_regular) {
-        const int written = snprintf(file->temporary, sizeof file->temporary, "%s.part-%ld",
-                                     file->path, (long)getpid());
-        if (written < 0 || (size_t)written >= sizeof file->temporary) {
-            return fail_to_write(path, ENAMETOOLONG, err);
-        }
+    if (is_regular && !file_parts_name(file->path, file->temporary, sizeof file->temporary)) {
+        return fail_to_write(path, ENAMETOOLONG, err);
     }
-    if (is_standard_output(path)) {
-        // beside the program's own words, wherever they go
-        fflush(stdout);
-        file->stream = descriptors_stream(STDOUT_FILENO, "w");
-    } else {
-        file->stream = fopen(is_regular ? file->temporary : path, is_regular ? "wx" : "w");
-    }
+    const int target = open_target(file, path);
+    file->stream = target < 0 ? NULL : sink_open(&file->sink, target);
     if (file->stream == NULL) {
         return fail_to_write(path, errno, err);
     }
@@ -148,23 +156,20 @@ bool file_probe(const char *path, Err *err)
     return access(path, W_OK) == 0 || fail_to_write(path, errno, err);
 }
 
+bool file_check(const WholeFile *file, Err *err)
+{
+    return file->sink.reason == 0 || fail_to_write(file->path, file->sink.reason, err);
+}
+
 bool file_end(WholeFile *file, Err *err)
 {
-    // a write that failed earlier has left its mark on the stream, but not always its reason
-    errno = 0;
-    const bool is_written = fflush(file->stream) == 0 && !ferror(file->stream);
-    const int reason = errno;
-    if (!is_written) {
-        file_abandon(file);
-        return reason != 0 ? fail_to_write(file->path, reason, err)
-                           : err_set(err, ERR_FILE, "cannot write %s: a write failed", file->path);
-    }
     const bool is_closed = fclose(file->stream) == 0;
     file->stream = NULL;
-    if (!is_closed || (file->temporary[0] != '\0' && rename(file->temporary, file->path) != 0)) {
-        const int late_reason = errno;
+    if (!is_closed || file->sink.reason != 0 ||
+        (file->temporary[0] != '\0' && rename(file->temporary, file->path) != 0)) {
+        const int reason = file->sink.reason != 0 ? file->sink.reason : errno;
         file_abandon(file);
-        return fail_to_write(file->path, late_reason, err);
+        return fail_to_write(file->path, reason, err);
     }
     pending[0] = '\0';
     return true;

@@ -6,14 +6,16 @@
 #pragma once
 
 #include "base/err.h"
+#include "base/sink.h"
 
 #include <stdio.h>
 
 enum { FILE_PATH_SIZE = 4096 };
 
-// A file that is being written; write to `stream` in between.
+// A file that is being written; write to `stream` in between. Not to be copied.
 typedef struct WholeFile {
     FILE *stream;
+    Sink sink;
     char path[FILE_PATH_SIZE];      // the target
     char temporary[FILE_PATH_SIZE]; // beside it; empty where the target is written directly
 } WholeFile;
@@ -29,8 +31,13 @@ bool file_is_same(const char *path, const char *other);
 // behind. Fails as file_begin would.
 bool file_probe(const char *path, Err *err);
 
-// Begins a file. Fails with ERR_FILE, naming the path and the reason.
+// Begins a file. One that replaces another keeps its mode; what processes that were killed have
+// left half-written of it is taken away. Fails with ERR_FILE, naming the path and the reason; the
+// text is empty, as it is for all that follow, where it is a pipe whose reader has gone away.
 bool file_begin(WholeFile *file, const char *path, Err *err);
+
+// Whether all could be written so far, so that a full disk is not written to for ever. ERR_FILE.
+bool file_check(const WholeFile *file, Err *err);
 
 // Ends the file: it now stands under its name. Where anything could not be written since
 // file_begin it fails with ERR_FILE, and nothing of it is left.

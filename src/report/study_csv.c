@@ -57,7 +57,7 @@ static bool write_row(const Layout *layout, const Record *record, void *context,
     }
     write_number(stream, record->wall_s);
     fputc('\n', stream);
-    return study_export_check(file, err);
+    return file_check(file, err);
 }
 
 bool study_csv_write(Store *store, const char *path, Err *err)

@@ -4,9 +4,6 @@
 #include "report/file.h"
 #include "study/store.h"
 
-#include <errno.h>
-#include <string.h>
-
 // Begins the file. Fails with ERR_FILE, and with ERR_USAGE where it is the store itself.
 static inline bool study_export_begin(const Store *store, const char *path, WholeFile *file,
                                       Err *err)
@@ -15,11 +12,4 @@ static inline bool study_export_begin(const Store *store, const char *path, Whol
         return err_set(err, ERR_USAGE, "%s is the store itself, and would be lost", path);
     }
     return file_begin(file, path, err);
-}
-
-// Whether all could be written so far, so that a full disk is not written to for ever.
-static inline bool study_export_check(const WholeFile *file, Err *err)
-{
-    return !ferror(file->stream) ||
-           err_set(err, ERR_FILE, "cannot write %s: %s", file->path, strerror(errno));
 }

@@ -62,7 +62,7 @@ static bool write_row(const Layout *layout, const Record *record, void *context,
     fputs(line, file->stream);
     fputc('\n', file->stream);
     free(line);
-    return study_export_check(file, err);
+    return file_check(file, err);
 }
 
 bool study_jsonl_write(Store *store, const char *path, Err *err)
