@@ -11,6 +11,7 @@
 #include "cli/check_progress.h"
 #include "cli/check_store.h"
 #include "cli/interrupt.h"
+#include "cli/written.h"
 #include "compare/check_work.h"
 #include "compare/truth_child.h"
 #include "report/baseline_json.h"
@@ -193,6 +194,7 @@ static void hold_against_old(const Making *making, const Baseline *made, const C
 static void say_taken(Making *making)
 {
     const size_t kept = check_store_count(&making->store);
+    written_damage(&making->store.journal, making->options->common.is_quiet);
     if (kept > 0 && !making->options->common.is_quiet) {
         fprintf(stderr, "%s: %zu measured starts are kept in %s: going on from there\n",
                 making->item->path, kept, making->store.journal.path);

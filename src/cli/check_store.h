@@ -13,7 +13,7 @@ typedef struct CheckStore {
 } CheckStore;
 
 // Opens the file of an item, or makes it. One that is of another state of the case or the program,
-// or damaged, is begun anew. ERR_FILE.
+// or has a damaged first line, is begun anew. ERR_FILE.
 bool check_store_open(CheckStore *store, const CheckItem *item, Err *err);
 
 // The plan, if it was kept; and keeping it. The reason is empty where the plan has a truth.

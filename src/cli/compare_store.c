@@ -4,6 +4,7 @@
 #include "base/build_print.h"
 #include "base/hash.h"
 #include "cli/run_files.h"
+#include "cli/written.h"
 #include "report/file.h"
 #include "report/ladder_json.h"
 
@@ -64,6 +65,9 @@ static bool take_all(CompareStore *store, Ladder *ladder, bool is_quiet, Err *er
     json_t *line;
     json_array_foreach(store->journal.entries, index, line)
     {
+        if (json_is_null(line)) {
+            continue; // damaged
+        }
         const LadderJsonFate fate = ladder_json_take(ladder, store->linkage, line, store->machine);
         if (fate == LADDER_JSON_DAMAGED) {
             return err_set(err, ERR_FILE,
@@ -78,6 +82,7 @@ static bool take_all(CompareStore *store, Ladder *ladder, bool is_quiet, Err *er
     if (is_quiet) {
         return true;
     }
+    written_damage(&store->journal, is_quiet);
     if (store->taken > 0) {
         fprintf(stderr, "took %zu of %zu runs from the store %s\n", store->taken,
                 ladder_run_total(ladder), store->journal.path);

@@ -16,6 +16,17 @@ bool written_say(const char *path, bool is_quiet)
     return true;
 }
 
+void written_damage(const Journal *journal, bool is_quiet)
+{
+    Text text;
+    text_init(&text);
+    journal_describe_damage(journal, &text);
+    if (!is_quiet) {
+        fputs(text.data, stderr);
+    }
+    text_finish(&text);
+}
+
 bool written_text(const char *path, const char *text, bool is_quiet, Err *err)
 {
     return file_write_text(path, text, err) && written_say(path, is_quiet);

@@ -3,10 +3,12 @@
 //
 // The first line holds the key: what must be equal for a run of then to be one of now. A line is
 // written at once and on the disk before the next run begins; a last line that was cut short is
-// dropped.
+// dropped. Each line ends with a checksum of itself; one that is not what was once written is not
+// used, and its run is made again.
 #pragma once
 
 #include "base/err.h"
+#include "base/text.h"
 
 #include <jansson.h>
 
@@ -25,14 +27,20 @@ typedef struct Journal {
     const JournalKind *kind;
     int file; // open and locked
     char *path;
-    json_t *entries; // owned: the lines behind the first
+    json_t *entries; // owned: the lines behind the first; null where a line is damaged
+    size_t damaged_count;
+    size_t damaged_line; // number of the first that is
 } Journal;
 
 // Opens the store, or makes it where there is none, or makes it anew where `is_fresh`. Fails with
-// ERR_FILE where it cannot be read or written, is at work in another process, is no store, or
-// holds another key: it then says what differs. Only a store is ever made anew.
+// ERR_FILE where it cannot be read or written, is at work in another process, is no store, has a
+// damaged first line, or holds another key: it then says what differs. Only a store is ever made
+// anew.
 bool journal_open(Journal *journal, const JournalKind *kind, const char *path, json_t *key,
                   bool is_fresh, Err *err);
+
+// What to say of damaged lines; empty where there are none.
+void journal_describe_damage(const Journal *journal, Text *text);
 
 // Writes one line and sees it to the disk; takes the reference. ERR_FILE.
 bool journal_add(Journal *journal, json_t *entry, Err *err);
