@@ -42,18 +42,18 @@ static bool merge(const char *target, const char *const *sources, size_t count, 
 // The usual name of a shard's store, which must be there.
 static char *find_shard(const char *study, Shard shard, Err *err)
 {
-    char *path = malloc(FILE_PATH_SIZE);
-    assert(path != NULL);
+    char path[FILE_PATH_SIZE];
     if (!study_place_store(study, shard, path, err) ||
         (access(path, F_OK) != 0 &&
          !err_set(err, ERR_FILE,
                   "there is no %s in the working folder; make it with --shard %" PRIu64 "/%" PRIu64
                   ", or name the stores to be merged",
                   path, shard.index + 1, shard.count))) {
-        free(path);
         return NULL;
     }
-    return path;
+    char *copy = strdup(path);
+    assert(copy != NULL);
+    return copy;
 }
 
 static bool merge_shards(const char *study, uint64_t shards, const char *target, bool is_quiet,

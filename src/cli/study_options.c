@@ -50,6 +50,10 @@ bool study_options_read_shard(const char *text, Shard *shard, Err *err)
                        "--shard is %s; allowed: I/N, the I-th of N parts, such as 1/4 to 4/4",
                        text);
     }
+    if (count > DESIGN_SHARD_MAX) {
+        return err_set(err, ERR_USAGE, "--shard is %s; allowed: at most %d parts", text,
+                       DESIGN_SHARD_MAX);
+    }
     *shard = (Shard){index - 1, count};
     return true;
 }

@@ -59,7 +59,7 @@ static uint64_t read_shards(const char *study, const char *name)
         return 0;
     }
     // it is the name only if it would be made just so
-    const bool is_name = index >= 1 && index <= count && count > 1 &&
+    const bool is_name = index >= 1 && index <= count && count > 1 && count <= DESIGN_SHARD_MAX &&
                          study_place_store(study, (Shard){index - 1, count}, made, &err) &&
                          strcmp(made, name) == 0;
     return is_name ? count : 0;

@@ -10,6 +10,7 @@
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 // Stores of one study, whether they are there or not.
@@ -21,7 +22,11 @@ typedef struct Parts {
 
 static const struct argp_option OPTIONS[] = {COMMON_ROW_WIDE(0), {0}};
 
-// Adds a store; one that is not there holds nothing yet. `wanted` is 0 where only it knows.
+// In place of the number of runs that a store is to hold: only the store itself knows. A part of a
+// study with fewer runs than parts is to hold none.
+static const uint64_t WANTED_UNKNOWN = UINT64_MAX;
+
+// Adds a store; one that is not there holds nothing yet.
 static bool add_part(Parts *parts, const char *path, uint64_t wanted, Err *err)
 {
     if (parts->count == parts->room) {
@@ -32,21 +37,19 @@ static bool add_part(Parts *parts, const char *path, uint64_t wanted, Err *err)
     StudyPart *part = &parts->parts[parts->count];
     StoreCount count = {0};
     *part = (StudyPart){.wanted = wanted};
-    if (wanted == 0 || access(path, F_OK) == 0) {
+    if (wanted == WANTED_UNKNOWN || access(path, F_OK) == 0) {
         part->store = store_view(path, err);
         if (part->store == NULL) {
             return false;
         }
     }
-    char *copy = malloc(FILE_PATH_SIZE);
-    assert(copy != NULL);
-    snprintf(copy, FILE_PATH_SIZE, "%s", path);
-    part->path = copy;
+    part->path = strdup(path);
+    assert(part->path != NULL);
     parts->count++;
-    if (wanted == 0 && !store_count(part->store, &count, err)) {
+    if (wanted == WANTED_UNKNOWN && !store_count(part->store, &count, err)) {
         return false;
     }
-    part->wanted = wanted == 0 ? count.run_count : wanted;
+    part->wanted = wanted == WANTED_UNKNOWN ? count.run_count : wanted;
     return true;
 }
 
@@ -108,7 +111,7 @@ static bool tell(const StudyWords *words, Err *err)
         Parts parts = {0};
         const char *word = words->words[i];
         is_told = (study_place_is_study(word) ? add_study(&parts, word, err)
-                                              : add_part(&parts, word, 0, err)) &&
+                                              : add_part(&parts, word, WANTED_UNKNOWN, err)) &&
                   print_parts(&parts, words->is_wide, err);
         is_told = finish_parts(&parts, err) && is_told;
     }

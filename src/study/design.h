@@ -6,10 +6,13 @@
 
 #include "study/spec.h"
 
+// Parts that a study is ever divided into: each has a store, a file in one folder.
+enum { DESIGN_SHARD_MAX = 100000 };
+
 // A part of a study: every so many-th run or group of runs. {0, 1} is all of it.
 typedef struct Shard {
     uint64_t index; // from 0
-    uint64_t count;
+    uint64_t count; // at most DESIGN_SHARD_MAX
 } Shard;
 
 // The number of runs, 1 to 2^53.

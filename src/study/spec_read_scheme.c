@@ -37,6 +37,9 @@ static const Variable *find_variable(const Spec *spec, const char *key)
 static bool check_scheme(const Reading *reading, const Node *node, const Scheme *schemes,
                          size_t count)
 {
+    if (!spec_read_single(reading, node, "a scheme", "its name, such as direct/plain/corrected")) {
+        return false;
+    }
     const char *names[2 * SCHEME_MAX];
     const Scheme *found = NULL;
     for (size_t i = 0; i < count; i++) {

@@ -113,6 +113,28 @@ static void shards_of_several_divisions_are_not_guessed_at(void **state)
     assert_says(program->errors, "merged 4 runs into out.sqlite, which holds 4 of 4");
 }
 
+static void a_division_into_more_parts_than_there_can_be_is_refused(void **state)
+{
+    Program *program = *state;
+    program_fails_usage(program, "study s.yaml --shard 1/9007199254740992", "at most 100000 parts");
+    program_fails_usage(program, "study s.yaml --shard 100001/100001", "at most 100000 parts");
+    run_well(program, "study s.yaml --shard 100000/100000");
+    program_run(program, "study merge s.yaml");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "there is no s.1-of-100000.sqlite");
+    run_well(program, "study status s.yaml");
+    // a file of such a name is none of ours
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "s.100000-of-100000.sqlite", path);
+    assert_int_equal(unlink(path), 0);
+    program_path(program, "s.1-of-9007199254740992.sqlite", path);
+    fclose(fopen(path, "w"));
+    program_run(program, "study merge s.yaml");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "there are no parts of s.yaml");
+    run_well(program, "study status s.yaml");
+}
+
 static void what_is_wrong_on_the_command_line_is_told(void **state)
 {
     Program *program = *state;
@@ -159,6 +181,7 @@ int main(void)
         STUDY_TEST(rows_are_exported_and_drawn),
         STUDY_TEST(a_study_of_which_every_run_fails_ends_with_status_4),
         STUDY_TEST(shards_of_several_divisions_are_not_guessed_at),
+        STUDY_TEST(a_division_into_more_parts_than_there_can_be_is_refused),
         STUDY_TEST(what_is_wrong_on_the_command_line_is_told),
         STUDY_TEST(each_part_has_its_help),
 #undef STUDY_TEST
