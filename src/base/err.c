@@ -1,6 +1,7 @@
 // How is an error carried to the one place that prints it?
 #include "base/err.h"
 
+#include "base/printable.h"
 #include "base/shorten.h"
 
 #include <assert.h>
@@ -22,15 +23,32 @@ bool err_set(Err *err, ErrKind kind, const char *format, ...)
     return false;
 }
 
+// Whole lines that are put together already.
+static void take_lines(Err *err, char *lines)
+{
+    shorten_copy(err->text, sizeof err->text, lines);
+    free(lines);
+}
+
+bool err_set_lines(Err *err, ErrKind kind, const char *lines)
+{
+    if (err->kind == ERR_NONE) {
+        err->kind = kind;
+        take_lines(err, printable_copy(lines, true));
+    }
+    return false;
+}
+
 void err_prefix(Err *err, const char *prefix)
 {
     if (err->kind == ERR_NONE) {
         return;
     }
-    const size_t size = strlen(prefix) + strlen(err->text) + sizeof ": ";
+    char *shown = printable_copy(prefix, false);
+    const size_t size = strlen(shown) + strlen(err->text) + sizeof ": ";
     char *text = malloc(size);
     assert(text != NULL);
-    snprintf(text, size, "%s: %s", prefix, err->text);
-    shorten_copy(err->text, sizeof err->text, text);
-    free(text);
+    snprintf(text, size, "%s: %s", shown, err->text);
+    free(shown);
+    take_lines(err, text);
 }

@@ -24,8 +24,12 @@ typedef struct Err {
 } Err;
 
 // Sets the error if none is set yet. Always returns false, so that a function can
-// `return err_set(err, ...)`. A text too long for the buffer is shortened to whole words.
+// `return err_set(err, ...)`. A text too long for the buffer is shortened to whole words. Arguments
+// may hold anything, such as a path: what cannot be shown of them is escaped, line breaks too.
 bool err_set(Err *err, ErrKind kind, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+// The same of a text that has its lines already, such as that of another error.
+bool err_set_lines(Err *err, ErrKind kind, const char *lines);
 
 // Puts "prefix: " in front of the text of an error that is set.
 void err_prefix(Err *err, const char *prefix);

@@ -1,7 +1,8 @@
 // How does a sentence that is too long for its buffer end?
 #include "base/shorten.h"
 
-#include <assert.h>
+#include "base/printable.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,14 +32,7 @@ void shorten_copy(char *target, size_t size, const char *source)
 
 void shorten_list(char *target, size_t size, const char *format, va_list arguments)
 {
-    va_list again;
-    va_copy(again, arguments);
-    const int length = vsnprintf(NULL, 0, format, arguments);
-    assert(length >= 0);
-    char *text = malloc((size_t)length + 1);
-    assert(text != NULL);
-    vsnprintf(text, (size_t)length + 1, format, again);
-    va_end(again);
+    char *text = printable_format(format, arguments);
     shorten_copy(target, size, text);
     free(text);
 }

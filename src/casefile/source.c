@@ -6,11 +6,12 @@
 //     allowed: a pin below 10.015 mm
 #include "casefile/source.h"
 
+#include "base/printable.h"
 #include "base/shorten.h"
 #include "base/text.h"
 
 #include <stdarg.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -65,46 +66,45 @@ static Place find_place(const Source *source, size_t character)
     return place;
 }
 
+// Appends a character as it is shown, a tab as one blank; its columns.
+static size_t append_shown(const PrintableCharacter *character, const char *at, Text *text)
+{
+    if (*at == '\t') {
+        text_append(text, " ");
+    } else if (character->escape[0] != '\0') {
+        text_append(text, "%s", character->escape);
+        return strlen(character->escape);
+    } else {
+        text_append(text, "%.*s", (int)character->size, at);
+    }
+    return 1;
+}
+
 // Appends the part of the line around the caret and the caret below it.
 static void append_line(const Source *source, Place place, size_t length, Text *text)
 {
     const size_t first = place.column > WINDOW_WIDTH - 16 ? place.column - WINDOW_LEAD : 1;
     text_append(text, "\n    %s", first > 1 ? "..." : "");
+    size_t indent = first > 1 ? 3 : 0; // columns in front of the caret
+    size_t tail = 0;                   // columns of what it points at
     size_t column = 0;
-    for (size_t byte = place.line_start; byte < place.line_end; byte++) {
-        const char c = source->text[byte];
-        column += starts_character(c) ? 1 : 0;
+    for (size_t byte = place.line_start; byte < place.line_end;) {
+        const char *at = source->text + byte;
+        const PrintableCharacter character = printable_character(at, place.line_end - byte);
+        byte += character.size;
+        column++;
         if (column >= first && column < first + WINDOW_WIDTH) {
-            // a tab takes one place, so that the caret below stands right
-            text_append(text, "%c", c == '\t' ? ' ' : c);
+            const size_t width = append_shown(&character, at, text);
+            indent += column < place.column ? width : 0;
+            // the tail ends where the line does
+            tail += column >= place.column && column < place.column + length ? width : 0;
         }
     }
-    const size_t indent = place.column - first + (first > 1 ? 3 : 0);
+    // behind the end of the line
+    indent += place.column > column + 1 ? place.column - column - 1 : 0;
     text_append(text, "%s\n    %*s^", column >= first + WINDOW_WIDTH ? "..." : "", (int)indent, "");
-    // the tail ends where the line does
-    const size_t last = column < first + WINDOW_WIDTH ? column : first + WINDOW_WIDTH - 1;
-    for (size_t i = 1; i < length && place.column + i <= last; i++) {
+    for (size_t i = 1; i < tail; i++) {
         text_append(text, "~");
-    }
-}
-
-// A message may quote a value and cut it inside a character: what is no text becomes '?'.
-static void mend(char *message)
-{
-    for (char *c = message; *c != '\0'; c++) {
-        size_t size = 0;
-        while (size < 4 && c[size] != '\0') {
-            size++;
-        }
-        const size_t good = source_text_length(c, size);
-        if (good == 0) {
-            *c = '?';
-        } else if (((unsigned char)*c & 0x80u) != 0) {
-            do {
-                c++;
-            } while (!starts_character(*c) && *c != '\0');
-            c--;
-        }
     }
 }
 
@@ -116,66 +116,42 @@ bool source_error(const Source *source, Span span, const char *allowed, Err *err
     va_start(arguments, format);
     shorten_list(message, sizeof message, format, arguments);
     va_end(arguments);
-    mend(message);
 
     const Place place = find_place(source, span.start + source->shift);
+    char *name = printable_copy(source->name, false);
     Text text;
     text_init(&text);
     if (source->is_option) {
-        text_append(&text, "%s: %s", source->name, message);
+        text_append(&text, "%s: %s", name, message);
     } else {
-        text_append(&text, "%s:%zu:%zu: %s", source->name, place.line, place.column, message);
+        text_append(&text, "%s:%zu:%zu: %s", name, place.line, place.column, message);
     }
+    free(name);
     if (place.line_end > place.line_start) {
         append_line(source, place, span.end > span.start ? span.end - span.start : 1, &text);
     }
     if (allowed != NULL && allowed[0] != '\0') {
         text_append(&text, "\nallowed: %s", allowed);
     }
-    err_set(err, source->is_option ? ERR_USAGE : ERR_CASE, "%s", text.data);
+    err_set_lines(err, source->is_option ? ERR_USAGE : ERR_CASE, text.data);
     text_finish(&text);
     return false;
 }
 
-// The bytes of the character at the start, or 0 where it is none (overlong, cut, a surrogate, or
-// beyond Unicode's end).
-static size_t character_size(const unsigned char *text, size_t size)
-{
-    static const unsigned SMALLEST[5] = {0, 0, 0x80, 0x800, 0x10000};
-    const unsigned first = text[0];
-    if (first < 0x80) {
-        return 1;
-    }
-    const size_t length = first < 0xc0 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-    if (length == 0 || first > 0xf4 || length > size) {
-        return 0;
-    }
-    unsigned code = first & (0x7fu >> length);
-    for (size_t i = 1; i < length; i++) {
-        if ((text[i] & 0xc0u) != 0x80u) {
-            return 0;
-        }
-        code = code << 6 | (text[i] & 0x3fu);
-    }
-    const bool is_surrogate = code >= 0xd800 && code < 0xe000;
-    const bool is_no_character = is_surrogate || code == 0xfffe || code == 0xffff;
-    return code < SMALLEST[length] || is_no_character || code > 0x10ffff ? 0 : length;
-}
-
 size_t source_text_length(const char *text, size_t size)
 {
-    const unsigned char *bytes = (const unsigned char *)text;
     size_t length = 0;
     while (length < size) {
-        const unsigned char c = bytes[length];
-        const bool is_control = (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7f;
+        const PrintableCharacter character = printable_character(text + length, size - length);
+        const unsigned code = character.code;
+        const bool is_blank = code == '\t' || code == '\n' || code == '\r';
         // U+0080 to U+009F are controls as well, and a terminal obeys them
-        const bool is_high_control = c == 0xc2 && length + 1 < size && bytes[length + 1] < 0xa0;
-        const size_t step = character_size(bytes + length, size - length);
-        if (is_control || is_high_control || step == 0) {
+        const bool is_control = (code < 0x20 && !is_blank) || (code >= 0x7f && code < 0xa0);
+        const bool is_no_character = code == 0xfffe || code == 0xffff;
+        if (!character.is_text || is_control || is_no_character) {
             break;
         }
-        length += step;
+        length += character.size;
     }
     return length;
 }

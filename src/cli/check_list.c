@@ -213,7 +213,7 @@ bool check_list_make(const CheckOptions *options, CheckItem **items, size_t *cou
     for (size_t i = 0; is_made && i < *count; i++) {
         // a wrong command line is wrong for all
         if ((*items)[i].err.kind == ERR_USAGE) {
-            is_made = err_set(err, ERR_USAGE, "%s", (*items)[i].err.text);
+            is_made = err_set_lines(err, ERR_USAGE, (*items)[i].err.text);
         }
     }
     if (!is_made) {

@@ -80,7 +80,7 @@ static bool conclude(const CheckReport *report, Err *err)
     for (size_t i = 0; i < report->case_count; i++) {
         const CheckCase *item = &report->cases[i];
         if (item->err.kind != ERR_NONE) {
-            err_set(err, item->err.kind, "%s", item->err.text);
+            err_set_lines(err, item->err.kind, item->err.text);
             if (item->err.kind == ERR_SOLVER) {
                 err_prefix(err, item->path);
             }

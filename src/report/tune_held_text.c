@@ -237,7 +237,7 @@ bool tune_held_text_unmet(const TuneReport *report, Err *err)
         text_append(&words, ": ");
         tune_setting_words(report, longest, &words);
     }
-    err_set(err, ERR_DIFFERS, "%s", words.data);
+    err_set_lines(err, ERR_DIFFERS, words.data);
     text_finish(&words);
     return false;
 }

@@ -130,7 +130,7 @@ static bool start(SweepFloor *floor, size_t number, SweepGroup *group, bool *is_
     }
     floor->busy += *is_started ? 1 : 0;
     job->group = *is_started ? group : NULL;
-    return *is_started || floor->busy > 0 || err_set(err, reason.kind, "%s", reason.text);
+    return *is_started || floor->busy > 0 || err_set_lines(err, reason.kind, reason.text);
 }
 
 static bool start_truth(SweepFloor *floor, size_t number, SweepGroup *group, bool *is_started,
