@@ -25,7 +25,7 @@ static const double TRUTH_SHARE = 0.1;
 static const double COST_AT_FIRST = 2.0;
 
 // trials that fail at one place, within a share of the run
-enum { FAILURES_ALIKE = 5 };
+enum { FAILURES_ALIKE = 9 };
 static const double ONE_PLACE = 0.01;
 
 // a step so near that of a trial known to be good is not tried in its place

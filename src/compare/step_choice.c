@@ -19,14 +19,19 @@ static const double FINER_LATE = 0.7;
 // a trial that failed says nothing of the step that will not
 static const double AFTER_FAILURE = 0.5;
 
-// first steps: of the drive's turn, or of a run without one
-static const double FIRST_STEPS = 200.0;
-static const double FIRST_CONTACTS = 4.0; // half-periods of a contact, if that is less
-static const double FIRST_STEPS_SMOOTH = 120.0;
-static const double LEAST_STEPS = 10.0; // of any run
+// The first step is coarser than most that will do: a trial of it costs next to nothing.
+static const double FIRST_STEPS = 20.0;    // of the drive's turn, or of a run without a drive
+static const double FIRST_CONTACTS = 64.0; // half-periods of a contact, if that is less
+static const double LEAST_STEPS = 10.0;    // of any run
 
-// rad, of the contacts' own steps at the first trial; their errors of order 4 fall as h^2 do
+// rad, of the contacts' own steps: the coarsest, kept down to this share of the first world step.
+// Below it the phase falls faster than the root of the world step, so that the contacts' errors, of
+// order 4, fall faster than those of the world step, of order 2, and slower than the world step,
+// for they cost evaluations.
 static const double FIRST_PHASE = 0.2;
+static const double FIRST_PHASE_UNTIL = 1.0 / 16.0;
+static const double PHASE_POWER = 0.75;
+static const double LEAST_PHASE = 1e-3;
 
 // The half-period of the stiffest contact at a tenth of its clearance, s.
 static double contact_time(const Scenario *scenario)
@@ -57,22 +62,22 @@ static double contact_time(const Scenario *scenario)
 
 StepChoice step_choice_begin(const Scenario *scenario)
 {
-    const bool has_play = scenario_has_clearance(scenario);
     const Linkage *linkage = &scenario->linkage;
     const double duration_s = scenario_duration(scenario);
     const double turn_s = linkage->driver.is_present ? linkage_period(linkage) : duration_s;
-    const double first_s = turn_s / (has_play ? FIRST_STEPS : FIRST_STEPS_SMOOTH);
+    const double first_s = fmin(turn_s / FIRST_STEPS, duration_s / LEAST_STEPS);
     return (StepChoice){
         .scenario = scenario,
-        .first_step_s =
-            fmin(fmin(first_s, duration_s / LEAST_STEPS), FIRST_CONTACTS * contact_time(scenario)),
+        .first_step_s = fmin(first_s, FIRST_CONTACTS * contact_time(scenario)),
     };
 }
 
 Scenario step_choice_scenario(const StepChoice *choice, double step_s)
 {
     Scenario trial = scenario_with_step(choice->scenario, step_s);
-    trial.ode.contact_phase = FIRST_PHASE * fmin(1.0, sqrt(step_s / choice->first_step_s));
+    const double phase_step_s = FIRST_PHASE_UNTIL * choice->first_step_s;
+    trial.ode.contact_phase =
+        fmax(FIRST_PHASE * fmin(1.0, pow(step_s / phase_step_s, PHASE_POWER)), LEAST_PHASE);
     return trial;
 }
 

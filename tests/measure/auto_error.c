@@ -13,7 +13,6 @@
 #include "casefile/casefile.h"
 #include "compare/chosen_run.h"
 #include "compare/error.h"
-#include "compare/step_choice.h"
 #include "model/distance.h"
 #include "run/registry.h"
 
@@ -26,6 +25,7 @@ enum { TOLERANCE_COUNT = 4, RUN_MAX = 4096, LADDER_MAX = 64 };
 static const double TOLERANCES[TOLERANCE_COUNT] = {1e-3, 1e-4, 1e-5, 1e-6};
 static const double JUDGE_TOLERANCE = 1e-14;
 static const double RATIO = 1.26; // of two steps of the ladder
+static const double LADDER_STEPS_LEAST = 10.0;
 static const double LADDER_STEPS_MOST = 1e5;
 static const double LADDER_PHASE = 0.05;
 static const double TIME_LIMIT_S = 120.0; // of one case
@@ -40,7 +40,8 @@ typedef struct Run {
     double estimate;
     double until_s;
     double error; // against the judge, up to there
-    size_t best;  // world steps of the best fixed step; 0: not looked for, or not found
+    size_t evaluations;
+    size_t best; // world steps of the best fixed step; 0: not looked for, or not found
 } Run;
 
 typedef struct Result {
@@ -124,6 +125,7 @@ static void run_auto(const Scenario *scenario, const Truth *truth, const Traject
     snprintf(result->message, sizeof result->message, "%.150s", run->message);
     result->trials = run->trials;
     result->steps = run->steps;
+    result->evaluations = run->evaluations;
     if (run->is_complete) {
         result->is_short = run->is_short;
         result->step_s = run->step_s;
@@ -138,8 +140,7 @@ static void run_auto(const Scenario *scenario, const Truth *truth, const Traject
 static void run_ladder(const Scenario *scenario, const Truth *truth, const Trajectory *judge,
                        Result *result)
 {
-    const StepChoice choice = step_choice_begin(scenario);
-    double step_s = choice.first_step_s;
+    double step_s = result->duration_s / LADDER_STEPS_LEAST;
     size_t missing = TOLERANCE_COUNT;
     for (int i = 0; i < LADDER_MAX && missing > 0; i++, step_s /= RATIO) {
         if (result->duration_s / step_s > LADDER_STEPS_MOST) {
@@ -249,14 +250,15 @@ static void print_case(const Work *work, const Result *result)
            result->runs_s, result->ladder_s);
     for (int i = 0; result->message[0] == '\0' && i < TOLERANCE_COUNT; i++) {
         const Run *run = &result->runs[i];
-        printf("  %.0e %s h %.4g us, %zu trials, %zu steps (best %zu), estimate %.3g to %.4g ms, "
+        printf("  %.0e %s h %.4g us, %zu trials, %zu evals, %zu steps (best %zu), estimate %.3g to "
+               "%.4g ms, "
                "error %.3g %s\n",
                TOLERANCES[i],
                !run->is_complete ? "FAILED"
                : run->is_short   ? "short"
                                  : "whole",
-               1e6 * run->step_s, run->trials, run->steps, run->best, run->estimate,
-               1e3 * run->until_s, run->error, run->message);
+               1e6 * run->step_s, run->trials, run->evaluations, run->steps, run->best,
+               run->estimate, 1e3 * run->until_s, run->error, run->message);
     }
     fflush(stdout);
 }
