@@ -2,6 +2,7 @@
 #define _GNU_SOURCE // memfd_create
 #include "casefile/input.h"
 
+#include "base/claims.h"
 #include "base/descriptors.h"
 
 #include <assert.h>
@@ -57,6 +58,7 @@ bool input_read(const char *what, const char *path, char **text, size_t *size, E
     if (file == NULL) {
         return err_set(err, ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
     }
+    claims_note_read(what, path);
     const bool is_read = read_all(what, path, file, text, size, err);
     fclose(file);
     return is_read;
@@ -99,6 +101,7 @@ bool input_read_stdin(const char *what, char **text, size_t *size, Err *err)
     if (file == NULL) {
         return err_set(err, ERR_FILE, "%s: cannot be read: %s", INPUT_STDIN, strerror(errno));
     }
+    claims_note_read(what, "/dev/stdin");
     const bool is_read = read_all(what, INPUT_STDIN, file, text, size, err);
     fclose(file);
     lseek(STDIN_FILENO, start, SEEK_SET);

@@ -4,6 +4,7 @@
 // that one place prints errors and one place ends the program.
 #include "cli/arguments.h"
 
+#include "base/claims.h"
 #include "base/text.h"
 
 #include <assert.h>
@@ -88,6 +89,25 @@ static void explain(const Reading *reading, const struct argp_state *state)
     }
 }
 
+// Whatever writes a file shows it by what it calls its value. No two options write the same one.
+static bool claim_file(const Reading *reading, int key, const char *value)
+{
+    for (const struct argp_option *option = reading->options; option->name != NULL; option++) {
+        if (option->key != key || option->arg == NULL || strncmp(option->arg, "FILE", 4) != 0) {
+            continue;
+        }
+        Claim claim;
+        char user[OPTION_NAME_SIZE];
+        snprintf(user, sizeof user, "--%s", option->name);
+        if (claims_find(value, &claim) && strcmp(claim.user, user) != 0) {
+            return err_set(reading->err, ERR_USAGE, "%s and %s would both write %s", claim.user,
+                           user, value);
+        }
+        claims_note_written(user, value);
+    }
+    return true;
+}
+
 static error_t parse_key(int key, char *value, struct argp_state *state)
 {
     Reading *reading = state->input;
@@ -105,7 +125,10 @@ static error_t parse_key(int key, char *value, struct argp_state *state)
     if (key >= ARGP_KEY_END) {
         return ARGP_ERR_UNKNOWN;
     }
-    return reading->arguments->take(key, value, reading->target, reading->err) ? 0 : EINVAL;
+    return claim_file(reading, key, value) &&
+                   reading->arguments->take(key, value, reading->target, reading->err)
+               ? 0
+               : EINVAL;
 }
 
 bool arguments_parse(const Arguments *arguments, int argc, char **argv, void *target,

@@ -204,12 +204,25 @@ static bool name_all(const CheckOptions *options, CheckItem **items, size_t *cou
     return true;
 }
 
+// A new baseline takes the place of an old one and of nothing else.
+static bool claim_baselines(const CheckItem *items, size_t count, Err *err)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (items[i].err.kind == ERR_NONE && items[i].has_baseline &&
+            !file_claim("--bless", FILE_BASELINE, items[i].baseline_path, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool check_list_make(const CheckOptions *options, CheckItem **items, size_t *count, Err *err)
 {
     *items = NULL;
     *count = 0;
     bool is_made = options->path_count > 0 ? name_all(options, items, count, err)
                                            : find_all(options, items, count, err);
+    is_made = is_made && (!options->is_blessing || claim_baselines(*items, *count, err));
     for (size_t i = 0; is_made && i < *count; i++) {
         // a wrong command line is wrong for all
         if ((*items)[i].err.kind == ERR_USAGE) {

@@ -23,8 +23,8 @@ typedef struct CheckItem {
 } CheckItem;
 
 // Lists the cases, reads them and their baselines. A case or a baseline that cannot be read is an
-// error of its item. Fails with ERR_FILE where there is not one baseline to check, with ERR_USAGE
-// for a setting that is wrong, or for two cases that would have one baseline; the list is then
-// empty.
+// error of its item. Fails with ERR_FILE where there is not one baseline to check, or where a new
+// one would replace what is none; with ERR_USAGE for a setting that is wrong, or for two cases that
+// would have one baseline; the list is then empty.
 bool check_list_make(const CheckOptions *options, CheckItem **items, size_t *count, Err *err);
 void check_list_destroy(CheckItem *items, size_t count);

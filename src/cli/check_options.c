@@ -120,10 +120,6 @@ static bool check_together(const CheckOptions *options, Err *err)
         return err_set(err, ERR_USAGE,
                        "--json prints its object alone: give --junit and --markdown files");
     }
-    if (file_is_same(options->junit, options->markdown)) {
-        return err_set(err, ERR_USAGE, "--junit and --markdown would both write %s",
-                       options->junit);
-    }
     return true;
 }
 

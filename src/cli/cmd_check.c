@@ -16,7 +16,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static bool write_with(void (*write)(const CheckReport *report, Text *text),
+static bool write_with(FileKind kind, void (*write)(const CheckReport *report, Text *text),
                        const CheckReport *report, const char *path, bool is_quiet, Err *err)
 {
     if (path == NULL) {
@@ -25,7 +25,8 @@ static bool write_with(void (*write)(const CheckReport *report, Text *text),
     Text text;
     text_init(&text);
     write(report, &text);
-    const bool is_written = written_text(path, text.data, is_quiet || file_is_stream(path), err);
+    const bool is_written =
+        written_text(kind, path, text.data, is_quiet || file_is_stream(path), err);
     text_finish(&text);
     return is_written;
 }
@@ -95,11 +96,11 @@ static bool conclude(const CheckReport *report, Err *err)
     return true;
 }
 
-static bool probe(const CheckOptions *options, Err *err)
+static bool claim_files(const CheckOptions *options, Err *err)
 {
-    return (options->junit == NULL || file_probe(options->junit, err)) &&
-           (options->markdown == NULL || file_probe(options->markdown, err)) &&
-           (!options->is_blessing || run_files_make_folder(options->folder, err));
+    return (options->junit == NULL || file_claim("--junit", FILE_JUNIT, options->junit, err)) &&
+           (options->markdown == NULL ||
+            file_claim("--markdown", FILE_COMMENT, options->markdown, err));
 }
 
 // Who was stopped while making baselines has been told what is kept, and ends by the same signal.
@@ -120,9 +121,9 @@ static bool check_items(const CheckOptions *options, CheckItem *items, size_t co
     }
     if (is_done) {
         print_report(&run.report, options);
-        is_done = write_with(check_junit_write, &run.report, options->junit,
+        is_done = write_with(FILE_JUNIT, check_junit_write, &run.report, options->junit,
                              options->common.is_quiet, err) &&
-                  write_with(check_markdown_write, &run.report, options->markdown,
+                  write_with(FILE_COMMENT, check_markdown_write, &run.report, options->markdown,
                              options->common.is_quiet, err);
         end_if_stopped();
         is_done = is_done && conclude(&run.report, err);
@@ -140,7 +141,8 @@ static bool run_check(int argc, char **argv, Err *err)
     if (is_done && !is_answered) {
         CheckItem *items = NULL;
         size_t count = 0;
-        is_done = probe(options, err) && check_list_make(options, &items, &count, err) &&
+        is_done = (!options->is_blessing || run_files_make_folder(options->folder, err)) &&
+                  check_list_make(options, &items, &count, err) && claim_files(options, err) &&
                   check_items(options, items, count, err);
         check_list_destroy(items, count);
     }

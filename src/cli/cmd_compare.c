@@ -124,7 +124,7 @@ static bool compare_case(const CompareOptions *options, Scenario *scenario, Err 
                       options->common.override_count, scenario, err) &&
         compare_options_ladder(options, scenario, &ladder, err) &&
         (options->common.folder == NULL || run_files_make_folder(options->common.folder, err)) &&
-        compare_files_probe(scenario, options, err);
+        compare_files_claim(scenario, options, err);
     if (is_done && !options->common.is_quiet) {
         say_idle(options, scenario);
     }

@@ -109,7 +109,7 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario,
                          const MappingSettings *settings, Err *err)
 {
     if ((options->common.folder != NULL && !run_files_make_folder(options->common.folder, err)) ||
-        !map_files_probe(scenario, options, err)) {
+        !map_files_claim(scenario, options, err)) {
         return false;
     }
     Telling telling = {status_line_start(options->common.is_quiet), clock_now_s(),

@@ -9,7 +9,6 @@
 #include "cli/run_files.h"
 
 #include "casefile/casefile.h"
-#include "report/file.h"
 #include "report/run_json.h"
 #include "report/run_text.h"
 
@@ -195,14 +194,14 @@ static bool count_failures(const RunCommand *command, const CaseRun *runs, Err *
 }
 
 // What cannot be written is told before anything runs.
-static bool probe_files(const RunCommand *command, const CaseRun *runs, Err *err)
+static bool claim_files(const RunCommand *command, const CaseRun *runs, Err *err)
 {
-    if (!run_files_probe(&runs[0], command->series, command->plot, err) ||
+    if (!run_files_claim(&runs[0], command->series, command->plot, err) ||
         (command->folder != NULL && !run_files_make_folder(command->folder, err))) {
         return false;
     }
     for (size_t i = 0; command->folder != NULL && i < command->case_count; i++) {
-        if (!run_files_probe_folder(&runs[i], command->folder, err)) {
+        if (!run_files_claim_folder(&runs[i], command->folder, err)) {
             return false;
         }
     }
@@ -211,7 +210,7 @@ static bool probe_files(const RunCommand *command, const CaseRun *runs, Err *err
 
 static bool run_cases(const RunCommand *command, CaseRun *runs, Err *err)
 {
-    if (!load_cases(command, runs, err) || !probe_files(command, runs, err)) {
+    if (!load_cases(command, runs, err) || !claim_files(command, runs, err)) {
         return false;
     }
     for (size_t i = 0; !command->is_quiet && i < command->case_count; i++) {
@@ -243,9 +242,6 @@ static bool check_command(RunCommand *command, Err *err)
     }
     if (!option_values_check_picture("--plot", command->plot, err)) {
         return false;
-    }
-    if (file_is_same(command->series, command->plot)) {
-        return err_set(err, ERR_USAGE, "--series and --plot would both write %s", command->plot);
     }
     if (command->backends.length > 0) {
         Text text;

@@ -124,7 +124,7 @@ static bool tune_case(const TuneOptions *options, Scenario *scenario, Err *err)
                       options->common.override_count, scenario, err) &&
         tune_options_search(options, scenario, &tune, err) &&
         (options->common.folder == NULL || run_files_make_folder(options->common.folder, err)) &&
-        tune_files_probe(scenario, options, err);
+        tune_files_claim(scenario, options, err);
     if (is_done && !options->common.is_quiet) {
         say_idle(options, scenario);
     }

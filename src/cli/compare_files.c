@@ -11,18 +11,22 @@
 
 #include <stdio.h>
 
-enum { ENDING_COUNT = 4 };
+enum { MEMBER_COUNT = 4 };
 
-static const char *const ENDINGS[ENDING_COUNT] = {"txt", "csv", "svg", "json"};
+static const struct {
+    const char *ending;
+    FileKind kind;
+} MEMBERS[MEMBER_COUNT] = {
+    {"txt", FILE_REPORT}, {"csv", FILE_TABLE}, {"svg", FILE_PICTURE}, {"json", FILE_RESULT}};
 
 static bool write_csv(const CompareReport *report, const char *path, bool is_quiet, Err *err)
 {
     return compare_csv_write(report, path, err) && written_say(path, is_quiet);
 }
 
-static bool write_text(const char *path, Text *text, bool is_quiet, Err *err)
+static bool write_text(FileKind kind, const char *path, Text *text, bool is_quiet, Err *err)
 {
-    const bool is_written = written_text(path, text->data, is_quiet, err);
+    const bool is_written = written_text(kind, path, text->data, is_quiet, err);
     text_finish(text);
     return is_written;
 }
@@ -32,7 +36,7 @@ static bool write_plot(const CompareReport *report, const char *path, bool is_qu
     Text svg;
     text_init(&svg);
     compare_plot_write(report, &svg);
-    return write_text(path, &svg, is_quiet, err);
+    return write_text(FILE_PICTURE, path, &svg, is_quiet, err);
 }
 
 static bool write_report(const CompareReport *report, const char *path, bool is_quiet, Err *err)
@@ -41,7 +45,7 @@ static bool write_report(const CompareReport *report, const char *path, bool is_
     text_init(&text);
     compare_text_write(report, &STYLE_PLAIN, &text);
     text_fold(&text, STYLE_WIDTH);
-    return write_text(path, &text, is_quiet, err);
+    return write_text(FILE_REPORT, path, &text, is_quiet, err);
 }
 
 static bool write_json(const CompareReport *report, const char *path, bool is_quiet, Err *err)
@@ -66,11 +70,11 @@ static bool find_path(const CompareOptions *options, const Scenario *scenario, c
 
 static bool write_folder(const CompareReport *report, const CompareOptions *options, Err *err)
 {
-    static bool (*const WRITERS[ENDING_COUNT])(const CompareReport *, const char *, bool, Err *) = {
+    static bool (*const WRITERS[MEMBER_COUNT])(const CompareReport *, const char *, bool, Err *) = {
         write_report, write_csv, write_plot, write_json};
     char path[FILE_PATH_SIZE];
-    for (int i = 0; i < ENDING_COUNT; i++) {
-        if (!find_path(options, report->scenario, ENDINGS[i], path, err) ||
+    for (int i = 0; i < MEMBER_COUNT; i++) {
+        if (!find_path(options, report->scenario, MEMBERS[i].ending, path, err) ||
             !WRITERS[i](report, path, options->common.is_quiet, err)) {
             return false;
         }
@@ -78,15 +82,16 @@ static bool write_folder(const CompareReport *report, const CompareOptions *opti
     return true;
 }
 
-bool compare_files_probe(const Scenario *scenario, const CompareOptions *options, Err *err)
+bool compare_files_claim(const Scenario *scenario, const CompareOptions *options, Err *err)
 {
-    if ((options->csv != NULL && !file_probe(options->csv, err)) ||
-        (options->plot != NULL && !file_probe(options->plot, err))) {
+    if ((options->csv != NULL && !file_claim("--csv", FILE_TABLE, options->csv, err)) ||
+        (options->plot != NULL && !file_claim("--plot", FILE_PICTURE, options->plot, err))) {
         return false;
     }
-    for (int i = 0; options->common.folder != NULL && i < ENDING_COUNT; i++) {
+    for (int i = 0; options->common.folder != NULL && i < MEMBER_COUNT; i++) {
         char path[FILE_PATH_SIZE];
-        if (!find_path(options, scenario, ENDINGS[i], path, err) || !file_probe(path, err)) {
+        if (!find_path(options, scenario, MEMBERS[i].ending, path, err) ||
+            !file_claim("--out", MEMBERS[i].kind, path, err)) {
             return false;
         }
     }

@@ -6,7 +6,7 @@
 
 // Whether all of that can be written, before anything runs. Leaves nothing behind; the folder is
 // there. ERR_FILE.
-bool compare_files_probe(const Scenario *scenario, const CompareOptions *options, Err *err);
+bool compare_files_claim(const Scenario *scenario, const CompareOptions *options, Err *err);
 
 // Writes what the options name: the points, the picture, the folder. ERR_FILE.
 bool compare_files_write(const CompareReport *report, const CompareOptions *options, Err *err);

@@ -3,7 +3,6 @@
 
 #include "cli/arguments.h"
 #include "cli/option_values.h"
-#include "report/file.h"
 
 enum {
     KEY_STEPS = 0x200, // options without a letter of their own
@@ -94,9 +93,6 @@ bool compare_options_read(int argc, char **argv, CompareOptions *options, bool *
     }
     if (!option_values_check_picture("--plot", options->plot, err)) {
         return false;
-    }
-    if (file_is_same(options->csv, options->plot)) {
-        return err_set(err, ERR_USAGE, "--csv and --plot would both write %s", options->plot);
     }
     return options->common.path != NULL ||
            err_set(err, ERR_USAGE, "no case given: jointplay compare CASE.yaml");

@@ -102,10 +102,11 @@ bool compare_store_open(CompareStore *store, const CompareOptions *options,
     build_print(build);
     find_machine(store->machine);
     json_t *key = ladder_json_key(ladder, scenario, build);
+    const char *file = options->store != NULL ? options->store : path;
     const bool is_open =
         (options->store != NULL || find_path(key, path, err)) &&
-        journal_open(&store->journal, &JOURNAL_COMPARE,
-                     options->store != NULL ? options->store : path, key, options->is_fresh, err);
+        file_claim("--store", FILE_JOURNAL, file, err) &&
+        journal_open(&store->journal, &JOURNAL_COMPARE, file, key, options->is_fresh, err);
     json_decref(key);
     return is_open && take_all(store, ladder, options->common.is_quiet, err);
 }

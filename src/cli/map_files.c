@@ -16,9 +16,9 @@ static bool write_csv(const MappingReport *report, const char *path, bool is_qui
     return mapping_csv_write(report, path, err) && written_say(path, is_quiet);
 }
 
-static bool write_text(const char *path, Text *text, bool is_quiet, Err *err)
+static bool write_text(FileKind kind, const char *path, Text *text, bool is_quiet, Err *err)
 {
-    const bool is_written = written_text(path, text->data, is_quiet, err);
+    const bool is_written = written_text(kind, path, text->data, is_quiet, err);
     text_finish(text);
     return is_written;
 }
@@ -28,7 +28,7 @@ static bool write_plot(const MappingReport *report, const char *path, bool is_qu
     Text svg;
     text_init(&svg);
     mapping_plot_write(report, &svg);
-    return write_text(path, &svg, is_quiet, err);
+    return write_text(FILE_PICTURE, path, &svg, is_quiet, err);
 }
 
 static bool write_report(const MappingReport *report, const char *path, bool is_quiet, Err *err)
@@ -37,7 +37,7 @@ static bool write_report(const MappingReport *report, const char *path, bool is_
     text_init(&text);
     mapping_text_write(report, &STYLE_PLAIN, &text);
     text_fold(&text, STYLE_WIDTH);
-    return write_text(path, &text, is_quiet, err);
+    return write_text(FILE_REPORT, path, &text, is_quiet, err);
 }
 
 static bool write_json(const MappingReport *report, const char *path, bool is_quiet, Err *err)
@@ -51,9 +51,14 @@ static bool write_json(const MappingReport *report, const char *path, bool is_qu
 // What goes into the folder, by its ending.
 static const struct {
     const char *ending;
+    FileKind kind;
     bool (*write)(const MappingReport *report, const char *path, bool is_quiet, Err *err);
 } MEMBERS[] = {
-    {"txt", write_report}, {"csv", write_csv}, {"svg", write_plot}, {"json", write_json}};
+    {"txt", FILE_REPORT, write_report},
+    {"csv", FILE_TABLE, write_csv},
+    {"svg", FILE_PICTURE, write_plot},
+    {"json", FILE_RESULT, write_json},
+};
 
 enum { MEMBER_COUNT = sizeof MEMBERS / sizeof *MEMBERS };
 
@@ -72,15 +77,16 @@ static bool find_path(const MapOptions *options, const Scenario *scenario, const
            err_set(err, ERR_FILE, "the path of %s-map.%s is too long", name, ending);
 }
 
-bool map_files_probe(const Scenario *scenario, const MapOptions *options, Err *err)
+bool map_files_claim(const Scenario *scenario, const MapOptions *options, Err *err)
 {
-    if ((options->csv != NULL && !file_probe(options->csv, err)) ||
-        (options->plot != NULL && !file_probe(options->plot, err))) {
+    if ((options->csv != NULL && !file_claim("--csv", FILE_TABLE, options->csv, err)) ||
+        (options->plot != NULL && !file_claim("--plot", FILE_PICTURE, options->plot, err))) {
         return false;
     }
     for (int i = 0; options->common.folder != NULL && i < MEMBER_COUNT; i++) {
         char path[FILE_PATH_SIZE];
-        if (!find_path(options, scenario, MEMBERS[i].ending, path, err) || !file_probe(path, err)) {
+        if (!find_path(options, scenario, MEMBERS[i].ending, path, err) ||
+            !file_claim("--out", MEMBERS[i].kind, path, err)) {
             return false;
         }
     }

@@ -6,7 +6,7 @@
 
 // Whether all of that can be written, before anything runs. Leaves nothing behind; the folder is
 // there. ERR_FILE.
-bool map_files_probe(const Scenario *scenario, const MapOptions *options, Err *err);
+bool map_files_claim(const Scenario *scenario, const MapOptions *options, Err *err);
 
 // Writes what the options name: the rows, the picture, the folder. ERR_FILE.
 bool map_files_write(const MappingReport *report, const MapOptions *options, Err *err);

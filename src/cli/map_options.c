@@ -3,7 +3,6 @@
 
 #include "casefile/quantity.h"
 #include "cli/arguments.h"
-#include "report/file.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -261,9 +260,6 @@ bool map_options_read(int argc, char **argv, MapOptions *options, bool *is_answe
     }
     if (!option_values_check_picture("--plot", options->plot, err)) {
         return false;
-    }
-    if (file_is_same(options->csv, options->plot)) {
-        return err_set(err, ERR_USAGE, "--csv and --plot would both write %s", options->plot);
     }
     if (!check_lone(options, err)) {
         return false;

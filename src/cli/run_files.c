@@ -24,7 +24,7 @@ bool run_files_plot(const CaseRun *run, const char *path, bool is_quiet, Err *er
     Text svg;
     text_init(&svg);
     plot_run_write(&run->report, &svg);
-    const bool is_written = written_text(path, svg.data, is_quiet, err);
+    const bool is_written = written_text(FILE_PICTURE, path, svg.data, is_quiet, err);
     text_finish(&svg);
     return is_written;
 }
@@ -52,16 +52,22 @@ bool run_files_series(const CaseRun *run, const char *path, bool is_quiet, Err *
     return true;
 }
 
-bool run_files_probe(const CaseRun *run, const char *series, const char *plot, Err *err)
+bool run_files_claim(const CaseRun *run, const char *series, const char *plot, Err *err)
 {
-    for (size_t i = 0; series != NULL && i < run->scenario.run.backend_count; i++) {
+    // a stream takes all of them
+    const bool is_stream = series != NULL && file_is_stream(series);
+    const size_t count = is_stream ? 1 : run->scenario.run.backend_count;
+    if (series != NULL && !file_check_input("--series", series, err)) {
+        return false;
+    }
+    for (size_t i = 0; series != NULL && i < count; i++) {
         char target[FILE_PATH_SIZE];
         find_series(run, series, i, target);
-        if (!file_probe(target, err)) {
+        if (!file_claim("--series", FILE_TABLE, target, err)) {
             return false;
         }
     }
-    return plot == NULL || file_probe(plot, err);
+    return plot == NULL || file_claim("--plot", FILE_PICTURE, plot, err);
 }
 
 bool run_files_make_folder(const char *folder, Err *err)
@@ -112,23 +118,44 @@ static bool write_report(const CaseRun *run, const char *path, bool is_quiet, Er
     text_init(&text);
     run_text_write(&run->report, &STYLE_PLAIN, &text);
     text_fold(&text, STYLE_WIDTH);
-    const bool is_written = written_text(path, text.data, is_quiet, err);
+    const bool is_written = written_text(FILE_REPORT, path, text.data, is_quiet, err);
     text_finish(&text);
     return is_written;
 }
 
-bool run_files_probe_folder(const CaseRun *run, const char *folder, Err *err)
+// The file of a backend's series in the folder.
+static bool find_member(const CaseRun *run, const char *folder, size_t number, char *path, Err *err)
 {
-    static const char *const ENDINGS[] = {".svg", ".txt", ".json"};
+    char name[FILE_PATH_SIZE];
+    char ending[LINKAGE_NAME_SIZE + 8];
+    const RunOptions *options = &run->scenario.run;
+    case_run_name(&run->scenario, name, sizeof name);
+    snprintf(ending, sizeof ending, "-%s.csv", OPTIONS_BACKENDS[options->backends[number]]);
+    return join_path(folder, name, ending, path, err);
+}
+
+bool run_files_claim_folder(const CaseRun *run, const char *folder, Err *err)
+{
+    static const struct {
+        const char *ending;
+        FileKind kind;
+    } MEMBERS[] = {{".svg", FILE_PICTURE}, {".txt", FILE_REPORT}, {".json", FILE_RESULT}};
     char name[FILE_PATH_SIZE];
     char path[FILE_PATH_SIZE];
     case_run_name(&run->scenario, name, sizeof name);
-    for (size_t i = 0; i < sizeof ENDINGS / sizeof ENDINGS[0]; i++) {
-        if (!join_path(folder, name, ENDINGS[i], path, err) || !file_probe(path, err)) {
+    for (size_t i = 0; i < sizeof MEMBERS / sizeof *MEMBERS; i++) {
+        if (!join_path(folder, name, MEMBERS[i].ending, path, err) ||
+            !file_claim("--out", MEMBERS[i].kind, path, err)) {
             return false;
         }
     }
-    return join_path(folder, name, ".csv", path, err) && run_files_probe(run, path, NULL, err);
+    for (size_t i = 0; i < run->scenario.run.backend_count; i++) {
+        if (!find_member(run, folder, i, path, err) ||
+            !file_claim("--out", FILE_TABLE, path, err)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 bool run_files_folder(const CaseRun *run, const char *folder, bool is_quiet, Err *err)
@@ -138,14 +165,12 @@ bool run_files_folder(const CaseRun *run, const char *folder, bool is_quiet, Err
     case_run_name(&run->scenario, name, sizeof name);
     for (size_t i = 0; i < run->report.run_count; i++) {
         const Trajectory *trajectory = run->runs[i];
-        char ending[LINKAGE_NAME_SIZE + 8];
-        snprintf(ending, sizeof ending, "-%s.csv", trajectory->backend);
-        if (!join_path(folder, name, ending, path, err)) {
+        if (!find_member(run, folder, i, path, err)) {
             return false;
         }
         if (!trajectory->is_complete) {
             // a series of an earlier run must not stand for one that failed
-            remove(path);
+            file_remove(FILE_TABLE, path);
         } else if (!write_series(run, trajectory, path, is_quiet, err)) {
             return false;
         }

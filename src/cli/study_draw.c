@@ -4,6 +4,7 @@
 #include "cli/study_commands.h"
 #include "cli/study_place.h"
 #include "cli/written.h"
+#include "report/file.h"
 #include "report/study_plot.h"
 
 enum { KEY_X = 0x200, KEY_Y, KEY_BY, KEY_TITLE, KEY_QUIET = 'q' };
@@ -67,9 +68,10 @@ static bool draw(const DrawOptions *options, Err *err)
     }
     Text svg;
     text_init(&svg);
-    bool is_drawn = study_plot_write(store, &options->plot, &svg, err);
+    bool is_drawn = file_claim("the picture", FILE_PICTURE, options->file, err) &&
+                    study_plot_write(store, &options->plot, &svg, err);
     is_drawn = store_close(store, err) && is_drawn &&
-               written_text(options->file, svg.data, options->is_quiet, err);
+               written_text(FILE_PICTURE, options->file, svg.data, options->is_quiet, err);
     text_finish(&svg);
     return is_drawn;
 }

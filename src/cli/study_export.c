@@ -64,6 +64,8 @@ static bool write_all(const ExportOptions *options, Err *err)
     }
     const char *csv = options->csv == NULL && options->jsonl == NULL ? "-" : options->csv;
     const bool is_written =
+        (csv == NULL || file_claim("--csv", FILE_TABLE, csv, err)) &&
+        (options->jsonl == NULL || file_claim("--jsonl", FILE_ROWS, options->jsonl, err)) &&
         (csv == NULL || (study_csv_write(store, csv, err) && say(csv, options->is_quiet))) &&
         (options->jsonl == NULL ||
          (study_jsonl_write(store, options->jsonl, err) && say(options->jsonl, options->is_quiet)));
@@ -88,9 +90,6 @@ static bool run(int argc, char **argv, Err *err)
     }
     if (options.store == NULL) {
         return err_set(err, ERR_USAGE, "no store given: jointplay study export STORE.sqlite");
-    }
-    if (file_is_same(options.csv, options.jsonl)) {
-        return err_set(err, ERR_USAGE, "--csv and --jsonl would both write %s", options.csv);
     }
     return write_all(&options, err);
 }

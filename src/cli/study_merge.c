@@ -101,7 +101,13 @@ static bool merge_words(const StudyWords *words, Err *err)
     if (words->count == 1 && study_place_is_study(words->words[0])) {
         return merge_study(words->words[0], words->is_quiet, err);
     }
-    if (words->count < 2 || study_place_is_study(words->words[0])) {
+    if (words->count > 1 && study_place_is_study(words->words[0])) {
+        return err_set(err, ERR_USAGE,
+                       "%s is a study file, and stores are merged into a store: jointplay study "
+                       "merge OUT.sqlite IN.sqlite...",
+                       words->words[0]);
+    }
+    if (words->count < 2) {
         return err_set(err, ERR_USAGE,
                        "nothing to merge given: jointplay study merge STUDY.yaml, or "
                        "jointplay study merge OUT.sqlite IN.sqlite...");

@@ -162,7 +162,8 @@ static bool make_runs(const StudyOptions *options, const Spec *spec, const Layou
                           .shard = options->shard,
                           .jobs = options->common.jobs};
     SweepEnd end;
-    if (!sweep(options, spec, layout, &end, &report.state, err)) {
+    if (!file_claim("--store", FILE_STORE, options->store, err) ||
+        !sweep(options, spec, layout, &end, &report.state, err)) {
         return false;
     }
     if (end == SWEEP_STOPPED) {

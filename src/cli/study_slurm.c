@@ -189,20 +189,36 @@ static bool let_run(const char *path, Err *err)
            err_set(err, ERR_FILE, "cannot make %s a script: %s", path, strerror(errno));
 }
 
+static bool find_script(const SlurmJob *job, size_t number, char path[FILE_PATH_SIZE], Err *err)
+{
+    const char *ending = SCRIPTS[number].ending;
+    const int length = snprintf(path, FILE_PATH_SIZE, "%s/%s.%s", job->folder, job->stem, ending);
+    return (length >= 0 && length < FILE_PATH_SIZE) ||
+           err_set(err, ERR_FILE, "the path of %s.%s is too long", job->stem, ending);
+}
+
+static bool claim_scripts(const SlurmJob *job, Err *err)
+{
+    for (size_t i = 0; i < SCRIPT_COUNT; i++) {
+        char path[FILE_PATH_SIZE];
+        if (!find_script(job, i, path, err) || !file_claim("--out", FILE_SCRIPT, path, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool write_scripts(const SlurmJob *job, const SlurmOptions *options, Err *err)
 {
     for (size_t i = 0; i < SCRIPT_COUNT; i++) {
         char path[FILE_PATH_SIZE];
-        const int length =
-            snprintf(path, sizeof path, "%s/%s.%s", job->folder, job->stem, SCRIPTS[i].ending);
-        if (length < 0 || length >= FILE_PATH_SIZE) {
-            return err_set(err, ERR_FILE, "the path of %s.%s is too long", job->stem,
-                           SCRIPTS[i].ending);
+        if (!find_script(job, i, path, err)) {
+            return false;
         }
         Text text;
         text_init(&text);
         SCRIPTS[i].write(job, &text);
-        const bool is_written = written_text(path, text.data, options->is_quiet, err);
+        const bool is_written = written_text(FILE_SCRIPT, path, text.data, options->is_quiet, err);
         text_finish(&text);
         if (!is_written || !let_run(path, err)) {
             return false;
@@ -270,7 +286,7 @@ static bool make_scripts(const SlurmOptions *options, Err *err)
         print_scripts(&job);
         return true;
     }
-    if (!write_scripts(&job, options, err)) {
+    if (!claim_scripts(&job, err) || !write_scripts(&job, options, err)) {
         return false;
     }
     say_next(&job, options);

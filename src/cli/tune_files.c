@@ -19,6 +19,7 @@ typedef bool (*Writer)(const TuneReport *report, Text *text, Err *err);
 
 typedef struct Kind {
     const char *ending;
+    FileKind kind;
     const char *nothing; // what is said where there is nothing to write
     Writer write;
 } Kind;
@@ -62,10 +63,10 @@ static bool write_text(const TuneReport *report, Text *text, Err *err)
 enum { CODE, SDF, MJCF, TEXT, KIND_COUNT };
 
 static const Kind KINDS[KIND_COUNT] = {
-    [CODE] = {"c", "no run has an error that means anything", write_code},
-    [SDF] = {"sdf", "no contact with constants that was tried is stable", write_sdf},
-    [MJCF] = {"xml", "no contact with constants that was tried is stable", write_mjcf},
-    [TEXT] = {"txt", "", write_text},
+    [CODE] = {"c", FILE_CODE, "no run has an error that means anything", write_code},
+    [SDF] = {"sdf", FILE_SDF, "no contact with constants that was tried is stable", write_sdf},
+    [MJCF] = {"xml", FILE_MJCF, "no contact with constants that was tried is stable", write_mjcf},
+    [TEXT] = {"txt", FILE_REPORT, "", write_text},
 };
 
 static bool write_file(const TuneReport *report, const Kind *kind, const char *path, bool is_quiet,
@@ -75,7 +76,7 @@ static bool write_file(const TuneReport *report, const Kind *kind, const char *p
     text_init(&text);
     bool is_done = kind->write(report, &text, err);
     if (is_done) {
-        is_done = written_text(path, text.data, is_quiet, err);
+        is_done = written_text(kind->kind, path, text.data, is_quiet, err);
     } else if (err->kind == ERR_NONE) {
         const bool has_play = scenario_has_clearance(report->scenario);
         if (!is_quiet) {
@@ -117,22 +118,22 @@ static bool write_folder(const TuneReport *report, const TuneOptions *options, E
     return is_written;
 }
 
-bool tune_files_probe(const Scenario *scenario, const TuneOptions *options, Err *err)
+bool tune_files_claim(const Scenario *scenario, const TuneOptions *options, Err *err)
 {
-    const char *const paths[] = {options->code, options->sdf, options->mjcf};
-    for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
-        if (paths[i] != NULL && !file_probe(paths[i], err)) {
-            return false;
-        }
+    if ((options->code != NULL && !file_claim("--code", FILE_CODE, options->code, err)) ||
+        (options->sdf != NULL && !file_claim("--sdf", FILE_SDF, options->sdf, err)) ||
+        (options->mjcf != NULL && !file_claim("--mjcf", FILE_MJCF, options->mjcf, err))) {
+        return false;
     }
     char path[FILE_PATH_SIZE];
     for (int i = 0; options->common.folder != NULL && i < KIND_COUNT; i++) {
-        if (!find_path(options, scenario, KINDS[i].ending, path, err) || !file_probe(path, err)) {
+        if (!find_path(options, scenario, KINDS[i].ending, path, err) ||
+            !file_claim("--out", KINDS[i].kind, path, err)) {
             return false;
         }
     }
-    return options->common.folder == NULL ||
-           (find_path(options, scenario, "json", path, err) && file_probe(path, err));
+    return options->common.folder == NULL || (find_path(options, scenario, "json", path, err) &&
+                                              file_claim("--out", FILE_RESULT, path, err));
 }
 
 bool tune_files_write(const TuneReport *report, const TuneOptions *options, Err *err)

@@ -6,7 +6,7 @@
 
 // Whether all files asked for could be written now, before the search. Leaves nothing behind.
 // ERR_FILE.
-bool tune_files_probe(const Scenario *scenario, const TuneOptions *options, Err *err);
+bool tune_files_claim(const Scenario *scenario, const TuneOptions *options, Err *err);
 
 // Writes what the options ask for: C code, SDF, MJCF, and all of it with tables and JSON into the
 // folder. What there is nothing to say of is not written, and said to be so. ERR_FILE.

@@ -3,7 +3,6 @@
 
 #include "casefile/quantity.h"
 #include "cli/arguments.h"
-#include "report/file.h"
 
 #include <math.h>
 #include <string.h>
@@ -159,19 +158,6 @@ static bool settle_cost(const char *cost, TuneOptions *options, Err *err)
     return true;
 }
 
-static bool check_paths(const TuneOptions *options, Err *err)
-{
-    const char *const paths[] = {options->code, options->sdf, options->mjcf};
-    for (size_t i = 0; i < 3; i++) {
-        for (size_t k = i + 1; k < 3; k++) {
-            if (file_is_same(paths[i], paths[k])) {
-                return err_set(err, ERR_USAGE, "two options would both write %s", paths[i]);
-            }
-        }
-    }
-    return true;
-}
-
 bool tune_options_read(int argc, char **argv, TuneOptions *options, bool *is_answered, Err *err)
 {
     static const Arguments ARGUMENTS = {
@@ -200,7 +186,7 @@ bool tune_options_read(int argc, char **argv, TuneOptions *options, bool *is_ans
         return err_set(err, ERR_USAGE, "no error given: jointplay tune %s --error 1e-3",
                        options->common.path);
     }
-    return settle_cost(reading.cost, options, err) && check_paths(options, err);
+    return settle_cost(reading.cost, options, err);
 }
 
 bool tune_options_search(const TuneOptions *options, const Scenario *scenario, Tune **tune,

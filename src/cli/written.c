@@ -27,9 +27,9 @@ void written_damage(const Journal *journal, bool is_quiet)
     text_finish(&text);
 }
 
-bool written_text(const char *path, const char *text, bool is_quiet, Err *err)
+bool written_text(FileKind kind, const char *path, const char *text, bool is_quiet, Err *err)
 {
-    return file_write_text(path, text, err) && written_say(path, is_quiet);
+    return file_write_text(kind, path, text, err) && written_say(path, is_quiet);
 }
 
 bool written_json(const char *path, const json_t *object, bool is_quiet, Err *err)
@@ -40,7 +40,7 @@ bool written_json(const char *path, const json_t *object, bool is_quiet, Err *er
     text_init(&text);
     text_append(&text, "%s\n", words);
     free(words);
-    const bool is_written = written_text(path, text.data, is_quiet, err);
+    const bool is_written = written_text(FILE_RESULT, path, text.data, is_quiet, err);
     text_finish(&text);
     return is_written;
 }

@@ -1,6 +1,7 @@
 // Files that the program leaves behind, each with a word on standard error unless quiet.
 #pragma once
 
+#include "report/file_kind.h"
 #include "report/journal.h"
 #include "report/run_json.h"
 
@@ -10,6 +11,6 @@ bool written_say(const char *path, bool is_quiet);
 // Says, unless quiet, which lines of a journal are damaged, if any.
 void written_damage(const Journal *journal, bool is_quiet);
 
-// Writes text, or an object as JSON, to a file, whole or not at all. ERR_FILE.
-bool written_text(const char *path, const char *text, bool is_quiet, Err *err);
+// Writes text, or a result as JSON, to a file, whole or not at all. ERR_FILE.
+bool written_text(FileKind kind, const char *path, const char *text, bool is_quiet, Err *err);
 bool written_json(const char *path, const json_t *object, bool is_quiet, Err *err);

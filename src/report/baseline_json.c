@@ -119,7 +119,7 @@ bool baseline_json_write(const char *path, const Baseline *baseline, Err *err)
         append_metric(&text, &baseline->metrics[i]);
     }
     text_append(&text, "\n  }\n}\n");
-    const bool is_written = file_write_text(path, text.data, err);
+    const bool is_written = file_write_text(FILE_BASELINE, path, text.data, err);
     text_finish(&text);
     return is_written;
 }

@@ -45,7 +45,7 @@ static void write_row(FILE *stream, const Ladder *ladder, const LadderPoint *poi
 bool compare_csv_write(const CompareReport *report, const char *path, Err *err)
 {
     WholeFile file;
-    if (!file_begin(&file, path, err)) {
+    if (!file_begin(&file, FILE_TABLE, path, err)) {
         return false;
     }
     fputs(HEAD, file.stream);

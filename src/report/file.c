@@ -1,9 +1,11 @@
 // How does a file come to be there whole or not at all?
 //
 // It is written beside its place and renamed when complete. A run that is interrupted meanwhile
-// takes what it had begun away with it.
+// takes what it had begun away with it. What it takes the place of must be of its own kind, and no
+// file that the command reads: asked before the work, and once more before the file is begun.
 #include "report/file.h"
 
+#include "base/claims.h"
 #include "report/file_parts.h"
 
 #include <errno.h>
@@ -13,6 +15,8 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+enum { DIGIT_MAX = 9 }; // of a descriptor
 
 // A reader that has gone away has what it wanted, and needs no words.
 static bool fail_to_write(const char *path, int reason, Err *err)
@@ -48,54 +52,80 @@ static void watch_signals(const char *temporary)
     }
 }
 
-static bool is_standard_output(const char *path)
+// The descriptor that a path names, which the caller opened; -1 where it names none.
+static int descriptor_of(const char *path)
 {
-    return strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0;
+    static const char *const FOLDERS[] = {"/dev/fd/", "/proc/self/fd/"};
+    if (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0) {
+        return STDOUT_FILENO;
+    }
+    if (strcmp(path, "/dev/stderr") == 0) {
+        return STDERR_FILENO;
+    }
+    for (size_t i = 0; i < sizeof FOLDERS / sizeof *FOLDERS; i++) {
+        const size_t length = strlen(FOLDERS[i]);
+        const char *digits = path + length;
+        if (strncmp(path, FOLDERS[i], length) == 0 && digits[0] != '\0' &&
+            strlen(digits) <= DIGIT_MAX && strspn(digits, "0123456789") == strlen(digits)) {
+            return atoi(digits);
+        }
+    }
+    return -1;
+}
+
+// Whether a descriptor is the caller's and can be written to; errno says why not. Those that the
+// program opened itself are closed where another program is started.
+static bool is_callers(int descriptor)
+{
+    const int flags = fcntl(descriptor, F_GETFD);
+    const int mode = fcntl(descriptor, F_GETFL);
+    errno = EBADF;
+    return flags >= 0 && (flags & FD_CLOEXEC) == 0 && (mode & O_ACCMODE) != O_RDONLY;
 }
 
 bool file_is_stream(const char *path)
 {
     struct stat status;
-    return is_standard_output(path) || strncmp(path, "/dev/", 5) == 0 ||
-           strncmp(path, "/proc/", 6) == 0 ||
-           (stat(path, &status) == 0 && !S_ISREG(status.st_mode));
+    return descriptor_of(path) >= 0 || (stat(path, &status) == 0 && !S_ISREG(status.st_mode));
 }
 
-// A path without links and dots: its own where it is there, else that of the folder it is for.
-static void resolve(const char *path, char target[FILE_PATH_SIZE])
+// What a message and the list of claims call the target.
+static const char *name_of(const char *path)
 {
-    char folder[FILE_PATH_SIZE];
-    const char *slash = strrchr(path, '/');
-    const char *name = slash == NULL ? path : slash + 1;
-    snprintf(folder, sizeof folder, "%.*s.", (int)(name - path), path);
-    char *whole = realpath(path, NULL);
-    char *above = realpath(folder, NULL);
-    if (whole == NULL && above != NULL) {
-        snprintf(target, FILE_PATH_SIZE, "%s/%s", above, name);
-    } else {
-        snprintf(target, FILE_PATH_SIZE, "%s", whole != NULL ? whole : path);
-    }
-    free(whole);
-    free(above);
+    return descriptor_of(path) == STDOUT_FILENO ? "-" : path;
 }
 
-bool file_is_same(const char *path, const char *other)
+bool file_check_input(const char *user, const char *path, Err *err)
 {
-    if (path == NULL || other == NULL) {
+    Claim claim;
+    return !claims_find(name_of(path), &claim) || !claim.is_read ||
+           err_set(err, ERR_USAGE,
+                   "%s would replace %s, which is the %s that this command reads; name another "
+                   "file",
+                   user, path, claim.user);
+}
+
+// Whether this command does not read that file, has no other output for it where one is to be
+// claimed, and nothing of another kind stands there.
+static bool check_target(const char *user, FileKind kind, const char *path, bool is_new, Err *err)
+{
+    Claim claim;
+    if (!file_check_input(user, path, err)) {
         return false;
     }
-    char first[FILE_PATH_SIZE];
-    char second[FILE_PATH_SIZE];
-    resolve(path, first);
-    resolve(other, second);
-    return strcmp(first, second) == 0;
+    const bool is_claimed = claims_find(name_of(path), &claim);
+    if (is_claimed && is_new && strcmp(claim.user, user) != 0) {
+        return err_set(err, ERR_USAGE, "%s and %s would both write %s", claim.user, user, path);
+    }
+    return descriptor_of(path) >= 0 ||
+           file_kind_check(kind, is_claimed ? claim.user : user, path, err);
 }
 
 // Follows symbolic links, so that the file they lead to is replaced and not the link.
 static bool find_target(const char *path, char *target, bool *is_regular, Err *err)
 {
     *is_regular = !file_is_stream(path);
-    char *resolved = realpath(path, NULL);
+    char *resolved = *is_regular ? realpath(path, NULL) : NULL;
     const int written = snprintf(target, FILE_PATH_SIZE, "%s", resolved == NULL ? path : resolved);
     free(resolved);
     if (path[0] == '\0') {
@@ -107,16 +137,18 @@ static bool find_target(const char *path, char *target, bool *is_regular, Err *e
 // A descriptor of its own; -1, with errno set.
 static int open_target(const WholeFile *file, const char *path)
 {
-    if (is_standard_output(path)) {
+    const int descriptor = descriptor_of(path);
+    if (descriptor >= 0) {
         // beside the program's own words, wherever they go
         fflush(stdout);
-        return fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+        return is_callers(descriptor) ? fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1) : -1;
     }
     return file->temporary[0] != '\0' ? file_parts_make(file->path, file->temporary)
                                       : open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
 }
 
-bool file_begin(WholeFile *file, const char *path, Err *err)
+// Opens what takes the text; not yet the file itself, but for a stream.
+static bool begin(WholeFile *file, const char *path, Err *err)
 {
     *file = (WholeFile){0};
     bool is_regular;
@@ -135,25 +167,44 @@ bool file_begin(WholeFile *file, const char *path, Err *err)
     return true;
 }
 
-bool file_probe(const char *path, Err *err)
+bool file_begin(WholeFile *file, FileKind kind, const char *path, Err *err)
+{
+    return check_target("the output", kind, path, false, err) && begin(file, path, err);
+}
+
+// Whether the file could be written, by writing nothing to it.
+static bool probe(const char *path, Err *err)
 {
     struct stat status;
+    const int descriptor = descriptor_of(path);
+    if (descriptor >= 0) {
+        // a closed standard output is told of where it is written to
+        return descriptor == STDOUT_FILENO || is_callers(descriptor) ||
+               fail_to_write(path, errno, err);
+    }
     if (!file_is_stream(path)) {
         WholeFile file;
-        const bool is_begun = file_begin(&file, path, err);
+        const bool is_begun = begin(&file, path, err);
         if (is_begun) {
             file_abandon(&file);
         }
         return is_begun;
-    }
-    if (is_standard_output(path)) {
-        return true;
     }
     // a stream is only asked: opening a pipe would wait for its reader
     if (stat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
         return fail_to_write(path, EISDIR, err);
     }
     return access(path, W_OK) == 0 || fail_to_write(path, errno, err);
+}
+
+bool file_claim(const char *user, FileKind kind, const char *path, Err *err)
+{
+    if (!check_target(user, kind, path, true, err) ||
+        (!file_kind_is_kept(kind) && !probe(path, err))) {
+        return false;
+    }
+    claims_note_written(user, name_of(path));
+    return true;
 }
 
 bool file_check(const WholeFile *file, Err *err)
@@ -187,12 +238,20 @@ void file_abandon(WholeFile *file)
     pending[0] = '\0';
 }
 
-bool file_write_text(const char *path, const char *text, Err *err)
+bool file_write_text(FileKind kind, const char *path, const char *text, Err *err)
 {
     WholeFile file;
-    if (!file_begin(&file, path, err)) {
+    if (!file_begin(&file, kind, path, err)) {
         return false;
     }
     fputs(text, file.stream);
     return file_end(&file, err);
+}
+
+void file_remove(FileKind kind, const char *path)
+{
+    Err err = {0};
+    if (!file_is_stream(path) && check_target("the output", kind, path, false, &err)) {
+        unlink(path);
+    }
 }

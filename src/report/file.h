@@ -3,10 +3,14 @@
 // The text goes to a file beside the target and takes the target's name only when all of it has
 // been written, so that a full disk or a killed program never leaves half a file. A target that is
 // no regular file (a pipe, a terminal, /dev/full) is written to directly.
+//
+// And it replaces nothing but its own: no file that the command reads, and none of another kind
+// (file_kind.h). Who wants that deletes the file first.
 #pragma once
 
 #include "base/err.h"
 #include "base/sink.h"
+#include "report/file_kind.h"
 
 #include <stdio.h>
 
@@ -20,21 +24,26 @@ typedef struct WholeFile {
     char temporary[FILE_PATH_SIZE]; // beside it; empty where the target is written directly
 } WholeFile;
 
-// Whether a path stands for a stream that is written as it is: "-" and /dev/stdout for standard
-// output, a pipe, a device. Anything else is a file that is written whole or not at all.
+// Whether a path stands for a stream that is written as it is: "-" for standard output,
+// /dev/stdout, /dev/stderr and /dev/fd/N for what the caller opened, a pipe, a device. Anything
+// else is a file that is written whole or not at all.
 bool file_is_stream(const char *path);
 
-// Whether two paths, neither of which must exist, lead to the same file. NULL leads nowhere.
-bool file_is_same(const char *path, const char *other);
+// Claims a file for an output of this command, before the work whose result it is to hold: `user`
+// is what the message calls the output, an option such as "--plot". Fails with ERR_USAGE where the
+// command reads that file or has another output for it, with ERR_FILE where what is there is of
+// another kind, or where it cannot be written. Leaves nothing behind.
+bool file_claim(const char *user, FileKind kind, const char *path, Err *err);
 
-// Whether a file can be written there, before the work whose result it is to hold. Leaves nothing
-// behind. Fails as file_begin would.
-bool file_probe(const char *path, Err *err);
+// Whether the command does not read that file, which is to be the name of an output or the
+// beginning of its name. ERR_USAGE.
+bool file_check_input(const char *user, const char *path, Err *err);
 
 // Begins a file. One that replaces another keeps its mode; what processes that were killed have
-// left half-written of it is taken away. Fails with ERR_FILE, naming the path and the reason; the
-// text is empty, as it is for all that follow, where it is a pipe whose reader has gone away.
-bool file_begin(WholeFile *file, const char *path, Err *err);
+// left half-written of it is taken away. Fails as file_claim does, whether it was claimed or not,
+// so that nothing of another kind is ever replaced; the text is empty, as it is for all that
+// follow, where it is a pipe whose reader has gone away.
+bool file_begin(WholeFile *file, FileKind kind, const char *path, Err *err);
 
 // Whether all could be written so far, so that a full disk is not written to for ever. ERR_FILE.
 bool file_check(const WholeFile *file, Err *err);
@@ -47,4 +56,7 @@ bool file_end(WholeFile *file, Err *err);
 void file_abandon(WholeFile *file);
 
 // All of the above for text that is ready.
-bool file_write_text(const char *path, const char *text, Err *err);
+bool file_write_text(FileKind kind, const char *path, const char *text, Err *err);
+
+// Takes a file of this kind away where one is there; what is of another kind stays.
+void file_remove(FileKind kind, const char *path);

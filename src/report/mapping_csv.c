@@ -69,7 +69,7 @@ static void write_row(FILE *stream, const MappingReport *report, const MappingCo
 bool mapping_csv_write(const MappingReport *report, const char *path, Err *err)
 {
     WholeFile file;
-    if (!file_begin(&file, path, err)) {
+    if (!file_begin(&file, FILE_TABLE, path, err)) {
         return false;
     }
     fputs(HEAD, file.stream);

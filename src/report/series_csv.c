@@ -12,7 +12,7 @@ bool series_csv_write(const Scenario *scenario, const Trajectory *trajectory, co
 {
     assert(trajectory->is_complete);
     WholeFile file;
-    if (!file_begin(&file, path, err)) {
+    if (!file_begin(&file, FILE_TABLE, path, err)) {
         return false;
     }
     series_rows_write(scenario, trajectory, file.stream);

@@ -3,7 +3,6 @@
 
 #include "report/csv.h"
 #include "report/file.h"
-#include "report/study_export.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -63,7 +62,7 @@ static bool write_row(const Layout *layout, const Record *record, void *context,
 bool study_csv_write(Store *store, const char *path, Err *err)
 {
     WholeFile file;
-    if (!study_export_begin(store, path, &file, err)) {
+    if (!file_begin(&file, FILE_TABLE, path, err)) {
         return false;
     }
     write_head(file.stream, store_layout(store));

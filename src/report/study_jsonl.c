@@ -3,7 +3,6 @@
 
 #include "report/file.h"
 #include "report/json_value.h"
-#include "report/study_export.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -68,7 +67,7 @@ static bool write_row(const Layout *layout, const Record *record, void *context,
 bool study_jsonl_write(Store *store, const char *path, Err *err)
 {
     WholeFile file;
-    if (!study_export_begin(store, path, &file, err)) {
+    if (!file_begin(&file, FILE_ROWS, path, err)) {
         return false;
     }
     if (!store_each(store, write_row, &file, err)) {

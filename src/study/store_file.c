@@ -11,6 +11,7 @@
 // locks on the file after each transaction.
 #include "study/store_inside.h"
 
+#include "base/claims.h"
 #include "base/work_lock.h"
 
 #include <errno.h>
@@ -217,6 +218,7 @@ bool store_file_view(Store *store, Err *err)
     if (file < 0) {
         return fail_system(store, "open", errno, err);
     }
+    claims_note_read("store", store->path);
     const bool is_store = check_header(store, file, false, false, err);
     close(file);
     // not opened for reading alone: what a killed process left in mid-write is to be taken back

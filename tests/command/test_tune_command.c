@@ -315,8 +315,7 @@ static void what_cannot_be_asked_is_refused(void **state)
                         "no scheme of this case is 'plian'");
     program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --error 1e-14 --quiet",
                         "is below ten times the uncertainty of the reference");
-    program_fails_usage(program, "tune a.yaml --error 1e-3 --code x --sdf x",
-                        "two options would both write x");
+    program_fails_usage(program, "tune a.yaml --error 1e-3 --code x --sdf x", "would both write x");
     program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --at-step 1ms --cost steps",
                         "--cost and --at-step do not go together");
     program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --at-step 1ms --max-cost 9",

@@ -12,6 +12,10 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+// two files of one kind
+#define FIRST  "### jointplay check: first\n"
+#define SECOND "### jointplay check: second\n"
+
 static void a_file_is_written_whole(void **state)
 {
     (void)state;
@@ -20,10 +24,10 @@ static void a_file_is_written_whole(void **state)
     struct stat status;
     Err err = {0};
     scratch_path("whole.txt", path, sizeof path);
-    assert_true(file_write_text(path, "first\n", &err));
-    assert_true(file_write_text(path, "second\n", &err));
+    assert_true(file_write_text(FILE_COMMENT, path, FIRST, &err));
+    assert_true(file_write_text(FILE_COMMENT, path, SECOND, &err));
     read_whole(path, content, sizeof content);
-    assert_string_equal(content, "second\n");
+    assert_string_equal(content, SECOND);
     assert_int_equal(stat(path, &status), 0);
     assert_true(S_ISREG(status.st_mode));
     unlink(path);
@@ -37,13 +41,13 @@ static void a_file_given_up_leaves_what_was_there(void **state)
     WholeFile file;
     Err err = {0};
     scratch_path("kept.txt", path, sizeof path);
-    assert_true(file_write_text(path, "old\n", &err));
-    assert_true(file_begin(&file, path, &err));
+    assert_true(file_write_text(FILE_COMMENT, path, FIRST, &err));
+    assert_true(file_begin(&file, FILE_COMMENT, path, &err));
     fputs("half of the n", file.stream);
     file_abandon(&file);
     assert_int_equal(access(file.temporary, F_OK), -1);
     read_whole(path, content, sizeof content);
-    assert_string_equal(content, "old\n");
+    assert_string_equal(content, FIRST);
     unlink(path);
 }
 
@@ -57,13 +61,13 @@ static void a_symbolic_link_stays_one(void **state)
     Err err = {0};
     scratch_path("target.txt", path, sizeof path);
     scratch_path("link.txt", link_path, sizeof link_path);
-    assert_true(file_write_text(path, "old\n", &err));
+    assert_true(file_write_text(FILE_COMMENT, path, FIRST, &err));
     assert_int_equal(symlink(path, link_path), 0);
-    assert_true(file_write_text(link_path, "new\n", &err));
+    assert_true(file_write_text(FILE_COMMENT, link_path, SECOND, &err));
     assert_int_equal(lstat(link_path, &status), 0);
     assert_true(S_ISLNK(status.st_mode));
     read_whole(path, content, sizeof content);
-    assert_string_equal(content, "new\n");
+    assert_string_equal(content, SECOND);
     unlink(path);
     unlink(link_path);
 }
@@ -72,67 +76,21 @@ static void a_file_that_cannot_be_written_is_an_error(void **state)
 {
     (void)state;
     Err err = {0};
-    assert_false(file_write_text("/dev/full", "words", &err));
+    assert_false(file_write_text(FILE_COMMENT, "/dev/full", "words", &err));
     assert_int_equal(err.kind, ERR_FILE);
     assert_string_equal(err.text, "cannot write /dev/full: No space left on device");
     err = (Err){0};
-    assert_false(file_write_text("/nowhere/at/all.txt", "words", &err));
+    assert_false(file_write_text(FILE_COMMENT, "/nowhere/at/all.txt", "words", &err));
     assert_string_equal(err.text, "cannot write /nowhere/at/all.txt: No such file or directory");
     err = (Err){0};
-    assert_false(file_write_text("", "words", &err));
+    assert_false(file_write_text(FILE_COMMENT, "", "words", &err));
     assert_int_equal(err.kind, ERR_FILE);
     err = (Err){0};
     char long_path[2 * FILE_PATH_SIZE];
     memset(long_path, 'x', sizeof long_path - 1);
     long_path[sizeof long_path - 1] = '\0';
-    assert_false(file_write_text(long_path, "words", &err));
+    assert_false(file_write_text(FILE_COMMENT, long_path, "words", &err));
     assert_int_equal(err.kind, ERR_FILE);
-}
-
-static void a_probe_leaves_nothing_behind(void **state)
-{
-    (void)state;
-    char path[256];
-    char inside[300];
-    char content[64];
-    Err err = {0};
-    scratch_path("probed.txt", path, sizeof path);
-    assert_true(file_probe(path, &err));
-    assert_int_equal(access(path, F_OK), -1);
-    // and leaves what is there as it is
-    assert_true(file_write_text(path, "old\n", &err));
-    assert_true(file_probe(path, &err));
-    read_whole(path, content, sizeof content);
-    assert_string_equal(content, "old\n");
-    assert_true(file_probe("-", &err) && file_probe("/dev/null", &err));
-    // what cannot be written: below a file, a folder
-    snprintf(inside, sizeof inside, "%s/x", path);
-    assert_false(file_probe(inside, &err));
-    assert_int_equal(err.kind, ERR_FILE);
-    err = (Err){0};
-    assert_false(file_probe("/tmp", &err));
-    assert_string_equal(err.text, "cannot write /tmp: Is a directory");
-    unlink(path);
-}
-
-static void two_paths_to_one_file_are_the_same(void **state)
-{
-    (void)state;
-    char path[256];
-    char link_path[256];
-    Err err = {0};
-    assert_true(file_is_same("a.csv", "./a.csv"));
-    assert_true(file_is_same("-", "-"));
-    assert_false(file_is_same("a.csv", "b.csv"));
-    assert_false(file_is_same("nowhere/a.csv", "a.csv"));
-    assert_false(file_is_same(NULL, "a.csv"));
-    scratch_path("one.txt", path, sizeof path);
-    scratch_path("other.txt", link_path, sizeof link_path);
-    assert_true(file_write_text(path, "old\n", &err));
-    assert_int_equal(symlink(path, link_path), 0);
-    assert_true(file_is_same(path, link_path));
-    unlink(link_path);
-    unlink(path);
 }
 
 // Longer than any buffer, so that a write fails before the file is ended.
@@ -147,11 +105,11 @@ static void the_reason_of_an_early_failure_is_kept(void **state)
 {
     (void)state;
     Err err = {0};
-    assert_false(file_write_text("/dev/full", long_text(), &err));
+    assert_false(file_write_text(FILE_COMMENT, "/dev/full", long_text(), &err));
     assert_string_equal(err.text, "cannot write /dev/full: No space left on device");
     WholeFile file;
     err = (Err){0};
-    assert_true(file_begin(&file, "/dev/full", &err) && file_check(&file, &err));
+    assert_true(file_begin(&file, FILE_COMMENT, "/dev/full", &err) && file_check(&file, &err));
     fputs(long_text(), file.stream);
     assert_false(file_check(&file, &err));
     assert_string_equal(err.text, "cannot write /dev/full: No space left on device");
@@ -168,7 +126,7 @@ static void a_reader_that_has_gone_away_needs_no_words(void **state)
     WholeFile file;
     Err err = {0};
     signal(SIGPIPE, SIG_IGN);
-    assert_true(file_begin(&file, path, &err));
+    assert_true(file_begin(&file, FILE_COMMENT, path, &err));
     close(reader);
     fputs(long_text(), file.stream);
     assert_false(file_end(&file, &err));
@@ -186,9 +144,9 @@ static int write_more_than_allowed(void)
     snprintf(path, sizeof path, "%s", getenv("LIMITED"));
     signal(SIGXFSZ, SIG_IGN);
     setrlimit(RLIMIT_FSIZE, &limit);
-    return !file_write_text(path, long_text(), &err) &&
+    return !file_write_text(FILE_COMMENT, path, long_text(), &err) &&
                    strstr(err.text, ": File too large") != NULL && stat(path, &status) == 0 &&
-                   status.st_size == 4
+                   status.st_size == sizeof FIRST - 1
                ? 0
                : 1;
 }
@@ -199,7 +157,7 @@ static void a_file_that_may_not_become_so_long_is_an_error(void **state)
     char path[256];
     Err err = {0};
     scratch_path("limited.txt", path, sizeof path);
-    assert_true(file_write_text(path, "old\n", &err));
+    assert_true(file_write_text(FILE_COMMENT, path, FIRST, &err));
     setenv("LIMITED", path, 1);
     fflush(stdout);
     const pid_t process = fork();
@@ -227,11 +185,11 @@ static void a_file_that_is_replaced_keeps_its_mode(void **state)
     Err err = {0};
     scratch_path("mode.txt", path, sizeof path);
     const mode_t former = umask(027);
-    assert_true(file_write_text(path, "new\n", &err));
+    assert_true(file_write_text(FILE_COMMENT, path, FIRST, &err));
     assert_int_equal(mode_of(path), 0640);
     for (size_t i = 0; i < sizeof MODES / sizeof *MODES; i++) {
         assert_int_equal(chmod(path, MODES[i]), 0);
-        assert_true(file_write_text(path, "newer\n", &err));
+        assert_true(file_write_text(FILE_COMMENT, path, SECOND, &err));
         assert_int_equal(mode_of(path), MODES[i]);
     }
     umask(former);
@@ -273,16 +231,16 @@ static void what_a_killed_process_left_is_taken_away(void **state)
     assert_int_equal(work_lock_take(lock, 0), 0);
     snprintf(other, sizeof other, "%s.part-1x", path);
     close(open(other, O_RDWR | O_CREAT | O_CLOEXEC, 0600));
-    assert_true(file_write_text(path, "whole\n", &err));
+    assert_true(file_write_text(FILE_COMMENT, path, FIRST, &err));
     read_whole(path, content, sizeof content);
-    assert_string_equal(content, "whole\n");
+    assert_string_equal(content, FIRST);
     assert_int_equal(access(dead, F_OK), -1);
     // the controls
     assert_int_equal(access(living, F_OK), 0);
     assert_int_equal(access(locked, F_OK), 0);
     assert_int_equal(access(other, F_OK), 0);
     close(lock);
-    assert_true(file_probe(path, &err));
+    assert_true(file_claim("--markdown", FILE_COMMENT, path, &err));
     assert_int_equal(access(locked, F_OK), -1);
     unlink(living);
     unlink(other);
@@ -296,8 +254,6 @@ int main(void)
         cmocka_unit_test(a_file_given_up_leaves_what_was_there),
         cmocka_unit_test(a_symbolic_link_stays_one),
         cmocka_unit_test(a_file_that_cannot_be_written_is_an_error),
-        cmocka_unit_test(a_probe_leaves_nothing_behind),
-        cmocka_unit_test(two_paths_to_one_file_are_the_same),
         cmocka_unit_test(the_reason_of_an_early_failure_is_kept),
         cmocka_unit_test(a_reader_that_has_gone_away_needs_no_words),
         cmocka_unit_test(a_file_that_may_not_become_so_long_is_an_error),

@@ -132,7 +132,7 @@ static void an_export_never_writes_over_its_store(void **state)
     assert_int_equal(err.kind, ERR_USAGE);
     err = (Err){0};
     assert_false(study_jsonl_write(store, path, &err));
-    assert_non_null(strstr(err.text, "is the store itself"));
+    assert_non_null(strstr(err.text, "which is the store that this command reads"));
     err = (Err){0};
     assert_false(study_csv_write(store, "/dev/full", &err));
     assert_int_equal(err.kind, ERR_FILE);
