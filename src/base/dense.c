@@ -61,6 +61,48 @@ bool dense_solve(size_t n, double *a, double *b)
     return true;
 }
 
+bool dense_factor(size_t n, double *a, size_t *pivots)
+{
+    for (size_t k = 0; k < n; k++) {
+        size_t pivot = k;
+        for (size_t i = k + 1; i < n; i++) {
+            pivot = fabs(a[i * n + k]) > fabs(a[pivot * n + k]) ? i : pivot;
+        }
+        pivots[k] = pivot;
+        if (!(fabs(a[pivot * n + k]) > 0.0)) {
+            return false;
+        }
+        // the factors of rows that are exchanged go with them
+        swap_rows(a, n, k, pivot);
+        for (size_t i = k + 1; i < n; i++) {
+            const double factor = a[i * n + k] / a[k * n + k];
+            a[i * n + k] = factor;
+            for (size_t j = k + 1; j < n && factor != 0.0; j++) {
+                a[i * n + j] -= factor * a[k * n + j];
+            }
+        }
+    }
+    return true;
+}
+
+void dense_substitute(size_t n, const double *factored, const size_t *pivots, double *b)
+{
+    for (size_t k = 0; k < n; k++) {
+        swap_rows(b, 1, k, pivots[k]);
+    }
+    for (size_t k = 0; k < n; k++) {
+        for (size_t j = 0; j < k; j++) {
+            b[k] -= factored[k * n + j] * b[j];
+        }
+    }
+    for (size_t k = n; k-- > 0;) {
+        for (size_t j = k + 1; j < n; j++) {
+            b[k] -= factored[k * n + j] * b[j];
+        }
+        b[k] /= factored[k * n + k];
+    }
+}
+
 // Brings the largest entry of the rows and columns from `step` on to place (step, step).
 static double pivot_completely(size_t rows, size_t columns, double *a, size_t step)
 {

@@ -12,3 +12,9 @@ bool dense_solve(size_t n, double *a, double *b);
 // The number of independent rows of A (rows by columns, overwritten): elimination with complete
 // pivoting, a pivot counting when it is above tolerance times the first.
 size_t dense_rank(size_t rows, size_t columns, double *a, double tolerance);
+
+// The same in two parts, for many right-hand sides: factors A in place by row pivoting, row k
+// exchanged with row pivots[k]; false where a column has no pivot that is not zero.
+bool dense_factor(size_t n, double *a, size_t *pivots);
+// Overwrites b by x.
+void dense_substitute(size_t n, const double *factored, const size_t *pivots, double *b);

@@ -5,6 +5,8 @@
 // Source: Hairer, Norsett, Wanner 1993, section II.10; see reference/dop853_table.c.
 #include "reference/dop853.h"
 
+#include "reference/radau.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -51,19 +53,17 @@ static void stage_state(const Dop853 *integrator, int stage, double *y)
     add_stages(integrator, DOP853_COUPLING[stage], stage, integrator->tried, y);
 }
 
-// The state at the end of the step, and what is lost of it by rounding: the sum of many small steps
-// would lose more than any of them is wrong by.
-static void end_state(Dop853 *integrator)
+// The sum of many small steps would lose more by rounding than any of them is wrong by: what is
+// lost of the end is kept.
+void dop853_end(Dop853 *integrator, const double *change)
 {
-    double change[DOP853_SIZE_MAX];
-    memcpy(change, integrator->carry, padded(integrator) * sizeof *change);
-    add_stages(integrator, DOP853_COUPLING[END_STAGE], END_STAGE, integrator->tried, change);
     for (size_t i = 0; i < integrator->size; i++) {
         const double y = integrator->y[i];
-        const double sum = y + change[i];
+        const double moved = integrator->carry[i] + change[i];
+        const double sum = y + moved;
         const double added = sum - y;
         integrator->next[i] = sum;
-        integrator->next_carry[i] = (y - (sum - added)) + (change[i] - added);
+        integrator->next_carry[i] = (y - (sum - added)) + (moved - added);
     }
 }
 
@@ -84,8 +84,8 @@ void dop853_start(Dop853 *integrator, double time, const double *y)
 
 // Error over allowed error of some of the equations. The two estimates of one group belong
 // together: an equation with a large third-order estimate would hide the others' errors.
-static double group_ratio(const Dop853 *integrator, const double *e5, const double *e3,
-                          size_t first, size_t last)
+static double group_ratio(const Dop853 *integrator, const double *high, const double *low,
+                          double factor, size_t first, size_t last)
 {
     double fifth = 0.0;
     double third = 0.0;
@@ -94,39 +94,43 @@ static double group_ratio(const Dop853 *integrator, const double *e5, const doub
         const double allowed =
             integrator->fixed[i] + integrator->grown[i] * fabs(integrator->tried);
         if (allowed > 0.0) {
-            fifth += (e5[i] / allowed) * (e5[i] / allowed);
-            third += (e3[i] / allowed) * (e3[i] / allowed);
+            fifth += (high[i] / allowed) * (high[i] / allowed);
+            third += (low[i] / allowed) * (low[i] / allowed);
             count++;
         }
     }
     const double below = fifth + 0.01 * third;
-    return below > 0.0 ? fabs(integrator->tried) * fifth / sqrt(below * (double)count) : below;
+    return below > 0.0 ? factor * fifth / sqrt(below * (double)count) : below;
 }
 
-static double error_ratio(const Dop853 *integrator)
+double dop853_judge(const Dop853 *integrator, const double *high, const double *low, double factor)
 {
-    double e5[DOP853_SIZE_MAX];
-    double e3[DOP853_SIZE_MAX];
-    memset(e5, 0, padded(integrator) * sizeof *e5);
-    memset(e3, 0, padded(integrator) * sizeof *e3);
-    add_stages(integrator, DOP853_ERROR_5, STEP_STAGES, 1.0, e5);
-    add_stages(integrator, DOP853_ERROR_3, STEP_STAGES, 1.0, e3);
-    const double motion = group_ratio(integrator, e5, e3, 0, integrator->motion_size);
-    const double sums = group_ratio(integrator, e5, e3, integrator->motion_size, integrator->size);
+    const size_t motion_size = integrator->motion_size;
+    const double motion = group_ratio(integrator, high, low, factor, 0, motion_size);
+    const double sums = group_ratio(integrator, high, low, factor, motion_size, integrator->size);
     // not fmax: a NaN must show
     return motion >= sums ? motion : (sums > motion ? sums : motion + sums);
 }
 
 double dop853_try(Dop853 *integrator, double step)
 {
+    if (integrator->radau != NULL) {
+        return radau_try(integrator->radau, integrator, step);
+    }
     integrator->tried = step;
     double y[DOP853_SIZE_MAX];
     for (int stage = 1; stage < STEP_STAGES; stage++) {
         stage_state(integrator, stage, y);
         evaluate(integrator, stage, y);
     }
-    end_state(integrator);
-    return error_ratio(integrator);
+    double change[DOP853_SIZE_MAX] = {0.0};
+    double e5[DOP853_SIZE_MAX] = {0.0};
+    double e3[DOP853_SIZE_MAX] = {0.0};
+    add_stages(integrator, DOP853_COUPLING[END_STAGE], END_STAGE, step, change);
+    add_stages(integrator, DOP853_ERROR_5, STEP_STAGES, 1.0, e5);
+    add_stages(integrator, DOP853_ERROR_3, STEP_STAGES, 1.0, e3);
+    dop853_end(integrator, change);
+    return dop853_judge(integrator, e5, e3, fabs(step));
 }
 
 bool dop853_attempt(Dop853 *integrator, double longest)
@@ -159,6 +163,10 @@ void dop853_fill(Dop853 *integrator)
     const double h = integrator->tried;
     double y[DOP853_SIZE_MAX];
     evaluate(integrator, END_STAGE, integrator->next);
+    if (integrator->radau != NULL) {
+        radau_fill(integrator->radau, integrator);
+        return;
+    }
     for (int stage = FIRST_DENSE_STAGE; stage < DOP853_STAGES; stage++) {
         stage_state(integrator, stage, y);
         evaluate(integrator, stage, y);
@@ -177,16 +185,22 @@ void dop853_fill(Dop853 *integrator)
     }
 }
 
-void dop853_dense(const Dop853 *integrator, double time, double *y)
+void dop853_polynomial(const Dop853 *integrator, double share, double *y)
 {
-    // a step cut to nothing by an event at its start is a point
-    const double s = integrator->tried != 0.0 ? (time - integrator->time) / integrator->tried : 0.0;
+    const double s = share;
     const double r = 1.0 - s;
     const double(*p)[DOP853_SIZE_MAX] = integrator->polynomial;
     for (size_t i = 0; i < integrator->size; i++) {
         const double high = p[4][i] + s * (p[5][i] + r * (p[6][i] + s * p[7][i]));
         y[i] = p[0][i] + s * (p[1][i] + r * (p[2][i] + s * (p[3][i] + r * high)));
     }
+}
+
+void dop853_dense(const Dop853 *integrator, double time, double *y)
+{
+    // a step cut to nothing by an event at its start is a point
+    const double tried = integrator->tried;
+    dop853_polynomial(integrator, tried != 0.0 ? (time - integrator->time) / tried : 0.0, y);
 }
 
 void dop853_accept(Dop853 *integrator)

@@ -15,8 +15,9 @@ enum { DOP853_SIZE_MAX = 128, DOP853_POLYNOMIAL = 8 };
 typedef void (*Dop853Rates)(double time, const double *y, double *rates, void *context);
 
 typedef struct Dop853 {
-    size_t size;        // number of equations
-    size_t motion_size; // of those, the first: the errors of the others are judged by themselves
+    struct Radau *radau; // takes the steps where it is not NULL
+    size_t size;         // number of equations
+    size_t motion_size;  // of those, the first: the errors of the others are judged by themselves
     Dop853Rates rates;
     void *context;
     // Error allowed in each component of one step: fixed[i] + grown[i] times the step. A component
@@ -56,5 +57,14 @@ bool dop853_attempt(Dop853 *integrator, double longest);
 void dop853_fill(Dop853 *integrator);
 void dop853_dense(const Dop853 *integrator, double time, double *y);
 
+// The polynomial at a share of the step; beyond 1 as it goes on.
+void dop853_polynomial(const Dop853 *integrator, double share, double *y);
+
 // Takes the tried and filled step: its end becomes the start of the next.
 void dop853_accept(Dop853 *integrator);
+
+// For another method that takes the steps: the state at the end of the step that is tried, from how
+// it has changed in it, and the error over the error allowed from two estimates of it times a
+// factor.
+void dop853_end(Dop853 *integrator, const double *change);
+double dop853_judge(const Dop853 *integrator, const double *high, const double *low, double factor);

@@ -42,7 +42,11 @@ static bool fail_at(const Reference *reference, double time_s, Err *err)
 
 static void reference_close(void *state)
 {
-    free(state);
+    Reference *reference = state;
+    if (reference != NULL) {
+        stepper_finish(&reference->stepper);
+        free(reference);
+    }
 }
 
 // Force, eccentricity and gap of every joint in a state.

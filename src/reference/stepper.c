@@ -77,17 +77,21 @@ static void allow_rounding(Stepper *stepper)
     double *fixed = stepper->integrator.fixed;
     double *grown = stepper->integrator.grown;
     double *sums = grown + dynamics_sum_index(&stepper->dynamics, 0);
+    const bool is_stiff = stepper->integrator.radau != NULL;
     double force = 0.0;
+    double damped = 0.0;
     double moved = 0.0;
     for (size_t i = 0; i < stepper->dynamics.contact_count; i++) {
         const DynamicsContact *contact = &stepper->dynamics.contacts[i];
-        const double depth = state->contacts[i].pose.penetration;
         const double rounding = ROUNDING * contact->radial_clearance;
+        const double depth = state->contacts[i].pose.penetration;
         if (contact->mode == CONTACT_PRESSING && depth > 0.0) {
             force += rounding * force_law_tangent(&contact->law, depth);
+            damped +=
+                ROUNDING * stepper->scale.moving * stiffness_damping(contact, &state->contacts[i]);
         }
         moved = moved > 0.0 ? fmin(moved, rounding) : rounding;
-        sums[DYNAMICS_IMPULSES + i] = force;
+        sums[DYNAMICS_IMPULSES + i] = force + (is_stiff ? damped : 0.0);
     }
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
@@ -106,6 +110,7 @@ static void allow_rounding(Stepper *stepper)
         grown[n + node->angle_column] = force * reach / inertia;
         fixed[node->angle_column] = moved / reach;
     }
+    force += is_stiff ? damped : 0.0;
     sums[DYNAMICS_DRIVE_WORK] = force * stepper->scale.moving;
     sums[DYNAMICS_DISSIPATED] = force * stepper->scale.moving;
     sums[DYNAMICS_FRICTION] = force * stepper->scale.moving;
@@ -161,6 +166,11 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     return true;
 }
 
+void stepper_finish(Stepper *stepper)
+{
+    stiffness_finish(&stepper->stiffness);
+}
+
 // Whether a contact begins to press at the end of the step.
 static bool is_onset(const Stepper *stepper)
 {
@@ -197,6 +207,9 @@ static void take_over(Stepper *stepper)
     if (tree->loop_count > 0 || stepper->events.count > 0) {
         dop853_start(integrator, integrator->time, integrator->y);
     }
+    stiffness_follow(&stepper->stiffness, &stepper->dynamics,
+                     &stepper->points.states[stepper->points.count - 1], &stepper->scale,
+                     stepper->events.count > 0, integrator);
 }
 
 // The longest step in which no free pin crosses more than its play: error control alone lets a free

@@ -5,6 +5,7 @@
 #include "reference/dop853.h"
 #include "reference/events.h"
 #include "reference/pace.h"
+#include "reference/stiffness.h"
 
 typedef struct Stepper {
     const Scenario *scenario;
@@ -13,6 +14,7 @@ typedef struct Stepper {
     EventPoints points;
     EventList events; // at its end
     Pace pace;
+    Stiffness stiffness;
     bool has_step;
     double duration_s;
     SpeedScale scale;    // largest speeds so far
@@ -23,6 +25,7 @@ typedef struct Stepper {
 // Puts the stepper at the scenario's start. Fails with ERR_CASE where a law does not fit a joint
 // and with ERR_SOLVER where the accelerations at the start are not determined.
 bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err);
+void stepper_finish(Stepper *stepper);
 
 // Goes on by one step of some length, at whose end there may be an event. Fails with ERR_SOLVER.
 bool stepper_next(Stepper *stepper, Err *err);

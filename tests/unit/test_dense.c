@@ -89,11 +89,44 @@ static void a_row_that_differs_by_less_than_the_tolerance_does_not_count(void **
     assert_int_equal(dense_rank(2, 2, apart, 1e-9), 2);
 }
 
+static void a_factored_matrix_serves_many_right_hand_sides(void **state)
+{
+    (void)state;
+    const double kept[9] = {0.0, 2.0, 1.0, 1.0, 1.0, 1.0, 2.0, 0.0, -1.0};
+    double a[9];
+    size_t pivots[3];
+    for (int i = 0; i < 9; i++) {
+        a[i] = kept[i];
+    }
+    assert_true(dense_factor(3, a, pivots));
+    for (int k = 0; k < 2; k++) {
+        const double x[3] = {1.0 - k, 2.0 + k, 3.0 * k - 1.0};
+        double b[3] = {0.0, 0.0, 0.0};
+        for (int i = 0; i < 9; i++) {
+            b[i / 3] += kept[i] * x[i % 3];
+        }
+        dense_substitute(3, a, pivots, b);
+        for (int i = 0; i < 3; i++) {
+            assert_true(fabs(b[i] - x[i]) <= 1e-14);
+        }
+    }
+}
+
+static void a_column_of_zeros_is_not_factored(void **state)
+{
+    (void)state;
+    double a[4] = {1.0, 0.0, 2.0, 0.0};
+    size_t pivots[2];
+    assert_false(dense_factor(2, a, pivots));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_system_that_needs_a_swap_is_solved),
         cmocka_unit_test(the_answer_fits_the_system),
+        cmocka_unit_test(a_factored_matrix_serves_many_right_hand_sides),
+        cmocka_unit_test(a_column_of_zeros_is_not_factored),
         cmocka_unit_test(a_singular_system_is_refused),
         cmocka_unit_test(a_matrix_that_is_not_finite_is_refused),
         cmocka_unit_test(the_rank_counts_independent_rows),

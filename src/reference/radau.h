@@ -1,0 +1,40 @@
+// An implicit Runge-Kutta method of order 13 for motion that a strong damper makes stiff: its steps
+// are as long as the motion is smooth, however short the time constants that have died away.
+//
+// It takes the steps of a Dop853, which then has the polynomial through the step and everything
+// else as from its own stages.
+#pragma once
+
+#include "reference/dop853.h"
+#include "reference/radau_table.h"
+
+enum { RADAU_FREEDOM_MAX = DOP853_SIZE_MAX / 2 };
+
+typedef struct Radau {
+    // Changes of the coordinates and their rates by which accelerations are differentiated: small
+    // against what they depend on, large against rounding.
+    double nudge[DOP853_SIZE_MAX];
+    // derivatives of the accelerations at the stages, 1/s^2 and 1/s
+    double by_place[RADAU_STAGES][RADAU_FREEDOM_MAX * RADAU_FREEDOM_MAX];
+    double by_rate[RADAU_STAGES][RADAU_FREEDOM_MAX * RADAU_FREEDOM_MAX];
+    double decay;   // 1/s, the sum of all rates of decay, where it was last looked at
+    double *matrix; // of Newton's method for all stages, factored; NULL before the first
+    size_t *pivots;
+    double moved[RADAU_STAGES][DOP853_SIZE_MAX]; // of the stages since the start of the step
+    double rates[RADAU_STAGES][DOP853_SIZE_MAX];
+    double before_s; // length of the step whose polynomial the integrator has; 0 for none
+    size_t filled;   // after so many accepted steps that one began
+} Radau;
+
+// For a system of coordinates and their rates, as many of each, with sums behind them. Never NULL;
+// the caller destroys it.
+Radau *radau_create(void);
+void radau_destroy(Radau *radau);
+
+// How fast rates die away where the next step starts: the sum of all rates of decay, 1/s. The next
+// step takes nothing from one before.
+double radau_look(Radau *radau, Dop853 *integrator);
+
+// As dop853_try and dop853_fill.
+double radau_try(Radau *radau, Dop853 *integrator, double step);
+void radau_fill(Radau *radau, Dop853 *integrator);

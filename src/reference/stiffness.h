@@ -1,0 +1,22 @@
+// Which of the two methods takes the next step: the explicit one, or the implicit one where a
+// contact is damped so strongly that explicit steps are far shorter than the motion is smooth?
+#pragma once
+
+#include "model/scale.h"
+#include "reference/dynamics.h"
+#include "reference/radau.h"
+
+typedef struct Stiffness {
+    Radau *radau; // owned; NULL before the first look
+    size_t steps; // explicit ones since the last event or look
+} Stiffness;
+
+// To be asked before each step, whether an event has come at its start or not; the integrator
+// stands at the state. Sets the method.
+void stiffness_follow(Stiffness *stiffness, const Dynamics *dynamics, const DynamicsState *state,
+                      const SpeedScale *scale, bool is_event, Dop853 *integrator);
+
+// How strongly a contact is damped, N s/m.
+double stiffness_damping(const DynamicsContact *contact, const ContactForce *force);
+
+void stiffness_finish(Stiffness *stiffness);

@@ -1,0 +1,132 @@
+// Does the reference follow contacts whose damping is so strong that they hardly give anything
+// back?
+#include "complete_run.h"
+
+#include "compare/truth.h"
+#include "contact/damping.h"
+#include "mechanism.h"
+
+static const RunWatch NOBODY = {NULL, NULL};
+
+// An explicit method takes some 15 evaluations for three time constants: 1e7 and more here.
+enum { EVALUATIONS_MOST = 500000 };
+
+// A pin that flies at the wall and sticks there nearly.
+static void next_to_no_restitution_is_delivered(void **state)
+{
+    (void)state;
+    const double asked[] = {1e-3, 1e-6, 1e-9};
+    const double lasts_s[] = {3e-3, 1.0, 40.0};
+    // of the speed given back: the whole speed is held to some 1e-13 of itself
+    const double within[] = {1e-8, 1e-6, 1e-3};
+    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
+        Scenario scenario = mechanism_pin(0.1, 1e-4);
+        scenario.contact.stiffness = 6.6e10;
+        scenario.contact.damping = DAMPING_FLORES;
+        scenario.contact.restitution = asked[i];
+        scenario.linkage.bodies[0].start.velocity.x = 0.5;
+        scenario.run.duration = lasts_s[i];
+        scenario.run.samples = 2;
+        Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
+        const double chi = damping_factor(DAMPING_FLORES, asked[i]);
+        const double delivered = -trajectory_motion(trajectory, 2, 0)->velocity.x / 0.5;
+        assert_close(delivered, damping_delivered(chi), within[i]);
+        assert_close(trajectory->joints[0].penetration_max.value,
+                     damping_depth_max(6.6e10, 1.5, chi, 0.1, 0.5), 1e-9);
+        assert_true(trajectory->evaluations < EVALUATIONS_MOST);
+        trajectory_destroy(trajectory);
+    }
+}
+
+// How long a weight takes from the wall to a depth d against K d^1.5 (1 + d' / u):
+// u t = d_s (x^2.5 / 2.5 + x^4 / 4 + x^5.5 / 5.5 + ...), x = d / d_s, d_s the static depth.
+static double sinking_time(double depth, double at_rest, double rate)
+{
+    double sum = 0.0;
+    for (int i = 1; i < 40; i++) {
+        const double order = 1.5 * i + 1.0;
+        sum += pow(depth / at_rest, order) / order;
+    }
+    return at_rest * sum / rate;
+}
+
+// Inertia has no part in it but at the very start: 0.1 kg against a damper of some 1e12 N s/m.
+static void a_weight_sinks_into_its_damper(void **state)
+{
+    (void)state;
+    const double weight = 0.1 * 9.80665;
+    for (int digits = 6; digits <= 12; digits += 3) {
+        const double restitution = pow(10.0, -digits);
+        Scenario scenario = mechanism_pin(0.1, 1e-4);
+        scenario.gravity = 9.80665;
+        scenario.contact.stiffness = 6.6e10;
+        scenario.contact.damping = DAMPING_FLORES;
+        scenario.contact.restitution = restitution;
+        scenario.linkage.bodies[0].start.position = (Vec2){0.0, -1e-4};
+        scenario.run.duration = 0.1;
+        scenario.run.samples = 2;
+        Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
+        const double depth = trajectory->joints[0].penetration_max.value;
+        const double rate = 1e-3 / damping_factor(DAMPING_FLORES, restitution);
+        assert_close(sinking_time(depth, pow(weight / 6.6e10, 1.0 / 1.5), rate), 0.1, 1e-6);
+        assert_true(trajectory->evaluations < EVALUATIONS_MOST);
+        trajectory_destroy(trajectory);
+    }
+}
+
+// d = (m g / k) (1 - exp(-k t / c)) but for the start, in which the weight takes m / c to stop.
+static void a_weight_sinks_into_a_viscous_damper(void **state)
+{
+    (void)state;
+    const double stiffness = 1e7;
+    for (int digits = 6; digits <= 10; digits += 2) {
+        const double damper = pow(10.0, digits);
+        Scenario scenario = mechanism_pin(0.1, 1e-4);
+        scenario.gravity = 9.80665;
+        scenario.contact.stiffness = stiffness;
+        scenario.contact.exponent = 1.0;
+        scenario.contact.damping = DAMPING_VISCOUS;
+        scenario.contact.viscous_coefficient = damper;
+        scenario.linkage.bodies[0].start.position = (Vec2){0.0, -1e-4};
+        scenario.run.duration = 0.1;
+        scenario.run.samples = 2;
+        Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
+        const double expected = 0.1 * 9.80665 / stiffness * -expm1(-stiffness * 0.1 / damper);
+        const double stopping_s = 0.1 / damper;
+        // the place in a hole of 0.1 mm is held to some of its roundings
+        const double rounding = 4.0 * 0x1p-52 * 1e-4;
+        assert_near(trajectory->joints[0].penetration_max.value, expected,
+                    expected * (stopping_s / 0.1 + 1e-9) + rounding);
+        assert_true(trajectory->evaluations < EVALUATIONS_MOST);
+        trajectory_destroy(trajectory);
+    }
+}
+
+static void a_fourbar_has_a_truth_at_any_restitution(void **state)
+{
+    (void)state;
+    const double asked[] = {1e-2, 1e-6, 1e-12};
+    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
+        Scenario scenario = mechanism_loose(1);
+        scenario.contact.damping = DAMPING_FLORES;
+        scenario.contact.restitution = asked[i];
+        Truth truth = truth_make(&scenario, NOBODY);
+        assert_true(truth.trajectory->is_complete);
+        assert_string_equal(truth.message, "");
+        assert_true(truth.uncertainty > 0.0 && truth.uncertainty < 1e-9);
+        assert_close(truth.horizon_s, scenario_duration(&scenario), 1e-9);
+        assert_true(truth.trajectory->evaluations < EVALUATIONS_MOST);
+        truth_finish(&truth);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(next_to_no_restitution_is_delivered),
+        cmocka_unit_test(a_weight_sinks_into_its_damper),
+        cmocka_unit_test(a_weight_sinks_into_a_viscous_damper),
+        cmocka_unit_test(a_fourbar_has_a_truth_at_any_restitution),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
