@@ -84,8 +84,9 @@ static void allow_rounding(Stepper *stepper)
     for (size_t i = 0; i < stepper->dynamics.contact_count; i++) {
         const DynamicsContact *contact = &stepper->dynamics.contacts[i];
         const double rounding = ROUNDING * contact->radial_clearance;
-        const double depth = state->contacts[i].pose.penetration;
-        if (contact->mode == CONTACT_PRESSING && depth > 0.0) {
+        // a contact that rounding alone keeps from its end is continued below zero depth
+        const double depth = fmax(fabs(state->contacts[i].pose.penetration), rounding);
+        if (contact->mode == CONTACT_PRESSING) {
             force += rounding * force_law_tangent(&contact->law, depth);
             damped +=
                 ROUNDING * stepper->scale.moving * stiffness_damping(contact, &state->contacts[i]);
