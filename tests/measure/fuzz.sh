@@ -2,8 +2,8 @@
 # Does any command, case, study, baseline or store bring the program down? Makes seeded random ones and
 # runs them with the address and undefined-behaviour sanitizers. A finding is an exit status that the
 # program does not have, a report of a sanitizer, a number that is none in what it printed or wrote with
-# status 0, or more than 20 s without a word. Prints each finding with its seed, and ends with status 1
-# where there was one.
+# status 0, or more than 20 s of processor time without a word. Prints each finding with its seed, and
+# ends with status 1 where there was one.
 #
 # tests/measure/fuzz.sh [SECONDS [FIRST [BUILD]]]
 #   SECONDS  of processor time (default 3600)
@@ -17,7 +17,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 build=${3:-$work/build}
 longest=60 # s of one command: what announces that it takes long is ended there
-silent=20  # s without a word
+ticks=$(getconf CLK_TCK)
+silent=20  # s of processor time without a word
 
 if [ ! -f "$build/build.ninja" ]; then
     meson setup "$build" "$root" -Dtests=enabled -Dbuildtype=debugoptimized \
@@ -44,14 +45,22 @@ find_fault() {
     tail -n 4 error | sed 's/^/    /'
 }
 
+# Processor time of the program under 'timeout', s: a machine that is shared must not make it a
+# finding. One that waits uses none; 'timeout' ends it.
+used_by_child() {
+    local pid
+    read -r pid _ <"/proc/$child/task/$child/children"
+    awk -v ticks="$ticks" '{ used = $14 + $15 } END { print int(used / ticks) }' \
+        "/proc/$pid/stat" 2>/dev/null || echo 0
+} 2>/dev/null
+
 # Runs the program with the arguments, and looks at what it left behind.
 run_step() {
     local status=0
     commands=$((commands + 1))
     timeout --kill-after=5 "$longest" "$program" "${arguments[@]}" >printed 2>error </dev/null &
     local child=$!
-    for ((waited = 0; waited < silent * 10; waited++)); do
-        kill -0 "$child" 2>/dev/null || break
+    while kill -0 "$child" 2>/dev/null && [ "$(used_by_child)" -lt "$silent" ]; do
         sleep 0.1
     done
     if kill -0 "$child" 2>/dev/null && [ ! -s error ] && [ ! -s printed ]; then
