@@ -26,7 +26,7 @@ static const struct argp_option OPTIONS[] = {
     {"store", KEY_STORE, "FILE", 0,
      "Keep the runs there (default: <study>.sqlite in the working folder)", 1},
     {"fresh", KEY_FRESH, NULL, 0, "Forget what the store holds", 1},
-    {"retry-failed", KEY_RETRY, NULL, 0, "Make the runs again that failed", 1},
+    {"retry-failed", KEY_RETRY, NULL, 0, "Make the runs again that failed or whose rows are damaged", 1},
     {"dry-run", KEY_DRY, NULL, 0, "Say what would be run, and run nothing", 2},
     COMMON_ROW_JSON(2),
     COMMON_ROW_WIDE(2),

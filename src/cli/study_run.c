@@ -113,7 +113,7 @@ static bool prepare_store(const StudyOptions *options, Store *store, Err *err)
         return false;
     }
     if (options->is_retrying && !options->common.is_quiet) {
-        fprintf(stderr, "making %" PRIu64 " failed runs again\n", forgotten);
+        fprintf(stderr, "making %" PRIu64 " failed or damaged runs again\n", forgotten);
     }
     return true;
 }

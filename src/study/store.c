@@ -35,35 +35,41 @@ static void destroy(Store *store)
     free(store);
 }
 
-static bool check_study(const Store *store, const StoreHead *head, Err *err)
+// Whether the store is of the study that is asked for, by itself or by a store that is merged into
+// it.
+static bool check_study(const Store *store, const StoreHead *head, const char *source, Err *err)
 {
     Text words;
     text_init(&words);
-    const bool is_same =
-        !store_schema_differs(store, head, &words) ||
+    const bool is_same = !store_schema_differs(store, head, &words);
+    if (!is_same && source == NULL) {
         err_set(err, ERR_FILE, "the store %s holds other runs: %s; --fresh starts it over",
                 store->path, words.data);
+    } else if (!is_same) {
+        err_set(err, ERR_FILE, "%s cannot be merged with %s: %s", store->path, source, words.data);
+    }
     text_finish(&words);
     return is_same;
 }
 
 // Makes the tables where there are none, and holds those that are there against what is asked for.
-static bool settle(Store *store, const StoreHead *head, Err *err)
+static bool settle(Store *store, const StoreHead *head, const char *source, Err *err)
 {
     bool is_there = false;
-    if (!store_schema_is_there(store, &is_there, err) ||
+    if (!store_shape_is_there(store, &is_there, err) ||
         (!is_there && !store_schema_make(store, head, err))) {
         return false;
     }
-    return (!is_there || store_file_check(store, err)) && store_schema_read(store, err) &&
-           check_study(store, head, err);
+    return store_schema_read(store, err) && check_study(store, head, source, err) &&
+           (!is_there || store_file_check(store, err));
 }
 
-Store *store_open(const char *path, const StoreHead *head, bool is_fresh, Err *err)
+static Store *open_to_work(const char *path, const StoreHead *head, bool is_fresh,
+                           const char *source, Err *err)
 {
     assert(head->key_count <= STORE_KEY_MAX);
     Store *store = make_store(path);
-    if (store_file_open(store, is_fresh, err) && settle(store, head, err)) {
+    if (store_file_open(store, is_fresh, err) && settle(store, head, source, err)) {
         return store;
     }
     // what was not there before and is not a store now is taken away
@@ -74,16 +80,21 @@ Store *store_open(const char *path, const StoreHead *head, bool is_fresh, Err *e
     return NULL;
 }
 
+Store *store_open(const char *path, const StoreHead *head, bool is_fresh, Err *err)
+{
+    return open_to_work(path, head, is_fresh, NULL, err);
+}
+
+Store *store_open_target(const char *path, const StoreHead *head, const char *source, Err *err)
+{
+    return open_to_work(path, head, false, source, err);
+}
+
 Store *store_view(const char *path, Err *err)
 {
     Store *store = make_store(path);
-    bool is_there = false;
-    if (store_file_view(store, err) && store_schema_is_there(store, &is_there, err)) {
-        if (!is_there) {
-            err_set(err, ERR_FILE, "%s is no store of a study", path);
-        } else if (store_schema_read(store, err)) {
-            return store;
-        }
+    if (store_file_view(store, err) && store_schema_read(store, err)) {
+        return store;
     }
     destroy(store);
     return NULL;

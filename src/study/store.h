@@ -2,9 +2,9 @@
 //
 // Tables: `study` (name, value: what makes rows of one store comparable), `run` (a row a run, its
 // settings and results as columns, and their checksum) and `effort` (what is never twice the same:
-// the wall time of each run). A row is only ever written whole, and never twice. Whoever looks at a
-// store that is at work sees what has been committed. No store may be used or closed in a process
-// forked off the one that opened it.
+// the wall time of each run, and its checksum). A row is only ever written whole, and never twice.
+// Whoever looks at a store that is at work sees what has been committed. No store may be used or
+// closed in a process forked off the one that opened it.
 #pragma once
 
 #include "base/err.h"
@@ -60,6 +60,8 @@ typedef struct StoreCount {
     double wall_s;              // all their processes took
 } StoreCount;
 
+// Reads every row, and fails with ERR_FILE at one that is not what was once written; so do
+// store_reasons, store_values and store_spread when first called.
 bool store_count(Store *store, StoreCount *count, Err *err);
 
 // The columns of a store, and a value of its key; NULL where it has none of that name.
@@ -102,8 +104,8 @@ typedef struct StoreSpread {
 bool store_spread(Store *store, size_t column, size_t by, const Cell *value, StoreSpread *spread,
                   Err *err);
 
-// Forgets the rows of failed runs, so that they are made again, and in a study with a truth those
-// of runs that have missed theirs. `forgotten` is their number.
+// Forgets the rows of failed runs and those that are damaged, so that they are made again, and in a
+// study with a truth those of runs that have missed theirs. `forgotten` is their number.
 bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err);
 
 // Hands over the rows by rising number of run. A taker that fails ends it with its error; however

@@ -1,5 +1,7 @@
 // What can be told of all runs of a store together?
 //
+// Every row is held against its checksum before SQL is asked about it: SQL knows of none.
+//
 // Quantiles are values that occur, found by sorting in SQL: SQLite sorts in files where memory does
 // not do.
 #include "study/store_inside.h"
@@ -8,56 +10,37 @@
 #include <sqlite3.h>
 #include <string.h>
 
-// One number of one row; 0 where it is NULL.
-static bool read_number(Store *store, const char *sql, double *number, Err *err)
+static bool count_row(const Layout *layout, const Record *record, void *context, Err *err)
 {
-    sqlite3_stmt *statement = NULL;
-    if (!store_prepare(store, sql, &statement, err)) {
-        return false;
-    }
-    const bool is_read = sqlite3_step(statement) == SQLITE_ROW || store_fail(store, "read", err);
-    *number = is_read ? sqlite3_column_double(statement, 0) : 0.0;
-    sqlite3_finalize(statement);
-    return is_read;
+    (void)layout;
+    (void)err;
+    StoreCount *count = context;
+    count->rows++;
+    count->fates[record->fate]++;
+    count->wall_s += record->wall_s;
+    return true;
 }
 
 bool store_count(Store *store, StoreCount *count, Err *err)
 {
     *count = (StoreCount){.run_count = store->run_count};
-    // each run has its effort, and that table is the smaller one by far
-    double rows = 0.0;
-    uint64_t unfinished = 0;
-    sqlite3_stmt *statement = NULL;
-    if (!store_prepare(store, "SELECT fate, count(*) FROM run WHERE fate <> 0 GROUP BY fate",
-                       &statement, err)) {
-        return false;
-    }
-    int status;
-    while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
-        const int fate = sqlite3_column_int(statement, 0);
-        const uint64_t runs = (uint64_t)sqlite3_column_int64(statement, 1);
-        if (fate > FATE_OK && fate < FATE_COUNT) {
-            count->fates[fate] = runs;
-            unfinished += runs;
-        }
-    }
-    bool is_read = status == SQLITE_DONE || store_fail(store, "read", err);
-    sqlite3_finalize(statement);
-    is_read = is_read && read_number(store, "SELECT count(*) FROM effort", &rows, err) &&
-              read_number(store, "SELECT total(wall_s) FROM effort", &count->wall_s, err);
-    count->rows = (uint64_t)rows;
-    if (is_read && unfinished > count->rows) {
-        return store_fail_damaged(store, "it has more failed runs than runs", err);
-    }
-    count->fates[FATE_OK] = count->rows - unfinished;
-    return is_read;
+    store->is_verified = store_each(store, count_row, count, err);
+    return store->is_verified;
+}
+
+// What SQL is asked for comes from rows that were held against their checksums once.
+static bool verify(Store *store, Err *err)
+{
+    StoreCount count;
+    return store->is_verified || store_count(store, &count, err);
 }
 
 bool store_reasons(Store *store, size_t most, StoreReason *reasons, size_t *count, Err *err)
 {
     *count = 0;
     sqlite3_stmt *statement = NULL;
-    if (!store_prepare(store,
+    if (!verify(store, err) ||
+        !store_prepare(store,
                        "SELECT fate, reason, count(*) AS runs, min(run) FROM run WHERE fate <> 0 "
                        "GROUP BY fate, reason ORDER BY runs DESC, min(run) LIMIT ?",
                        &statement, err)) {
@@ -100,10 +83,13 @@ size_t store_column(const Layout *layout, const char *name)
 bool store_values(Store *store, size_t column, size_t most, Cell *values, size_t *count, Err *err)
 {
     const Column *wanted = store_column_at(store->layout, column);
+    if (!verify(store, err)) {
+        return false;
+    }
     Text sql;
     text_init(&sql);
     text_append(&sql, "SELECT DISTINCT ");
-    store_schema_quote(&sql, wanted->name);
+    store_shape_quote(&sql, wanted->name);
     text_append(&sql, " AS value FROM run WHERE value IS NOT NULL ORDER BY value LIMIT ?");
     sqlite3_stmt *statement = NULL;
     const bool is_ready = store_prepare(store, sql.data, &statement, err);
@@ -136,15 +122,15 @@ static bool prepare_values(Store *store, const Column *column, const Column *by,
     text_init(&sql);
     text_append(&sql, "SELECT ");
     text_append(&sql, is_count ? "count(" : "");
-    store_schema_quote(&sql, column->name);
+    store_shape_quote(&sql, column->name);
     text_append(&sql, is_count ? ") FROM run WHERE fate = 0" : " FROM run WHERE fate = 0 AND ");
     if (!is_count) {
-        store_schema_quote(&sql, column->name);
+        store_shape_quote(&sql, column->name);
         text_append(&sql, " IS NOT NULL");
     }
     if (value != NULL) {
         text_append(&sql, " AND ");
-        store_schema_quote(&sql, by->name);
+        store_shape_quote(&sql, by->name);
         text_append(&sql, " = ?");
     }
     text_append(&sql, is_count ? "" : " ORDER BY 1");
@@ -190,7 +176,8 @@ bool store_spread(Store *store, size_t column, size_t by, const Cell *value, Sto
     const Column *condition = value == NULL ? NULL : store_column_at(store->layout, by);
     sqlite3_stmt *counting = NULL;
     sqlite3_stmt *sorting = NULL;
-    bool is_read = prepare_values(store, wanted, condition, value, true, &counting, err) &&
+    bool is_read = verify(store, err) &&
+                   prepare_values(store, wanted, condition, value, true, &counting, err) &&
                    (sqlite3_step(counting) == SQLITE_ROW || store_fail(store, "read", err));
     if (is_read) {
         spread->count = (uint64_t)sqlite3_column_int64(counting, 0);

@@ -25,11 +25,14 @@
 
 enum {
     HEADER_SIZE = 100, // of an SQLite file
+    HEADER_WRITE = 18, // 1: rollback journal; 2: write-ahead log
+    HEADER_READ = 19,
     HEADER_VERSION = 60,
     HEADER_APPLICATION = 68,
     WORK_BYTE = 0x40001000, // SQLite's own locks lie on 0x40000000 to 0x400001ff
     VIEW_WAIT_MS = 10000,   // for a commit to be over; it takes some 10
     WORK_WAIT_MS = 60000,   // for those who look, with whatever tool, to be done
+    VALUE_MAX = 1 << 20,    // bytes of a row or of SQL; a row of all columns has some 10 kB
 };
 
 static const char MAGIC[16] = "SQLite format 3";
@@ -44,8 +47,9 @@ bool store_fail(const Store *store, const char *what, Err *err)
     const int code = sqlite3_extended_errcode(store->base);
     const int reason = sqlite3_system_errno(store->base);
     const bool has_reason = (code & 0xff) == SQLITE_IOERR || (code & 0xff) == SQLITE_CANTOPEN;
-    if ((code & 0xff) == SQLITE_FULL || (has_reason && (reason == ENOSPC || reason == EDQUOT))) {
-        return err_set(err, ERR_FILE, "cannot %s the store %s: no space left", what, store->path);
+    if ((code & 0xff) == SQLITE_FULL) {
+        return err_set(err, ERR_FILE, "cannot %s the store %s: %s", what, store->path,
+                       strerror(ENOSPC));
     }
     switch (code & 0xff) {
     case SQLITE_BUSY:
@@ -57,10 +61,8 @@ bool store_fail(const Store *store, const char *what, Err *err)
     case SQLITE_FORMAT:
         return store_fail_damaged(store, sqlite3_errmsg(store->base), err);
     case SQLITE_READONLY:
-        return err_set(err, ERR_FILE, "cannot %s the store %s: %s", what, store->path,
-                       code == SQLITE_READONLY_ROLLBACK
-                           ? "it was left in mid-write and its folder cannot be written"
-                           : "it or its folder cannot be written");
+        return err_set(err, ERR_FILE, "cannot %s the store %s: it or its folder cannot be written",
+                       what, store->path);
     default:
         return err_set(err, ERR_FILE, "cannot %s the store %s: %s", what, store->path,
                        has_reason && reason != 0 ? strerror(reason) : sqlite3_errmsg(store->base));
@@ -108,6 +110,12 @@ static bool check_header(const Store *store, int file, bool is_empty_right, bool
         read_big_endian(header + HEADER_APPLICATION) != STORE_APPLICATION) {
         return err_set(err, ERR_FILE, "%s is no store of a study", store->path);
     }
+    if (header[HEADER_WRITE] > 1 || header[HEADER_READ] > 1) {
+        return err_set(err, ERR_FILE,
+                       "the store %s was set to a write-ahead log, which no store has; "
+                       "'PRAGMA journal_mode = DELETE' in sqlite3 takes it back",
+                       store->path);
+    }
     const uint32_t version = read_big_endian(header + HEADER_VERSION);
     return version == STORE_VERSION || is_any_version ||
            err_set(err, ERR_FILE,
@@ -145,22 +153,48 @@ bool store_file_is_at_work(const char *path)
     return is_at_work;
 }
 
-// SQLite takes names like ":memory:" for something else than a file: a path has a slash.
-static bool open_base(Store *store, int wait_ms, Err *err)
+// A file may be any person's: nothing that stands in its schema is run, and no number in it is
+// asked for memory without end.
+static void harden(sqlite3 *base)
 {
-    Text path;
-    text_init(&path);
-    text_append(&path, "%s%s", strchr(store->path, '/') == NULL ? "./" : "", store->path);
-    const int status =
-        sqlite3_open_v2(path.data, &store->base, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL);
-    text_finish(&path);
-    if (status != SQLITE_OK) {
-        return store_fail(store, "open", err);
+    static const struct {
+        int option;
+        int value;
+    } OPTIONS[] = {
+        {SQLITE_DBCONFIG_DEFENSIVE, 1},      {SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0},
+        {SQLITE_DBCONFIG_ENABLE_TRIGGER, 0}, {SQLITE_DBCONFIG_ENABLE_VIEW, 0},
+        {SQLITE_DBCONFIG_DQS_DDL, 0},        {SQLITE_DBCONFIG_DQS_DML, 0},
+        {SQLITE_DBCONFIG_ENABLE_FKEY, 0},    {SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, 0},
+    };
+    for (size_t i = 0; i < sizeof OPTIONS / sizeof *OPTIONS; i++) {
+        sqlite3_db_config(base, OPTIONS[i].option, OPTIONS[i].value, NULL);
+    }
+    sqlite3_limit(base, SQLITE_LIMIT_LENGTH, VALUE_MAX);
+    sqlite3_limit(base, SQLITE_LIMIT_SQL_LENGTH, VALUE_MAX);
+    sqlite3_limit(base, SQLITE_LIMIT_TRIGGER_DEPTH, 1);
+}
+
+// By the path that all links lead to, as SQLite would follow them: the files beside it are asked
+// for by that one, too. It begins with a slash; SQLite takes names like ":memory:" for no file.
+static bool open_base(Store *store, int flags, int wait_ms, Err *err)
+{
+    char *path = realpath(store->path, NULL);
+    if (path == NULL) {
+        return fail_system(store, "open", errno, err);
+    }
+    const bool is_open =
+        store_beside_check(store, path, err) &&
+        (sqlite3_open_v2(path, &store->base, flags | SQLITE_OPEN_NOMUTEX,
+                         flags == SQLITE_OPEN_READONLY ? store_look_vfs() : NULL) == SQLITE_OK ||
+         store_fail(store, "open", err));
+    free(path);
+    if (!is_open) {
+        return false;
     }
     sqlite3_extended_result_codes(store->base, 1);
     sqlite3_busy_timeout(store->base, wait_ms);
-    // a file may be any person's: nothing that stands in its tables is run
-    return store_run_sql(store, "PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON", err);
+    harden(store->base);
+    return store_run_sql(store, "PRAGMA cell_size_check = ON", err);
 }
 
 // Empties the file, whatever damage there is in it, as one transaction. Nothing else may have been
@@ -205,7 +239,8 @@ bool store_file_open(Store *store, bool is_fresh, Err *err)
         return fail_system(store, "open", errno, err);
     }
     return claim(store, is_made, err) && check_header(store, store->lock, true, is_fresh, err) &&
-           open_base(store, WORK_WAIT_MS, err) && (!is_fresh || reset(store, err)) &&
+           open_base(store, SQLITE_OPEN_READWRITE, WORK_WAIT_MS, err) &&
+           (!is_fresh || reset(store, err)) &&
            store_run_sql(store, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA", err);
 }
 
@@ -221,9 +256,7 @@ bool store_file_view(Store *store, Err *err)
     claims_note_read("store", store->path);
     const bool is_store = check_header(store, file, false, false, err);
     close(file);
-    // not opened for reading alone: what a killed process left in mid-write is to be taken back
-    return is_store && open_base(store, VIEW_WAIT_MS, err) &&
-           store_run_sql(store, "PRAGMA query_only = ON", err);
+    return is_store && open_base(store, SQLITE_OPEN_READONLY, VIEW_WAIT_MS, err);
 }
 
 void store_file_close(Store *store)

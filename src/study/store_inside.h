@@ -8,7 +8,7 @@ struct sqlite3;
 struct sqlite3_stmt;
 
 enum {
-    STORE_VERSION = 1,              // of the tables; stands in the file as user_version
+    STORE_VERSION = 2,              // of the tables; stands in the file as user_version
     STORE_APPLICATION = 0x4a505354, // "JPST"; stands in the file as application_id
     STORE_WORDS_SIZE = 256,
 };
@@ -26,11 +26,17 @@ struct Store {
     int lock;         // file that the lock of whoever works on the store hangs on; -1: none
     bool is_made;     // its file is of this opening: nobody else has ever written to it
     bool is_changing; // a transaction is open
+    bool is_verified; // every row that was there when it was first asked is what was once written
     Layout *layout;   // owned
     uint64_t run_count;
     size_t key_count;
     StoreKey keys[STORE_KEY_MAX]; // their words are owned
 };
+
+// store.c: opening
+
+// Opens the store that others are merged into, the first of which is named; as store_open.
+Store *store_open_target(const char *path, const StoreHead *head, const char *source, Err *err);
 
 // store_file.c: the file
 
@@ -44,7 +50,8 @@ bool store_fail_damaged(const Store *store, const char *how, Err *err);
 // damaged, and is emptied.
 bool store_file_open(Store *store, bool is_fresh, Err *err);
 
-// Opens it to look at.
+// Opens it to look at: no file is written or deleted, and what a write that was cut off has changed
+// is seen as it was before.
 bool store_file_view(Store *store, Err *err);
 
 // Lets go of the file; whoever waits for it can have it at once.
@@ -61,10 +68,36 @@ bool store_file_is_at_work(const char *path);
 bool store_run_sql(Store *store, const char *sql, Err *err);
 bool store_prepare(Store *store, const char *sql, struct sqlite3_stmt **statement, Err *err);
 
-// store_schema.c: the tables
+// store_beside.c: what stands beside the file
 
-// Whether there are tables in the file.
-bool store_schema_is_there(Store *store, bool *is_there, Err *err);
+// Refuses what would make SQLite write or delete another file than the store and its journal. To be
+// asked before SQLite opens the file of that resolved path.
+bool store_beside_check(const Store *store, const char *resolved, Err *err);
+
+// store_look.c: looking at it
+
+// The name of the functions by which SQLite can read files and write none.
+const char *store_look_vfs(void);
+
+// store_shape.c: the tables
+
+// Whether there is anything in the schema of the file.
+bool store_shape_is_there(Store *store, bool *is_there, Err *err);
+
+// Appends the SQL that makes the tables.
+void store_shape_append(const Layout *layout, Text *sql);
+
+// Reads the columns, once it is sure that the file has the tables of a store and nothing else.
+// Nothing may be asked of its tables before.
+bool store_shape_read(Store *store, Layout *layout, Err *err);
+
+// Appends the name of a column as SQL writes it.
+void store_shape_quote(Text *sql, const char *name);
+
+// A copy of a value; the empty word of NULL.
+char *store_copy_column(struct sqlite3_stmt *statement, int column);
+
+// store_schema.c: whose rows they are
 
 // Makes the tables, or reads what they are.
 bool store_schema_make(Store *store, const StoreHead *head, Err *err);
@@ -75,9 +108,6 @@ bool store_schema_read(Store *store, Err *err);
 bool store_schema_differs(const Store *store, const StoreHead *head, Text *words);
 
 void store_schema_finish(Store *store);
-
-// Appends the name of a column as SQL writes it.
-void store_schema_quote(Text *sql, const char *name);
 
 // store_row.c: the rows
 

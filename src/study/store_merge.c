@@ -96,11 +96,17 @@ static bool advance(Cursor *cursor, bool *has_row, Err *err)
             store_fail_damaged(cursor->store, "its runs do not stand in order", err));
 }
 
-static bool check_alike(const Store *first, const Store *other, Err *err)
+static StoreHead head_of(const Store *store)
 {
     StoreHead head = {
-        .layout = first->layout, .run_count = first->run_count, .key_count = first->key_count};
-    memcpy(head.keys, first->keys, sizeof head.keys);
+        .layout = store->layout, .run_count = store->run_count, .key_count = store->key_count};
+    memcpy(head.keys, store->keys, sizeof head.keys);
+    return head;
+}
+
+static bool check_alike(const Store *first, const Store *other, Err *err)
+{
+    const StoreHead head = head_of(first);
     Text words;
     text_init(&words);
     // "there" and "here" are the two files, in the order in which the message names them
@@ -159,28 +165,12 @@ static bool open_sources(Merge *merge, const char *target, const char *const *so
     return true;
 }
 
+// Whatever was left of a merge that was killed is taken back by opening it to work.
 static bool open_target(Merge *merge, const char *path, Err *err)
 {
     const Store *first = merge->cursors[0].store;
-    struct stat status;
-    const bool is_empty =
-        stat(path, &status) != 0 || (S_ISREG(status.st_mode) && status.st_size == 0);
-    // before it is locked, for the better message
-    if (!is_empty) {
-        if (store_file_is_at_work(path)) {
-            return err_set(err, ERR_FILE, "the store %s is at work in another process", path);
-        }
-        Store *former = store_view(path, err);
-        const bool is_alike = former != NULL && check_alike(first, former, err);
-        store_close(former, err);
-        if (!is_alike) {
-            return false;
-        }
-    }
-    StoreHead head = {
-        .layout = first->layout, .run_count = first->run_count, .key_count = first->key_count};
-    memcpy(head.keys, first->keys, sizeof head.keys);
-    merge->target = store_open(path, &head, false, err);
+    const StoreHead head = head_of(first);
+    merge->target = store_open_target(path, &head, first->path, err);
     return merge->target != NULL;
 }
 

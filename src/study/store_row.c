@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <sqlite3.h>
@@ -38,6 +39,12 @@ static int32_t make_checksum(const Layout *layout, const Record *record)
         hash = hash_value(hash, record->results[i]);
     }
     hash = hash_bytes(hash, &record->hash, sizeof record->hash);
+    return (int32_t)(uint32_t)(hash >> 32);
+}
+
+static int32_t make_effort_checksum(uint64_t run, double wall_s)
+{
+    const uint64_t hash = hash_value(hash_number(HASH_START, (double)run), wall_s);
     return (int32_t)(uint32_t)(hash >> 32);
 }
 
@@ -127,7 +134,7 @@ static bool prepare_adding(Store *store, Err *err)
     text_append(&sql, ")");
     const bool is_ready =
         store_prepare(store, sql.data, &store->add_run, err) &&
-        store_prepare(store, "INSERT INTO effort VALUES (?, ?)", &store->add_effort, err);
+        store_prepare(store, "INSERT INTO effort VALUES (?, ?, ?)", &store->add_effort, err);
     text_finish(&sql);
     return is_ready;
 }
@@ -149,6 +156,7 @@ bool store_add(Store *store, const Record *record, Err *err)
     }
     sqlite3_bind_int64(store->add_effort, 1, (sqlite3_int64)record->run);
     sqlite3_bind_double(store->add_effort, 2, record->wall_s);
+    sqlite3_bind_int(store->add_effort, 3, make_effort_checksum(record->run, record->wall_s));
     return step_to_end(store, store->add_effort, record->run, err) || take_back(store);
 }
 
@@ -175,6 +183,46 @@ bool store_has(Store *store, uint64_t run, bool *has, Err *err)
     return is_read;
 }
 
+static bool delete_run(Store *store, uint64_t run, Err *err)
+{
+    Text sql;
+    text_init(&sql);
+    text_append(&sql,
+                "DELETE FROM effort WHERE run = %" PRId64 "; DELETE FROM run WHERE run = %" PRId64,
+                (int64_t)run, (int64_t)run);
+    const bool is_gone = store_run_sql(store, sql.data, err);
+    text_finish(&sql);
+    return is_gone;
+}
+
+// Deletes the rows that are not what was once written, in the transaction that is open.
+static bool forget_damaged(Store *store, uint64_t *forgotten, Err *err)
+{
+    Record *record = malloc(sizeof *record);
+    assert(record != NULL);
+    int64_t behind = -1;
+    bool is_done = store_row_prepare(store, &store->rows, err);
+    for (int status = SQLITE_ROW; is_done && status == SQLITE_ROW;) {
+        sqlite3_bind_int64(store->rows, 1, behind);
+        sqlite3_bind_int64(store->rows, 2, -1);
+        Err damage = {0};
+        while ((status = sqlite3_step(store->rows)) == SQLITE_ROW &&
+               store_row_take(store, store->rows, record, &damage)) {
+        }
+        sqlite3_reset(store->rows);
+        if (status == SQLITE_ROW) {
+            behind = (int64_t)record->run;
+            (*forgotten)++;
+            is_done = delete_run(store, record->run, err);
+        } else {
+            is_done = status == SQLITE_DONE || store_fail(store, "read", err);
+        }
+    }
+    free(record);
+    return is_done &&
+           store_run_sql(store, "DELETE FROM effort WHERE run NOT IN (SELECT run FROM run)", err);
+}
+
 bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err)
 {
     if (!store_commit(store, err) || !begin(store, err)) {
@@ -183,35 +231,33 @@ bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err)
     // there are errors only where the study has a truth; a run without them has missed it
     const size_t columns = store->layout->setting_count + store->layout->result_count;
     const bool has_errors = store_column(store->layout, STORE_ERROR_COLUMN) < columns;
-    const bool is_done = store_run_sql(
-        store,
-        has_errors ? "DELETE FROM effort WHERE run IN "
-                     "(SELECT run FROM run WHERE fate <> 0 OR error_omega_max IS NULL); "
-                     "DELETE FROM run WHERE fate <> 0 OR error_omega_max IS NULL"
-                   : "DELETE FROM effort WHERE run IN (SELECT run FROM run WHERE fate <> 0); "
-                     "DELETE FROM run WHERE fate <> 0",
-        err);
-    *forgotten = is_done ? (uint64_t)sqlite3_changes64(store->base) : 0;
+    *forgotten = 0;
+    const bool is_done =
+        forget_damaged(store, forgotten, err) &&
+        store_run_sql(store,
+                      has_errors ? "DELETE FROM effort WHERE run IN "
+                                   "(SELECT run FROM run WHERE fate <> 0 OR "
+                                   "error_omega_max IS NULL); "
+                                   "DELETE FROM run WHERE fate <> 0 OR error_omega_max IS NULL"
+                                 : "DELETE FROM effort WHERE run IN "
+                                   "(SELECT run FROM run WHERE fate <> 0); "
+                                   "DELETE FROM run WHERE fate <> 0",
+                      err);
+    *forgotten += is_done ? (uint64_t)sqlite3_changes64(store->base) : 0;
     return is_done ? store_commit(store, err) : take_back(store);
 }
 
 bool store_replace(Store *store, const Record *record, Err *err)
 {
-    Text sql;
-    text_init(&sql);
-    text_append(&sql,
-                "DELETE FROM effort WHERE run = %" PRIu64 "; DELETE FROM run WHERE run = %" PRIu64,
-                record->run, record->run);
-    const bool is_gone = begin(store, err) && store_run_sql(store, sql.data, err);
-    text_finish(&sql);
-    return is_gone && store_add(store, record, err);
+    return begin(store, err) && delete_run(store, record->run, err) &&
+           store_add(store, record, err);
 }
 
 bool store_row_prepare(Store *store, sqlite3_stmt **statement, Err *err)
 {
     return store_prepare(store,
-                         "SELECT run.*, effort.wall_s, effort.run FROM run LEFT JOIN effort USING "
-                         "(run) WHERE run.run > ? ORDER BY run.run LIMIT ?",
+                         "SELECT run.*, effort.wall_s, effort.checksum FROM run LEFT JOIN effort "
+                         "USING (run) WHERE run.run > ? ORDER BY run.run LIMIT ?",
                          statement, err);
 }
 
@@ -250,11 +296,16 @@ bool store_row_take(const Store *store, sqlite3_stmt *statement, Record *record,
     record->hash = (uint64_t)sqlite3_column_int64(statement, place++);
     const sqlite3_int64 checksum = sqlite3_column_int64(statement, place++);
     record->wall_s = column_number(statement, place++);
-    const bool has_effort = sqlite3_column_type(statement, place) != SQLITE_NULL;
-    if (fate >= 0 && fate < FATE_COUNT && has_effort && checksum == make_checksum(layout, record)) {
+    const bool is_effort =
+        sqlite3_column_type(statement, place) != SQLITE_NULL &&
+        sqlite3_column_int64(statement, place) == make_effort_checksum(record->run, record->wall_s);
+    if (fate >= 0 && fate < FATE_COUNT && is_effort && checksum == make_checksum(layout, record)) {
         return true;
     }
     char words[STORE_WORDS_SIZE];
-    snprintf(words, sizeof words, "run %" PRIu64 " is not what was once written", record->run);
+    snprintf(words, sizeof words,
+             "run %" PRIu64 " is not what was once written; 'jointplay study FILE --retry-failed' "
+             "makes it again",
+             record->run);
     return store_fail_damaged(store, words, err);
 }

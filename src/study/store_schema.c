@@ -1,12 +1,6 @@
-// Which tables does a store have, and whose rows are in them?
+// Whose rows are in a store?
 //
-//     study    name, value, words: the key, `runs`, `checksum` of this table and of the columns
-//     run      run (the number), the settings, fate, reason, the results, hash, checksum
-//     effort   run, wall_s
-//     unfinished   an index of the runs that did not end well, and of these alone: what `status`
-//                  counts is found without reading the others
-//
-// The columns of `run` are the layout: their names, their types, and the place of `fate`.
+// The table `study` has the key, `runs`, and `checksum`: of this table and of the columns of `run`.
 #include "study/store_inside.h"
 
 #include "base/hash.h"
@@ -18,22 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const TYPES[] = {
-    [COLUMN_REAL] = "REAL", [COLUMN_WHOLE] = "INTEGER", [COLUMN_WORD] = "TEXT"};
-enum { TYPE_COUNT = sizeof TYPES / sizeof *TYPES };
-
 static const char RUNS[] = "runs";
 static const char CHECKSUM[] = "checksum";
 static const char COUNT_FORMAT[] = "%" PRIu64;
-
-void store_schema_quote(Text *sql, const char *name)
-{
-    text_append(sql, "\"");
-    for (; *name != '\0'; name++) {
-        text_append(sql, *name == '"' ? "\"\"" : "%c", *name);
-    }
-    text_append(sql, "\"");
-}
 
 static uint64_t hash_words(uint64_t hash, const char *words)
 {
@@ -60,14 +41,6 @@ static void make_checksum(const StoreHead *head, char words[STORE_WORDS_SIZE])
     hash = hash_columns(hash, head->layout->settings, head->layout->setting_count);
     hash = hash_columns(hash, head->layout->results, head->layout->result_count);
     snprintf(words, STORE_WORDS_SIZE, "%016" PRIx64, hash);
-}
-
-static void append_columns(Text *sql, const Column *columns, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        store_schema_quote(sql, columns[i].name);
-        text_append(sql, " %s, ", TYPES[columns[i].kind]);
-    }
 }
 
 // The name of the column of that number, those that every store has behind the layout's.
@@ -140,17 +113,9 @@ bool store_schema_make(Store *store, const StoreHead *head, Err *err)
     }
     Text sql;
     text_init(&sql);
-    text_append(&sql,
-                "BEGIN IMMEDIATE; PRAGMA application_id = %d; PRAGMA user_version = %d; "
-                "CREATE TABLE study(name TEXT PRIMARY KEY, value TEXT, words TEXT); "
-                "CREATE TABLE run(run INTEGER PRIMARY KEY, ",
+    text_append(&sql, "BEGIN IMMEDIATE; PRAGMA application_id = %d; PRAGMA user_version = %d; ",
                 STORE_APPLICATION, STORE_VERSION);
-    append_columns(&sql, head->layout->settings, head->layout->setting_count);
-    text_append(&sql, "fate INTEGER, reason TEXT, ");
-    append_columns(&sql, head->layout->results, head->layout->result_count);
-    text_append(&sql, "hash INTEGER, checksum INTEGER); "
-                      "CREATE TABLE effort(run INTEGER PRIMARY KEY, wall_s REAL); "
-                      "CREATE INDEX unfinished ON run(fate, reason) WHERE fate <> 0");
+    store_shape_append(head->layout, &sql);
     // a store without rows is whole, so that what is killed later is a store
     const bool is_made = store_run_sql(store, sql.data, err) && add_values(store, head, err) &&
                          store_run_sql(store, "COMMIT", err);
@@ -159,27 +124,6 @@ bool store_schema_make(Store *store, const StoreHead *head, Err *err)
     }
     text_finish(&sql);
     return is_made;
-}
-
-bool store_schema_is_there(Store *store, bool *is_there, Err *err)
-{
-    sqlite3_stmt *statement = NULL;
-    if (!store_prepare(store, "SELECT count(*) FROM sqlite_schema", &statement, err)) {
-        return false;
-    }
-    const bool is_read = sqlite3_step(statement) == SQLITE_ROW || store_fail(store, "read", err);
-    *is_there = is_read && sqlite3_column_int(statement, 0) > 0;
-    sqlite3_finalize(statement);
-    return is_read;
-}
-
-// A copy, or NULL of NULL.
-static char *copy_column(sqlite3_stmt *statement, int column)
-{
-    const char *words = (const char *)sqlite3_column_text(statement, column);
-    char *copy = strdup(words == NULL ? "" : words);
-    assert(copy != NULL);
-    return copy;
 }
 
 // The key, and the checksum that was written with it.
@@ -192,8 +136,8 @@ static bool read_values(Store *store, char checksum[STORE_WORDS_SIZE], Err *err)
     }
     int status;
     while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
-        char *name = copy_column(statement, 0);
-        char *value = copy_column(statement, 1);
+        char *name = store_copy_column(statement, 0);
+        char *value = store_copy_column(statement, 1);
         const bool is_count = strcmp(name, RUNS) == 0;
         const bool is_checksum = strcmp(name, CHECKSUM) == 0;
         if (is_count) {
@@ -201,54 +145,12 @@ static bool read_values(Store *store, char checksum[STORE_WORDS_SIZE], Err *err)
         } else if (is_checksum) {
             text_copy(checksum, STORE_WORDS_SIZE, value);
         } else if (store->key_count < STORE_KEY_MAX) {
-            store->keys[store->key_count++] = (StoreKey){name, value, copy_column(statement, 2)};
+            store->keys[store->key_count++] =
+                (StoreKey){name, value, store_copy_column(statement, 2)};
             continue;
         }
         free(name);
         free(value);
-    }
-    const bool is_read = status == SQLITE_DONE || store_fail(store, "read", err);
-    sqlite3_finalize(statement);
-    return is_read;
-}
-
-// Takes one column of the table; where nothing takes it the checksum tells.
-static void take_column(Layout *layout, const char *name, const char *type, bool is_result)
-{
-    size_t *count = is_result ? &layout->result_count : &layout->setting_count;
-    Column *columns = is_result ? layout->results : layout->settings;
-    if (*count < (is_result ? (size_t)RECORD_RESULT_MAX : (size_t)RECORD_SETTING_MAX)) {
-        Column *column = &columns[(*count)++];
-        text_copy(column->name, sizeof column->name, name);
-        for (size_t kind = 0; kind < TYPE_COUNT; kind++) {
-            if (strcmp(type, TYPES[kind]) == 0) {
-                column->kind = (ColumnKind)kind;
-            }
-        }
-    }
-}
-
-static bool read_layout(Store *store, Err *err)
-{
-    sqlite3_stmt *statement = NULL;
-    if (!store_prepare(store, "SELECT name, type FROM pragma_table_info('run') ORDER BY cid",
-                       &statement, err)) {
-        return false;
-    }
-    bool is_result = false;
-    int status;
-    while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
-        char *name = copy_column(statement, 0);
-        char *type = copy_column(statement, 1);
-        const bool is_own = strcmp(name, "run") == 0 || strcmp(name, "reason") == 0 ||
-                            strcmp(name, "hash") == 0 || strcmp(name, "checksum") == 0;
-        if (strcmp(name, "fate") == 0) {
-            is_result = true;
-        } else if (!is_own) {
-            take_column(store->layout, name, type, is_result);
-        }
-        free(name);
-        free(type);
     }
     const bool is_read = status == SQLITE_DONE || store_fail(store, "read", err);
     sqlite3_finalize(statement);
@@ -270,7 +172,7 @@ bool store_schema_read(Store *store, Err *err)
     store_schema_finish(store);
     store->layout = calloc(1, sizeof *store->layout);
     assert(store->layout != NULL);
-    if (!read_values(store, stored, err) || !read_layout(store, err)) {
+    if (!store_shape_read(store, store->layout, err) || !read_values(store, stored, err)) {
         return false;
     }
     const StoreHead head = own_head(store);

@@ -44,7 +44,7 @@ dd if=/dev/zero of=disk/filler bs=1k count=430 2>/dev/null
 "$program" study s.yaml --store disk/s.sqlite >output 2>errors
 [ $? = 5 ]
 check 'a full disk ends it with status 5' $?
-grep -q 'no space left' errors
+grep -q 'No space left on device' errors
 check 'it says that there is no space left' $?
 rows disk/s.sqlite >before
 [ "$(wc -l <before)" -gt 1 ]

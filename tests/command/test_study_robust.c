@@ -1,9 +1,12 @@
 // Does a study lose nothing, and make nothing twice, whatever is done to it?
+#define _GNU_SOURCE // memmem
+
 #include "program.h"
 
 #include <fcntl.h>
 #include <signal.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <time.h>
 
 enum { WORDS_SIZE = 128, LINE_MAX_COUNT = 256, CHILD_WAIT = 500, KILLS = 8 };
@@ -253,6 +256,66 @@ static void another_study_does_not_mix_with_it(void **state)
     json_decref(root);
 }
 
+// The value of a column in the first row.
+static double first_value(const char *csv, const char *column)
+{
+    const char *name = csv;
+    const char *value = strchr(csv, '\n') + 1;
+    while (strncmp(name, column, strlen(column)) != 0) {
+        name = strchr(name, ',') + 1;
+        value = strchr(value, ',') + 1;
+    }
+    return strtod(value, NULL);
+}
+
+// Turns one bit of a number where it stands in a file, as SQLite writes it.
+static void turn_bit(const Program *program, const char *name, double value)
+{
+    char path[PROGRAM_PATH_SIZE];
+    static unsigned char content[1 << 18];
+    unsigned char bytes[sizeof value];
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    for (size_t i = 0; i < sizeof bytes; i++) {
+        bytes[i] = (unsigned char)(bits >> 8 * (sizeof bytes - 1 - i));
+    }
+    program_path(program, name, path);
+    FILE *stream = fopen(path, "r+b");
+    assert_non_null(stream);
+    const size_t size = fread(content, 1, sizeof content, stream);
+    unsigned char *place = memmem(content, size, bytes, sizeof bytes);
+    assert_non_null(place);
+    place[1] ^= 0x80;
+    assert_int_equal(fseek(stream, place - content, SEEK_SET), 0);
+    fwrite(place, 1, sizeof bytes, stream);
+    assert_int_equal(fclose(stream), 0);
+}
+
+static void a_bit_that_turned_is_told_by_every_command(void **state)
+{
+    Program *program = *state;
+    static const char *const READERS[] = {
+        "study s.yaml", "study status s.yaml", "study export s.yaml",
+        "study plot s.sqlite --x drive_speed_rad_s --y coupler_alpha_max_rad_s2 p.svg",
+        "study merge m.sqlite s.sqlite"};
+    write_study(program, "1", "500", "false");
+    run_well(program, "study s.yaml --store once.sqlite");
+    run_well(program, "study s.yaml");
+    run_well(program, "study export s.yaml");
+    turn_bit(program, "s.sqlite", first_value(program->output, "coupler_alpha_max_rad_s2"));
+    for (size_t i = 0; i < sizeof READERS / sizeof *READERS; i++) {
+        program_run(program, READERS[i]);
+        assert_int_equal(program->status, 5);
+        assert_says(program->errors,
+                    "the store s.sqlite is damaged: run 0 is not what was once "
+                    "written; 'jointplay study FILE --retry-failed' makes it again");
+    }
+    assert_false(is_there(program, "m.sqlite") || is_there(program, "p.svg"));
+    run_well(program, "study s.yaml --retry-failed");
+    assert_says(program->errors, "making 1 failed or damaged runs again");
+    check_same_rows(program, "s.sqlite", "once.sqlite");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -262,6 +325,7 @@ int main(void)
         ROBUST_TEST(shards_merge_to_what_one_store_holds),
         ROBUST_TEST(a_second_process_is_told_that_the_store_is_at_work),
         ROBUST_TEST(another_study_does_not_mix_with_it),
+        ROBUST_TEST(a_bit_that_turned_is_told_by_every_command),
 #undef ROBUST_TEST
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -31,8 +31,7 @@ static void write_content(size_t size)
     fclose(stream);
 }
 
-// Counts the rows and holds each against what was written, but for its wall time, which has no
-// checksum.
+// Counts the rows and holds each against what was written.
 static bool hold_row(const Layout *layout, const Record *record, void *context, Err *err)
 {
     (void)err;
@@ -41,6 +40,7 @@ static bool hold_row(const Layout *layout, const Record *record, void *context, 
     assert_int_equal(record->fate, truth.fate);
     assert_string_equal(record->reason, truth.reason);
     assert_true(record->hash == truth.hash);
+    assert_near(record->wall_s, truth.wall_s, 0.0);
     assert_near(record->settings[0].number, truth.settings[0].number, 0.0);
     assert_string_equal(record->settings[2].word, truth.settings[2].word);
     for (size_t i = 0; i < layout->result_count; i++) {
@@ -88,6 +88,101 @@ static void a_byte_that_turned_never_makes_a_number(void **state)
     }
     // the control: most of the file is in use
     assert_true(told > harmless / 4 && told > 100);
+}
+
+static void change(const char *sql)
+{
+    sqlite3 *base = NULL;
+    assert_int_equal(sqlite3_open(path, &base), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(base, sql, NULL, NULL, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_changes(base), 1);
+    sqlite3_close(base);
+}
+
+// Each reader as the first of its opening.
+static bool read_by(int reader, Store *store, Err *err)
+{
+    StoreCount count;
+    StoreReason reasons[4];
+    size_t reason_count;
+    Cell values[8];
+    StoreSpread spread;
+    uint64_t rows = 0;
+    switch (reader) {
+    case 0:
+        return store_count(store, &count, err);
+    case 1:
+        return store_reasons(store, 4, reasons, &reason_count, err);
+    case 2:
+        return store_values(store, 0, 8, values, &reason_count, err);
+    case 3:
+        return store_spread(store, 4, 0, NULL, &spread, err);
+    default:
+        return store_each(store, hold_row, &rows, err);
+    }
+}
+
+enum { READERS = 5 };
+
+static void every_reader_names_the_row_that_is_damaged(void **state)
+{
+    (void)state;
+    static const char *const CHANGES[] = {
+        "UPDATE run SET coupler_omega_max_rad_s = 7.7e8 WHERE run = 3",
+        "UPDATE run SET drive_speed_rad_s = 1 WHERE run = 3",
+        "UPDATE run SET fate = 2 WHERE run = 3",
+        "UPDATE run SET hash = 1 WHERE run = 3",
+        "UPDATE effort SET wall_s = 1e9 WHERE run = 3",
+        "DELETE FROM effort WHERE run = 3",
+    };
+    for (size_t i = 0; i < sizeof CHANGES / sizeof *CHANGES; i++) {
+        unlink(path);
+        make_store(FEW);
+        for (int damaged = 0; damaged < 2; damaged++) {
+            for (int reader = 0; reader < READERS; reader++) {
+                Err err = {0};
+                Store *store = store_view(path, &err);
+                assert_non_null(store);
+                // the control: without the change all of them read
+                assert_int_equal(read_by(reader, store, &err), damaged == 0);
+                if (damaged == 1) {
+                    assert_int_equal(err.kind, ERR_FILE);
+                    assert_non_null(strstr(err.text, "run 3 is not what was once written"));
+                }
+                err = (Err){0};
+                assert_true(store_close(store, &err));
+            }
+            if (damaged == 0) {
+                change(CHANGES[i]);
+            }
+        }
+    }
+}
+
+static void a_damaged_row_is_forgotten_and_made_again(void **state)
+{
+    (void)state;
+    Err err;
+    uint64_t forgotten = 0;
+    bool has = true;
+    const Layout layout = study_layout();
+    make_store(FEW);
+    change("UPDATE run SET coupler_omega_max_rad_s = 7.7e8 WHERE run = 3");
+    change("UPDATE effort SET wall_s = 1e9 WHERE run = 4");
+    change("UPDATE run SET run = 1000 WHERE run = 5");
+    Store *store = open_study(&layout, false, &err);
+    // run 7 has failed
+    assert_true(store_forget_failed(store, &forgotten, &err));
+    assert_int_equal(forgotten, 4);
+    for (uint64_t run = 0; run < FEW; run++) {
+        assert_true(store_has(store, run, &has, &err));
+        assert_int_equal(has, !(run >= 3 && run <= 5) && run != 7);
+        if (!has) {
+            add_runs(store, &layout, run, run + 1);
+        }
+    }
+    assert_true(store_close(store, &err));
+    assert_true(is_read_right());
 }
 
 static void a_file_cut_short_is_told(void **state)
@@ -342,6 +437,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         STORE_TEST(a_byte_that_turned_never_makes_a_number),
+        STORE_TEST(every_reader_names_the_row_that_is_damaged),
+        STORE_TEST(a_damaged_row_is_forgotten_and_made_again),
         STORE_TEST(a_file_cut_short_is_told),
         STORE_TEST(a_damaged_store_is_made_anew),
         STORE_TEST(what_is_no_store_is_left_alone),

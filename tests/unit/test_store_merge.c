@@ -337,6 +337,38 @@ static void a_shard_killed_in_mid_write_is_merged_as_it_was(void **state)
     assert_int_equal(in_a_child(die_in_mid_transaction), -SIGKILL);
     assert_int_equal(merge_of(SHARDS), RUNS);
     assert_int_equal(count_right_rows(), RUNS);
+    // a source is left as it is
+    char journal[PATH_SIZE + 16];
+    snprintf(journal, sizeof journal, "%s-journal", shards[0]);
+    assert_int_equal(unlink(journal), 0);
+}
+
+static int die_in_a_first_write(void)
+{
+    sqlite3 *base = NULL;
+    sqlite3_open(path, &base);
+    // as a merge that is killed while it makes its tables
+    sqlite3_exec(base,
+                 "PRAGMA cache_size = 1; PRAGMA application_id = 1246778196; "
+                 "PRAGMA user_version = 2; BEGIN IMMEDIATE; CREATE TABLE study(name); "
+                 "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 2000) "
+                 "INSERT INTO study SELECT hex(randomblob(500)) FROM n",
+                 NULL, NULL, NULL);
+    raise(SIGKILL);
+    return 0;
+}
+
+static void a_merge_that_was_killed_is_made_by_the_next(void **state)
+{
+    (void)state;
+    struct stat status;
+    make_shards(SHARDS, RUNS);
+    assert_int_equal(in_a_child(die_in_a_first_write), -SIGKILL);
+    // the control: there is something to be taken back
+    assert_int_equal(stat(path, &status), 0);
+    assert_true(status.st_size > 100000);
+    assert_int_equal(merge_of(SHARDS), RUNS);
+    assert_int_equal(count_right_rows(), RUNS);
 }
 
 enum { BIG = 20000, BYTES_A_RUN = 400 };
@@ -398,6 +430,7 @@ int main(void)
         MERGE_TEST(a_source_that_is_missing_or_damaged_is_named),
         MERGE_TEST(a_source_at_work_is_waited_for_by_people),
         MERGE_TEST(a_shard_killed_in_mid_write_is_merged_as_it_was),
+        MERGE_TEST(a_merge_that_was_killed_is_made_by_the_next),
         MERGE_TEST(runs_take_few_bytes_and_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
