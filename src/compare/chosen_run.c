@@ -13,6 +13,7 @@
 #include "compare/step_choice.h"
 #include "compare/trial.h"
 #include "compare/truth_window.h"
+#include "model/lock.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -97,9 +98,11 @@ static bool lacks_truth(const Chosen *chosen, char *message, size_t size)
     const double tolerance = chosen->scenario->run.tolerance;
     const bool is_made = truth->trajectory->is_complete;
     if (!is_made || truth->message[0] != '\0') {
-        snprintf(message, size,
-                 "no step can be chosen, for the reference failed: %.300s; give run.step",
-                 is_made ? truth->message : truth->trajectory->message);
+        // no step passes a lock
+        const Lock lock = lock_met(chosen->scenario, truth->trajectory->duration_s);
+        snprintf(message, size, "no step can be chosen, for the reference failed: %.600s%s",
+                 is_made ? truth->message : truth->trajectory->message,
+                 lock.state == LOCK_FOUND ? "" : "; give run.step");
         return true;
     }
     if (!(chosen->window.until_s > 0.0) && truth->uncertainty > TRUTH_SHARE * tolerance) {

@@ -251,14 +251,19 @@ Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
     return walk(&path, fmin(turn, TURNS_MAX * 2.0 * M_PI));
 }
 
-void lock_explain(const Scenario *scenario, double time_s, Err *err)
+Lock lock_met(const Scenario *scenario, double time_s)
 {
     const Linkage *linkage = &scenario->linkage;
-    if (err->kind != ERR_SOLVER || !linkage->driver.is_present) {
+    const double turned = fabs(linkage->driver.speed) * time_s + NEAR_LOCK;
+    return lock_find(linkage, LOCK_ALL_AS_IDEAL, turned);
+}
+
+void lock_explain(const Scenario *scenario, double time_s, Err *err)
+{
+    if (err->kind != ERR_SOLVER) {
         return;
     }
-    const double turned = fabs(linkage->driver.speed) * time_s + NEAR_LOCK;
-    const Lock lock = lock_find(linkage, LOCK_ALL_AS_IDEAL, turned);
+    const Lock lock = lock_met(scenario, time_s);
     const size_t length = strlen(err->text);
     if (lock.state == LOCK_FOUND) {
         snprintf(err->text + length, sizeof err->text - length,

@@ -25,7 +25,9 @@ typedef enum LockJoints {
 // angle of a lock is right to 1e-8 rad or better. Takes some milliseconds.
 Lock lock_find(const Linkage *linkage, LockJoints joints, double turn);
 
-// Adds the cause to the error of a run that failed at a time, s, where the cause is that the
-// mechanism locks at an angle that the drive had reached or nearly reached by then. A run that
+// The lock that a run which failed at a time, s, had reached or nearly reached by then. A run that
 // locks presses its pins into their walls some degrees before or, with play, beyond that angle.
+Lock lock_met(const Scenario *scenario, double time_s);
+
+// Adds the cause to the error of a run that failed at a time, s, where that is such a lock.
 void lock_explain(const Scenario *scenario, double time_s, Err *err);

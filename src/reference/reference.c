@@ -8,6 +8,7 @@
 
 #include "reference/loops.h"
 #include "reference/peaks.h"
+#include "reference/refusal.h"
 #include "reference/stepper.h"
 
 #include <assert.h>
@@ -111,7 +112,7 @@ static bool show_onset(Reference *reference, Err *err)
     memcpy(reference->y, stepper->integrator.y, stepper->integrator.size * sizeof *reference->y);
     memcpy(reference->before, reference->y, stepper->integrator.size * sizeof *reference->y);
     if (!dynamics_evaluate(&stepper->dynamics, 0.0, reference->y, &state)) {
-        return err_set(err, ERR_SOLVER, "the accelerations are not determined");
+        return refusal_undetermined(&stepper->scenario->linkage, err);
     }
     reference->start_s = reference->end_s;
     fill_record(reference, &state);
