@@ -167,6 +167,65 @@ static size_t allow_each(const Linkage *linkage, const DistanceScale *scales, Pe
     return (size_t)lround(fmax(trace, 0.0));
 }
 
+// The groups of bodies that no joint connects but through the ground or the driven body, each
+// by a number.
+static void find_groups(const Linkage *linkage, size_t *groups)
+{
+    const int driven = linkage_driven_body(linkage);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        groups[i] = i;
+    }
+    for (size_t pass = 0; pass < linkage->body_count; pass++) {
+        for (size_t i = 0; i < linkage->joint_count; i++) {
+            const int a = linkage->joints[i].body_a;
+            const int b = linkage->joints[i].body_b;
+            if (a != LINKAGE_GROUND && b != LINKAGE_GROUND && a != driven && b != driven) {
+                const size_t lower = groups[a] < groups[b] ? groups[a] : groups[b];
+                groups[a] = groups[b] = lower;
+            }
+        }
+    }
+}
+
+// The group that changes are in; false where they are in several.
+static bool group_of(const Linkage *linkage, const size_t *groups, const SpeedChange *changes,
+                     size_t *group)
+{
+    bool is_found = false;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const bool is_moved = vec2_length(changes[i].velocity) > 0.0 || changes[i].omega != 0.0;
+        if (is_moved && is_found && groups[i] != *group) {
+            return false;
+        }
+        *group = is_moved ? groups[i] : *group;
+        is_found = is_found || is_moved;
+    }
+    return is_found;
+}
+
+// Adds directions in groups that do not touch one another up: the first of each group to one, the
+// second of each to another.
+static void merge_groups(const Linkage *linkage, PerturbBasis *basis, PerturbBasis *merged)
+{
+    size_t groups[LINKAGE_BODY_MAX];
+    size_t counts[LINKAGE_BODY_MAX] = {0};
+    size_t group = 0;
+    find_groups(linkage, groups);
+    merged->count = 0;
+    for (size_t i = 0; i < basis->count; i++) {
+        if (!group_of(linkage, groups, basis->changes[i], &group)) {
+            return;
+        }
+        SpeedChange *sum = merged->changes[counts[group]++];
+        if (counts[group] > merged->count) {
+            memset(sum, 0, sizeof merged->changes[0]);
+            merged->count = counts[group];
+        }
+        add_multiple(linkage, 1.0, basis->changes[i], sum);
+    }
+    *basis = *merged;
+}
+
 void perturb_basis(const Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_MAX],
                    PerturbBasis *basis)
 {
@@ -196,5 +255,6 @@ void perturb_basis(const Scenario *scenario, const DistanceScale scales[LINKAGE_
             add_multiple(linkage, -share, next, left->changes[i]);
         }
     }
+    merge_groups(linkage, basis, left);
     free(left);
 }

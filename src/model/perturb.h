@@ -19,9 +19,11 @@ enum { PERTURB_FREEDOM_MAX = 3 * LINKAGE_BODY_MAX };
 
 // Changes of the bodies' speeds that span all that joints and driver allow, each of length 1 in
 //     |w|^2 = sum over bodies (w_omega / omega_b)^2 + (w_v / v_b)^2
-// and at right angles to the others. Its size, as perturb_start has it, is 1 or less.
+// and at right angles to the others. Its size, as perturb_start has it, is 1 or less. In bodies
+// that no joint connects but through the ground or the driven body all that holds for each group of
+// them by itself: none feels the others' changes, so that one run serves all groups.
 typedef struct PerturbBasis {
-    size_t count; // freedoms
+    size_t count; // freedoms, of the group with most of them
     SpeedChange changes[PERTURB_FREEDOM_MAX][LINKAGE_BODY_MAX];
 } PerturbBasis;
 

@@ -130,12 +130,60 @@ static void the_fastest_of_many_single_directions_is_as_fast(void **state)
     assert_true(last_s > 1.1 * first_s);
 }
 
+// Pins that fall in holes of their own, one of them or both.
+static Growth grow_pins(bool with_first, bool with_second, size_t *runs)
+{
+    Scenario scenario = mechanism_pin(0.1, 1e-4);
+    Linkage *linkage = &scenario.linkage;
+    Body bodies[2] = {linkage->bodies[0], linkage->bodies[0]};
+    bodies[1].mass = 0.3;
+    for (size_t i = 0; i < 2; i++) {
+        // aside, so that they bounce round their holes
+        bodies[i].start.position.x = i == 0 ? 3e-5 : 5e-5;
+    }
+    const Joint joint = linkage->joints[0];
+    linkage->body_count = linkage->joint_count = 0;
+    for (size_t i = with_first ? 0 : 1; i < (with_second ? 2 : 1); i++) {
+        linkage->joints[linkage->joint_count] = joint;
+        linkage->joints[linkage->joint_count++].body_b = (int)linkage->body_count;
+        linkage->bodies[linkage->body_count++] = bodies[i];
+    }
+    scenario.gravity = 9.80665;
+    scenario.contact.stiffness = 6.6e10;
+    scenario.run.duration = 0.03;
+    Bench bench = {.scenario = scenario};
+    bench.beside = complete_run(&scenario, BACKEND_REFERENCE);
+    distance_scales(bench.beside, bench.scales);
+    perturb_basis(&scenario, bench.scales, &bench.basis);
+    const Growth growth = grow(&bench, &bench.basis, 1e-8);
+    *runs = bench.basis.count;
+    trajectory_destroy(bench.beside);
+    return growth;
+}
+
+static void mechanisms_that_nothing_connects_share_their_runs(void **state)
+{
+    (void)state;
+    size_t runs[3];
+    const Growth first = grow_pins(true, false, &runs[0]);
+    const Growth second = grow_pins(false, true, &runs[1]);
+    const Growth both = grow_pins(true, true, &runs[2]);
+    assert_int_equal(runs[0], 3);
+    assert_int_equal(runs[1], 3);
+    assert_int_equal(runs[2], 3);
+    assert_true(first.largest > 2.0 && second.largest > 2.0);
+    // the control: they do not grow alike
+    assert_true(fabs(first.largest / second.largest - 1.0) > 1e-2);
+    assert_close(both.largest, fmax(first.largest, second.largest), 1e-3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_freedom_has_a_direction),
         cmocka_unit_test(the_horizon_is_no_matter_of_directions_or_sizes),
         cmocka_unit_test(the_fastest_of_many_single_directions_is_as_fast),
+        cmocka_unit_test(mechanisms_that_nothing_connects_share_their_runs),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
