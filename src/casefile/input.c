@@ -4,6 +4,7 @@
 
 #include "base/claims.h"
 #include "base/descriptors.h"
+#include "base/shell.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -119,6 +120,14 @@ static bool has_key(const Node *root, const char *key)
     return false;
 }
 
+static bool refuse_kind(const char *what, const char *command, const char *name, Err *err)
+{
+    char *path = shell_copy_path(strcmp(name, INPUT_STDIN) == 0 ? "FILE" : name);
+    err_set(err, ERR_USAGE, "%s: %s\nallowed: jointplay %s %s", name, what, command, path);
+    free(path);
+    return false;
+}
+
 // A study has the file of a case, and a case a mechanism: one in place of the other has a command
 // of its own.
 static bool check_kind(const char *what, const char *name, const Node *root, Err *err)
@@ -126,12 +135,10 @@ static bool check_kind(const char *what, const char *name, const Node *root, Err
     const bool has_mechanism = has_key(root, "four-bar") || has_key(root, "bodies");
     const bool has_case = has_key(root, "case");
     if (strcmp(what, "case") == 0 && has_case && !has_mechanism) {
-        return err_set(err, ERR_USAGE, "%s: is a study and not a case\nallowed: jointplay study %s",
-                       name, name);
+        return refuse_kind("is a study and not a case", "study", name, err);
     }
     return strcmp(what, "study") != 0 || has_case || !has_mechanism ||
-           err_set(err, ERR_USAGE, "%s: is a case and not a study\nallowed: jointplay run %s", name,
-                   name);
+           refuse_kind("is a case and not a study", "run", name, err);
 }
 
 static bool check_text(const char *what, const char *name, const char *text, size_t size, Err *err)

@@ -1,6 +1,7 @@
 // What was `jointplay map` asked for?
 #include "cli/map_options.h"
 
+#include "base/shell.h"
 #include "casefile/quantity.h"
 #include "cli/arguments.h"
 
@@ -199,6 +200,21 @@ static bool check_inverse(const MapOptions *options, Err *err)
     return true;
 }
 
+static bool refuse_stiffness(const char *stiffness, Err *err)
+{
+    Text setting;
+    Text word;
+    text_init(&setting);
+    text_init(&word);
+    text_append(&setting, "contact.stiffness=%s", stiffness);
+    shell_append_word(&word, setting.data);
+    err_set(err, ERR_USAGE, "--stiffness is of a contact without a case; of a case: --set %s",
+            word.data);
+    text_finish(&setting);
+    text_finish(&word);
+    return false;
+}
+
 // What a contact without a case needs, and what goes with nothing else.
 static bool check_lone(const MapOptions *options, Err *err)
 {
@@ -211,10 +227,7 @@ static bool check_lone(const MapOptions *options, Err *err)
                        "contact.restitution=0.8");
     }
     if (options->common.path != NULL) {
-        return err_set(err, ERR_USAGE,
-                       "--stiffness is of a contact without a case; of a case: --set "
-                       "'contact.stiffness=%s'",
-                       options->stiffness);
+        return refuse_stiffness(options->stiffness, err);
     }
     if (options->mass == NULL) {
         return err_set(err, ERR_USAGE,

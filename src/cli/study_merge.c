@@ -4,6 +4,8 @@
 #include "cli/study_commands.h"
 #include "cli/study_place.h"
 #include "cli/study_words.h"
+
+#include "base/shell.h"
 #include "study/store.h"
 
 #include <assert.h>
@@ -86,11 +88,15 @@ static bool merge_study(const char *study, bool is_quiet, Err *err)
     }
     if (shards == 0) {
         char shard[FILE_PATH_SIZE];
-        return study_place_store(study, (Shard){0, 2}, shard, err) &&
-               err_set(err, ERR_FILE,
-                       "there are no parts of %s in the working folder, such as %s; 'jointplay "
-                       "study %s --shard 1/2' makes one",
-                       study, shard, study);
+        if (study_place_store(study, (Shard){0, 2}, shard, err)) {
+            char *path = shell_copy_path(study);
+            err_set(err, ERR_FILE,
+                    "there are no parts of %s in the working folder, such as %s; 'jointplay "
+                    "study %s --shard 1/2' makes one",
+                    study, shard, path);
+            free(path);
+        }
+        return false;
     }
     return merge_shards(study, shards, target, is_quiet, err);
 }

@@ -1,4 +1,5 @@
 // Which scripts make a study on a cluster, and what is to be typed then?
+#include "base/shell.h"
 #include "cli/arguments.h"
 #include "cli/option_values.h"
 #include "cli/run_files.h"
@@ -246,7 +247,7 @@ static void say_next(const SlurmJob *job, const SlurmOptions *options)
     Text text;
     text_init(&text);
     snprintf(path, sizeof path, "%s/%s.submit.sh", job->folder, job->stem);
-    slurm_quote(path, &text);
+    shell_append_word(&text, path);
     printf("%s\n", text.data);
     text_finish(&text);
     if (!options->is_quiet && job->shards > SLURM_ARRAY_USUAL) {

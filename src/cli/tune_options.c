@@ -1,10 +1,12 @@
 // What was `jointplay tune` asked for?
 #include "cli/tune_options.h"
 
+#include "base/shell.h"
 #include "casefile/quantity.h"
 #include "cli/arguments.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -183,8 +185,10 @@ bool tune_options_read(int argc, char **argv, TuneOptions *options, bool *is_ans
         return err_set(err, ERR_USAGE, "no case given: jointplay tune CASE.yaml --error 1e-3");
     }
     if (options->error == 0.0 && options->at_step_s == 0.0) {
-        return err_set(err, ERR_USAGE, "no error given: jointplay tune %s --error 1e-3",
-                       options->common.path);
+        char *path = shell_copy_path(options->common.path);
+        err_set(err, ERR_USAGE, "no error given: jointplay tune %s --error 1e-3", path);
+        free(path);
+        return false;
     }
     return settle_cost(reading.cost, options, err);
 }

@@ -32,22 +32,6 @@ static void write_cost(const Tune *tune, const TuneTrial *trial, Text *text)
     }
 }
 
-// A setting a line, as a shell takes it.
-static void append_command(const TuneReport *report, const TuneTrial *trial, Text *text)
-{
-    static const char OPTION[] = " --set ";
-    Text command;
-    text_init(&command);
-    tune_setting_command(report, trial, &command);
-    const char *from = command.data;
-    for (const char *to = strstr(from, OPTION); to != NULL; to = strstr(from + 1, OPTION)) {
-        text_append(text, "%.*s \\\n               ", (int)(to - from), from);
-        from = to;
-    }
-    text_append(text, "%s\n", from);
-    text_finish(&command);
-}
-
 void tune_answer_setting(const TuneReport *report, const TuneTrial *trial, Text *text)
 {
     text_append(text, "  setting     ");
@@ -56,6 +40,8 @@ void tune_answer_setting(const TuneReport *report, const TuneTrial *trial, Text 
     write_cost(report->tune, trial, text);
     text_append(text, "\n  in a case   ");
     tune_setting_keys(report, trial, "\n              ", text);
-    text_append(text, "\n  run it      ");
-    append_command(report, trial, text);
+    // lines of their own, a setting each: so far in that no line is broken, which may be in a name
+    text_append(text, "\n  run it\n    ");
+    tune_setting_command(report, trial, " \\\n      ", text);
+    text_append(text, "\n");
 }

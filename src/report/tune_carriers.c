@@ -61,7 +61,7 @@ bool tune_carriers_code(const TuneReport *report, Text *text, Err *err)
     text_init(&words);
     text_init(&command);
     tune_setting_words(report, trial, &words);
-    tune_setting_command(report, trial, &command);
+    tune_setting_command(report, trial, " ", &command);
     const TuneCode code = {scenario, words.data, command.data, trial->error, report->tune->target};
     const bool is_written = tune_code_write(&code, text, err);
     text_finish(&words);

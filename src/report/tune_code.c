@@ -5,6 +5,7 @@
 // to go along. Numbers are written so that they read back to the last bit.
 #include "report/tune_code.h"
 
+#include "base/shell.h"
 #include "contact/law.h"
 #include "contact/penalty.h"
 #include "report/number.h"
@@ -56,16 +57,6 @@ static void write_string(const char *string, Text *text)
         }
     }
     text_append(text, "\"");
-}
-
-// A comment must not end where its text does not.
-static void write_comment(const char *words, Text *text)
-{
-    for (; *words != '\0'; words++) {
-        const unsigned char letter = (unsigned char)*words;
-        text_append(text, "%c", letter < 0x20 || letter == '\\' ? ' ' : letter);
-    }
-    text_append(text, "\n");
 }
 
 static void write_vec2(const char *name, Vec2 value, Text *text)
@@ -274,15 +265,13 @@ static void write_head(const TuneCode *code, Text *text)
                 "setting that\n// `jointplay tune` found. Written by jointplay %s (ODE %s).\n//\n//"
                 "   cc THIS_FILE.c -o run -lode -lm && ./run > series.csv\n//\n// case     ",
                 JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION);
-    write_comment(code->scenario->path, text);
-    text_append(text, "// setting  ");
-    write_comment(code->words, text);
-    text_append(text, "// error    %.3g measured", code->error);
+    // as in the command below: a name never ends the comment, nor joins the next line to it
+    shell_append_word(text, code->scenario->path);
+    text_append(text, "\n// setting  %s\n// error    %.3g measured", code->words, code->error);
     if (isfinite(code->target)) {
         text_append(text, ", %.3g asked for", code->target);
     }
-    text_append(text, "\n// same as  ");
-    write_comment(code->command, text);
+    text_append(text, "\n// same as  %s\n", code->command);
     text_append(
         text, "//\n// The numbers of this mechanism stand at the end: the scenario, its contact "
               "laws, main.\n// What comes before them is jointplay's own way of stepping, joined "

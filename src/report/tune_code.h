@@ -7,7 +7,7 @@
 typedef struct TuneCode {
     const Scenario *scenario; // with the setting applied
     const char *words;        // what the setting is, in one line
-    const char *command;      // the command line that does the same
+    const char *command;      // the command line that does the same, as a shell takes it
     double error;             // 1, measured
     double target;            // 1; INFINITY where none was asked for
 } TuneCode;

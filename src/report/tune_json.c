@@ -61,7 +61,7 @@ static json_t *setting_object(const TuneReport *report, const TuneTrial *trial)
     json_value_set(object, "wall_median_s", is_timed ? scheme->wall_median_s : NAN);
     Text text;
     text_init(&text);
-    tune_setting_command(report, trial, &text);
+    tune_setting_command(report, trial, " ", &text);
     json_object_set_new(object, "command", json_value_text(text.data));
     text_finish(&text);
     text_init(&text);

@@ -1,10 +1,12 @@
 // How is a setting given on?
 #include "report/tune_setting.h"
 
+#include "base/shell.h"
 #include "casefile/input.h"
 #include "report/number.h"
 #include "report/units.h"
 
+#include <stdio.h>
 #include <string.h>
 
 void tune_setting_keys(const TuneReport *report, const TuneTrial *trial, const char *separator,
@@ -26,22 +28,6 @@ void tune_setting_keys(const TuneReport *report, const TuneTrial *trial, const c
     }
 }
 
-// A word as a shell takes it: bare where nothing in it means anything to it.
-static void append_quoted(const char *word, Text *text)
-{
-    static const char PLAIN[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                                "./_-=+,:%@";
-    if (word[0] != '\0' && strspn(word, PLAIN) == strlen(word)) {
-        text_append(text, "%s", word);
-        return;
-    }
-    text_append(text, "'");
-    for (; *word != '\0'; word++) {
-        text_append(text, *word == '\'' ? "'\\''" : "%c", *word);
-    }
-    text_append(text, "'");
-}
-
 bool tune_setting_replaces(const char *override)
 {
     static const char *const KEYS[] = {"run.step",   "run.tolerance", "run.backends",
@@ -55,23 +41,28 @@ bool tune_setting_replaces(const char *override)
     return false;
 }
 
-void tune_setting_command(const TuneReport *report, const TuneTrial *trial, Text *text)
+void tune_setting_command(const TuneReport *report, const TuneTrial *trial, const char *separator,
+                          Text *text)
 {
     text_append(text, "jointplay run ");
     const char *path = report->scenario->path;
-    append_quoted(strcmp(path, INPUT_STDIN) == 0 ? "-" : path, text);
+    shell_append_path(text, strcmp(path, INPUT_STDIN) == 0 ? "-" : path);
     for (size_t i = 0; i < report->override_count; i++) {
         if (!tune_setting_replaces(report->overrides[i])) {
-            text_append(text, " --set ");
-            append_quoted(report->overrides[i], text);
+            text_append(text, "%s--set ", separator);
+            shell_append_word(text, report->overrides[i]);
         }
     }
     // the reference goes along, for the error is against it
     const bool is_ideal = !scenario_has_clearance(report->scenario);
-    text_append(text, " --set run.backends=%s --set '",
+    text_append(text, "%s--set run.backends=%s", separator,
                 is_ideal && report->scenario->has_fourbar ? "'[analytic, reference, ode]'"
                                                           : "'[reference, ode]'");
-    tune_setting_keys(report, trial, "' --set '", text);
+    // the program's own words, which hold no quote
+    char between[TUNE_SEPARATOR_SIZE + 16];
+    snprintf(between, sizeof between, "'%s--set '", separator);
+    text_append(text, "%s--set '", separator);
+    tune_setting_keys(report, trial, between, text);
     text_append(text, "'");
 }
 

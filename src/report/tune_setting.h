@@ -12,8 +12,12 @@ bool tune_setting_replaces(const char *override);
 void tune_setting_keys(const TuneReport *report, const TuneTrial *trial, const char *separator,
                        Text *text);
 
-// Appends the command line that runs the setting of a trial and reports its error.
-void tune_setting_command(const TuneReport *report, const TuneTrial *trial, Text *text);
+enum { TUNE_SEPARATOR_SIZE = 64 };
+
+// Appends the command line that runs the setting of a trial and reports its error, as a shell takes
+// it; a separator, a blank at least, stands in front of each option.
+void tune_setting_command(const TuneReport *report, const TuneTrial *trial, const char *separator,
+                          Text *text);
 
 // The scheme and its step or tolerance, for people.
 void tune_setting_words(const TuneReport *report, const TuneTrial *trial, Text *text);

@@ -12,24 +12,13 @@
 // its jobs back (--requeue).
 #include "study/slurm.h"
 
+#include "base/shell.h"
+
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
 enum { NAME_SIZE = 128, FIELD_MAX = 3, DIGIT_MAX = 6 };
-
-void slurm_quote(const char *word, Text *text)
-{
-    text_append(text, "'");
-    for (const char *letter = word; *letter != '\0'; letter++) {
-        if (*letter == '\'') {
-            text_append(text, "'\\''");
-        } else {
-            text_append(text, "%c", *letter);
-        }
-    }
-    text_append(text, "'");
-}
 
 // A name for what Slurm reads by rules of its own, where % and quotes mean something.
 static void find_name(const char *stem, char name[NAME_SIZE])
@@ -166,7 +155,7 @@ static void write_head(const SlurmJob *job, const char *ending, uint64_t cpus, T
 static void write_variable(const char *name, const char *value, Text *text)
 {
     text_append(text, "%s=", name);
-    slurm_quote(value, text);
+    shell_append_word(text, value);
     text_append(text, "\n");
 }
 

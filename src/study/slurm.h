@@ -41,6 +41,3 @@ bool slurm_check(const SlurmJob *job, Err *err);
 void slurm_write_array(const SlurmJob *job, Text *text);
 void slurm_write_gather(const SlurmJob *job, Text *text);
 void slurm_write_submit(const SlurmJob *job, Text *text);
-
-// Appends a word as a shell takes it literally, whatever is in it.
-void slurm_quote(const char *word, Text *text);

@@ -42,8 +42,8 @@ static void three_scripts_that_can_be_run_are_written(void **state)
         assert_says(program->errors, NAMES[i]);
     }
     // what is to be typed, and nothing else
-    assert_says(program->output, "/six.submit.sh'\n");
-    assert_int_equal(program->output[0], '\'');
+    assert_says(program->output, "/six.submit.sh\n");
+    assert_int_equal(program->output[0], '/');
     read_file(program, "six.array.sh", program->output);
     assert_says(program->output, "\n#SBATCH --array=1-3\n");
     assert_says(program->output, "\n#SBATCH --time=1-6\n");
@@ -59,7 +59,7 @@ static void scripts_go_where_they_are_asked_to(void **state)
     assert_string_equal(program->errors, "");
     read_file(program, "a b/c/it's six.array.sh", program->output);
     assert_says(program->output, "/a b/c'\n");
-    assert_says(program->output, "/it'\\''s six.yaml'\n");
+    assert_says(program->output, "/it'\"'\"'s six.yaml'\n");
     assert_says(program->output, "#SBATCH --job-name=it_s_six\n");
 }
 

@@ -18,7 +18,6 @@ export XDG_CACHE_HOME="$work"
 
 for cost in time steps; do
     "$program" tune "$case" --error "$error" --cost "$cost" --quiet "$@" >"$work/$cost.txt" || true
-    sed -n '/^  run it/{s/.*run it *//p;q}' "$work/$cost.txt" >"$work/$cost.command"
 done
 
 # setting COST: scheme, step in us, world steps and wall time in ms of what tune found
