@@ -320,7 +320,7 @@ static bool follow(const Walk *walk, const char *key, size_t key_start, const No
         const size_t length = strcspn(rest, ".");
         snprintf(name, sizeof name, "%.*s", (int)length, rest);
         const size_t start = source_count(key, (size_t)(rest - key));
-        const Span span = {start, start + source_count(name, length)};
+        const Span span = {start, start + source_count(rest, length)};
         Position below;
         if (!descend(&key_walk, here, name, span, &below)) {
             return false;

@@ -119,6 +119,26 @@ static bool find_speeds(const Entries *entries, const Linkage *linkage, Motion *
     return true;
 }
 
+// Where the bodies cannot be moved so that every joint is as it is to start: an eccentricity that a
+// joint is given is to blame, and where there is none the places themselves.
+static bool refuse_places(const Entries *entries, const Linkage *linkage, Err *err)
+{
+    const Entry *start = NULL;
+    const Entry *at = NULL;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        start = start == NULL ? entries_find(entries, "joints.*.start", i) : start;
+        at = at == NULL ? entries_find(entries, "joints.*.at", i) : at;
+    }
+    if (start == NULL && at == NULL) {
+        return err_set(err, ERR_CASE, "the joints cannot all be closed");
+    }
+    return start != NULL
+               ? source_error(start->source, start->node->span, "centred", err,
+                              "the pins cannot all stand where they are to start")
+               : source_error(at->source, at->node->span, "joints and bodies of one size", err,
+                              "the joints cannot all be closed to rounding where they are");
+}
+
 bool place_linkage(const Entries *entries, Scenario *scenario, Err *err)
 {
     Linkage *linkage = &scenario->linkage;
@@ -132,12 +152,7 @@ bool place_linkage(const Entries *entries, Scenario *scenario, Err *err)
         return build_start(linkage, motions, err);
     }
     if (!nearest_places(linkage, motions)) {
-        const Entry *start = NULL;
-        for (size_t i = 0; start == NULL; i++) {
-            start = entries_find(entries, "joints.*.start", i);
-        }
-        return source_error(start->source, start->node->span, "centred", err,
-                            "the pins cannot all stand where they are to start");
+        return refuse_places(entries, linkage, err);
     }
     if (!find_speeds(entries, linkage, motions, err)) {
         return false;

@@ -12,7 +12,8 @@
 enum { STEP_MAX = 12 }; // Newton doubles the digits: from a clearance to rounding takes about 3
 
 static const double SOFT = 1e-12; // on the diagonal of ones: a second pass leaves its square
-static const double NEAREST_CLOSED = 1e-14; // m, rounding of a metre is a hundredth of it
+// m, and of what is longer than a metre the share: its rounding is a hundredth of it
+static const double NEAREST_CLOSED = 1e-14;
 static const double AGREES = 1e-9; // of the largest speed of a joint: what written digits leave
 
 // The rows that are asked for, and what each is to change by.
@@ -86,10 +87,13 @@ static bool least_change(const Linkage *linkage, const Motion *motions, const De
 static bool demand_places(const Linkage *linkage, const Motion *motions, Demand *demand)
 {
     *demand = (Demand){0};
+    double size = 1.0; // m
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
+        size = fmax(size, fmax(vec2_length(joint->anchor_a), vec2_length(joint->anchor_b)));
         const Vec2 hole = linkage_point(motions, joint->body_a, joint->anchor_a);
         const Vec2 pin = linkage_point(motions, joint->body_b, joint->anchor_b);
+        size = fmax(size, vec2_length(hole));
         demand->include[i] = true;
         // an ideal joint starts at 0
         add_demand_rows(demand, vec2_sub(joint->clearance.start, vec2_sub(pin, hole)));
@@ -98,7 +102,7 @@ static bool demand_places(const Linkage *linkage, const Motion *motions, Demand 
         const double angle = motions[linkage_driven_body(linkage)].angle;
         demand->wanted[demand->rows] = linkage->driver.start - angle;
     }
-    return demand->distance > NEAREST_CLOSED;
+    return demand->distance > NEAREST_CLOSED * size;
 }
 
 bool nearest_places(const Linkage *linkage, Motion *motions)
