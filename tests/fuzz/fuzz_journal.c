@@ -2,6 +2,8 @@
 // reports them?
 //
 // The first line, which holds the key, is put in front of the input, unless that begins with one.
+// Lines that end like a whole one are given their checksum, or hardly any would be looked into.
+#include "base/hash.h"
 #include "report/compare_json.h"
 #include "report/compare_plot.h"
 #include "report/compare_text.h"
@@ -12,7 +14,9 @@
 #include "fuzz_file.h"
 #include "mechanism.h"
 
-static const char HEAD[] = "{\"compare\":{\"build\":\"b\"}}\n";
+#include <inttypes.h>
+
+static const char HEAD[] = "{\"compare\":{\"build\":\"b\"}}";
 static const char MACHINE[] = "m";
 
 static void report(const Scenario *scenario, Ladder *ladder)
@@ -54,21 +58,49 @@ static void take(const json_t *entries)
     ladder_destroy(ladder);
 }
 
+// Appends a line with its checksum: the last member of an object.
+static void append_sealed(Text *text, const char *line, size_t length)
+{
+    const bool is_whole = length > 2 && line[length - 1] == '}';
+    if (is_whole) {
+        length--;
+    }
+    text_append(text, "%.*s", (int)length, line);
+    if (is_whole) {
+        text_append(text, ",\"checksum\":\"%016" PRIx64 "\"}",
+                    hash_bytes(HASH_START, line, length));
+    }
+}
+
+static void seal(const char *input, Text *text)
+{
+    if (strncmp(input, "{\"compare\"", strlen("{\"compare\"")) != 0) {
+        append_sealed(text, HEAD, strlen(HEAD));
+        text_append(text, "\n");
+    }
+    while (*input != '\0') {
+        const size_t length = strcspn(input, "\n");
+        append_sealed(text, input, length);
+        input += length;
+        if (*input == '\n') {
+            text_append(text, "\n");
+            input++;
+        }
+    }
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static FuzzFile file;
     Err err = {0};
     Journal journal;
-    char *text = fuzz_copy(data, size);
-    const bool has_head = strncmp(text, "{\"compare\"", strlen("{\"compare\"")) == 0;
-    char *whole = malloc(size + sizeof HEAD);
-    fuzz_check(whole != NULL, "there is memory");
-    const size_t lead = has_head ? 0 : strlen(HEAD);
-    memcpy(whole, HEAD, lead);
-    memcpy(whole + lead, data, size);
-    fuzz_file_fill(&file, whole, lead + size);
-    free(whole);
-    free(text);
+    Text text;
+    text_init(&text);
+    char *input = fuzz_copy(data, size);
+    seal(input, &text);
+    fuzz_file_fill(&file, text.data, text.length);
+    free(input);
+    text_finish(&text);
     json_t *key = json_pack("{s:s}", "build", "b");
     if (journal_open(&journal, &JOURNAL_COMPARE, file.path, key, false, &err)) {
         take(journal.entries);
