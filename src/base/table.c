@@ -1,4 +1,5 @@
 // How are numbers set out for people, each under its heading and its unit?
+#include "base/printable.h"
 #include "base/table_inside.h"
 
 #include <assert.h>
@@ -8,14 +9,6 @@
 #include <string.h>
 
 enum { TABLE_FIRST_CAPACITY = 64 };
-
-static char *copy_text(const char *source)
-{
-    const size_t size = strlen(source) + 1;
-    char *copy = malloc(size);
-    assert(copy != NULL);
-    return memcpy(copy, source, size);
-}
 
 static void widen_column(TableColumn *column, const char *text)
 {
@@ -58,11 +51,11 @@ void table_head(Table *table, size_t column, const char *title, const char *unit
     TableColumn *head = &table->columns[column];
     free(head->title);
     free(head->unit);
-    head->title = copy_text(title);
-    head->unit = copy_text(unit);
+    head->title = printable_copy(title, false);
+    head->unit = printable_copy(unit, false);
     head->align = align;
-    widen_column(head, title);
-    widen_column(head, unit);
+    widen_column(head, head->title);
+    widen_column(head, head->unit);
 }
 
 void table_fit(Table *table, size_t width)
@@ -74,15 +67,8 @@ void table_cell(Table *table, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    va_list again;
-    va_copy(again, arguments);
-    const int length = vsnprintf(NULL, 0, format, arguments);
+    char *text = printable_format(format, arguments);
     va_end(arguments);
-    assert(length >= 0);
-    char *text = malloc((size_t)length + 1);
-    assert(text != NULL);
-    vsnprintf(text, (size_t)length + 1, format, again);
-    va_end(again);
     if (table->cell_count == table->cell_capacity) {
         const size_t grown = 2 * table->cell_capacity;
         table->cell_capacity = grown > 0 ? grown : TABLE_FIRST_CAPACITY;

@@ -1,6 +1,8 @@
 // How is text put together, and which word may have been meant?
 #include "base/text.h"
 
+#include "base/printable.h"
+
 #include <assert.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -57,6 +59,46 @@ void text_append_list(Text *text, const char *format, va_list arguments)
     vsnprintf(text->data + text->length, (size_t)needed + 1, format, again);
     va_end(again);
     text->length += (size_t)needed;
+}
+
+void text_append_shown(Text *text, const char *words)
+{
+    char *shown = printable_copy(words, false);
+    text_append(text, "%s", shown);
+    free(shown);
+}
+
+// The bytes of the mark at the start of a text; 0 where there is none.
+static size_t mark_size(const char *at, const char *const *marks)
+{
+    for (; *marks != NULL; marks++) {
+        const size_t size = strlen(*marks);
+        if (size > 0 && strncmp(at, *marks, size) == 0) {
+            return size;
+        }
+    }
+    return 0;
+}
+
+void text_show(Text *text, const char *const *marks)
+{
+    if (printable_is_shown(text->data)) {
+        return;
+    }
+    Text target;
+    text_init(&target);
+    for (size_t i = 0; i < text->length;) {
+        const char *at = text->data + i;
+        const PrintableCharacter character = printable_character(at, text->length - i);
+        const size_t mark = mark_size(at, marks);
+        const bool is_shown = mark > 0 || *at == '\n' || character.escape[0] == '\0';
+        const size_t size = mark > 0 ? mark : character.size;
+        text_append(&target, "%.*s", is_shown ? (int)size : PRINTABLE_ESCAPE_SIZE,
+                    is_shown ? at : character.escape);
+        i += size;
+    }
+    text_finish(text);
+    *text = target;
 }
 
 void text_append_number(Text *text, double value)

@@ -16,6 +16,13 @@ void text_append(Text *text, const char *format, ...) __attribute__((format(prin
 void text_append_list(Text *text, const char *format, va_list arguments)
     __attribute__((format(printf, 2, 0)));
 
+// Appends a path or another text of a user's as it can be shown on one line, see base/printable.h.
+void text_append_shown(Text *text, const char *words);
+
+// Escapes all that cannot be shown of a text, but for its line breaks and for these marks, which
+// end in NULL: what colours a terminal. Empty ones are no marks.
+void text_show(Text *text, const char *const *marks);
+
 // The shortest decimal that reads back as the same number, which is finite.
 void text_append_number(Text *text, double value);
 

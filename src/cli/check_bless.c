@@ -4,13 +4,13 @@
 // statistical a sample of 32 starts -> the file. What the new one says of the old one is a check.
 // Each start is kept in a file of its own until then, so that nothing is measured twice by whoever
 // was stopped.
-#include "cli/check_run.h"
-
 #include "base/clock.h"
 #include "base/text.h"
 #include "cli/check_progress.h"
+#include "cli/check_run.h"
 #include "cli/check_store.h"
 #include "cli/interrupt.h"
+#include "cli/output.h"
 #include "cli/written.h"
 #include "compare/check_work.h"
 #include "compare/truth_child.h"
@@ -196,8 +196,8 @@ static void say_taken(Making *making)
     const size_t kept = check_store_count(&making->store);
     written_damage(&making->store.journal, making->options->common.is_quiet);
     if (kept > 0 && !making->options->common.is_quiet) {
-        fprintf(stderr, "%s: %zu measured starts are kept in %s: going on from there\n",
-                making->item->path, kept, making->store.journal.path);
+        output_say("%s: %zu measured starts are kept in %s: going on from there\n",
+                   making->item->path, kept, making->store.journal.path);
     }
 }
 

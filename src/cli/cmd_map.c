@@ -101,7 +101,7 @@ static void say_hint(const MapOptions *options, const Scenario *scenario)
     PrintedPin pin;
     if (!options->with_penalty && !options->common.is_quiet && scenario->has_fourbar &&
         penalty_map_fits(scenario, &pin)) {
-        fprintf(stderr, "--penalty adds the paper's penalty parameter over its 15 speeds\n");
+        output_say("--penalty adds the paper's penalty parameter over its 15 speeds\n");
     }
 }
 

@@ -110,8 +110,8 @@ static void say_idle(const TuneOptions *options, const Scenario *scenario)
     for (size_t i = 0; i < options->common.override_count; i++) {
         if (tune_setting_replaces(options->common.overrides[i])) {
             const char *given = options->common.overrides[i];
-            fprintf(stderr, "without effect: %.*s (it is what tune searches for)\n",
-                    (int)strcspn(given, "="), given);
+            output_say("without effect: %.*s (it is what tune searches for)\n",
+                       (int)strcspn(given, "="), given);
         }
     }
 }

@@ -3,6 +3,7 @@
 
 #include "base/build_print.h"
 #include "base/hash.h"
+#include "cli/output.h"
 #include "cli/run_files.h"
 #include "cli/written.h"
 #include "report/file.h"
@@ -84,11 +85,11 @@ static bool take_all(CompareStore *store, Ladder *ladder, bool is_quiet, Err *er
     }
     written_damage(&store->journal, is_quiet);
     if (store->taken > 0) {
-        fprintf(stderr, "took %zu of %zu runs from the store %s\n", store->taken,
-                ladder_run_total(ladder), store->journal.path);
+        output_say("took %zu of %zu runs from the store %s\n", store->taken,
+                   ladder_run_total(ladder), store->journal.path);
     }
     if (others > 0) {
-        fprintf(stderr, "left %zu timing runs of another machine there\n", others);
+        output_say("left %zu timing runs of another machine there\n", others);
     }
     return true;
 }

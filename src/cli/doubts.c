@@ -5,6 +5,8 @@
 // unit.
 #include "cli/doubts.h"
 
+#include "cli/output.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -29,12 +31,12 @@ void doubts_say(const Scenario *scenario)
         const double off_b = radii_off(linkage, joint->body_b, joint->anchor_b);
         if (fmin(off_a, off_b) > FAR) {
             const bool is_a = off_a < off_b;
-            fprintf(stderr,
-                    "jointplay: warning: joint '%s' is %.4g m from the centre of mass of '%s', "
-                    "%.3g times its radius of gyration; check the joint's place and the body's "
-                    "inertia\n",
-                    joint->name, vec2_length(is_a ? joint->anchor_a : joint->anchor_b),
-                    linkage->bodies[is_a ? joint->body_a : joint->body_b].name, fmin(off_a, off_b));
+            output_say("jointplay: warning: joint '%s' is %.4g m from the centre of mass of '%s', "
+                       "%.3g times its radius of gyration; check the joint's place and the body's "
+                       "inertia\n",
+                       joint->name, vec2_length(is_a ? joint->anchor_a : joint->anchor_b),
+                       linkage->bodies[is_a ? joint->body_a : joint->body_b].name,
+                       fmin(off_a, off_b));
         }
     }
 }

@@ -2,6 +2,7 @@
 #include "cli/idle_settings.h"
 
 #include "casefile/casefile.h"
+#include "cli/output.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -25,11 +26,10 @@ void idle_settings_say(const Scenario *scenario, const char *const *overrides, s
         char key[CASEFILE_KEY_SIZE];
         snprintf(key, sizeof key, "%.*s", (int)strcspn(overrides[i], "="), overrides[i]);
         if (is_idle(scenario, key)) {
-            fprintf(stderr, "%s%s", idle++ == 0 ? "without effect: " : ", ", key);
+            output_say("%s%s", idle++ == 0 ? "without effect: " : ", ", key);
         }
     }
     if (idle > 0) {
-        fprintf(stderr, " (nothing in %s makes use of %s)\n", scenario->path,
-                idle == 1 ? "it" : "them");
+        output_say(" (nothing in %s makes use of %s)\n", scenario->path, idle == 1 ? "it" : "them");
     }
 }

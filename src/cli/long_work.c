@@ -4,6 +4,7 @@
 // a first part of the run, timed, gives the whole within a factor of two.
 #include "cli/long_work.h"
 
+#include "cli/output.h"
 #include "run/registry.h"
 #include "run/run.h"
 
@@ -65,7 +66,7 @@ bool long_work_warn(const char *what, double time_s, bool is_quiet)
     }
     char words[32];
     long_work_words(time_s, words, sizeof words);
-    fprintf(stderr, "jointplay: warning: %s takes about %s\n", what, words);
+    output_say("jointplay: warning: %s takes about %s\n", what, words);
     return true;
 }
 

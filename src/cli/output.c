@@ -1,10 +1,14 @@
 // Who is reading, and did all of it arrive?
 #include "cli/output.h"
 
+#include "base/printable.h"
+#include "report/json_value.h"
+
 #include "base/sink.h"
 
 #include <assert.h>
 #include <errno.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -59,15 +63,31 @@ Style output_style(FILE *stream, bool is_wide)
 
 void output_text(Text *text, const Style *style)
 {
+    const char *const marks[] = {style->heading, style->failure, style->end, NULL};
+    text_show(text, marks);
     text_fold(text, style->width > 0 ? style->width : STYLE_WIDTH);
     fputs(text->data, stdout);
 }
 
 void output_json(json_t *object)
 {
-    json_dumpf(object, stdout, RUN_JSON_FLAGS);
-    putchar('\n');
+    Text text;
+    text_init(&text);
+    json_value_write(object, RUN_JSON_FLAGS, &text);
+    text_append(&text, "\n");
+    fputs(text.data, stdout);
+    text_finish(&text);
     json_decref(object);
+}
+
+void output_say(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    char *words = printable_format(format, arguments);
+    va_end(arguments);
+    fputs(words, stderr);
+    free(words);
 }
 
 bool output_end(Err *err)

@@ -23,6 +23,10 @@ void output_begin(void);
 // Prints one JSON object to standard output; takes the reference.
 void output_json(json_t *object);
 
+// Says something on standard error. Arguments may hold anything, such as a path: what cannot be
+// shown of them is escaped.
+void output_say(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
 // Prints a text for people to standard output, with its sentences broken at the style's width.
 void output_text(Text *text, const Style *style);
 

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "cli/long_work.h"
+#include "cli/output.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,8 +32,8 @@ static void warn_once(Progress *progress, double share, double wall_s)
     const bool has_lines = !is_quiet && wall_s >= WARN_QUIET;
     if (!progress->is_warned && !has_lines && fmax(wall_s, in_all_s) > WARN_QUIET) {
         progress->is_warned = true;
-        fprintf(stderr, "jointplay: warning: %s%s goes on for longer than %.0f s\n",
-                progress->backend, progress->doing, WARN_QUIET);
+        output_say("jointplay: warning: %s%s goes on for longer than %.0f s\n", progress->backend,
+                   progress->doing, WARN_QUIET);
     }
 }
 

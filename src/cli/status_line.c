@@ -1,9 +1,11 @@
 // When and how is a line of progress shown?
 #include "cli/status_line.h"
 
+#include "base/printable.h"
 #include "cli/output.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 static const double FIRST_LINE = 2.0;     // s: who waits shorter than that needs no line
 static const double TERMINAL_PAUSE = 0.2; // s, between two lines on a terminal
@@ -47,10 +49,12 @@ void status_line_append_left(Text *words, double left_s)
 void status_line_show(StatusLine *line, const char *words)
 {
     if (line->is_quiet) {
-        fprintf(stderr, "jointplay: warning: long work: %s\n", words);
+        output_say("jointplay: warning: long work: %s\n", words);
         return;
     }
-    fprintf(stderr, line->is_terminal ? "\r%s\x1b[K" : "%s\n", words);
+    char *shown = printable_copy(words, false);
+    fprintf(stderr, line->is_terminal ? "\r%s\x1b[K" : "%s\n", shown);
+    free(shown);
     fflush(stderr);
     line->is_shown = line->is_terminal;
 }

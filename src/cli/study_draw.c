@@ -1,4 +1,5 @@
 // How does one column of a study look over another?
+#include "casefile/source.h"
 #include "cli/arguments.h"
 #include "cli/option_values.h"
 #include "cli/study_commands.h"
@@ -6,6 +7,8 @@
 #include "cli/written.h"
 #include "report/file.h"
 #include "report/study_plot.h"
+
+#include <string.h>
 
 enum { KEY_X = 0x200, KEY_Y, KEY_BY, KEY_TITLE, KEY_QUIET = 'q' };
 
@@ -50,7 +53,8 @@ static bool take_option(int key, const char *value, void *target, Err *err)
         return true;
     case KEY_TITLE:
         options->plot.title = value;
-        return true;
+        return source_is_one_line(value, strlen(value)) ||
+               err_set(err, ERR_USAGE, "--title: the argument is not text on one line");
     case KEY_QUIET:
         options->is_quiet = true;
         return true;

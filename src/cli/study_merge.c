@@ -1,6 +1,7 @@
 // How do the shards of a study become one store?
 #include "cli/arguments.h"
 #include "cli/common_options.h"
+#include "cli/output.h"
 #include "cli/study_commands.h"
 #include "cli/study_place.h"
 #include "cli/study_words.h"
@@ -27,8 +28,8 @@ static bool say_count(const char *path, uint64_t added, bool is_quiet, Err *err)
     Store *store = store_view(path, err);
     const bool is_counted = store != NULL && store_count(store, &count, err);
     if (is_counted && !is_quiet) {
-        fprintf(stderr, "merged %" PRIu64 " runs into %s, which holds %" PRIu64 " of %" PRIu64 "\n",
-                added, path, count.rows, count.run_count);
+        output_say("merged %" PRIu64 " runs into %s, which holds %" PRIu64 " of %" PRIu64 "\n",
+                   added, path, count.rows, count.run_count);
     }
     return store_close(store, err) && is_counted;
 }

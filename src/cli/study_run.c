@@ -113,7 +113,7 @@ static bool prepare_store(const StudyOptions *options, Store *store, Err *err)
         return false;
     }
     if (options->is_retrying && !options->common.is_quiet) {
-        fprintf(stderr, "making %" PRIu64 " failed or damaged runs again\n", forgotten);
+        output_say("making %" PRIu64 " failed or damaged runs again\n", forgotten);
     }
     return true;
 }
@@ -168,14 +168,13 @@ static bool make_runs(const StudyOptions *options, const Spec *spec, const Layou
     }
     if (end == SWEEP_STOPPED) {
         if (!options->common.is_quiet) {
-            fprintf(stderr,
-                    "stopped; %" PRIu64 " of %" PRIu64 " runs are kept in %s, and the same "
-                    "command%s%s goes on from there\n",
-                    report.state.done, report.state.total, options->store,
-                    options->is_fresh ? " without --fresh" : "",
-                    !options->is_retrying ? ""
-                    : options->is_fresh   ? " and --retry-failed"
-                                          : " without --retry-failed");
+            output_say("stopped; %" PRIu64 " of %" PRIu64 " runs are kept in %s, and the same "
+                       "command%s%s goes on from there\n",
+                       report.state.done, report.state.total, options->store,
+                       options->is_fresh ? " without --fresh" : "",
+                       !options->is_retrying ? ""
+                       : options->is_fresh   ? " and --retry-failed"
+                                             : " without --retry-failed");
         }
         interrupt_obey();
         return true;

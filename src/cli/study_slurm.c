@@ -2,6 +2,7 @@
 #include "base/shell.h"
 #include "cli/arguments.h"
 #include "cli/option_values.h"
+#include "cli/output.h"
 #include "cli/run_files.h"
 #include "cli/study_commands.h"
 #include "cli/study_place.h"
@@ -251,10 +252,9 @@ static void say_next(const SlurmJob *job, const SlurmOptions *options)
     printf("%s\n", text.data);
     text_finish(&text);
     if (!options->is_quiet && job->shards > SLURM_ARRAY_USUAL) {
-        fprintf(stderr,
-                "jointplay: %" PRIu64 " shards are more than a job array has tasks unless "
-                "MaxArraySize is raised ('scontrol show config'); %d is usual\n",
-                job->shards, SLURM_ARRAY_USUAL);
+        output_say("jointplay: %" PRIu64 " shards are more than a job array has tasks unless "
+                   "MaxArraySize is raised ('scontrol show config'); %d is usual\n",
+                   job->shards, SLURM_ARRAY_USUAL);
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "cli/case_run.h"
 #include "cli/long_work.h"
+#include "cli/output.h"
 #include "cli/written.h"
 #include "report/file.h"
 #include "report/tune_carriers.h"
@@ -80,8 +81,8 @@ static bool write_file(const TuneReport *report, const Kind *kind, const char *p
     } else if (err->kind == ERR_NONE) {
         const bool has_play = scenario_has_clearance(report->scenario);
         if (!is_quiet) {
-            fprintf(stderr, "not written: %s (%s)\n", path,
-                    has_play ? kind->nothing : "no joint of the case has play");
+            output_say("not written: %s (%s)\n", path,
+                       has_play ? kind->nothing : "no joint of the case has play");
         }
         is_done = true;
     }

@@ -2,7 +2,9 @@
 #include "cli/written.h"
 
 #include "base/text.h"
+#include "cli/output.h"
 #include "report/file.h"
+#include "report/json_value.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -11,7 +13,7 @@
 bool written_say(const char *path, bool is_quiet)
 {
     if (!is_quiet) {
-        fprintf(stderr, "wrote %s\n", path);
+        output_say("wrote %s\n", path);
     }
     return true;
 }
@@ -34,12 +36,10 @@ bool written_text(FileKind kind, const char *path, const char *text, bool is_qui
 
 bool written_json(const char *path, const json_t *object, bool is_quiet, Err *err)
 {
-    char *words = json_dumps(object, RUN_JSON_FLAGS);
-    assert(words != NULL);
     Text text;
     text_init(&text);
-    text_append(&text, "%s\n", words);
-    free(words);
+    json_value_write(object, RUN_JSON_FLAGS, &text);
+    text_append(&text, "\n");
     const bool is_written = written_text(FILE_RESULT, path, text.data, is_quiet, err);
     text_finish(&text);
     return is_written;

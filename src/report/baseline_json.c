@@ -19,10 +19,7 @@ static const double MEAN_AGREES = 1e-12; // of the largest number: rounding of a
 static void append_string(Text *text, const char *words)
 {
     json_t *value = json_value_text(words);
-    char *quoted = json_dumps(value, JSON_ENCODE_ANY);
-    assert(quoted != NULL);
-    text_append(text, "%s", quoted);
-    free(quoted);
+    json_value_write(value, JSON_ENCODE_ANY, text);
     json_decref(value);
 }
 

@@ -9,41 +9,16 @@
 // cases/paper/impact-k66.yaml is cases.paper.impact-k66, and no other dot stands in a name.
 #include "report/check_junit.h"
 
+#include "report/xml.h"
+
 #include <string.h>
 
 static const char RUNS[] = "runs"; // name of the test that is the runs themselves
 
-// Text for an attribute or between tags. What XML cannot hold becomes a question mark.
-static void append_escaped(Text *text, const char *words)
-{
-    for (const char *c = words; *c != '\0'; c++) {
-        switch (*c) {
-        case '&':
-            text_append(text, "&amp;");
-            break;
-        case '<':
-            text_append(text, "&lt;");
-            break;
-        case '>':
-            text_append(text, "&gt;");
-            break;
-        case '"':
-            text_append(text, "&quot;");
-            break;
-        case '\n':
-            text_append(text, "&#10;");
-            break;
-        default:
-            // 0x20 to 0x7e: a path need not be UTF-8
-            text_append(text, "%c", *c >= 0x20 && *c < 0x7f ? *c : '?');
-        }
-    }
-}
-
 static void append_attribute(Text *text, const char *name, const char *value)
 {
     text_append(text, " %s=\"", name);
-    append_escaped(text, value);
+    xml_append(value, text);
     text_append(text, "\"");
 }
 
@@ -68,7 +43,7 @@ static void append_class(Text *text, const char *path)
         }
         path += length + (path[length] == '/' ? 1 : 0);
     }
-    append_escaped(text, name.data);
+    xml_append(name.data, text);
     text_finish(&name);
 }
 
@@ -81,7 +56,7 @@ static void append_name(Text *text, const char *prefix, const char *words)
     for (const char *c = words; *c != '\0'; c++) {
         text_append(&name, "%c", *c == '.' ? '/' : *c);
     }
-    append_escaped(text, name.data);
+    xml_append(name.data, text);
     text_finish(&name);
 }
 
@@ -103,7 +78,7 @@ static void append_outcome(Text *text, const char *tag, const char *type, const 
     append_attribute(text, "message", words);
     append_attribute(text, "type", type);
     text_append(text, ">");
-    append_escaped(text, words);
+    xml_append(words, text);
     text_append(text, "</%s>\n    </testcase>\n", tag);
 }
 

@@ -25,7 +25,8 @@ static size_t rows_to_show(const CheckCase *item, bool is_all)
 static void write_rows(const CheckCase *item, size_t count, const Style *style, Text *text)
 {
     if (count == 0) {
-        text_append(text, "\n%s%s%s\n\n", style->heading, item->path, style->end);
+        run_section_heading(item->path, style, text);
+        text_append(text, "\n");
         return;
     }
     static const RunSectionHead HEADS[] = {
@@ -63,7 +64,7 @@ static void write_limits(const CheckCase *item, const Style *style, Text *text)
     if (item->limit_count == 0) {
         return;
     }
-    text_append(text, "\n%s%s%s\n", style->heading, item->path, style->end);
+    run_section_heading(item->path, style, text);
     const Expectation *written = NULL;
     for (size_t i = 0; i < item->limit_count; i++) {
         const CheckLimit *limit = &item->limits[i];
@@ -101,9 +102,10 @@ static void write_case(const CheckReport *report, const CheckCase *item, bool is
                        const Style *style, Text *text)
 {
     if (item->err.kind != ERR_NONE) {
-        text_append(text, "\n%s%s%s\n\n  %s%s: %s%s\n", style->heading, item->path, style->end,
-                    style->failure, report->is_blessed ? "no new baseline" : "not checked",
-                    item->err.text, style->end);
+        run_section_heading(item->path, style, text);
+        text_append(text, "\n  %s%s: %s%s\n", style->failure,
+                    report->is_blessed ? "no new baseline" : "not checked", item->err.text,
+                    style->end);
         return;
     }
     write_limits(item, style, text);

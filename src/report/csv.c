@@ -1,23 +1,35 @@
 // How do words stay in their cell?
 #include "report/csv.h"
 
+#include "base/printable.h"
+
+#include <stdlib.h>
 #include <string.h>
 
-void csv_write_quoted(FILE *stream, const char *text)
+static void write_quoted(FILE *stream, const char *shown)
 {
     fputc('"', stream);
-    for (; *text != '\0'; text++) {
-        fputs(*text == '"' ? "\"" : "", stream);
-        fputc(*text == '\n' ? ' ' : *text, stream);
+    for (; *shown != '\0'; shown++) {
+        fputs(*shown == '"' ? "\"" : "", stream);
+        fputc(*shown == '\n' ? ' ' : *shown, stream);
     }
     fputc('"', stream);
 }
 
+void csv_write_quoted(FILE *stream, const char *text)
+{
+    char *shown = printable_copy(text, true);
+    write_quoted(stream, shown);
+    free(shown);
+}
+
 void csv_write_word(FILE *stream, const char *text)
 {
-    if (strpbrk(text, ",\"\n\r") != NULL) {
-        csv_write_quoted(stream, text);
+    char *shown = printable_copy(text, true);
+    if (strpbrk(shown, ",\"\n") != NULL) {
+        write_quoted(stream, shown);
     } else {
-        fputs(text, stream);
+        fputs(shown, stream);
     }
+    free(shown);
 }

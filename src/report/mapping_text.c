@@ -18,7 +18,9 @@ static void write_head(const MappingReport *report, const Style *style, Text *te
     const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
     text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
     if (scenario->path[0] != '\0') {
-        text_append(text, "  case        %s\n", scenario->path);
+        text_append(text, "  case        ");
+        text_append_shown(text, scenario->path);
+        text_append(text, "\n");
     }
     text_append(
         text,

@@ -1,6 +1,8 @@
 // How does a panel with axes and lines become SVG?
 #include "report/plot.h"
 
+#include "report/xml.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -18,32 +20,13 @@ static const char STYLE_SHEET[] =
     ".note{fill:#555}.grid{stroke:#e4e4e4}.zero{stroke:#b0b0b0}.frame{stroke:#444;fill:none}"
     ".line{fill:none;stroke-linejoin:round}";
 
-static void append_escaped(Text *svg, const char *text)
-{
-    for (; *text != '\0'; text++) {
-        switch (*text) {
-        case '<':
-            text_append(svg, "&lt;");
-            break;
-        case '>':
-            text_append(svg, "&gt;");
-            break;
-        case '&':
-            text_append(svg, "&amp;");
-            break;
-        default:
-            text_append(svg, "%c", (unsigned char)*text < ' ' ? ' ' : *text);
-        }
-    }
-}
-
 void plot_begin(Text *svg, double width, double height, const char *title)
 {
     text_append(svg,
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%g\" height=\"%g\" "
                 "viewBox=\"0 0 %g %g\">\n<title>",
                 width, height, width, height);
-    append_escaped(svg, title);
+    xml_append(title, svg);
     text_append(svg, "</title>\n<style>%s</style>\n", STYLE_SHEET);
     text_append(svg, "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n");
 }
@@ -58,7 +41,7 @@ void plot_text(Text *svg, double x, double y, const char *anchor, const char *cs
 {
     text_append(svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" class=\"%s\">", x, y, anchor,
                 css_class);
-    append_escaped(svg, text);
+    xml_append(text, svg);
     text_append(svg, "</text>\n");
 }
 
@@ -241,7 +224,7 @@ void plot_line(const PlotPanel *panel, size_t count, const double *x, const doub
 static void append_title(Text *svg, const char *title)
 {
     text_append(svg, "><title>");
-    append_escaped(svg, title);
+    xml_append(title, svg);
     text_append(svg, "</title></path>\n");
 }
 

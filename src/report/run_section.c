@@ -4,10 +4,18 @@
 #include <math.h>
 #include <stdio.h>
 
+void run_section_heading(const char *heading, const Style *style, Text *text)
+{
+    text_append(text, "\n%s", style->heading);
+    text_append_shown(text, heading);
+    text_append(text, "%s\n", style->end);
+}
+
 Table *run_section_begin(const char *heading, size_t columns, const RunSectionHead *heads,
                          const Style *style, Text *text)
 {
-    text_append(text, "\n%s%s%s\n\n", style->heading, heading, style->end);
+    run_section_heading(heading, style, text);
+    text_append(text, "\n");
     Table *table = table_create(columns);
     table_fit(table, style->width);
     for (size_t i = 0; i < columns; i++) {

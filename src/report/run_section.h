@@ -12,6 +12,9 @@ typedef struct RunSectionHead {
     TableAlign align;
 } RunSectionHead;
 
+// Appends a heading on a line of its own, behind an empty one. It may be a path.
+void run_section_heading(const char *heading, const Style *style, Text *text);
+
 // Begins a section; the caller fills the table and hands it to run_section_end, which frees it.
 Table *run_section_begin(const char *heading, size_t columns, const RunSectionHead *heads,
                          const Style *style, Text *text);

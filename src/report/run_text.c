@@ -151,7 +151,9 @@ void run_text_write(const RunReport *report, const Style *style, Text *text)
     const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
     text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
     if (scenario->path[0] != '\0') {
-        text_append(text, "  case        %s\n", scenario->path);
+        text_append(text, "  case        ");
+        text_append_shown(text, scenario->path);
+        text_append(text, "\n");
     }
     write_mechanism(report, text);
     write_drive(scenario, text);

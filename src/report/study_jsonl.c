@@ -53,14 +53,12 @@ static bool write_row(const Layout *layout, const Record *record, void *context,
 {
     const WholeFile *file = context;
     json_t *object = build_row(layout, record);
-    char *line = json_dumps(object, LINE_FLAGS);
+    Text line;
+    text_init(&line);
+    json_value_write(object, LINE_FLAGS, &line);
     json_decref(object);
-    if (line == NULL) {
-        return err_set(err, ERR_FILE, "cannot write %s: a row is no JSON", file->path);
-    }
-    fputs(line, file->stream);
-    fputc('\n', file->stream);
-    free(line);
+    fprintf(file->stream, "%s\n", line.data);
+    text_finish(&line);
     return file_check(file, err);
 }
 

@@ -36,7 +36,9 @@ static void write_head(const TuneReport *report, const Style *style, Text *text)
     const Tune *tune = report->tune;
     const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
     text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
-    text_append(text, "  case        %s\n", scenario->path);
+    text_append(text, "  case        ");
+    text_append_shown(text, scenario->path);
+    text_append(text, "\n");
     write_asked(tune, text);
     text_append(text, "  truth       %s, to %.2g of omega\n", tune->truth.backend,
                 tune->truth.uncertainty);

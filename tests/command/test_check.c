@@ -503,7 +503,7 @@ static void limits_stand_beside_a_baseline_and_are_no_setting_of_it(void **state
     program_run(program, "check --baselines b --quick --markdown -");
     assert_int_equal(program->status, 1);
     assert_says(program->errors, "expected below 1 mN");
-    assert_says(program->output, "**pin.yaml**: limits of its own");
+    assert_says(program->output, "**`pin.yaml`**: limits of its own");
     // and a case that sets none cannot be judged by them
     write_file(program, "pin.yaml", CASE);
     program_run(program, "check --expect-only pin.yaml");
@@ -526,7 +526,7 @@ static void a_comment_is_short_and_folds_the_rest(void **state)
     assert_int_equal(program->status, 1);
     read_file(program, "c.md", text);
     assert_says(text, "### jointplay check: 1 of 1 cases out of their bands");
-    assert_says(text, "| gravity | 9.80665 m/s^2 | 9.8");
+    assert_says(text, "| `gravity` | `9.80665 m/s^2` | `9.8");
     assert_says(text, "and ");
 }
 
