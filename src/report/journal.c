@@ -227,6 +227,17 @@ void journal_describe_damage(const Journal *journal, Text *text)
     text_append(text, " is damaged and not used; what it held is made again\n");
 }
 
+// A line that does not fit is written as far as it does, and the reason is that of the rest.
+static bool write_all(int file, const char *bytes, size_t size)
+{
+    ssize_t count = 0;
+    for (size_t sent = 0; sent < size && count >= 0; sent += count > 0 ? (size_t)count : 0) {
+        count = write(file, bytes + sent, size - sent);
+        count = count < 0 && errno == EINTR ? 0 : count;
+    }
+    return count >= 0;
+}
+
 bool journal_add(Journal *journal, json_t *entry, Err *err)
 {
     char *words = json_dumps(entry, LINE_FLAGS);
@@ -237,18 +248,14 @@ bool journal_add(Journal *journal, json_t *entry, Err *err)
     Text line;
     text_init(&line);
     text_append(&line, "%.*s%s\n", (int)length, words, seal);
-    errno = 0;
-    const ssize_t count = write(journal->file, line.data, line.length);
     // a pipe or a device has no disk to reach
-    const bool is_written = count == (ssize_t)line.length &&
-                            (fsync(journal->file) == 0 || errno == EINVAL || errno == EROFS);
-    if (count >= 0 && count != (ssize_t)line.length) {
-        errno = ENOSPC;
-    }
+    const bool is_written = (write_all(journal->file, line.data, line.length) &&
+                             (fsync(journal->file) == 0 || errno == EINVAL || errno == EROFS)) ||
+                            fail(journal, "write", err);
     text_finish(&line);
     free(words);
     json_decref(entry);
-    return is_written || fail(journal, "write", err);
+    return is_written;
 }
 
 void journal_close(Journal *journal)

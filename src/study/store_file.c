@@ -42,11 +42,24 @@ bool store_fail_damaged(const Store *store, const char *how, Err *err)
     return err_set(err, ERR_FILE, "the store %s is damaged: %s", store->path, how);
 }
 
+// The system's reason for an error of input or output; 0 where SQLite keeps none. A commit that
+// fails leaves it with the file alone.
+static int system_reason(const Store *store, int code)
+{
+    int reason = 0;
+    if ((code & 0xff) == SQLITE_IOERR || (code & 0xff) == SQLITE_CANTOPEN) {
+        reason = sqlite3_system_errno(store->base);
+        if (reason == 0) {
+            sqlite3_file_control(store->base, "main", SQLITE_FCNTL_LAST_ERRNO, &reason);
+        }
+    }
+    return reason;
+}
+
 bool store_fail(const Store *store, const char *what, Err *err)
 {
     const int code = sqlite3_extended_errcode(store->base);
-    const int reason = sqlite3_system_errno(store->base);
-    const bool has_reason = (code & 0xff) == SQLITE_IOERR || (code & 0xff) == SQLITE_CANTOPEN;
+    const int reason = system_reason(store, code);
     if ((code & 0xff) == SQLITE_FULL) {
         return err_set(err, ERR_FILE, "cannot %s the store %s: %s", what, store->path,
                        strerror(ENOSPC));
@@ -65,7 +78,7 @@ bool store_fail(const Store *store, const char *what, Err *err)
                        what, store->path);
     default:
         return err_set(err, ERR_FILE, "cannot %s the store %s: %s", what, store->path,
-                       has_reason && reason != 0 ? strerror(reason) : sqlite3_errmsg(store->base));
+                       reason != 0 ? strerror(reason) : sqlite3_errmsg(store->base));
     }
 }
 

@@ -107,7 +107,15 @@ static int find_former(LookFile *file)
     if (status != SQLITE_OK || is_at_work) {
         return status;
     }
-    return undo_read(&file->undo, file->journal) ? SQLITE_OK : SQLITE_CANTOPEN;
+    sqlite3_int64 size = 0;
+    if (!undo_read(&file->undo, file->journal)) {
+        return SQLITE_CANTOPEN;
+    }
+    // no page is lost: those that the file had and has no more are in the journal
+    const sqlite3_int64 former = (sqlite3_int64)file->undo.page_size * file->undo.page_count;
+    const int is_sized = file->real->pMethods->xFileSize(file->real, &size);
+    const bool is_right = !file->undo.is_needed || former <= size + file->undo.journal_size;
+    return is_sized == SQLITE_OK && !is_right ? SQLITE_CORRUPT : is_sized;
 }
 
 static int look_lock(sqlite3_file *base, int level)

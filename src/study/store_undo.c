@@ -146,6 +146,7 @@ static int compare_pages(const void *a, const void *b)
 static void read_all(Undo *undo, off_t size)
 {
     Journal journal = {.size = size};
+    undo->journal_size = size;
     undo->is_needed = read_header(undo, &journal);
     if (!undo->is_needed) {
         return;

@@ -14,6 +14,7 @@ typedef struct UndoPage {
 typedef struct Undo {
     bool is_needed;
     int journal; // open where it is needed
+    off_t journal_size;
     uint32_t page_size;
     uint32_t page_count; // of the file before the write
     size_t count;

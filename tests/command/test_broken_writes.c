@@ -77,6 +77,18 @@ static void a_limit_on_files_is_an_error(void **state)
     assert_string_equal(program->errors, "jointplay: cannot write k.csv: File too large\n");
     run_well(program, "ls");
     assert_null(strstr(program->output, "k.csv"));
+    run_line(program, "ulimit -f 4; $jointplay compare $cases/paper/ideal-nominal.yaml -q "
+                      "--schemes direct/plain --steps '100 us' --set run.samples=36 "
+                      "--store c.jsonl");
+    assert_int_equal(program->status, 5);
+    assert_string_equal(program->errors,
+                        "jointplay: cannot write the store c.jsonl: File too large\n");
+    run_line(program, "printf 'title: t\ncase: %s\nvary: {drive.speed: [900 rpm]}\n' "
+                      "$cases/paper/ideal-nominal.yaml >s.yaml; ulimit -f 16; "
+                      "$jointplay study s.yaml -q");
+    assert_int_equal(program->status, 5);
+    assert_string_equal(program->errors,
+                        "jointplay: cannot write the store s.sqlite: File too large\n");
 }
 
 static void a_file_keeps_its_mode(void **state)

@@ -367,7 +367,7 @@ static int make_without_space(void)
     signal(SIGXFSZ, SIG_IGN);
     setrlimit(RLIMIT_FSIZE, &limit);
     return open_study(&layout, false, &err) == NULL && err.kind == ERR_FILE &&
-                   access(path, F_OK) != 0
+                   strstr(err.text, ": File too large") != NULL && access(path, F_OK) != 0
                ? 0
                : 1;
 }
