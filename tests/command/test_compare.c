@@ -308,17 +308,16 @@ static void when_every_run_of_ode_fails_the_status_is_4(void **state)
     Program *program = *state;
     // the truth is kept, so that only ODE's runs are cut short
     program_run(program, "compare $cases/paper/ideal-nominal.yaml --steps 50us --schemes direct "
-                         "--store s.jsonl --set run.revolutions=40 -q");
+                         "--store s.jsonl --set run.revolutions=4 -q");
     assert_int_equal(program->status, 0);
-    assert_int_equal(system("true"), 0);
     program_run(program, "compare $cases/paper/ideal-nominal.yaml --steps 50us --schemes direct "
-                         "--store s.jsonl --set run.revolutions=40 --repeats 6 --time-limit 1us");
+                         "--store s.jsonl --set run.revolutions=4 --repeats 6 --time-limit 1us");
     assert_int_equal(program->status, 4);
     assert_says(program->errors, "every run of ODE failed: direct/plain at 50 us");
     assert_says(program->errors, "took longer than its limit");
     // a run that was cut short is tried again
     program_run(program, "compare $cases/paper/ideal-nominal.yaml --steps 50us --schemes direct "
-                         "--store s.jsonl --set run.revolutions=40 --repeats 6 -q");
+                         "--store s.jsonl --set run.revolutions=4 --repeats 6 -q");
     assert_int_equal(program->status, 0);
 }
 

@@ -76,6 +76,12 @@ static double scan(const RandomJoint *joint, double erp_most)
     return least;
 }
 
+// A joint and what was found for it, which all tests look at.
+typedef struct Found {
+    RandomJoint joint;
+    Held held;
+} Found;
+
 // At steps of a third of a contact to fifty a contact.
 static RandomJoint draw(unsigned short *state, int number)
 {
@@ -84,30 +90,46 @@ static RandomJoint draw(unsigned short *state, int number)
     return joint;
 }
 
+static int find_all(void **state)
+{
+    unsigned short draws[3] = {SEED[0], SEED[1], SEED[2]};
+    Found *found = calloc(JOINTS, sizeof *found);
+    assert_non_null(found);
+    for (int i = 0; i < JOINTS; i++) {
+        found[i].joint = draw(draws, i);
+        held_find(&found[i].joint.contact, found[i].joint.step_s, &found[i].held);
+    }
+    *state = found;
+    return 0;
+}
+
+static int forget_all(void **state)
+{
+    free(*state);
+    return 0;
+}
+
 static void no_constants_of_a_scan_are_better(void **state)
 {
-    (void)state;
-    unsigned short draws[3] = {SEED[0], SEED[1], SEED[2]};
+    const Found *found = *state;
     size_t law_is_worse = 0;
     size_t met = 0;
     for (int i = 0; i < JOINTS; i++) {
-        const RandomJoint joint = draw(draws, i);
-        Held held;
-        held_find(&joint.contact, joint.step_s, &held);
+        const RandomJoint *joint = &found[i].joint;
         for (int k = 0; k < 2; k++) {
-            const HeldSetting *best = &held.settings[k];
-            const double least = scan(&joint, k == 0 ? 1.0 : INFINITY);
+            const HeldSetting *best = &found[i].held.settings[k];
+            const double least = scan(joint, k == 0 ? 1.0 : INFINITY);
             print_message("# joint %d, %.3g steps, %s: misfit %.5f, scan %.5f\n", i,
-                          joint.contact.asked.duration / joint.step_s, OPTIONS_ODE_MAPS[best->map],
-                          best->misfit, least);
+                          joint->contact.asked.duration / joint->step_s,
+                          OPTIONS_ODE_MAPS[best->map], best->misfit, least);
             assert_true(isinf(least) || best->is_restitution_met);
             if (best->is_restitution_met) {
                 met++;
                 assert_true(best->misfit <= SLACK * least);
             }
             // control: the law's own spring and damper, as the textbook has them, are beaten
-            const HeldSetting law = held_setting(&joint.contact, joint.step_s, best->map,
-                                                 joint.contact.secant, joint.contact.equivalent);
+            const HeldSetting law = held_setting(&joint->contact, joint->step_s, best->map,
+                                                 joint->contact.secant, joint->contact.equivalent);
             law_is_worse += !law.is_restitution_met || law.misfit > SLACK * SLACK * least;
             assert_false(held_is_better(&law, best));
         }
@@ -118,14 +140,10 @@ static void no_constants_of_a_scan_are_better(void **state)
 
 static void the_engine_delivers_what_constants_are_said_to(void **state)
 {
-    (void)state;
-    unsigned short draws[3] = {SEED[0], SEED[1], SEED[2]};
+    const Found *found = *state;
     for (int i = 0; i < JOINTS; i++) {
-        const RandomJoint joint = draw(draws, i);
-        Held held;
-        held_find(&joint.contact, joint.step_s, &held);
         for (int k = 0; k < HELD_MAP_COUNT; k++) {
-            const HeldSetting *best = &held.settings[k];
+            const HeldSetting *best = &found[i].held.settings[k];
             if (!best->delivered.is_measured) {
                 fail_msg("joint %d, %s: %s", i, OPTIONS_ODE_MAPS[best->map],
                          best->delivered.message);
@@ -138,20 +156,17 @@ static void the_engine_delivers_what_constants_are_said_to(void **state)
 // Gazebo's pair about the best one, by factors of up to three, each of its impacts run in ODE.
 static void no_kp_and_kd_run_in_the_engine_are_better(void **state)
 {
-    (void)state;
-    unsigned short draws[3] = {SEED[0], SEED[1], SEED[2]};
-    const RandomJoint joint = draw(draws, 1);
-    const MapImpact *asked = &joint.contact.asked;
-    Held held;
-    held_find(&joint.contact, joint.step_s, &held);
-    const HeldSetting *best = &held.settings[0];
+    const Found *found = *state;
+    const RandomJoint *joint = &found[1].joint;
+    const MapImpact *asked = &joint->contact.asked;
+    const HeldSetting *best = &found[1].held.settings[0];
     assert_int_equal(best->map, ODE_MAP_TEXTBOOK);
     size_t right = 0;
     for (int i = 0; i < ENGINE_SCAN * ENGINE_SCAN; i++) {
         const double kp = best->stiffness * pow(3.0, 2.0 * (i % ENGINE_SCAN) / 8.0 - 1.0);
         const double kd = best->damping * pow(3.0, 2.0 * (double)(i / ENGINE_SCAN) / 8.0 - 1.0);
         const ImpactDelivered run =
-            held_deliver(&joint.contact, joint.step_s, ODE_MAP_TEXTBOOK, kp, kd);
+            held_deliver(&joint->contact, joint->step_s, ODE_MAP_TEXTBOOK, kp, kd);
         if (!run.is_measured) {
             continue;
         }
@@ -182,5 +197,5 @@ int main(void)
         cmocka_unit_test(the_engine_delivers_what_constants_are_said_to),
         cmocka_unit_test(no_kp_and_kd_run_in_the_engine_are_better),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, find_all, forget_all);
 }
