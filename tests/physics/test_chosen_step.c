@@ -190,7 +190,7 @@ static void a_tolerance_that_takes_too_many_steps_is_held_as_far_as_they_go(void
     (void)state;
     Scenario scenario = loose(1e-6, 1);
     Trajectory *whole = chosen(&scenario);
-    scenario.run.most_steps = whole->steps / 3;
+    scenario.run.most_steps = 2 * whole->steps / 3;
     Trajectory *run = chosen(&scenario);
     assert_true(run->is_short);
     assert_true(run->steps <= scenario.run.most_steps);
