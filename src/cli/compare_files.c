@@ -2,6 +2,7 @@
 #include "cli/compare_files.h"
 
 #include "cli/case_run.h"
+#include "cli/output.h"
 #include "cli/written.h"
 #include "report/compare_csv.h"
 #include "report/compare_json.h"
@@ -44,7 +45,7 @@ static bool write_report(const CompareReport *report, const char *path, bool is_
     Text text;
     text_init(&text);
     compare_text_write(report, &STYLE_PLAIN, &text);
-    text_fold(&text, STYLE_WIDTH);
+    output_fold(&text, &STYLE_PLAIN);
     return write_text(FILE_REPORT, path, &text, is_quiet, err);
 }
 

@@ -2,6 +2,7 @@
 #include "cli/map_files.h"
 
 #include "cli/case_run.h"
+#include "cli/output.h"
 #include "cli/written.h"
 #include "report/file.h"
 #include "report/mapping_csv.h"
@@ -36,7 +37,7 @@ static bool write_report(const MappingReport *report, const char *path, bool is_
     Text text;
     text_init(&text);
     mapping_text_write(report, &STYLE_PLAIN, &text);
-    text_fold(&text, STYLE_WIDTH);
+    output_fold(&text, &STYLE_PLAIN);
     return write_text(FILE_REPORT, path, &text, is_quiet, err);
 }
 

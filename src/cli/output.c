@@ -61,11 +61,16 @@ Style output_style(FILE *stream, bool is_wide)
     return style;
 }
 
-void output_text(Text *text, const Style *style)
+void output_fold(Text *text, const Style *style)
 {
     const char *const marks[] = {style->heading, style->failure, style->end, NULL};
     text_show(text, marks);
     text_fold(text, style->width > 0 ? style->width : STYLE_WIDTH);
+}
+
+void output_text(Text *text, const Style *style)
+{
+    output_fold(text, style);
     fputs(text->data, stdout);
 }
 

@@ -27,6 +27,10 @@ void output_json(json_t *object);
 // shown of them is escaped.
 void output_say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+// Makes a text for people fit to be printed or written to a file: its sentences are broken at the
+// style's width, and what cannot be shown of it is escaped, but for the style's own marks.
+void output_fold(Text *text, const Style *style);
+
 // Prints a text for people to standard output, with its sentences broken at the style's width.
 void output_text(Text *text, const Style *style);
 

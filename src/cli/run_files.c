@@ -1,6 +1,7 @@
 // Which files does a run leave behind, and what are they called?
 #include "cli/run_files.h"
 
+#include "cli/output.h"
 #include "cli/written.h"
 #include "report/file.h"
 #include "report/plot_run.h"
@@ -117,7 +118,7 @@ static bool write_report(const CaseRun *run, const char *path, bool is_quiet, Er
     Text text;
     text_init(&text);
     run_text_write(&run->report, &STYLE_PLAIN, &text);
-    text_fold(&text, STYLE_WIDTH);
+    output_fold(&text, &STYLE_PLAIN);
     const bool is_written = written_text(FILE_REPORT, path, text.data, is_quiet, err);
     text_finish(&text);
     return is_written;

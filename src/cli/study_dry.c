@@ -110,8 +110,9 @@ bool study_run_dry(const StudyOptions *options, const Spec *spec, const Layout *
     Text text;
     text_init(&text);
     text_append(&text, "%s%s%s\n\n", style.heading, spec->title, style.end);
-    text_append(&text, "Case %s, %zu variables, %" PRIu64 " runs", spec->case_path,
-                spec->variable_count, end);
+    text_append(&text, "Case ");
+    text_append_shown(&text, spec->case_path);
+    text_append(&text, ", %zu variables, %" PRIu64 " runs", spec->variable_count, end);
     if (options->shard.count > 1) {
         text_append(&text, ", %" PRIu64 " of them in part %" PRIu64 " of %" PRIu64, runs,
                     options->shard.index + 1, options->shard.count);
@@ -119,8 +120,9 @@ bool study_run_dry(const StudyOptions *options, const Spec *spec, const Layout *
     if (spec->has_truth) {
         text_append(&text, ", %" PRIu64 " truths", design_group(spec, end - 1) + 1);
     }
-    text_append(&text, ".\nThe store %s would take some %.2g MB.\n", options->store,
-                1e-6 * store_bytes(layout, runs));
+    text_append(&text, ".\nThe store ");
+    text_append_shown(&text, options->store);
+    text_append(&text, " would take some %.2g MB.\n", 1e-6 * store_bytes(layout, runs));
     append_trials(options, spec, &text);
     text_append(&text, "\n%sFirst runs%s\n", style.heading, style.end);
     append_runs(options, spec, layout, style.width, &text);

@@ -53,14 +53,17 @@ static void append_effort(const StudyReport *report, Text *text)
 {
     const SweepState *state = &report->state;
     if (state->made == 0) {
-        text_append(text, "\nNothing was left to run; the runs are kept in %s.\n", report->store);
+        text_append(text, "\nNothing was left to run; the runs are kept in ");
+        text_append_shown(text, report->store);
+        text_append(text, ".\n");
         return;
     }
     text_append(text,
                 "\nMade %" PRIu64 " runs in %.4g s, %zu at a time; %.1f %% of that time was spent "
-                "inside runs.\nThey are kept in %s.\n",
-                state->made, state->wall_s, report->jobs, 100.0 * study_report_inside(report),
-                report->store);
+                "inside runs.\nThey are kept in ",
+                state->made, state->wall_s, report->jobs, 100.0 * study_report_inside(report));
+    text_append_shown(text, report->store);
+    text_append(text, ".\n");
     if (state->without_truth > 0) {
         text_append(text,
                     "%" PRIu64 " of them have no error, for there is no truth to hold them "

@@ -234,7 +234,9 @@ static void print_scripts(const SlurmJob *job)
     Text text;
     text_init(&text);
     for (size_t i = 0; i < SCRIPT_COUNT; i++) {
-        text_append(&text, "%s==> %s.%s <==\n", i == 0 ? "" : "\n", job->stem, SCRIPTS[i].ending);
+        text_append(&text, "%s==> ", i == 0 ? "" : "\n");
+        text_append_shown(&text, job->stem);
+        text_append(&text, ".%s <==\n", SCRIPTS[i].ending);
         SCRIPTS[i].write(job, &text);
     }
     fputs(text.data, stdout);

@@ -57,7 +57,7 @@ static bool write_text(const TuneReport *report, Text *text, Err *err)
 {
     (void)err;
     tune_text_write(report, &STYLE_PLAIN, text);
-    text_fold(text, STYLE_WIDTH);
+    output_fold(text, &STYLE_PLAIN);
     return true;
 }
 

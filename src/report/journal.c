@@ -219,8 +219,8 @@ void journal_describe_damage(const Journal *journal, Text *text)
     if (journal->damaged_count == 0) {
         return;
     }
-    text_append(text, "line %zu of the %s %s", journal->damaged_line, journal->kind->what,
-                journal->path);
+    text_append(text, "line %zu of the %s ", journal->damaged_line, journal->kind->what);
+    text_append_shown(text, journal->path);
     if (journal->damaged_count > 1) {
         text_append(text, ", as %zu others,", journal->damaged_count - 1);
     }
