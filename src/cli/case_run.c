@@ -2,7 +2,6 @@
 #include "cli/case_run.h"
 
 #include "cli/long_work.h"
-#include "cli/progress.h"
 #include "compare/backend_run.h"
 #include "run/registry.h"
 #include "run/tracer.h"
@@ -32,32 +31,30 @@ static bool uses(const CaseRun *run, BackendKind backend)
     return false;
 }
 
-static void make_truth(CaseRun *run, bool is_quiet)
+static void make_truth(CaseRun *run, Progress *progress)
 {
     if (!uses(run, BACKEND_REFERENCE)) {
         return;
     }
-    Progress progress;
-    run->truth = truth_make(&run->scenario, progress_watch(&progress, "reference", is_quiet));
-    progress_end(&progress);
+    run->truth = truth_make(&run->scenario, progress_watch(progress, "reference"));
+    progress_end(progress);
     run->report.truth = &run->truth;
 }
 
 // One run of one backend; the truth's own trajectory stands for the run of its backend.
 static Trajectory *run_backend(const CaseRun *run, BackendKind backend, bool is_announced,
-                               bool is_quiet)
+                               Progress *progress)
 {
     const Solver *solver = registry_solver(backend);
     Trajectory *truth = run->truth.trajectory;
     if (truth != NULL && strcmp(truth->backend, solver->name) == 0) {
         return truth;
     }
-    Progress progress;
-    const ChosenWatch watch = progress_watch_trials(&progress, solver->name, is_quiet);
-    progress.is_warned = is_announced;
+    const ChosenWatch watch = progress_watch_trials(progress, solver->name);
+    progress->is_warned = is_announced;
     Trajectory *trajectory = backend_run(&run->scenario, backend,
                                          truth == NULL ? NULL : &run->truth, watch, &TRACER_PROBE);
-    progress_end(&progress);
+    progress_end(progress);
     return trajectory;
 }
 
@@ -92,7 +89,7 @@ static void match_contacts(CaseRun *run)
 }
 
 // Where the motion cannot be predicted, its statistics may still agree.
-static void run_ensembles(CaseRun *run, bool is_quiet)
+static void run_ensembles(CaseRun *run, Progress *progress)
 {
     const RunOptions *options = &run->scenario.run;
     for (size_t i = 0; i < options->backend_count; i++) {
@@ -102,14 +99,13 @@ static void run_ensembles(CaseRun *run, bool is_quiet)
         const Solver *solver = registry_solver(options->backends[i]);
         char name[LINKAGE_NAME_SIZE];
         snprintf(name, sizeof name, "%s, %d starts", solver->name, ENSEMBLE_MEMBERS);
-        Progress progress;
-        const RunWatch watch = progress_watch(&progress, name, is_quiet);
+        const RunWatch watch = progress_watch(progress, name);
         // a step that was chosen once is good for starts beside this one
         const bool is_chosen = backend_run_is_chosen(&run->scenario, options->backends[i]);
         const Scenario scenario =
             is_chosen ? chosen_run_scenario(&run->scenario, run->runs[i]->step_s) : run->scenario;
         ensemble_run(&scenario, solver, watch, &run->ensembles[i]);
-        progress_end(&progress);
+        progress_end(progress);
     }
     run->report.ensembles = run->ensembles;
 }
@@ -134,7 +130,7 @@ static void ask_closed_form(CaseRun *run)
     }
 }
 
-void case_run_execute(CaseRun *run, bool is_quiet)
+void case_run_execute(CaseRun *run, Progress *progress)
 {
     const RunOptions *options = &run->scenario.run;
     run->report = (RunReport){
@@ -143,11 +139,11 @@ void case_run_execute(CaseRun *run, bool is_quiet)
         .runs = run->runs,
         .errors = run->errors,
     };
-    const bool is_announced = long_work_announce(&run->scenario, is_quiet);
-    make_truth(run, is_quiet);
+    const bool is_announced = long_work_announce(&run->scenario, progress->line.is_quiet);
+    make_truth(run, progress);
     for (size_t i = 0; i < options->backend_count; i++) {
         run->runs[i] = run_backend(run, options->backends[i],
-                                   is_announced && options->backends[i] == BACKEND_ODE, is_quiet);
+                                   is_announced && options->backends[i] == BACKEND_ODE, progress);
         run->failed_count += run->runs[i]->is_complete ? 0 : 1;
     }
     measure_errors(run);
@@ -155,7 +151,7 @@ void case_run_execute(CaseRun *run, bool is_quiet)
     if (run_report_has_truth(&run->report) && scenario_has_clearance(&run->scenario)) {
         match_contacts(run);
         if (run->truth.is_limited) {
-            run_ensembles(run, is_quiet);
+            run_ensembles(run, progress);
         }
     }
 }

@@ -1,6 +1,7 @@
 // One case on all of its backends, ready to be reported.
 #pragma once
 
+#include "cli/progress.h"
 #include "report/run_report.h"
 
 typedef struct CaseRun {
@@ -19,9 +20,9 @@ typedef struct CaseRun {
 } CaseRun;
 
 // Runs the scenario that stands in it, with the reference certified where it is asked for, and from
-// many starts where the motion cannot be predicted, with progress on standard error unless quiet. A
-// backend that fails is a run that is not complete, and counted.
-void case_run_execute(CaseRun *run, bool is_quiet);
+// many starts where the motion cannot be predicted; every run is watched. A backend that fails is a
+// run that is not complete, and counted.
+void case_run_execute(CaseRun *run, Progress *progress);
 
 void case_run_finish(CaseRun *run);
 

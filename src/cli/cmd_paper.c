@@ -76,7 +76,8 @@ static bool run_paper(int argc, char **argv, Err *err)
     PaperResult *result = calloc(1, sizeof *result);
     assert(result != NULL);
     Progress progress;
-    const RunWatch watch = progress_watch(&progress, "paper", options.is_quiet);
+    progress_begin(&progress, options.is_quiet);
+    const RunWatch watch = progress_watch(&progress, "paper");
     const bool is_computed = paper_compute(result, watch, err);
     progress_end(&progress);
     if (is_computed) {

@@ -220,8 +220,10 @@ static bool run_cases(const RunCommand *command, CaseRun *runs, Err *err)
     }
     json_t *objects = command->is_json ? json_array() : NULL;
     bool is_reported = true;
+    Progress progress;
+    progress_begin(&progress, command->is_quiet);
     for (size_t i = 0; is_reported && i < command->case_count; i++) {
-        case_run_execute(&runs[i], command->is_quiet);
+        case_run_execute(&runs[i], &progress);
         is_reported = report_case(command, &runs[i], objects, err);
     }
     if (is_reported && objects != NULL) {

@@ -1,59 +1,75 @@
 // How far has a long run come?
 #include "cli/progress.h"
 
-#include "base/clock.h"
 #include "cli/long_work.h"
 #include "cli/output.h"
 
-#include <math.h>
 #include <stdio.h>
 
 static const double WARN_AFTER = 5.0;  // s: by then a run has shown its pace
 static const double WARN_QUIET = 15.0; // s: who sees no progress waits no longer without a word
 
-// Who sees no line of progress is told once of a run that goes on for long: of this one at its
-// pace, or of one that has had several parts, each of them short.
-static void warn_once(Progress *progress, double share, double wall_s)
+// Who sees no line of progress is told once of a run that takes long at its pace.
+static void warn_of_run(Progress *progress, double share)
 {
     const bool is_quiet = progress->line.is_quiet;
-    const bool has_line = !is_quiet && progress->line.is_terminal;
-    const double limit_s = long_work_limit(is_quiet);
-    const double in_all_s = clock_now_s() - progress->started_s;
-    if (has_line || progress->is_warned || fmax(wall_s, in_all_s) < WARN_AFTER) {
+    const double wall_s = progress->run_wall_s;
+    // a share of 0 is no pace yet
+    if (progress->is_warned || wall_s < WARN_AFTER || !(share > 0.0) ||
+        !(wall_s > long_work_limit(is_quiet) * share)) {
         return;
     }
-    if (wall_s > limit_s * share) {
-        char what[LINKAGE_NAME_SIZE + 32];
-        snprintf(what, sizeof what, "%s, at its present pace,", progress->backend);
-        // a share of 0 is no pace yet
-        progress->is_warned = share > 0.0 && long_work_warn(what, wall_s / share, is_quiet);
-    }
-    // a log has lines of a run that is long itself, none of many short ones
-    const bool has_lines = !is_quiet && wall_s >= WARN_QUIET;
-    if (!progress->is_warned && !has_lines && fmax(wall_s, in_all_s) > WARN_QUIET) {
-        progress->is_warned = true;
-        output_say("jointplay: warning: %s%s goes on for longer than %.0f s\n", progress->backend,
-                   progress->doing, WARN_QUIET);
+    char what[LINKAGE_NAME_SIZE + 32];
+    snprintf(what, sizeof what, "%s, at its present pace,", progress->backend);
+    progress->is_warned = long_work_warn(what, wall_s / share, is_quiet);
+}
+
+// And once of work that goes on for long in a run without a pace, or in many short ones.
+static void warn_of_all(Progress *progress)
+{
+    const double all_s = progress->before_s + progress->run_wall_s;
+    if (progress->line.is_quiet && !progress->is_warned && !progress->is_told &&
+        all_s > WARN_QUIET) {
+        progress->is_told = true;
+        output_say("jointplay: warning: %s%s goes on for longer than %.0f s%s\n", progress->backend,
+                   progress->doing, WARN_QUIET,
+                   progress->run_wall_s < all_s ? ", with the runs before it" : "");
     }
 }
 
 static void show(double share, double wall_s, void *context)
 {
     Progress *progress = context;
-    warn_once(progress, share, wall_s);
-    if (!progress->line.is_quiet && status_line_is_due(&progress->line, wall_s)) {
+    // time that goes back is that of another run
+    progress->before_s += wall_s < progress->run_wall_s ? progress->run_wall_s : 0.0;
+    progress->run_wall_s = wall_s;
+    StatusLine *line = &progress->line;
+    if (line->is_quiet || !line->is_terminal) {
+        warn_of_run(progress, share);
+        warn_of_all(progress);
+    }
+    if (!line->is_quiet && status_line_is_due(line, progress->before_s + wall_s)) {
         char words[LINKAGE_NAME_SIZE + sizeof progress->doing + 64];
         snprintf(words, sizeof words,
-                 progress->line.is_terminal ? "%s%s: %.0f %%, %.1f s" : "%s%s: %.0f %%, %.0f s",
+                 line->is_terminal ? "%s%s: %.0f %%, %.1f s" : "%s%s: %.0f %%, %.0f s",
                  progress->backend, progress->doing, 100.0 * share, wall_s);
-        status_line_show(&progress->line, words);
+        status_line_show(line, words);
     }
 }
 
-RunWatch progress_watch(Progress *progress, const char *backend, bool is_quiet)
+void progress_begin(Progress *progress, bool is_quiet)
 {
-    *progress = (Progress){
-        .backend = backend, .line = status_line_start(is_quiet), .started_s = clock_now_s()};
+    *progress = (Progress){.backend = "", .line = status_line_start(is_quiet)};
+}
+
+RunWatch progress_watch(Progress *progress, const char *backend)
+{
+    progress->backend = backend;
+    progress->doing[0] = '\0';
+    progress->is_told = progress->is_told || progress->is_warned;
+    progress->is_warned = false;
+    progress->before_s += progress->run_wall_s;
+    progress->run_wall_s = 0.0;
     return (RunWatch){.progress = show, .context = progress};
 }
 
@@ -68,9 +84,9 @@ static void begin_trial(size_t trial, double step_s, void *context)
     }
 }
 
-ChosenWatch progress_watch_trials(Progress *progress, const char *backend, bool is_quiet)
+ChosenWatch progress_watch_trials(Progress *progress, const char *backend)
 {
-    return (ChosenWatch){progress_watch(progress, backend, is_quiet), begin_trial};
+    return (ChosenWatch){progress_watch(progress, backend), begin_trial};
 }
 
 void progress_end(Progress *progress)

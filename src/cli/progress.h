@@ -8,16 +8,22 @@ typedef struct Progress {
     const char *backend; // of the run that is watched
     char doing[64];      // which of its trials; empty where there are none
     StatusLine line;
-    bool is_warned;   // of a run that takes long
-    double started_s; // by the clock
+    bool is_warned;    // that the run takes long
+    bool is_told;      // that the work as a whole takes long
+    double before_s;   // wall time of the runs before this one
+    double run_wall_s; // of this one so far
 } Progress;
 
-// Watches one run, a quiet one too: that it takes long (long_work.h) is said once even then, and in
-// a log. The progress must outlive the run.
-RunWatch progress_watch(Progress *progress, const char *backend, bool is_quiet);
+// Starts to watch work that is made of one run after another. It must outlive them all.
+void progress_begin(Progress *progress, bool is_quiet);
+
+// Watches the runs that come now, a quiet one too: that one takes long (long_work.h) is said once
+// even then, and in a log. Time goes on from run to run: what is made of many short ones is not
+// silent.
+RunWatch progress_watch(Progress *progress, const char *backend);
 
 // Watches one run whose step may be chosen by trials.
-ChosenWatch progress_watch_trials(Progress *progress, const char *backend, bool is_quiet);
+ChosenWatch progress_watch_trials(Progress *progress, const char *backend);
 
-// Takes the line away again.
+// Takes the line away again, which the next run may bring back.
 void progress_end(Progress *progress);

@@ -80,7 +80,8 @@ static void a_terminal_sees_one_line_that_goes_away(void **state)
     Listener listener;
     Progress progress;
     listen_on_pipe(&listener);
-    const RunWatch watch = progress_watch(&progress, "ode", false);
+    progress_begin(&progress, false);
+    const RunWatch watch = progress_watch(&progress, "ode");
     progress.line.is_terminal = true;
     watch.progress(0.25, 1.9, watch.context);
     watch.progress(0.50, 2.5, watch.context);
@@ -99,7 +100,8 @@ static void a_log_gets_a_line_every_ten_seconds(void **state)
     Listener listener;
     Progress progress;
     listen_on_pipe(&listener);
-    const RunWatch watch = progress_watch(&progress, "ode", false);
+    progress_begin(&progress, false);
+    const RunWatch watch = progress_watch(&progress, "ode");
     for (int i = 0; i <= 25; i++) {
         watch.progress(i / 25.0, i, watch.context);
     }
@@ -108,22 +110,50 @@ static void a_log_gets_a_line_every_ten_seconds(void **state)
     assert_string_equal(listener.output, "ode: 40 %, 10 s\node: 80 %, 20 s\n");
 }
 
+// Runs of nine seconds one after another, in one phase or in several, are not silent for 36.
+static void time_goes_on_from_run_to_run(void **state)
+{
+    (void)state;
+    for (int is_quiet = 0; is_quiet < 2; is_quiet++) {
+        Listener listener;
+        Progress progress;
+        listen_on_pipe(&listener);
+        progress_begin(&progress, is_quiet != 0);
+        RunWatch watch = progress_watch(&progress, "reference");
+        for (int run = 0; run < 4; run++) {
+            watch = run == 2 ? progress_watch(&progress, "ode") : watch;
+            for (int i = 1; i <= 9; i++) {
+                watch.progress(i / 9.0, i, watch.context);
+            }
+        }
+        progress_end(&progress);
+        stop_listening(&listener);
+        assert_string_equal(listener.output,
+                            is_quiet ? "jointplay: warning: reference goes on for longer than 15 s"
+                                       ", with the runs before it\n"
+                                     : "reference: 11 %, 1 s\node: 22 %, 2 s\node: 33 %, 3 s\n");
+    }
+}
+
 static void who_wants_quiet_is_told_of_long_work_alone(void **state)
 {
     (void)state;
     Listener listener;
     Progress progress;
     listen_on_pipe(&listener);
-    const RunWatch quick = progress_watch(&progress, "quick", true);
+    progress_begin(&progress, true);
+    const RunWatch quick = progress_watch(&progress, "quick");
     for (int i = 1; i <= 14; i++) {
         quick.progress(i / 14.0, i, quick.context);
     }
-    const RunWatch slow = progress_watch(&progress, "slow", true);
+    progress_begin(&progress, true);
+    const RunWatch slow = progress_watch(&progress, "slow");
     for (int i = 1; i <= 30; i++) {
         slow.progress(i / 3600.0, i, slow.context);
     }
     // without a pace, and of what is made of many parts
-    const RunWatch stuck = progress_watch(&progress, "stuck", true);
+    progress_begin(&progress, true);
+    const RunWatch stuck = progress_watch(&progress, "stuck");
     for (int i = 1; i <= 30; i++) {
         stuck.progress(0.0, i, stuck.context);
     }
@@ -169,7 +199,8 @@ static void a_run_that_was_announced_is_not_warned_of_again(void **state)
     listen_on_pipe(&listener);
     assert_true(long_work_warn("ode", 3600.0, true));
     assert_false(long_work_warn("ode", 19.0, true));
-    const RunWatch watch = progress_watch(&progress, "ode", true);
+    progress_begin(&progress, true);
+    const RunWatch watch = progress_watch(&progress, "ode");
     progress.is_warned = true;
     for (int i = 1; i <= 30; i++) {
         watch.progress(i / 3600.0, i, watch.context);
@@ -209,6 +240,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_terminal_sees_one_line_that_goes_away),
         cmocka_unit_test(a_log_gets_a_line_every_ten_seconds),
+        cmocka_unit_test(time_goes_on_from_run_to_run),
         cmocka_unit_test(who_wants_quiet_is_told_of_long_work_alone),
         cmocka_unit_test(who_wants_quiet_gets_one_line_of_long_work),
         cmocka_unit_test(a_run_that_was_announced_is_not_warned_of_again),
