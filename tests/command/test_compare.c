@@ -59,6 +59,24 @@ static void run_words(Program *program, const char *more)
     program_run(program, words);
 }
 
+// A comparison that is complete, made once for all tests that begin where one is.
+static int make_store(void **state)
+{
+    const int status = program_set_up(state);
+    run_words(*state, "-q");
+    return status != 0 || ((Program *)*state)->status != 0 ? -1 : 0;
+}
+
+static int set_up_with_store(void **state)
+{
+    const Program *made = *state;
+    char command[3 * PROGRAM_PATH_SIZE];
+    const int status = program_set_up(state);
+    snprintf(command, sizeof command, "cp '%s/s.jsonl' '%s'", made->folder,
+             ((Program *)*state)->folder);
+    return status != 0 ? status : system(command);
+}
+
 static void points_orders_and_the_cheapest_are_printed(void **state)
 {
     Program *program = *state;
@@ -70,7 +88,8 @@ static void points_orders_and_the_cheapest_are_printed(void **state)
     assert_says(program->output, "Cheapest setting of ODE");
     assert_says(program->output, "auto/1e-6");
     assert_null(strchr(program->output, '\x1b'));
-    assert_string_equal(program->errors, "");
+    // lines of progress at most
+    assert_null(strstr(program->errors, "jointplay:"));
 }
 
 static void json_holds_every_point(void **state)
@@ -162,13 +181,11 @@ static void killing_it_at_any_moment_loses_nothing(void **state)
 static void a_store_of_another_comparison_is_refused(void **state)
 {
     Program *program = *state;
-    run_words(program, "-q");
-    assert_int_equal(program->status, 0);
     run_words(program, "--set run.samples=100");
     assert_int_equal(program->status, 5);
     assert_string_equal(program->output, "");
     assert_says(program->errors, "settings.run.samples is 3600 there and 100 here");
-    run_words(program, "--set run.samples=100 --fresh");
+    run_words(program, "--set run.samples=100 --schemes direct/plain --fresh");
     assert_int_equal(program->status, 0);
     assert_null(strstr(program->errors, "took"));
 }
@@ -354,20 +371,21 @@ static void a_wrong_command_line_is_answered(void **state)
 }
 
 #define COMPARE_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
+#define STORE_TEST(name)   cmocka_unit_test_setup_teardown(name, set_up_with_store, program_tear_down)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         COMPARE_TEST(points_orders_and_the_cheapest_are_printed),
-        COMPARE_TEST(json_holds_every_point),
+        STORE_TEST(json_holds_every_point),
         COMPARE_TEST(killing_it_at_any_moment_loses_nothing),
-        COMPARE_TEST(a_store_of_another_comparison_is_refused),
+        STORE_TEST(a_store_of_another_comparison_is_refused),
         COMPARE_TEST(a_line_of_the_store_that_was_changed_is_told_and_not_used),
         COMPARE_TEST(a_case_whose_only_body_is_driven_is_refused),
         COMPARE_TEST(the_usual_store_is_found_by_its_key),
-        COMPARE_TEST(files_are_written),
+        STORE_TEST(files_are_written),
         COMPARE_TEST(when_every_run_of_ode_fails_the_status_is_4),
         COMPARE_TEST(a_wrong_command_line_is_answered),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_store, program_tear_down);
 }
