@@ -4,6 +4,8 @@
 // that one place prints errors and one place ends the program.
 #include "cli/arguments.h"
 
+#include "cli/option_hint.h"
+
 #include "base/claims.h"
 #include "base/text.h"
 
@@ -48,23 +50,19 @@ static const struct argp_option *find_option(const struct argp_option *options, 
 
 static bool fail_unknown(const Reading *reading, const char *word)
 {
-    char names[OPTION_MAX][OPTION_NAME_SIZE];
-    const char *choices[OPTION_MAX];
-    size_t count = 0;
-    for (const struct argp_option *option = reading->options; option->name != NULL; option++) {
-        snprintf(names[count], sizeof names[count], "--%s", option->name);
-        choices[count] = names[count];
-        count++;
-    }
     char bare[OPTION_NAME_SIZE];
     snprintf(bare, sizeof bare, "%.*s", (int)strcspn(word, "="), word);
-    const char *nearest = text_nearest(bare, choices, count);
-    if (nearest != NULL) {
-        return err_set(reading->err, ERR_USAGE, "unknown option '%s'; did you mean '%s'?", bare,
-                       nearest);
+    Text hint;
+    text_init(&hint);
+    option_hint_write(reading->options, word, &hint);
+    if (hint.length > 0) {
+        err_set(reading->err, ERR_USAGE, "unknown option '%s'; did you mean %s?", bare, hint.data);
+    } else {
+        err_set(reading->err, ERR_USAGE, "unknown option '%s'; '%s --help' lists the options", bare,
+                reading->arguments->program);
     }
-    return err_set(reading->err, ERR_USAGE, "unknown option '%s'; '%s --help' lists the options",
-                   bare, reading->arguments->program);
+    text_finish(&hint);
+    return false;
 }
 
 // argp says only that something was wrong, and how far it came: the word stands there or next.

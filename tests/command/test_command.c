@@ -63,6 +63,16 @@ static void a_wrong_command_line_is_answered_with_what_may_be_meant(void **state
     program_fails_usage(program, "help run paper", "one topic at a time");
     program_fails_usage(program, "run", "no case given");
     program_fails_usage(program, "run --stepp 1us a.yaml", "did you mean '--step'?");
+    // a key of the case, given as if it were an option
+    program_fails_usage(program, "run a.yaml --tolerance=1e-5",
+                        "unknown option '--tolerance'; did you mean '--set run.tolerance=1e-5' or "
+                        "'--set reference.tolerance=1e-5'?");
+    program_fails_usage(program, "check --contact.restitution 0.8",
+                        "did you mean '--set contact.restitution=VALUE'?");
+    program_fails_usage(program, "tune a.yaml --radial-clearence 9um",
+                        "did you mean '--set joints.NAME.radial-clearance=VALUE'?");
+    // the control: a command without --set is offered none
+    program_fails_usage(program, "paper --tolerance 1e-5", "'jointplay paper --help' lists");
     program_fails_usage(program, "run -x a.yaml", "unknown option '-x'");
     program_fails_usage(program, "run -qx a.yaml", "unknown option '-qx'");
     program_fails_usage(program, "run --step", "option '--step' needs a value");
