@@ -1,9 +1,11 @@
 // How far has a long run come?
 #include "cli/progress.h"
 
+#include "base/clock.h"
 #include "cli/long_work.h"
 #include "cli/output.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static const double WARN_AFTER = 5.0;  // s: by then a run has shown its pace
@@ -24,16 +26,22 @@ static void warn_of_run(Progress *progress, double share)
     progress->is_warned = long_work_warn(what, wall_s / share, is_quiet);
 }
 
+// So long does the work go on, by the times that are told and by the clock between them.
+static double all_time(const Progress *progress)
+{
+    return fmax(progress->before_s + progress->run_wall_s, clock_now_s() - progress->started_s);
+}
+
 // And once of work that goes on for long in a run without a pace, or in many short ones.
 static void warn_of_all(Progress *progress)
 {
-    const double all_s = progress->before_s + progress->run_wall_s;
+    const double all_s = all_time(progress);
     if (progress->line.is_quiet && !progress->is_warned && !progress->is_told &&
         all_s > WARN_QUIET) {
         progress->is_told = true;
         output_say("jointplay: warning: %s%s goes on for longer than %.0f s%s\n", progress->backend,
                    progress->doing, WARN_QUIET,
-                   progress->run_wall_s < all_s ? ", with the runs before it" : "");
+                   progress->before_s > 0.0 ? ", with the runs before it" : "");
     }
 }
 
@@ -48,7 +56,7 @@ static void show(double share, double wall_s, void *context)
         warn_of_run(progress, share);
         warn_of_all(progress);
     }
-    if (!line->is_quiet && status_line_is_due(line, progress->before_s + wall_s)) {
+    if (!line->is_quiet && status_line_is_due(line, all_time(progress))) {
         char words[LINKAGE_NAME_SIZE + sizeof progress->doing + 64];
         snprintf(words, sizeof words,
                  line->is_terminal ? "%s%s: %.0f %%, %.1f s" : "%s%s: %.0f %%, %.0f s",
@@ -59,7 +67,8 @@ static void show(double share, double wall_s, void *context)
 
 void progress_begin(Progress *progress, bool is_quiet)
 {
-    *progress = (Progress){.backend = "", .line = status_line_start(is_quiet)};
+    *progress =
+        (Progress){.backend = "", .line = status_line_start(is_quiet), .started_s = clock_now_s()};
 }
 
 RunWatch progress_watch(Progress *progress, const char *backend)
