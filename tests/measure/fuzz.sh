@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Does any command, case, study, baseline or store bring the program down? Makes seeded random ones and
-# runs them with the address and undefined-behaviour sanitizers. A finding is an exit status that the
-# program does not have, a report of a sanitizer, a number that is none in what it printed or wrote with
-# status 0, or more than 20 s of processor time without a word. Prints each finding with its seed, and
+# Does any command, case, study, baseline, store or journal bring the program down? Makes seeded random
+# ones and runs them with the address and undefined-behaviour sanitizers: names that do harm, stores
+# changed by SQL, journals beside them, closed descriptors and small limits for files among them. A
+# finding is an exit status that the program does not have, a report of a sanitizer, a number that is
+# none in what it printed or wrote with status 0, an input that was changed, a name that was run or
+# printed as it is, or more than 20 s of processor time without a word. Prints each finding with its seed, and
 # ends with status 1 where there was one.
 #
 # tests/measure/fuzz.sh [SECONDS [FIRST [BUILD]]]
@@ -32,9 +34,11 @@ export ASAN_OPTIONS=abort_on_error=0:exitcode=99:detect_leaks=1
 export LSAN_OPTIONS=suppressions=$root/tests/support/lsan.supp:print_suppressions=0
 
 # the options as the program itself tells them
-for command in run compare map tune study check paper help; do
-    "$program" "$command" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+(=[A-Za-z0-9/|.=]+)?' |
-        sed -E "s/^ +(-[a-z], )?/$command /"
+for command in run compare map tune study check paper help \
+    'study merge' 'study status' 'study export' 'study plot' 'study slurm'; do
+    # shellcheck disable=SC2086 # the words of a command
+    "$program" $command --help | grep -oE '^ +(-[a-z], )?--[a-z-]+(=[A-Za-z0-9/|.=]+)?' |
+        sed -E "s/^ +(-[a-z], )?/${command/ /-} /"
 done | grep -v -- '--help' >"$work/options"
 
 findings=0
@@ -54,11 +58,27 @@ used_by_child() {
         "/proc/$pid/stat" 2>/dev/null || echo 0
 } 2>/dev/null
 
+# What a command is given and must leave as it was.
+inputs() {
+    cat -- ./*.yaml victim 2>/dev/null | cksum
+}
+
+# The program in place of this shell, with descriptors closed and a limit for files as it is asked.
+run_oddly() {
+    ulimit -c 0
+    [ -z "$limit" ] || ulimit -f "$limit"
+    case $closed in *0*) exec 0<&- ;; esac
+    case $closed in *1*) exec 1>&- ;; esac
+    case $closed in *2*) exec 2>&- ;; esac
+    exec timeout --kill-after=5 "$longest" "$program" "${arguments[@]}"
+}
+
 # Runs the program with the arguments, and looks at what it left behind.
 run_step() {
-    local status=0
+    local status=0 before
+    before=$(inputs)
     commands=$((commands + 1))
-    timeout --kill-after=5 "$longest" "$program" "${arguments[@]}" >printed 2>error </dev/null &
+    run_oddly >printed 2>error </dev/null &
     local child=$!
     while kill -0 "$child" 2>/dev/null && [ "$(used_by_child)" -lt "$silent" ]; do
         sleep 0.1
@@ -75,16 +95,24 @@ run_step() {
     if grep -qE 'ERROR: (Address|Leak)Sanitizer|runtime error|Assertion' error; then
         find_fault "report of a sanitizer or an assertion"
     fi
+    [ "$before" = "$(inputs)" ] || find_fault "an input was changed"
+    [ ! -e harm ] || find_fault "a name was run"
+    if LC_ALL=C grep -qP '[\x00-\x08\x0b-\x1f\x7f]|\xe2\x80\xae|\xe9' printed error; then
+        find_fault "a name was printed as it is"
+    fi
+    # comments of C may speak of what is no number
+    local words=printed
+    case "${arguments[*]}" in *--code=*) words=none ;; esac
     if [ "$status" = 0 ] &&
         grep -rlqwE --include='*.csv' --include='*.svg' --include='*.json' --include='*.txt' \
-            --include=printed -- '-?(nan|inf|NaN|Infinity)' . 2>/dev/null; then
+            --include="$words" -- '-?(nan|inf|NaN|Infinity)' . 2>/dev/null; then
         find_fault "a number that is none, with status 0"
     fi
 }
 
 # The steps of one seed, in a folder of their own.
 run_plan() {
-    local kind line
+    local kind line word
     while IFS= read -r kind; do
         arguments=()
         while IFS= read -r line && [ -n "$line" ]; do
@@ -92,9 +120,17 @@ run_plan() {
         done
         if [ "$kind" = damage ]; then
             "$maker" damage "$seed" "${arguments[0]}"
-        else
-            run_step
+            continue
         fi
+        closed=
+        limit=
+        for word in $kind; do
+            case $word in
+            closed=*) closed=${word#closed=} ;;
+            limit=*) limit=${word#limit=} ;;
+            esac
+        done
+        run_step
     done <plan
 }
 
@@ -112,6 +148,7 @@ while [ "$used_s" -lt "$end_s" ]; do
     rm -rf "$work/place"
     mkdir -p "$work/place"
     cd "$work/place" || exit 2
+    echo untouched >victim
     "$maker" plan "$seed" "$work/options" >plan || exit 2
     run_plan
     seed=$((seed + 1))

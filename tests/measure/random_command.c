@@ -4,12 +4,15 @@
 // random_command damage SEED FILE     flips, cuts or doubles some bytes of a file
 //
 // A plan is a list of steps with an empty line behind each: 'do' and the arguments of jointplay,
-// one a line, or 'damage' and a file. OPTIONS holds a line per option that the program has,
-// 'COMMAND --name' or 'COMMAND --name=PLACEHOLDER', as its --help tells them. tests/measure/fuzz.sh
-// makes all of it.
+// one a line, or 'damage' and a file. Behind 'do' may stand which of the descriptors 0 to 2 are
+// closed ('closed=02') and how large a file may grow, in kB ('limit=4'). A store is damaged byte by
+// byte or by SQL, or a journal is put beside it. OPTIONS holds a line per option that the program
+// has, 'COMMAND --name' or 'COMMAND --name=PLACEHOLDER', as its --help tells them.
+// tests/measure/fuzz.sh makes all of it.
 #include "casefile/schema.h"
 #include "random_case.h"
 #include "random_draw.h"
+#include "random_store.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -168,6 +171,20 @@ static void write_value(Draw *draw, const Option *option, FILE *file)
     }
 }
 
+// Begins a step that runs the program, now and then in an odd place.
+static void print_do(Plan *plan)
+{
+    static const char *const CLOSED[] = {"0", "1", "2", "02", "12", "012"};
+    printf("do");
+    if (draw_chance(&plan->draw, 0.06)) {
+        printf(" closed=%s", PICK(&plan->draw, CLOSED));
+    }
+    if (draw_chance(&plan->draw, 0.06)) {
+        printf(" limit=%zu", draw_below(&plan->draw, 64));
+    }
+    printf("\n");
+}
+
 static void print_options(Plan *plan, const char *command, size_t most)
 {
     const size_t count = draw_below(&plan->draw, most + 1);
@@ -189,7 +206,8 @@ static void print_options(Plan *plan, const char *command, size_t most)
 static void print_case_command(Plan *plan, const char *command, const char *case_name)
 {
     static const char *const LENGTHS[] = {"0.01", "0.05", "0.2", "1"};
-    printf("do\n%s\n%s\n", command, case_name);
+    print_do(plan);
+    printf("%s\n%s\n", command, case_name);
     if (draw_chance(&plan->draw, 0.9)) {
         printf("--set=run.revolutions=%s\n", PICK(&plan->draw, LENGTHS));
     }
@@ -234,78 +252,33 @@ static void print_study(Plan *plan)
     if (draw_chance(&plan->draw, 0.3)) {
         printf("damage\nstudy.yaml\n\n");
     }
-    printf("do\nstudy\nstudy.yaml\n-q\n\n");
-    if (draw_chance(&plan->draw, 0.5)) {
+    print_do(plan);
+    printf("study\nstudy.yaml\n-q\n\n");
+    if (draw_chance(&plan->draw, 0.6)) {
         printf("damage\nstudy.sqlite\n\n");
     }
     const char *later = PICK(&plan->draw, LATER);
-    printf("do\nstudy\n%s%sstudy.%s\n", later, *later != '\0' ? "\n" : "",
+    print_do(plan);
+    printf("study\n%s%sstudy.%s\n", later, *later != '\0' ? "\n" : "",
            draw_chance(&plan->draw, 0.5) ? "yaml" : "sqlite");
     printf("%s", strcmp(later, "plot") == 0 ? "picture.svg\n" : "");
-    print_options(plan, "study", 2);
+    char command[LINE_SIZE];
+    snprintf(command, sizeof command, "study%s%s", *later != '\0' ? "-" : "", later);
+    print_options(plan, command, 3);
     printf("\n");
 }
 
 static void print_kept(Plan *plan, const char *first, const char *second, const char *kept)
 {
-    printf("do\n%s\n\n", first);
+    print_do(plan);
+    printf("%s\n\n", first);
     if (draw_chance(&plan->draw, 0.6)) {
         printf("damage\n%s\n\n", kept);
     }
-    printf("do\n%s\n", second);
+    print_do(plan);
+    printf("%s\n", second);
     print_options(plan, strncmp(second, "check", 5) == 0 ? "check" : "compare", 2);
     printf("\n");
-}
-
-static void print_plan(Plan *plan)
-{
-    static const char *const COMMANDS[] = {"run", "run", "run", "map", "map", "tune", "compare"};
-    write_case(plan, "case.yaml");
-    const size_t kind = draw_below(&plan->draw, 10);
-    if (kind >= 8) {
-        printf("damage\ncase.yaml\n\n");
-    }
-    if (kind == 0) {
-        print_study(plan);
-    } else if (kind == 1) {
-        print_kept(
-            plan,
-            "check\n--bless\n--quick\n--baselines=kept\n--set=run.revolutions=0.02\ncase.yaml",
-            "check\n--quick\n--baselines=kept\n--set=run.revolutions=0.02\ncase.yaml",
-            "kept/case.json");
-    } else if (kind == 2) {
-        print_kept(
-            plan,
-            "compare\n--steps=20 us, 10 us\n--store=kept\n--set=run.revolutions=0.01\ncase.yaml",
-            "compare\n--steps=20 us, 10 us\n--store=kept\n--set=run.revolutions=0.01\ncase.yaml",
-            "kept");
-    } else if (kind == 3) {
-        static const char *const REST[] = {"help",      "paper", "check", "study",
-                                           "--version", "",      "runn"};
-        printf("do\n%s\n", PICK(&plan->draw, REST));
-        print_options(plan, PICK(&plan->draw, COMMANDS), 2);
-        putchar('\n');
-    } else {
-        print_case_command(plan, PICK(&plan->draw, COMMANDS), "case.yaml");
-    }
-}
-
-static void read_options(const char *path, Plan *plan)
-{
-    FILE *file = fopen(path, "r");
-    char line[LINE_SIZE];
-    while (file != NULL && plan->option_count < OPTION_MAX && fgets(line, sizeof line, file)) {
-        Option *option = &plan->options[plan->option_count];
-        option->placeholder[0] = '\0';
-        const int found = sscanf(line, "%255s %255[^=\n]=%255[^\n]", option->command, option->name,
-                                 option->placeholder);
-        plan->option_count += found >= 2 ? 1 : 0;
-    }
-    if (file == NULL || plan->option_count == 0) {
-        fprintf(stderr, "random_command: no options in %s\n", path);
-        exit(EXIT_FAILURE);
-    }
-    fclose(file);
 }
 
 static int damage(Draw *draw, const char *path)
@@ -330,6 +303,72 @@ static int damage(Draw *draw, const char *path)
     return fclose(file) == 0 ? 0 : EXIT_FAILURE;
 }
 
+static void print_plan(Plan *plan)
+{
+    static const char *const COMMANDS[] = {"run", "run", "run", "map", "map", "tune", "compare"};
+    write_case(plan, "case.yaml");
+    const size_t kind = draw_below(&plan->draw, 10);
+    if (kind >= 8) {
+        damage(&plan->draw, "case.yaml");
+    }
+    if (kind == 0) {
+        print_study(plan);
+    } else if (kind == 1) {
+        print_kept(
+            plan,
+            "check\n--bless\n--quick\n--baselines=kept\n--set=run.revolutions=0.02\ncase.yaml",
+            "check\n--quick\n--baselines=kept\n--set=run.revolutions=0.02\ncase.yaml",
+            "kept/case.json");
+    } else if (kind == 2) {
+        print_kept(
+            plan,
+            "compare\n--steps=20 us, 10 us\n--store=kept\n--set=run.revolutions=0.01\ncase.yaml",
+            "compare\n--steps=20 us, 10 us\n--store=kept\n--set=run.revolutions=0.01\ncase.yaml",
+            "kept");
+    } else if (kind == 3) {
+        static const char *const REST[] = {"help",      "paper", "check", "study",
+                                           "--version", "",      "runn"};
+        print_do(plan);
+        printf("%s\n", PICK(&plan->draw, REST));
+        print_options(plan, PICK(&plan->draw, COMMANDS), 2);
+        putchar('\n');
+    } else {
+        // a name that does harm, or is shown, as it is
+        static const char *const NAMES[] = {"-h.yaml",
+                                            "c'; touch harm; '.yaml",
+                                            "$(touch harm).yaml",
+                                            "\x1b[31mred\x07.yaml",
+                                            "gnp.\xe2\x80\xaeyaml",
+                                            "caf\xe9.yaml",
+                                            "%s%n<b>`a`.yaml"};
+        const char *name = draw_chance(&plan->draw, 0.15) ? PICK(&plan->draw, NAMES) : "case.yaml";
+        char path[LINE_SIZE];
+        snprintf(path, sizeof path, "%s%s", name[0] == '-' ? "./" : "", name);
+        if (strcmp(name, "case.yaml") != 0 && rename("case.yaml", name) != 0) {
+            exit(EXIT_FAILURE);
+        }
+        print_case_command(plan, PICK(&plan->draw, COMMANDS), path);
+    }
+}
+
+static void read_options(const char *path, Plan *plan)
+{
+    FILE *file = fopen(path, "r");
+    char line[LINE_SIZE];
+    while (file != NULL && plan->option_count < OPTION_MAX && fgets(line, sizeof line, file)) {
+        Option *option = &plan->options[plan->option_count];
+        option->placeholder[0] = '\0';
+        const int found = sscanf(line, "%255s %255[^=\n]=%255[^\n]", option->command, option->name,
+                                 option->placeholder);
+        plan->option_count += found >= 2 ? 1 : 0;
+    }
+    if (file == NULL || plan->option_count == 0) {
+        fprintf(stderr, "random_command: no options in %s\n", path);
+        exit(EXIT_FAILURE);
+    }
+    fclose(file);
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 4) {
@@ -339,7 +378,10 @@ int main(int argc, char **argv)
     static Plan plan;
     plan.draw = draw_start(strtoull(argv[2], NULL, 10));
     if (strcmp(argv[1], "damage") == 0) {
-        return damage(&plan.draw, argv[3]);
+        const char *ending = strrchr(argv[3], '.');
+        const bool is_store = ending != NULL && strcmp(ending, ".sqlite") == 0;
+        const bool is_odd = is_store && draw_chance(&plan.draw, 0.6);
+        return is_odd ? random_store_damage(&plan.draw, argv[3]) : damage(&plan.draw, argv[3]);
     }
     read_options(argv[3], &plan);
     print_plan(&plan);
