@@ -300,6 +300,29 @@ static void without_a_reference_its_own_words_come_first(void **state)
     assert_refused(&scenario, NULL, "no step can be chosen, for the reference failed: ");
 }
 
+// The pin of a soft contact leaves the range of its law at every step: what the trials cost is a
+// few of the shortest way there, and not all that a choice may take.
+static void trials_that_fail_at_one_place_are_few(void **state)
+{
+    (void)state;
+    Scenario scenario = loose(1e-4, 1);
+    Truth truth = truth_make(&scenario, NOBODY.run);
+    scenario.contact.stiffness = 1e6;
+    scenario.run.tolerance = 10.0; // none is given up for its error
+    Trajectory *run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
+    assert_false(run->is_complete);
+    assert_non_null(strstr(run->message, "no step will do"));
+    assert_in_range(run->trials, 2, 20);
+    assert_true(run->steps > 0 && run->steps < scenario.run.most_steps / 1000);
+    trajectory_destroy(run);
+    // the control: the contact as it was has a step
+    scenario.contact.stiffness = loose(1e-4, 1).contact.stiffness;
+    run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
+    assert_true(run->is_complete);
+    trajectory_destroy(run);
+    truth_finish(&truth);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -316,6 +339,7 @@ int main(void)
         cmocka_unit_test(where_the_reference_is_not_sure_enough_the_window_ends),
         cmocka_unit_test(an_error_that_cannot_be_told_is_refused),
         cmocka_unit_test(without_a_reference_its_own_words_come_first),
+        cmocka_unit_test(trials_that_fail_at_one_place_are_few),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -187,6 +187,25 @@ static void an_edited_hash_is_named_where_the_build_is_the_same(void **state)
     }
 }
 
+// Signs in front of a digit at which no number begins: reading went round in circles there.
+static void a_setting_with_signs_in_front_of_its_number_is_judged(void **state)
+{
+    static const char *const VALUES[] = {"--2 N/m^1.5", "--2", "-+.5", "+-+-1",
+                                         "-.-.0",       "- 2", "."};
+    Bench *bench = *state;
+    for (size_t i = 0; i < sizeof VALUES / sizeof *VALUES; i++) {
+        size_t out;
+        json_t *root = read_json(bench);
+        json_object_set_new(json_object_get(root, "settings"), "run.step", json_string(VALUES[i]));
+        assert_int_equal(json_dump_file(root, bench->path, JSON_REAL_PRECISION(17)), 0);
+        json_decref(root);
+        judge(bench, &out);
+        assert_int_equal(out, 1);
+        assert_string_equal(bench->rows[0].name, "run.step");
+        assert_string_equal(bench->rows[0].was_text, VALUES[i]);
+    }
+}
+
 static void a_changed_setting_is_named_with_both_values(void **state)
 {
     Bench *bench = *state;
@@ -506,6 +525,7 @@ int main(void)
         BASELINE_TEST(what_is_written_reads_back_the_same),
         BASELINE_TEST(every_number_edited_by_more_than_its_band_is_named),
         BASELINE_TEST(an_edited_hash_is_named_where_the_build_is_the_same),
+        BASELINE_TEST(a_setting_with_signs_in_front_of_its_number_is_judged),
         BASELINE_TEST(a_changed_setting_is_named_with_both_values),
         BASELINE_TEST(a_number_that_came_or_went_is_a_difference),
         BASELINE_TEST(a_sample_that_is_not_that_of_its_median_and_mean_is_damaged),
