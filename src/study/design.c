@@ -147,7 +147,9 @@ static void add_value(const Variable *variable, const Cell *value, Text *text)
         text_append(text, "%s=%.0f", variable->key, value->number);
     } else {
         const char *blank = variable->unit[0] != '\0' ? " " : "";
-        text_append(text, "%s=%.17g%s%s", variable->key, value->number, blank, variable->unit);
+        text_append(text, "%s=", variable->key);
+        text_append_number(text, value->number);
+        text_append(text, "%s%s", blank, variable->unit);
     }
 }
 
