@@ -14,7 +14,8 @@
 #include <sys/mman.h>
 #include <time.h>
 
-enum { RUN_MAX = 64, PATH_SIZE = 512, NOISE = 1 << 20 };
+// lines of noise: more than any pipe holds; and bytes of memory a time
+enum { RUN_MAX = 64, PATH_SIZE = 512, NOISE = 1 << 16, BITE = 1 << 20 };
 
 // What the processes of a sweep tell the test, in memory that all of them share.
 typedef struct Board {
@@ -166,7 +167,7 @@ static void be_well(const SweepRun *task, Record *record)
 static void eat_bit_by_bit(void)
 {
     for (;;) {
-        volatile char *bite = malloc(NOISE);
+        volatile char *bite = malloc(BITE);
         assert(bite != NULL);
         bite[0] = 1;
     }
