@@ -266,8 +266,15 @@ static void write_parts(const Table *table, const Part *all, Text *text)
         others += is_key(table, all->columns[i]) ? 0 : 1;
     }
     const size_t each = columns_a_part(table, all, others, &part);
-    for (size_t from = 0; from < others || from == 0; from += each) {
-        fill_part(table, all, from, from + each, &part);
+    size_t to;
+    for (size_t from = 0; from < others || from == 0; from = to) {
+        to = from + each;
+        // where one wide column is in the way of all others, each part takes what it has room for
+        for (bool has_room = each == 1; has_room && to < others; to += has_room ? 1 : 0) {
+            fill_part(table, all, from, to + 1, &part);
+            has_room = fits(table, &part);
+        }
+        fill_part(table, all, from, to, &part);
         text_append(text, "%s", from > 0 ? "\n" : "");
         write_part(table, &part, text);
     }

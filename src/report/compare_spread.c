@@ -29,7 +29,6 @@ enum { COLUMN_COUNT = sizeof COLUMNS / sizeof COLUMNS[0] };
 static void spread_row(Table *table, const CompareReport *report, size_t scheme, size_t joint)
 {
     const LadderEnsemble *ensemble = &report->ladder->ensembles[scheme];
-    table_cell(table, "%s", report->scenario->linkage.joints[joint].name);
     table_cell(table, "%s", report->ladder->schemes[scheme].name);
     table_cell(table, ensemble->step_s > 0.0 ? "%.4g" : "its own", ensemble->step_s * UNITS_US);
     for (int i = 0; i < COLUMN_COUNT; i++) {
@@ -55,6 +54,26 @@ static void write_failures(const CompareReport *report, const Style *style, Text
     }
 }
 
+// One joint with play: the motion's spread by every scheme that has one.
+static void write_joint(const CompareReport *report, size_t joint, const Style *style, Text *text)
+{
+    Table *table = table_create(2 + COLUMN_COUNT);
+    table_fit(table, style->width);
+    table_head(table, 0, "scheme", "", TABLE_LEFT);
+    table_head(table, 1, "step", "us", TABLE_RIGHT);
+    for (int i = 0; i < COLUMN_COUNT; i++) {
+        table_head(table, (size_t)(2 + i), COLUMNS[i].title, COLUMNS[i].unit, TABLE_RIGHT);
+    }
+    for (size_t i = 0; i < report->ladder->scheme_count; i++) {
+        if (report->ladder->ensembles[i].is_known) {
+            spread_row(table, report, i, joint);
+        }
+    }
+    text_append(text, "\n  %s\n\n", report->scenario->linkage.joints[joint].name);
+    table_write(table, text);
+    table_destroy(table);
+}
+
 void compare_spread_write(const CompareReport *report, const Style *style, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
@@ -63,25 +82,12 @@ void compare_spread_write(const CompareReport *report, const Style *style, Text 
     }
     text_append(
         text,
-        "\n%sThe whole run from %d starts, their speeds a little apart: median [least, most]%s\n\n",
+        "\n%sThe whole run from %d starts, their speeds a little apart: median [least, most]%s\n",
         style->heading, ENSEMBLE_MEMBERS, style->end);
-    Table *table = table_create(3 + COLUMN_COUNT);
-    table_fit(table, style->width);
-    table_head(table, 0, "joint", "", TABLE_LEFT);
-    table_head(table, 1, "scheme", "", TABLE_LEFT);
-    table_head(table, 2, "step", "us", TABLE_RIGHT);
-    for (int i = 0; i < COLUMN_COUNT; i++) {
-        table_head(table, (size_t)(3 + i), COLUMNS[i].title, COLUMNS[i].unit, TABLE_RIGHT);
-    }
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-        for (size_t i = 0; i < report->ladder->scheme_count; i++) {
-            if (linkage->joints[joint].kind == JOINT_CLEARANCE &&
-                report->ladder->ensembles[i].is_known) {
-                spread_row(table, report, i, joint);
-            }
+        if (linkage->joints[joint].kind == JOINT_CLEARANCE) {
+            write_joint(report, joint, style, text);
         }
     }
-    table_write(table, text);
-    table_destroy(table);
     write_failures(report, style, text);
 }

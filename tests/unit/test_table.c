@@ -207,6 +207,33 @@ static void what_is_still_too_wide_is_written_in_parts_with_all_columns(void **s
     table_destroy(table);
 }
 
+static void one_wide_column_does_not_part_the_narrow_ones(void **state)
+{
+    (void)state;
+    Table *table = table_create(5);
+    table_head(table, 0, "name", "", TABLE_LEFT);
+    table_head(table, 1, "one", "", TABLE_RIGHT);
+    table_head(table, 2, "very wide", "", TABLE_RIGHT);
+    table_head(table, 3, "two", "", TABLE_RIGHT);
+    table_head(table, 4, "three", "", TABLE_RIGHT);
+    for (int i = 0; i < 5; i++) {
+        table_cell(table, "%d", i);
+    }
+    table_fit(table, 18);
+    expect_table(table, "  name  one\n"
+                        "  ---------\n"
+                        "  0       1\n"
+                        "\n"
+                        "  name  very wide\n"
+                        "  ---------------\n"
+                        "  0             2\n"
+                        "\n"
+                        "  name  two  three\n"
+                        "  ----------------\n"
+                        "  0       3      4\n");
+    table_destroy(table);
+}
+
 static void a_key_column_stands_in_every_part(void **state)
 {
     (void)state;
@@ -267,6 +294,7 @@ int main(void)
         cmocka_unit_test(a_table_that_fits_is_left_alone),
         cmocka_unit_test(the_least_important_columns_go_first_and_are_named),
         cmocka_unit_test(what_is_still_too_wide_is_written_in_parts_with_all_columns),
+        cmocka_unit_test(one_wide_column_does_not_part_the_narrow_ones),
         cmocka_unit_test(a_key_column_stands_in_every_part),
         cmocka_unit_test(words_are_broken_into_lines_of_their_own_column),
         cmocka_unit_test(destroying_nothing_does_nothing),
