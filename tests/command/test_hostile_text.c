@@ -103,7 +103,7 @@ static const char CASE[] =
     "joints:\n"
     "  hole: {between: [ground, pin], at: [0 mm, 0 mm], radial-clearance: 0.1 mm, width: 15 mm}\n"
     "contact: {stiffness: 6.6e10 N/m^1.5, restitution: 0.9}\n"
-    "run: {duration: 6 ms, samples: 100, step: 5 us, backends: [reference, ode]}\n";
+    "run: {duration: 6 ms, samples: 20, step: 50 us, backends: [reference, ode]}\n";
 
 static const char STUDY[] = "case: case.yaml\nvary: {run.step: [50 us, 100 us]}\ntruth: false\n";
 
