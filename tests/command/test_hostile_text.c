@@ -74,8 +74,8 @@ static const char *const COMMANDS[] = {
     "help \"$H\"",
     "map \"$H.yaml\" --out m --steps '20 us'",
     "map case.yaml --laws \"$H\"",
-    "compare \"$H.yaml\" --steps '20 us' --schemes direct/plain/textbook --repeats 5 --store j "
-    "--out c",
+    ("compare \"$H.yaml\" --steps '20 us' --schemes direct/plain/textbook --repeats 5 --store j "
+     "--out c"),
     "compare case.yaml --store \"none/$H\"",
     "compare case.yaml --schemes \"$H\"",
     "tune \"$H.yaml\" --error 0.5 --schemes direct/plain --out t",

@@ -39,8 +39,8 @@ static void every_line_fits_a_terminal(void **state)
         "run $cases/literature/pin-in-hole-drop.yaml --step '10 us'",
         "run $cases/literature/parallelogram.yaml --step '10 us' --set run.revolutions=0.2",
         "run $cases/literature/three-clearances.yaml --step '10 us' --backend ode",
-        "compare $cases/paper/impact-k66.yaml --steps '50 us, 20 us' --fresh "
-        "--set run.revolutions=0.2",
+        ("compare $cases/paper/impact-k66.yaml --steps '50 us, 20 us' --fresh "
+         "--set run.revolutions=0.2"),
         "map $cases/paper/impact-k66.yaml --steps '30 us, 1 us'",
         "map $cases/literature/three-clearances.yaml --steps '30 us'",
         "map --erp 0.2 --cfm 1e-6 --step '1 ms' --mass '0.1 kg'",

@@ -31,8 +31,8 @@ static void words_of_any_language_stay(void **state)
         "שלום",
         "😀",
         "e\u0301",
-        "a\xc2\xa0"
-        "b",
+        ("a\xc2\xa0"
+         "b"),
     };
     for (size_t i = 0; i < sizeof WORDS / sizeof *WORDS; i++) {
         check_copy(WORDS[i], false, WORDS[i]);

@@ -40,8 +40,8 @@ static const char *const NASTY[] = {
     "what?\?/",
     "a --set b",
     "title=it's",
-    "gr\xc3\xb6\xc3\x9f"
-    "e.yaml",
+    ("gr\xc3\xb6\xc3\x9f"
+     "e.yaml"),
     "a\nb",
     "a\n\nb'; touch broken; '",
     "-e\nb",
