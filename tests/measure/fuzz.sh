@@ -52,10 +52,10 @@ find_fault() {
 # Processor time of the program under 'timeout', s: a machine that is shared must not make it a
 # finding. One that waits uses none; 'timeout' ends it.
 used_by_child() {
-    local pid
+    local pid= fields=
     read -r pid _ <"/proc/$child/task/$child/children"
-    awk -v ticks="$ticks" '{ used = $14 + $15 } END { print int(used / ticks) }' \
-        "/proc/$pid/stat" 2>/dev/null || echo 0
+    read -r fields <"/proc/$pid/stat" # it may have ended by now
+    awk -v ticks="$ticks" '{ used = $14 + $15 } END { print int(used / ticks) }' <<<"$fields"
 } 2>/dev/null
 
 # What a command is given and must leave as it was.
