@@ -24,16 +24,8 @@ gitlab_lines() {
          inside && /^    - / { print substr($0, 7) }' "$root/docs/ci/gitlab-ci.yml"
 }
 
-number=0
-report() {
-    number=$((number + 1))
-    if [ "$2" = 0 ]; then
-        echo "ok $number - $1"
-    else
-        echo "not ok $number - $1"
-        sed 's/^/# /' "$work/log"
-    fi
-}
+log=$work/log
+. "$(dirname "$0")/../support/tap.sh"
 
 # A repository with one case and its baseline.
 make_folder() {

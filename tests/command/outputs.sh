@@ -128,16 +128,8 @@ list_command() {
         }'
 }
 
-number=0
-report() {
-    number=$((number + 1))
-    if [ "$2" = 0 ]; then
-        echo "ok $number - $1"
-    else
-        echo "not ok $number - $1"
-        sed 's/^/# /' "$work/log"
-    fi
-}
+log=$work/log
+. "$(dirname "$0")/../support/tap.sh"
 
 list_files() {
     find . -type f -exec cksum {} + | sort

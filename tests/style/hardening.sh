@@ -4,15 +4,7 @@ set -u
 program=$1
 readelf=$2
 
-number=0
-report() {
-    number=$((number + 1))
-    if [ "$2" = 0 ]; then
-        echo "ok $number - $1"
-    else
-        echo "not ok $number - $1"
-    fi
-}
+. "$(dirname "$0")/../support/tap.sh"
 
 # Whether a line of what readelf says of a file has the words.
 says() {
