@@ -50,6 +50,17 @@ static double sinking_time(double depth, double at_rest, double rate)
     return at_rest * sum / rate;
 }
 
+// 0.1 kg that rest on the wall of a hole with 0.1 mm of play, for 0.1 s.
+static Scenario weight_on_wall(void)
+{
+    Scenario scenario = mechanism_pin(0.1, 1e-4);
+    scenario.gravity = 9.80665;
+    scenario.linkage.bodies[0].start.position = (Vec2){0.0, -1e-4};
+    scenario.run.duration = 0.1;
+    scenario.run.samples = 2;
+    return scenario;
+}
+
 // Inertia has no part in it but at the very start: 0.1 kg against a damper of some 1e12 N s/m.
 static void a_weight_sinks_into_its_damper(void **state)
 {
@@ -57,14 +68,10 @@ static void a_weight_sinks_into_its_damper(void **state)
     const double weight = 0.1 * 9.80665;
     for (int digits = 6; digits <= 12; digits += 3) {
         const double restitution = pow(10.0, -digits);
-        Scenario scenario = mechanism_pin(0.1, 1e-4);
-        scenario.gravity = 9.80665;
+        Scenario scenario = weight_on_wall();
         scenario.contact.stiffness = 6.6e10;
         scenario.contact.damping = DAMPING_FLORES;
         scenario.contact.restitution = restitution;
-        scenario.linkage.bodies[0].start.position = (Vec2){0.0, -1e-4};
-        scenario.run.duration = 0.1;
-        scenario.run.samples = 2;
         Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
         const double depth = trajectory->joints[0].penetration_max.value;
         const double rate = 1e-3 / damping_factor(DAMPING_FLORES, restitution);
@@ -81,15 +88,11 @@ static void a_weight_sinks_into_a_viscous_damper(void **state)
     const double stiffness = 1e7;
     for (int digits = 6; digits <= 10; digits += 2) {
         const double damper = pow(10.0, digits);
-        Scenario scenario = mechanism_pin(0.1, 1e-4);
-        scenario.gravity = 9.80665;
+        Scenario scenario = weight_on_wall();
         scenario.contact.stiffness = stiffness;
         scenario.contact.exponent = 1.0;
         scenario.contact.damping = DAMPING_VISCOUS;
         scenario.contact.viscous_coefficient = damper;
-        scenario.linkage.bodies[0].start.position = (Vec2){0.0, -1e-4};
-        scenario.run.duration = 0.1;
-        scenario.run.samples = 2;
         Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
         const double expected = 0.1 * 9.80665 / stiffness * -expm1(-stiffness * 0.1 / damper);
         const double stopping_s = 0.1 / damper;
