@@ -2,7 +2,6 @@
 #include "program.h"
 
 #include <math.h>
-#include <stdbool.h>
 
 static const char PAPER[] = "map $cases/paper/impact-k66.yaml ";
 
@@ -94,46 +93,6 @@ static void mass_speed_and_law_can_be_given(void **state)
         assert_int_equal(json_array_size(json_object_get(contact, "rows")), 1);
     }
     json_decref(root);
-}
-
-// What once ended in an assertion: steps that take the pin past the end of a law, and laws that
-// have no such impact at all.
-static void a_law_that_ends_hides_no_other(void **state)
-{
-    Program *program = *state;
-    run_words(program, PAPER, "-q --steps '1 ms, 10 us' --set contact.law=esdu-78035 --json");
-    assert_int_equal(program->status, 0);
-    json_t *root = program_json(program);
-    const json_t *row = first(first(root, "contacts"), "rows");
-    assert_string_equal(word(row, "verdict"), "past-end");
-    assert_says(word(row, "words"), "the pin goes past the end of the law: ");
-    assert_string_equal(word(json_object_get(row, "predicted"), "status"), "past-end");
-    json_decref(root);
-    run_words(program, PAPER,
-              "-q --laws all --step '1 us' --mass '5 kg' --speed '2 m/s' --maps corrected --json");
-    assert_int_equal(program->status, 0);
-    root = program_json(program);
-    const json_t *contacts = json_object_get(root, "contacts");
-    assert_int_equal(json_array_size(contacts), 7);
-    size_t mapped = 0;
-    for (size_t i = 0; i < 7; i++) {
-        const json_t *contact = json_array_get(contacts, i);
-        const bool is_mapped = strcmp(word(contact, "status"), "ok") == 0;
-        mapped += is_mapped ? 1 : 0;
-        assert_int_equal(json_array_size(json_object_get(contact, "rows")), is_mapped ? 1 : 0);
-        if (!is_mapped) {
-            assert_says(word(contact, "message"), "goes past the end of the law");
-        }
-    }
-    assert_true(mapped >= 3 && mapped <= 6);
-    json_decref(root);
-    run_words(program, PAPER, "-q --laws all --step '1 s'");
-    assert_int_equal(program->status, 0);
-    // where no law has it, there is nothing to map
-    run_words(program, PAPER, "-q --laws johnson --mass '200 kg' --speed '9 m/s'");
-    assert_int_equal(program->status, 4);
-    assert_says(program->errors, "goes past the end of the law johnson");
-    assert_string_equal(program->output, "");
 }
 
 // The sentence names the place where the limit is passed.
@@ -422,8 +381,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(json_holds_every_setting, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(mass_speed_and_law_can_be_given, program_set_up,
-                                        program_tear_down),
-        cmocka_unit_test_setup_teardown(a_law_that_ends_hides_no_other, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(an_unstable_setting_says_where, program_set_up,
                                         program_tear_down),
