@@ -2,6 +2,7 @@
 #include "report/compare_csv.h"
 
 #include "report/csv.h"
+#include "report/csv_number.h"
 #include "report/file.h"
 
 #include <math.h>
@@ -14,21 +15,23 @@ static const char HEAD[] =
 static void write_numbers(FILE *stream, const LadderPoint *point)
 {
     const TrajectoryError *error = &point->run.error;
+    const double numbers[] = {error->omega_max,     error->omega_rms,     error->alpha_max,
+                              error->angle_max_rad, point->wall_median_s, point->wall_min_s,
+                              point->wall_max_s};
     fprintf(stream, "ok,%zu,%zu,", point->run.steps, point->run.evaluations);
-    if (isfinite(point->error)) {
-        fprintf(stream, "%.17g", point->error);
+    csv_number_write(stream, point->error);
+    fprintf(stream, ",%d,", point->is_limited_by_truth);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        csv_number_write(stream, numbers[i]);
+        fputc(',', stream);
     }
-    fprintf(stream, ",%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d,", point->is_limited_by_truth,
-            error->omega_max, error->omega_rms, error->alpha_max, error->angle_max_rad,
-            point->wall_median_s, point->wall_min_s, point->wall_max_s, point->is_on_frontier);
+    fprintf(stream, "%d,", point->is_on_frontier);
 }
 
 static void write_row(FILE *stream, const Ladder *ladder, const LadderPoint *point)
 {
     fprintf(stream, "%s,", ladder->schemes[point->scheme].name);
-    if (point->step_s > 0.0) {
-        fprintf(stream, "%.17g", point->step_s);
-    }
+    csv_number_write(stream, point->step_s > 0.0 ? point->step_s : NAN);
     fputc(',', stream);
     if (point->is_failed) {
         fputs("failed,,,,,,,,,,,,,", stream);

@@ -2,6 +2,7 @@
 #include "report/mapping_csv.h"
 
 #include "report/csv.h"
+#include "report/csv_number.h"
 #include "report/file.h"
 
 #include <math.h>
@@ -14,12 +15,9 @@ static const char HEAD[] =
     "delivered_restitution,delivered_force_max_N,delivered_penetration_max_m,delivered_duration_s,"
     "verdict,longest_valid_step_s,message\n";
 
-// A number, or nothing where there is none.
 static void write_number(FILE *stream, double value)
 {
-    if (isfinite(value)) {
-        fprintf(stream, "%.17g", value);
-    }
+    csv_number_write(stream, value);
     fputc(',', stream);
 }
 

@@ -1,6 +1,7 @@
 // What stands in a row of a series?
 #include "report/series_rows.h"
 
+#include "report/csv_number.h"
 #include "report/units.h"
 
 static void write_range_heads(const Linkage *linkage, FILE *stream)
@@ -17,9 +18,18 @@ static void write_range_heads(const Linkage *linkage, FILE *stream)
     }
 }
 
+// Each number behind the comma that ends the cell before it.
+static void write_cells(const double *numbers, size_t count, FILE *stream)
+{
+    for (size_t i = 0; i < count; i++) {
+        fputc(',', stream);
+        csv_number_write(stream, numbers[i]);
+    }
+}
+
 static void write_range(Range range, FILE *stream)
 {
-    fprintf(stream, ",%.17g,%.17g", range.least, range.most);
+    write_cells((const double[]){range.least, range.most}, 2, stream);
 }
 
 // From this sample to the next.
@@ -60,22 +70,24 @@ static void write_head(const Scenario *scenario, const Trajectory *trajectory, F
 static void write_row(const Scenario *scenario, const Trajectory *trajectory, size_t sample,
                       FILE *stream)
 {
-    fprintf(stream, "%.17g,%.17g", trajectory->times[sample],
-            trajectory->crank_angles[sample] * UNITS_DEG);
+    const double crank_deg = trajectory->crank_angles[sample] * UNITS_DEG;
+    csv_number_write(stream, trajectory->times[sample]);
+    write_cells(&crank_deg, 1, stream);
     for (size_t i = 0; i < trajectory->body_count; i++) {
         const Motion *motion = trajectory_motion(trajectory, sample, i);
-        fprintf(stream, ",%.17g,%.17g,%.17g", motion->angle, motion->omega, motion->alpha);
+        write_cells((const double[]){motion->angle, motion->omega, motion->alpha}, 3, stream);
     }
     for (size_t i = 0; i < trajectory->joint_count; i++) {
         const JointState *state = trajectory_state(trajectory, sample, i);
-        fprintf(stream, ",%.17g,%.17g,%.17g,%.17g", state->eccentricity.x, state->eccentricity.y,
-                state->gap, state->force);
+        const double numbers[] = {state->eccentricity.x, state->eccentricity.y, state->gap,
+                                  state->force};
+        write_cells(numbers, 4, stream);
     }
     const Motion *motions = trajectory_motion(trajectory, sample, 0);
     for (size_t i = 0; i < scenario->point_count; i++) {
         const TracedPoint *point = &scenario->points[i];
         const Vec2 place = linkage_point(motions, point->body, point->local);
-        fprintf(stream, ",%.17g,%.17g", place.x, place.y);
+        write_cells((const double[]){place.x, place.y}, 2, stream);
     }
     if (trajectory->ranges.count > 0) {
         write_ranges(trajectory, sample, stream);

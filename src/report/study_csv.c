@@ -2,10 +2,10 @@
 #include "report/study_csv.h"
 
 #include "report/csv.h"
+#include "report/csv_number.h"
 #include "report/file.h"
 
 #include <inttypes.h>
-#include <math.h>
 
 static void write_names(FILE *stream, const Column *columns, size_t count)
 {
@@ -27,9 +27,7 @@ static void write_head(FILE *stream, const Layout *layout)
 static void write_number(FILE *stream, double number)
 {
     fputc(',', stream);
-    if (!isnan(number)) {
-        fprintf(stream, "%.17g", number);
-    }
+    csv_number_write(stream, number);
 }
 
 static bool write_row(const Layout *layout, const Record *record, void *context, Err *err)

@@ -253,6 +253,51 @@ static void a_spreadsheet_has_as_many_cells_in_every_row(void **state)
     assert_int_equal(err.kind, ERR_FILE);
 }
 
+// The cell of a row by its column in the head; empty where there is none. Cells before it have no
+// quotes.
+static const char *cell_of(const char *head, const char *row, const char *name)
+{
+    static char cell[256];
+    const char *at = strstr(head, name);
+    assert_non_null(at);
+    for (const char *comma = head; comma < at; comma++) {
+        row += *comma == ',' ? strcspn(row, ",") + 1 : 0;
+    }
+    snprintf(cell, sizeof cell, "%.*s", (int)strcspn(row, ",\n"), row);
+    return cell;
+}
+
+static void a_number_that_does_not_exist_is_an_empty_cell_and_null(void **state)
+{
+    Fixture *fixture = *state;
+    char path[] = "/tmp/compare-XXXXXX";
+    const int file = mkstemp(path);
+    assert_true(file >= 0);
+    close(file);
+    Err err = {0};
+    fixture->ladder->points[1].run.error.alpha_max = NAN;
+    fixture->ladder->points[2].run.error.alpha_max = 0.25;
+    assert_true(compare_csv_write(&fixture->report, path, &err));
+    json_t *root = compare_json_build(&fixture->report);
+    const json_t *scheme = json_array_get(json_object_get(root, "schemes"), 0);
+    const json_t *points = json_object_get(scheme, "points");
+    char head[4096];
+    char row[4096];
+    FILE *stream = fopen(path, "r");
+    assert_non_null(fgets(head, sizeof head, stream));
+    for (size_t i = 0; i < 3; i++) {
+        assert_non_null(fgets(row, sizeof row, stream));
+        const json_t *error = json_object_get(json_array_get(points, i), "error");
+        assert_int_equal(json_is_null(json_object_get(error, "alpha_max")), i < 2);
+        assert_string_equal(cell_of(head, row, "alpha_max"), i < 2 ? "" : "0.25");
+        // the control: the cell before it is a number
+        assert_true(strtod(cell_of(head, row, "omega_rms"), NULL) > 0.0);
+    }
+    fclose(stream);
+    unlink(path);
+    json_decref(root);
+}
+
 static void the_picture_has_lines_frontier_band_and_arrow(void **state)
 {
     Fixture *fixture = *state;
@@ -293,6 +338,7 @@ int main(void)
         REPORT_TEST(a_truth_that_could_not_be_certified_has_no_horizon),
         REPORT_TEST(programs_read_the_same),
         REPORT_TEST(a_spreadsheet_has_as_many_cells_in_every_row),
+        REPORT_TEST(a_number_that_does_not_exist_is_an_empty_cell_and_null),
         REPORT_TEST(the_picture_has_lines_frontier_band_and_arrow),
         REPORT_TEST(a_picture_of_nothing_is_still_a_picture),
     };

@@ -64,12 +64,18 @@ static size_t column_of(const char *head, const char *name)
     return 0;
 }
 
-static double cell(const char *row, size_t column)
+// Where a cell begins.
+static const char *cell_at(const char *row, size_t column)
 {
     for (; column > 0; column--) {
         row = strchr(row, ',') + 1;
     }
-    return strtod(row, NULL);
+    return row;
+}
+
+static double cell(const char *row, size_t column)
+{
+    return strtod(cell_at(row, column), NULL);
 }
 
 static void ranges_stand_behind_the_samples(void **state)
@@ -109,6 +115,31 @@ static void ranges_stand_behind_the_samples(void **state)
     assert_true(cell(rows[2], column_of(rows[0], "coupler_alpha_rad_s2")) == 1.0 / 3.0);
 }
 
+static void a_number_that_does_not_exist_is_an_empty_cell(void **state)
+{
+    Fixture *fixture = *state;
+    Trajectory *run = fixture->runs[1];
+    Sample sample = {.time_s = run->times[1]};
+    sample.bodies[1].omega = 3.5;
+    sample.bodies[1].alpha = INFINITY;
+    sample.joints[1].force = NAN;
+    trajectory_store(run, 1, &sample);
+    char path[256];
+    static char content[8192];
+    Err err = {0};
+    scratch_path("none.csv", path, sizeof path);
+    assert_true(series_csv_write(&fixture->scenario, run, path, &err));
+    read_whole(path, content, sizeof content);
+    unlink(path);
+    const char *head = strtok(content, "\n");
+    const char *none_above = strtok(NULL, "\n");
+    const char *row = strtok(NULL, "\n");
+    assert_true(cell(row, column_of(head, "coupler_omega_rad_s")) == 3.5);
+    assert_int_equal(*cell_at(row, column_of(head, "coupler_alpha_rad_s2")), ',');
+    assert_int_equal(*cell_at(row, column_of(head, "crank-coupler_force_N")), ',');
+    assert_true(cell(none_above, column_of(head, "coupler_alpha_rad_s2")) == 1.0 / 3.0);
+}
+
 static void a_series_of_several_runs_has_a_file_each(void **state)
 {
     (void)state;
@@ -128,6 +159,8 @@ int main(void)
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(ranges_stand_behind_the_samples, fixture_set_up,
                                         fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_number_that_does_not_exist_is_an_empty_cell,
+                                        fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_series_of_several_runs_has_a_file_each, fixture_set_up,
                                         fixture_tear_down),
     };

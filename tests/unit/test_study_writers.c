@@ -122,6 +122,36 @@ static void json_lines_bring_back_every_number(void **state)
     fclose(stream);
 }
 
+static void an_infinity_is_an_empty_cell_and_null(void **state)
+{
+    (void)state;
+    Err err = {0};
+    const Layout layout = study_layout();
+    Store *store = open_study(&layout, false, &err);
+    assert_non_null(store);
+    Record record = study_record(&layout, 0);
+    record.results[0] = INFINITY;
+    record.results[1] = 0.5;
+    assert_true(store_add(store, &record, &err));
+    assert_true(store_close(store, &err));
+    store = view();
+    assert_true(study_csv_write(store, out, &err));
+    read_whole(out, content, sizeof content);
+    char *rest = strchr(content, '\n') + 1;
+    for (size_t i = 0; i < 1 + layout.setting_count + 2; i++) {
+        next_cell(&rest);
+    }
+    assert_string_equal(next_cell(&rest), "");
+    assert_string_equal(next_cell(&rest), "0.5");
+    unlink(out);
+    assert_true(study_jsonl_write(store, out, &err));
+    store_close(store, &err);
+    read_whole(out, content, sizeof content);
+    json_t *row = json_loads(content, 0, NULL);
+    assert_true(json_is_null(json_object_get(row, layout.results[0].name)));
+    json_decref(row);
+}
+
 static void an_export_never_writes_over_its_store(void **state)
 {
     (void)state;
@@ -285,6 +315,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         WRITER_TEST(csv_brings_back_every_number),
+        WRITER_TEST(an_infinity_is_an_empty_cell_and_null),
         WRITER_TEST(json_lines_bring_back_every_number),
         WRITER_TEST(an_export_never_writes_over_its_store),
         WRITER_TEST(status_counts_fates_and_reasons),
