@@ -1,6 +1,5 @@
 // What may stand in a case file, for people: in a terminal and as a page of the documentation.
 #include "casefile/casefile.h"
-
 #include "casefile/expect.h"
 #include "casefile/schema.h"
 

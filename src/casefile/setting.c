@@ -1,6 +1,5 @@
 // Which settings does a scenario hold, as a case file would name them?
 #include "casefile/casefile.h"
-
 #include "casefile/schema.h"
 
 #include <stdio.h>

@@ -4,10 +4,9 @@
 // that one place prints errors and one place ends the program.
 #include "cli/arguments.h"
 
-#include "cli/option_hint.h"
-
 #include "base/claims.h"
 #include "base/text.h"
+#include "cli/option_hint.h"
 
 #include <assert.h>
 #include <errno.h>

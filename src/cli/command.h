@@ -1,4 +1,4 @@
-// A command of the program: one file a command, all listed in main.c.
+// A command of the program: a folder of commands/ each, all listed in main.c.
 #pragma once
 
 #include "base/err.h"
@@ -12,15 +12,6 @@ typedef struct Command {
     // an error is only set, never printed.
     bool (*run)(int argc, char **argv, Err *err);
 } Command;
-
-extern const Command cmd_run;
-extern const Command cmd_compare;
-extern const Command cmd_check;
-extern const Command cmd_tune;
-extern const Command cmd_map;
-extern const Command cmd_study;
-extern const Command cmd_paper;
-extern const Command cmd_help;
 
 // All of them, in the order in which they are listed; ends in NULL.
 extern const Command *const COMMANDS[];

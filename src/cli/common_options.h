@@ -5,7 +5,7 @@
 #include "base/err.h"
 #include "cli/arguments.h"
 #include "cli/option_values.h"
-#include "compare/scheme.h"
+#include "measure/scheme.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,12 +1,11 @@
 // What was asked for, and how did it end?
 //
 // The only place that prints errors and ends the program.
-#include "cli/arguments.h"
-#include "cli/command.h"
-#include "cli/output.h"
-#include "version.h"
-
 #include "base/descriptors.h"
+#include "cli/arguments.h"
+#include "cli/output.h"
+#include "commands/commands.h"
+#include "version.h"
 
 #include <signal.h>
 #include <stdio.h>

@@ -2,9 +2,8 @@
 #include "cli/output.h"
 
 #include "base/printable.h"
-#include "report/json_value.h"
-
-#include "base/sink.h"
+#include "write/json_value.h"
+#include "write/sink.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -78,7 +77,7 @@ void output_json(json_t *object)
 {
     Text text;
     text_init(&text);
-    json_value_write(object, RUN_JSON_FLAGS, &text);
+    json_value_write(object, JSON_VALUE_FLAGS, &text);
     text_append(&text, "\n");
     fputs(text.data, stdout);
     text_finish(&text);

@@ -3,8 +3,8 @@
 
 #include "base/err.h"
 #include "base/text.h"
-#include "report/run_json.h"
-#include "report/style.h"
+#include "write/json_value.h"
+#include "write/style.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/status_line.h"
-#include "compare/chosen_run.h"
+#include "measure/chosen_run.h"
 
 typedef struct Progress {
     const char *backend; // of the run that is watched

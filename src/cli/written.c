@@ -3,8 +3,8 @@
 
 #include "base/text.h"
 #include "cli/output.h"
-#include "report/file.h"
-#include "report/json_value.h"
+#include "write/file.h"
+#include "write/json_value.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -38,7 +38,7 @@ bool written_json(const char *path, const json_t *object, bool is_quiet, Err *er
 {
     Text text;
     text_init(&text);
-    json_value_write(object, RUN_JSON_FLAGS, &text);
+    json_value_write(object, JSON_VALUE_FLAGS, &text);
     text_append(&text, "\n");
     const bool is_written = written_text(FILE_RESULT, path, text.data, is_quiet, err);
     text_finish(&text);

@@ -1,9 +1,9 @@
 // Files that the program leaves behind, each with a word on standard error unless quiet.
 #pragma once
 
-#include "report/file_kind.h"
-#include "report/journal.h"
-#include "report/run_json.h"
+#include "write/file_kind.h"
+#include "write/journal.h"
+#include "write/json_value.h"
 
 // Says that a file was written; always true.
 bool written_say(const char *path, bool is_quiet);

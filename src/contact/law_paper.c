@@ -7,7 +7,6 @@
 // do not enter. Neither is a law of contact that physics knows: see docs/equations.md.
 // Source: the paper's Eq. (7) and Tables II and III, as read in contact/penalty.
 #include "contact/law.h"
-
 #include "contact/penalty.h"
 
 #include <math.h>

@@ -8,11 +8,10 @@
 // Forces in the joints follow from the accelerations (ode/ideal_forces.c), those of the drive from
 // the balance of the driven body. Work of the drive, P its power, over a part from t1 to t2:
 //     W = (t2 - t1) / 6 (P(t1) + 4 P((t1 + t2) / 2) + P(t2))        (Simpson)
-#include "ode/stepping.h"
-
 #include "base/hermite.h"
 #include "ode/ideal_forces.h"
 #include "ode/nodes.h"
+#include "ode/stepping.h"
 
 #include <assert.h>
 #include <stdlib.h>

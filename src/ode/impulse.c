@@ -3,9 +3,8 @@
 //
 // A step is handed on in parts that end where a contact begins, ends, or shows a maximum, so that
 // no peak is missed whatever the step.
-#include "ode/impulse_step.h"
-
 #include "contact/law.h"
+#include "ode/impulse_step.h"
 #include "ode/marks.h"
 #include "ode/stepping.h"
 

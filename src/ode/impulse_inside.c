@@ -5,7 +5,6 @@
 // means of the last two steps, and A f(t). Ideal joints: the mean forces of the step, and how the
 // joints answer what the contacts do beyond theirs.
 #include "ode/impulse_step.h"
-
 #include "ode/stepping.h"
 
 #include <string.h>

@@ -7,10 +7,9 @@
 // ODE is first order read like this. In between, positions and speeds are taken as linear.
 // Where every joint is ideal the run starts `settle_steps` early: the joint rows lag behind the
 // start by a share (1 - ERP)^n, which would stand in the accelerations at any step size.
-#include "ode/stepping.h"
-
 #include "ode/contact_rows.h"
 #include "ode/engine.h"
+#include "ode/stepping.h"
 
 #include <assert.h>
 #include <stdio.h>

@@ -16,11 +16,10 @@
 // Read between: speeds linear in each step, places their integral, accelerations linear between
 // mid-steps. That needs the step after: the run is one step ahead of what it hands on.
 // Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. 2006, VII.1.4 on SHAKE.
-#include "ode/stepping.h"
-
 #include "model/response.h"
 #include "ode/contact_rows.h"
 #include "ode/engine.h"
+#include "ode/stepping.h"
 
 #include <assert.h>
 #include <stdlib.h>

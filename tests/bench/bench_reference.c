@@ -6,7 +6,7 @@
 #include "mechanism.h"
 
 #include "base/sorted.h"
-#include "compare/error.h"
+#include "measure/error.h"
 #include "run/registry.h"
 #include "run/run.h"
 

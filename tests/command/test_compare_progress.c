@@ -1,5 +1,5 @@
 // Does a long comparison say how far it has come, without leaving anything behind on a terminal?
-#include "cli/compare_progress.h"
+#include "commands/compare/compare_progress.h"
 
 #include "close.h"
 

@@ -1,8 +1,8 @@
 // Does any text bring the reader of baselines down, or pass it and then not be written back, or
 // differ from itself?
-#include "compare/check_judge.h"
-#include "report/baseline_json.h"
-#include "report/check_report.h"
+#include "commands/check/baseline_json.h"
+#include "commands/check/check_judge.h"
+#include "commands/check/check_report.h"
 
 #include "fuzz_check.h"
 #include "fuzz_file.h"

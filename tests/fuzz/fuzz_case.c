@@ -3,7 +3,7 @@
 // Lines at the end that begin with #--set are given as overrides, so that a corpus is made of case
 // files.
 #include "casefile/casefile.h"
-#include "report/settings_json.h"
+#include "write/settings_json.h"
 
 #include "fuzz_check.h"
 

@@ -2,7 +2,7 @@
 //
 // The study lies in a folder of its own beside the project's cases, which a corpus made from
 // cases/studies names. Runs are told and never made.
-#include "study/design.h"
+#include "commands/study/design.h"
 
 #include "fuzz_check.h"
 

@@ -8,11 +8,11 @@
 // One line a run; a summary at the end.
 #include "random_case.h"
 
-#include "base/child.h"
 #include "base/clock.h"
 #include "casefile/casefile.h"
-#include "compare/chosen_run.h"
-#include "compare/error.h"
+#include "measure/child.h"
+#include "measure/chosen_run.h"
+#include "measure/error.h"
 #include "model/distance.h"
 #include "run/registry.h"
 

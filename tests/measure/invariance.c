@@ -9,8 +9,8 @@
 #include "rocker.h"
 #include "starts.h"
 
-#include "compare/check_measure.h"
-#include "compare/error.h"
+#include "commands/check/check_measure.h"
+#include "measure/error.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include "mechanism.h"
 #include "ode_error.h"
 
-#include "compare/chosen_run.h"
+#include "measure/chosen_run.h"
 
 #include <string.h>
 

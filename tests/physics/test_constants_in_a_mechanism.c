@@ -6,8 +6,8 @@
 #include "close.h"
 #include "mechanism.h"
 
-#include "compare/error.h"
-#include "compare/tune_linear.h"
+#include "commands/tune/tune_linear.h"
+#include "measure/error.h"
 #include "run/registry.h"
 
 static const double STEP_S = 1e-5;

@@ -5,9 +5,9 @@
 #include "close.h"
 #include "mechanism.h"
 
-#include "compare/chosen_run.h"
-#include "compare/ensemble.h"
-#include "compare/truth.h"
+#include "measure/chosen_run.h"
+#include "measure/ensemble.h"
+#include "measure/truth.h"
 #include "run/registry.h"
 
 enum { STEPS_BETWEEN = 64 };

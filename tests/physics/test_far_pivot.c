@@ -10,7 +10,7 @@
 #include "rocker.h"
 #include "starts.h"
 
-#include "compare/error.h"
+#include "measure/error.h"
 
 enum { PIN = 2, ROCKER = 2, STARTS = 24 };
 

@@ -8,7 +8,7 @@
 #include "close.h"
 #include "random_joint.h"
 
-#include "compare/held.h"
+#include "measure/held.h"
 
 #include <stdlib.h>
 

@@ -6,8 +6,8 @@
 
 #include "rocker.h"
 
-#include "compare/error.h"
-#include "compare/truth.h"
+#include "measure/error.h"
+#include "measure/truth.h"
 
 static const RunWatch NOBODY = {NULL, NULL};
 

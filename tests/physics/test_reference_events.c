@@ -4,8 +4,8 @@
 
 #include "mechanism.h"
 
-#include "compare/error.h"
-#include "compare/truth.h"
+#include "measure/error.h"
+#include "measure/truth.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -2,8 +2,8 @@
 // back?
 #include "complete_run.h"
 
-#include "compare/truth.h"
 #include "contact/damping.h"
+#include "measure/truth.h"
 #include "mechanism.h"
 
 static const RunWatch NOBODY = {NULL, NULL};

@@ -3,29 +3,56 @@
 # shows in its own place alone. Prints TAP.
 set -u
 root=$1
-layers="base model casefile contact analytic reference ode run compare study paper report cli"
+layers="base model contact casefile analytic reference ode run measure write cli commands"
+
+# The folder of a path below the sources: of a command, commands/<name>.
+folder_of() {
+    case $1 in
+    commands/*/*) echo "$1" | cut -d/ -f1,2 ;;
+    */*) echo "${1%%/*}" ;;
+    esac
+}
 
 rank_of() {
     rank=0
     for layer in $layers; do
         rank=$((rank + 1))
-        [ "$layer" != "$1" ] || { echo "$rank"; return; }
+        [ "$layer" != "${1%%/*}" ] || { echo "$rank"; return; }
     done
     echo 0
 }
 
-# Lines 'file: what is wrong' for one source tree.
+# Lines 'file: what is wrong' for one source tree. Only cli/main.c, which lists the commands, looks
+# down on them; commands/commands.h, which declares them, belongs to all.
 broken_layers() {
-    for file in $(find "$1" -name '*.[ch]' | sort); do
-        own=$(basename "$(dirname "$file")")
+    (cd "$1" && grep -r '^#include "[a-z_]*/' . --include='*.[ch]') |
+        sed 's|^\./||; s|:#include "| |; s|".*||' | sort | while read -r file included; do
+        [ "$file" != cli/main.c ] && [ "$included" != commands/commands.h ] || continue
+        own=$(folder_of "$file")
+        other=$(folder_of "$included")
         own_rank=$(rank_of "$own")
+        rank=$(rank_of "$other")
         [ "$own_rank" != 0 ] || echo "$file: folder $own is no layer"
-        for name in $(sed -n 's/^#include "\([a-z_]*\)\/.*/\1/p' "$file" | sort -u); do
-            rank=$(rank_of "$name")
-            if [ "$rank" = 0 ] || [ "$rank" -gt "$own_rank" ]; then
-                echo "$file: includes $name/, which is not above $own/"
-            fi
-        done
+        if [ "$rank" = 0 ] || [ "$rank" -gt "$own_rank" ]; then
+            echo "$file: includes $other/, which is not above $own/"
+        elif [ "$rank" = "$own_rank" ] && [ "$own" != "$other" ]; then
+            echo "$file: includes $other/, another command"
+        fi
+    done
+}
+
+# Files that need each other, a header and its source taken as one.
+cycles() {
+    (cd "$1" && grep -r '^#include "[a-z_]*/' . --include='*.[ch]') |
+        sed 's|^\./||; s|\.[ch]:#include "| |; s|\.h".*||' | awk '$1 != $2' | sort -u |
+        tsort 2>&1 >/dev/null | sed 's|^tsort: -: ||; s|^tsort: ||'
+}
+
+# What a library must not do: speak, or end the program it is part of.
+loud_library() {
+    for layer in base model contact casefile analytic reference ode run; do
+        [ ! -d "$1/$layer" ] || grep -nE '(^|[^a-z_])(printf|puts|putchar|exit|_exit)\(' \
+            "$1/$layer" -r --include='*.[ch]' | grep -v '__attribute__'
     done
 }
 
@@ -37,11 +64,11 @@ broken_wall() {
 broken_walls() {
     broken_wall "$1" 'ode/' '/ode/'
     broken_wall "$1" 'ccd/' '/ode/'
-    broken_wall "$1" 'gsl/' '/base/(normal|root)\.c$'
+    broken_wall "$1" 'gsl/' '/(base/root|commands/study/normal)\.c$'
     broken_wall "$1" 'yaml\.h' '/casefile/document\.c$'
-    broken_wall "$1" 'jansson\.h' '/report/'
-    broken_wall "$1" 'sqlite3\.h' '/study/store[a-z_]*\.c$'
-    broken_wall "$1" 'argp\.h' '/cli/'
+    broken_wall "$1" 'jansson\.h' '/(write|commands)/'
+    broken_wall "$1" 'sqlite3\.h' '/commands/study/store[a-z_]*\.c$'
+    broken_wall "$1" 'argp\.h' '/(cli|commands)/'
 }
 
 long_files() {
@@ -66,24 +93,42 @@ report() {
 # the control: a tree with one fault of each kind must be caught
 control=$(mktemp -d)
 trap 'rm -rf "$control"' EXIT
-mkdir -p "$control/model" "$control/run" "$control/walls/study"
+mkdir -p "$control/model" "$control/run" "$control/walls/commands/study"
 printf '#include "run/run.h"\n#include <ode/ode.h>\n' >"$control/model/bad.c"
 # and only the one of two files that is outside the library's place
 for name in sweep store_rows; do
-    printf '#include <sqlite3.h>\n' >"$control/walls/study/$name.c"
+    printf '#include <sqlite3.h>\n' >"$control/walls/commands/study/$name.c"
 done
+
+mkdir -p "$control/rooms/commands/tune" "$control/rooms/cli"
+printf '#include "commands/map/map.h"\n' >"$control/rooms/commands/tune/tune.c"
+printf '#include "commands/commands.h"\n' >"$control/rooms/commands/tune/cmd_tune.c"
+printf '#include "commands/map/map.h"\n' >"$control/rooms/cli/main.c"
+mkdir -p "$control/circle/run"
+printf '#include "run/b.h"\n' >"$control/circle/run/a.c"
+printf '#include "run/a.h"\n' >"$control/circle/run/b.h"
+mkdir -p "$control/loud/base"
+printf 'void f(void) { printf("%%d", 1); }\n' >"$control/loud/base/f.c"
 
 caught() {
     if [ -n "$1" ]; then echo ''; else echo 'nothing was found'; fi
 }
 
-echo 1..7
+echo 1..13
 report "a file includes only its own folder and those above it" "$(broken_layers "$root/src")"
 report "each library is included in its own place alone" "$(broken_walls "$root/src")"
+report "no two files need each other" "$(cycles "$root/src")"
+report "the library prints nothing and ends nothing" "$(loud_library "$root/src")"
 report "no file has more than 400 lines" "$(long_files "$root/src")"
 report "every header guards itself" "$(unguarded_headers "$root/src")"
 report "a file that includes a lower layer is caught" "$(caught "$(broken_layers "$control")")"
+found=$(broken_layers "$control/rooms")
+report "a command that includes another is caught, and nothing else" \
+    "$([ "$found" = 'commands/tune/tune.c: includes commands/map/, another command' ] || echo "found: $found")"
 report "a library outside its place is caught" "$(caught "$(broken_walls "$control")")"
 found=$(broken_walls "$control/walls" | sed 's|.*/||')
 report "SQLite is caught outside the store alone" \
     "$([ "$found" = 'sweep.c: includes <sqlite3.h' ] || echo "found: $found")"
+report "two files that need each other are caught" "$(caught "$(cycles "$control/circle")")"
+report "a library that prints is caught" "$(caught "$(loud_library "$control/loud")")"
+report "files without a circle are not caught" "$(cycles "$control/rooms")"

@@ -3,7 +3,7 @@
 
 #include "complete_run.h"
 
-#include "compare/error.h"
+#include "measure/error.h"
 
 enum { ODE_CLIMB_MAX = 8 };
 

@@ -9,8 +9,8 @@
 
 #include "mechanism.h"
 
-#include "compare/impact.h"
 #include "contact/damping.h"
+#include "measure/impact.h"
 
 const double ONE_IMPACT_MASS = 0.1;
 const double ONE_IMPACT_SPEED = 0.5;

@@ -2,7 +2,7 @@
 // engine delivers, and the same joint at another mass, length and time.
 #pragma once
 
-#include "compare/mapping_verdict.h"
+#include "measure/mapping_verdict.h"
 
 typedef struct RandomJoint {
     MappingContact contact;

@@ -2,8 +2,8 @@
 // failed.
 #pragma once
 
-#include "report/run_report.h"
-#include "report/units.h"
+#include "commands/run/run_report.h"
+#include "write/units.h"
 
 #include "close.h"
 

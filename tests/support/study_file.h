@@ -3,7 +3,7 @@
 
 #include "scratch.h"
 
-#include "study/design.h"
+#include "commands/study/design.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/hash.h"
-#include "study/store.h"
+#include "commands/study/store.h"
 
 #include <math.h>
 #include <stdio.h>

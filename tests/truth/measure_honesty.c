@@ -5,8 +5,8 @@
 // quadruple precision up to the horizon. Prints one line of columns, by `measure_honesty --header`
 // their names; status 1 where there is no truth, whose column then says why.
 #include "casefile/casefile.h"
-#include "compare/error.h"
-#include "compare/truth.h"
+#include "measure/error.h"
+#include "measure/truth.h"
 #include "run/registry.h"
 #include "truth_trajectory.h"
 

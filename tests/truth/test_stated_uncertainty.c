@@ -8,8 +8,8 @@
 #include "problems.h"
 #include "truth_trajectory.h"
 
-#include "compare/error.h"
-#include "compare/truth.h"
+#include "measure/error.h"
+#include "measure/truth.h"
 
 // The requirement: an error is at most this many times the uncertainty stated.
 static const double COVERED = 3.0;

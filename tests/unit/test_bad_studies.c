@@ -2,7 +2,7 @@
 // tests/bad_study/NAME.expected holds?
 //
 // Runs in the source root. One test a file; a .yaml without its .expected is a failure.
-#include "study/spec.h"
+#include "commands/study/spec.h"
 
 #include "bad_files.h"
 

@@ -6,9 +6,9 @@
 #include "load_case.h"
 #include "scratch.h"
 
-#include "compare/check_judge.h"
-#include "report/baseline_json.h"
-#include "report/check_report.h"
+#include "commands/check/baseline_json.h"
+#include "commands/check/check_judge.h"
+#include "commands/check/check_report.h"
 
 #include <jansson.h>
 #include <string.h>

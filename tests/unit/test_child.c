@@ -1,5 +1,5 @@
 // Does a piece of work that fails, hangs or takes all memory hurt no one but itself?
-#include "base/child.h"
+#include "measure/child.h"
 
 #include "close.h"
 

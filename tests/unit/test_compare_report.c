@@ -1,9 +1,9 @@
 // Is everything about a comparison told, in words, numbers and a picture?
-#include "report/compare_csv.h"
-#include "report/compare_json.h"
-#include "report/compare_plot.h"
-#include "report/compare_text.h"
-#include "report/file.h"
+#include "commands/compare/compare_csv.h"
+#include "commands/compare/compare_json.h"
+#include "commands/compare/compare_plot.h"
+#include "commands/compare/compare_text.h"
+#include "write/file.h"
 
 #include "close.h"
 #include "mechanism.h"

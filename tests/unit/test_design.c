@@ -1,5 +1,5 @@
 // Do runs follow from their numbers, do shards make up the whole, and do values arrive unchanged?
-#include "study/design.h"
+#include "commands/study/design.h"
 
 #include "study_file.h"
 

@@ -2,11 +2,11 @@
 //
 // Seeds are fixed: a test that passes passes always. Bounds are those that true randomness breaks
 // with a chance of 1e-6 or less.
-#include "study/draw.h"
+#include "commands/study/draw.h"
 
 #include "close.h"
 
-#include "base/normal.h"
+#include "commands/study/normal.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 
 #include "mechanism.h"
 
-#include "compare/error.h"
+#include "measure/error.h"
 
 // A trajectory whose speeds are sin and cos of the sample, each body scaled.
 static Trajectory *made(const Scenario *scenario, double offset, double slip)

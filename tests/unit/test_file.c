@@ -1,9 +1,9 @@
 // Is a file written whole or not at all?
-#include "report/file.h"
+#include "write/file.h"
 
 #include "scratch.h"
 
-#include "base/work_lock.h"
+#include "write/work_lock.h"
 
 #include <fcntl.h>
 #include <signal.h>

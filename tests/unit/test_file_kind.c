@@ -1,5 +1,5 @@
 // Does no output replace what it should not: what is read, another output, a file of another kind?
-#include "report/file.h"
+#include "write/file.h"
 
 #include "base/claims.h"
 #include "scratch.h"

@@ -1,5 +1,5 @@
 // Is what nothing beats on the frontier, and nothing else?
-#include "compare/frontier.h"
+#include "measure/frontier.h"
 
 #include "close.h"
 

@@ -1,7 +1,7 @@
 // Does a store give back what was put in, and refuse what is not its own?
-#include "report/journal.h"
+#include "write/journal.h"
 
-#include "report/ladder_json.h"
+#include "write/ladder_json.h"
 
 #include "close.h"
 #include "mechanism.h"

@@ -1,6 +1,6 @@
 // Are the right runs made, each once, and is what they say put together rightly?
-#include "compare/runner.h"
-#include "compare/task.h"
+#include "measure/runner.h"
+#include "measure/task.h"
 #include "run/registry.h"
 
 #include "close.h"

@@ -1,8 +1,8 @@
 // Are the last words of a process heard, and only the last?
-#include "base/last_words.h"
+#include "commands/study/last_words.h"
 
-#include "base/child.h"
 #include "close.h"
+#include "measure/child.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,9 +2,9 @@
 #include "close.h"
 #include "mechanism.h"
 
-#include "compare/mapping_inverse.h"
-#include "compare/mapping_verdict.h"
+#include "commands/map/mapping_inverse.h"
 #include "contact/damping.h"
+#include "measure/mapping_verdict.h"
 #include "run/registry.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 // Does a study keep the numbers of a run, under the names that its JSON output has?
-#include "study/metrics.h"
+#include "commands/study/metrics.h"
 
 #include "complete_run.h"
 #include "mechanism.h"

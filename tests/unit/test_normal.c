@@ -1,5 +1,5 @@
 // Is the normal distribution right in the middle, in the tails, and between limits?
-#include "base/normal.h"
+#include "commands/study/normal.h"
 
 #include "close.h"
 

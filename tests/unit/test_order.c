@@ -1,5 +1,5 @@
 // Is the order of a power law found, and none where there is none?
-#include "compare/order.h"
+#include "measure/order.h"
 
 #include "close.h"
 

@@ -1,11 +1,11 @@
 // Do the paper's numbers come out again, and for the right reasons?
 #include "close.h"
 
+#include "commands/paper/embedded.h"
+#include "commands/paper/paper.h"
+#include "commands/paper/paper_json.h"
+#include "commands/paper/paper_text.h"
 #include "contact/law.h"
-#include "paper/embedded.h"
-#include "paper/paper.h"
-#include "report/paper_json.h"
-#include "report/paper_text.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #include "base/lcg.h"
 #include "base/sorted.h"
 #include "close.h"
-#include "compare/rank_test.h"
+#include "measure/rank_test.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // Do the lists of choices make every scheme that differs, and none that does not?
-#include "compare/scheme.h"
+#include "measure/scheme.h"
 
 #include "close.h"
 #include "mechanism.h"

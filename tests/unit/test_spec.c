@@ -1,5 +1,5 @@
 // Is a study file read as it is written, with every default that it leaves out?
-#include "study/spec.h"
+#include "commands/study/spec.h"
 
 #include "study_file.h"
 

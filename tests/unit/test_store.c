@@ -1,6 +1,6 @@
 // Does a store give back what was put in, whatever happens to its process, and refuse what is not
 // its own?
-#include "study/store.h"
+#include "commands/study/store.h"
 
 #include "study_store.h"
 

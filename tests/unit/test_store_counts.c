@@ -1,5 +1,5 @@
 // Are counts, reasons, values and quantiles of a store those of its rows?
-#include "study/store.h"
+#include "commands/study/store.h"
 
 #include "base/sorted.h"
 

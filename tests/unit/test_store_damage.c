@@ -1,5 +1,5 @@
 // Does a store that cannot be read or written say so, and never give a wrong number?
-#include "study/store.h"
+#include "commands/study/store.h"
 
 #include "study_store.h"
 

@@ -1,6 +1,6 @@
 // Is the merge of the shards of a study the study, and is nothing merged that does not belong
 // together?
-#include "study/store.h"
+#include "commands/study/store.h"
 
 #include "base/text.h"
 

@@ -1,5 +1,5 @@
 // Can a store that somebody sent write or delete a file, or keep one waiting for ever?
-#include "study/store.h"
+#include "commands/study/store.h"
 
 #include "study_store.h"
 

@@ -3,7 +3,7 @@
 // The truth is SQLite: a copy is opened to work, so that it plays the journal back, and the file is
 // then compared with the image that is seen by looking, byte for byte; for whole journals, and for
 // those that were cut off or damaged anywhere.
-#include "study/store_inside.h"
+#include "commands/study/store_inside.h"
 
 #include "study_store.h"
 

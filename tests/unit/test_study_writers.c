@@ -1,8 +1,8 @@
 // Do the exports, the tables and the pictures of a study say what is in its store?
-#include "report/study_csv.h"
-#include "report/study_jsonl.h"
-#include "report/study_plot.h"
-#include "report/study_text.h"
+#include "commands/study/study_csv.h"
+#include "commands/study/study_jsonl.h"
+#include "commands/study/study_plot.h"
+#include "commands/study/study_text.h"
 
 #include "scratch.h"
 #include "study_store.h"

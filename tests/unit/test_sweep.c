@@ -2,11 +2,11 @@
 //
 // The work of the processes is put in their place: each run does, by its number, what a run must
 // not do.
-#include "study/sweep_work.h"
+#include "commands/study/sweep_work.h"
 
+#include "commands/study/sweep.h"
 #include "complete_run.h"
 #include "scratch.h"
-#include "study/sweep.h"
 
 #include <assert.h>
 #include <signal.h>

@@ -1,5 +1,5 @@
 // Are tables set out so that numbers of any length stand under one another?
-#include "base/table.h"
+#include "write/table.h"
 
 // cmocka.h needs these before it
 #include <setjmp.h>

@@ -1,5 +1,5 @@
 // Does a search take the right settings from the errors it is given?
-#include "compare/tune.h"
+#include "commands/tune/tune.h"
 
 #include "close.h"
 #include "mechanism.h"

@@ -1,8 +1,8 @@
 // Do the constants for other programs come to the contact that they stand for?
-#include "report/tune_gazebo.h"
-#include "report/tune_mujoco.h"
+#include "commands/tune/tune_gazebo.h"
+#include "commands/tune/tune_mujoco.h"
 
-#include "compare/tune_linear.h"
+#include "commands/tune/tune_linear.h"
 #include "contact/law.h"
 #include "contact/map.h"
 

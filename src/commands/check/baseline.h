@@ -1,0 +1,94 @@
+// What the numbers of a case were, how far each may move, and why that far.
+#pragma once
+
+#include "commands/check/check_measure.h"
+#include "measure/rank_test.h"
+#include "write/build_print.h"
+
+enum {
+    BASELINE_WHY_SIZE = 128,
+    BASELINE_KEY_SIZE = 160,
+    BASELINE_VALUE_SIZE = 320,
+    BASELINE_TEXT_SIZE = 64,
+    BASELINE_MEMBERS = 8,     // starts whose spread makes a band of rounding
+    BASELINE_SAMPLE_SIZE = 32 // starts whose numbers make a distribution
+};
+
+// Differences of speeds, as shares of the scale of speeds, between the starts of the two ensembles:
+// of the first what rounding amounts to, and somewhat more; of the second so much more that
+// rounding does not show beside it, and so little that everything before the horizon stays as it
+// is.
+extern const double BASELINE_ROUNDING_SHARE;
+extern const double BASELINE_SAMPLE_SHARE;
+
+// Why a number may move.
+typedef enum BandKind {
+    BAND_EXACT,       // it may not
+    BAND_ROUNDING,    // other compilers and machines round otherwise
+    BAND_STATISTICAL, // it cannot be predicted: its distribution is held against another sample
+    BAND_KIND_COUNT,
+} BandKind;
+
+extern const char *const BASELINE_BAND_WORDS[BAND_KIND_COUNT];
+
+typedef struct BaselineMetric {
+    char name[CHECK_NAME_SIZE];
+    CheckKind kind;
+    bool is_slow;
+    BandKind band_kind;
+    uint64_t hash; // of CHECK_HASH
+    double value;  // of BAND_STATISTICAL the median of the sample
+    double band;   // largest |difference| allowed; of BAND_STATISTICAL the smallest shift of the
+                   // whole sample that the test tells
+    double mean;   // of BAND_STATISTICAL
+    size_t sample_count;
+    double sample[BASELINE_SAMPLE_SIZE]; // likewise, ascending
+    char why[BASELINE_WHY_SIZE];         // the reason of the band, in words
+} BaselineMetric;
+
+// A resolved setting of the case: its key and its value with the unit.
+typedef struct BaselineSetting {
+    char key[BASELINE_KEY_SIZE];
+    char value[BASELINE_VALUE_SIZE];
+} BaselineSetting;
+
+typedef struct Baseline {
+    char case_path[SCENARIO_PATH_SIZE]; // relative to the baseline's folder
+    char version[BASELINE_TEXT_SIZE];   // of the program, as the three below of its libraries
+    char ode[BASELINE_TEXT_SIZE];
+    char ccd[BASELINE_TEXT_SIZE];
+    char gsl[BASELINE_TEXT_SIZE];
+    char compiler[BASELINE_TEXT_SIZE];
+    char build[BUILD_PRINT_SIZE]; // fingerprint of the program
+    CheckPlan plan;
+    size_t setting_count;
+    BaselineSetting *settings; // owned
+    size_t count;
+    BaselineMetric *metrics; // owned
+} Baseline;
+
+void baseline_finish(Baseline *baseline);
+
+// Fills versions, compiler, fingerprint and settings for this program and a scenario.
+void baseline_set_head(Baseline *baseline, const Scenario *scenario, const CheckPlan *plan);
+
+// The start of a member of the ensemble of rounding, from 1; and of the sample, from 1 on: a check
+// takes its own from behind those of the baseline.
+CheckStart baseline_rounding_start(unsigned member);
+CheckStart baseline_sample_start(unsigned member);
+
+// Makes the metrics from the unperturbed run and those of the ensemble of rounding. Fails with
+// ERR_SOLVER where two runs did not measure the same metrics.
+bool baseline_set_metrics(Baseline *baseline, const CheckMeasure *run, const CheckMeasure *members,
+                          size_t member_count, Err *err);
+
+// Whether any metric needs a sample.
+bool baseline_needs_sample(const Baseline *baseline);
+
+// Puts the sample's values into the metrics that are statistical. `rate` is the false-alarm rate of
+// one test that the band is for.
+bool baseline_set_sample(Baseline *baseline, const CheckMeasure *members, size_t member_count,
+                         double rate, Err *err);
+
+// The number of a metric in a measure, or its count.
+size_t baseline_find(const CheckMeasure *measure, const char *name);

@@ -1,0 +1,290 @@
+// Which numbers have moved by more than they may?
+//
+// exact and rounding   |now - was| <= band
+// statistical          p of the rank test of the baseline's sample against the check's own is above
+//                      rate / tests: with Bonferroni's bound the chance of any false alarm in the
+//                      whole check is at most the rate, however the tests depend on one another.
+#include "commands/check/check_judge.h"
+
+#include "base/sorted.h"
+#include "base/text.h"
+
+#include <assert.h>
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const double CHECK_FALSE_ALARM_RATE = 1e-3;
+
+static const double SETTING_AGREES = 1e-12; // of the largest number: rounding of a place in it
+
+const char *const CHECK_VERDICT_WORDS[CHECK_VERDICT_COUNT] = {
+    [CHECK_WITHIN] = "within", [CHECK_OUT] = "out",   [CHECK_SETTING] = "setting",
+    [CHECK_NEW] = "new",       [CHECK_GONE] = "gone", [CHECK_LEFT_OUT] = "left out",
+};
+
+size_t check_test_count(const Baseline *baseline)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < baseline->count; i++) {
+        count += baseline->metrics[i].band_kind == BAND_STATISTICAL ? 1 : 0;
+    }
+    return count;
+}
+
+size_t check_row_max(const Baseline *baseline, const CheckEvidence *evidence)
+{
+    return baseline->setting_count + baseline->count + evidence->run->count;
+}
+
+bool check_row_is_out(const CheckRow *row)
+{
+    return row->verdict != CHECK_WITHIN && row->verdict != CHECK_LEFT_OUT;
+}
+
+static const char *find_setting(const Baseline *baseline, const char *key)
+{
+    for (size_t i = 0; i < baseline->setting_count; i++) {
+        if (strcmp(baseline->settings[i].key, key) == 0) {
+            return baseline->settings[i].value;
+        }
+    }
+    return NULL;
+}
+
+// Reads a number where one can begin: not within a word, and none of the words that strtod takes
+// for numbers. False where there is none; `end` is then as it was.
+static bool read_number(const char *text, const char *at, double *number, const char **end)
+{
+    const bool is_within = at > text && isalnum((unsigned char)at[-1]);
+    const char *digit = at + strspn(at, "+-.");
+    if (is_within || !isdigit((unsigned char)*digit)) {
+        return false;
+    }
+    // "--2" has a digit, and yet strtod finds no number at its start
+    char *behind;
+    const double read = strtod(at, &behind);
+    if (behind == at || !isfinite(read)) {
+        return false;
+    }
+    *number = read;
+    *end = behind;
+    return true;
+}
+
+// The largest number in a value.
+static double largest_number(const char *value)
+{
+    double largest = 0.0;
+    for (const char *at = value; *at != '\0';) {
+        double number;
+        const char *end = at + 1;
+        if (read_number(value, at, &number, &end)) {
+            largest = fmax(largest, fabs(number));
+        }
+        at = end;
+    }
+    return largest;
+}
+
+// Whether two values say the same: words as they are, numbers to rounding, for a place may have
+// been worked out from others.
+static bool settings_agree(const char *was, const char *now)
+{
+    const double near = SETTING_AGREES * largest_number(was);
+    const char *at_was = was;
+    const char *at_now = now;
+    while (*at_was != '\0' && *at_now != '\0') {
+        double was_number;
+        double now_number;
+        const char *was_end;
+        const char *now_end;
+        if (read_number(was, at_was, &was_number, &was_end) &&
+            read_number(now, at_now, &now_number, &now_end)) {
+            if (!(fabs(was_number - now_number) <= near)) {
+                return false;
+            }
+            at_was = was_end;
+            at_now = now_end;
+        } else if (*at_was++ != *at_now++) {
+            return false;
+        }
+    }
+    return *at_was == *at_now;
+}
+
+// A setting that is another now, or is not made use of any more. One that the baseline does not
+// know is no difference by itself: a newer program may have more of them.
+static void judge_setting(const BaselineSetting *was, const char *now, CheckRow *rows,
+                          size_t *count)
+{
+    if (now != NULL && settings_agree(was->value, now)) {
+        return;
+    }
+    CheckRow *row = &rows[(*count)++];
+    *row = (CheckRow){.verdict = CHECK_SETTING, .severity = INFINITY};
+    text_copy(row->name, sizeof row->name, was->key);
+    text_copy(row->was_text, sizeof row->was_text, was->value);
+    text_copy(row->now_text, sizeof row->now_text, now != NULL ? now : "not used");
+    snprintf(row->why, sizeof row->why, "a setting of the case, not a number measured");
+}
+
+static void judge_settings(const Baseline *baseline, const Baseline *now, CheckRow *rows,
+                           size_t *count)
+{
+    for (size_t i = 0; i < baseline->setting_count; i++) {
+        const BaselineSetting *setting = &baseline->settings[i];
+        judge_setting(setting, find_setting(now, setting->key), rows, count);
+    }
+}
+
+static void leave_out(CheckRow *row, const char *why)
+{
+    row->verdict = CHECK_LEFT_OUT;
+    row->severity = 0.0;
+    snprintf(row->why, sizeof row->why, "%s", why);
+}
+
+static void judge_hash(const Baseline *baseline, const BaselineMetric *metric,
+                       const CheckEvidence *evidence, uint64_t hash, CheckRow *row)
+{
+    row->hash_was = metric->hash;
+    row->hash_now = hash;
+    if (evidence->is_shaken) {
+        leave_out(row, "the inputs were shaken");
+    } else if (strcmp(baseline->build, evidence->now->build) != 0) {
+        leave_out(row, "of another build of the program");
+    } else {
+        row->verdict = metric->hash == hash ? CHECK_WITHIN : CHECK_OUT;
+        row->severity = metric->hash == hash ? 0.0 : INFINITY;
+    }
+}
+
+static void judge_number(const BaselineMetric *metric, double now, CheckRow *row)
+{
+    row->now = now;
+    row->deviation = now - metric->value;
+    const double size = fabs(row->deviation);
+    row->verdict = size <= metric->band ? CHECK_WITHIN : CHECK_OUT;
+    row->severity = size == 0.0 ? 0.0 : metric->band > 0.0 ? size / metric->band : INFINITY;
+}
+
+static void judge_sample(const BaselineMetric *metric, const CheckEvidence *evidence, CheckRow *row)
+{
+    double values[RANK_TEST_MAX];
+    const size_t count = evidence->sample_count;
+    assert(count > 0 && count <= RANK_TEST_MAX);
+    for (size_t i = 0; i < count; i++) {
+        const size_t place = baseline_find(&evidence->sample[i], metric->name);
+        if (place == evidence->sample[i].count) {
+            row->verdict = CHECK_GONE;
+            row->severity = INFINITY;
+            return;
+        }
+        values[i] = evidence->sample[i].metrics[place].value;
+    }
+    sorted_make(values, count);
+    row->now = sorted_median(values, count);
+    row->deviation = row->now - metric->value;
+    row->p = rank_test_p(metric->sample, metric->sample_count, values, count);
+    row->verdict = row->p > evidence->rate ? CHECK_WITHIN : CHECK_OUT;
+    row->severity = row->p > 0.0 ? log(row->p) / log(evidence->rate) : INFINITY;
+}
+
+static void judge_metric(const Baseline *baseline, const BaselineMetric *metric,
+                         const CheckEvidence *evidence, CheckRow *row)
+{
+    *row = (CheckRow){.kind = metric->kind,
+                      .band_kind = metric->band_kind,
+                      .was = metric->value,
+                      .now = NAN,
+                      .deviation = NAN,
+                      .band = metric->band,
+                      .p = NAN};
+    text_copy(row->name, sizeof row->name, metric->name);
+    text_copy(row->why, sizeof row->why, metric->why);
+    const bool is_statistical = metric->band_kind == BAND_STATISTICAL;
+    if (!evidence->is_full && (is_statistical || metric->is_slow)) {
+        leave_out(row, is_statistical ? "statistical: for a full check" : "for a full check");
+        return;
+    }
+    const size_t place = baseline_find(evidence->run, metric->name);
+    if (place == evidence->run->count) {
+        row->verdict = CHECK_GONE;
+        row->severity = INFINITY;
+    } else if ((metric->kind == CHECK_HASH) != (evidence->run->metrics[place].kind == CHECK_HASH)) {
+        // one is a fingerprint and the other a number: not of one measurement
+        row->verdict = CHECK_GONE;
+        row->severity = INFINITY;
+    } else if (metric->kind == CHECK_HASH) {
+        judge_hash(baseline, metric, evidence, evidence->run->metrics[place].hash, row);
+    } else if (is_statistical) {
+        judge_sample(metric, evidence, row);
+    } else {
+        judge_number(metric, evidence->run->metrics[place].value, row);
+    }
+}
+
+// What is measured, and stands in no baseline.
+static void judge_new(const Baseline *baseline, const CheckMeasure *run, CheckRow *rows,
+                      size_t *count)
+{
+    for (size_t i = 0; i < run->count; i++) {
+        const CheckMetric *metric = &run->metrics[i];
+        bool is_known = false;
+        for (size_t k = 0; k < baseline->count && !is_known; k++) {
+            is_known = strcmp(baseline->metrics[k].name, metric->name) == 0;
+        }
+        if (is_known) {
+            continue;
+        }
+        CheckRow *row = &rows[(*count)++];
+        *row = (CheckRow){.verdict = CHECK_NEW,
+                          .kind = metric->kind,
+                          .was = NAN,
+                          .now = metric->value,
+                          .deviation = NAN,
+                          .band = NAN,
+                          .p = NAN,
+                          .hash_now = metric->hash,
+                          .severity = INFINITY};
+        text_copy(row->name, sizeof row->name, metric->name);
+        snprintf(row->why, sizeof row->why, "the baseline does not have it; --bless takes it in");
+    }
+}
+
+// Settings first, then what is out, then what is within, each the worst first.
+static int compare_rows(const void *a, const void *b)
+{
+    const CheckRow *left = a;
+    const CheckRow *right = b;
+    const int ranks[2] = {
+        left->verdict == CHECK_SETTING ? 0
+        : check_row_is_out(left)       ? 1
+                                       : 2,
+        right->verdict == CHECK_SETTING ? 0
+        : check_row_is_out(right)       ? 1
+                                        : 2,
+    };
+    if (ranks[0] != ranks[1]) {
+        return ranks[0] - ranks[1];
+    }
+    if (left->severity != right->severity) {
+        return left->severity < right->severity ? 1 : -1;
+    }
+    return strcmp(left->name, right->name);
+}
+
+size_t check_judge(const Baseline *baseline, const CheckEvidence *evidence, CheckRow *rows)
+{
+    size_t count = 0;
+    judge_settings(baseline, evidence->now, rows, &count);
+    for (size_t i = 0; i < baseline->count; i++) {
+        judge_metric(baseline, &baseline->metrics[i], evidence, &rows[count++]);
+    }
+    judge_new(baseline, evidence->run, rows, &count);
+    qsort(rows, count, sizeof *rows, compare_rows);
+    return count;
+}

@@ -1,0 +1,248 @@
+// Which cases are checked, and against which files?
+//
+// The baseline of cases/paper/impact-k66.yaml is DIR/impact-k66.json, and names the case by its
+// path from DIR, so that both can move together.
+#include "commands/check/check_list.h"
+
+#include "base/text.h"
+#include "casefile/casefile.h"
+#include "commands/check/baseline_json.h"
+#include "write/file.h"
+
+#include <assert.h>
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// A path from a folder to a file, both absolute and without links.
+static void relative_path(const char *folder, const char *file, char target[FILE_PATH_SIZE])
+{
+    size_t shared = 0; // length of what both have, up to and without a slash
+    size_t i = 0;
+    for (; folder[i] != '\0' && folder[i] == file[i]; i++) {
+        shared = folder[i] == '/' ? i : shared;
+    }
+    if (folder[i] == '\0' && file[i] == '/') {
+        shared = i;
+    }
+    Text text;
+    text_init(&text);
+    for (const char *c = folder + shared; *c != '\0'; c++) {
+        text_append(&text, "%s", *c == '/' && c[1] != '\0' ? "../" : "");
+    }
+    text_append(&text, "%s", file + shared + (file[shared] == '/' ? 1 : 0));
+    text_copy(target, FILE_PATH_SIZE, text.data);
+    text_finish(&text);
+}
+
+// The path without links and dots; false where nothing is there.
+static bool resolve(const char *path, char target[FILE_PATH_SIZE])
+{
+    char *whole = realpath(path, NULL);
+    text_copy(target, FILE_PATH_SIZE, whole != NULL ? whole : path);
+    free(whole);
+    return whole != NULL;
+}
+
+static void show_path(const char *whole, char target[FILE_PATH_SIZE])
+{
+    char here[FILE_PATH_SIZE];
+    if (getcwd(here, sizeof here) == NULL) {
+        text_copy(target, FILE_PATH_SIZE, whole);
+        return;
+    }
+    relative_path(here, whole, target);
+    // far away the whole path is easier to read
+    if (strncmp(target, "../", 3) == 0) {
+        text_copy(target, FILE_PATH_SIZE, whole);
+    }
+}
+
+static void read_baseline(CheckItem *item, bool is_blessing)
+{
+    Err *err = is_blessing ? &item->baseline_err : &item->err;
+    item->is_there = access(item->baseline_path, F_OK) == 0;
+    baseline_json_read(item->baseline_path, &item->baseline, err);
+}
+
+// Whether a case is judged by its own limits alone: because that was asked for, or because it has
+// no baseline.
+static bool is_by_limits(CheckItem *item, const CheckOptions *options)
+{
+    const size_t limits = item->scenario->expectation_count;
+    if (options->is_expect_only && limits == 0) {
+        err_set(&item->err, ERR_CASE, "%s sets no limits: it has no expect:", item->path);
+    }
+    const bool is_there = access(item->baseline_path, F_OK) == 0;
+    return options->is_expect_only || (!options->is_blessing && !is_there && limits > 0);
+}
+
+static bool read_case(CheckItem *item, const CheckOptions *options)
+{
+    item->scenario = calloc(1, sizeof *item->scenario);
+    assert(item->scenario != NULL);
+    if (strcmp(item->path, "-") == 0) {
+        err_set(&item->err, ERR_USAGE,
+                "check takes case files and not standard input: a baseline belongs to a file");
+    }
+    if (item->err.kind != ERR_NONE ||
+        !casefile_load(item->path, options->common.overrides, options->common.override_count,
+                       item->scenario, &item->err)) {
+        free(item->scenario);
+        item->scenario = NULL;
+        return false;
+    }
+    baseline_set_head(&item->now, item->scenario, &item->baseline.plan);
+    return true;
+}
+
+// A case that was named: its baseline must be its own.
+static void add_named(CheckItem *item, const char *path, const CheckOptions *options)
+{
+    char whole[FILE_PATH_SIZE];
+    char folder[FILE_PATH_SIZE];
+    char name[FILE_PATH_SIZE];
+    text_copy(item->path, sizeof item->path, path);
+    if (!read_case(item, options)) {
+        return;
+    }
+    resolve(path, whole);
+    resolve(options->folder, folder);
+    relative_path(folder, whole, item->relative);
+    file_stem(item->scenario->path, name, sizeof name);
+    const int length = snprintf(item->baseline_path, sizeof item->baseline_path, "%s/%s.json",
+                                options->folder, name);
+    if (length < 0 || length >= FILE_PATH_SIZE) {
+        err_set(&item->err, ERR_FILE, "the path of the baseline of %s is too long", path);
+        return;
+    }
+    if (is_by_limits(item, options)) {
+        return;
+    }
+    item->has_baseline = true;
+    read_baseline(item, options->is_blessing);
+    const char *other = item->baseline.case_path;
+    if (item->baseline.count > 0 && strcmp(other, item->relative) != 0) {
+        err_set(&item->err, ERR_FILE,
+                "the baseline %s is of another case: of %s, seen from there, and "
+                "not of %s",
+                item->baseline_path, other, item->relative);
+    }
+    item->now.plan = item->baseline.plan;
+}
+
+// A baseline that was found: it names its case.
+static void add_found(CheckItem *item, const char *file, const CheckOptions *options)
+{
+    item->has_baseline = true;
+    snprintf(item->baseline_path, sizeof item->baseline_path, "%s/%s", options->folder, file);
+    text_copy(item->path, sizeof item->path, item->baseline_path);
+    if (!baseline_json_read(item->baseline_path, &item->baseline, &item->err)) {
+        return;
+    }
+    char joined[2 * FILE_PATH_SIZE];
+    char whole[FILE_PATH_SIZE];
+    const char *case_path = item->baseline.case_path;
+    snprintf(joined, sizeof joined, "%s%s%s", case_path[0] == '/' ? "" : options->folder,
+             case_path[0] == '/' ? "" : "/", case_path);
+    text_copy(item->relative, sizeof item->relative, case_path);
+    if (!resolve(joined, whole)) {
+        err_set(&item->err, ERR_FILE, "the case of the baseline %s is not there: %s",
+                item->baseline_path, joined);
+        return;
+    }
+    show_path(whole, item->path);
+    read_case(item, options);
+}
+
+static int is_baseline(const struct dirent *entry)
+{
+    const size_t length = strlen(entry->d_name);
+    return length > 5 && strcmp(entry->d_name + length - 5, ".json") == 0;
+}
+
+static bool find_all(const CheckOptions *options, CheckItem **items, size_t *count, Err *err)
+{
+    struct dirent **entries;
+    const int found = scandir(options->folder, &entries, is_baseline, alphasort);
+    if (found < 0) {
+        return err_set(err, ERR_FILE, "there is no folder of baselines %s: %s", options->folder,
+                       strerror(errno));
+    }
+    *items = calloc((size_t)found + 1, sizeof **items);
+    assert(*items != NULL);
+    *count = (size_t)found;
+    for (int i = 0; i < found; i++) {
+        add_found(&(*items)[i], entries[i]->d_name, options);
+        free(entries[i]);
+    }
+    free(entries);
+    return found > 0 ||
+           err_set(err, ERR_FILE,
+                   "there is no baseline in %s; jointplay check --bless CASE makes one",
+                   options->folder);
+}
+
+static bool name_all(const CheckOptions *options, CheckItem **items, size_t *count, Err *err)
+{
+    *items = calloc(options->path_count, sizeof **items);
+    assert(*items != NULL);
+    *count = options->path_count;
+    for (size_t i = 0; i < *count; i++) {
+        add_named(&(*items)[i], options->paths[i], options);
+        for (size_t k = 0; k < i && (*items)[i].baseline_path[0] != '\0'; k++) {
+            if (strcmp((*items)[i].baseline_path, (*items)[k].baseline_path) == 0) {
+                return err_set(err, ERR_USAGE, "%s and %s would both have the baseline %s",
+                               (*items)[k].path, (*items)[i].path, (*items)[i].baseline_path);
+            }
+        }
+    }
+    return true;
+}
+
+// A new baseline takes the place of an old one and of nothing else.
+static bool claim_baselines(const CheckItem *items, size_t count, Err *err)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (items[i].err.kind == ERR_NONE && items[i].has_baseline &&
+            !file_claim("--bless", FILE_BASELINE, items[i].baseline_path, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool check_list_make(const CheckOptions *options, CheckItem **items, size_t *count, Err *err)
+{
+    *items = NULL;
+    *count = 0;
+    bool is_made = options->path_count > 0 ? name_all(options, items, count, err)
+                                           : find_all(options, items, count, err);
+    is_made = is_made && (!options->is_blessing || claim_baselines(*items, *count, err));
+    for (size_t i = 0; is_made && i < *count; i++) {
+        // a wrong command line is wrong for all
+        if ((*items)[i].err.kind == ERR_USAGE) {
+            is_made = err_set_lines(err, ERR_USAGE, (*items)[i].err.text);
+        }
+    }
+    if (!is_made) {
+        check_list_destroy(*items, *count);
+        *items = NULL;
+        *count = 0;
+    }
+    return is_made;
+}
+
+void check_list_destroy(CheckItem *items, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        free(items[i].scenario);
+        baseline_finish(&items[i].baseline);
+        baseline_finish(&items[i].now);
+    }
+    free(items);
+}

@@ -1,0 +1,30 @@
+// Which cases are checked, and against which files.
+#pragma once
+
+#include "base/err.h"
+#include "commands/check/baseline.h"
+#include "commands/check/check_options.h"
+#include "commands/check/check_report.h"
+#include "write/file.h"
+
+// One case of a check. What could not be had stands in the error; the rest goes on.
+typedef struct CheckItem {
+    char path[FILE_PATH_SIZE];          // of the case, as people would write it here
+    char baseline_path[FILE_PATH_SIZE]; //
+    char relative[FILE_PATH_SIZE];      // of the case, seen from the baseline's folder
+    Scenario *scenario;                 // owned; NULL where the case could not be read
+    Baseline baseline;                  // empty where it could not be read
+    Baseline now;                       // head of what this program makes of the case
+    char no_truth[CHECK_NOTE_SIZE];     // why an error that is limited is not measured
+    Err err;                            // of the case or its baseline
+    bool has_baseline;                  // false: the limits of the case alone judge it
+    bool is_there;                      // a file stands where the baseline belongs
+    Err baseline_err;                   // when blessing: why there is no old one to read
+} CheckItem;
+
+// Lists the cases, reads them and their baselines. A case or a baseline that cannot be read is an
+// error of its item. Fails with ERR_FILE where there is not one baseline to check, or where a new
+// one would replace what is none; with ERR_USAGE for a setting that is wrong, or for two cases that
+// would have one baseline; the list is then empty.
+bool check_list_make(const CheckOptions *options, CheckItem **items, size_t *count, Err *err);
+void check_list_destroy(CheckItem *items, size_t count);

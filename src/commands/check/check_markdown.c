@@ -1,0 +1,214 @@
+// What should who reads a change see of a regression check?
+#include "commands/check/check_markdown.h"
+
+#include "base/printable.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { WORST_ROWS = 10 }; // of a case: a comment is no log
+
+// The backquotes that code of these words stands between: more than they have in a row.
+static size_t fence_length(const char *words, size_t least)
+{
+    size_t longest = least - 1;
+    while (*words != '\0') {
+        const size_t run = strspn(words, "`");
+        longest = run > longest ? run : longest;
+        words += run > 0 ? run : 1;
+    }
+    return longest + 1;
+}
+
+static void append_fence(Text *text, size_t length)
+{
+    for (size_t i = 0; i < length; i++) {
+        text_append(text, "`");
+    }
+}
+
+// Words that may hold anything, such as a path: as code, in which nothing means anything. In the
+// cell of a table a bar would end it.
+static void append_code(Text *text, const char *words, bool is_cell)
+{
+    char *shown = printable_copy(words, false);
+    const size_t fence = fence_length(shown, 1);
+    // a backquote at an end is kept off the fence by a blank, which a reader does not see
+    const char *blank = strchr(shown, '`') != NULL || shown[0] == '\0' ? " " : "";
+    append_fence(text, fence);
+    text_append(text, "%s", blank);
+    for (const char *c = shown; *c != '\0'; c++) {
+        text_append(text, is_cell && *c == '|' ? "\\%c" : "%c", *c);
+    }
+    text_append(text, "%s", blank);
+    append_fence(text, fence);
+    free(shown);
+}
+
+// Lines of words, as a block of code.
+static void append_block(Text *text, const char *words)
+{
+    enum { FENCE_LEAST = 3 };
+    char *shown = printable_copy(words, true);
+    const size_t fence = fence_length(shown, FENCE_LEAST);
+    append_fence(text, fence);
+    text_append(text, "text\n%s\n", shown);
+    append_fence(text, fence);
+    text_append(text, "\n");
+    free(shown);
+}
+
+static void append_name(Text *text, const char *words)
+{
+    text_append(text, "| ");
+    append_code(text, words, true);
+    text_append(text, " ");
+}
+
+static void append_cell(Text *text, const char *words)
+{
+    char *shown = printable_copy(words, false);
+    text_append(text, "| ");
+    for (const char *c = shown; *c != '\0'; c++) {
+        text_append(text, strchr("|`<>&\\*_[]", *c) != NULL ? "\\%c" : "%c", *c);
+    }
+    text_append(text, " ");
+    free(shown);
+}
+
+// What a paragraph is about.
+static void append_case(Text *text, const CheckCase *item)
+{
+    text_append(text, "\n**");
+    append_code(text, item->path, false);
+    text_append(text, "**");
+}
+
+static void append_blessed(const CheckReport *report, Text *text)
+{
+    const size_t errors = check_report_errors(report);
+    text_append(text, "### jointplay check --bless: %zu new, %zu replaced, %zu unchanged",
+                check_report_changes(report, CHECK_CHANGE_NEW) +
+                    check_report_changes(report, CHECK_CHANGE_UNREADABLE),
+                check_report_changes(report, CHECK_CHANGE_REPLACED),
+                check_report_changes(report, CHECK_CHANGE_NONE));
+    if (errors > 0) {
+        text_append(text, ", %zu not made", errors);
+    }
+    text_append(text, "\n");
+}
+
+static void append_headline(const CheckReport *report, Text *text)
+{
+    if (report->is_blessed) {
+        append_blessed(report, text);
+        return;
+    }
+    const size_t errors = check_report_errors(report);
+    const size_t differing = check_report_differing(report);
+    text_append(text, "### jointplay check: ");
+    if (errors + differing == 0) {
+        text_append(text, "%zu %s within %s\n", report->case_count,
+                    report->case_count == 1 ? "case" : "cases",
+                    report->case_count == 1 ? "its bands" : "their bands");
+        return;
+    }
+    text_append(text, "%zu of %zu cases out of their bands", differing, report->case_count);
+    if (errors > 0) {
+        text_append(text, ", %zu not checked", errors);
+    }
+    text_append(text, "\n");
+}
+
+static void append_out(const CheckCase *item, Text *text)
+{
+    const size_t out = check_report_count(item).out;
+    append_case(text, item);
+    text_append(text, "\n\n| metric | baseline | now | difference | band | bands off |\n"
+                      "|---|---:|---:|---:|---:|---:|\n");
+    for (size_t i = 0; i < out && i < WORST_ROWS; i++) {
+        const CheckRow *row = &item->rows[i];
+        const CheckCells cells = check_report_cells(row);
+        append_name(text, row->name);
+        // what a setting was and is, a baseline and a case say in words of their own
+        (row->verdict == CHECK_SETTING ? append_name : append_cell)(text, cells.was);
+        (row->verdict == CHECK_SETTING ? append_name : append_cell)(text, cells.now);
+        append_cell(text, cells.difference);
+        append_cell(text, cells.band);
+        append_cell(text,
+                    row->verdict == CHECK_OUT ? cells.severity : CHECK_VERDICT_WORDS[row->verdict]);
+        text_append(text, "|\n");
+    }
+    if (out > WORST_ROWS) {
+        text_append(text, "\nand %zu more.\n", out - WORST_ROWS);
+    }
+}
+
+static void append_limits(const CheckCase *item, Text *text)
+{
+    append_case(text, item);
+    text_append(text, ": limits of its own\n\n| expected of | limit | now | outside by |\n"
+                      "|---|---|---:|---:|\n");
+    for (size_t i = 0; i < item->limit_count; i++) {
+        const CheckLimit *limit = &item->limits[i];
+        const CheckLimitCells cells = check_report_limit_cells(limit);
+        if (limit->verdict == CHECK_WITHIN) {
+            continue;
+        }
+        append_name(text, limit->name);
+        append_cell(text, limit->expectation->words);
+        append_cell(text, limit->verdict == CHECK_GONE ? "not measured" : cells.value);
+        append_cell(text, cells.off);
+        text_append(text, "|\n");
+    }
+}
+
+static void append_all(const CheckReport *report, Text *text)
+{
+    text_append(text,
+                "\n<details><summary>All cases (%s check)</summary>\n\n"
+                "| case | within | out | left out | nearest to its band |\n"
+                "|---|---:|---:|---:|---|\n",
+                report->is_full ? "full" : "quick");
+    for (size_t i = 0; i < report->case_count; i++) {
+        const CheckCase *item = &report->cases[i];
+        const CheckCounts counts = check_report_count(item);
+        append_name(text, item->path);
+        if (item->err.kind != ERR_NONE) {
+            text_append(text, "| | | | not checked |\n");
+            continue;
+        }
+        text_append(text, "| %zu | %zu | %zu ", counts.within + counts.limits_within,
+                    counts.out + counts.limits_out, counts.left_out);
+        if (item->row_count > 0) {
+            append_name(text, item->rows[0].name);
+        } else {
+            append_cell(text, "");
+        }
+        text_append(text, "|\n");
+    }
+    text_append(text, "\n</details>\n");
+}
+
+void check_markdown_write(const CheckReport *report, Text *text)
+{
+    append_headline(report, text);
+    for (size_t i = 0; i < report->case_count; i++) {
+        const CheckCase *item = &report->cases[i];
+        if (item->err.kind != ERR_NONE) {
+            append_case(text, item);
+            text_append(text, " %s:\n\n",
+                        report->is_blessed ? "has no new baseline" : "was not checked");
+            append_block(text, item->err.text);
+            continue;
+        }
+        const CheckCounts counts = check_report_count(item);
+        if (counts.limits_out > 0) {
+            append_limits(item, text);
+        }
+        if (counts.out > 0) {
+            append_out(item, text);
+        }
+    }
+    append_all(report, text);
+}

@@ -1,0 +1,35 @@
+// The runs of a check, each start in a process of its own.
+#pragma once
+
+#include "commands/check/check_measure.h"
+
+// One start of one case, and what came of it.
+typedef struct CheckWork {
+    const Scenario *scenario; // from its own start
+    CheckPlan plan;
+    CheckStart start;
+    CheckMeasure *measure; // owned by the caller
+    bool is_over;          // measured, or failed; what is over at the beginning is not done again
+    double wall_s;         // that its process took
+} CheckWork;
+
+typedef struct CheckWorkState {
+    size_t done;
+    size_t total;
+    double left_s; // estimate of the time that the rest takes; 0 where there is none yet
+} CheckWorkState;
+
+typedef struct CheckWorkers {
+    size_t jobs;         // at a time
+    double time_limit_s; // of one work
+    // a few times a second; false: stop
+    bool (*wait)(const CheckWorkState *state, void *context);
+    // as soon as a work is measured; NULL: nobody keeps it
+    bool (*keep)(const CheckWork *work, void *context, Err *err);
+    void *context;
+} CheckWorkers;
+
+// Does all of it, the own start of each case first. A process that dies or hangs leaves a measure
+// that is not complete and says so. Where it was stopped, works are left that are not over. Fails
+// with ERR_SOLVER where the system has no process left, or as `keep` does.
+bool check_work_do(const CheckWorkers *workers, CheckWork *works, size_t count, Err *err);

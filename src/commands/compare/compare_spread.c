@@ -1,0 +1,92 @@
+// What can be said of a run where no trajectory can be told any more?
+//
+// Beyond the horizon two starts that differ by nothing measurable part. What stays are
+// distributions over many starts, and whether a scheme's agree with the reference's.
+#include "commands/compare/compare_text.h"
+#include "write/table.h"
+#include "write/units.h"
+
+#include <stdio.h>
+
+// One column: a metric as people read it.
+typedef struct Column {
+    EnsembleMetric metric;
+    const char *title;
+    const char *unit;
+    double scale;
+} Column;
+
+static const Column COLUMNS[] = {
+    {ENSEMBLE_IMPACTS, "impacts", "", 1.0},
+    {ENSEMBLE_FORCE_MAX, "force max", "N", 1.0},
+    {ENSEMBLE_IMPULSE, "impulse", "N s", 1.0},
+    {ENSEMBLE_PENETRATION_MAX, "deepest", "um", 1e6},
+    {ENSEMBLE_CONTACT_SHARE, "in contact", "%", 1e2},
+};
+enum { COLUMN_COUNT = sizeof COLUMNS / sizeof COLUMNS[0] };
+
+static void spread_row(Table *table, const CompareReport *report, size_t scheme, size_t joint)
+{
+    const LadderEnsemble *ensemble = &report->ladder->ensembles[scheme];
+    table_cell(table, "%s", report->ladder->schemes[scheme].name);
+    table_cell(table, ensemble->step_s > 0.0 ? "%.4g" : "its own", ensemble->step_s * UNITS_US);
+    for (int i = 0; i < COLUMN_COUNT; i++) {
+        const Distribution *d = &ensemble->ensemble.joints[joint][COLUMNS[i].metric];
+        if (ensemble->ensemble.members == 0) {
+            table_cell(table, "failed");
+        } else {
+            table_cell(table, "%.4g [%.4g, %.4g]", d->median * COLUMNS[i].scale,
+                       d->low * COLUMNS[i].scale, d->high * COLUMNS[i].scale);
+        }
+    }
+}
+
+static void write_failures(const CompareReport *report, const Style *style, Text *text)
+{
+    for (size_t i = 0; i < report->ladder->scheme_count; i++) {
+        const Ensemble *ensemble = &report->ladder->ensembles[i].ensemble;
+        if (ensemble->failed > 0) {
+            text_append(text, "\n  %s%s: %zu of the ensemble's runs failed: %s%s\n", style->failure,
+                        report->ladder->schemes[i].name, ensemble->failed, ensemble->message,
+                        style->end);
+        }
+    }
+}
+
+// One joint with play: the motion's spread by every scheme that has one.
+static void write_joint(const CompareReport *report, size_t joint, const Style *style, Text *text)
+{
+    Table *table = table_create(2 + COLUMN_COUNT);
+    table_fit(table, style->width);
+    table_head(table, 0, "scheme", "", TABLE_LEFT);
+    table_head(table, 1, "step", "us", TABLE_RIGHT);
+    for (int i = 0; i < COLUMN_COUNT; i++) {
+        table_head(table, (size_t)(2 + i), COLUMNS[i].title, COLUMNS[i].unit, TABLE_RIGHT);
+    }
+    for (size_t i = 0; i < report->ladder->scheme_count; i++) {
+        if (report->ladder->ensembles[i].is_known) {
+            spread_row(table, report, i, joint);
+        }
+    }
+    text_append(text, "\n  %s\n\n", report->scenario->linkage.joints[joint].name);
+    table_write(table, text);
+    table_destroy(table);
+}
+
+void compare_spread_write(const CompareReport *report, const Style *style, Text *text)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    if (!report->ladder->truth.is_limited) {
+        return;
+    }
+    text_append(
+        text,
+        "\n%sThe whole run from %d starts, their speeds a little apart: median [least, most]%s\n",
+        style->heading, ENSEMBLE_MEMBERS, style->end);
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        if (linkage->joints[joint].kind == JOINT_CLEARANCE) {
+            write_joint(report, joint, style, text);
+        }
+    }
+    write_failures(report, style, text);
+}

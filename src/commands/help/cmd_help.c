@@ -1,0 +1,100 @@
+// How is a command used, and how is a case file written?
+#include "casefile/casefile.h"
+#include "cli/arguments.h"
+#include "commands/commands.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { WORD_MAX = 2, WORD_SIZE = 32 }; // of a topic: a command and one of its own
+
+typedef struct HelpOptions {
+    const char *words[WORD_MAX];
+    size_t word_count; // 0: the list of commands
+    bool is_markdown;
+} HelpOptions;
+
+enum { KEY_MARKDOWN = 'm' };
+
+static const struct argp_option OPTIONS[] = {
+    {"markdown", KEY_MARKDOWN, NULL, 0, "Of the case format: as Markdown", 0},
+    {0},
+};
+
+static bool take_option(int key, const char *value, void *target, Err *err)
+{
+    HelpOptions *options = target;
+    if (key == KEY_MARKDOWN) {
+        options->is_markdown = true;
+        return true;
+    }
+    if (options->word_count == WORD_MAX) {
+        return err_set(err, ERR_USAGE, "one topic at a time, and '%s' is one more", value);
+    }
+    options->words[options->word_count++] = value;
+    return true;
+}
+
+static void describe_case(bool is_markdown)
+{
+    Text text;
+    text_init(&text);
+    if (is_markdown) {
+        casefile_describe_markdown(&text);
+    } else {
+        casefile_describe(&text);
+    }
+    fputs(text.data, stdout);
+    text_finish(&text);
+}
+
+// A command's own --help; of 'study status' that of the second word.
+static bool explain_command(const HelpOptions *options, Err *err)
+{
+    const Command *command = command_find_topic(options->words[0], "case", err);
+    if (command == NULL) {
+        return false;
+    }
+    if (options->word_count > 1 && command != &cmd_study) {
+        return err_set(err, ERR_USAGE, "one topic at a time: '%s' or '%s'", options->words[0],
+                       options->words[1]);
+    }
+    char words[WORD_MAX + 1][WORD_SIZE] = {""};
+    char *pointers[WORD_MAX + 2] = {NULL};
+    for (size_t i = 0; i <= options->word_count; i++) {
+        text_copy(words[i], WORD_SIZE, i < options->word_count ? options->words[i] : "--help");
+        pointers[i] = words[i];
+    }
+    return command->run((int)options->word_count + 1, pointers, err);
+}
+
+static bool run_help(int argc, char **argv, Err *err)
+{
+    static const Arguments ARGUMENTS = {
+        .program = "jointplay help",
+        .usage = "[case|COMMAND]\nstudy COMMAND",
+        .doc = "Tells how a command is used, or how a case file is written.",
+        .options = OPTIONS,
+        .take = take_option,
+    };
+    HelpOptions options = {0};
+    bool is_answered;
+    if (!arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) || is_answered) {
+        return err->kind == ERR_NONE;
+    }
+    if (options.word_count == 0) {
+        command_list();
+        return true;
+    }
+    if (options.word_count == 1 && strcmp(options.words[0], "case") == 0) {
+        describe_case(options.is_markdown);
+        return true;
+    }
+    return explain_command(&options, err);
+}
+
+const Command cmd_help = {
+    .name = "help",
+    .summary = "explains a command, or with 'case' the format of a case file",
+    .run = run_help,
+};

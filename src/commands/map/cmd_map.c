@@ -1,0 +1,238 @@
+// Which ERP, CFM and step for a joint with play, and what do they deliver?
+#include "base/clock.h"
+#include "casefile/casefile.h"
+#include "cli/doubts.h"
+#include "cli/idle_settings.h"
+#include "cli/long_work.h"
+#include "cli/output.h"
+#include "cli/status_line.h"
+#include "commands/commands.h"
+#include "commands/map/map_files.h"
+#include "commands/map/map_lone.h"
+#include "commands/map/map_options.h"
+#include "commands/map/mapping_inverse.h"
+#include "commands/map/mapping_inverse_text.h"
+#include "commands/map/mapping_json.h"
+#include "commands/map/mapping_text.h"
+#include "write/file.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+// What is told while it works.
+typedef struct Telling {
+    StatusLine line;
+    double started_s;
+    const char *doing; // of a run or of many
+} Telling;
+
+static void tell(Telling *telling, const char *words)
+{
+    if (status_line_is_due(&telling->line, clock_now_s() - telling->started_s)) {
+        status_line_show(&telling->line, words);
+    }
+}
+
+// Says it of long work, before it begins.
+static void tell_plan(double steps, void *context)
+{
+    // s of a lone pin's step, within a factor of two
+    const double step_s = 1.2e-6;
+    Telling *telling = context;
+    const bool is_warned = long_work_warn("running the settings in ODE", steps * step_s, true);
+    telling->line.is_warned = telling->line.is_warned || is_warned;
+}
+
+static void tell_row(size_t done, size_t total, void *context)
+{
+    char words[64];
+    snprintf(words, sizeof words, "%zu of %zu settings run in ODE", done, total);
+    tell(context, words);
+}
+
+static void tell_run(double share, double wall_s, void *context)
+{
+    (void)wall_s;
+    Telling *telling = context;
+    char words[96];
+    snprintf(words, sizeof words, "%s: %.0f %%", telling->doing, 100.0 * share);
+    tell(telling, words);
+}
+
+static void print_text(Text *text, const Style *style)
+{
+    text_append(text, "\n");
+    output_text(text, style);
+    text_finish(text);
+}
+
+static void print_report(const MappingReport *report, const CommonOptions *options)
+{
+    if (options->is_json) {
+        output_json(mapping_json_build(report));
+        return;
+    }
+    Text text;
+    text_init(&text);
+    const Style style = output_style(stdout, options->is_wide);
+    mapping_text_write(report, &style, &text);
+    print_text(&text, &style);
+}
+
+// The paper's estimate where it was asked for; a word about it where it could be.
+static bool make_penalty(const MapOptions *options, const Scenario *scenario, Telling *telling,
+                         PenaltyMap **penalty, Err *err)
+{
+    // where the step is chosen by trials, at the longest of the paper's own order
+    const double usual_s = 1e-6;
+    const double step_s = options->step_s > 0.0      ? options->step_s
+                          : scenario->run.step > 0.0 ? scenario->run.step
+                                                     : usual_s;
+    telling->doing = "the paper's penalty over its speeds";
+    return !options->with_penalty ||
+           penalty_map_make(scenario, step_s, (RunWatch){tell_run, telling}, penalty, err);
+}
+
+// A four-bar with the paper's pin is told of --penalty.
+static void say_hint(const MapOptions *options, const Scenario *scenario)
+{
+    PrintedPin pin;
+    if (!options->with_penalty && !options->common.is_quiet && scenario->has_fourbar &&
+        penalty_map_fits(scenario, &pin)) {
+        output_say("--penalty adds the paper's penalty parameter over its 15 speeds\n");
+    }
+}
+
+static bool map_scenario(const MapOptions *options, const Scenario *scenario,
+                         const MappingSettings *settings, Err *err)
+{
+    if ((options->common.folder != NULL && !file_make_folder(options->common.folder, err)) ||
+        !map_files_claim(scenario, options, err)) {
+        return false;
+    }
+    Telling telling = {status_line_start(options->common.is_quiet), clock_now_s(),
+                       "the reference's run"};
+    const MappingWatch watch = {tell_plan, tell_row, {tell_run, &telling}, &telling};
+    Mapping mapping = {0};
+    PenaltyMap *penalty = NULL;
+    bool is_done = mapping_make(scenario, settings, watch, &mapping, err) &&
+                   make_penalty(options, scenario, &telling, &penalty, err);
+    status_line_end(&telling.line);
+    if (is_done) {
+        const MappingReport report = {scenario, &mapping, penalty};
+        print_report(&report, &options->common);
+        is_done = map_files_write(&report, options, err);
+        say_hint(options, scenario);
+    }
+    free(penalty);
+    mapping_finish(&mapping);
+    return is_done;
+}
+
+// The masses that a row is read on: the one given, else those of the case's joints, else none.
+static bool add_masses(const MapOptions *options, const Scenario *scenario, Inverse *inverse,
+                       Err *err)
+{
+    double mass = 0.0;
+    if (options->mass != NULL &&
+        !option_values_read_quantity("mass", options->mass, DIMENSION_MASS, &mass, err)) {
+        return false;
+    }
+    if (mass > 0.0 || options->common.path == NULL) {
+        inverse_add_mass(inverse, "", mass);
+        return true;
+    }
+    if (!scenario_has_clearance(scenario)) {
+        return err_set(err, ERR_CASE,
+                       "no joint of %s has play, so it has no mass to offer; give "
+                       "one, such as --mass '0.1 kg'",
+                       scenario->path);
+    }
+    MappingJoint joints[LINKAGE_JOINT_MAX];
+    size_t count = 0;
+    if (!mapping_joint_measure(scenario, (RunWatch){0}, joints, &count, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < count; i++) {
+        inverse_add_mass(inverse, scenario->linkage.joints[joints[i].joint].name,
+                         joints[i].mass_median);
+    }
+    return true;
+}
+
+static bool read_row(const MapOptions *options, const Scenario *scenario, Err *err)
+{
+    Inverse *inverse = calloc(1, sizeof *inverse);
+    assert(inverse != NULL);
+    bool is_read = options->has_kp
+                       ? inverse_of_pair(options->kp, options->kd, options->step_s, inverse, err)
+                       : inverse_of_row(options->erp, options->cfm, options->step_s, inverse, err);
+    is_read = is_read && add_masses(options, scenario, inverse, err);
+    if (is_read && options->common.is_json) {
+        output_json(mapping_inverse_json(inverse));
+    } else if (is_read) {
+        Text text;
+        text_init(&text);
+        const Style style = output_style(stdout, options->common.is_wide);
+        mapping_inverse_text(inverse, &style, &text);
+        print_text(&text, &style);
+    }
+    free(inverse);
+    return is_read;
+}
+
+// The case, where there is one.
+static bool load(const MapOptions *options, Scenario *scenario, Err *err)
+{
+    const CommonOptions *common = &options->common;
+    if (common->path == NULL) {
+        return true;
+    }
+    if (!casefile_load(common->path, common->overrides, common->override_count, scenario, err)) {
+        return false;
+    }
+    if (!common->is_quiet) {
+        doubts_say(scenario);
+        idle_settings_say(scenario, common->overrides, common->override_count);
+    }
+    return true;
+}
+
+static bool map_case(const MapOptions *options, Scenario *scenario, Err *err)
+{
+    MappingSettings settings;
+    return load(options, scenario, err) &&
+           map_options_settings(options, scenario, &settings, err) &&
+           map_scenario(options, scenario, &settings, err);
+}
+
+static bool map_lone(const MapOptions *options, Scenario *scenario, Err *err)
+{
+    MappingSettings settings;
+    return map_lone_make(options, scenario, &settings, err) &&
+           map_scenario(options, scenario, &settings, err);
+}
+
+static bool map_run(int argc, char **argv, Err *err)
+{
+    MapOptions options;
+    bool is_answered;
+    if (!map_options_read(argc, argv, &options, &is_answered, err) || is_answered) {
+        return err->kind == ERR_NONE;
+    }
+    Scenario *scenario = calloc(1, sizeof *scenario);
+    assert(scenario != NULL);
+    const bool is_done = options.is_inverse
+                             ? load(&options, scenario, err) && read_row(&options, scenario, err)
+                         : options.stiffness != NULL ? map_lone(&options, scenario, err)
+                                                     : map_case(&options, scenario, err);
+    free(scenario);
+    return is_done;
+}
+
+const Command cmd_map = {
+    .name = "map",
+    .summary = "which ERP, CFM and step for each joint, and what they deliver",
+    .run = map_run,
+};

@@ -1,0 +1,36 @@
+// What `jointplay map` was asked for.
+#pragma once
+
+#include "cli/common_options.h"
+#include "measure/mapping.h"
+
+typedef struct MapOptions {
+    CommonOptions common; // without a path where a row alone is to be read
+    const char *steps;    // as given, or NULL; likewise the next eight
+    const char *maps;
+    const char *laws;
+    const char *mass;
+    const char *speed;
+    const char *stiffness; // of a contact without a case
+    const char *restitution;
+    const char *damping;
+    const char *clearance;
+    bool with_penalty;
+    bool is_inverse;       // ERP and CFM, or kp and kd, are to be read
+    bool has_erp, has_cfm; // which of them were given
+    bool has_kp, has_kd;   //
+    double erp, cfm;       // 1, m/(N s)
+    double kp, kd;         // N/m, N s/m
+    double step_s;         // of --step; 0 where it was not given
+    double at_step_s;      // of --at-step, likewise
+    const char *csv;
+    const char *plot;
+} MapOptions;
+
+// Reads the command line; where help was asked for it is printed and *is_answered is true.
+// ERR_USAGE.
+bool map_options_read(int argc, char **argv, MapOptions *options, bool *is_answered, Err *err);
+
+// The settings that the options ask for. Fails with ERR_USAGE.
+bool map_options_settings(const MapOptions *options, const Scenario *scenario,
+                          MappingSettings *settings, Err *err);

@@ -1,0 +1,141 @@
+// What do the options of `jointplay map` ask for, beside the case?
+#include "commands/map/map_options.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PART_SIZE = 64 };
+
+// from where a steel contact is hardly seen to where the textbook map sees it right
+static const double DEFAULT_STEPS[] = {3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7};
+
+// Reads a list of words of the choices; each one once.
+static bool read_words(const char *name, const char *list, const char *const *choices, int *words,
+                       size_t room, size_t *count, Err *err)
+{
+    *count = 0;
+    while (*list != '\0') {
+        char part[PART_SIZE];
+        list += strspn(list, " ");
+        const size_t length = strcspn(list, ",");
+        size_t end = length;
+        for (; end > 0 && list[end - 1] == ' '; end--) {
+        }
+        snprintf(part, sizeof part, "%.*s", (int)end, list);
+        list += length + (list[length] == ',' ? 1 : 0);
+        int word = 0;
+        while (choices[word] != NULL && strcmp(choices[word], part) != 0) {
+            word++;
+        }
+        bool is_twice = false;
+        for (size_t i = 0; i < *count; i++) {
+            is_twice = is_twice || words[i] == word;
+        }
+        if (choices[word] == NULL || is_twice || *count == room) {
+            Text allowed;
+            text_init(&allowed);
+            for (int i = 0; choices[i] != NULL; i++) {
+                text_append(&allowed, "%s%s", i == 0 ? "" : ", ", choices[i]);
+            }
+            err_set(err, ERR_USAGE, "--%s: '%s' %s; allowed: %s", name, part,
+                    is_twice ? "stands there twice" : "is none of them", allowed.data);
+            text_finish(&allowed);
+            return false;
+        }
+        words[(*count)++] = word;
+    }
+    return *count > 0 || err_set(err, ERR_USAGE, "--%s: the list is empty", name);
+}
+
+// A source by its word, or a value of its own.
+static bool read_source(const char *name, const char *text, Dimension dimension,
+                        MappingSource *source, double *value, Err *err)
+{
+    *source = MAPPING_MEDIAN;
+    if (text == NULL || strcmp(text, "median") == 0) {
+        return true;
+    }
+    if (strcmp(text, "most") == 0) {
+        *source = MAPPING_MOST;
+        return true;
+    }
+    *source = MAPPING_GIVEN;
+    return option_values_read_quantity(name, text, dimension, value, err);
+}
+
+static bool read_steps(const MapOptions *options, const Scenario *scenario,
+                       MappingSettings *settings, Err *err)
+{
+    if (options->steps != NULL) {
+        return option_values_read_times("steps", options->steps, MAPPING_STEP_MAX, settings->steps,
+                                        &settings->step_count, err);
+    }
+    if (options->step_s > 0.0) {
+        settings->steps[settings->step_count++] = options->step_s;
+        return true;
+    }
+    if (options->at_step_s > 0.0) {
+        settings->steps[settings->step_count++] = options->at_step_s;
+        settings->is_held = true;
+        return true;
+    }
+    // the usual ones, coarse to fine, and the case's own in its place
+    double own = scenario->run.step;
+    for (size_t i = 0; i < sizeof DEFAULT_STEPS / sizeof *DEFAULT_STEPS; i++) {
+        const double usual = DEFAULT_STEPS[i];
+        const bool is_same = fabs(own - usual) < 1e-9 * usual;
+        if (own > 0.0 && (own > usual || is_same)) {
+            settings->steps[settings->step_count++] = own;
+            own = 0.0;
+        }
+        if (!is_same) {
+            settings->steps[settings->step_count++] = usual;
+        }
+    }
+    if (own > 0.0) {
+        settings->steps[settings->step_count++] = own;
+    }
+    return true;
+}
+
+bool map_options_settings(const MapOptions *options, const Scenario *scenario,
+                          MappingSettings *settings, Err *err)
+{
+    *settings = (MappingSettings){0};
+    int words[MAPPING_LAW_MAX];
+    const bool is_poisson = scenario->contact.model == CONTACT_POISSON;
+    if (is_poisson && (options->maps != NULL || options->laws != NULL)) {
+        return err_set(err, ERR_USAGE,
+                       "--%s: the case's contact model is poisson, whose rows know no map and no "
+                       "elastic law; --set contact.model=impact has them",
+                       options->maps != NULL ? "maps" : "laws");
+    }
+    if (options->maps == NULL) {
+        settings->map_count = MAPPING_MAP_COUNT;
+    } else if (!read_words("maps", options->maps, OPTIONS_ODE_MAPS, words, MAPPING_MAP_COUNT,
+                           &settings->map_count, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < settings->map_count; i++) {
+        settings->maps[i] = options->maps == NULL ? (OdeMap)i : (OdeMap)words[i];
+    }
+    if (options->laws != NULL && strcmp(options->laws, "all") == 0) {
+        for (int i = 0; OPTIONS_LAWS[i] != NULL; i++) {
+            settings->laws[settings->law_count++] = (LawKind)i;
+        }
+    } else if (options->laws != NULL) {
+        if (!read_words("laws", options->laws, OPTIONS_LAWS, words, MAPPING_LAW_MAX,
+                        &settings->law_count, err)) {
+            return false;
+        }
+        for (size_t i = 0; i < settings->law_count; i++) {
+            settings->laws[i] = (LawKind)words[i];
+        }
+    }
+    return read_steps(options, scenario, settings, err) &&
+           read_source("mass", options->mass, DIMENSION_MASS, &settings->mass_source,
+                       &settings->mass, err) &&
+           read_source("speed", options->speed, DIMENSION_SPEED, &settings->speed_source,
+                       &settings->speed, err);
+}

@@ -1,0 +1,195 @@
+// Which constants are best at a step that cannot be changed, and what are they worth?
+#include "commands/map/mapping_held.h"
+
+#include "commands/map/mapping_json.h"
+#include "measure/mapping_verdict.h"
+#include "write/json_value.h"
+#include "write/section.h"
+#include "write/units.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { HEADING_SIZE = 64, SHARE_SIZE = 64 };
+
+static double share_of(const ImpactSpread *spread, double asked)
+{
+    return spread->mean / asked;
+}
+
+static void setting_row(const MappingContact *contact, const HeldSetting *setting, Table *table)
+{
+    const ImpactFigures *predicted = &setting->predicted;
+    const bool is_ended = predicted->is_ended;
+    const bool is_run = setting->delivered.is_measured;
+    table_cell(table, "%s", OPTIONS_ODE_MAPS[setting->map]);
+    section_finite(table, "%.4g", setting->row.erp);
+    section_finite(table, "%.4g", setting->row.cfm);
+    section_finite(table, "%.4g", setting->stiffness);
+    section_finite(table, "%.4g", setting->damping);
+    section_finite(table, "%.3f", is_run ? setting->delivered.figures.restitution.mean : NAN);
+    section_finite(table, "%.3g",
+                   is_ended ? share_of(&predicted->force_max, contact->asked.force_max) : NAN);
+    section_finite(table, "%.3g",
+                   is_ended ? share_of(&predicted->penetration_max, contact->asked.penetration_max)
+                            : NAN);
+}
+
+static void write_table(const MappingContact *contact, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"map", "", TABLE_LEFT},           {"ERP", "1", TABLE_RIGHT},
+        {"CFM", "1/(N s/m)", TABLE_RIGHT}, {"spring", "N/m", TABLE_RIGHT},
+        {"damper", "N s/m", TABLE_RIGHT},  {"restit.", "in ODE", TABLE_RIGHT},
+        {"peak", "of law", TABLE_RIGHT},   {"depth", "of law", TABLE_RIGHT},
+    };
+    char heading[HEADING_SIZE];
+    snprintf(heading, sizeof heading, "Best constants at %.4g us",
+             contact->held->step_s * UNITS_US);
+    Table *table = section_begin(heading, 8, HEADS, style, text);
+    for (int i = 0; i < HELD_MAP_COUNT; i++) {
+        setting_row(contact, &contact->held->settings[i], table);
+    }
+    section_end(table, text);
+    text_append(text, "  textbook: ERP at most 1, Gazebo's kp and kd; corrected: any ERP and CFM; "
+                      "midpoint: with staggered stepping, its ERP follows the closing speed.\n");
+}
+
+// A number beside the one asked for: within the share that is valid it is right.
+static void share_words(double share, const char *name, char words[SHARE_SIZE])
+{
+    if (fabs(share - 1.0) <= MAPPING_VALID_SHARE) {
+        snprintf(words, SHARE_SIZE, "%s right", name);
+    } else {
+        snprintf(words, SHARE_SIZE, "%s %.3g times the law's", name, share);
+    }
+}
+
+// What a setting is worth, and by how much it is off.
+static void write_worth(const MappingContact *contact, const HeldSetting *setting,
+                        const char *constants, const char *values, Text *text)
+{
+    const MapImpact *asked = &contact->asked;
+    const ImpactFigures *predicted = &setting->predicted;
+    const double step_us = contact->held->step_s * UNITS_US;
+    if (setting->verdict == VERDICT_VALID) {
+        text_append(text,
+                    "  %s: %s is right at %.4g us: restitution %.3g to %.3g where %.3g is asked, "
+                    "peak and depth within %.0f %%.\n",
+                    constants, values, step_us, predicted->restitution.least,
+                    predicted->restitution.most, asked->restitution,
+                    MAPPING_VALID_SHARE * UNITS_PERCENT);
+        return;
+    }
+    char peak[SHARE_SIZE];
+    char depth[SHARE_SIZE];
+    share_words(share_of(&predicted->force_max, asked->force_max), "the peak", peak);
+    share_words(share_of(&predicted->penetration_max, asked->penetration_max), "the depth", depth);
+    text_append(
+        text,
+        "  %s: nothing is right at %.4g us, where the contact lasts %.3g us, %.3g steps. The best, "
+        "%s, gives restitution %.3g to %.3g where %.3g is asked (%s), %s and %s.\n",
+        constants, step_us, asked->duration * UNITS_US, asked->duration / contact->held->step_s,
+        values, predicted->restitution.least, predicted->restitution.most, asked->restitution,
+        setting->is_restitution_met ? "right" : "off", peak, depth);
+}
+
+// What else there is to know: the way to the wall, and what is right.
+static void write_beside(const MappingContact *contact, Text *text)
+{
+    const Held *held = contact->held;
+    const double step_us = held->step_s * UNITS_US;
+    if (held->flight > held->play) {
+        text_append(text,
+                    "  In a step of %.4g us the pin flies %.3g um and has %.3g um from wall to "
+                    "wall: whatever the constants, it can pass through the wall unseen.\n",
+                    step_us, held->flight * UNITS_UM, held->play * UNITS_UM);
+    }
+    Text maps;
+    text_init(&maps);
+    for (int i = ODE_MAP_TEXTBOOK; i <= ODE_MAP_IMPULSE; i++) {
+        if (held->step_s <= contact->largest_s[i]) {
+            text_append(&maps, "%s%s", maps.length > 0 ? ", " : "", OPTIONS_ODE_MAPS[i]);
+        }
+    }
+    if (maps.length > 0) {
+        text_append(text, "  With numbers made anew at each depth it is right by: %s.\n",
+                    maps.data);
+    }
+    text_finish(&maps);
+}
+
+void mapping_held_text(const MappingContact *contact, const Style *style, Text *text)
+{
+    const HeldSetting *pair = &contact->held->settings[0];
+    const HeldSetting *row = &contact->held->settings[1];
+    char values[HEADING_SIZE];
+    write_table(contact, style, text);
+    text_append(text, "\n");
+    snprintf(values, sizeof values, "kp = %.5g N/m, kd = %.4g N s/m", pair->stiffness,
+             pair->damping);
+    write_worth(contact, pair, "Gazebo", values, text);
+    snprintf(values, sizeof values, "ERP = %.5g, CFM = %.5g m/(N s)", row->row.erp, row->row.cfm);
+    write_worth(contact, row, "ERP and CFM", values, text);
+    text_append(
+        text,
+        "  Of two equal surfaces in Gazebo each has 2 kp = %.5g N/m and kd / 2 = %.4g N s/m.\n",
+        2.0 * pair->stiffness, 0.5 * pair->damping);
+    write_beside(contact, text);
+    for (int i = 0; i < HELD_MAP_COUNT; i++) {
+        const HeldSetting *setting = &contact->held->settings[i];
+        if (!setting->delivered.is_measured) {
+            text_append(text, "  not run in ODE: %s: %s\n", OPTIONS_ODE_MAPS[setting->map],
+                        setting->delivered.message);
+        }
+    }
+}
+
+static json_t *figures_object(const ImpactFigures *figures, bool is_known)
+{
+    if (!is_known) {
+        return json_null();
+    }
+    json_t *object = json_object();
+    json_object_set_new(object, "restitution", mapping_spread_object(&figures->restitution));
+    json_object_set_new(object, "force_max_N", mapping_spread_object(&figures->force_max));
+    json_object_set_new(object, "penetration_max_m",
+                        mapping_spread_object(&figures->penetration_max));
+    json_object_set_new(object, "duration_s", mapping_spread_object(&figures->duration));
+    return object;
+}
+
+static json_t *setting_object(const HeldSetting *setting)
+{
+    json_t *object = json_object();
+    json_object_set_new(object, "map", json_string(OPTIONS_ODE_MAPS[setting->map]));
+    json_value_set(object, "erp", setting->row.erp);
+    json_value_set(object, "cfm_m_N_s", setting->row.cfm);
+    json_value_set(object, "stiffness_N_m", setting->stiffness);
+    json_value_set(object, "damping_N_s_m", setting->damping);
+    json_object_set_new(object, "verdict", json_string(VERDICT_NAMES[setting->verdict]));
+    json_object_set_new(object, "restitution_met", json_boolean(setting->is_restitution_met));
+    json_value_set(object, "misfit", setting->misfit);
+    json_object_set_new(object, "predicted",
+                        figures_object(&setting->predicted, setting->predicted.is_ended));
+    json_object_set_new(
+        object, "delivered",
+        figures_object(&setting->delivered.figures, setting->delivered.is_measured));
+    json_object_set_new(object, "message", json_value_text(setting->delivered.message));
+    return object;
+}
+
+json_t *mapping_held_json(const MappingContact *contact)
+{
+    const Held *held = contact->held;
+    json_t *object = json_object();
+    json_value_set(object, "step_s", held->step_s);
+    json_value_set(object, "flight_m", held->flight);
+    json_value_set(object, "play_m", held->play);
+    json_t *settings = json_array();
+    for (int i = 0; i < HELD_MAP_COUNT; i++) {
+        json_array_append_new(settings, setting_object(&held->settings[i]));
+    }
+    json_object_set_new(object, "settings", settings);
+    return object;
+}

@@ -1,0 +1,153 @@
+// Which spring and damper are an ERP and a CFM, and what do they give back?
+//
+// A row that stays the same through a contact is a linear spring and damper, read by the map that
+// it is taken to come from: kp = ERP / (h CFM) by the textbook and the corrected map, with kd = (1
+// - ERP) / CFM and 1 / CFM; by the exact map as contact/map.c says. The restitution of the spring
+// and damper themselves is that of the continuous oscillator; what ODE gives back is the row's,
+// whatever it is read as.
+//
+// In the engine the row is that of the velocity-level model without bounce: CFM and ERP as they
+// are.
+#include "commands/map/mapping_inverse.h"
+
+#include "contact/damping.h"
+#include "contact/map.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+
+const OdeMap INVERSE_READINGS[INVERSE_READING_COUNT] = {ODE_MAP_TEXTBOOK, ODE_MAP_CORRECTED,
+                                                        ODE_MAP_EXACT};
+
+// the hole of the pin that is run: so much play that it is met once, whatever the row
+static const double PIN_RADIUS = 10e-3; // m
+static const double PLAY = 1e-3;        // m
+
+// m/s: nothing is as fast, so that nothing bounces
+static const double NO_BOUNCE = 1e100;
+
+// how far the pin goes in, about, and how far it flies in a step, at the most
+static const double DEPTH = 1e-5;  // m
+static const double FLIGHT = 1e-5; // m
+
+// beyond the undamped rows of every map, whose ERP is 1e10
+static const double ERP_MOST = 1e12;
+
+// N/m and N s/m: with masses from 1e-50 to 1e50 kg nothing overflows
+static const double PAIR_MOST = 1e100;
+
+bool inverse_of_pair(double kp, double kd, double step_s, Inverse *inverse, Err *err)
+{
+    if (!(kp >= 0.0 && kd >= 0.0 && kp + kd > 0.0)) {
+        return err_set(err, ERR_USAGE,
+                       "--kp and --kd must not be below 0, and one of them above: without spring "
+                       "and damper there is no contact");
+    }
+    if (!(kp < PAIR_MOST && kd < PAIR_MOST)) {
+        return err_set(err, ERR_USAGE, "--kp %.4g and --kd %.4g; allowed: below %.0e", kp, kd,
+                       PAIR_MOST);
+    }
+    const MapContact contact = {.stiffness = kp, .damping = kd, .step = step_s};
+    *inverse = (Inverse){.is_pair = true, .kp = kp, .kd = kd, .step_s = step_s};
+    inverse->row = map_get(ODE_MAP_TEXTBOOK)->convert(&contact);
+    return true;
+}
+
+bool inverse_of_row(double erp, double cfm, double step_s, Inverse *inverse, Err *err)
+{
+    if (!(erp >= 0.0)) {
+        return err_set(err, ERR_USAGE,
+                       "--erp is %.4g; allowed: 0 and above (a contact that pulls "
+                       "its bodies into each other is none)",
+                       erp);
+    }
+    if (!(cfm > 0.0)) {
+        return err_set(err, ERR_USAGE,
+                       "--cfm is %.4g; a spring and damper have one above 0: a row of CFM 0 is "
+                       "rigid, it presses as hard as it must and takes away ERP of the depth in "
+                       "each step",
+                       cfm);
+    }
+    const double spring = erp / (step_s * cfm);
+    if (!(erp <= ERP_MOST && cfm > 1.0 / PAIR_MOST && cfm < PAIR_MOST && spring < PAIR_MOST)) {
+        return err_set(err, ERR_USAGE,
+                       "--erp %.4g and --cfm %.4g at a step of %.4g s are no contact of numbers: "
+                       "allowed are an ERP up to %.0e, and a CFM and ERP / (h CFM) below %.0e",
+                       erp, cfm, step_s, ERP_MOST, PAIR_MOST);
+    }
+    *inverse = (Inverse){.step_s = step_s, .row = map_row(erp, cfm)};
+    return true;
+}
+
+static void read_by(const Inverse *inverse, double mass, OdeMap kind, InverseReading *reading)
+{
+    const Map *map = map_get(kind);
+    MapContact contact = {.step = inverse->step_s, .mass = mass};
+    *reading = (InverseReading){.ratio = NAN, .restitution = NAN};
+    if ((map->needs_mass && !(mass > 0.0)) || !map->invert(inverse->row, &contact)) {
+        return;
+    }
+    reading->is_there = true;
+    reading->stiffness = contact.stiffness;
+    reading->damping = contact.damping;
+    if (mass > 0.0 && contact.stiffness > 0.0) {
+        reading->ratio = 0.5 * contact.damping / sqrt(contact.stiffness * mass);
+        reading->restitution = damping_linear_restitution(reading->ratio);
+    }
+}
+
+// The pin in its hole, with the row.
+static Scenario pin_of(const Inverse *inverse)
+{
+    Scenario scenario = scenario_default();
+    scenario.linkage.joint_count = 1;
+    scenario.linkage.joints[0] = (Joint){
+        .name = "hole",
+        .kind = JOINT_CLEARANCE,
+        .body_a = LINKAGE_GROUND,
+        .clearance = {.hole_radius = PIN_RADIUS + PLAY,
+                      .pin_radius = PIN_RADIUS,
+                      .width = PIN_RADIUS},
+    };
+    scenario.contact.model = CONTACT_POISSON;
+    scenario.contact.bounce_speed = NO_BOUNCE;
+    scenario.contact.penalty = 1.0 / inverse->row.cfm;
+    scenario.ode.push_out = inverse->row.erp;
+    scenario.ode.stepping = ODE_PLAIN;
+    scenario.ode.map = ODE_MAP_TEXTBOOK;
+    scenario.run.step = inverse->step_s;
+    return scenario;
+}
+
+void inverse_add_mass(Inverse *inverse, const char *joint, double mass)
+{
+    assert(inverse->mass_count < INVERSE_MASS_MAX);
+    InverseMass *added = &inverse->masses[inverse->mass_count++];
+    *added = (InverseMass){.joint = joint, .mass = mass};
+    for (int i = 0; i < INVERSE_READING_COUNT; i++) {
+        read_by(inverse, mass, INVERSE_READINGS[i], &added->readings[i]);
+    }
+    if (!(mass > 0.0)) {
+        snprintf(added->delivered.message, ERR_TEXT_SIZE, "no mass is known");
+        return;
+    }
+    const double step_s = inverse->step_s;
+    const double stiffness = inverse->row.erp / (step_s * inverse->row.cfm);
+    added->speed = fmin(DEPTH * sqrt(stiffness / mass), FLIGHT / step_s);
+    added->speed = added->speed > 0.0 ? added->speed : FLIGHT / step_s;
+    const MapImpactCase impact = {
+        .mass = mass,
+        .speed = added->speed,
+        .step = step_s,
+        .rows = {.cfm = inverse->row.cfm, .push_out = inverse->row.erp},
+    };
+    added->predicted = impact_predict(&impact);
+    if (!added->predicted.is_ended) {
+        snprintf(added->delivered.message, ERR_TEXT_SIZE, "the contact does not end");
+        return;
+    }
+    const Scenario scenario = pin_of(inverse);
+    added->delivered =
+        impact_deliver(&scenario, 0, mass, added->speed, added->predicted.duration.most);
+}

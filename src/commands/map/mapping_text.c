@@ -1,0 +1,191 @@
+// Which ERP, CFM and step for this joint, and what do they deliver?
+#include "commands/map/mapping_text.h"
+
+#include "commands/map/mapping_held.h"
+#include "commands/map/mapping_penalty_text.h"
+#include "commands/map/mapping_settings_text.h"
+#include "write/section.h"
+#include "write/units.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { LAW_DAMPING_SIZE = 64, STABLE_SIZE = 96 };
+
+static void write_head(const MappingReport *report, const Style *style, Text *text)
+{
+    const Scenario *scenario = report->scenario;
+    const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
+    text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
+    if (scenario->path[0] != '\0') {
+        text_append(text, "  case        ");
+        text_append_shown(text, scenario->path);
+        text_append(text, "\n");
+    }
+    text_append(
+        text,
+        "  valid       restitution%s within %.0f %% of what is asked, wherever the steps fall\n",
+        mapping_report_is_poisson(report) ? "" : ", peak force and depth each",
+        MAPPING_VALID_SHARE * UNITS_PERCENT);
+    text_append(text,
+                "  delivered   by ODE: a lone pin of the joint's effective mass in its hole, means "
+                "over %d phases; other joints that are hit or hold meanwhile are left out\n",
+                MAP_IMPACT_PHASES);
+}
+
+static const char *source_words(MappingSource source)
+{
+    static const char *const WORDS[] = {
+        [MAPPING_MEDIAN] = "the median",
+        [MAPPING_MOST] = "the largest",
+        [MAPPING_GIVEN] = "as given",
+        [MAPPING_USUAL] = "where none is given",
+        [MAPPING_FLOOR] = "the floor of the damping laws",
+    };
+    return WORDS[source];
+}
+
+static void write_sources(const MappingReport *report, const MappingContact *contact, Text *text)
+{
+    const MappingSettings *settings = &report->mapping->settings;
+    const MappingJoint *joint = &contact->joint;
+    Text words;
+    text_init(&words);
+    if (joint->mass_most > 0.0) {
+        text_append(&words, "%s %.4g to %.4g kg over the run and all directions",
+                    settings->mass_source == MAPPING_GIVEN ? "; the joint's is" : " of",
+                    joint->mass_least, joint->mass_most);
+    }
+    text_append(text, "  mass        %.4g kg, %s%s\n", contact->impact.mass,
+                source_words(settings->mass_source), words.data);
+    text_finish(&words);
+    text_init(&words);
+    if (joint->onsets > 0) {
+        static const char *const LINKS[] = {
+            [MAPPING_MEDIAN] = " of",        [MAPPING_MOST] = " of",
+            [MAPPING_GIVEN] = "; beside it", [MAPPING_USUAL] = "; beside it",
+            [MAPPING_FLOOR] = ":",
+        };
+        const bool is_most = contact->speed_source == MAPPING_MOST;
+        text_append(&words, "%s %zu contact%s of the reference's run, %.4g m/s %s",
+                    LINKS[contact->speed_source], joint->onsets, joint->onsets == 1 ? "" : "s",
+                    is_most ? joint->speed_median : joint->speed_most,
+                    is_most ? "in the median" : "at most");
+    }
+    text_append(text, "  speed       %.4g m/s, %s%s\n", contact->impact.speed,
+                source_words(contact->speed_source), words.data);
+    text_finish(&words);
+}
+
+static void write_law(const MappingReport *report, const MappingContact *contact, Text *text)
+{
+    const ContactOptions *options = &contact->scenario.contact;
+    const MapImpact *asked = &contact->asked;
+    if (mapping_report_is_poisson(report)) {
+        text_append(text,
+                    "  asks        restitution %.4g; F = p d' with p = %.4g N s/mm: no spring, so "
+                    "force and depth are the step's\n",
+                    asked->restitution, options->penalty / 1e3);
+        return;
+    }
+    char damping[LAW_DAMPING_SIZE] = "";
+    if (options->damping != DAMPING_VISCOUS && options->damping != DAMPING_NONE) {
+        snprintf(damping, sizeof damping, " (%s for %.4g)", OPTIONS_DAMPINGS[options->damping],
+                 options->restitution);
+    }
+    text_append(
+        text, "  asks        restitution %.4g, peak %.4g N, depth %.4g um, %.4g us of contact%s\n",
+        asked->restitution, asked->force_max, asked->penetration_max * UNITS_UM,
+        asked->duration * UNITS_US, damping);
+    text_append(text,
+                "  stiffness   k = %.4g N/m at that depth (secant; tangent %.4g), Tc = %.4g us "
+                "without damping\n",
+                contact->secant, contact->tangent, contact->half_period_s * UNITS_US);
+    text_append(text,
+                "  damping     c = %.4g N s/m at that depth; as much is lost to a viscous one of "
+                "%.4g beside that k\n",
+                contact->damping, contact->equivalent);
+}
+
+// How much harder the linkage's own load presses, and what that does to stability.
+static void write_run(const MappingContact *contact, Text *text)
+{
+    const MappingJoint *joint = &contact->joint;
+    if (!(joint->penetration_max > 0.0)) {
+        return;
+    }
+    char stable[STABLE_SIZE] = "";
+    const double tangent = force_law_tangent(&contact->impact.law, joint->penetration_max);
+    if (isfinite(tangent) && tangent > 0.0) {
+        snprintf(stable, sizeof stable, "; omega h = 2 there at h = %.3g us, for the least mass",
+                 2.0 * sqrt(joint->mass_least / tangent) * UNITS_US);
+    }
+    text_append(text,
+                "  the run     %.4g N and %.4g um at most: the linkage's load is in these and not "
+                "in the impact%s\n",
+                joint->force_max, joint->penetration_max * UNITS_UM, stable);
+}
+
+static void write_longest(const MappingReport *report, const MappingContact *contact,
+                          const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"map", "", TABLE_LEFT},
+        {"step", "us", TABLE_RIGHT},
+        {"Tc / h", "1", TABLE_RIGHT},
+        {"hardest", "us", TABLE_RIGHT},
+    };
+    const MappingSettings *settings = &report->mapping->settings;
+    const MappingJoint *joint = &contact->joint;
+    Table *table = section_begin("Longest valid step", 4, HEADS, style, text);
+    for (size_t i = 0; i < settings->map_count; i++) {
+        const double step_s = contact->largest_s[settings->maps[i]];
+        const double hardest_s = contact->hardest_s[settings->maps[i]];
+        table_cell(table, "%s", OPTIONS_ODE_MAPS[settings->maps[i]]);
+        if (isinf(step_s) || step_s == 0.0) {
+            table_cell(table, "%s", isinf(step_s) ? "any" : "none");
+            table_cell(table, "-");
+        } else {
+            section_finite(table, "%.3g", step_s * UNITS_US);
+            section_finite(table, "%.3g", contact->half_period_s / step_s);
+        }
+        section_finite(table, "%.3g", hardest_s > 0.0 ? hardest_s * UNITS_US : NAN);
+    }
+    section_end(table, text);
+    if (joint->onsets > 0) {
+        text_append(text,
+                    "  hardest: %.4g kg at %.4g m/s, the lightest mass and the fastest contact of "
+                    "the run, together.\n",
+                    joint->mass_least,
+                    fmax(joint->speed_most, contact->impact.law.impact_speed_floor));
+    }
+}
+
+void mapping_text_write(const MappingReport *report, const Style *style, Text *text)
+{
+    write_head(report, style, text);
+    for (size_t i = 0; i < report->mapping->contact_count; i++) {
+        const MappingContact *contact = &report->mapping->contacts[i];
+        char law[MAPPING_REPORT_LAW_SIZE];
+        mapping_report_law(contact, law);
+        text_append(text, "\n%s%s, %s%s\n\n", style->heading,
+                    mapping_report_joint(report, contact)->name, law, style->end);
+        write_sources(report, contact, text);
+        if (contact->lack[0] != '\0') {
+            text_append(text, "  not mapped  %s\n", contact->lack);
+            continue;
+        }
+        write_law(report, contact, text);
+        if (!mapping_report_is_poisson(report)) {
+            write_run(contact, text);
+            write_longest(report, contact, style, text);
+        }
+        mapping_settings_text_write(report, contact, style, text);
+        if (contact->held != NULL) {
+            mapping_held_text(contact, style, text);
+        }
+    }
+    if (report->penalty != NULL) {
+        mapping_penalty_text_write(report, style, text);
+    }
+}

@@ -1,0 +1,154 @@
+// What does the paper print, recomputed, and what does physics give, for programs?
+//
+// {"tables": [{"name", "quantity", "unit", "cells": [{"rpm", "pin", "printed", "recomputed",
+//    "value", "as_printed"}...], "cells_as_printed", "cell_count", "difference_max"}...],
+//  "cells_as_printed", "cell_count",
+//  "physics": {"pins": [...], "laws": [...]},
+//  "extremes": [{"row", "status", "target", "printed": {...}, "recomputed": {...}, ...}...],
+//  "ideal": {"difference_max", "cells_as_printed", "cell_count"}, "typos": [...]}
+#include "commands/paper/paper_json.h"
+
+#include <assert.h>
+#include <math.h>
+
+// The keys of Tables VII and VIII, in the order of printed.h.
+static const char *const EXTREMES_KEYS[PRINTED_QUANTITY_COUNT] = {
+    "coupler_omega_max_rad_s",   "coupler_omega_min_rad_s",   "follower_omega_max_rad_s",
+    "follower_omega_min_rad_s",  "coupler_alpha_max_rad_s2",  "coupler_alpha_min_rad_s2",
+    "follower_alpha_max_rad_s2", "follower_alpha_min_rad_s2",
+};
+
+static const char *const PLACE_WORDS[] = {
+    [TYPO_TABLE_1] = "Table I",   [TYPO_TABLE_2] = "Table II",
+    [TYPO_TABLE_3] = "Table III", [TYPO_TABLES_7_8] = "Tables VII and VIII",
+    [TYPO_MODEL] = "model",
+};
+
+// jansson fails where memory runs out or a number is not finite; neither can be told in the object
+static json_t *packed(json_t *value)
+{
+    assert(value != NULL);
+    return value;
+}
+
+static json_t *cell_object(const EstimateCell *cell, int row, int pin)
+{
+    return packed(json_pack("{s:f, s:s, s:f, s:f, s:f, s:b}", "rpm", printed_speed_rpm(row), "pin",
+                            PRINTED_PIN_NAMES[pin], "printed", cell->printed, "recomputed",
+                            cell->rounded, "value", cell->value, "as_printed",
+                            (int)cell->is_as_printed));
+}
+
+static json_t *table_object(const PaperResult *result, int index)
+{
+    const EstimateTable *table = &result->tables[index];
+    json_t *cells = json_array();
+    for (int row = 0; row < PRINTED_SPEED_COUNT; row++) {
+        for (int pin = 0; pin < PRINTED_PIN_COUNT; pin++) {
+            json_array_append_new(cells, cell_object(&table->cells[row][pin], row, pin));
+        }
+    }
+    const PrintedTable *printed = &PRINTED_TABLES[index];
+    return packed(json_pack("{s:s, s:s, s:s, s:o, s:i, s:i, s:f}", "name", printed->name,
+                            "quantity", printed->title, "unit", printed->unit, "cells", cells,
+                            "cells_as_printed", table->as_printed, "cell_count", table->cell_count,
+                            "difference_max", table->difference_max));
+}
+
+static json_t *pin_object(const PhysicalPin *made, int row, int pin)
+{
+    return packed(json_pack("{s:f, s:s, s:f, s:f, s:f, s:f, s:f}", "rpm", printed_speed_rpm(row),
+                            "pin", PRINTED_PIN_NAMES[pin], "force_N", made->force,
+                            "hertz_approach_m", made->hertz_approach, "johnson_approach_m",
+                            made->johnson_approach, "johnson_tangent_N_m", made->johnson_tangent,
+                            "contact_half_angle_rad", made->half_angle));
+}
+
+static json_t *physics_object(const Physical *physical)
+{
+    json_t *pins = json_array();
+    for (int row = 0; row < PRINTED_SPEED_COUNT; row++) {
+        for (int pin = 0; pin < PRINTED_PIN_COUNT; pin++) {
+            json_array_append_new(pins, pin_object(&physical->pins[row][pin], row, pin));
+        }
+    }
+    json_t *laws = json_array();
+    for (int i = 0; i < PHYSICAL_LAW_COUNT; i++) {
+        const PhysicalLaw *estimated = &physical->estimated[i];
+        const PhysicalLaw *real = &physical->real[i];
+        json_array_append_new(laws,
+                              packed(json_pack("{s:s, s:f, s:f, s:f, s:f}", "law", estimated->name,
+                                               "approach_at_paper_force_m", estimated->approach,
+                                               "tangent_at_paper_force_N_m", estimated->tangent,
+                                               "approach_at_real_force_m", real->approach,
+                                               "tangent_at_real_force_N_m", real->tangent)));
+    }
+    return packed(json_pack("{s:f, s:f, s:o, s:o}", "paper_force_N", physical->estimated_force,
+                            "real_force_N", physical->real_force, "pins", pins, "laws", laws));
+}
+
+static json_t *values_object(const double values[PRINTED_QUANTITY_COUNT])
+{
+    json_t *object = json_object();
+    for (int i = 0; i < PRINTED_QUANTITY_COUNT; i++) {
+        json_object_set_new(object, EXTREMES_KEYS[i], packed(json_real(values[i])));
+    }
+    return object;
+}
+
+static json_t *extremes_object(const ExtremesRow *row)
+{
+    json_t *object = packed(json_pack("{s:s, s:s, s:s, s:b, s:s, s:o}", "row", row->name, "status",
+                                      row->is_known ? "ok" : "failed", "message", row->message,
+                                      "target", (int)row->is_target, "label", row->label, "printed",
+                                      values_object(row->printed)));
+    if (!row->is_known) {
+        return object;
+    }
+    json_object_set_new(object, "recomputed", values_object(row->ours));
+    json_object_set_new(object, "difference_max", packed(json_real(row->difference_max)));
+    json_object_set_new(object, "cells_as_printed", json_integer(row->as_printed));
+    if (!row->is_target) {
+        json_object_set_new(object, "step_s", packed(json_real(row->step_s)));
+        json_object_set_new(object, "impacts", json_integer((json_int_t)row->impacts));
+        json_object_set_new(object, "force_max_N", packed(json_real(row->force_max)));
+    }
+    return object;
+}
+
+static json_t *typos_array(void)
+{
+    json_t *typos = json_array();
+    for (size_t i = 0; i < TYPOS_COUNT; i++) {
+        const Typo *typo = &TYPOS[i];
+        json_array_append_new(
+            typos,
+            packed(json_pack("{s:s, s:s, s:s, s:s, s:s}", "concerns", PLACE_WORDS[typo->place],
+                             "where", typo->where, "printed", typo->printed, "reading",
+                             typo->reading, "evidence", typo->evidence)));
+    }
+    return typos;
+}
+
+json_t *paper_json_make(const PaperResult *result)
+{
+    json_t *tables = json_array();
+    for (int i = 0; i < PRINTED_TABLE_COUNT; i++) {
+        json_array_append_new(tables, table_object(result, i));
+    }
+    json_t *extremes = json_array();
+    for (int i = 0; i < PRINTED_ROW_COUNT; i++) {
+        json_array_append_new(extremes, extremes_object(&result->extremes[i]));
+    }
+    // infinite where an ideal row has no numbers of ours
+    json_t *difference = isfinite(result->ideal_difference_max)
+                             ? json_real(result->ideal_difference_max)
+                             : json_null();
+    json_t *ideal =
+        packed(json_pack("{s:o, s:i, s:i}", "difference_max", difference, "cells_as_printed",
+                         result->ideal_as_printed, "cell_count", result->ideal_cell_count));
+    return packed(json_pack("{s:o, s:i, s:i, s:o, s:o, s:o, s:o}", "tables", tables,
+                            "cells_as_printed", result->as_printed, "cell_count",
+                            result->cell_count, "physics", physics_object(&result->physical),
+                            "extremes", extremes, "ideal", ideal, "typos", typos_array()));
+}

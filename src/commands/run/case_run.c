@@ -1,0 +1,168 @@
+// What do the backends of one case make of it, and how far are they apart?
+#include "commands/run/case_run.h"
+
+#include "cli/long_work.h"
+#include "measure/backend_run.h"
+#include "run/registry.h"
+#include "run/tracer.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// The run of a backend that is complete, or NULL.
+static const Trajectory *find_run(const CaseRun *run, BackendKind backend)
+{
+    for (size_t i = 0; i < run->scenario.run.backend_count; i++) {
+        if (run->scenario.run.backends[i] == backend && run->runs[i]->is_complete) {
+            return run->runs[i];
+        }
+    }
+    return NULL;
+}
+
+static bool uses(const CaseRun *run, BackendKind backend)
+{
+    const RunOptions *options = &run->scenario.run;
+    for (size_t i = 0; i < options->backend_count; i++) {
+        if (options->backends[i] == backend) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void make_truth(CaseRun *run, Progress *progress)
+{
+    if (!uses(run, BACKEND_REFERENCE)) {
+        return;
+    }
+    run->truth = truth_make(&run->scenario, progress_watch(progress, "reference"));
+    progress_end(progress);
+    run->report.truth = &run->truth;
+}
+
+// One run of one backend; the truth's own trajectory stands for the run of its backend.
+static Trajectory *run_backend(const CaseRun *run, BackendKind backend, bool is_announced,
+                               Progress *progress)
+{
+    const Solver *solver = registry_solver(backend);
+    Trajectory *truth = run->truth.trajectory;
+    if (truth != NULL && strcmp(truth->backend, solver->name) == 0) {
+        return truth;
+    }
+    const ChosenWatch watch = progress_watch_trials(progress, solver->name);
+    progress->is_warned = is_announced;
+    Trajectory *trajectory = backend_run(&run->scenario, backend,
+                                         truth == NULL ? NULL : &run->truth, watch, &TRACER_PROBE);
+    progress_end(progress);
+    return trajectory;
+}
+
+// Errors are against the certified solution; without one, against the closed form.
+static void measure_errors(CaseRun *run)
+{
+    const bool has_truth = run_report_has_truth(&run->report);
+    const Trajectory *truth = has_truth ? run->truth.trajectory : find_run(run, BACKEND_ANALYTIC);
+    const double horizon = has_truth ? run->truth.horizon_s : INFINITY;
+    for (size_t i = 0; truth != NULL && i < run->scenario.run.backend_count; i++) {
+        if (run->runs[i] != truth && run->runs[i]->is_complete) {
+            run->errors[i] = error_against(run->runs[i], truth, horizon);
+        }
+    }
+}
+
+// The contacts of every run that lets the play happen, beside the truth's.
+static void match_contacts(CaseRun *run)
+{
+    const Linkage *linkage = &run->scenario.linkage;
+    for (size_t i = 0; i < run->scenario.run.backend_count; i++) {
+        const Trajectory *trajectory = run->runs[i];
+        for (size_t k = 0; trajectory != run->truth.trajectory && k < linkage->joint_count; k++) {
+            if (trajectory_feels_play(trajectory, &linkage->joints[k])) {
+                run->matches[i].joints[k] =
+                    spike_match(trajectory, run->truth.trajectory, k, run->truth.horizon_s,
+                                spike_match_reach(&run->scenario));
+            }
+        }
+    }
+    run->report.matches = run->matches;
+}
+
+// Where the motion cannot be predicted, its statistics may still agree.
+static void run_ensembles(CaseRun *run, Progress *progress)
+{
+    const RunOptions *options = &run->scenario.run;
+    for (size_t i = 0; i < options->backend_count; i++) {
+        if (options->backends[i] == BACKEND_ANALYTIC || !run->runs[i]->is_complete) {
+            continue;
+        }
+        const Solver *solver = registry_solver(options->backends[i]);
+        char name[LINKAGE_NAME_SIZE];
+        snprintf(name, sizeof name, "%s, %d starts", solver->name, ENSEMBLE_MEMBERS);
+        const RunWatch watch = progress_watch(progress, name);
+        // a step that was chosen once is good for starts beside this one
+        const bool is_chosen = backend_run_is_chosen(&run->scenario, options->backends[i]);
+        const Scenario scenario =
+            is_chosen ? chosen_run_scenario(&run->scenario, run->runs[i]->step_s) : run->scenario;
+        ensemble_run(&scenario, solver, watch, &run->ensembles[i]);
+        progress_end(progress);
+    }
+    run->report.ensembles = run->ensembles;
+}
+
+// What the closed form has to say beyond its trajectory, where it took part.
+static void ask_closed_form(CaseRun *run)
+{
+    const Scenario *scenario = &run->scenario;
+    if (find_run(run, BACKEND_ANALYTIC) == NULL || !scenario->has_fourbar) {
+        return;
+    }
+    // a crank that does not turn fully has no turn to sum up: no error, but said
+    if (summary_compute(scenario, &run->summary, &run->summary_err)) {
+        run->report.summary = &run->summary;
+    } else {
+        run->report.no_summary = run->summary_err.text;
+    }
+    if (stackup_compute(scenario, &run->stackup, &run->stackup_err)) {
+        run->report.stackup = &run->stackup;
+    } else {
+        run->report.no_stackup = run->stackup_err.text;
+    }
+}
+
+void case_run_execute(CaseRun *run, Progress *progress)
+{
+    const RunOptions *options = &run->scenario.run;
+    run->report = (RunReport){
+        .scenario = &run->scenario,
+        .run_count = options->backend_count,
+        .runs = run->runs,
+        .errors = run->errors,
+    };
+    const bool is_announced = long_work_announce(&run->scenario, progress->line.is_quiet);
+    make_truth(run, progress);
+    for (size_t i = 0; i < options->backend_count; i++) {
+        run->runs[i] = run_backend(run, options->backends[i],
+                                   is_announced && options->backends[i] == BACKEND_ODE, progress);
+        run->failed_count += run->runs[i]->is_complete ? 0 : 1;
+    }
+    measure_errors(run);
+    ask_closed_form(run);
+    if (run_report_has_truth(&run->report) && scenario_has_clearance(&run->scenario)) {
+        match_contacts(run);
+        if (run->truth.is_limited) {
+            run_ensembles(run, progress);
+        }
+    }
+}
+
+void case_run_finish(CaseRun *run)
+{
+    for (size_t i = 0; i < BACKEND_COUNT; i++) {
+        if (run->runs[i] != run->truth.trajectory) {
+            trajectory_destroy(run->runs[i]);
+        }
+        run->runs[i] = NULL;
+    }
+    truth_finish(&run->truth);
+}

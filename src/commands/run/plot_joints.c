@@ -1,0 +1,256 @@
+// What did the joints feel, and where was the pin in its hole?
+#include "commands/run/plot_joints.h"
+
+#include "write/units.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// the force axis ends so many times below the largest force: a contact begins and ends at nothing
+static const double FORCE_DEPTH = 1e-5;
+// errors below this share of the largest omega are rounding
+static const double ERROR_FLOOR = 1e-12;
+static const double ERROR_DECADES = 1e4;
+
+static double force_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
+{
+    (void)report;
+    return trajectory_state(run, sample, joint)->force;
+}
+
+static size_t force_signal(const Trajectory *run, size_t joint)
+{
+    return ranges_of_joint(&run->ranges, joint, RANGES_FORCE);
+}
+
+static const PlotQuantity FORCE = {"force", plot_look_joint_colour, plot_look_joint_name,
+                                   force_signal, force_of};
+
+// Whether the run has forces of this joint at all: none act in a drive that is prescribed.
+static bool knows_force(const RunReport *report, const Trajectory *run, size_t joint)
+{
+    const size_t count = run->is_complete ? plot_look_stretch_count(run, FORCE) : 0;
+    for (size_t i = 0; i < count; i++) {
+        if (plot_look_stretch(report, run, FORCE, i, joint).range.most > 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Widens the range of the forces that are drawn by those of one joint in one run.
+static void widen_force_range(const RunReport *report, const Trajectory *run, size_t joint,
+                              Range *forces)
+{
+    const size_t count = plot_look_stretch_count(run, FORCE);
+    for (size_t i = 0; i < count; i++) {
+        const Range range = plot_look_stretch(report, run, FORCE, i, joint).range;
+        forces->most = fmax(forces->most, range.most);
+        forces->least = range.most > 0.0 ? fmin(forces->least, range.most) : forces->least;
+        forces->least = range.least > 0.0 ? fmin(forces->least, range.least) : forces->least;
+    }
+    const JointExtremes *extremes = &run->joints[joint];
+    if (extremes->spike_count > 0) {
+        forces->most = fmax(forces->most, extremes->spikes[0].force_max);
+    }
+}
+
+// The range of the forces that are drawn, in whole decades.
+static void choose_force_range(const RunReport *report, Axis *axis)
+{
+    Range forces = {INFINITY, 0.0};
+    for (size_t run = 0; run < report->run_count; run++) {
+        const Trajectory *trajectory = report->runs[run];
+        for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
+            if (trajectory->is_complete && plot_look_shows_joint(report, joint)) {
+                widen_force_range(report, trajectory, joint, &forces);
+            }
+        }
+    }
+    axis->high = forces.most > 0.0 ? pow(10.0, ceil(log10(forces.most))) : 1.0;
+    axis->low = fmax(pow(10.0, floor(log10(fmin(forces.least, 0.1 * axis->high)))),
+                     FORCE_DEPTH * axis->high);
+}
+
+static void draw_spikes(const RunReport *report, const PlotPanel *panel, size_t run, size_t joint)
+{
+    const JointExtremes *extremes = &report->runs[run]->joints[joint];
+    const Joint *shape = &report->scenario->linkage.joints[joint];
+    const bool is_shown = trajectory_feels_play(report->runs[run], shape);
+    for (size_t i = 0; is_shown && i < extremes->spike_count; i++) {
+        const Spike *spike = &extremes->spikes[i];
+        plot_dot(panel, plot_look_x(report, spike->crank_rad, spike->onset_s), spike->force_max,
+                 plot_style(1, plot_look_joint_colour(report, joint)));
+    }
+}
+
+void plot_joints_forces(const RunReport *report, PlotPanel panel)
+{
+    panel.y = (Axis){.title = "force, N", .scale = AXIS_LOG};
+    choose_force_range(report, &panel.y);
+    if (scenario_has_clearance(report->scenario)) {
+        panel.title = "Force in the joint; dots: strongest contacts";
+    }
+    plot_enter(&panel);
+    plot_look_shade(report, &panel);
+    for (size_t run = 0; run < report->run_count; run++) {
+        for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
+            if (plot_look_shows_joint(report, joint) &&
+                knows_force(report, report->runs[run], joint)) {
+                plot_look_draw(report, &panel, run, FORCE, joint);
+                draw_spikes(report, &panel, run, joint);
+            }
+        }
+    }
+    const Trajectory *spiky = plot_look_spike_run(report);
+    for (size_t joint = 0; spiky != NULL && joint < spiky->joint_count; joint++) {
+        if (plot_look_shows_joint(report, joint)) {
+            plot_look_marks(report, &panel, &spiky->force_spikes[joint], FORCE, joint, "N");
+        }
+    }
+    plot_leave(&panel);
+}
+
+static void draw_path(const RunReport *report, const PlotPanel *panel, size_t run, size_t joint,
+                      double per_metre)
+{
+    const Trajectory *trajectory = report->runs[run];
+    double *x = calloc(trajectory->sample_count, sizeof *x);
+    double *y = calloc(trajectory->sample_count, sizeof *y);
+    assert(x != NULL && y != NULL);
+    for (size_t i = 0; i < trajectory->sample_count; i++) {
+        const Vec2 eccentricity = trajectory_state(trajectory, i, joint)->eccentricity;
+        x[i] = eccentricity.x * per_metre;
+        y[i] = eccentricity.y * per_metre;
+    }
+    PlotStyle style = plot_style(1, plot_look_joint_colour(report, joint));
+    style.width = 1.0;
+    style.opacity = 0.8;
+    plot_line(panel, trajectory->sample_count, x, y, style);
+    free(x);
+    free(y);
+}
+
+// How far from the hole's centre a pin comes in x or y: in a unit of so many a metre, or where
+// that is 0 as a share of the joint's radial clearance.
+static double farthest(const RunReport *report, double per_metre)
+{
+    double most = 0.0;
+    for (size_t run = 0; run < report->run_count; run++) {
+        const Trajectory *trajectory = report->runs[run];
+        for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
+            const Joint *shape = &report->scenario->linkage.joints[joint];
+            const bool is_shown = trajectory_feels_play(trajectory, shape);
+            for (size_t i = 0; is_shown && i < trajectory->sample_count; i++) {
+                const Vec2 e = trajectory_state(trajectory, i, joint)->eccentricity;
+                const double scale =
+                    per_metre > 0.0 ? per_metre : 1.0 / linkage_radial_clearance(shape);
+                most = fmax(most, scale * fmax(fabs(e.x), fabs(e.y)));
+            }
+        }
+    }
+    return most;
+}
+
+void plot_joints_paths(const RunReport *report, PlotPanel panel)
+{
+    static const PlotStyle WALL = {"#222222", 1.6, 1.0, "6 4"};
+    const Linkage *linkage = &report->scenario->linkage;
+    size_t joints_with_play = 0;
+    double clearance = 0.0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage->joints[i].kind == JOINT_CLEARANCE) {
+            joints_with_play++;
+            clearance = linkage_radial_clearance(&linkage->joints[i]);
+        }
+    }
+    const bool is_one = joints_with_play == 1;
+    const double radius = is_one ? clearance * UNITS_UM : 1.0;
+    // the same scale in both directions: the circle is one
+    const double high = fmax(1.15 * radius, 1.06 * farthest(report, is_one ? UNITS_UM : 0.0));
+    const double wide = high * panel.width / panel.height;
+    panel.title = "Pin in its hole; dashed: where they touch";
+    panel.x =
+        (Axis){.title = is_one ? "e_x, um" : "e_x / radial clearance", .low = -wide, .high = wide};
+    panel.y =
+        (Axis){.title = is_one ? "e_y, um" : "e_y / radial clearance", .low = -high, .high = high};
+    plot_enter(&panel);
+    for (size_t run = 0; run < report->run_count; run++) {
+        for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+            if (trajectory_feels_play(report->runs[run], &linkage->joints[joint])) {
+                const double per_metre = linkage_radial_clearance(&linkage->joints[joint]);
+                draw_path(report, &panel, run, joint, is_one ? UNITS_UM : 1.0 / per_metre);
+            }
+        }
+    }
+    plot_circle(&panel, radius, WALL);
+    plot_leave(&panel);
+}
+
+// The run that the others are held against, or NULL.
+static const Trajectory *find_truth(const RunReport *report)
+{
+    for (size_t i = 0; i < report->run_count; i++) {
+        for (size_t k = 0; report->errors[i].is_known && k < report->run_count; k++) {
+            if (strcmp(report->runs[k]->backend, report->errors[i].against) == 0) {
+                return report->runs[k];
+            }
+        }
+    }
+    return NULL;
+}
+
+static double omega_error(const RunReport *report, const Trajectory *run, size_t sample,
+                          size_t body)
+{
+    const Trajectory *truth = find_truth(report);
+    return fabs(trajectory_motion(run, sample, body)->omega -
+                trajectory_motion(truth, sample, body)->omega);
+}
+
+// The largest difference as a range of four decades, none of them below rounding.
+static void choose_error_range(const RunReport *report, const Trajectory *truth, Axis *axis)
+{
+    double high = 0.0;
+    double scale = 0.0;
+    for (size_t run = 0; run < report->run_count; run++) {
+        for (size_t body = 0; report->errors[run].is_known && body < truth->body_count; body++) {
+            scale = fmax(scale, trajectory_omega_scale(truth, body));
+            for (size_t i = 0; i < truth->sample_count; i++) {
+                high = fmax(high, omega_error(report, report->runs[run], i, body));
+            }
+        }
+    }
+    const double rounding = fmax(ERROR_FLOOR * scale, ERROR_FLOOR);
+    axis->high = pow(10.0, ceil(log10(fmax(high, rounding))));
+    axis->low = fmax(axis->high / ERROR_DECADES, 1e-3 * pow(10.0, floor(log10(rounding))));
+}
+
+void plot_joints_errors(const RunReport *report, PlotPanel panel)
+{
+    static const PlotQuantity ERROR = {"difference of omega", plot_look_body_colour,
+                                       plot_look_body_name, NULL, omega_error};
+    const Trajectory *truth = find_truth(report);
+    char title[128];
+    snprintf(title, sizeof title, "%s%s",
+             truth == NULL ? "No run to compare with" : "Difference from ",
+             truth == NULL ? "" : truth->backend);
+    panel.title = title;
+    panel.y = (Axis){
+        .title = "|difference of omega|, rad/s", .scale = AXIS_LOG, .low = 1e-6, .high = 1.0};
+    if (truth != NULL) {
+        choose_error_range(report, truth, &panel.y);
+    }
+    plot_enter(&panel);
+    for (size_t run = 0; run < report->run_count; run++) {
+        for (size_t body = 0; report->errors[run].is_known && body < truth->body_count; body++) {
+            if (plot_look_shows_body(report, body)) {
+                plot_look_draw(report, &panel, run, ERROR, body);
+            }
+        }
+    }
+    plot_leave(&panel);
+}

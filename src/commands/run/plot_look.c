@@ -1,0 +1,162 @@
+// Which line, which colour, which axis stands for what in the picture of a run?
+//
+// A backend has a kind of line, a body or joint a colour. The first backend is drawn wide and
+// pale, the next thin over it: where the two agree, the thin line lies in the middle of the pale.
+#include "commands/run/plot_look.h"
+
+#include "write/units.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+bool plot_look_shows_body(const RunReport *report, size_t body)
+{
+    return (int)body != linkage_driven_body(&report->scenario->linkage);
+}
+
+bool plot_look_shows_joint(const RunReport *report, size_t joint)
+{
+    return !scenario_has_clearance(report->scenario) ||
+           report->scenario->linkage.joints[joint].kind == JOINT_CLEARANCE;
+}
+
+size_t plot_look_joint_colour(const RunReport *report, size_t joint)
+{
+    size_t colour = 0;
+    for (size_t body = 0; body < report->scenario->linkage.body_count; body++) {
+        colour += plot_look_shows_body(report, body) ? 1 : 0;
+    }
+    for (size_t i = 0; i < joint; i++) {
+        colour += plot_look_shows_joint(report, i) ? 1 : 0;
+    }
+    return colour;
+}
+
+size_t plot_look_body_colour(const RunReport *report, size_t body)
+{
+    size_t colour = 0;
+    for (size_t i = 0; i < body; i++) {
+        colour += plot_look_shows_body(report, i) ? 1 : 0;
+    }
+    return colour;
+}
+
+Axis plot_look_x_axis(const RunReport *report)
+{
+    const Scenario *scenario = report->scenario;
+    if (!scenario->linkage.driver.is_present) {
+        return (Axis){.title = "time, ms", .high = scenario_duration(scenario) * UNITS_MS};
+    }
+    const double turns = scenario->run.revolutions;
+    return (Axis){
+        .title = "crank angle from the start, deg",
+        .high = 360.0 * turns,
+        .tick = turns <= 1.0   ? 60.0
+                : turns <= 2.0 ? 90.0
+                               : 0.0,
+    };
+}
+
+double plot_look_x(const RunReport *report, double crank_rad, double time_s)
+{
+    const Driver *driver = &report->scenario->linkage.driver;
+    return driver->is_present ? fabs(crank_rad - driver->start) * UNITS_DEG : time_s * UNITS_MS;
+}
+
+const char *plot_look_body_name(const RunReport *report, size_t body)
+{
+    return report->scenario->linkage.bodies[body].name;
+}
+
+const char *plot_look_joint_name(const RunReport *report, size_t joint)
+{
+    return report->scenario->linkage.joints[joint].name;
+}
+
+static bool has_ranges(const Trajectory *run, PlotQuantity quantity)
+{
+    return quantity.signal != NULL && run->ranges.count > 0;
+}
+
+size_t plot_look_stretch_count(const Trajectory *run, PlotQuantity quantity)
+{
+    return has_ranges(run, quantity) ? run->ranges.count : run->sample_count;
+}
+
+PlotStretch plot_look_stretch(const RunReport *report, const Trajectory *run, PlotQuantity quantity,
+                              size_t stretch, size_t index)
+{
+    if (!has_ranges(run, quantity)) {
+        const double value = quantity.at(report, run, stretch, index);
+        return (PlotStretch){run->times[stretch], {value, value}};
+    }
+    const Ranges *ranges = &run->ranges;
+    const size_t signal = quantity.signal(run, index);
+    // the last stretches may reach beyond the end
+    return (PlotStretch){fmin(((double)stretch + 0.5) * ranges->width_s, run->duration_s),
+                         ranges_over(ranges, signal, stretch, stretch + 1)};
+}
+
+void plot_look_shade(const RunReport *report, const PlotPanel *panel)
+{
+    const double from_s = scenario_report_from(report->scenario);
+    if (from_s > 0.0) {
+        const double crank = linkage_crank_angle(&report->scenario->linkage, from_s);
+        plot_shade(panel, panel->x.low, plot_look_x(report, crank, from_s));
+    }
+}
+
+const Trajectory *plot_look_spike_run(const RunReport *report)
+{
+    const Trajectory *last = NULL;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        for (size_t k = 0; run->is_complete && k < run->body_count; k++) {
+            last = run->alpha_spikes[k].is_known && run->alpha_spikes[k].kept > 0 ? run : last;
+        }
+        for (size_t k = 0; run->is_complete && k < run->joint_count; k++) {
+            last = run->force_spikes[k].is_known && run->force_spikes[k].kept > 0 ? run : last;
+        }
+    }
+    return last;
+}
+
+void plot_look_marks(const RunReport *report, const PlotPanel *panel, const SignalSpikes *spikes,
+                     PlotQuantity quantity, size_t index, const char *unit)
+{
+    for (size_t i = 0; spikes->is_known && i < spikes->kept; i++) {
+        const SignalSpike *spike = &spikes->spikes[i];
+        char title[2 * LINKAGE_NAME_SIZE + 96];
+        snprintf(title, sizeof title, "%s %s: %.6g %s at %.7g ms", quantity.name,
+                 quantity.owner(report, index), spike->value, unit, spike->time_s * UNITS_MS);
+        plot_mark(panel, plot_look_x(report, spike->crank_rad, spike->time_s), spike->value,
+                  spike->value < 0.0, title, plot_style(1, quantity.colour(report, index)));
+    }
+}
+
+void plot_look_draw(const RunReport *report, const PlotPanel *panel, size_t run,
+                    PlotQuantity quantity, size_t index)
+{
+    const Trajectory *trajectory = report->runs[run];
+    const size_t most = plot_look_stretch_count(trajectory, quantity);
+    double *x = calloc(3 * most, sizeof *x);
+    assert(x != NULL);
+    double *low = x + most;
+    double *high = low + most;
+    size_t count = 0;
+    for (size_t i = 0; i < most; i++) {
+        const PlotStretch stretch = plot_look_stretch(report, trajectory, quantity, i, index);
+        const double crank = linkage_crank_angle(&report->scenario->linkage, stretch.time_s);
+        if (stretch.range.least <= stretch.range.most) {
+            x[count] = plot_look_x(report, crank, stretch.time_s);
+            low[count] = stretch.range.least;
+            high[count++] = stretch.range.most;
+        }
+    }
+    char title[TRAJECTORY_LABEL_SIZE + 2 * LINKAGE_NAME_SIZE];
+    snprintf(title, sizeof title, "%s: %s %s", trajectory->backend, quantity.name,
+             quantity.owner(report, index));
+    plot_band(panel, count, x, low, high, title, plot_style(run, quantity.colour(report, index)));
+    free(x);
+}

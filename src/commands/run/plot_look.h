@@ -1,0 +1,58 @@
+// Which line, colour and axis stands for what in the picture of a run.
+#pragma once
+
+#include "commands/run/run_report.h"
+#include "write/plot.h"
+
+// Something drawn over the crank angle: its name, the colour of its body or joint, and either its
+// number in the ranges of a run or, where these do not hold it, its value at a sample.
+typedef struct PlotQuantity {
+    const char *name;
+    size_t (*colour)(const RunReport *report, size_t index);
+    const char *(*owner)(const RunReport *report, size_t index);
+    size_t (*signal)(const Trajectory *run, size_t index); // NULL: samples are all there is
+    double (*at)(const RunReport *report, const Trajectory *run, size_t sample, size_t index);
+} PlotQuantity;
+
+// A stretch of a run in which a quantity went from one value to another: as the ranges have it, or
+// one sample.
+typedef struct PlotStretch {
+    double time_s;
+    Range range; // least > most where nothing is known
+} PlotStretch;
+
+size_t plot_look_stretch_count(const Trajectory *run, PlotQuantity quantity);
+PlotStretch plot_look_stretch(const RunReport *report, const Trajectory *run, PlotQuantity quantity,
+                              size_t stretch, size_t index);
+
+// The names of a body and of a joint.
+const char *plot_look_body_name(const RunReport *report, size_t body);
+const char *plot_look_joint_name(const RunReport *report, size_t joint);
+
+// Driven bodies are not shown; ideal joints only where no joint has play.
+bool plot_look_shows_body(const RunReport *report, size_t body);
+bool plot_look_shows_joint(const RunReport *report, size_t joint);
+
+// The number of the colour of a body or joint.
+size_t plot_look_body_colour(const RunReport *report, size_t body);
+size_t plot_look_joint_colour(const RunReport *report, size_t joint);
+
+// The axis of the crank angle from the start, or of time where there is no driver.
+Axis plot_look_x_axis(const RunReport *report);
+
+// Where on it an instant stands.
+double plot_look_x(const RunReport *report, double crank_rad, double time_s);
+
+// Greys what is before the reported time.
+void plot_look_shade(const RunReport *report, const PlotPanel *panel);
+
+// The run whose strongest spikes the tables list, the last that has any; NULL where none has.
+const Trajectory *plot_look_spike_run(const RunReport *report);
+
+// Marks the spikes of one signal that the tables list.
+void plot_look_marks(const RunReport *report, const PlotPanel *panel, const SignalSpikes *spikes,
+                     PlotQuantity quantity, size_t index, const char *unit);
+
+// Draws one quantity of one body or joint of one run.
+void plot_look_draw(const RunReport *report, const PlotPanel *panel, size_t run,
+                    PlotQuantity quantity, size_t index);

@@ -1,0 +1,309 @@
+// What does a run look like?
+#include "commands/run/plot_run.h"
+
+#include "commands/run/plot_joints.h"
+#include "commands/run/plot_look.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double PICTURE_WIDTH = 1000.0; // pixels, as all that follow
+static const double PICTURE_HEIGHT = 880.0;
+static const double PANEL_WIDTH = 390.0;
+static const double PANEL_HEIGHT = 290.0;
+static const double PANEL_LEFT[2] = {84.0, 584.0};
+static const double PANEL_TOP[2] = {146.0, 530.0};
+static const double LEGEND_TOP = 62.0;
+static const double LEGEND_ROW = 22.0;
+
+// a symmetric logarithmic scale is used where one backend goes so many times beyond another, or
+// beyond what the greater part of its run stays below
+static const double SPIKY = 8.0;
+static const double USUAL = 0.9;
+
+static double omega_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
+{
+    (void)report;
+    return trajectory_motion(run, sample, body)->omega;
+}
+
+static double alpha_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
+{
+    (void)report;
+    return trajectory_motion(run, sample, body)->alpha;
+}
+
+static double speed_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
+{
+    (void)report;
+    const Vec2 velocity = trajectory_motion(run, sample, body)->velocity;
+    return hypot(velocity.x, velocity.y);
+}
+
+static double acceleration_of(const RunReport *report, const Trajectory *run, size_t sample,
+                              size_t body)
+{
+    (void)report;
+    const Vec2 acceleration = trajectory_motion(run, sample, body)->acceleration;
+    return hypot(acceleration.x, acceleration.y);
+}
+
+static size_t omega_signal(const Trajectory *run, size_t body)
+{
+    (void)run;
+    return ranges_of_body(body, RANGES_OMEGA);
+}
+
+static size_t alpha_signal(const Trajectory *run, size_t body)
+{
+    (void)run;
+    return ranges_of_body(body, RANGES_ALPHA);
+}
+
+static size_t acceleration_signal(const Trajectory *run, size_t body)
+{
+    (void)run;
+    return ranges_of_body(body, RANGES_ACCELERATION);
+}
+
+// Does any body turn by more than rounding? A body without friction in a round hole does not, and
+// its angular velocity would be a picture of noise. Its energy of rotation is held against its
+// energy of translation: speeds that differ by 1e-10 are rounding over many steps.
+static bool any_turns(const RunReport *report)
+{
+    const double turning = 1e-10 * 1e-10;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        for (size_t body = 0; run->is_complete && body < run->body_count; body++) {
+            const Body *shape = &report->scenario->linkage.bodies[body];
+            double rotation = 0.0;
+            double translation = 0.0;
+            for (size_t sample = 0; sample < run->sample_count; sample++) {
+                const double omega = omega_of(report, run, sample, body);
+                const double speed = speed_of(report, run, sample, body);
+                rotation = fmax(rotation, shape->inertia * omega * omega);
+                translation = fmax(translation, shape->mass * speed * speed);
+            }
+            if (rotation > turning * translation) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static PlotPanel place_panel(const RunReport *report, Text *svg, int row, int place,
+                             const char *title)
+{
+    return (PlotPanel){
+        .svg = svg,
+        .title = title,
+        .left = PANEL_LEFT[place],
+        .top = PANEL_TOP[row],
+        .width = PANEL_WIDTH,
+        .height = PANEL_HEIGHT,
+        .x = plot_look_x_axis(report),
+    };
+}
+
+// How far a quantity goes in one run, over all bodies that are shown.
+typedef struct Reach {
+    double low;
+    double high;
+    double usual; // what most of the run stays below on either side of zero
+} Reach;
+
+static int by_size(const void *a, const void *b)
+{
+    const double first = *(const double *)a;
+    const double second = *(const double *)b;
+    return (first > second) - (first < second);
+}
+
+static Reach find_reach(const RunReport *report, const Trajectory *run, PlotQuantity quantity)
+{
+    Reach reach = {0};
+    const size_t count = plot_look_stretch_count(run, quantity);
+    double *sizes = calloc(count, sizeof *sizes);
+    assert(sizes != NULL);
+    for (size_t body = 0; body < run->body_count; body++) {
+        for (size_t i = 0; plot_look_shows_body(report, body) && i < count; i++) {
+            const Range range = plot_look_stretch(report, run, quantity, i, body).range;
+            if (range.least <= range.most) {
+                reach.low = fmin(reach.low, range.least);
+                reach.high = fmax(reach.high, range.most);
+                sizes[i] = fmax(sizes[i], fmax(-range.least, range.most));
+            }
+        }
+    }
+    qsort(sizes, count, sizeof *sizes, by_size);
+    reach.usual = sizes[(size_t)(USUAL * (double)(count - 1))];
+    free(sizes);
+    return reach;
+}
+
+// A linear scale, unless one backend dwarfs another, or spikes dwarf the rest of a run.
+static void choose_scale(const RunReport *report, PlotQuantity quantity, Axis *axis)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < report->run_count; i++) {
+        if (!report->runs[i]->is_complete) {
+            continue;
+        }
+        const Reach reach = find_reach(report, report->runs[i], quantity);
+        const double size = fmax(-reach.low, reach.high);
+        least = size > 0.0 ? fmin(least, size) : least;
+        least = reach.usual > 0.0 ? fmin(least, reach.usual) : least;
+        axis->low = fmin(axis->low, reach.low);
+        axis->high = fmax(axis->high, reach.high);
+    }
+    const double most = fmax(-axis->low, axis->high);
+    if (most > SPIKY * least) {
+        axis->scale = AXIS_SYMLOG;
+        axis->threshold = pow(10.0, floor(log10(least)));
+        axis->high = pow(10.0, ceil(log10(most)));
+        axis->low = -axis->high;
+    } else {
+        axis_round(&axis->low, &axis->high);
+    }
+}
+
+static void draw_motion(const RunReport *report, PlotPanel panel, PlotQuantity quantity,
+                        bool has_spikes)
+{
+    choose_scale(report, quantity, &panel.y);
+    plot_enter(&panel);
+    plot_look_shade(report, &panel);
+    for (size_t run = 0; run < report->run_count; run++) {
+        for (size_t body = 0; body < report->scenario->linkage.body_count; body++) {
+            if (plot_look_shows_body(report, body) && report->runs[run]->is_complete) {
+                plot_look_draw(report, &panel, run, quantity, body);
+            }
+        }
+    }
+    const Trajectory *spiky = has_spikes ? plot_look_spike_run(report) : NULL;
+    for (size_t body = 0; spiky != NULL && body < spiky->body_count; body++) {
+        if (plot_look_shows_body(report, body)) {
+            plot_look_marks(report, &panel, &spiky->alpha_spikes[body], quantity, body, "rad/s^2");
+        }
+    }
+    plot_leave(&panel);
+}
+
+// Where the next entry of the legend begins.
+typedef struct Legend {
+    Text *svg;
+    double x;
+    double y;
+} Legend;
+
+static void add_entry(Legend *legend, PlotStyle style, const char *words)
+{
+    // a character of this font takes some 7 pixels
+    const double width = 37.0 + 7.2 * (double)strlen(words) + 22.0;
+    if (legend->x + width > PICTURE_WIDTH) {
+        legend->x = PANEL_LEFT[0];
+        legend->y += LEGEND_ROW;
+    }
+    plot_sample(legend->svg, legend->x, legend->y - 4.0, style);
+    plot_text(legend->svg, legend->x + 37.0, legend->y, "start", "", words);
+    legend->x += width;
+}
+
+// the label, with the backend before it where the label does not begin with it
+static void name_run(const Trajectory *run, char *words, size_t size)
+{
+    const bool is_named = strncmp(run->label, run->backend, strlen(run->backend)) == 0;
+    snprintf(words, size, "%s%s%s%s", is_named ? "" : run->backend, is_named ? "" : ": ",
+             run->label, run->is_complete ? "" : " (failed)");
+}
+
+static void add_marks(Legend *legend, const Trajectory *run)
+{
+    char words[LINKAGE_NAME_SIZE + 64];
+    snprintf(words, sizeof words, "spikes of the table, %s", run->backend);
+    add_entry(legend, (PlotStyle){"#333333", 0.0, 0.0, NULL}, words);
+    const double width = 37.0 + 7.2 * (double)strlen(words) + 22.0;
+    plot_mark_sample(legend->svg, legend->x - width + 20.0, legend->y,
+                     (PlotStyle){"#333333", 1.0, 1.0, NULL});
+}
+
+static void draw_legend(const RunReport *report, Text *svg)
+{
+    Legend legend = {svg, PANEL_LEFT[0], LEGEND_TOP};
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        PlotStyle style = plot_style(i, 0);
+        style.colour = "#333333";
+        char words[TRAJECTORY_LABEL_SIZE + LINKAGE_NAME_SIZE + 16];
+        name_run(run, words, sizeof words);
+        add_entry(&legend, style, words);
+    }
+    legend.x = PANEL_LEFT[0];
+    legend.y += LEGEND_ROW;
+    const Linkage *linkage = &report->scenario->linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if (plot_look_shows_body(report, i)) {
+            PlotStyle style = plot_style(1, plot_look_body_colour(report, i));
+            style.width = 3.0;
+            add_entry(&legend, style, linkage->bodies[i].name);
+        }
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (plot_look_shows_joint(report, i)) {
+            PlotStyle style = plot_style(1, plot_look_joint_colour(report, i));
+            style.width = 3.0;
+            char words[LINKAGE_NAME_SIZE + 16];
+            snprintf(words, sizeof words, "joint %s", linkage->joints[i].name);
+            add_entry(&legend, style, words);
+        }
+    }
+    const Trajectory *spiky = plot_look_spike_run(report);
+    if (spiky != NULL) {
+        add_marks(&legend, spiky);
+    }
+}
+
+// The rotation of the bodies, or the motion of their centres where nothing turns.
+static void draw_motions(const RunReport *report, Text *svg)
+{
+    static const PlotQuantity OMEGA = {"omega", plot_look_body_colour, plot_look_body_name,
+                                       omega_signal, omega_of};
+    static const PlotQuantity ALPHA = {"alpha", plot_look_body_colour, plot_look_body_name,
+                                       alpha_signal, alpha_of};
+    static const PlotQuantity SPEED = {"speed", plot_look_body_colour, plot_look_body_name, NULL,
+                                       speed_of};
+    static const PlotQuantity ACCELERATION = {"acceleration", plot_look_body_colour,
+                                              plot_look_body_name, acceleration_signal,
+                                              acceleration_of};
+    const bool turns = report->scenario->linkage.driver.is_present || any_turns(report);
+    PlotPanel panel =
+        place_panel(report, svg, 0, 0, turns ? "Angular velocity" : "Speed of the centre of mass");
+    panel.y.title = turns ? "omega, rad/s" : "speed, m/s";
+    draw_motion(report, panel, turns ? OMEGA : SPEED, false);
+    panel = place_panel(report, svg, 0, 1,
+                        turns ? "Angular acceleration" : "Acceleration of the centre of mass");
+    panel.y.title = turns ? "alpha, rad/s^2" : "acceleration, m/s^2";
+    draw_motion(report, panel, turns ? ALPHA : ACCELERATION, turns);
+}
+
+void plot_run_write(const RunReport *report, Text *svg)
+{
+    const char *title = report->scenario->title;
+    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT, title);
+    plot_text(svg, PANEL_LEFT[0], 34.0, "start", "title", title);
+    draw_legend(report, svg);
+    draw_motions(report, svg);
+    plot_joints_forces(report, place_panel(report, svg, 1, 0, "Force in the joint"));
+    const PlotPanel panel = place_panel(report, svg, 1, 1, "");
+    if (scenario_has_clearance(report->scenario)) {
+        plot_joints_paths(report, panel);
+    } else {
+        plot_joints_errors(report, panel);
+    }
+    plot_end(svg);
+}

@@ -1,0 +1,300 @@
+// What did the bodies do, what did the joints feel, how far off is it, and at what cost?
+#include "commands/run/run_tables.h"
+
+#include "write/section.h"
+#include "write/units.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+// Of the clearance: a pin that moves less is at rest in its hole.
+static const double UNTOUCHED_STILL = 1e-3;
+
+// When something was: by the crank's angle, or by the time where nothing drives a crank.
+static void head_when(Table *table, size_t column, const RunReport *report)
+{
+    const bool is_driven = report->scenario->linkage.driver.is_present;
+    table_head(table, column, is_driven ? "at crank" : "at time", is_driven ? "deg" : "ms",
+               TABLE_RIGHT);
+}
+
+static void when_cell(Table *table, const RunReport *report, Extreme extreme)
+{
+    if (report->scenario->linkage.driver.is_present) {
+        table_cell(table, "%.1f", extreme.crank_rad * UNITS_DEG);
+    } else {
+        table_cell(table, "%.4f", extreme.time_s * UNITS_MS);
+    }
+}
+
+static void extreme_cells(Table *table, const RunReport *report, Extreme extreme)
+{
+    table_cell(table, "%.6g", extreme.value);
+    when_cell(table, report, extreme);
+}
+
+static bool any_is_complete(const RunReport *report)
+{
+    for (size_t i = 0; i < report->run_count; i++) {
+        if (report->runs[i]->is_complete) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void run_tables_extremes(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"body", "", TABLE_LEFT},
+        {"backend", "", TABLE_LEFT},
+        {"omega max", "rad/s", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
+        {"omega min", "rad/s", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
+        {"alpha max", "rad/s^2", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
+        {"alpha min", "rad/s^2", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
+    };
+    if (!any_is_complete(report)) {
+        return;
+    }
+    const Linkage *linkage = &report->scenario->linkage;
+    Table *table = section_begin("Extremes of the motion", 10, HEADS, style, text);
+    for (size_t column = 3; column < 10; column += 2) {
+        head_when(table, column, report);
+    }
+    for (size_t body = 0; body < linkage->body_count; body++) {
+        if ((int)body == linkage_driven_body(linkage)) {
+            continue;
+        }
+        for (size_t i = 0; i < report->run_count; i++) {
+            const Trajectory *run = report->runs[i];
+            if (run->is_complete) {
+                table_cell(table, "%s", linkage->bodies[body].name);
+                table_cell(table, "%s", run->backend);
+                extreme_cells(table, report, run->bodies[body].omega_max);
+                extreme_cells(table, report, run->bodies[body].omega_min);
+                extreme_cells(table, report, run->bodies[body].alpha_max);
+                extreme_cells(table, report, run->bodies[body].alpha_min);
+            }
+        }
+    }
+    section_end(table, text);
+}
+
+static void contact_row(Table *table, const RunReport *report, const Trajectory *run, size_t number)
+{
+    const Joint *joint = &report->scenario->linkage.joints[number];
+    const JointExtremes *extremes = &run->joints[number];
+    table_cell(table, "%s", joint->name);
+    table_cell(table, "%s", run->backend);
+    table_cell(table, "%zu", extremes->impacts);
+    section_number(table, extremes->force_max.value);
+    when_cell(table, report, extremes->force_max);
+    section_number(table, extremes->impulse);
+    section_number(table, extremes->penetration_max.value * UNITS_UM);
+    table_cell(table, "%.1f", trajectory_contact_share(run, number) * UNITS_PERCENT);
+}
+
+// The farthest that a pin was from the centre of its hole at the samples, m.
+static double farthest(const Trajectory *run, size_t joint)
+{
+    double distance = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        distance = fmax(distance, vec2_length(trajectory_state(run, i, joint)->eccentricity));
+    }
+    return distance;
+}
+
+// A run without a single contact has no spikes to tell of, and is hardly what was wanted.
+static void write_untouched(const RunReport *report, Text *text)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        const double clearance = linkage_radial_clearance(&linkage->joints[joint]) * UNITS_UM;
+        for (size_t i = 0; i < report->run_count; i++) {
+            const Trajectory *run = report->runs[i];
+            if (!trajectory_feels_play(run, &linkage->joints[joint]) ||
+                run->joints[joint].impacts > 0 || run->joints[joint].contact_time > 0.0) {
+                continue;
+            }
+            const double share = farthest(run, joint) * UNITS_UM / clearance;
+            text_append(text, "  %s, %s: no contact in the whole run. ",
+                        linkage->joints[joint].name, run->backend);
+            text_append(text,
+                        share < UNTOUCHED_STILL
+                            ? "The pin stays at %.2g of its %.4g um of play: nothing pushes it, "
+                              "or the run of %.4g ms is too short.\n"
+                            : "The pin comes no farther than %.2g of its %.4g um of play: the run "
+                              "of %.4g ms is too short, or the play too large for it.\n",
+                        share, clearance, run->duration_s * UNITS_MS);
+        }
+    }
+}
+
+void run_tables_contacts(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"joint", "", TABLE_LEFT},      {"backend", "", TABLE_LEFT},
+        {"impacts", "", TABLE_RIGHT},   {"force max", "N", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},          {"impulse", "N s", TABLE_RIGHT | TABLE_DETAIL},
+        {"deepest", "um", TABLE_RIGHT}, {"in contact", "%", TABLE_RIGHT},
+    };
+    const Linkage *linkage = &report->scenario->linkage;
+    Table *table = NULL;
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        for (size_t i = 0; i < report->run_count; i++) {
+            const Trajectory *run = report->runs[i];
+            if (!trajectory_feels_play(run, &linkage->joints[joint])) {
+                continue;
+            }
+            if (table == NULL) {
+                table = section_begin("Contacts in the joints with play", 8, HEADS, style, text);
+                head_when(table, 4, report);
+            }
+            contact_row(table, report, run, joint);
+        }
+    }
+    if (table != NULL) {
+        section_end(table, text);
+        write_untouched(report, text);
+    }
+}
+
+// The contacts that were kept of all joints with play.
+static size_t count_spikes(const Linkage *linkage, const Trajectory *run)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        count += trajectory_feels_play(run, &linkage->joints[i]) ? run->joints[i].spike_count : 0;
+    }
+    return count;
+}
+
+static void spike_row(Table *table, const Joint *joint, bool is_driven, const Spike *spike)
+{
+    table_cell(table, "%s", joint->name);
+    table_cell(table, "%.4f", spike->onset_s * UNITS_MS);
+    if (is_driven) {
+        table_cell(table, "%.1f", spike->crank_rad * UNITS_DEG);
+    }
+    section_number(table, spike->approach_speed * UNITS_MM);
+    section_number(table, spike->force_max);
+    section_number(table, spike->duration_s * UNITS_US);
+    section_number(table, spike->impulse);
+    section_number(table, spike->penetration_max * UNITS_UM);
+}
+
+void run_tables_spikes(const RunReport *report, size_t limit, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"joint", "", TABLE_LEFT},         {"onset", "ms", TABLE_RIGHT},
+        {"approach", "mm/s", TABLE_RIGHT}, {"force max", "N", TABLE_RIGHT},
+        {"duration", "us", TABLE_RIGHT},   {"impulse", "N s", TABLE_RIGHT},
+        {"deepest", "um", TABLE_RIGHT},
+    };
+    static const SectionHead DRIVEN_HEADS[] = {
+        {"joint", "", TABLE_LEFT},       {"onset", "ms", TABLE_RIGHT},
+        {"crank", "deg", TABLE_RIGHT},   {"approach", "mm/s", TABLE_RIGHT},
+        {"force max", "N", TABLE_RIGHT}, {"duration", "us", TABLE_RIGHT},
+        {"impulse", "N s", TABLE_RIGHT}, {"deepest", "um", TABLE_RIGHT},
+    };
+    const Linkage *linkage = &report->scenario->linkage;
+    for (size_t i = report->run_count; i-- > 0;) {
+        const Trajectory *run = report->runs[i];
+        if (count_spikes(linkage, run) == 0) {
+            continue;
+        }
+        char heading[128];
+        snprintf(heading, sizeof heading, "Strongest contacts, %s", run->backend);
+        const bool is_driven = linkage->driver.is_present;
+        Table *table = section_begin(heading, is_driven ? 8 : 7, is_driven ? DRIVEN_HEADS : HEADS,
+                                     style, text);
+        for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+            const JointExtremes *extremes = &run->joints[joint];
+            const bool has_play = linkage->joints[joint].kind == JOINT_CLEARANCE;
+            for (size_t k = 0; has_play && k < extremes->spike_count && k < limit; k++) {
+                spike_row(table, &linkage->joints[joint], is_driven, &extremes->spikes[k]);
+            }
+        }
+        section_end(table, text);
+        return;
+    }
+}
+
+static void cost_row(Table *table, const Trajectory *run)
+{
+    table_cell(table, "%s", run->backend);
+    if (!run->is_complete) {
+        table_cell(table, "failed");
+        for (int i = 0; i < 5; i++) {
+            table_cell(table, "-");
+        }
+        return;
+    }
+    table_cell(table, "done");
+    table_cell(table, "%zu", run->steps);
+    section_number_or_dash(table, run->evaluations > 0, (double)run->evaluations);
+    section_number(table, run->wall_s * UNITS_MS);
+    if (run->steps > 0 && run->wall_s > 0.0) {
+        section_number(table, run->wall_s / (double)run->steps * UNITS_US);
+        section_number(table, run->duration_s / run->wall_s);
+    } else {
+        table_cell(table, "-");
+        table_cell(table, "-");
+    }
+}
+
+// How the step came about and what its error is; of a tolerance that could not be held to the end
+// up to when it was.
+static void write_chosen(const RunReport *report, const Trajectory *run, Text *text)
+{
+    text_append(text, "  %s: step %.4g us, chosen by %zu trial%s; the steps are those of all.\n",
+                run->backend, run->step_s * UNITS_US, run->trials, run->trials == 1 ? "" : "s");
+    if (run->is_short) {
+        text_append(text,
+                    "  The tolerance %.3g holds up to %.4g ms of %.4g ms only; for more, allow "
+                    "more steps: run.most-steps.\n",
+                    report->scenario->run.tolerance, run->estimate_s * UNITS_MS,
+                    run->duration_s * UNITS_MS);
+    }
+    const bool is_whole = run->is_short || run->estimate_s >= run->duration_s;
+    text_append(text, "  Its error is at most %.2g up to %.4g ms%s.\n", run->error_estimate,
+                run->estimate_s * UNITS_MS, is_whole ? "" : "; later the reference cannot tell");
+}
+
+void run_tables_cost(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"backend", "", TABLE_LEFT},          {"status", "", TABLE_LEFT},
+        {"steps", "", TABLE_RIGHT},           {"evaluations", "", TABLE_RIGHT},
+        {"wall time", "ms", TABLE_RIGHT},     {"a step", "us", TABLE_RIGHT},
+        {"simulated/wall", "1", TABLE_RIGHT},
+    };
+    Table *table = section_begin("Cost", 7, HEADS, style, text);
+    for (size_t i = 0; i < report->run_count; i++) {
+        cost_row(table, report->runs[i]);
+    }
+    section_end(table, text);
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        if (!run->is_complete) {
+            text_append(text, "\n  %s%s failed: %s%s\n", style->failure, run->backend, run->message,
+                        style->end);
+            continue;
+        }
+        if (run->trials > 0) {
+            write_chosen(report, run, text);
+        }
+        if (run->fallback_rows > 0) {
+            text_append(text,
+                        "  %s%s: the map would not have been stable in %zu contact row%s at this "
+                        "step; textbook took its place. A shorter step mends that.%s\n",
+                        style->failure, run->backend, run->fallback_rows,
+                        run->fallback_rows == 1 ? "" : "s", style->end);
+        }
+    }
+}

@@ -1,0 +1,175 @@
+// What was run, how was it modelled, and what came out?
+#include "commands/run/run_text.h"
+
+#include "commands/run/analytic_text.h"
+#include "commands/run/run_tables.h"
+#include "commands/run/run_truth.h"
+#include "commands/run/spike_tables.h"
+#include "contact/law.h"
+#include "contact/penalty.h"
+#include "model/kinematics.h"
+#include "write/units.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static void write_freedoms(const Linkage *linkage, bool has_play, Text *text)
+{
+    Motion motions[LINKAGE_BODY_MAX];
+    linkage_start(linkage, motions);
+    text_append(text, "  mechanism   %zu %s, %zu joint%s, mobility %zu", linkage->body_count,
+                linkage->body_count == 1 ? "body" : "bodies", linkage->joint_count,
+                linkage->joint_count == 1 ? "" : "s", kinematics_mobility(linkage, motions, false));
+    if (has_play) {
+        text_append(text, " (%zu with the play open)", kinematics_mobility(linkage, motions, true));
+    }
+}
+
+static void write_mechanism(const RunReport *report, Text *text)
+{
+    const Scenario *scenario = report->scenario;
+    write_freedoms(&scenario->linkage, scenario_has_clearance(scenario), text);
+    if (scenario->has_fourbar) {
+        text_append(text, ", %s", FOURBAR_GRASHOF_NAMES[fourbar_grashof(&scenario->fourbar)]);
+    }
+    if (report->summary != NULL) {
+        text_append(text, ", transmission angle %.4g to %.4g deg",
+                    report->summary->transmission_low * UNITS_DEG,
+                    report->summary->transmission_high * UNITS_DEG);
+    }
+    text_append(text, "\n");
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (joint->kind == JOINT_CLEARANCE) {
+            text_append(text,
+                        "  play        %s: hole %.7g mm, pin %.7g mm, radial clearance %.4g um\n",
+                        joint->name, 2.0 * joint->clearance.hole_radius * UNITS_MM,
+                        2.0 * joint->clearance.pin_radius * UNITS_MM,
+                        linkage_radial_clearance(joint) * UNITS_UM);
+        }
+    }
+}
+
+static void write_drive(const Scenario *scenario, Text *text)
+{
+    const Driver *driver = &scenario->linkage.driver;
+    if (driver->is_present) {
+        text_append(text, "  drive       %.6g rpm %s, %.6g rad/s, from %.4g deg\n",
+                    fabs(driver->speed) * UNITS_RPM,
+                    driver->speed < 0.0 ? "clockwise" : "counter-clockwise", fabs(driver->speed),
+                    driver->start * UNITS_DEG);
+    }
+    text_append(text, "  run         ");
+    if (driver->is_present) {
+        text_append(text, "%.6g revolution%s, ", scenario->run.revolutions,
+                    scenario->run.revolutions == 1.0 ? "" : "s");
+    }
+    text_append(text, "%.6g ms, %zu samples\n", scenario_duration(scenario) * UNITS_MS,
+                scenario_sample_count(scenario));
+    if (scenario->run.report_from > 0.0) {
+        text_append(text, "  reported    extremes, contacts and spikes from %.6g ms on\n",
+                    scenario_report_from(scenario) * UNITS_MS);
+    }
+}
+
+static void write_damping(const ContactOptions *contact, Text *text)
+{
+    text_append(text, ", damping %s", OPTIONS_DAMPINGS[contact->damping]);
+    if (contact->damping == DAMPING_VISCOUS) {
+        text_append(text, " %.4g N s/m", contact->viscous_coefficient);
+    } else if (contact->damping != DAMPING_NONE) {
+        text_append(text, ", restitution %.4g", contact->restitution);
+    }
+}
+
+static void write_impact_law(const Scenario *scenario, const Joint *joint, Text *text)
+{
+    const ContactOptions *contact = &scenario->contact;
+    ForceLaw law;
+    Err err = {0};
+    text_append(text, "  contact     %s: %s", joint->name,
+                contact->stiffness > 0.0 ? "given stiffness" : OPTIONS_LAWS[contact->law]);
+    if (!law_build(contact, &scenario->material, &joint->clearance, scenario->linkage.driver.speed,
+                   &law, &err)) {
+        text_append(text, " (%s)", err.text);
+    } else if (law.family == FORCE_LAW_POWER) {
+        text_append(text, ", K = %.4g N/m^%.4g", law.stiffness, law.exponent);
+    } else {
+        text_append(text, ", d = A F (B - ln F) with A = %.4g m/N, B = %.4g", law.compliance,
+                    law.offset);
+    }
+    write_damping(contact, text);
+    text_append(text, "\n");
+}
+
+static void write_contact(const Scenario *scenario, Text *text)
+{
+    const ContactOptions *contact = &scenario->contact;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (joint->kind != JOINT_CLEARANCE) {
+            continue;
+        }
+        if (contact->model == CONTACT_IMPACT) {
+            write_impact_law(scenario, joint, text);
+            continue;
+        }
+        const bool is_given = contact->penalty > 0.0;
+        text_append(
+            text, "  contact     %s: poisson, p = %.4g N s/m (%s), restitution %.4g\n", joint->name,
+            is_given ? contact->penalty
+                     : penalty_estimate(scenario->linkage.driver.speed, &scenario->material),
+            is_given ? "given" : "the paper's estimate", contact->restitution);
+    }
+}
+
+static void write_models(const RunReport *report, const Style *style, Text *text)
+{
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        text_append(text, "  %-10s  %s", run->backend, run->label);
+        if (run->step_s > 0.0) {
+            text_append(text, ", step %.6g us", run->step_s * UNITS_US);
+        }
+        if (run->constraint_rows > 0) {
+            text_append(text, ", %zu constraint rows", run->constraint_rows);
+        }
+        if (run->contact_rows > 0) {
+            text_append(text, ", at most %zu contact row%s", run->contact_rows,
+                        run->contact_rows == 1 ? "" : "s");
+        }
+        if (!run->is_complete) {
+            text_append(text, ", %sFAILED%s", style->failure, style->end);
+        }
+        text_append(text, "\n");
+    }
+}
+
+void run_text_write(const RunReport *report, const Style *style, Text *text)
+{
+    const Scenario *scenario = report->scenario;
+    const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
+    text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
+    if (scenario->path[0] != '\0') {
+        text_append(text, "  case        ");
+        text_append_shown(text, scenario->path);
+        text_append(text, "\n");
+    }
+    write_mechanism(report, text);
+    write_drive(scenario, text);
+    write_contact(scenario, text);
+    write_models(report, style, text);
+    // what was asked comes first, how far it can be believed beside it, and theory last
+    run_truth_errors(report, style, text);
+    run_tables_extremes(report, style, text);
+    run_tables_contacts(report, style, text);
+    run_tables_spikes(report, RUN_TEXT_SPIKES, style, text);
+    spike_tables_write(report, RUN_TEXT_SPIKES, style, text);
+    run_truth_matches(report, style, text);
+    run_truth_ensembles(report, style, text);
+    run_truth_energy(report, style, text);
+    run_tables_cost(report, style, text);
+    analytic_text_kinematics(report, style, text);
+    analytic_text_forces(report, style, text);
+    analytic_text_stackup(report, style, text);
+}

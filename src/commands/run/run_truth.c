@@ -1,0 +1,290 @@
+// How far are the runs from the truth, how sure is the truth, and where does it end?
+#include "commands/run/run_truth.h"
+
+#include "model/energy.h"
+#include "write/section.h"
+#include "write/units.h"
+
+#include <math.h>
+#include <stdio.h>
+
+// of the largest kinetic energy: what rounding leaves of a work that is none is a million times
+// less
+static const double WORK_ROUNDING = 1e-9;
+
+// of omega: a reference that is less sure than this holds nowhere
+static const double HOLDS = 1e-3;
+
+static void error_row(Table *table, const RunReport *report, size_t run)
+{
+    const TrajectoryError *error = &report->errors[run];
+    const bool is_certified = run_report_is_certified(report, error);
+    table_cell(table, "%s", report->runs[run]->backend);
+    table_cell(table, "%s", error->against);
+    section_number(table, error->omega_max);
+    section_number(table, error->omega_max_time_s * UNITS_MS);
+    section_number_or_dash(table, is_certified && isfinite(error->omega_max_in_horizon),
+                           error->omega_max_in_horizon);
+    section_number_or_dash(table, is_certified, is_certified ? report->truth->uncertainty : 0.0);
+    section_number(table, error->omega_rms);
+    section_number(table, error->alpha_max);
+    section_number(table, error->angle_max_rad * UNITS_DEG);
+    table_cell(table,
+               run_report_is_limited_by_reference(report, error) ? "limited by the reference" : "");
+}
+
+// What is to be known about the truth before an error is believed.
+static void write_horizon(const RunReport *report, Text *text)
+{
+    const Truth *truth = report->truth;
+    const double end_ms = scenario_duration(report->scenario) * UNITS_MS;
+    if (truth->message[0] != '\0') {
+        text_append(text, "  The reference could not be certified: %s\n", truth->message);
+    } else if (truth->is_limited) {
+        text_append(
+            text,
+            "  The motion cannot be predicted beyond %.4g of %.4g ms: by then a start 1e-10 "
+            "beside this one is %.3g times as far away. Errors after it mean nothing; "
+            "distributions over many starts can be compared.\n",
+            truth->horizon_s * UNITS_MS, end_ms, truth->growth);
+    } else if (!(truth->uncertainty <= HOLDS)) {
+        text_append(text,
+                    "  The reference itself is sure to no more than %.2g of omega over the run of "
+                    "%.4g ms.\n",
+                    truth->uncertainty, end_ms);
+    } else {
+        text_append(text,
+                    "  The reference holds through the whole run, %.4g ms: a start 1e-10 beside "
+                    "this one ends %.3g times as far away.\n",
+                    end_ms, truth->growth);
+    }
+}
+
+// The reference knows no POISSON model.
+static void write_other_model(const RunReport *report, Text *text)
+{
+    const ContactOptions *contact = &report->scenario->contact;
+    if (run_report_mixes_models(report)) {
+        text_append(text,
+                    "  The reference has the elastic law (%s) in place of the POISSON model: "
+                    "errors contain the difference of the two.\n",
+                    contact->stiffness > 0.0 ? "given stiffness" : OPTIONS_LAWS[contact->law]);
+    }
+}
+
+// What must be told of the truth though nothing was held against it.
+static void write_truth_alone(const RunReport *report, const Style *style, Text *text)
+{
+    const bool is_doubtful = run_report_has_truth(report) && report->truth->message[0] != '\0';
+    if (is_doubtful || run_report_mixes_models(report)) {
+        text_append(text, "\n%sThe reference%s\n\n", style->heading, style->end);
+        if (is_doubtful) {
+            write_horizon(report, text);
+        }
+        write_other_model(report, text);
+    }
+}
+
+void run_truth_errors(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"backend", "", TABLE_LEFT},
+        {"against", "", TABLE_LEFT},
+        {"omega max", "1", TABLE_RIGHT},
+        {"at time", "ms", TABLE_RIGHT | TABLE_MINOR},
+        {"in horizon", "1", TABLE_RIGHT},
+        {"reference +-", "1", TABLE_RIGHT},
+        {"omega rms", "1", TABLE_RIGHT | TABLE_MINOR},
+        {"alpha max", "1", TABLE_RIGHT | TABLE_DETAIL},
+        {"angle max", "deg", TABLE_RIGHT | TABLE_DETAIL},
+        {"", "", TABLE_LEFT},
+    };
+    Table *table = NULL;
+    bool includes_play = false;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const TrajectoryError *error = &report->errors[i];
+        if (!report->runs[i]->is_complete || !error->is_known) {
+            continue;
+        }
+        if (table == NULL) {
+            table = section_begin("Error at the samples, over the reference's largest value", 10,
+                                  HEADS, style, text);
+        }
+        error_row(table, report, i);
+        includes_play = includes_play || run_report_includes_play(report, i);
+    }
+    if (table == NULL) {
+        write_truth_alone(report, style, text);
+        return;
+    }
+    section_end(table, text);
+    if (includes_play) {
+        text_append(text, "  The analytic solver takes every joint as ideal: an error of it, or "
+                          "against it, contains the play itself.\n");
+    }
+    if (run_report_has_truth(report)) {
+        write_horizon(report, text);
+        write_other_model(report, text);
+    }
+}
+
+// Whether the drive's work is more than rounding beside the energy it moved to and fro: over whole
+// turns of ideal joints it is none, and nothing can be held against it.
+static bool has_drive_work(const Linkage *linkage, const Trajectory *run)
+{
+    double kinetic = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        kinetic = fmax(kinetic, energy_kinetic(linkage, trajectory_motion(run, i, 0)));
+    }
+    return fabs(run->energy.drive_work) > WORK_ROUNDING * kinetic;
+}
+
+void run_truth_energy(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"backend", "", TABLE_LEFT},           {"drive work", "J", TABLE_RIGHT},
+        {"change", "J", TABLE_RIGHT},          {"dissipated", "J", TABLE_RIGHT},
+        {"friction", "J", TABLE_RIGHT},        {"residual", "J", TABLE_RIGHT},
+        {"residual", "of drive", TABLE_RIGHT},
+    };
+    Table *table = NULL;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Energy *energy = &report->runs[i]->energy;
+        if (!report->runs[i]->is_complete) {
+            continue;
+        }
+        if (table == NULL) {
+            table = section_begin("Energy", 7, HEADS, style, text);
+        }
+        table_cell(table, "%s", report->runs[i]->backend);
+        section_number(table, energy->drive_work);
+        section_number(table, energy->change);
+        section_number(table, energy->dissipated);
+        section_number(table, energy->friction);
+        section_number(table, energy->residual);
+        section_number_or_dash(table, has_drive_work(&report->scenario->linkage, report->runs[i]),
+                               fabs(energy->residual / energy->drive_work));
+    }
+    if (table != NULL) {
+        section_end(table, text);
+    }
+}
+
+static void match_rows(Table *table, const Joint *joint, const JointExtremes *truth,
+                       const SpikeMatch *match)
+{
+    for (size_t i = 0; i < match->pair_count; i++) {
+        const SpikePair *pair = &match->pairs[i];
+        const Spike *spike = &truth->spikes[pair->reference_spike];
+        table_cell(table, "%s", joint->name);
+        table_cell(table, "%.4f", spike->onset_s * UNITS_MS);
+        section_number(table, spike->force_max);
+        section_number(table, pair->onset_delay_s * UNITS_US);
+        table_cell(table, "%+.3g", pair->force_error * UNITS_PERCENT);
+        table_cell(table, "%+.3g", pair->impulse_error * UNITS_PERCENT);
+    }
+}
+
+void run_truth_matches(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"joint", "", TABLE_LEFT},       {"reference's onset", "ms", TABLE_RIGHT},
+        {"force max", "N", TABLE_RIGHT}, {"later by", "us", TABLE_RIGHT},
+        {"force", "%", TABLE_RIGHT},     {"impulse", "%", TABLE_RIGHT},
+    };
+    const Linkage *linkage = &report->scenario->linkage;
+    for (size_t i = 0; report->matches != NULL && i < report->run_count; i++) {
+        Table *table = NULL;
+        size_t missed = 0;
+        size_t extra = 0;
+        for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+            const SpikeMatch *match = &report->matches[i].joints[joint];
+            missed += match->missed;
+            extra += match->extra;
+            if (table == NULL && match->pair_count + match->missed + match->extra > 0) {
+                char heading[128];
+                snprintf(heading, sizeof heading, "Contacts matched within the horizon, %s",
+                         report->runs[i]->backend);
+                table = section_begin(heading, 6, HEADS, style, text);
+            }
+            match_rows(table, &linkage->joints[joint], &report->truth->trajectory->joints[joint],
+                       match);
+        }
+        if (table != NULL) {
+            section_end(table, text);
+            text_append(text,
+                        "  Of the strongest contacts kept, %zu of the reference and %zu of %s have "
+                        "no partner.\n",
+                        missed, extra, report->runs[i]->backend);
+        }
+    }
+}
+
+typedef struct MetricWords {
+    const char *name;
+    double scale; // from SI
+} MetricWords;
+
+static const MetricWords METRICS[ENSEMBLE_METRIC_COUNT] = {
+    [ENSEMBLE_FORCE_MAX] = {"force max, N", 1.0},
+    [ENSEMBLE_IMPULSE] = {"impulse, N s", 1.0},
+    [ENSEMBLE_IMPACTS] = {"impacts", 1.0},
+    [ENSEMBLE_PENETRATION_MAX] = {"deepest, um", 1e6},
+    [ENSEMBLE_CONTACT_SHARE] = {"in contact, %", 1e2},
+};
+
+static void distribution_row(Table *table, const Joint *joint, const MetricWords *words,
+                             const char *backend, const Distribution *distribution)
+{
+    table_cell(table, "%s", joint->name);
+    table_cell(table, "%s", words->name);
+    table_cell(table, "%s", backend);
+    section_number(table, distribution->low * words->scale);
+    section_number(table, distribution->median * words->scale);
+    section_number(table, distribution->high * words->scale);
+    section_number(table, distribution->mean * words->scale);
+    section_number(table, distribution->deviation * words->scale);
+}
+
+static void ensemble_rows(Table *table, const RunReport *report, size_t joint, size_t metric)
+{
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Ensemble *ensemble = &report->ensembles[i];
+        if (ensemble->members > 0) {
+            distribution_row(table, &report->scenario->linkage.joints[joint], &METRICS[metric],
+                             report->runs[i]->backend, &ensemble->joints[joint][metric]);
+        }
+    }
+}
+
+void run_truth_ensembles(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"joint", "", TABLE_LEFT}, {"what", "", TABLE_LEFT},    {"backend", "", TABLE_LEFT},
+        {"low", "", TABLE_RIGHT},  {"median", "", TABLE_RIGHT}, {"high", "", TABLE_RIGHT},
+        {"mean", "", TABLE_RIGHT}, {"+-", "", TABLE_RIGHT},
+    };
+    if (report->ensembles == NULL) {
+        return;
+    }
+    const Linkage *linkage = &report->scenario->linkage;
+    char heading[128];
+    snprintf(heading, sizeof heading, "Over starts that differ by %g of the speeds",
+             ENSEMBLE_PERTURBATION);
+    Table *table = section_begin(heading, 8, HEADS, style, text);
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        const bool has_play = linkage->joints[joint].kind == JOINT_CLEARANCE;
+        for (size_t metric = 0; has_play && metric < ENSEMBLE_METRIC_COUNT; metric++) {
+            ensemble_rows(table, report, joint, metric);
+        }
+    }
+    section_end(table, text);
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Ensemble *ensemble = &report->ensembles[i];
+        if (ensemble->members + ensemble->failed > 0) {
+            text_append(text, "  %s: %zu starts", report->runs[i]->backend, ensemble->members);
+            text_append(text, ensemble->failed > 0 ? ", and %zu that failed: %s\n" : "\n",
+                        ensemble->failed, ensemble->message);
+        }
+    }
+}

@@ -1,0 +1,177 @@
+// Which spikes did the accelerations and the forces have?
+#include "commands/run/spike_tables.h"
+
+#include "commands/run/spike_bands.h"
+#include "write/section.h"
+#include "write/units.h"
+
+#include <stdio.h>
+
+// Whether spikes of a signal were looked for and it can have any.
+static bool has_body(const RunReport *report, const Trajectory *run, size_t body)
+{
+    return run->is_complete && run->alpha_spikes[body].is_known &&
+           (int)body != linkage_driven_body(&report->scenario->linkage);
+}
+
+static bool has_joint(const RunReport *report, const Trajectory *run, size_t joint)
+{
+    return run->is_complete && run->force_spikes[joint].is_known &&
+           report->scenario->linkage.joints[joint].kind == JOINT_CLEARANCE;
+}
+
+static bool looked_for_any(const RunReport *report, const Trajectory *run)
+{
+    for (size_t i = 0; i < report->scenario->linkage.body_count; i++) {
+        if (has_body(report, run, i)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void when_cell(Table *table, const RunReport *report, const SignalSpike *spike)
+{
+    if (report->scenario->linkage.driver.is_present) {
+        table_cell(table, "%.1f", spike->crank_rad * UNITS_DEG);
+    } else {
+        table_cell(table, "%.4f", spike->time_s * UNITS_MS);
+    }
+}
+
+static void count_row(Table *table, const RunReport *report, const Trajectory *run,
+                      const char *quantity, const char *name, const char *unit,
+                      const SignalSpikes *spikes)
+{
+    table_cell(table, "%s %s", quantity, name);
+    table_cell(table, "%s", unit);
+    table_cell(table, "%s", run->backend);
+    section_number(table, spikes->threshold);
+    table_cell(table, "%zu", spikes->count);
+    section_number_or_dash(table, spikes->kept > 0, spikes->spikes[0].value);
+    if (spikes->kept > 0) {
+        when_cell(table, report, &spikes->spikes[0]);
+    } else {
+        table_cell(table, "-");
+    }
+    if (spike_bands_apply(report)) {
+        const SpikeBandSums sums = spike_bands_sums(spikes);
+        table_cell(table, "%zu", sums.inside.count);
+        section_number_or_dash(table, sums.inside.count > 0, sums.inside.largest);
+    }
+}
+
+static void write_counts(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"signal", "", TABLE_LEFT},     {"unit", "", TABLE_LEFT},
+        {"backend", "", TABLE_LEFT},    {"threshold", "", TABLE_RIGHT},
+        {"spikes", "", TABLE_RIGHT},    {"strongest", "", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},          {"in bands", "", TABLE_RIGHT},
+        {"strongest", "", TABLE_RIGHT},
+    };
+    const Linkage *linkage = &report->scenario->linkage;
+    const bool has_bands = spike_bands_apply(report);
+    const bool is_driven = linkage->driver.is_present;
+    Table *table = section_begin("Spikes of the signals", has_bands ? 9 : 7, HEADS, style, text);
+    table_head(table, 6, is_driven ? "at crank" : "at time", is_driven ? "deg" : "ms", TABLE_RIGHT);
+    for (size_t body = 0; body < linkage->body_count; body++) {
+        for (size_t i = 0; i < report->run_count; i++) {
+            const Trajectory *run = report->runs[i];
+            if (has_body(report, run, body)) {
+                count_row(table, report, run, "alpha", linkage->bodies[body].name, "rad/s^2",
+                          &run->alpha_spikes[body]);
+            }
+        }
+    }
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        for (size_t i = 0; i < report->run_count; i++) {
+            const Trajectory *run = report->runs[i];
+            if (has_joint(report, run, joint)) {
+                count_row(table, report, run, "force", linkage->joints[joint].name, "N",
+                          &run->force_spikes[joint]);
+            }
+        }
+    }
+    section_end(table, text);
+    if (has_bands) {
+        text_append(text, "  The paper's bands: crank at %.0f to %.0f and %.0f to %.0f deg.\n",
+                    spike_bands_first_deg(0), spike_bands_last_deg(0), spike_bands_first_deg(1),
+                    spike_bands_last_deg(1));
+    }
+}
+
+static void spike_row(Table *table, const RunReport *report, size_t body, const SignalSpike *spike)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    table_cell(table, "%s", linkage->bodies[body].name);
+    if (linkage->driver.is_present) {
+        table_cell(table, "%.4f", spike->time_s * UNITS_MS);
+    }
+    when_cell(table, report, spike);
+    section_number(table, spike->value);
+    section_number(table, spike->prominence);
+    section_number(table, spike->width_s * UNITS_US);
+    section_number(table, (spike->end_s - spike->onset_s) * UNITS_US);
+    section_number(table, spike->impulse);
+    table_cell(table, "%s", spike->joint >= 0 ? linkage->joints[spike->joint].name : "-");
+}
+
+static size_t count_kept(const RunReport *report, const Trajectory *run)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < report->scenario->linkage.body_count; i++) {
+        count += has_body(report, run, i) ? run->alpha_spikes[i].kept : 0;
+    }
+    return count;
+}
+
+static void write_strongest(const RunReport *report, const Trajectory *run, size_t limit,
+                            const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"body", "", TABLE_LEFT},
+        {"peak", "ms", TABLE_RIGHT},
+        {"crank", "deg", TABLE_RIGHT},
+        {"alpha", "rad/s^2", TABLE_RIGHT},
+        {"height", "rad/s^2", TABLE_RIGHT | TABLE_DETAIL},
+        {"width", "us", TABLE_RIGHT},
+        {"duration", "us", TABLE_RIGHT},
+        {"impulse", "rad/s", TABLE_RIGHT},
+        {"joint", "", TABLE_LEFT},
+    };
+    static const SectionHead FREE_HEADS[] = {
+        {"body", "", TABLE_LEFT},          {"peak", "ms", TABLE_RIGHT},
+        {"alpha", "rad/s^2", TABLE_RIGHT}, {"height", "rad/s^2", TABLE_RIGHT | TABLE_DETAIL},
+        {"width", "us", TABLE_RIGHT},      {"duration", "us", TABLE_RIGHT},
+        {"impulse", "rad/s", TABLE_RIGHT}, {"joint", "", TABLE_LEFT},
+    };
+    const Linkage *linkage = &report->scenario->linkage;
+    const bool is_driven = linkage->driver.is_present;
+    char heading[128];
+    snprintf(heading, sizeof heading, "Strongest spikes of the accelerations, %s", run->backend);
+    Table *table =
+        section_begin(heading, is_driven ? 9 : 8, is_driven ? HEADS : FREE_HEADS, style, text);
+    for (size_t body = 0; body < linkage->body_count; body++) {
+        const SignalSpikes *spikes = &run->alpha_spikes[body];
+        for (size_t i = 0; has_body(report, run, body) && i < spikes->kept && i < limit; i++) {
+            spike_row(table, report, body, &spikes->spikes[i]);
+        }
+    }
+    section_end(table, text);
+}
+
+void spike_tables_write(const RunReport *report, size_t limit, const Style *style, Text *text)
+{
+    const Trajectory *last = NULL;
+    for (size_t i = 0; i < report->run_count; i++) {
+        last = looked_for_any(report, report->runs[i]) ? report->runs[i] : last;
+    }
+    if (last == NULL) {
+        return;
+    }
+    write_counts(report, style, text);
+    if (count_kept(report, last) > 0) {
+        write_strongest(report, last, limit, style, text);
+    }
+}

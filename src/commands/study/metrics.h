@@ -1,0 +1,14 @@
+// What a study keeps of a trajectory, by name.
+#pragma once
+
+#include "commands/study/spec.h"
+#include "measure/error.h"
+#include "measure/truth.h"
+
+// The columns of a study: its variables and what is measured of the linkage of its case.
+void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout);
+
+// The results of a complete run, in the order of metrics_layout. Without a truth (NULL) there is
+// no error.
+void metrics_take(const Scenario *scenario, const Trajectory *trajectory, const Truth *truth,
+                  double results[RECORD_RESULT_MAX]);

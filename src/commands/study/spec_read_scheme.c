@@ -1,0 +1,102 @@
+// Are the schemes that a study names there, and do they go with its other keys?
+#include "commands/study/spec_read.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The names of all schemes that the runs may have: they depend on which joints have play, and on
+// the model of contact, which may itself vary.
+static size_t list_schemes(const Spec *spec, Scheme schemes[2 * SCHEME_MAX])
+{
+    Scenario *other = malloc(sizeof *other);
+    assert(other != NULL);
+    size_t count = scheme_list(spec->base, schemes);
+    for (size_t i = 0; i < spec->variable_count; i++) {
+        if (strcmp(spec->variables[i].key, "contact.model") == 0) {
+            *other = *spec->base;
+            const bool is_impact = other->contact.model == CONTACT_IMPACT;
+            other->contact.model = is_impact ? CONTACT_POISSON : CONTACT_IMPACT;
+            count += scheme_list(other, schemes + count);
+        }
+    }
+    free(other);
+    return count;
+}
+
+static const Variable *find_variable(const Spec *spec, const char *key)
+{
+    for (size_t i = 0; i < spec->variable_count; i++) {
+        if (strcmp(spec->variables[i].key, key) == 0) {
+            return &spec->variables[i];
+        }
+    }
+    return NULL;
+}
+
+static bool check_scheme(const Reading *reading, const Node *node, const Scheme *schemes,
+                         size_t count)
+{
+    if (!spec_read_single(reading, node, "a scheme", "its name, such as direct/plain/corrected")) {
+        return false;
+    }
+    const char *names[2 * SCHEME_MAX];
+    const Scheme *found = NULL;
+    for (size_t i = 0; i < count; i++) {
+        names[i] = schemes[i].name;
+        found = strcmp(schemes[i].name, node->text) == 0 ? &schemes[i] : found;
+    }
+    if (found == NULL) {
+        return keys_refuse(&reading->source, node->span, "scheme of this case", node->text, names,
+                           count, reading->err);
+    }
+    const Spec *spec = reading->spec;
+    if (scheme_has_step(found) && spec->base->run.step == 0.0 &&
+        find_variable(spec, "run.step") == NULL) {
+        return spec_read_refuse(reading, node, "run.step under set or vary, such as 1 us",
+                                "%s needs a step, which is auto in the case", node->text);
+    }
+    return true;
+}
+
+// Schemes say by themselves what these keys would.
+static bool check_scheme_alone(const Reading *reading, const Node *value)
+{
+    static const char *const KEYS[] = {"ode.solver", "ode.stepping", "ode.map", "ode.collider",
+                                       "run.tolerance"};
+    for (size_t i = 0; i < sizeof KEYS / sizeof KEYS[0]; i++) {
+        bool is_there = find_variable(reading->spec, KEYS[i]) != NULL;
+        const size_t length = strlen(KEYS[i]);
+        for (size_t k = 0; k < reading->spec->set_count; k++) {
+            const char *set = reading->spec->set[k];
+            is_there = is_there || (strncmp(set, KEYS[i], length) == 0 && set[length] == '=');
+        }
+        if (is_there) {
+            return source_error(&reading->source, keys_span(value), "one of the two", reading->err,
+                                "scheme and %s exclude each other", KEYS[i]);
+        }
+    }
+    return true;
+}
+
+bool spec_read_check_schemes(const Reading *reading, const Node *vary)
+{
+    const Node *value = vary != NULL ? vary->first : NULL;
+    while (value != NULL && strcmp(value->key->text, SPEC_SCHEME_KEY) != 0) {
+        value = value->next;
+    }
+    if (value == NULL) {
+        return true;
+    }
+    Scheme *schemes = calloc(2 * SCHEME_MAX, sizeof *schemes);
+    assert(schemes != NULL);
+    const size_t count = list_schemes(reading->spec, schemes);
+    bool is_good = check_scheme_alone(reading, value);
+    const bool is_one = value->kind == NODE_SCALAR;
+    for (const Node *item = is_one ? value : value->first; is_good && item != NULL;
+         item = is_one ? NULL : item->next) {
+        is_good = check_scheme(reading, item, schemes, count);
+    }
+    free(schemes);
+    return is_good;
+}

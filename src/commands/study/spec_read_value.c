@@ -1,0 +1,152 @@
+// What does a value of a study file say, by itself?
+#include "base/shorten.h"
+#include "base/text.h"
+#include "casefile/quantity.h"
+#include "commands/study/spec_read.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MESSAGE_SIZE = 256 };
+
+bool spec_read_refuse(const Reading *reading, const Node *node, const char *allowed,
+                      const char *format, ...)
+{
+    char message[MESSAGE_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    shorten_list(message, sizeof message, format, arguments);
+    va_end(arguments);
+    const bool is_missing = node->kind == NODE_SCALAR && node->text[0] == '\0';
+    return source_error(&reading->source, is_missing ? keys_span(node) : node->span, allowed,
+                        reading->err, "%s", message);
+}
+
+bool spec_read_single(const Reading *reading, const Node *node, const char *what,
+                      const char *allowed)
+{
+    return (node->kind == NODE_SCALAR && node->text[0] != '\0') ||
+           spec_read_refuse(reading, node, allowed, "%s takes a single value", what);
+}
+
+bool spec_read_whole(const Reading *reading, const Node *node, const char *what, double low,
+                     double high, uint64_t *number)
+{
+    char allowed[QUANTITY_TEXT_SIZE];
+    snprintf(allowed, sizeof allowed, "a whole number from %.0f to %.0f", low, high);
+    size_t read = 0;
+    Complaint complaint;
+    if (!spec_read_single(reading, node, what, allowed)) {
+        return false;
+    }
+    if (!quantity_integer(node->text, &read, &complaint)) {
+        return spec_read_refuse(reading, node, allowed, "%s", complaint.text);
+    }
+    if (!((double)read >= low && (double)read <= high)) {
+        return spec_read_refuse(reading, node, allowed, "%s is out of range: %.60s", what,
+                                node->text);
+    }
+    *number = read;
+    return true;
+}
+
+bool spec_read_word(const Reading *reading, const Node *node, const char *what,
+                    const char *const *words, size_t *number)
+{
+    size_t count = 0;
+    while (words[count] != NULL) {
+        count++;
+    }
+    for (size_t i = 0; node->kind == NODE_SCALAR && i < count; i++) {
+        if (strcmp(words[i], node->text) == 0) {
+            *number = i;
+            return true;
+        }
+    }
+    const char *word = node->kind == NODE_SCALAR ? node->text : "";
+    const char *nearest = text_nearest(word, words, count);
+    Text allowed;
+    text_init(&allowed);
+    for (size_t i = 0; i < count; i++) {
+        text_append(&allowed, "%s%s", i > 0 ? ", " : "", words[i]);
+    }
+    spec_read_refuse(reading, node, allowed.data, "'%.40s' is no choice for %s%s%s%s", word, what,
+                     nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+                     nearest != NULL ? "'?" : "");
+    text_finish(&allowed);
+    return false;
+}
+
+bool spec_read_has_all(const Reading *reading, const Node *map, const char *const *names,
+                       const Node *const *values, size_t count, const char *allowed)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (values[i] == NULL) {
+            return source_error(&reading->source, keys_span(map), allowed, reading->err,
+                                "%s is missing", names[i]);
+        }
+    }
+    return true;
+}
+
+void spec_read_write(const Node *node, Text *text)
+{
+    static const char PLAIN[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 ._/+^-";
+    const char *separator = "";
+    if (node->kind == NODE_SCALAR && node->text[0] != '\0' &&
+        strspn(node->text, PLAIN) == strlen(node->text)) {
+        text_append(text, "%s", node->text);
+    } else if (node->kind == NODE_SCALAR) {
+        text_append(text, "\"");
+        for (const char *c = node->text; *c != '\0'; c++) {
+            text_append(text, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
+        }
+        text_append(text, "\"");
+    } else {
+        text_append(text, node->kind == NODE_LIST ? "[" : "{");
+        for (const Node *item = node->first; item != NULL; item = item->next) {
+            text_append(text, "%s", separator);
+            if (node->kind == NODE_MAP) {
+                spec_read_write(item->key, text);
+                text_append(text, ": ");
+            }
+            spec_read_write(item, text);
+            separator = ", ";
+        }
+        text_append(text, node->kind == NODE_LIST ? "]" : "}");
+    }
+}
+
+bool spec_read_number(const Reading *reading, const ProbeKey *key, const Node *node,
+                      bool is_checked, Variable *variable, double *number)
+{
+    ProbeNumber read;
+    if (is_checked && !probe_check(reading->probe, &reading->source, key, node, reading->err)) {
+        return false;
+    }
+    const bool is_word = key->row->zero_word != NULL && node->kind == NODE_SCALAR &&
+                         strcmp(node->text, key->row->zero_word) == 0;
+    if (is_word) {
+        return spec_read_refuse(reading, node, "numbers; the word under set",
+                                "%s for %s is no number", node->text, variable->key);
+    }
+    if (!probe_number(&reading->source, key, node, &read, reading->err)) {
+        return false;
+    }
+    // the unit of a stiffness gives the exponent of its law, that of a span what it counts
+    const bool is_stiffness = key->row->type == SCHEMA_STIFFNESS;
+    if ((is_stiffness || key->row->type == SCHEMA_SPAN) && variable->unit[0] != '\0' &&
+        strcmp(variable->unit, read.unit) != 0) {
+        return spec_read_refuse(
+            reading, node, is_stiffness ? "values with one exponent" : "values in one unit",
+            "this value is in %s, those before it in %s", read.unit, variable->unit);
+    }
+    text_copy(variable->unit, sizeof variable->unit, read.unit);
+    if (is_stiffness || key->row->type == SCHEMA_SPAN) {
+        text_copy(variable->column_unit, sizeof variable->column_unit, read.unit);
+    }
+    *number = read.value;
+    return true;
+}

@@ -1,0 +1,175 @@
+// How does a study keep what it has, whatever ends it?
+//
+// A run is a row; rows are committed together every second or so, and a commit is there after a
+// power cut or not at all. What is looked at is read in portions, and let go of in between, so that
+// whoever looks never holds up who works.
+#include "commands/study/store_inside.h"
+
+#include <assert.h>
+#include <sqlite3.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PORTION = 64 }; // rows of some 5 kB at a time
+
+static Store *make_store(const char *path)
+{
+    Store *store = calloc(1, sizeof *store);
+    assert(store != NULL);
+    store->lock = -1;
+    store->path = strdup(path);
+    assert(store->path != NULL);
+    return store;
+}
+
+static void destroy(Store *store)
+{
+    sqlite3_finalize(store->add_run);
+    sqlite3_finalize(store->add_effort);
+    sqlite3_finalize(store->find);
+    sqlite3_finalize(store->rows);
+    store_file_close(store);
+    store_schema_finish(store);
+    free(store->path);
+    free(store);
+}
+
+// Whether the store is of the study that is asked for, by itself or by a store that is merged into
+// it.
+static bool check_study(const Store *store, const StoreHead *head, const char *source, Err *err)
+{
+    Text words;
+    text_init(&words);
+    const bool is_same = !store_schema_differs(store, head, &words);
+    if (!is_same && source == NULL) {
+        err_set(err, ERR_FILE, "the store %s holds other runs: %s; --fresh starts it over",
+                store->path, words.data);
+    } else if (!is_same) {
+        err_set(err, ERR_FILE, "%s cannot be merged with %s: %s", store->path, source, words.data);
+    }
+    text_finish(&words);
+    return is_same;
+}
+
+// Makes the tables where there are none, and holds those that are there against what is asked for.
+static bool settle(Store *store, const StoreHead *head, const char *source, Err *err)
+{
+    bool is_there = false;
+    if (!store_shape_is_there(store, &is_there, err) ||
+        (!is_there && !store_schema_make(store, head, err))) {
+        return false;
+    }
+    return store_schema_read(store, err) && check_study(store, head, source, err) &&
+           (!is_there || store_file_check(store, err));
+}
+
+static Store *open_to_work(const char *path, const StoreHead *head, bool is_fresh,
+                           const char *source, Err *err)
+{
+    assert(head->key_count <= STORE_KEY_MAX);
+    Store *store = make_store(path);
+    if (store_file_open(store, is_fresh, err) && settle(store, head, source, err)) {
+        return store;
+    }
+    // what was not there before and is not a store now is taken away
+    if (store->is_made) {
+        unlink(path);
+    }
+    destroy(store);
+    return NULL;
+}
+
+Store *store_open(const char *path, const StoreHead *head, bool is_fresh, Err *err)
+{
+    return open_to_work(path, head, is_fresh, NULL, err);
+}
+
+Store *store_open_target(const char *path, const StoreHead *head, const char *source, Err *err)
+{
+    return open_to_work(path, head, false, source, err);
+}
+
+Store *store_view(const char *path, Err *err)
+{
+    Store *store = make_store(path);
+    if (store_file_view(store, err) && store_schema_read(store, err)) {
+        return store;
+    }
+    destroy(store);
+    return NULL;
+}
+
+bool store_close(Store *store, Err *err)
+{
+    if (store == NULL) {
+        return true;
+    }
+    const bool is_committed = store_commit(store, err);
+    destroy(store);
+    return is_committed;
+}
+
+const Layout *store_layout(const Store *store)
+{
+    return store->layout;
+}
+
+const char *store_path(const Store *store)
+{
+    return store->path;
+}
+
+const char *store_key(const Store *store, const char *name)
+{
+    for (size_t i = 0; i < store->key_count; i++) {
+        if (strcmp(store->keys[i].name, name) == 0) {
+            return store->keys[i].value;
+        }
+    }
+    return NULL;
+}
+
+// Reads the rows behind a number into the portion; their count.
+static bool read_portion(Store *store, sqlite3_int64 behind, Record *portion, size_t *count,
+                         Err *err)
+{
+    sqlite3_bind_int64(store->rows, 1, behind);
+    sqlite3_bind_int(store->rows, 2, PORTION);
+    *count = 0;
+    int status;
+    bool is_read = true;
+    while (is_read && (status = sqlite3_step(store->rows)) == SQLITE_ROW) {
+        is_read = store_row_take(store, store->rows, &portion[*count], err);
+        // a damaged tree may come back to where it was
+        if (is_read && (sqlite3_int64)portion[*count].run <= behind) {
+            is_read = store_fail_damaged(store, "its runs do not stand in order", err);
+        }
+        behind = (sqlite3_int64)portion[*count].run;
+        (*count)++;
+    }
+    is_read = is_read && (status == SQLITE_DONE || store_fail(store, "read", err));
+    sqlite3_reset(store->rows);
+    return is_read;
+}
+
+bool store_each(Store *store, StoreTaker take, void *context, Err *err)
+{
+    if (!store_file_check(store, err) || !store_row_prepare(store, &store->rows, err)) {
+        return false;
+    }
+    Record *portion = calloc(PORTION, sizeof *portion);
+    assert(portion != NULL);
+    sqlite3_int64 behind = -1;
+    size_t count = PORTION;
+    bool is_done = true;
+    while (is_done && count == PORTION) {
+        is_done = read_portion(store, behind, portion, &count, err);
+        for (size_t i = 0; i < count && is_done; i++) {
+            is_done = take(store->layout, &portion[i], context, err);
+        }
+        behind = count > 0 ? (sqlite3_int64)portion[count - 1].run : behind;
+    }
+    free(portion);
+    return is_done;
+}

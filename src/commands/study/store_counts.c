@@ -1,0 +1,190 @@
+// What can be told of all runs of a store together?
+//
+// Every row is held against its checksum before SQL is asked about it: SQL knows of none.
+//
+// Quantiles are values that occur, found by sorting in SQL: SQLite sorts in files where memory does
+// not do.
+#include "commands/study/store_inside.h"
+
+#include <math.h>
+#include <sqlite3.h>
+#include <string.h>
+
+static bool count_row(const Layout *layout, const Record *record, void *context, Err *err)
+{
+    (void)layout;
+    (void)err;
+    StoreCount *count = context;
+    count->rows++;
+    count->fates[record->fate]++;
+    count->wall_s += record->wall_s;
+    return true;
+}
+
+bool store_count(Store *store, StoreCount *count, Err *err)
+{
+    *count = (StoreCount){.run_count = store->run_count};
+    store->is_verified = store_each(store, count_row, count, err);
+    return store->is_verified;
+}
+
+// What SQL is asked for comes from rows that were held against their checksums once.
+static bool verify(Store *store, Err *err)
+{
+    StoreCount count;
+    return store->is_verified || store_count(store, &count, err);
+}
+
+bool store_reasons(Store *store, size_t most, StoreReason *reasons, size_t *count, Err *err)
+{
+    *count = 0;
+    sqlite3_stmt *statement = NULL;
+    if (!verify(store, err) ||
+        !store_prepare(store,
+                       "SELECT fate, reason, count(*) AS runs, min(run) FROM run WHERE fate <> 0 "
+                       "GROUP BY fate, reason ORDER BY runs DESC, min(run) LIMIT ?",
+                       &statement, err)) {
+        return false;
+    }
+    sqlite3_bind_int64(statement, 1, (sqlite3_int64)most);
+    int status;
+    while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
+        const int fate = sqlite3_column_int(statement, 0);
+        if (fate > FATE_OK && fate < FATE_COUNT) {
+            StoreReason *reason = &reasons[(*count)++];
+            const char *words = (const char *)sqlite3_column_text(statement, 1);
+            *reason = (StoreReason){.fate = (Fate)fate,
+                                    .count = (uint64_t)sqlite3_column_int64(statement, 2),
+                                    .example = (uint64_t)sqlite3_column_int64(statement, 3)};
+            text_copy(reason->reason, sizeof reason->reason, words == NULL ? "" : words);
+        }
+    }
+    const bool is_read = status == SQLITE_DONE || store_fail(store, "read", err);
+    sqlite3_finalize(statement);
+    return is_read;
+}
+
+const Column *store_column_at(const Layout *layout, size_t column)
+{
+    return column < layout->setting_count ? &layout->settings[column]
+                                          : &layout->results[column - layout->setting_count];
+}
+
+size_t store_column(const Layout *layout, const char *name)
+{
+    const size_t count = layout->setting_count + layout->result_count;
+    size_t column = 0;
+    while (column < count && strcmp(store_column_at(layout, column)->name, name) != 0) {
+        column++;
+    }
+    return column;
+}
+
+bool store_values(Store *store, size_t column, size_t most, Cell *values, size_t *count, Err *err)
+{
+    const Column *wanted = store_column_at(store->layout, column);
+    if (!verify(store, err)) {
+        return false;
+    }
+    Text sql;
+    text_init(&sql);
+    text_append(&sql, "SELECT DISTINCT ");
+    store_shape_quote(&sql, wanted->name);
+    text_append(&sql, " AS value FROM run WHERE value IS NOT NULL ORDER BY value LIMIT ?");
+    sqlite3_stmt *statement = NULL;
+    const bool is_ready = store_prepare(store, sql.data, &statement, err);
+    text_finish(&sql);
+    if (!is_ready) {
+        return false;
+    }
+    sqlite3_bind_int64(statement, 1, (sqlite3_int64)most + 1);
+    *count = 0;
+    int status;
+    while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
+        if (*count < most && wanted->kind == COLUMN_WORD) {
+            const char *words = (const char *)sqlite3_column_text(statement, 0);
+            text_copy(values[*count].word, RECORD_WORD_SIZE, words == NULL ? "" : words);
+        } else if (*count < most) {
+            values[*count].number = sqlite3_column_double(statement, 0);
+        }
+        (*count)++;
+    }
+    const bool is_read = status == SQLITE_DONE || store_fail(store, "read", err);
+    sqlite3_finalize(statement);
+    return is_read;
+}
+
+// The statement that counts the values, or that brings them in ascending order.
+static bool prepare_values(Store *store, const Column *column, const Column *by, const Cell *value,
+                           bool is_count, sqlite3_stmt **statement, Err *err)
+{
+    Text sql;
+    text_init(&sql);
+    text_append(&sql, "SELECT ");
+    text_append(&sql, is_count ? "count(" : "");
+    store_shape_quote(&sql, column->name);
+    text_append(&sql, is_count ? ") FROM run WHERE fate = 0" : " FROM run WHERE fate = 0 AND ");
+    if (!is_count) {
+        store_shape_quote(&sql, column->name);
+        text_append(&sql, " IS NOT NULL");
+    }
+    if (value != NULL) {
+        text_append(&sql, " AND ");
+        store_shape_quote(&sql, by->name);
+        text_append(&sql, " = ?");
+    }
+    text_append(&sql, is_count ? "" : " ORDER BY 1");
+    const bool is_ready = store_prepare(store, sql.data, statement, err);
+    text_finish(&sql);
+    if (is_ready && value != NULL && by->kind == COLUMN_WORD) {
+        sqlite3_bind_text(*statement, 1, value->word, -1, SQLITE_STATIC);
+    } else if (is_ready && value != NULL) {
+        sqlite3_bind_double(*statement, 1, value->number);
+    }
+    return is_ready;
+}
+
+// The rank of a share of so many values, from 1.
+static uint64_t rank_of(double share, uint64_t count)
+{
+    const double rank = ceil(share * (double)count);
+    return rank < 1.0 ? 1 : (uint64_t)rank;
+}
+
+static bool read_ranks(Store *store, sqlite3_stmt *statement, StoreSpread *spread, Err *err)
+{
+    static const double SHARES[] = {0.0, 0.05, 0.5, 0.95, 1.0};
+    double *const targets[] = {&spread->least, &spread->low, &spread->median, &spread->high,
+                               &spread->most};
+    size_t next = 0;
+    for (uint64_t rank = 1; rank <= spread->count; rank++) {
+        if (sqlite3_step(statement) != SQLITE_ROW) {
+            return store_fail(store, "read", err);
+        }
+        for (; next < 5 && rank_of(SHARES[next], spread->count) == rank; next++) {
+            *targets[next] = sqlite3_column_double(statement, 0);
+        }
+    }
+    return true;
+}
+
+bool store_spread(Store *store, size_t column, size_t by, const Cell *value, StoreSpread *spread,
+                  Err *err)
+{
+    *spread = (StoreSpread){0, NAN, NAN, NAN, NAN, NAN};
+    const Column *wanted = store_column_at(store->layout, column);
+    const Column *condition = value == NULL ? NULL : store_column_at(store->layout, by);
+    sqlite3_stmt *counting = NULL;
+    sqlite3_stmt *sorting = NULL;
+    bool is_read = verify(store, err) &&
+                   prepare_values(store, wanted, condition, value, true, &counting, err) &&
+                   (sqlite3_step(counting) == SQLITE_ROW || store_fail(store, "read", err));
+    if (is_read) {
+        spread->count = (uint64_t)sqlite3_column_int64(counting, 0);
+        is_read = prepare_values(store, wanted, condition, value, false, &sorting, err) &&
+                  read_ranks(store, sorting, spread, err);
+    }
+    sqlite3_finalize(counting);
+    sqlite3_finalize(sorting);
+    return is_read;
+}

@@ -1,0 +1,301 @@
+// How does a file come to be a store, and nobody else's?
+//
+// SQLite answers for the transactions. The rollback journal, not the write-ahead log: that one
+// shares memory between processes, which network file systems do not have. synchronous = EXTRA: the
+// journal is gone from the disk's folder, too, before a commit counts; FULL could take back the
+// last one after a power cut. A commit a second makes its price not worth a question.
+//
+// Who works on a store holds a lock of its own on one byte far behind SQLite's, from opening to
+// closing: those of SQLite last for a transaction only, and one that lasted would shut out who only
+// looks. It hangs on the open file and not on the process, for SQLite ends all of its process's
+// locks on the file after each transaction.
+#include "base/claims.h"
+#include "commands/study/store_inside.h"
+#include "write/work_lock.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum {
+    HEADER_SIZE = 100, // of an SQLite file
+    HEADER_WRITE = 18, // 1: rollback journal; 2: write-ahead log
+    HEADER_READ = 19,
+    HEADER_VERSION = 60,
+    HEADER_APPLICATION = 68,
+    WORK_BYTE = 0x40001000, // SQLite's own locks lie on 0x40000000 to 0x400001ff
+    VIEW_WAIT_MS = 10000,   // for a commit to be over; it takes some 10
+    WORK_WAIT_MS = 60000,   // for those who look, with whatever tool, to be done
+    VALUE_MAX = 1 << 20,    // bytes of a row or of SQL; a row of all columns has some 10 kB
+};
+
+static const char MAGIC[16] = "SQLite format 3";
+
+bool store_fail_damaged(const Store *store, const char *how, Err *err)
+{
+    return err_set(err, ERR_FILE, "the store %s is damaged: %s", store->path, how);
+}
+
+// The system's reason for an error of input or output; 0 where SQLite keeps none. A commit that
+// fails leaves it with the file alone.
+static int system_reason(const Store *store, int code)
+{
+    int reason = 0;
+    if ((code & 0xff) == SQLITE_IOERR || (code & 0xff) == SQLITE_CANTOPEN) {
+        reason = sqlite3_system_errno(store->base);
+        if (reason == 0) {
+            sqlite3_file_control(store->base, "main", SQLITE_FCNTL_LAST_ERRNO, &reason);
+        }
+    }
+    return reason;
+}
+
+bool store_fail(const Store *store, const char *what, Err *err)
+{
+    const int code = sqlite3_extended_errcode(store->base);
+    const int reason = system_reason(store, code);
+    if ((code & 0xff) == SQLITE_FULL) {
+        return err_set(err, ERR_FILE, "cannot %s the store %s: %s", what, store->path,
+                       strerror(ENOSPC));
+    }
+    switch (code & 0xff) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+        return err_set(err, ERR_FILE, "the store %s is at work in another process", store->path);
+    case SQLITE_NOTADB:
+        return err_set(err, ERR_FILE, "%s is no store of a study", store->path);
+    case SQLITE_CORRUPT:
+    case SQLITE_FORMAT:
+        return store_fail_damaged(store, sqlite3_errmsg(store->base), err);
+    case SQLITE_READONLY:
+        return err_set(err, ERR_FILE, "cannot %s the store %s: it or its folder cannot be written",
+                       what, store->path);
+    default:
+        return err_set(err, ERR_FILE, "cannot %s the store %s: %s", what, store->path,
+                       reason != 0 ? strerror(reason) : sqlite3_errmsg(store->base));
+    }
+}
+
+static bool fail_system(const Store *store, const char *what, int reason, Err *err)
+{
+    return err_set(err, ERR_FILE, "cannot %s the store %s: %s", what, store->path,
+                   strerror(reason));
+}
+
+bool store_run_sql(Store *store, const char *sql, Err *err)
+{
+    return sqlite3_exec(store->base, sql, NULL, NULL, NULL) == SQLITE_OK ||
+           store_fail(store, "write", err);
+}
+
+bool store_prepare(Store *store, const char *sql, sqlite3_stmt **statement, Err *err)
+{
+    return *statement != NULL ||
+           sqlite3_prepare_v2(store->base, sql, -1, statement, NULL) == SQLITE_OK ||
+           store_fail(store, "read", err);
+}
+
+static uint32_t read_big_endian(const unsigned char *bytes)
+{
+    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
+}
+
+// A file that is neither empty nor a store is left alone, before SQLite sees it. The header may be
+// of the moment in mid-commit; what is asked of it never changes.
+static bool check_header(const Store *store, int file, bool is_empty_right, bool is_any_version,
+                         Err *err)
+{
+    unsigned char header[HEADER_SIZE];
+    const ssize_t count = pread(file, header, sizeof header, 0);
+    if (count < 0) {
+        return fail_system(store, "read", errno, err);
+    }
+    if (count == 0 && is_empty_right) {
+        return true;
+    }
+    if (count < HEADER_SIZE || memcmp(header, MAGIC, sizeof MAGIC) != 0 ||
+        read_big_endian(header + HEADER_APPLICATION) != STORE_APPLICATION) {
+        return err_set(err, ERR_FILE, "%s is no store of a study", store->path);
+    }
+    if (header[HEADER_WRITE] > 1 || header[HEADER_READ] > 1) {
+        return err_set(err, ERR_FILE,
+                       "the store %s was set to a write-ahead log, which no store has; "
+                       "'PRAGMA journal_mode = DELETE' in sqlite3 takes it back",
+                       store->path);
+    }
+    const uint32_t version = read_big_endian(header + HEADER_VERSION);
+    return version == STORE_VERSION || is_any_version ||
+           err_set(err, ERR_FILE,
+                   "the store %s has tables of version %u, and this program's are %d", store->path,
+                   version, STORE_VERSION);
+}
+
+// A pipe would be waited for, and a folder is told apart from a file that is something else.
+static bool check_kind(const Store *store, Err *err)
+{
+    struct stat status;
+    if (stat(store->path, &status) != 0 || S_ISREG(status.st_mode)) {
+        return true;
+    }
+    return err_set(err, ERR_FILE, "%s is no store of a study%s", store->path,
+                   S_ISDIR(status.st_mode) ? ", but a folder" : "");
+}
+
+static bool take_lock(const Store *store, Err *err)
+{
+    const int reason = work_lock_take(store->lock, WORK_BYTE);
+    if (reason == EAGAIN) {
+        return err_set(err, ERR_FILE, "the store %s is at work in another process", store->path);
+    }
+    return reason == 0 || fail_system(store, "lock", reason, err);
+}
+
+bool store_file_is_at_work(const char *path)
+{
+    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    const bool is_at_work = work_lock_is_taken(file, WORK_BYTE);
+    if (file >= 0) {
+        close(file);
+    }
+    return is_at_work;
+}
+
+// A file may be any person's: nothing that stands in its schema is run, and no number in it is
+// asked for memory without end.
+static void harden(sqlite3 *base)
+{
+    static const struct {
+        int option;
+        int value;
+    } OPTIONS[] = {
+        {SQLITE_DBCONFIG_DEFENSIVE, 1},      {SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0},
+        {SQLITE_DBCONFIG_ENABLE_TRIGGER, 0}, {SQLITE_DBCONFIG_ENABLE_VIEW, 0},
+        {SQLITE_DBCONFIG_DQS_DDL, 0},        {SQLITE_DBCONFIG_DQS_DML, 0},
+        {SQLITE_DBCONFIG_ENABLE_FKEY, 0},    {SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, 0},
+    };
+    for (size_t i = 0; i < sizeof OPTIONS / sizeof *OPTIONS; i++) {
+        sqlite3_db_config(base, OPTIONS[i].option, OPTIONS[i].value, NULL);
+    }
+    sqlite3_limit(base, SQLITE_LIMIT_LENGTH, VALUE_MAX);
+    sqlite3_limit(base, SQLITE_LIMIT_SQL_LENGTH, VALUE_MAX);
+    sqlite3_limit(base, SQLITE_LIMIT_TRIGGER_DEPTH, 1);
+}
+
+// By the path that all links lead to, as SQLite would follow them: the files beside it are asked
+// for by that one, too. It begins with a slash; SQLite takes names like ":memory:" for no file.
+static bool open_base(Store *store, int flags, int wait_ms, Err *err)
+{
+    char *path = realpath(store->path, NULL);
+    if (path == NULL) {
+        return fail_system(store, "open", errno, err);
+    }
+    const bool is_open =
+        store_beside_check(store, path, err) &&
+        (sqlite3_open_v2(path, &store->base, flags | SQLITE_OPEN_NOMUTEX,
+                         flags == SQLITE_OPEN_READONLY ? store_look_vfs() : NULL) == SQLITE_OK ||
+         store_fail(store, "open", err));
+    free(path);
+    if (!is_open) {
+        return false;
+    }
+    sqlite3_extended_result_codes(store->base, 1);
+    sqlite3_busy_timeout(store->base, wait_ms);
+    harden(store->base);
+    return store_run_sql(store, "PRAGMA cell_size_check = ON", err);
+}
+
+// Empties the file, whatever damage there is in it, as one transaction. Nothing else may have been
+// asked of SQLite before, for it reads the tables first.
+static bool reset(Store *store, Err *err)
+{
+    sqlite3_db_config(store->base, SQLITE_DBCONFIG_RESET_DATABASE, 1, NULL);
+    const bool is_done = store_run_sql(store, "VACUUM", err);
+    sqlite3_db_config(store->base, SQLITE_DBCONFIG_RESET_DATABASE, 0, NULL);
+    return is_done;
+}
+
+// Who makes a file is not yet who locks it first: whatever stands in it then is another's.
+static bool claim(Store *store, bool is_made, Err *err)
+{
+    struct stat status;
+    if (!take_lock(store, err)) {
+        return false;
+    }
+    if (fstat(store->lock, &status) != 0) {
+        return fail_system(store, "open", errno, err);
+    }
+    // whoever had the lock may have taken the file away again
+    if (status.st_nlink == 0) {
+        return err_set(err, ERR_FILE, "the store %s is at work in another process", store->path);
+    }
+    store->is_made = is_made && status.st_size == 0;
+    return true;
+}
+
+bool store_file_open(Store *store, bool is_fresh, Err *err)
+{
+    if (!check_kind(store, err)) {
+        return false;
+    }
+    store->lock = open(store->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const bool is_made = store->lock >= 0;
+    if (!is_made && errno == EEXIST) {
+        store->lock = open(store->path, O_RDWR | O_CLOEXEC);
+    }
+    if (store->lock < 0) {
+        return fail_system(store, "open", errno, err);
+    }
+    return claim(store, is_made, err) && check_header(store, store->lock, true, is_fresh, err) &&
+           open_base(store, SQLITE_OPEN_READWRITE, WORK_WAIT_MS, err) &&
+           (!is_fresh || reset(store, err)) &&
+           store_run_sql(store, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA", err);
+}
+
+bool store_file_view(Store *store, Err *err)
+{
+    if (!check_kind(store, err)) {
+        return false;
+    }
+    const int file = open(store->path, O_RDONLY | O_CLOEXEC);
+    if (file < 0) {
+        return fail_system(store, "open", errno, err);
+    }
+    claims_note_read("store", store->path);
+    const bool is_store = check_header(store, file, false, false, err);
+    close(file);
+    return is_store && open_base(store, SQLITE_OPEN_READONLY, VIEW_WAIT_MS, err);
+}
+
+void store_file_close(Store *store)
+{
+    // before the lock's file: its end is the end of all locks that SQLite may have on it
+    sqlite3_close(store->base);
+    store->base = NULL;
+    if (store->lock >= 0) {
+        work_lock_give(store->lock, WORK_BYTE);
+        close(store->lock);
+        store->lock = -1;
+    }
+}
+
+bool store_file_check(Store *store, Err *err)
+{
+    sqlite3_stmt *statement = NULL;
+    if (!store_prepare(store, "PRAGMA quick_check(1)", &statement, err)) {
+        return false;
+    }
+    bool is_whole = sqlite3_step(statement) == SQLITE_ROW || store_fail(store, "read", err);
+    if (is_whole) {
+        const char *words = (const char *)sqlite3_column_text(statement, 0);
+        const char *line = words == NULL ? "" : strrchr(words, '\n');
+        is_whole = (words != NULL && strcmp(words, "ok") == 0) ||
+                   store_fail_damaged(store, line == NULL ? words : line + (line[0] == '\n'), err);
+    }
+    sqlite3_finalize(statement);
+    return is_whole;
+}

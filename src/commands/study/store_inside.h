@@ -1,0 +1,125 @@
+// What the files of the store share among themselves; nobody else includes this.
+#pragma once
+
+#include "base/text.h"
+#include "commands/study/store.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+enum {
+    STORE_VERSION = 2,              // of the tables; stands in the file as user_version
+    STORE_APPLICATION = 0x4a505354, // "JPST"; stands in the file as application_id
+    STORE_WORDS_SIZE = 256,
+};
+
+// The first of the columns that hold a run against its truth, see study/metrics.c.
+static const char STORE_ERROR_COLUMN[] = "error_omega_max";
+
+struct Store {
+    struct sqlite3 *base;
+    struct sqlite3_stmt *add_run; // prepared when first needed, as all that follow
+    struct sqlite3_stmt *add_effort;
+    struct sqlite3_stmt *find;
+    struct sqlite3_stmt *rows;
+    char *path;       // owned, as given
+    int lock;         // file that the lock of whoever works on the store hangs on; -1: none
+    bool is_made;     // its file is of this opening: nobody else has ever written to it
+    bool is_changing; // a transaction is open
+    bool is_verified; // every row that was there when it was first asked is what was once written
+    Layout *layout;   // owned
+    uint64_t run_count;
+    size_t key_count;
+    StoreKey keys[STORE_KEY_MAX]; // their words are owned
+};
+
+// store.c: opening
+
+// Opens the store that others are merged into, the first of which is named; as store_open.
+Store *store_open_target(const char *path, const StoreHead *head, const char *source, Err *err);
+
+// store_file.c: the file
+
+// Sets the error that SQLite has met with, in words of its own for what people can do something
+// about. `what` is what was tried: "read" or "write". Always false.
+bool store_fail(const Store *store, const char *what, Err *err);
+bool store_fail_damaged(const Store *store, const char *how, Err *err);
+
+// Opens the file behind a store whose path is set. To work on it: alone, making it where there is
+// none, and never where something else stands there. To be made anew it may be of any version and
+// damaged, and is emptied.
+bool store_file_open(Store *store, bool is_fresh, Err *err);
+
+// Opens it to look at: no file is written or deleted, and what a write that was cut off has changed
+// is seen as it was before.
+bool store_file_view(Store *store, Err *err);
+
+// Lets go of the file; whoever waits for it can have it at once.
+void store_file_close(Store *store);
+
+// Reads the whole file for damage. What single rows hold is told by their checksums.
+bool store_file_check(Store *store, Err *err);
+
+// Whether another process works on the store of that path. Not to be asked of a store that this
+// process has open: SQLite's locks end when the process closes the file, whoever opened it.
+bool store_file_is_at_work(const char *path);
+
+// Runs and prepares SQL.
+bool store_run_sql(Store *store, const char *sql, Err *err);
+bool store_prepare(Store *store, const char *sql, struct sqlite3_stmt **statement, Err *err);
+
+// store_beside.c: what stands beside the file
+
+// Refuses what would make SQLite write or delete another file than the store and its journal. To be
+// asked before SQLite opens the file of that resolved path.
+bool store_beside_check(const Store *store, const char *resolved, Err *err);
+
+// store_look.c: looking at it
+
+// The name of the functions by which SQLite can read files and write none.
+const char *store_look_vfs(void);
+
+// store_shape.c: the tables
+
+// Whether there is anything in the schema of the file.
+bool store_shape_is_there(Store *store, bool *is_there, Err *err);
+
+// Appends the SQL that makes the tables.
+void store_shape_append(const Layout *layout, Text *sql);
+
+// Reads the columns, once it is sure that the file has the tables of a store and nothing else.
+// Nothing may be asked of its tables before.
+bool store_shape_read(Store *store, Layout *layout, Err *err);
+
+// Appends the name of a column as SQL writes it.
+void store_shape_quote(Text *sql, const char *name);
+
+// A copy of a value; the empty word of NULL.
+char *store_copy_column(struct sqlite3_stmt *statement, int column);
+
+// store_schema.c: whose rows they are
+
+// Makes the tables, or reads what they are.
+bool store_schema_make(Store *store, const StoreHead *head, Err *err);
+bool store_schema_read(Store *store, Err *err);
+
+// The first thing in which a store differs from what is asked for, as words; false where nothing
+// does.
+bool store_schema_differs(const Store *store, const StoreHead *head, Text *words);
+
+void store_schema_finish(Store *store);
+
+// store_row.c: the rows
+
+// The statement that reads rows by rising number: parameter 1 is the number before the first, 2 the
+// most that are wanted (-1: all).
+bool store_row_prepare(Store *store, struct sqlite3_stmt **statement, Err *err);
+
+// Takes the row that the statement stands at. Fails with ERR_FILE where it is not what was written.
+bool store_row_take(const Store *store, struct sqlite3_stmt *statement, Record *record, Err *err);
+
+// Puts a row in the place of the one of its run, in the transaction that store_commit ends.
+bool store_replace(Store *store, const Record *record, Err *err);
+
+// Whether two rows are the same in all but their effort.
+bool store_row_is_same(const Layout *layout, const Record *a, const Record *b);

@@ -1,0 +1,251 @@
+// How does SQLite look at a store without being able to write anything at all?
+//
+// It reaches files through a table of functions of ours, which hands on to the system's what reads
+// and refuses what writes or deletes. No journal is there for it: what a write that was cut off has
+// changed is read as it was before, see store_undo.c. That is found anew whenever SQLite begins to
+// read: as long as it reads, its shared lock keeps everybody from changing the file.
+#include "commands/study/store_inside.h"
+#include "commands/study/store_undo.h"
+
+#include <assert.h>
+#include <sqlite3.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char NAME[] = "jointplay-look";
+
+// The file of a store; the system's own stands behind it in the same memory.
+typedef struct LookFile {
+    sqlite3_file base;
+    sqlite3_file *real;
+    char *journal; // path; owned
+    int level;     // of the lock
+    Undo undo;
+} LookFile;
+
+static sqlite3_vfs *system_of(sqlite3_vfs *vfs)
+{
+    return vfs->pAppData;
+}
+
+static int look_close(sqlite3_file *base)
+{
+    LookFile *file = (LookFile *)base;
+    undo_finish(&file->undo);
+    free(file->journal);
+    return file->real->pMethods->xClose(file->real);
+}
+
+// A part of a page as it was. What lies beyond the former end is zero.
+static int read_former(LookFile *file, void *target, int amount, sqlite3_int64 place)
+{
+    const Undo *undo = &file->undo;
+    const sqlite3_int64 size = undo->page_size;
+    if (place % size + amount > size) {
+        return SQLITE_IOERR_READ;
+    }
+    if (place / size >= undo->page_count) {
+        memset(target, 0, (size_t)amount);
+        return SQLITE_IOERR_SHORT_READ;
+    }
+    const off_t former = undo_find(undo, (uint32_t)(place / size + 1));
+    if (former < 0) {
+        return file->real->pMethods->xRead(file->real, target, amount, place);
+    }
+    return pread(undo->journal, target, (size_t)amount, former + place % size) == amount
+               ? SQLITE_OK
+               : SQLITE_IOERR_READ;
+}
+
+static int look_read(sqlite3_file *base, void *target, int amount, sqlite3_int64 place)
+{
+    LookFile *file = (LookFile *)base;
+    return file->undo.is_needed ? read_former(file, target, amount, place)
+                                : file->real->pMethods->xRead(file->real, target, amount, place);
+}
+
+static int look_write(sqlite3_file *base, const void *source, int amount, sqlite3_int64 place)
+{
+    (void)base;
+    (void)source;
+    (void)amount;
+    (void)place;
+    return SQLITE_READONLY;
+}
+
+static int look_truncate(sqlite3_file *base, sqlite3_int64 size)
+{
+    (void)base;
+    (void)size;
+    return SQLITE_READONLY;
+}
+
+static int look_sync(sqlite3_file *base, int flags)
+{
+    (void)base;
+    (void)flags;
+    return SQLITE_OK;
+}
+
+static int look_size(sqlite3_file *base, sqlite3_int64 *size)
+{
+    LookFile *file = (LookFile *)base;
+    if (file->undo.is_needed) {
+        *size = (sqlite3_int64)file->undo.page_size * file->undo.page_count;
+        return SQLITE_OK;
+    }
+    return file->real->pMethods->xFileSize(file->real, size);
+}
+
+// With the shared lock: a journal that nobody is at work with is of a write that was cut off.
+static int find_former(LookFile *file)
+{
+    int is_at_work = 0;
+    const int status = file->real->pMethods->xCheckReservedLock(file->real, &is_at_work);
+    if (status != SQLITE_OK || is_at_work) {
+        return status;
+    }
+    sqlite3_int64 size = 0;
+    if (!undo_read(&file->undo, file->journal)) {
+        return SQLITE_CANTOPEN;
+    }
+    // no page is lost: those that the file had and has no more are in the journal
+    const sqlite3_int64 former = (sqlite3_int64)file->undo.page_size * file->undo.page_count;
+    const int is_sized = file->real->pMethods->xFileSize(file->real, &size);
+    const bool is_right = !file->undo.is_needed || former <= size + file->undo.journal_size;
+    return is_sized == SQLITE_OK && !is_right ? SQLITE_CORRUPT : is_sized;
+}
+
+static int look_lock(sqlite3_file *base, int level)
+{
+    LookFile *file = (LookFile *)base;
+    if (level > SQLITE_LOCK_SHARED) {
+        return SQLITE_READONLY;
+    }
+    int status = file->real->pMethods->xLock(file->real, level);
+    if (status == SQLITE_OK && file->level < SQLITE_LOCK_SHARED) {
+        undo_finish(&file->undo);
+        status = find_former(file);
+        if (status != SQLITE_OK) {
+            file->real->pMethods->xUnlock(file->real, SQLITE_LOCK_NONE);
+            return status;
+        }
+        file->level = level;
+    }
+    return status;
+}
+
+static int look_unlock(sqlite3_file *base, int level)
+{
+    LookFile *file = (LookFile *)base;
+    if (level < SQLITE_LOCK_SHARED) {
+        undo_finish(&file->undo);
+    }
+    file->level = level;
+    return file->real->pMethods->xUnlock(file->real, level);
+}
+
+static int look_check_lock(sqlite3_file *base, int *is_taken)
+{
+    const LookFile *file = (LookFile *)base;
+    return file->real->pMethods->xCheckReservedLock(file->real, is_taken);
+}
+
+static int look_control(sqlite3_file *base, int operation, void *argument)
+{
+    (void)base;
+    (void)operation;
+    (void)argument;
+    return SQLITE_NOTFOUND;
+}
+
+static int look_sector(sqlite3_file *base)
+{
+    const LookFile *file = (LookFile *)base;
+    return file->real->pMethods->xSectorSize(file->real);
+}
+
+static int look_characteristics(sqlite3_file *base)
+{
+    const LookFile *file = (LookFile *)base;
+    return file->real->pMethods->xDeviceCharacteristics(file->real);
+}
+
+// of version 1: no memory that processes share, and so no write-ahead log
+static const sqlite3_io_methods METHODS = {
+    .iVersion = 1,
+    .xClose = look_close,
+    .xRead = look_read,
+    .xWrite = look_write,
+    .xTruncate = look_truncate,
+    .xSync = look_sync,
+    .xFileSize = look_size,
+    .xLock = look_lock,
+    .xUnlock = look_unlock,
+    .xCheckReservedLock = look_check_lock,
+    .xFileControl = look_control,
+    .xSectorSize = look_sector,
+    .xDeviceCharacteristics = look_characteristics,
+};
+
+static int look_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *base, int flags,
+                     int *flags_used)
+{
+    sqlite3_vfs *system = system_of(vfs);
+    if ((flags & SQLITE_OPEN_MAIN_DB) == 0) {
+        // what is sorted in files has none of a name
+        return name == NULL ? system->xOpen(system, name, base, flags, flags_used)
+                            : SQLITE_CANTOPEN;
+    }
+    LookFile *file = (LookFile *)base;
+    *file = (LookFile){.real = (sqlite3_file *)(file + 1)};
+    const int status = system->xOpen(system, name, file->real, flags, flags_used);
+    if (status != SQLITE_OK) {
+        return status;
+    }
+    Text journal;
+    text_init(&journal);
+    text_append(&journal, "%s-journal", name);
+    file->journal = strdup(journal.data);
+    assert(file->journal != NULL);
+    text_finish(&journal);
+    file->base.pMethods = &METHODS;
+    return SQLITE_OK;
+}
+
+static int look_delete(sqlite3_vfs *vfs, const char *name, int is_synced)
+{
+    (void)vfs;
+    (void)name;
+    (void)is_synced;
+    return SQLITE_READONLY;
+}
+
+static int look_access(sqlite3_vfs *vfs, const char *name, int flags, int *is_there)
+{
+    (void)vfs;
+    (void)name;
+    (void)flags;
+    *is_there = 0;
+    return SQLITE_OK;
+}
+
+const char *store_look_vfs(void)
+{
+    static sqlite3_vfs vfs;
+    if (sqlite3_vfs_find(NAME) == NULL) {
+        sqlite3_vfs *system = sqlite3_vfs_find(NULL);
+        assert(system != NULL);
+        vfs = *system;
+        vfs.zName = NAME;
+        vfs.pNext = NULL;
+        vfs.pAppData = system;
+        vfs.szOsFile = (int)sizeof(LookFile) + system->szOsFile;
+        vfs.xOpen = look_open;
+        vfs.xDelete = look_delete;
+        vfs.xAccess = look_access;
+        sqlite3_vfs_register(&vfs, 0);
+    }
+    return NAME;
+}

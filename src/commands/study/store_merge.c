@@ -1,0 +1,303 @@
+// How do the stores of the shards of a study become one?
+//
+// All sources are read side by side, each by rising number of run, and the run with the lowest
+// number is taken next: the target grows at its end alone. Its pages are full, nothing that is
+// written is written again, and of each source one row is in memory.
+//
+// The rows of a merge are one transaction, so what ends in mid-way leaves nothing behind. A target
+// that was not there before is taken away again.
+#include "commands/study/store_inside.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <math.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { SPARE_FILES = 64 }; // beside one a source
+
+// A source, and the row of it that is next.
+typedef struct Cursor {
+    Store *store;
+    struct sqlite3_stmt *rows;
+    Record record;
+} Cursor;
+
+typedef struct Merge {
+    size_t count;
+    Cursor *cursors;
+    size_t waiting; // of the cursors that have a row, as a heap: the lowest run first
+    Cursor **heap;
+    Store *target;
+    Record last; // the row taken last, and whose it was
+    const char *last_path;
+    uint64_t added;
+} Merge;
+
+static bool is_same_file(const char *path, const char *other)
+{
+    struct stat a;
+    struct stat b;
+    return stat(path, &a) == 0 && stat(other, &b) == 0 && a.st_dev == b.st_dev &&
+           a.st_ino == b.st_ino;
+}
+
+// A process may by default have some 1000 files open, and more when it asks.
+static void allow_files(size_t count)
+{
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < count + SPARE_FILES) {
+        limit.rlim_cur =
+            limit.rlim_max < count + SPARE_FILES ? limit.rlim_max : count + SPARE_FILES;
+        setrlimit(RLIMIT_NOFILE, &limit);
+    }
+}
+
+static bool is_before(const Cursor *a, const Cursor *b)
+{
+    // of one run the source named first comes first, so that messages name them in that order
+    return a->record.run != b->record.run ? a->record.run < b->record.run : a < b;
+}
+
+static void sink(Merge *merge, size_t i)
+{
+    for (size_t child; (child = 2 * i + 1) < merge->waiting; i = child) {
+        if (child + 1 < merge->waiting && is_before(merge->heap[child + 1], merge->heap[child])) {
+            child++;
+        }
+        if (is_before(merge->heap[i], merge->heap[child])) {
+            return;
+        }
+        Cursor *lifted = merge->heap[child];
+        merge->heap[child] = merge->heap[i];
+        merge->heap[i] = lifted;
+    }
+}
+
+// Brings the next row of a source, if there is one.
+static bool advance(Cursor *cursor, bool *has_row, Err *err)
+{
+    const uint64_t former = cursor->record.run;
+    const int status = sqlite3_step(cursor->rows);
+    *has_row = status == SQLITE_ROW;
+    if (status == SQLITE_DONE) {
+        return true;
+    }
+    if (status != SQLITE_ROW) {
+        return store_fail(cursor->store, "read", err);
+    }
+    return store_row_take(cursor->store, cursor->rows, &cursor->record, err) &&
+           (former == UINT64_MAX || cursor->record.run > former ||
+            store_fail_damaged(cursor->store, "its runs do not stand in order", err));
+}
+
+static StoreHead head_of(const Store *store)
+{
+    StoreHead head = {
+        .layout = store->layout, .run_count = store->run_count, .key_count = store->key_count};
+    memcpy(head.keys, store->keys, sizeof head.keys);
+    return head;
+}
+
+static bool check_alike(const Store *first, const Store *other, Err *err)
+{
+    const StoreHead head = head_of(first);
+    Text words;
+    text_init(&words);
+    // "there" and "here" are the two files, in the order in which the message names them
+    const bool is_alike = !store_schema_differs(other, &head, &words) ||
+                          err_set(err, ERR_FILE, "%s cannot be merged with %s: %s", other->path,
+                                  first->path, words.data);
+    text_finish(&words);
+    return is_alike;
+}
+
+static bool open_source(Merge *merge, const char *path, Err *err)
+{
+    Cursor *cursor = &merge->cursors[merge->count];
+    cursor->record.run = UINT64_MAX;
+    if (store_file_is_at_work(path)) {
+        return err_set(err, ERR_FILE, "the store %s is at work in another process", path);
+    }
+    cursor->store = store_view(path, err);
+    if (cursor->store == NULL) {
+        return false;
+    }
+    merge->count++;
+    bool has_row = false;
+    if (!check_alike(merge->cursors[0].store, cursor->store, err) ||
+        !store_file_check(cursor->store, err) ||
+        !store_run_sql(cursor->store, "PRAGMA cache_size = 16", err) ||
+        !store_row_prepare(cursor->store, &cursor->rows, err)) {
+        return false;
+    }
+    sqlite3_bind_int64(cursor->rows, 1, -1);
+    sqlite3_bind_int64(cursor->rows, 2, -1);
+    if (!advance(cursor, &has_row, err)) {
+        return false;
+    }
+    if (has_row) {
+        merge->heap[merge->waiting++] = cursor;
+    }
+    return true;
+}
+
+static bool open_sources(Merge *merge, const char *target, const char *const *sources,
+                         size_t source_count, Err *err)
+{
+    allow_files(source_count);
+    merge->cursors = calloc(source_count + 1, sizeof *merge->cursors);
+    merge->heap = calloc(source_count + 1, sizeof(Cursor *));
+    assert(merge->cursors != NULL && merge->heap != NULL);
+    for (size_t i = 0; i < source_count; i++) {
+        if (!is_same_file(sources[i], target) && !open_source(merge, sources[i], err)) {
+            return false;
+        }
+    }
+    for (size_t i = merge->waiting; i-- > 0;) {
+        sink(merge, i);
+    }
+    return true;
+}
+
+// Whatever was left of a merge that was killed is taken back by opening it to work.
+static bool open_target(Merge *merge, const char *path, Err *err)
+{
+    const Store *first = merge->cursors[0].store;
+    const StoreHead head = head_of(first);
+    merge->target = store_open_target(path, &head, first->path, err);
+    return merge->target != NULL;
+}
+
+// What cut a run off may be the machine's fault, and is no result.
+static bool is_cut_off(const Record *record)
+{
+    return record->fate == FATE_ENDED || record->fate == FATE_TIMED_OUT ||
+           record->fate == FATE_NO_MEMORY;
+}
+
+// Whether a row has no errors, as where its truth could not be had.
+static bool lacks_errors(const Layout *layout, const Record *record)
+{
+    const size_t column = store_column(layout, STORE_ERROR_COLUMN);
+    return column < layout->setting_count + layout->result_count &&
+           isnan(record->results[column - layout->setting_count]);
+}
+
+// Holds a row against the one that is there of its run. Both must be the same, or one be cut off or
+// have missed its truth: the better one stays.
+static bool compare(const Merge *merge, const Record *record, const char *path, const Record *other,
+                    const char *other_path, bool *is_better, Err *err)
+{
+    const Layout *layout = merge->target->layout;
+    *is_better = is_cut_off(other) && !is_cut_off(record);
+    if (record->fate == FATE_OK && other->fate == FATE_OK && record->hash == other->hash &&
+        lacks_errors(layout, record) != lacks_errors(layout, other)) {
+        *is_better = lacks_errors(layout, other);
+        return true;
+    }
+    return is_cut_off(other) || is_cut_off(record) || store_row_is_same(layout, record, other) ||
+           err_set(err, ERR_FILE, "run %" PRIu64 " has different results in %s and in %s",
+                   record->run, other_path, path);
+}
+
+// Whether the target had the run before; it must then be the same, or the better one stays.
+static bool look_up(Merge *merge, const Record *record, const char *path, bool *is_there, Err *err)
+{
+    Store *target = merge->target;
+    if (!store_has(target, record->run, is_there, err)) {
+        return false;
+    }
+    if (!*is_there) {
+        return true;
+    }
+    Record there;
+    bool is_better = false;
+    if (!store_row_prepare(target, &target->rows, err)) {
+        return false;
+    }
+    sqlite3_bind_int64(target->rows, 1, (sqlite3_int64)record->run - 1);
+    sqlite3_bind_int64(target->rows, 2, 1);
+    const bool is_read =
+        sqlite3_step(target->rows) == SQLITE_ROW || store_fail(target, "read", err);
+    const bool is_same = is_read && store_row_take(target, target->rows, &there, err) &&
+                         compare(merge, record, path, &there, target->path, &is_better, err);
+    sqlite3_reset(target->rows);
+    return is_same && (!is_better || store_replace(target, record, err));
+}
+
+static bool take_row(Merge *merge, const Record *record, const char *path, Err *err)
+{
+    bool is_there = false;
+    if (merge->last_path != NULL && merge->last.run == record->run) {
+        bool is_better = false;
+        if (!compare(merge, record, path, &merge->last, merge->last_path, &is_better, err)) {
+            return false;
+        }
+        if (!is_better) {
+            return true;
+        }
+        merge->last = *record;
+        merge->last_path = path;
+        return look_up(merge, record, path, &is_there, err);
+    }
+    merge->last = *record;
+    merge->last_path = path;
+    if (!merge->target->is_made && !look_up(merge, record, path, &is_there, err)) {
+        return false;
+    }
+    merge->added += is_there ? 0 : 1;
+    return is_there || store_add(merge->target, record, err);
+}
+
+static bool take_all(Merge *merge, Err *err)
+{
+    while (merge->waiting > 0) {
+        Cursor *first = merge->heap[0];
+        bool has_row;
+        if (!take_row(merge, &first->record, first->store->path, err) ||
+            !advance(first, &has_row, err)) {
+            return false;
+        }
+        if (!has_row) {
+            merge->heap[0] = merge->heap[--merge->waiting];
+        }
+        sink(merge, 0);
+    }
+    return store_commit(merge->target, err);
+}
+
+bool store_merge(const char *target, const char *const *sources, size_t source_count,
+                 uint64_t *added, Err *err)
+{
+    Merge merge = {0};
+    bool is_done = open_sources(&merge, target, sources, source_count, err);
+    // what is merged with nothing but itself stays as it is
+    if (is_done && merge.count > 0) {
+        is_done = open_target(&merge, target, err) && take_all(&merge, err);
+    }
+    if (merge.target != NULL && !is_done) {
+        sqlite3_exec(merge.target->base, "ROLLBACK", NULL, NULL, NULL);
+        merge.target->is_changing = false;
+        // as long as it is locked: later it may be another's
+        if (merge.target->is_made) {
+            unlink(target);
+        }
+    }
+    is_done = store_close(merge.target, err) && is_done;
+    for (size_t i = 0; i < merge.count; i++) {
+        sqlite3_finalize(merge.cursors[i].rows);
+        store_close(merge.cursors[i].store, err);
+    }
+    free(merge.cursors);
+    free(merge.heap);
+    if (is_done) {
+        *added = merge.added;
+    }
+    return is_done;
+}

@@ -1,0 +1,226 @@
+// Which tables does a store have, and has it nothing else?
+//
+//     study    name, value, words: the key, `runs`, `checksum` of this table and of the columns
+//     run      run (the number), the settings, fate, reason, the results, hash, checksum
+//     effort   run, wall_s, checksum
+//
+// The columns of `run` are the layout: their names, their types, and the place of `fate`.
+//
+// A file may be any person's, and SQL in its schema is SQL that is run when it is read: a view in
+// place of a table may have rows without end. So nothing is asked of a file before its schema is
+// word for word the one that this program writes.
+#include "commands/study/store_inside.h"
+
+#include <assert.h>
+#include <sqlite3.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const TYPES[] = {
+    [COLUMN_REAL] = "REAL", [COLUMN_WHOLE] = "INTEGER", [COLUMN_WORD] = "TEXT"};
+enum { TYPE_COUNT = sizeof TYPES / sizeof *TYPES };
+
+static const char RUN[] = "run"; // the one whose columns differ from study to study
+
+// All that stands in the schema.
+static const struct {
+    const char *type;
+    const char *name;
+    const char *table;
+    const char *sql; // NULL where it has none, or one of its own in each study
+} OBJECTS[] = {
+    {"table", "study", "study",
+     "CREATE TABLE study(name TEXT PRIMARY KEY, value TEXT, words TEXT)"},
+    {"index", "sqlite_autoindex_study_1", "study", NULL}, // of that primary key
+    {"table", RUN, RUN, NULL},
+    {"table", "effort", "effort",
+     "CREATE TABLE effort(run INTEGER PRIMARY KEY, wall_s REAL, checksum INTEGER)"},
+};
+enum { OBJECT_COUNT = sizeof OBJECTS / sizeof *OBJECTS };
+
+void store_shape_quote(Text *sql, const char *name)
+{
+    text_append(sql, "\"");
+    for (; *name != '\0'; name++) {
+        text_append(sql, *name == '"' ? "\"\"" : "%c", *name);
+    }
+    text_append(sql, "\"");
+}
+
+static void append_columns(Text *sql, const Column *columns, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        store_shape_quote(sql, columns[i].name);
+        text_append(sql, " %s, ", TYPES[columns[i].kind]);
+    }
+}
+
+static void append_run(const Layout *layout, Text *sql)
+{
+    text_append(sql, "CREATE TABLE run(run INTEGER PRIMARY KEY, ");
+    append_columns(sql, layout->settings, layout->setting_count);
+    text_append(sql, "fate INTEGER, reason TEXT, ");
+    append_columns(sql, layout->results, layout->result_count);
+    text_append(sql, "hash INTEGER, checksum INTEGER)");
+}
+
+void store_shape_append(const Layout *layout, Text *sql)
+{
+    for (size_t i = 0; i < OBJECT_COUNT; i++) {
+        if (OBJECTS[i].name == RUN) {
+            append_run(layout, sql);
+            text_append(sql, "; ");
+        } else if (OBJECTS[i].sql != NULL) {
+            text_append(sql, "%s; ", OBJECTS[i].sql);
+        }
+    }
+}
+
+char *store_copy_column(sqlite3_stmt *statement, int column)
+{
+    const char *words = (const char *)sqlite3_column_text(statement, column);
+    char *copy = strdup(words == NULL ? "" : words);
+    assert(copy != NULL);
+    return copy;
+}
+
+static bool is_word(sqlite3_stmt *statement, int column, const char *word)
+{
+    const char *words = (const char *)sqlite3_column_text(statement, column);
+    return word == NULL ? words == NULL : words != NULL && strcmp(words, word) == 0;
+}
+
+// The object that a row of the schema is; OBJECT_COUNT where it is none of a store.
+static size_t find_object(sqlite3_stmt *statement)
+{
+    size_t i = 0;
+    while (i < OBJECT_COUNT &&
+           !(is_word(statement, 0, OBJECTS[i].type) && is_word(statement, 1, OBJECTS[i].name) &&
+             is_word(statement, 2, OBJECTS[i].table) &&
+             (OBJECTS[i].name == RUN || is_word(statement, 3, OBJECTS[i].sql)))) {
+        i++;
+    }
+    return i;
+}
+
+// Its name is whoever's made it, and not printed.
+static bool refuse_object(const Store *store, sqlite3_stmt *statement, Err *err)
+{
+    static const struct {
+        const char *type;
+        const char *words;
+    } KINDS[] = {
+        {"view", "a view"}, {"trigger", "a trigger"}, {"index", "an index"}, {"table", "a table"}};
+    const char *found = "something";
+    for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++) {
+        found = is_word(statement, 0, KINDS[i].type) ? KINDS[i].words : found;
+    }
+    return err_set(err, ERR_FILE, "%s is no store of a study: there is %s in it that no store has",
+                   store->path, found);
+}
+
+// Every object that there must be, once, and no other. `run` receives the words of that table.
+static bool check_objects(const Store *store, sqlite3_stmt *statement, char **run, Err *err)
+{
+    bool is_there[OBJECT_COUNT] = {false};
+    int status;
+    while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
+        const size_t object = find_object(statement);
+        if (object == OBJECT_COUNT || is_there[object]) {
+            return refuse_object(store, statement, err);
+        }
+        is_there[object] = true;
+        if (OBJECTS[object].name == RUN) {
+            *run = store_copy_column(statement, 3);
+        }
+    }
+    if (status != SQLITE_DONE) {
+        return store_fail(store, "read", err);
+    }
+    for (size_t i = 0; i < OBJECT_COUNT; i++) {
+        if (!is_there[i]) {
+            return err_set(err, ERR_FILE, "%s is no store of a study: it has no %s %s", store->path,
+                           OBJECTS[i].type, OBJECTS[i].name);
+        }
+    }
+    return true;
+}
+
+// Takes one column of the table; where nothing takes it, it is missing in what is made of them.
+static void take_column(Layout *layout, const char *name, const char *type, bool is_result)
+{
+    size_t *count = is_result ? &layout->result_count : &layout->setting_count;
+    Column *columns = is_result ? layout->results : layout->settings;
+    if (*count < (is_result ? (size_t)RECORD_RESULT_MAX : (size_t)RECORD_SETTING_MAX)) {
+        Column *column = &columns[(*count)++];
+        text_copy(column->name, sizeof column->name, name);
+        for (size_t kind = 0; kind < TYPE_COUNT; kind++) {
+            if (strcmp(type, TYPES[kind]) == 0) {
+                column->kind = (ColumnKind)kind;
+            }
+        }
+    }
+}
+
+static bool read_columns(Store *store, Layout *layout, Err *err)
+{
+    sqlite3_stmt *statement = NULL;
+    if (!store_prepare(store, "SELECT name, type FROM pragma_table_info('run') ORDER BY cid",
+                       &statement, err)) {
+        return false;
+    }
+    bool is_result = false;
+    int status;
+    while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
+        char *name = store_copy_column(statement, 0);
+        char *type = store_copy_column(statement, 1);
+        const bool is_own = strcmp(name, RUN) == 0 || strcmp(name, "reason") == 0 ||
+                            strcmp(name, "hash") == 0 || strcmp(name, "checksum") == 0;
+        if (strcmp(name, "fate") == 0) {
+            is_result = true;
+        } else if (!is_own) {
+            take_column(layout, name, type, is_result);
+        }
+        free(name);
+        free(type);
+    }
+    const bool is_read = status == SQLITE_DONE || store_fail(store, "read", err);
+    sqlite3_finalize(statement);
+    return is_read;
+}
+
+bool store_shape_is_there(Store *store, bool *is_there, Err *err)
+{
+    sqlite3_stmt *statement = NULL;
+    if (!store_prepare(store, "SELECT 1 FROM sqlite_schema LIMIT 1", &statement, err)) {
+        return false;
+    }
+    const int status = sqlite3_step(statement);
+    const bool is_read =
+        status == SQLITE_ROW || status == SQLITE_DONE || store_fail(store, "read", err);
+    *is_there = status == SQLITE_ROW;
+    sqlite3_finalize(statement);
+    return is_read;
+}
+
+bool store_shape_read(Store *store, Layout *layout, Err *err)
+{
+    char *run = NULL;
+    sqlite3_stmt *statement = NULL;
+    bool is_right = store_prepare(store, "SELECT type, name, tbl_name, sql FROM sqlite_schema",
+                                  &statement, err) &&
+                    check_objects(store, statement, &run, err);
+    sqlite3_finalize(statement);
+    is_right = is_right && read_columns(store, layout, err);
+    if (is_right) {
+        Text sql;
+        text_init(&sql);
+        append_run(layout, &sql);
+        is_right =
+            strcmp(sql.data, run) == 0 ||
+            store_fail_damaged(store, "the columns of its runs are not those of a store", err);
+        text_finish(&sql);
+    }
+    free(run);
+    return is_right;
+}

@@ -1,0 +1,17 @@
+// The columns of a study, as people name them.
+#pragma once
+
+#include "commands/study/store.h"
+
+typedef enum StudyColumns {
+    STUDY_NUMBER,  // of settings or results, not of words
+    STUDY_SETTING, // of settings alone
+} StudyColumns;
+
+// Finds a column by name. Fails with ERR_USAGE, naming the one that may have been meant.
+bool study_columns_find(const Layout *layout, const char *name, StudyColumns wanted, size_t *column,
+                        Err *err);
+
+// A value of it in words.
+void study_columns_word(const Layout *layout, size_t column, const Cell *value,
+                        char words[RECORD_WORD_SIZE]);

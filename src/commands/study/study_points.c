@@ -1,0 +1,170 @@
+// Which points does a picture of a study have?
+#include "commands/study/study_points.h"
+
+#include "commands/study/study_columns.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIRST_ROOM = 1024 };
+
+typedef struct Gathering {
+    StudyPoints *points;
+    size_t room;
+    size_t x;
+    size_t y;
+    bool has_y;
+    bool has_by;
+} Gathering;
+
+static double number_of(const Layout *layout, const Record *record, size_t column)
+{
+    return column < layout->setting_count ? record->settings[column].number
+                                          : record->results[column - layout->setting_count];
+}
+
+static size_t group_of(const StudyPoints *points, const Layout *layout, const Record *record)
+{
+    const Cell *value = &record->settings[points->by];
+    const bool is_word = layout->settings[points->by].kind == COLUMN_WORD;
+    for (size_t i = 0; i < points->group_count; i++) {
+        if (is_word ? strcmp(value->word, points->groups[i].word) == 0
+                    : value->number == points->groups[i].number) {
+            return i;
+        }
+    }
+    return points->group_count;
+}
+
+static bool take_row(const Layout *layout, const Record *record, void *context, Err *err)
+{
+    (void)err;
+    Gathering *gathering = context;
+    StudyPoints *points = gathering->points;
+    const StudyPoint point = {
+        .x = number_of(layout, record, gathering->x),
+        .y = gathering->has_y ? number_of(layout, record, gathering->y) : 0.0,
+        .group = gathering->has_by ? group_of(points, layout, record) : 0,
+    };
+    const bool is_point = record->fate == FATE_OK && isfinite(point.x) && isfinite(point.y) &&
+                          point.group < points->group_count;
+    if (!is_point) {
+        points->left_out++;
+        return true;
+    }
+    if (points->count == gathering->room) {
+        gathering->room = gathering->room == 0 ? FIRST_ROOM : 2 * gathering->room;
+        points->points = realloc(points->points, gathering->room * sizeof *points->points);
+        assert(points->points != NULL);
+    }
+    points->points[points->count++] = point;
+    return true;
+}
+
+static int compare(double a, double b)
+{
+    return (a > b) - (a < b);
+}
+
+static int compare_points(const void *a, const void *b)
+{
+    const StudyPoint *left = a;
+    const StudyPoint *right = b;
+    if (left->group != right->group) {
+        return left->group < right->group ? -1 : 1;
+    }
+    const int by_x = compare(left->x, right->x);
+    return by_x != 0 ? by_x : compare(left->y, right->y);
+}
+
+static int compare_x(const void *a, const void *b)
+{
+    return compare(*(const double *)a, *(const double *)b);
+}
+
+static size_t count_x(const StudyPoints *points)
+{
+    double *x = malloc((points->count + 1) * sizeof *x);
+    assert(x != NULL);
+    for (size_t i = 0; i < points->count; i++) {
+        x[i] = points->points[i].x;
+    }
+    qsort(x, points->count, sizeof *x, compare_x);
+    size_t count = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        count += i == 0 || x[i] != x[i - 1] ? 1 : 0;
+    }
+    free(x);
+    return count;
+}
+
+static void put_in_order(StudyPoints *points)
+{
+    qsort(points->points, points->count, sizeof *points->points, compare_points);
+    size_t i = 0;
+    for (size_t group = 0; group < points->group_count; group++) {
+        points->first[group] = i;
+        while (i < points->count && points->points[i].group == group) {
+            i++;
+        }
+    }
+    points->first[points->group_count] = i;
+    points->x_count = count_x(points);
+}
+
+static bool find_groups(Store *store, const char *by, StudyPoints *points, Err *err)
+{
+    points->group_count = 1;
+    if (by == NULL) {
+        return true;
+    }
+    if (!study_columns_find(store_layout(store), by, STUDY_SETTING, &points->by, err) ||
+        !store_values(store, points->by, STUDY_GROUP_MAX, points->groups, &points->group_count,
+                      err)) {
+        return false;
+    }
+    return points->group_count <= STUDY_GROUP_MAX ||
+           err_set(err, ERR_USAGE, "%s has more than %d values, too many to tell apart", by,
+                   STUDY_GROUP_MAX);
+}
+
+bool study_points_read(Store *store, const char *x, const char *y, const char *by,
+                       StudyPoints *points, Err *err)
+{
+    const Layout *layout = store_layout(store);
+    *points = (StudyPoints){0};
+    Gathering gathering = {.points = points, .has_y = y != NULL, .has_by = by != NULL};
+    bool is_read = study_columns_find(layout, x, STUDY_NUMBER, &gathering.x, err) &&
+                   (y == NULL || study_columns_find(layout, y, STUDY_NUMBER, &gathering.y, err)) &&
+                   find_groups(store, by, points, err) &&
+                   store_each(store, take_row, &gathering, err);
+    if (is_read && points->count == 0) {
+        is_read = err_set(err, ERR_USAGE, "no run of the study has a number in %s%s%s", x,
+                          y == NULL ? "" : " and in ", y == NULL ? "" : y);
+    }
+    if (!is_read) {
+        study_points_finish(points);
+        return false;
+    }
+    put_in_order(points);
+    return true;
+}
+
+void study_points_finish(StudyPoints *points)
+{
+    free(points->points);
+    *points = (StudyPoints){0};
+}
+
+size_t study_points_pile(const StudyPoints *points, size_t first)
+{
+    const StudyPoint *point = &points->points[first];
+    size_t end = first + 1;
+    while (end < points->count && points->points[end].group == point->group &&
+           points->points[end].x == point->x) {
+        end++;
+    }
+    return end;
+}

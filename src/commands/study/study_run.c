@@ -1,0 +1,203 @@
+// Which runs of a study are missing, and what comes of them?
+#include "commands/study/study_run.h"
+
+#include "base/clock.h"
+#include "cli/interrupt.h"
+#include "cli/output.h"
+#include "commands/study/key.h"
+#include "commands/study/metrics.h"
+#include "commands/study/study_json.h"
+#include "commands/study/study_progress.h"
+#include "commands/study/study_text.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+
+static void tell(const SweepState *state, void *line)
+{
+    study_progress_show(line, state);
+}
+
+static bool should_stop(void *line)
+{
+    (void)line;
+    return interrupt_number() != 0;
+}
+
+// The columns are those of the case as the study's first run has it.
+static bool find_layout(const Spec *spec, Layout *layout, Err *err)
+{
+    Cell values[RECORD_SETTING_MAX];
+    BackendKind backend;
+    Scenario *scenario = calloc(1, sizeof *scenario);
+    assert(scenario != NULL);
+    // where its values make no case, that of the file has the same bodies and joints
+    Err first = {0};
+    design_values(spec, 0, values);
+    const bool is_found =
+        design_scenario(spec, values, scenario, &backend, &first) ||
+        casefile_load_text(spec->case_path, spec->case_text, spec->case_size,
+                           (const char *const *)spec->set, spec->set_count, scenario, err);
+    if (is_found) {
+        metrics_layout(spec, scenario, layout);
+    }
+    free(scenario);
+    return is_found;
+}
+
+// What one cannot see in the store: how this went.
+static void append_effort(const StudyReport *report, Text *text)
+{
+    const SweepState *state = &report->state;
+    if (state->made == 0) {
+        text_append(text, "\nNothing was left to run; the runs are kept in ");
+        text_append_shown(text, report->store);
+        text_append(text, ".\n");
+        return;
+    }
+    text_append(text,
+                "\nMade %" PRIu64 " runs in %.4g s, %zu at a time; %.1f %% of that time was spent "
+                "inside runs.\nThey are kept in ",
+                state->made, state->wall_s, report->jobs, 100.0 * study_report_inside(report));
+    text_append_shown(text, report->store);
+    text_append(text, ".\n");
+    if (state->without_truth > 0) {
+        text_append(text,
+                    "%" PRIu64 " of them have no error, for there is no truth to hold them "
+                    "against: %s.\n",
+                    state->without_truth, state->no_truth);
+    }
+}
+
+static bool print_text(const StudyReport *report, Store *store, bool is_wide, Err *err)
+{
+    const Style style = output_style(stdout, is_wide);
+    const StudyPart part = {report->store, store, report->state.total};
+    Text text;
+    text_init(&text);
+    bool is_written = study_text_status(&part, 1, &style, &text, err);
+    if (is_written) {
+        append_effort(report, &text);
+        is_written = study_text_summary(store, NULL, &style, &text, err);
+    }
+    if (is_written) {
+        output_text(&text, &style);
+    }
+    text_finish(&text);
+    return is_written;
+}
+
+static bool print_report(StudyReport *report, const CommonOptions *options, Err *err)
+{
+    Store *store = store_view(report->store, err);
+    bool is_printed = store != NULL && store_count(store, &report->count, err);
+    if (is_printed && options->is_json) {
+        output_json(study_json_build(report));
+    } else {
+        is_printed = is_printed && print_text(report, store, options->is_wide, err);
+    }
+    return store_close(store, err) && is_printed;
+}
+
+static bool check_runs(const StudyReport *report, Err *err)
+{
+    return report->count.rows == 0 || report->count.fates[FATE_OK] > 0 ||
+           err_set(err, ERR_SOLVER, "every run of %s failed",
+                   report->shard.count > 1 ? "this part" : "the study");
+}
+
+static bool prepare_store(const StudyOptions *options, Store *store, Err *err)
+{
+    uint64_t forgotten = 0;
+    if (options->is_retrying && !store_forget_failed(store, &forgotten, err)) {
+        return false;
+    }
+    if (options->is_retrying && !options->common.is_quiet) {
+        output_say("making %" PRIu64 " failed or damaged runs again\n", forgotten);
+    }
+    return true;
+}
+
+// Makes what is missing. The store is closed in any case, with what was made in it.
+static bool sweep(const StudyOptions *options, const Spec *spec, const Layout *layout,
+                  SweepEnd *end, SweepState *state, Err *err)
+{
+    StudyKey *key = malloc(sizeof *key);
+    assert(key != NULL);
+    key_make(spec, layout, key);
+    StatusLine line = status_line_start(options->common.is_quiet);
+    Sweep order = {
+        .spec = spec,
+        .layout = layout,
+        .shard = options->shard,
+        .jobs = options->common.jobs,
+        .store = store_open(options->store, &key->head, options->is_fresh, err),
+        .tell = tell,
+        .should_stop = should_stop,
+        .context = &line,
+    };
+    free(key);
+    if (order.store == NULL) {
+        return false;
+    }
+    interrupt_watch();
+    const bool is_swept =
+        prepare_store(options, order.store, err) && sweep_execute(&order, end, state, err);
+    status_line_end(&line);
+    return store_close(order.store, err) && is_swept;
+}
+
+static double cpu_time(int who)
+{
+    struct rusage usage;
+    getrusage(who, &usage);
+    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+static bool make_runs(const StudyOptions *options, const Spec *spec, const Layout *layout, Err *err)
+{
+    StudyReport report = {.spec = spec,
+                          .store = options->store,
+                          .shard = options->shard,
+                          .jobs = options->common.jobs};
+    SweepEnd end;
+    if (!file_claim("--store", FILE_STORE, options->store, err) ||
+        !sweep(options, spec, layout, &end, &report.state, err)) {
+        return false;
+    }
+    if (end == SWEEP_STOPPED) {
+        if (!options->common.is_quiet) {
+            output_say("stopped; %" PRIu64 " of %" PRIu64 " runs are kept in %s, and the same "
+                       "command%s%s goes on from there\n",
+                       report.state.done, report.state.total, options->store,
+                       options->is_fresh ? " without --fresh" : "",
+                       !options->is_retrying ? ""
+                       : options->is_fresh   ? " and --retry-failed"
+                                             : " without --retry-failed");
+        }
+        interrupt_obey();
+        return true;
+    }
+    report.children_cpu_s = cpu_time(RUSAGE_CHILDREN);
+    report.own_cpu_s = cpu_time(RUSAGE_SELF);
+    return print_report(&report, &options->common, err) && check_runs(&report, err);
+}
+
+bool study_run(const StudyOptions *options, Err *err)
+{
+    Spec *spec = calloc(1, sizeof *spec);
+    Layout *layout = calloc(1, sizeof *layout);
+    assert(spec != NULL && layout != NULL);
+    const bool is_done = spec_read(options->common.path, spec, err) &&
+                         find_layout(spec, layout, err) &&
+                         (options->is_dry ? study_run_dry(options, spec, layout, err)
+                                          : make_runs(options, spec, layout, err));
+    spec_finish(spec);
+    free(spec);
+    free(layout);
+    return is_done;
+}

@@ -1,0 +1,310 @@
+// Which scripts make a study on a cluster, and what is to be typed then?
+#include "base/shell.h"
+#include "cli/arguments.h"
+#include "cli/option_values.h"
+#include "cli/output.h"
+#include "cli/written.h"
+#include "commands/study/design.h"
+#include "commands/study/slurm.h"
+#include "commands/study/study_commands.h"
+#include "commands/study/study_place.h"
+#include "write/file.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { SCRIPT_COUNT = 3, SCRIPT_RIGHTS = 0777 };
+
+typedef struct SlurmOptions {
+    const char *path; // of the study
+    const char *folder;
+    size_t shards; // 0: not given
+    size_t cpus;
+    size_t requeues;
+    const char *time;
+    const char *memory;
+    const char *partition;
+    const char *account;
+    bool is_dry;
+    bool is_quiet;
+} SlurmOptions;
+
+enum {
+    KEY_SHARDS = 'n',
+    KEY_CPUS = 'c',
+    KEY_TIME = 't',
+    KEY_MEMORY = 0x100,
+    KEY_PARTITION = 'p',
+    KEY_ACCOUNT = 'A',
+    KEY_REQUEUES = 0x101,
+    KEY_OUT = 'o',
+    KEY_DRY_RUN = 0x102,
+    KEY_QUIET = 'q',
+};
+
+static const struct argp_option OPTIONS[] = {
+    {"shards", KEY_SHARDS, "N", 0, "Tasks of the job array, each with a store of its own", 0},
+    {"cpus", KEY_CPUS, "N", 0, "Runs at a time in each task (default: 1)", 0},
+    {"time", KEY_TIME, "TIME", 0, "Time limit of each task, as Slurm writes it: 4:00:00, 1-12", 0},
+    {"mem", KEY_MEMORY, "SIZE", 0, "Memory of each task, as Slurm writes it: 4G", 0},
+    {"partition", KEY_PARTITION, "NAME", 0, "Partition of both jobs", 0},
+    {"account", KEY_ACCOUNT, "NAME", 0, "Account of both jobs", 0},
+    {"requeues", KEY_REQUEUES, "N", 0,
+     "Times a task that is killed or runs out of time goes back in the queue (default: 10)", 0},
+    {"out", KEY_OUT, "DIR", 0, "Where scripts, logs and stores go (default: here)", 0},
+    {"dry-run", KEY_DRY_RUN, NULL, 0, "Print the scripts and write nothing", 0},
+    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 0},
+    {0},
+};
+
+static bool take_word(const char **target, const char *value)
+{
+    *target = value;
+    return true;
+}
+
+static bool take_option(int key, const char *value, void *target, Err *err)
+{
+    SlurmOptions *options = target;
+    switch (key) {
+    case KEY_SHARDS:
+        return option_values_read_count("shards", value, SLURM_SHARD_LEAST, SLURM_SHARD_MAX,
+                                        &options->shards, err);
+    case KEY_CPUS:
+        return option_values_read_count("cpus", value, 1, SLURM_CPU_MAX, &options->cpus, err);
+    case KEY_REQUEUES:
+        return option_values_read_count("requeues", value, 0, SLURM_REQUEUE_MAX, &options->requeues,
+                                        err);
+    case KEY_TIME:
+        return take_word(&options->time, value);
+    case KEY_MEMORY:
+        return take_word(&options->memory, value);
+    case KEY_PARTITION:
+        return take_word(&options->partition, value);
+    case KEY_ACCOUNT:
+        return take_word(&options->account, value);
+    case KEY_OUT:
+        return take_word(&options->folder, value);
+    case KEY_DRY_RUN:
+        options->is_dry = true;
+        return true;
+    case KEY_QUIET:
+        options->is_quiet = true;
+        return true;
+    default:
+        if (options->path != NULL) {
+            return err_set(err, ERR_USAGE, "one study at a time: '%s' or '%s'", options->path,
+                           value);
+        }
+        return take_word(&options->path, value);
+    }
+}
+
+static bool read_options(int argc, char **argv, SlurmOptions *options, bool *is_answered, Err *err)
+{
+    static const Arguments ARGUMENTS = {
+        .program = "jointplay study slurm",
+        .usage = "FILE --shards N",
+        .doc = "Writes the scripts that make a study on a cluster: a job array of shards, a job "
+               "that gathers their stores, and what submits the two."
+               "\vA task that is killed, preempted or runs out of time goes back in the queue and "
+               "on where it stood.",
+        .options = OPTIONS,
+        .take = take_option,
+    };
+    *options = (SlurmOptions){.folder = ".", .cpus = 1, .requeues = SLURM_REQUEUE_USUAL};
+    if (!arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err) || *is_answered) {
+        return err->kind == ERR_NONE;
+    }
+    if (options->path == NULL) {
+        return err_set(err, ERR_USAGE, "no study given: jointplay study slurm FILE --shards N");
+    }
+    return options->shards > 0 ||
+           err_set(err, ERR_USAGE,
+                   "no number of shards given: --shards N, the tasks of the job array");
+}
+
+// A shard without a run would be a job for nothing.
+static bool check_shards(const SlurmOptions *options, Err *err)
+{
+    Spec *spec = calloc(1, sizeof *spec);
+    assert(spec != NULL);
+    bool is_right = spec_read(options->path, spec, err);
+    if (is_right && options->shards > design_run_count(spec)) {
+        is_right =
+            err_set(err, ERR_USAGE,
+                    "--shards is %zu; the study has %" PRIu64 " runs, and a shard has at least one",
+                    options->shards, design_run_count(spec));
+    }
+    spec_finish(spec);
+    free(spec);
+    return is_right;
+}
+
+// A path that holds wherever a job begins.
+static bool find_whole(const char *path, char target[FILE_PATH_SIZE], Err *err)
+{
+    char *whole = realpath(path, NULL);
+    if (whole == NULL || strlen(whole) >= FILE_PATH_SIZE) {
+        free(whole);
+        return err_set(err, ERR_FILE, "cannot find %s: %s", path, strerror(errno));
+    }
+    text_copy(target, FILE_PATH_SIZE, whole);
+    free(whole);
+    return true;
+}
+
+// What the names of the study's stores begin with.
+static bool find_stem(const char *study, char stem[FILE_PATH_SIZE], Err *err)
+{
+    if (!study_place_store(study, (Shard){0, 1}, stem, err)) {
+        return false;
+    }
+    *strrchr(stem, '.') = '\0';
+    return true;
+}
+
+typedef struct Script {
+    const char *ending;
+    void (*write)(const SlurmJob *job, Text *text);
+} Script;
+
+static const Script SCRIPTS[SCRIPT_COUNT] = {
+    {"array.sh", slurm_write_array},
+    {"gather.sh", slurm_write_gather},
+    {"submit.sh", slurm_write_submit},
+};
+
+// A script may be run by whoever may read it, as far as the user's mask lets them.
+static bool let_run(const char *path, Err *err)
+{
+    const mode_t mask = umask(0);
+    umask(mask);
+    return chmod(path, SCRIPT_RIGHTS & ~mask) == 0 ||
+           err_set(err, ERR_FILE, "cannot make %s a script: %s", path, strerror(errno));
+}
+
+static bool find_script(const SlurmJob *job, size_t number, char path[FILE_PATH_SIZE], Err *err)
+{
+    const char *ending = SCRIPTS[number].ending;
+    const int length = snprintf(path, FILE_PATH_SIZE, "%s/%s.%s", job->folder, job->stem, ending);
+    return (length >= 0 && length < FILE_PATH_SIZE) ||
+           err_set(err, ERR_FILE, "the path of %s.%s is too long", job->stem, ending);
+}
+
+static bool claim_scripts(const SlurmJob *job, Err *err)
+{
+    for (size_t i = 0; i < SCRIPT_COUNT; i++) {
+        char path[FILE_PATH_SIZE];
+        if (!find_script(job, i, path, err) || !file_claim("--out", FILE_SCRIPT, path, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool write_scripts(const SlurmJob *job, const SlurmOptions *options, Err *err)
+{
+    for (size_t i = 0; i < SCRIPT_COUNT; i++) {
+        char path[FILE_PATH_SIZE];
+        if (!find_script(job, i, path, err)) {
+            return false;
+        }
+        Text text;
+        text_init(&text);
+        SCRIPTS[i].write(job, &text);
+        const bool is_written = written_text(FILE_SCRIPT, path, text.data, options->is_quiet, err);
+        text_finish(&text);
+        if (!is_written || !let_run(path, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void print_scripts(const SlurmJob *job)
+{
+    Text text;
+    text_init(&text);
+    for (size_t i = 0; i < SCRIPT_COUNT; i++) {
+        text_append(&text, "%s==> ", i == 0 ? "" : "\n");
+        text_append_shown(&text, job->stem);
+        text_append(&text, ".%s <==\n", SCRIPTS[i].ending);
+        SCRIPTS[i].write(job, &text);
+    }
+    fputs(text.data, stdout);
+    text_finish(&text);
+}
+
+// What to type, and what the cluster may have against it.
+static void say_next(const SlurmJob *job, const SlurmOptions *options)
+{
+    char path[2 * FILE_PATH_SIZE];
+    Text text;
+    text_init(&text);
+    snprintf(path, sizeof path, "%s/%s.submit.sh", job->folder, job->stem);
+    shell_append_word(&text, path);
+    printf("%s\n", text.data);
+    text_finish(&text);
+    if (!options->is_quiet && job->shards > SLURM_ARRAY_USUAL) {
+        output_say("jointplay: %" PRIu64 " shards are more than a job array has tasks unless "
+                   "MaxArraySize is raised ('scontrol show config'); %d is usual\n",
+                   job->shards, SLURM_ARRAY_USUAL);
+    }
+}
+
+static bool make_scripts(const SlurmOptions *options, Err *err)
+{
+    char program[FILE_PATH_SIZE];
+    char study[FILE_PATH_SIZE];
+    char folder[FILE_PATH_SIZE];
+    char stem[FILE_PATH_SIZE];
+    const SlurmJob job = {
+        .program = program,
+        .study = study,
+        .folder = folder,
+        .stem = stem,
+        .shards = options->shards,
+        .cpus = options->cpus,
+        .requeues = options->requeues,
+        .time = options->time,
+        .memory = options->memory,
+        .partition = options->partition,
+        .account = options->account,
+    };
+    if (!slurm_check(&job, err) || !check_shards(options, err) ||
+        (!options->is_dry && !file_make_folder(options->folder, err)) ||
+        !find_stem(options->path, stem, err) || !find_whole("/proc/self/exe", program, err) ||
+        !find_whole(options->path, study, err) || !find_whole(options->folder, folder, err)) {
+        return false;
+    }
+    if (options->is_dry) {
+        print_scripts(&job);
+        return true;
+    }
+    if (!claim_scripts(&job, err) || !write_scripts(&job, options, err)) {
+        return false;
+    }
+    say_next(&job, options);
+    return true;
+}
+
+static bool run(int argc, char **argv, Err *err)
+{
+    SlurmOptions options;
+    bool is_answered = false;
+    return read_options(argc, argv, &options, &is_answered, err) &&
+           (is_answered || make_scripts(&options, err));
+}
+
+const Command study_command_slurm = {
+    .name = "slurm",
+    .summary = "writes the scripts that make a study on a cluster",
+    .run = run,
+};

@@ -1,0 +1,209 @@
+// How far has a study come, and what went wrong?
+#include "commands/study/study_text.h"
+
+#include "write/section.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    REASONS_SHOWN = 8,
+    REASONS_ASKED = 64, // of each part; those of all are added up
+};
+
+// All parts together.
+typedef struct Progress {
+    uint64_t wanted;
+    StoreCount count;
+    size_t reason_count;
+    StoreReason reasons[REASONS_ASKED];
+} Progress;
+
+static void add_reason(Progress *progress, const StoreReason *reason)
+{
+    for (size_t i = 0; i < progress->reason_count; i++) {
+        StoreReason *known = &progress->reasons[i];
+        if (known->fate == reason->fate && strcmp(known->reason, reason->reason) == 0) {
+            known->count += reason->count;
+            known->example = known->example < reason->example ? known->example : reason->example;
+            return;
+        }
+    }
+    if (progress->reason_count < REASONS_ASKED) {
+        progress->reasons[progress->reason_count++] = *reason;
+    }
+}
+
+static bool add_part(Progress *progress, const StudyPart *part, StoreCount *count, Err *err)
+{
+    StoreReason reasons[REASONS_ASKED];
+    size_t reason_count = 0;
+    *count = (StoreCount){0};
+    progress->wanted += part->wanted;
+    if (part->store == NULL) {
+        return true;
+    }
+    if (!store_count(part->store, count, err) ||
+        !store_reasons(part->store, REASONS_ASKED, reasons, &reason_count, err)) {
+        return false;
+    }
+    progress->count.run_count = count->run_count;
+    progress->count.rows += count->rows;
+    progress->count.wall_s += count->wall_s;
+    for (int fate = 0; fate < FATE_COUNT; fate++) {
+        progress->count.fates[fate] += count->fates[fate];
+    }
+    for (size_t i = 0; i < reason_count; i++) {
+        add_reason(progress, &reasons[i]);
+    }
+    return true;
+}
+
+// The most frequent first; there are few of them.
+static void sort_reasons(Progress *progress)
+{
+    for (size_t i = 1; i < progress->reason_count; i++) {
+        const StoreReason moved = progress->reasons[i];
+        size_t k = i;
+        for (; k > 0 && progress->reasons[k - 1].count < moved.count; k--) {
+            progress->reasons[k] = progress->reasons[k - 1];
+        }
+        progress->reasons[k] = moved;
+    }
+}
+
+static void append_duration(Text *text, double time_s)
+{
+    static const struct {
+        double least_s;
+        double unit_s;
+        const char *unit;
+    } UNITS[] = {{172800.0, 86400.0, "days"}, {7200.0, 3600.0, "h"}, {120.0, 60.0, "min"}};
+    for (size_t i = 0; i < sizeof UNITS / sizeof *UNITS; i++) {
+        if (time_s >= UNITS[i].least_s) {
+            text_append(text, "%.3g %s", time_s / UNITS[i].unit_s, UNITS[i].unit);
+            return;
+        }
+    }
+    text_append(text, "%.3g s", time_s);
+}
+
+static double percent(uint64_t part, uint64_t whole)
+{
+    return whole == 0 ? 0.0 : 100.0 * (double)part / (double)whole;
+}
+
+static uint64_t count_failed(const StoreCount *count)
+{
+    return count->rows - count->fates[FATE_OK];
+}
+
+static void part_row(Table *table, const StudyPart *part, const StoreCount *count)
+{
+    table_cell(table, "%s", part->path);
+    table_cell(table, "%" PRIu64, part->wanted);
+    table_cell(table, "%" PRIu64, count->rows);
+    table_cell(table, "%.1f", percent(count->rows, part->wanted));
+    table_cell(table, "%" PRIu64, count_failed(count));
+    table_cell(table, part->store == NULL ? "not begun" : "");
+}
+
+static void write_fates(const Progress *progress, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"fate", "", TABLE_LEFT}, {"runs", "", TABLE_RIGHT}, {"share", "%", TABLE_RIGHT}};
+    Table *table = section_begin("What became of them", 3, HEADS, style, text);
+    for (int fate = 0; fate < FATE_COUNT; fate++) {
+        if (progress->count.fates[fate] > 0) {
+            table_cell(table, "%s", FATE_WORDS[fate]);
+            table_cell(table, "%" PRIu64, progress->count.fates[fate]);
+            table_cell(table, "%.2f", percent(progress->count.fates[fate], progress->count.rows));
+        }
+    }
+    section_end(table, text);
+}
+
+static void write_reasons(const Progress *progress, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {{"runs", "", TABLE_RIGHT},
+                                        {"fate", "", TABLE_LEFT},
+                                        {"reason", "", TABLE_WRAP},
+                                        {"such as run", "", TABLE_RIGHT}};
+    if (progress->reason_count == 0) {
+        return;
+    }
+    const size_t shown =
+        progress->reason_count < REASONS_SHOWN ? progress->reason_count : REASONS_SHOWN;
+    Table *table = section_begin("Why not ok", 4, HEADS, style, text);
+    uint64_t told = 0;
+    for (size_t i = 0; i < shown; i++) {
+        const StoreReason *reason = &progress->reasons[i];
+        told += reason->count;
+        table_cell(table, "%" PRIu64, reason->count);
+        table_cell(table, "%s", FATE_WORDS[reason->fate]);
+        table_cell(table, "%s", reason->reason);
+        table_cell(table, "%" PRIu64, reason->example);
+    }
+    section_end(table, text);
+    const uint64_t others = count_failed(&progress->count) - told;
+    if (others > 0) {
+        text_append(text, "  and %" PRIu64 " more for other reasons\n", others);
+    }
+}
+
+static void write_times(const Progress *progress, Text *text)
+{
+    const StoreCount *count = &progress->count;
+    if (count->rows == 0) {
+        return;
+    }
+    const double mean_s = count->wall_s / (double)count->rows;
+    text_append(text, "\n  ");
+    append_duration(text, count->wall_s);
+    text_append(text, " inside runs, ");
+    append_duration(text, mean_s);
+    text_append(text, " a run");
+    if (progress->wanted > count->rows) {
+        text_append(text, "; at that rate one core has ");
+        append_duration(text, mean_s * (double)(progress->wanted - count->rows));
+        text_append(text, " left");
+    }
+    text_append(text, "\n");
+}
+
+bool study_text_status(const StudyPart *parts, size_t part_count, const Style *style, Text *text,
+                       Err *err)
+{
+    static const SectionHead HEADS[] = {{"store", "", TABLE_LEFT},   {"runs", "", TABLE_RIGHT},
+                                        {"over", "", TABLE_RIGHT},   {"share", "%", TABLE_RIGHT},
+                                        {"not ok", "", TABLE_RIGHT}, {"", "", TABLE_LEFT}};
+    Progress progress = {0};
+    Text stores;
+    text_init(&stores);
+    Table *table = section_begin("Stores", 6, HEADS, style, &stores);
+    bool is_read = true;
+    for (size_t i = 0; i < part_count && is_read; i++) {
+        StoreCount count;
+        is_read = add_part(&progress, &parts[i], &count, err);
+        part_row(table, &parts[i], &count);
+    }
+    section_end(table, &stores);
+    if (is_read) {
+        // stores of shards that are each measured against the whole study
+        const uint64_t whole = progress.count.run_count;
+        progress.wanted = whole > 0 && progress.wanted > whole ? whole : progress.wanted;
+        sort_reasons(&progress);
+        text_append(text, "%s%" PRIu64 " of %" PRIu64 " runs are over (%.1f %%)%s\n",
+                    style->heading, progress.count.rows, progress.wanted,
+                    percent(progress.count.rows, progress.wanted), style->end);
+        text_append(text, "%s", part_count > 1 ? stores.data : "");
+        if (progress.count.rows > 0) {
+            write_fates(&progress, style, text);
+        }
+        write_reasons(&progress, style, text);
+        write_times(&progress, text);
+    }
+    text_finish(&stores);
+    return is_read;
+}

@@ -1,0 +1,42 @@
+// Makes the runs of a study that its store does not hold yet, each in a process of its own.
+#pragma once
+
+#include "commands/study/design.h"
+#include "commands/study/metrics.h"
+#include "commands/study/store.h"
+
+enum { SWEEP_JOB_MAX = 256 };
+
+// How far a sweep has come; told a few times a second.
+typedef struct SweepState {
+    uint64_t total;                    // runs of the shard
+    uint64_t done;                     // of them in the store, those of earlier included
+    uint64_t made;                     // by this process
+    uint64_t failed;                   // of them, by this process
+    uint64_t without_truth;            // of them that are well, but for which no truth could be had
+    char no_truth[RECORD_REASON_SIZE]; // why not, of the first
+    double wall_s;                     // since the start
+    double inside_s; // wall time of all processes that made runs and truths, added up
+} SweepState;
+
+// Why a sweep ended though nothing failed.
+typedef enum SweepEnd { SWEEP_COMPLETE, SWEEP_STOPPED } SweepEnd;
+
+typedef struct SweepWork SweepWork;
+
+typedef struct Sweep {
+    const Spec *spec;
+    const Layout *layout;
+    Shard shard;
+    size_t jobs; // runs at a time
+    Store *store;
+    void (*tell)(const SweepState *state, void *context);
+    bool (*should_stop)(void *context); // asked often: true ends it in good order
+    void *context;
+    const SweepWork *work; // what the processes do; NULL for the usual: study/sweep_work.h
+} Sweep;
+
+// Fails with ERR_FILE where the store fails, with ERR_SOLVER where the system has no process left
+// for a single run. A run that fails, hangs or dies is a row. The state is that at the end. What is
+// at work when it ends early is ended, and made by whoever goes on.
+bool sweep_execute(const Sweep *sweep, SweepEnd *end, SweepState *state, Err *err);

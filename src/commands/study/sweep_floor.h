@@ -1,0 +1,49 @@
+// The processes of a sweep: which are at work, and what is to be started next.
+#pragma once
+
+#include "commands/study/sweep_group.h"
+
+enum { SWEEP_LANE_DEPTH = 2 }; // processes of a lane: one at work, one ready
+
+// One process.
+typedef struct SweepJob {
+    SweepGroup *group; // NULL: none
+    bool is_truth;
+    SweepPlace place;
+    SweepRun run;
+    Record record;
+} SweepJob;
+
+typedef struct SweepFloor {
+    const Sweep *sweep;
+    const SweepWork *work;
+    SweepState *state;
+    int lanes;
+    size_t lane_count;
+    double *ended_s;  // by the clock, of each lane's last process
+    size_t job_count; // those of lane k are k, k + lane_count, ...
+    SweepJob *jobs;
+    Child *children; // of the jobs
+    size_t group_count;
+    SweepGroup *groups;
+    uint64_t from; // the first run of no group yet
+    uint64_t end;  // number of runs of the study
+    size_t busy;   // processes
+    bool has_news; // rows were added to the store
+} SweepFloor;
+
+void sweep_floor_open(const Sweep *sweep, SweepState *state, SweepFloor *floor);
+
+// Ends the processes that are still there.
+void sweep_floor_close(SweepFloor *floor);
+
+// Whether anything is left to be done.
+bool sweep_floor_has_more(const SweepFloor *floor);
+
+// Gives all that are free something to do, as far as there is something. Fails with ERR_FILE where
+// the store does, with ERR_SOLVER where not a single process can be had.
+bool sweep_floor_fill(SweepFloor *floor, Err *err);
+
+// Takes what has ended into the store and the state, and drops the groups that are through.
+// ERR_FILE.
+bool sweep_floor_take(SweepFloor *floor, Err *err);

@@ -1,0 +1,150 @@
+// What does one process of a sweep do, and what is said of one that never came back?
+//
+// values -> scenario -> trajectory -> metrics -> record. Nothing is given back on the way: the
+// process ends, and all it had goes with it.
+#include "commands/study/sweep_work.h"
+
+#include "base/clock.h"
+#include "base/shorten.h"
+#include "commands/study/design.h"
+#include "commands/study/lane.h"
+#include "commands/study/last_words.h"
+#include "measure/backend_run.h"
+#include "run/registry.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void give_reason(Record *record, Fate fate, const char *reason)
+{
+    record->fate = fate;
+    shorten_copy(record->reason, sizeof record->reason, reason);
+}
+
+// No number that is not finite becomes a data point; NAN alone says that there is none.
+static void check_results(const Layout *layout, Record *record)
+{
+    for (size_t i = 0; i < layout->result_count && record->fate == FATE_OK; i++) {
+        if (isinf(record->results[i])) {
+            record->fate = FATE_FAILED;
+            snprintf(record->reason, sizeof record->reason, "%.*s is not finite",
+                     RECORD_NAME_SIZE - 1, layout->results[i].name);
+        }
+    }
+}
+
+static void forget_results(Record *record)
+{
+    for (size_t i = 0; i < RECORD_RESULT_MAX; i++) {
+        record->results[i] = NAN;
+    }
+}
+
+static void measure(const SweepRun *task, const Scenario *scenario, BackendKind backend,
+                    Record *record)
+{
+    const Trajectory *trajectory =
+        backend_run(scenario, backend, task->truth, (ChosenWatch){.begin = NULL}, NULL);
+    if (!trajectory->is_complete) {
+        const bool is_starved = child_lacks_memory();
+        give_reason(record, is_starved ? FATE_NO_MEMORY : FATE_FAILED, trajectory->message);
+        return;
+    }
+    metrics_take(scenario, trajectory, task->truth, record->results);
+    record->hash = trajectory->hash;
+    check_results(task->layout, record);
+    if (record->fate != FATE_OK) {
+        forget_results(record);
+        record->hash = 0;
+    }
+}
+
+static void run(const SweepRun *task, Record *record)
+{
+    Scenario *scenario = malloc(sizeof *scenario);
+    assert(scenario != NULL);
+    record->run = task->run;
+    forget_results(record);
+    design_values(task->spec, task->run, record->settings);
+    BackendKind backend;
+    Err err = {0};
+    if (design_scenario(task->spec, record->settings, scenario, &backend, &err)) {
+        measure(task, scenario, backend, record);
+    } else {
+        give_reason(record, FATE_REFUSED, err.text);
+    }
+}
+
+static void certify(const SweepTruth *truth, void *packed)
+{
+    task_certify(&truth->task, packed);
+}
+
+const SweepWork SWEEP_WORK = {run, certify};
+
+static void enter(const SweepPlace *place)
+{
+    last_words_listen(place->words);
+    lane_enter(place->lanes, place->lane, place->limit_s);
+    errno = 0;
+}
+
+void sweep_work_run(const void *context, void *result)
+{
+    const SweepRun *task = context;
+    Record *record = result;
+    enter(&task->place);
+    const double started_s = clock_now_s();
+    task->place.work->run(task, record);
+    record->wall_s = clock_now_s() - started_s;
+    lane_leave(task->place.lanes, task->place.lane);
+}
+
+void sweep_work_certify(const void *context, void *packed)
+{
+    const SweepTruth *task = context;
+    enter(&task->place);
+    task->place.work->certify(task, packed);
+    lane_leave(task->place.lanes, task->place.lane);
+}
+
+void sweep_work_tell_time(const SweepPlace *place, Child *child)
+{
+    if (child->end == CHILD_SIGNALLED && child->code == SIGALRM && place->limit_s > 0.0) {
+        child->end = CHILD_TIMED_OUT;
+        child->limits.time_s = place->limit_s;
+    }
+}
+
+static Fate fate_of(ChildEnd end)
+{
+    switch (end) {
+    case CHILD_TIMED_OUT:
+        return FATE_TIMED_OUT;
+    case CHILD_NO_MEMORY:
+        return FATE_NO_MEMORY;
+    default:
+        return FATE_ENDED;
+    }
+}
+
+void sweep_work_lost(const SweepRun *task, const Child *child, double wall_s, Record *record)
+{
+    char words[CHILD_TEXT_SIZE];
+    char said[RECORD_REASON_SIZE - CHILD_TEXT_SIZE - 2];
+    memset(record, 0, sizeof *record);
+    record->run = task->run;
+    record->wall_s = wall_s;
+    forget_results(record);
+    design_values(task->spec, task->run, record->settings);
+    child_describe(child, words);
+    last_words_read(task->place.words, said, sizeof said);
+    record->fate = fate_of(child->end);
+    snprintf(record->reason, sizeof record->reason, "%s%s%s", words, said[0] != '\0' ? ": " : "",
+             said);
+}

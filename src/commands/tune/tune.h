@@ -1,0 +1,171 @@
+// The cheapest setting of ODE whose error, found by running it, meets a target.
+//
+// Steps and tolerances come from a grid of preferred numbers, ten to a decade. A setting counts
+// only where the next finer one of its scheme meets the target as well: an error that dips by luck
+// at one step is no setting to give to anyone.
+//
+// Of a user who is held to one step the question is another: which scheme has the least error at
+// that step, and where it does not meet the target, which is the longest step that does.
+#pragma once
+
+#include "measure/held.h"
+#include "measure/ladder.h"
+#include "measure/truth.h"
+
+enum {
+    TUNE_REPEATS = LADDER_REPEAT_LEAST, // timing runs of each finalist
+    TUNE_NONE = -1,
+    TUNE_LINEAR_MAX = 64,
+};
+
+// By what settings are ranked. Time is that of the processor: on an idle machine it is that of the
+// clock, and on a busy one it still is. By the length of the step the longest is the cheapest.
+typedef enum TuneCost { TUNE_TIME, TUNE_STEPS, TUNE_LENGTH } TuneCost;
+
+// One setting that was run.
+typedef struct TuneTrial {
+    size_t scheme;
+    int notch;    // its place on the grid, counted from the coarsest value
+    double value; // step, s; of a scheme that chooses its steps the tolerance, 1
+    LadderRun run;
+    double error;                     // 1: as of a ladder's point; NAN where there is none
+    char reason[LADDER_MESSAGE_SIZE]; // why there is none
+    bool meets;                       // the error and the truth's uncertainty are within the target
+} TuneTrial;
+
+// How the search of a scheme ended.
+typedef enum TuneFate {
+    TUNE_OPEN,    // not yet
+    TUNE_MEETS,   // two neighbours meet the target
+    TUNE_DEARER,  // whatever is left to try costs more than a setting that meets it
+    TUNE_STALLED, // finer steps have stopped to help
+    TUNE_TOO_LONG // what is left to try takes longer than a run may, or more steps
+} TuneFate;
+
+typedef struct TuneScheme {
+    Scheme scheme;
+    int first; // notch of the coarsest setting
+    int next;  // notch that is to be tried next
+    bool is_busy;
+    int pending; // trial that meets the target and is not confirmed yet, or TUNE_NONE
+    TuneFate fate;
+    int best;  // trial: the coarsest that is confirmed; TUNE_NONE
+    int least; // trial of the least error, or TUNE_NONE
+    size_t trials;
+    size_t timed; // timing runs made
+    double wall_s[TUNE_REPEATS];
+    double processor_s[TUNE_REPEATS];
+    double wall_median_s; // of the best; NAN where it was not timed
+    double processor_median_s;
+    double processor_least_s; // settings are ranked by it, for noise can only add
+} TuneScheme;
+
+// A limit on what a run may cost; 0 where there is none.
+typedef struct TuneLimit {
+    double time_s; // of the processor
+    size_t steps;
+} TuneLimit;
+
+// Where constants come from.
+typedef enum TuneLinearSource {
+    TUNE_LINEAR_SECANT,  // the law's own spring at a depth
+    TUNE_LINEAR_MEDIAN,  // best for an impact of median mass and speed at the step that is held
+    TUNE_LINEAR_HARDEST, // likewise, for the hardest impact of the true motion
+} TuneLinearSource;
+
+// The contact made linear with constants, run at one step: kp and kd, as Gazebo has them, or a row
+// of one ERP and one CFM.
+typedef struct TuneLinear {
+    TuneLinearSource source;
+    bool is_row;      // whether no kp and kd make the row: its ERP may be above 1
+    ErpCfm row;       // that is run
+    double depth;     // m, at which the spring gives the law's force; NAN of other sources
+    double stiffness; // kp, N/m; of a row that of the corrected map
+    double damping;   // kd, N s/m
+    double step_s;
+    LadderRun run;
+    double error;                     // as of a trial, against the law itself
+    char reason[LADDER_MESSAGE_SIZE]; //
+} TuneLinear;
+
+// The joint on which a linear contact is modelled, at its deepest in the true motion.
+typedef struct TuneContact {
+    bool is_known; // false: no joint with play ever touches
+    size_t joint;
+    double depth;       // m, the deepest
+    double speed;       // m/s, of the hardest impact there
+    double mass;        // kg, effective along the normal there
+    double restitution; // 1, that the law delivers; NAN of a viscous damper
+} TuneContact;
+
+typedef struct Tune {
+    double target;  // 1; INFINITY where any error will do
+    double held_s;  // s, the only step that its user can take; 0: any
+    size_t samples; // of a run
+    TuneCost cost;
+    TuneLimit limit;
+    LadderTruth truth;
+    size_t scheme_count;
+    TuneScheme schemes[SCHEME_MAX];
+    size_t trial_count;
+    size_t trial_room;
+    TuneTrial *trials; // owned; in the order in which they ended
+    int winner;        // scheme, or TUNE_NONE
+    int plain;         // scheme: the cheapest that needs nothing but a contact's ERP and CFM
+    int within;        // trial of the least error within the limit; TUNE_NONE without limit or one
+    int held;          // trial of the least error at the step that is held, or TUNE_NONE
+    int held_plain;    // likewise, of those that need nothing but a contact's ERP and CFM
+    TuneContact contact;
+    size_t linear_count;
+    TuneLinear linears[TUNE_LINEAR_MAX];
+    int linear; // the kp and kd to take, or TUNE_NONE
+    int row;    // the ERP and CFM, at a step that is held
+} Tune;
+
+// The value of a notch: 1, 0.8, 0.63, 0.5, 0.4, 0.315, 0.25, 0.2, 0.16, 0.125, 0.1, ... the R10
+// series of ISO 3 downwards. Notches may be negative.
+double tune_value(int notch);
+
+// A search with nothing run yet: the schemes of ODE among those given, the several tolerances of
+// steps that are chosen as one scheme.
+Tune *tune_create(const Scenario *scenario, const Scheme *schemes, size_t scheme_count,
+                  double target);
+void tune_destroy(Tune *tune);
+
+// The scenario of a setting.
+void tune_apply(const TuneScheme *scheme, double value, Scenario *scenario);
+
+// Whether a scheme needs nothing of its user but ERP and CFM of each contact row, and a step.
+bool tune_is_plain_row(const Tune *tune, const Scenario *scenario, size_t scheme);
+
+// The error of a run that is over, NAN with the reason where it has none.
+double tune_error(const Tune *tune, const LadderRun *run, char reason[LADDER_MESSAGE_SIZE]);
+
+// Takes in a run at a notch of a scheme, and moves that scheme on.
+void tune_take(Tune *tune, size_t scheme, int notch, const LadderRun *run);
+
+// Holds a search with nothing run yet to a step, s: schemes that choose their own are left out, and
+// what is searched for, should it come to that, is the longest step below it.
+void tune_hold(Tune *tune, double step_s);
+
+// Takes in the run of a scheme at the step that is held.
+void tune_take_held(Tune *tune, size_t scheme, const LadderRun *run);
+
+// Whether a run at the step that is held meets the target.
+bool tune_is_met_held(const Tune *tune);
+
+// What a setting would cost at the least, in the cost's own unit (s or steps), from the trials of
+// its scheme; 0 where there are none. Of one that was run: the least time where it was timed, else
+// its work at the rate of its scheme.
+double tune_cost(const Tune *tune, size_t scheme, int notch);
+double tune_time(const Tune *tune, size_t scheme, int notch); // s, whatever the cost is
+double tune_trial_cost(const Tune *tune, const TuneTrial *trial);
+
+// Whether the run of a trial is within the limit.
+bool tune_is_within(const Tune *tune, const TuneTrial *trial);
+
+// Chooses winner, the cheapest plain row, and the least errors within the limit and at a step held.
+void tune_conclude(Tune *tune, const Scenario *scenario);
+
+// The trial of the best setting of a scheme, or NULL.
+const TuneTrial *tune_best(const Tune *tune, int scheme);

@@ -1,0 +1,252 @@
+// What becomes of a setting outside this program?
+#include "commands/tune/tune_carriers.h"
+
+#include "commands/tune/tune_code.h"
+#include "commands/tune/tune_gazebo.h"
+#include "commands/tune/tune_held_text.h"
+#include "commands/tune/tune_mujoco.h"
+#include "commands/tune/tune_setting.h"
+#include "commands/tune/tune_snippet.h"
+#include "measure/chosen_run.h"
+#include "write/section.h"
+#include "write/units.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const TuneTrial *tune_carriers_trial(const TuneReport *report)
+{
+    const Tune *tune = report->tune;
+    if (tune->held_s > 0.0) {
+        return tune->held != TUNE_NONE ? &tune->trials[tune->held] : NULL;
+    }
+    if (tune_report_is_met(report)) {
+        return tune_best(tune, tune->winner);
+    }
+    if (tune_report_has_limit(report) && tune->within != TUNE_NONE) {
+        return &tune->trials[tune->within];
+    }
+    const TuneTrial *best = tune_best(tune, tune->winner);
+    return best != NULL || tune->within == TUNE_NONE ? best : &tune->trials[tune->within];
+}
+
+// The code has no trials of its own: its step is the one that they choose.
+static bool choose_step(Scenario *scenario, Err *err)
+{
+    Trajectory *run = chosen_run_make(scenario, NULL, (ChosenWatch){.begin = NULL}, NULL);
+    const bool is_chosen = run->is_complete || err_set(err, ERR_SOLVER, "%s", run->message);
+    if (is_chosen) {
+        *scenario = chosen_run_scenario(scenario, run->step_s);
+    }
+    trajectory_destroy(run);
+    return is_chosen;
+}
+
+bool tune_carriers_code(const TuneReport *report, Text *text, Err *err)
+{
+    const TuneTrial *trial = tune_carriers_trial(report);
+    assert(trial != NULL);
+    Scenario *scenario = malloc(sizeof *scenario);
+    assert(scenario != NULL);
+    *scenario = *report->scenario;
+    tune_apply(&report->tune->schemes[trial->scheme], trial->value, scenario);
+    if (scenario->run.step == 0.0 && !choose_step(scenario, err)) {
+        free(scenario);
+        return false;
+    }
+    Text words;
+    Text command;
+    text_init(&words);
+    text_init(&command);
+    tune_setting_words(report, trial, &words);
+    tune_setting_command(report, trial, " ", &command);
+    const TuneCode code = {scenario, words.data, command.data, trial->error, report->tune->target};
+    const bool is_written = tune_code_write(&code, text, err);
+    text_finish(&words);
+    text_finish(&command);
+    free(scenario);
+    return is_written;
+}
+
+// Text, each line moved in by four spaces.
+static void append_indented(const char *lines, Text *text)
+{
+    while (*lines != '\0') {
+        const size_t length = strcspn(lines, "\n");
+        text_append(text, "%s%.*s\n", length > 0 ? "    " : "", (int)length, lines);
+        lines += length + (lines[length] == '\n' ? 1 : 0);
+    }
+}
+
+static void write_code(const TuneReport *report, const Style *style, Text *text)
+{
+    text_append(text, "\n%sAs ODE C code%s\n\n", style->heading, style->end);
+    if (tune_carriers_trial(report) == NULL) {
+        text_append(text, "  There is no setting to write.\n");
+        return;
+    }
+    text_append(text, "  --code FILE.c writes the setting as one C file that needs ODE alone and "
+                      "gives the same run, bit for bit: cc FILE.c -o run -lode -lm\n");
+}
+
+const TuneTrial *tune_carriers_plain(const Tune *tune)
+{
+    if (tune->held_s > 0.0) {
+        return tune->held_plain != TUNE_NONE ? &tune->trials[tune->held_plain] : NULL;
+    }
+    return tune_best(tune, tune->plain);
+}
+
+// What a loop that is not to be changed has to pay.
+static void write_loop(const TuneReport *report, const Style *style, Text *text)
+{
+    const Tune *tune = report->tune;
+    const TuneTrial *plain = tune_carriers_plain(tune);
+    const TuneTrial *winner = tune_best(tune, tune->winner);
+    if (!scenario_has_clearance(report->scenario)) {
+        return;
+    }
+    text_append(text, "\n%sIn a loop of your own%s\n\n", style->heading, style->end);
+    if (tune->held_s > 0.0) {
+        tune_held_text_row(tune, text);
+        text_append(text, "\n");
+    }
+    if (plain == NULL) {
+        if (tune->held_s > 0.0) {
+            text_append(text, "  No plain step with ERP and CFM alone has an error that means "
+                              "anything at this step.\n");
+            return;
+        }
+        text_append(text, "  No plain step with ERP and CFM alone that was tried meets the error; "
+                          "the schemes above say how far each came.\n");
+        return;
+    }
+    text_append(text, "  ERP and CFM alone, in a loop that steps as ODE's manual says: ");
+    tune_setting_words(report, plain, text);
+    text_append(text, ", error %.3g", plain->error);
+    if (winner != NULL && tune->plain != tune->winner && tune->held_s == 0.0) {
+        const double ratio = tune_trial_cost(tune, plain) / tune_trial_cost(tune, winner);
+        text_append(text, "; %.3g times the %s of the cheapest", ratio,
+                    tune->cost == TUNE_STEPS ? "world steps" : "time");
+    }
+    text_append(text, ".\n\n");
+    Text lines;
+    text_init(&lines);
+    if (tune_snippet_write(report, plain, &lines)) {
+        append_indented(lines.data, text);
+    } else {
+        text_append(text, "  The map needs more than a few lines; --schemes direct/plain/corrected "
+                          "--code FILE.c has them all.\n");
+    }
+    text_finish(&lines);
+}
+
+static void write_linears(const Tune *tune, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"spring at", "um", TABLE_RIGHT},   {"spring", "N/m", TABLE_RIGHT},
+        {"damper", "N s/m", TABLE_RIGHT},   {"step", "us", TABLE_RIGHT},
+        {"error", "of omega", TABLE_RIGHT}, {"", "", TABLE_WRAP},
+    };
+    Table *table = section_begin("A contact with constants", 6, HEADS, style, text);
+    for (size_t i = 0; i < tune->linear_count; i++) {
+        const TuneLinear *linear = &tune->linears[i];
+        table_cell(table, "%.3g", linear->depth * UNITS_UM);
+        table_cell(table, "%.4g", linear->stiffness);
+        table_cell(table, "%.4g", linear->damping);
+        table_cell(table, "%.4g", linear->step_s * UNITS_US);
+        if (isfinite(linear->error)) {
+            table_cell(table, "%.2e", linear->error);
+        } else {
+            table_cell(table, "-");
+        }
+        table_cell(table, "%s",
+                   (int)i == tune->linear                                    ? "taken"
+                   : linear->error + tune->truth.uncertainty <= tune->target ? "met in this run"
+                                                                             : linear->reason);
+    }
+    section_end(table, text);
+}
+
+static void write_gazebo(const TuneReport *report, const Style *style, Text *text)
+{
+    const Tune *tune = report->tune;
+    if (tune->linear_count == 0) {
+        return;
+    }
+    if (tune->held_s > 0.0) {
+        tune_held_text_constants(tune, style, text);
+    } else {
+        write_linears(tune, style, text);
+    }
+    text_append(text,
+                "  Gazebo and MuJoCo have a constant spring and damper a contact, and plain steps. "
+                "These were run in ODE with the textbook map, against the law itself; the damper "
+                "%sgives an impact on %.4g kg the law's own restitution.\n",
+                tune->held_s > 0.0 ? "beside the law's spring " : "", tune->contact.mass);
+    if (tune->held_s > 0.0) {
+        text_append(text, "  Those for an impact are the best for a lone one at this step, as by "
+                          "`map --at-step`; a row without kp and kd has no such pair.\n");
+    }
+    TuneGazebo gazebo;
+    text_append(text, "\n%sAs Gazebo SDF%s\n\n", style->heading, style->end);
+    if (!tune_gazebo_find(tune, &gazebo)) {
+        text_append(text, "  No step that was tried is stable with constants.\n");
+        return;
+    }
+    if (!isfinite(tune->target)) {
+        text_append(text, "  At a step of %.4g us the error of the whole motion is %.2g.\n\n",
+                    gazebo.step_s * UNITS_US, gazebo.error);
+    } else if (gazebo.error + tune->truth.uncertainty <= tune->target) {
+        text_append(text, "  Meets the error with a step of %.4g us: %.2g.\n\n",
+                    gazebo.step_s * UNITS_US, gazebo.error);
+    } else {
+        text_append(
+            text,
+            "  Gazebo's constants do not reach %.3g here: of those in the table the best is %.2g "
+            "off, at a step of %.4g us.\n\n",
+            tune->target, gazebo.error, gazebo.step_s * UNITS_US);
+    }
+    Text lines;
+    text_init(&lines);
+    tune_gazebo_write(report, &lines);
+    append_indented(lines.data, text);
+    text_finish(&lines);
+}
+
+static void write_mujoco(const TuneReport *report, const Style *style, Text *text)
+{
+    TuneMujoco mujoco;
+    if (!tune_mujoco_find(report, &mujoco)) {
+        return;
+    }
+    text_append(text, "\n%sAs MuJoCo MJCF%s\n\n", style->heading, style->end);
+    text_append(
+        text,
+        "  The same spring and damper. Not run here. What does not carry over: the exponent "
+        "of the law, damping that grows with depth, and a share %.1g of the acceleration "
+        "without contact.\n\n",
+        mujoco.impedance);
+    if (tune_mujoco_is_finer(report, &mujoco)) {
+        text_append(
+            text,
+            "  MuJoCo's spring is explicit and needs a shorter step than the one asked for: "
+            "the timestep here is %.3g us.\n\n",
+            mujoco.step_s * UNITS_US);
+    }
+    Text lines;
+    text_init(&lines);
+    tune_mujoco_write(report, &lines);
+    append_indented(lines.data, text);
+    text_finish(&lines);
+}
+
+void tune_carriers_write(const TuneReport *report, const Style *style, Text *text)
+{
+    write_code(report, style, text);
+    write_loop(report, style, text);
+    write_gazebo(report, style, text);
+    write_mujoco(report, style, text);
+}

@@ -1,0 +1,330 @@
+// How does a setting leave the program without it?
+//
+// One file: the sources that this way of stepping is made of, the laws of the joints and the
+// scenario as data, and a main that runs it. Laws are worked out here, so that no root finder has
+// to go along. Numbers are written so that they read back to the last bit.
+#include "commands/tune/tune_code.h"
+
+#include "base/shell.h"
+#include "commands/tune/tune_sources.h"
+#include "contact/law.h"
+#include "contact/penalty.h"
+#include "version.h"
+#include "write/number.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+// A way of stepping: the file it is in and the name of its table of functions.
+typedef struct Stepping {
+    const char *file;
+    const char *table;
+} Stepping;
+
+static const Stepping PLAIN = {"ode/plain.c", "STEPPING_PLAIN"};
+static const Stepping STAGGERED = {"ode/staggered.c", "STEPPING_STAGGERED"};
+static const Stepping IMPULSE = {"ode/impulse.c", "STEPPING_IMPULSE"};
+static const Stepping EXTRAPOLATED = {"ode/extrapolated.c", "STEPPING_EXTRAPOLATED"};
+
+// As ode/ode_solver.c chooses.
+static Stepping stepping_of(const Scenario *scenario)
+{
+    const bool is_impact =
+        scenario_has_clearance(scenario) && scenario->contact.model == CONTACT_IMPACT;
+    switch (scenario->ode.stepping) {
+    case ODE_EXTRAPOLATED:
+        return EXTRAPOLATED;
+    case ODE_STAGGERED:
+        return is_impact && scenario->ode.map == ODE_MAP_IMPULSE ? IMPULSE : STAGGERED;
+    default:
+        return PLAIN;
+    }
+}
+
+// A string constant; what is not plain ASCII is written by its octal number.
+static void write_string(const char *string, Text *text)
+{
+    text_append(text, "\"");
+    for (; *string != '\0'; string++) {
+        const unsigned char letter = (unsigned char)*string;
+        if (letter == '"' || letter == '\\' || letter == '?') {
+            text_append(text, "\\%c", letter);
+        } else if (letter < 0x20 || letter > 0x7e) {
+            text_append(text, "\\%03o", letter);
+        } else {
+            text_append(text, "%c", letter);
+        }
+    }
+    text_append(text, "\"");
+}
+
+static void write_vec2(const char *name, Vec2 value, Text *text)
+{
+    text_append(text, "%s{%s, %s}", name, number_shortest(value.x).text,
+                number_shortest(value.y).text);
+}
+
+static void write_body(const Body *body, Text *text)
+{
+    text_append(text, "        {.name = ");
+    write_string(body->name, text);
+    text_append(text, ",\n         .mass = %s, // kg\n         .inertia = %s, // kg m^2\n",
+                number_shortest(body->mass).text, number_shortest(body->inertia).text);
+    write_vec2("         .start = {.position = ", body->start.position, text);
+    text_append(text, ",\n                   .angle = %s,\n",
+                number_shortest(body->start.angle).text);
+    write_vec2("                   .velocity = ", body->start.velocity, text);
+    text_append(text, ",\n                   .omega = %s,\n",
+                number_shortest(body->start.omega).text);
+    write_vec2("                   .acceleration = ", body->start.acceleration, text);
+    text_append(text, ",\n                   .alpha = %s}},\n",
+                number_shortest(body->start.alpha).text);
+}
+
+static void write_joint(const Joint *joint, Text *text)
+{
+    const Clearance *clearance = &joint->clearance;
+    text_append(text, "        {.name = ");
+    write_string(joint->name, text);
+    text_append(text, ",\n         .kind = %s,\n         .body_a = %d,\n         .body_b = %d,\n",
+                joint->kind == JOINT_CLEARANCE ? "JOINT_CLEARANCE" : "JOINT_REVOLUTE",
+                joint->body_a, joint->body_b);
+    write_vec2("         .anchor_a = ", joint->anchor_a, text);
+    write_vec2(",\n         .anchor_b = ", joint->anchor_b, text);
+    text_append(text,
+                ",\n         .clearance = {.hole_radius = %s, // m\n"
+                "                       .pin_radius = %s,\n"
+                "                       .width = %s,\n",
+                number_shortest(clearance->hole_radius).text,
+                number_shortest(clearance->pin_radius).text,
+                number_shortest(clearance->width).text);
+    write_vec2("                       .start = ", clearance->start, text);
+    text_append(text, "}},\n");
+}
+
+static void write_linkage(const Linkage *linkage, Text *text)
+{
+    text_append(text, "    .linkage.body_count = %zu,\n    .linkage.bodies = {\n",
+                linkage->body_count);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        write_body(&linkage->bodies[i], text);
+    }
+    text_append(text, "    },\n    .linkage.joint_count = %zu,\n    .linkage.joints = {\n",
+                linkage->joint_count);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        write_joint(&linkage->joints[i], text);
+    }
+    text_append(text, "    },\n");
+    const Driver *driver = &linkage->driver;
+    if (driver->is_present) {
+        text_append(text,
+                    "    .linkage.driver = {.is_present = true,\n"
+                    "                       .joint = %d,\n"
+                    "                       .speed = %s, // rad/s\n"
+                    "                       .start = %s}, // rad\n",
+                    driver->joint, number_shortest(driver->speed).text,
+                    number_shortest(driver->start).text);
+    }
+}
+
+static void write_points(const Scenario *scenario, Text *text)
+{
+    text_append(text, "    .point_count = %zu,\n", scenario->point_count);
+    for (size_t i = 0; i < scenario->point_count; i++) {
+        const TracedPoint *point = &scenario->points[i];
+        text_append(text, "    .points[%zu] = {.name = ", i);
+        write_string(point->name, text);
+        text_append(text, ", .body = %d, ", point->body);
+        write_vec2(".local = ", point->local, text);
+        text_append(text, "},\n");
+    }
+}
+
+static void write_contact(const Scenario *scenario, Text *text)
+{
+    const ContactOptions *contact = &scenario->contact;
+    const double penalty = contact->penalty > 0.0 ? contact->penalty
+                                                  : penalty_estimate(scenario->linkage.driver.speed,
+                                                                     &scenario->material);
+    text_append(text, "    .gravity = %s, // m/s^2, along -y\n",
+                number_shortest(scenario->gravity).text);
+    text_append(text, "    .material = {.youngs_modulus = %s, .poisson_ratio = %s},\n",
+                number_shortest(scenario->material.youngs_modulus).text,
+                number_shortest(scenario->material.poisson_ratio).text);
+    text_append(text,
+                "    .contact = {.model = %s,\n"
+                "                .restitution = %s,\n"
+                "                .friction = %s,\n"
+                "                .friction_speed = %s, // m/s\n"
+                "                .impact_speed_floor = %s,\n"
+                "                .penalty = %s, // N s/m\n"
+                "                .bounce_speed = %s}, // m/s\n",
+                contact->model == CONTACT_IMPACT ? "CONTACT_IMPACT" : "CONTACT_POISSON",
+                number_shortest(contact->restitution).text, number_shortest(contact->friction).text,
+                number_shortest(contact->friction_speed).text,
+                number_shortest(contact->impact_speed_floor).text, number_shortest(penalty).text,
+                number_shortest(contact->bounce_speed).text);
+}
+
+static void write_run(const Scenario *scenario, Text *text)
+{
+    const RunOptions *run = &scenario->run;
+    const OdeOptions *ode = &scenario->ode;
+    static const char *const SOLVERS[] = {"ODE_DIRECT", "ODE_QUICK"};
+    static const char *const STEPPINGS[] = {"ODE_PLAIN", "ODE_STAGGERED", "ODE_EXTRAPOLATED"};
+    static const char *const MAPS[] = {"ODE_MAP_TEXTBOOK", "ODE_MAP_CORRECTED", "ODE_MAP_MIDPOINT",
+                                       "ODE_MAP_EXACT", "ODE_MAP_IMPULSE"};
+    text_append(text,
+                "    .run = {.revolutions = %s,\n"
+                "            .duration = %s, // s, without a drive\n"
+                "            .samples = %zu,\n"
+                "            .step = %s, // s\n"
+                "            .tolerance = %s},\n",
+                number_shortest(run->revolutions).text, number_shortest(run->duration).text,
+                run->samples, number_shortest(run->step).text,
+                number_shortest(run->tolerance).text);
+    text_append(text, "    .reference = {.tolerance = %s},\n",
+                number_shortest(scenario->reference.tolerance).text);
+    text_append(text,
+                "    .ode = {.solver = %s,\n"
+                "            .stepping = %s,\n"
+                "            .map = %s,\n"
+                "            .collider = ODE_COLLIDER_PIN_HOLE,\n"
+                "            .erp = %s,\n            .cfm = %s,\n"
+                "            .push_out = %s,\n"
+                "            .iterations = %zu,\n            .over_relaxation = %s,\n"
+                "            .seed = %zu,\n            .settle_steps = %zu,\n"
+                "            .levels = %zu,\n            .gear = %zu,\n"
+                "            .contact_phase = %s},\n",
+                SOLVERS[ode->solver], STEPPINGS[ode->stepping], MAPS[ode->map],
+                number_shortest(ode->erp).text, number_shortest(ode->cfm).text,
+                number_shortest(ode->push_out).text, ode->iterations,
+                number_shortest(ode->over_relaxation).text, ode->seed, ode->settle_steps,
+                ode->levels, ode->gear, number_shortest(ode->contact_phase).text);
+}
+
+static void write_scenario(const Scenario *scenario, Text *text)
+{
+    text_append(text, "\n// ---- the scenario: SI and radians ----\n\n"
+                      "static const Scenario SCENARIO = {\n    .title = ");
+    write_string(scenario->title, text);
+    text_append(text, ",\n");
+    write_linkage(&scenario->linkage, text);
+    write_points(scenario, text);
+    write_contact(scenario, text);
+    write_run(scenario, text);
+    text_append(text, "};\n");
+}
+
+// The laws, worked out: what the sources that are not here would have found.
+static bool write_laws(const Scenario *scenario, Text *text, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    text_append(text, "\n// ---- the contact laws, by joint ----\n\n"
+                      "static const ForceLaw JOINT_LAWS[LINKAGE_JOINT_MAX] = {\n");
+    if (!scenario_has_clearance(scenario)) {
+        text_append(text, "    {0}, // no joint has play\n");
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        ForceLaw law;
+        if (linkage->joints[i].kind != JOINT_CLEARANCE) {
+            continue;
+        }
+        if (!law_of_joint(scenario, &linkage->joints[i], &law, err)) {
+            return false;
+        }
+        text_append(text,
+                    "    [%zu] = {.family = %s,\n"
+                    "           .stiffness = %s, // K, N/m^n\n"
+                    "           .exponent = %s, // n\n"
+                    "           .compliance = %s,\n           .offset = %s,\n"
+                    "           .log_scale = %s,\n"
+                    "           .hysteresis = %s, // chi\n"
+                    "           .viscous = %s, // c, N s/m\n"
+                    "           .impact_speed_floor = %s}, // m/s\n",
+                    i, law.family == FORCE_LAW_POWER ? "FORCE_LAW_POWER" : "FORCE_LAW_LOGARITHMIC",
+                    number_shortest(law.stiffness).text, number_shortest(law.exponent).text,
+                    number_shortest(law.compliance).text, number_shortest(law.offset).text,
+                    number_shortest(law.log_scale).text, number_shortest(law.hysteresis).text,
+                    number_shortest(law.viscous).text,
+                    number_shortest(law.impact_speed_floor).text);
+    }
+    text_append(text, "};\n\n"
+                      "bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw "
+                      "*law, Err *err)\n{\n    (void)err;\n"
+                      "    *law = JOINT_LAWS[joint - scenario->linkage.joints];\n"
+                      "    return true;\n}\n");
+    return true;
+}
+
+static void write_head(const TuneCode *code, Text *text)
+{
+    text_append(text,
+                "// A mechanism with play in its joints in the Open Dynamics Engine, with the "
+                "setting that\n// `jointplay tune` found. Written by jointplay %s (ODE %s).\n//\n//"
+                "   cc THIS_FILE.c -o run -lode -lm && ./run > series.csv\n//\n// case     ",
+                JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION);
+    // as in the command below: a name never ends the comment, nor joins the next line to it
+    shell_append_word(text, code->scenario->path);
+    text_append(text, "\n// setting  %s\n// error    %.3g measured", code->words, code->error);
+    if (isfinite(code->target)) {
+        text_append(text, ", %.3g asked for", code->target);
+    }
+    text_append(text, "\n// same as  %s\n", code->command);
+    text_append(
+        text, "//\n// The numbers of this mechanism stand at the end: the scenario, its contact "
+              "laws, main.\n// What comes before them is jointplay's own way of stepping, joined "
+              "from its sources:\n// Copyright (c) 2026, the jointplay authors. BSD 3-Clause "
+              "License: redistribution and use, with\n// or without modification, are permitted "
+              "with this notice; there is no warranty of any kind.\n"
+              "// SPDX-License-Identifier: BSD-3-Clause\n\n"
+              "#ifndef _GNU_SOURCE\n#define _GNU_SOURCE // M_PI, whatever the standard asked "
+              "for\n#endif\n\n"
+              "// the same numbers with and without fused multiply-add\n"
+              "#if defined(__clang__)\n#pragma STDC FP_CONTRACT OFF\n"
+              "#elif defined(__GNUC__)\n#pragma GCC optimize(\"fp-contract=off\")\n#endif\n"
+              "// headers have constants and functions that this run makes no use of\n"
+              "#if defined(__GNUC__)\n#pragma GCC diagnostic ignored \"-Wunused-const-variable\"\n"
+              "#pragma GCC diagnostic ignored \"-Wunused-function\"\n"
+              "#endif\n");
+}
+
+static void write_main(const Stepping *stepping, Text *text)
+{
+    text_append(text,
+                "\n// ---- main ----\n\n"
+                "// run_scenario opens the solver, steps it, looks at every step and at every "
+                "sample, and closes it.\n"
+                "int main(void)\n{\n"
+                "    const RunWatch nobody = {NULL, NULL};\n"
+                "    Trajectory *run = run_scenario(&SCENARIO, &%s, nobody);\n"
+                "    if (!run->is_complete) {\n"
+                "        fprintf(stderr, \"%%s\\n\", run->message);\n"
+                "        return 4;\n"
+                "    }\n"
+                "    series_rows_write(&SCENARIO, run, stdout);\n"
+                "    fprintf(stderr, \"%%s: %%zu world steps in %%.4g ms, hash %%016llx\\n\", "
+                "run->label, run->steps,\n"
+                "            1e3 * run->wall_s, (unsigned long long)run->hash);\n"
+                "    trajectory_destroy(run);\n"
+                "    return fflush(stdout) == 0 ? 0 : 5;\n}\n",
+                stepping->table);
+}
+
+bool tune_code_write(const TuneCode *code, Text *text, Err *err)
+{
+    const Stepping stepping = stepping_of(code->scenario);
+    const char *files[] = {"run/run.c", "write/series_rows.c", stepping.file};
+    write_head(code, text);
+    const bool is_whole = tune_sources_write(files, sizeof files / sizeof files[0], text);
+    assert(is_whole);
+    // where nothing touches there is no law to ask for
+    const bool has_laws = strstr(text->data, "---- contact/law.h ----") != NULL;
+    if (has_laws && !write_laws(code->scenario, text, err)) {
+        return false;
+    }
+    write_scenario(code->scenario, text);
+    write_main(&stepping, text);
+    return true;
+}

@@ -1,0 +1,239 @@
+// What is left of a contact law when only a constant spring and damper can be set?
+//
+// secant spring        kp = F(d*) / d*             at a share d* of the deepest penetration
+// equivalent damper    kd = 2 zeta sqrt(kp m)      zeta from the restitution e that the law
+// delivers:
+//                      e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)), force clamped at 0
+// d penetration, m; F elastic force, N; m effective mass along the normal, kg.
+// What comes of it is not derived but run, against the truth of the law itself.
+#include "commands/tune/tune_linear.h"
+
+#include "commands/tune/tune_held.h"
+#include "commands/tune/tune_pool.h"
+#include "contact/damping.h"
+#include "contact/law.h"
+#include "model/response.h"
+
+#include <math.h>
+
+// of the deepest penetration: a resting contact stays at the shallow end
+static const double SHARES[] = {1.0, 0.5, 0.25};
+// s; the first is Gazebo's default
+static const double STEPS[] = {1e-3, 1e-4, 1e-5, 1e-6};
+
+enum {
+    SHARE_COUNT = sizeof SHARES / sizeof SHARES[0],
+    STEP_COUNT = sizeof STEPS / sizeof STEPS[0],
+};
+
+// a step that comes as close to the least error as this is as good as the finest
+static const double AS_GOOD = 1.2;
+
+double tune_linear_stiffness(const ForceLaw *law, double depth)
+{
+    return force_law_secant(law, depth);
+}
+
+double tune_linear_damping(double stiffness, double mass, double restitution)
+{
+    return 2.0 * damping_linear_ratio(restitution) * sqrt(stiffness * mass);
+}
+
+Scenario tune_linear_scenario(const Scenario *scenario, const TuneLinear *linear)
+{
+    Scenario changed = *scenario;
+    if (linear->is_row) {
+        const HeldSetting setting = {.map = ODE_MAP_CORRECTED,
+                                     .row = linear->row,
+                                     .stiffness = linear->stiffness,
+                                     .damping = linear->damping};
+        held_apply(&setting, &changed);
+    } else {
+        changed.contact.stiffness = linear->stiffness;
+        changed.contact.exponent = 1.0;
+        changed.contact.damping = DAMPING_VISCOUS;
+        changed.contact.viscous_coefficient = linear->damping;
+    }
+    changed.run.step = linear->step_s;
+    changed.ode.solver = ODE_DIRECT;
+    changed.ode.stepping = ODE_PLAIN;
+    changed.ode.map = ODE_MAP_TEXTBOOK;
+    return changed;
+}
+
+// The sample nearest to a time.
+static size_t sample_near(const Trajectory *trajectory, double time_s)
+{
+    size_t nearest = 0;
+    for (size_t k = 1; k < trajectory->sample_count; k++) {
+        if (fabs(trajectory->times[k] - time_s) < fabs(trajectory->times[nearest] - time_s)) {
+            nearest = k;
+        }
+    }
+    return nearest;
+}
+
+static double find_mass(const Linkage *linkage, const Trajectory *trajectory, size_t joint,
+                        double time_s)
+{
+    Response response;
+    Err unused = {ERR_NONE, ""};
+    const size_t sample = sample_near(trajectory, time_s);
+    const Motion *motions = trajectory_motion(trajectory, sample, 0);
+    if (!response_init(linkage, false, &response, &unused) || !response_place(&response, motions)) {
+        return NAN;
+    }
+    const Vec2 place = trajectory_state(trajectory, sample, joint)->eccentricity;
+    const double length = vec2_length(place);
+    for (size_t row = 0; row < response_play_rows(&response); row += 2) {
+        if (response_joint(&response, row) == (int)joint && length > 0.0) {
+            return response_mass(&response, row, vec2_scale(-1.0 / length, place));
+        }
+    }
+    return NAN;
+}
+
+static void find_contact(const Scenario *scenario, const Trajectory *truth, TuneContact *contact)
+{
+    const Linkage *linkage = &scenario->linkage;
+    *contact = (TuneContact){.is_known = false};
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const JointExtremes *joint = &truth->joints[i];
+        if (linkage->joints[i].kind != JOINT_CLEARANCE ||
+            !(joint->penetration_max.value > contact->depth)) {
+            continue;
+        }
+        *contact = (TuneContact){
+            .is_known = true,
+            .joint = i,
+            .depth = joint->penetration_max.value,
+            .speed = joint->spike_count > 0 ? joint->spikes[0].approach_speed : 0.0,
+            .mass = find_mass(linkage, truth, i, joint->penetration_max.time_s),
+        };
+    }
+    contact->is_known = contact->is_known && isfinite(contact->mass);
+}
+
+static void add_linear(Tune *tune, double depth, double stiffness, double damping, double step_s)
+{
+    const double sum = step_s * stiffness + damping;
+    tune->linears[tune->linear_count++] = (TuneLinear){
+        .row = {.erp = step_s * stiffness / sum, .cfm = 1.0 / sum},
+        .depth = depth,
+        .stiffness = stiffness,
+        .damping = damping,
+        .step_s = step_s,
+    };
+}
+
+// Lists the constants to run: a law that is linear already has one spring.
+static void list_linears(const TuneSearch *search, const ForceLaw *law, Tune *tune)
+{
+    const Scenario *scenario = search->scenario;
+    TuneContact *contact = &tune->contact;
+    const bool is_viscous = scenario->contact.damping == DAMPING_VISCOUS;
+    const bool is_linear = law->family == FORCE_LAW_POWER && law->exponent == 1.0;
+    contact->restitution = is_viscous ? NAN : damping_delivered(law->hysteresis);
+    for (size_t i = 0; i < (is_linear ? 1 : SHARE_COUNT); i++) {
+        const double depth = SHARES[i] * contact->depth;
+        const double stiffness = tune_linear_stiffness(law, depth);
+        const double damping =
+            is_viscous ? law->viscous
+                       : tune_linear_damping(stiffness, contact->mass, contact->restitution);
+        if (tune->held_s > 0.0) {
+            add_linear(tune, depth, stiffness, damping, tune->held_s);
+            continue;
+        }
+        for (size_t k = 0; k < STEP_COUNT; k++) {
+            if (STEPS[k] < 0.1 * scenario_duration(scenario)) {
+                add_linear(tune, depth, stiffness, damping, STEPS[k]);
+            }
+        }
+    }
+}
+
+// The coarsest step that meets the target, or that is as good as any.
+static int choose_linear(const Tune *tune)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < tune->linear_count; i++) {
+        least = fmin(least, tune->linears[i].error); // fmin passes over NAN
+    }
+    const double enough = fmax(AS_GOOD * least, tune->target - tune->truth.uncertainty);
+    int chosen = TUNE_NONE;
+    for (size_t i = 0; i < tune->linear_count; i++) {
+        const TuneLinear *linear = &tune->linears[i];
+        const TuneLinear *best = chosen == TUNE_NONE ? NULL : &tune->linears[chosen];
+        if (!linear->is_row && linear->error <= enough &&
+            (best == NULL || linear->step_s > best->step_s ||
+             (linear->step_s == best->step_s && linear->error < best->error))) {
+            chosen = (int)i;
+        }
+    }
+    return chosen;
+}
+
+// At a step that is held: the least error, of kp and kd alone or of any ERP and CFM.
+static int choose_least(const Tune *tune, bool with_rows)
+{
+    int chosen = TUNE_NONE;
+    for (size_t i = 0; i < tune->linear_count; i++) {
+        const TuneLinear *linear = &tune->linears[i];
+        if (isfinite(linear->error) && (with_rows || !linear->is_row) &&
+            (chosen == TUNE_NONE || linear->error < tune->linears[chosen].error)) {
+            chosen = (int)i;
+        }
+    }
+    return chosen;
+}
+
+static bool run_linears(const TuneSearch *search, const Truth *truth, Err *err)
+{
+    Tune *tune = search->tune;
+    TunePool pool;
+    tune_pool_init(&pool, search->jobs, search->time_limit_s);
+    bool is_going = true;
+    size_t next = 0;
+    while (is_going && (next < tune->linear_count || pool.busy > 0)) {
+        while (is_going && next < tune->linear_count && tune_pool_has_place(&pool)) {
+            const Task task = {
+                .scenario = tune_linear_scenario(search->scenario, &tune->linears[next]),
+                .backend = BACKEND_ODE,
+                .run = {.kind = LADDER_ERROR},
+                .truth = truth,
+            };
+            is_going = tune_pool_start(&pool, &task, next++, err);
+        }
+        search->wait("running a linear contact", search->context);
+        size_t tag;
+        LadderRun run;
+        while (is_going && pool.busy > 0 && tune_pool_take(&pool, &tag, &run)) {
+            tune->linears[tag].run = run;
+            tune->linears[tag].error = tune_error(tune, &run, tune->linears[tag].reason);
+        }
+    }
+    tune_pool_finish(&pool);
+    return is_going;
+}
+
+bool tune_linear_run(const TuneSearch *search, const Truth *truth, Err *err)
+{
+    Tune *tune = search->tune;
+    ForceLaw law;
+    find_contact(search->scenario, truth->trajectory, &tune->contact);
+    if (!tune->contact.is_known) {
+        return true;
+    }
+    const Joint *joint = &search->scenario->linkage.joints[tune->contact.joint];
+    if (!law_of_joint(search->scenario, joint, &law, err)) {
+        return false;
+    }
+    const bool is_held = tune->held_s > 0.0;
+    list_linears(search, &law, tune);
+    if ((is_held && !tune_held_constants(search, err)) || !run_linears(search, truth, err)) {
+        return false;
+    }
+    tune->linear = is_held ? choose_least(tune, false) : choose_linear(tune);
+    tune->row = is_held ? choose_least(tune, true) : TUNE_NONE;
+    return true;
+}

@@ -1,0 +1,20 @@
+// What can a contact with constant spring and damper deliver, as Gazebo and MuJoCo have it?
+#pragma once
+
+#include "commands/tune/tune_search.h"
+#include "contact/force_law.h"
+
+// The spring, N/m, that gives the law's force at a depth, m.
+double tune_linear_stiffness(const ForceLaw *law, double depth);
+
+// The damper, N s/m, beside a spring, N/m, that gives an effective mass, kg, the restitution asked
+// for in a free impact.
+double tune_linear_damping(double stiffness, double mass, double restitution);
+
+// The scenario with the contact made linear, kp and kd by the textbook map or the row itself: plain
+// stepping, direct solver.
+Scenario tune_linear_scenario(const Scenario *scenario, const TuneLinear *linear);
+
+// Looks up the deepest contact in the truth, runs constants taken from it at several depths and
+// steps against the truth, and chooses among them. Does nothing where no joint has play.
+bool tune_linear_run(const TuneSearch *search, const Truth *truth, Err *err);

@@ -1,0 +1,301 @@
+// How can a piece of work fail, hang or ask for all memory without hurting anyone else?
+//
+// fork -> limits -> work -> the result through a pipe -> _exit. The pipe's end is the child's end:
+// the parent reads until then and asks how it came about.
+#define _GNU_SOURCE // pipe2
+
+#include "measure/child.h"
+
+#include "base/clock.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/pidfd.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum {
+    WATCHED_MAX = 512, // children at a time: two for each core of large machines
+    NO_MEMORY = 113,   // exit status of a child that died of its limit; no one else's
+    LEAVING_MS = 500,  // for a process whose pipe is closed to be gone; it takes some 0.1
+};
+
+// some libraries go on without what they were refused, until there is nothing left at all
+static const size_t LITTLE_MEMORY = (size_t)16 << 20;
+
+// the sanitizer's shadow lies in terabytes of address space, which no limit would let it have
+#if defined(__SANITIZE_ADDRESS__)
+enum { CAN_LIMIT_MEMORY = 0 };
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+enum { CAN_LIMIT_MEMORY = 0 };
+#else
+enum { CAN_LIMIT_MEMORY = 1 };
+#endif
+#else
+enum { CAN_LIMIT_MEMORY = 1 };
+#endif
+
+static void limit(__rlimit_resource_t resource, size_t most)
+{
+    const struct rlimit both = {(rlim_t)most, (rlim_t)most};
+    setrlimit(resource, &both);
+}
+
+bool child_lacks_memory(void)
+{
+    if (errno == ENOMEM) {
+        return true;
+    }
+    void *little =
+        mmap(NULL, LITTLE_MEMORY, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (little == MAP_FAILED) {
+        return true;
+    }
+    munmap(little, LITTLE_MEMORY);
+    return false;
+}
+
+// Who cannot go on without memory aborts, or writes to where it thought there was some.
+static void die(int number)
+{
+    if (child_lacks_memory()) {
+        _exit(NO_MEMORY);
+    }
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static void limit_memory(size_t most)
+{
+    limit(RLIMIT_AS, most);
+    signal(SIGABRT, die);
+    signal(SIGSEGV, die);
+    signal(SIGBUS, die);
+}
+
+// Signals mean what they mean to any program, and the parent's death is one of them.
+static void settle_in(pid_t parent, ChildLimits limits)
+{
+    static const int SIGNALS[] = {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS};
+    for (size_t i = 0; i < sizeof SIGNALS / sizeof SIGNALS[0]; i++) {
+        signal(SIGNALS[i], SIG_DFL);
+    }
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) {
+        _exit(1);
+    }
+    limit(RLIMIT_CORE, 0);
+    if (limits.memory_bytes > 0 && CAN_LIMIT_MEMORY) {
+        limit_memory(limits.memory_bytes);
+    }
+}
+
+static _Noreturn void live(ChildWork work, const void *context, size_t result_size, int pipe_end)
+{
+    char *result = calloc(result_size, 1);
+    if (result == NULL) {
+        _exit(NO_MEMORY);
+    }
+    errno = 0;
+    work(context, result);
+    for (size_t sent = 0; sent < result_size;) {
+        const ssize_t count = write(pipe_end, result + sent, result_size - sent);
+        if (count < 0 && errno != EINTR) {
+            _exit(1);
+        }
+        sent += count > 0 ? (size_t)count : 0;
+    }
+    // no one's buffers are written a second time, and no one's files are closed
+    _exit(0);
+}
+
+bool child_start(Child *child, ChildWork work, const void *context, void *result,
+                 size_t result_size, ChildLimits limits, Err *err)
+{
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) {
+        return err_set(err, ERR_SOLVER, "cannot start a run of its own: %s", strerror(errno));
+    }
+    const pid_t parent = getpid();
+    const pid_t process = fork();
+    if (process < 0) {
+        const int reason = errno;
+        close(ends[0]);
+        close(ends[1]);
+        return err_set(err, ERR_SOLVER, "cannot start a run of its own: %s", strerror(reason));
+    }
+    if (process == 0) {
+        close(ends[0]);
+        settle_in(parent, limits);
+        live(work, context, result_size, ends[1]);
+    }
+    close(ends[1]);
+    *child = (Child){
+        .end = CHILD_RUNNING,
+        .process = process,
+        .pipe = ends[0],
+        .result = result,
+        .result_size = result_size,
+        .started_s = clock_now_s(),
+        .limits = limits,
+    };
+    return true;
+}
+
+// Whether a process is gone, or is so within a moment. Where the kernel cannot be asked it is
+// taken to be.
+static bool is_leaving(pid_t process)
+{
+    const int handle = pidfd_open(process, 0);
+    if (handle < 0) {
+        return true;
+    }
+    struct pollfd watched = {.fd = handle, .events = POLLIN};
+    int ready;
+    while ((ready = poll(&watched, 1, LEAVING_MS)) < 0 && errno == EINTR) {
+    }
+    close(handle);
+    return ready != 0;
+}
+
+// The process is gone, or is about to be: how?
+static void bury(Child *child)
+{
+    int status = 0;
+    close(child->pipe);
+    while (waitpid(child->process, &status, 0) < 0 && errno == EINTR) {
+    }
+    child->process = 0;
+    if (WIFSIGNALED(status)) {
+        child->end = CHILD_SIGNALLED;
+        child->code = WTERMSIG(status);
+        return;
+    }
+    child->code = WEXITSTATUS(status);
+    const bool is_whole = child->code == 0 && child->received == child->result_size;
+    const ChildEnd without = child->code == NO_MEMORY ? CHILD_NO_MEMORY : CHILD_EXITED;
+    child->end = is_whole ? CHILD_DONE : without;
+}
+
+// The pipe has no other end any more: so the process leaves, or something in it went wrong.
+static void see_off(Child *child)
+{
+    if (is_leaving(child->process)) {
+        bury(child);
+    } else {
+        child_kill(child);
+        child->end = CHILD_CLOSED;
+    }
+}
+
+static void receive(Child *child)
+{
+    char nothing;
+    const size_t wanted = child->result_size - child->received;
+    char *target = wanted > 0 ? child->result + child->received : &nothing;
+    const ssize_t count = read(child->pipe, target, wanted > 0 ? wanted : 1);
+    if (count > 0) {
+        child->received += (size_t)count;
+    } else if (count == 0 || errno != EINTR) {
+        see_off(child);
+    }
+}
+
+static bool is_running(const Child *child)
+{
+    return child->end == CHILD_RUNNING && child->process > 0;
+}
+
+static double time_left(const Child *child, double clock_s)
+{
+    const double limit_s = child->limits.time_s;
+    return limit_s > 0.0 ? child->started_s + limit_s - clock_s : INFINITY;
+}
+
+// Waits for something to read once. True where a child has ended, or none is running.
+static bool wait_once(Child *children, size_t count, double wait_s)
+{
+    struct pollfd watched[WATCHED_MAX];
+    Child *owners[WATCHED_MAX];
+    nfds_t watched_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (is_running(&children[i])) {
+            assert(watched_count < WATCHED_MAX);
+            owners[watched_count] = &children[i];
+            watched[watched_count++] = (struct pollfd){.fd = children[i].pipe, .events = POLLIN};
+            wait_s = fmin(wait_s, time_left(&children[i], clock_now_s()));
+        }
+    }
+    if (watched_count == 0) {
+        return true;
+    }
+    const int ready = poll(watched, watched_count, (int)ceil(1e3 * fmax(wait_s, 0.0)));
+    bool has_ended = false;
+    for (nfds_t i = 0; i < watched_count; i++) {
+        if (ready > 0 && watched[i].revents != 0) {
+            receive(owners[i]);
+        }
+        if (is_running(owners[i]) && time_left(owners[i], clock_now_s()) <= 0.0) {
+            child_kill(owners[i]);
+            owners[i]->end = CHILD_TIMED_OUT;
+        }
+        has_ended = has_ended || !is_running(owners[i]);
+    }
+    return has_ended;
+}
+
+void child_wait(Child *children, size_t count, double wait_s)
+{
+    const double stop_s = clock_now_s() + wait_s;
+    while (!wait_once(children, count, stop_s - clock_now_s()) && clock_now_s() < stop_s) {
+    }
+}
+
+void child_kill(Child *child)
+{
+    if (is_running(child)) {
+        kill(child->process, SIGKILL);
+        bury(child);
+    }
+}
+
+void child_describe(const Child *child, char text[CHILD_TEXT_SIZE])
+{
+    switch (child->end) {
+    case CHILD_RUNNING:
+        snprintf(text, CHILD_TEXT_SIZE, "still running");
+        break;
+    case CHILD_DONE:
+        snprintf(text, CHILD_TEXT_SIZE, "done");
+        break;
+    case CHILD_EXITED:
+        snprintf(text, CHILD_TEXT_SIZE, "ended with status %d and no result", child->code);
+        break;
+    case CHILD_SIGNALLED:
+        snprintf(text, CHILD_TEXT_SIZE, "ended by signal %d (%s)", child->code,
+                 strsignal(child->code));
+        break;
+    case CHILD_TIMED_OUT:
+        snprintf(text, CHILD_TEXT_SIZE, "took longer than its limit of %.4g s",
+                 child->limits.time_s);
+        break;
+    case CHILD_NO_MEMORY:
+        snprintf(text, CHILD_TEXT_SIZE, "wanted more than its limit of %.4g MB of memory",
+                 1e-6 * (double)child->limits.memory_bytes);
+        break;
+    case CHILD_CLOSED:
+        snprintf(text, CHILD_TEXT_SIZE, "closed its pipe without a result and went on");
+        break;
+    }
+}

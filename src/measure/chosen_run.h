@@ -1,0 +1,24 @@
+// A run of ODE at a step that is chosen for the error asked for: run.step auto.
+#pragma once
+
+#include "measure/truth.h"
+
+// Who is told what goes on. A trial begins: its number, from 1, and its step, s; number 0 stands
+// for the truth.
+typedef struct ChosenWatch {
+    RunWatch run;
+    void (*begin)(size_t trial, double step_s, void *context); // NULL: nobody is told
+} ChosenWatch;
+
+// Runs the scenario at falling steps, each trial held against the truth as it goes, until one holds
+// run.tolerance up to the truth's horizon: that trial is the result. Its error_estimate is an upper
+// bound, the measured error and the truth's uncertainty, up to estimate_s. Where run.most-steps are
+// used up first it is the best trial, marked as short; where none held the tolerance at all, or
+// there is no truth, it is a failed run with the reason. Steps, evaluations and time are those of
+// all trials. The truth is made where it is NULL; the probe may be NULL. The caller destroys what
+// comes back.
+Trajectory *chosen_run_make(const Scenario *scenario, const Truth *truth, ChosenWatch watch,
+                            const RunProbe *probe);
+
+// The scenario with a step that was chosen for it, so that the run is the same to the last bit.
+Scenario chosen_run_scenario(const Scenario *scenario, double step_s);

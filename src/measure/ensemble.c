@@ -1,0 +1,86 @@
+// What can be said of a motion that cannot be predicted? Its distributions.
+#include "measure/ensemble.h"
+
+#include "base/sorted.h"
+#include "model/perturb.h"
+
+#include <string.h>
+
+// what an engine's own error amounts to within the first impacts
+const double ENSEMBLE_PERTURBATION = 1e-3;
+
+typedef struct Draws {
+    double values[LINKAGE_JOINT_MAX][ENSEMBLE_METRIC_COUNT][ENSEMBLE_MEMBERS];
+} Draws;
+
+static void take_member(const Trajectory *trajectory, size_t member, Draws *draws)
+{
+    for (size_t i = 0; i < trajectory->joint_count; i++) {
+        const JointExtremes *joint = &trajectory->joints[i];
+        draws->values[i][ENSEMBLE_FORCE_MAX][member] = joint->force_max.value;
+        draws->values[i][ENSEMBLE_IMPULSE][member] = joint->impulse;
+        draws->values[i][ENSEMBLE_IMPACTS][member] = (double)joint->impacts;
+        draws->values[i][ENSEMBLE_PENETRATION_MAX][member] = joint->penetration_max.value;
+        draws->values[i][ENSEMBLE_CONTACT_SHARE][member] = trajectory_contact_share(trajectory, i);
+    }
+}
+
+static Distribution distribution_of(double *values, size_t count)
+{
+    sorted_make(values, count);
+    Distribution made = {
+        .low = values[0],
+        .high = values[count - 1],
+        .median = sorted_median(values, count),
+    };
+    for (size_t i = 0; i < count; i++) {
+        made.mean += values[i] / (double)count;
+    }
+    double square = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        square += (values[i] - made.mean) * (values[i] - made.mean);
+    }
+    made.deviation = count > 1 ? sqrt(square / (double)(count - 1)) : 0.0;
+    return made;
+}
+
+// Runs the scenario from one start; the first of all says how fast the bodies move.
+static Trajectory *run_member(const Scenario *scenario, const Solver *solver, RunWatch watch,
+                              unsigned member, DistanceScale scales[LINKAGE_BODY_MAX])
+{
+    Scenario beside = *scenario;
+    if (member > 0) {
+        perturb_start(&beside, scales, ENSEMBLE_PERTURBATION, member);
+    }
+    Trajectory *trajectory = run_scenario(&beside, solver, watch);
+    if (member == 0) {
+        distance_scales(trajectory, scales);
+    }
+    return trajectory;
+}
+
+void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch,
+                  Ensemble *ensemble)
+{
+    Draws draws;
+    DistanceScale scales[LINKAGE_BODY_MAX];
+    memset(ensemble, 0, sizeof *ensemble);
+    for (unsigned member = 0; member < ENSEMBLE_MEMBERS; member++) {
+        Trajectory *trajectory = run_member(scenario, solver, watch, member, scales);
+        if (trajectory->is_complete) {
+            take_member(trajectory, ensemble->members++, &draws);
+        } else if (ensemble->failed++ == 0) {
+            memcpy(ensemble->message, trajectory->message, sizeof ensemble->message);
+        }
+        trajectory_destroy(trajectory);
+    }
+    for (size_t i = 0; ensemble->members > 0 && i < scenario->linkage.joint_count; i++) {
+        if (scenario->linkage.joints[i].kind != JOINT_CLEARANCE) {
+            continue;
+        }
+        for (int metric = 0; metric < ENSEMBLE_METRIC_COUNT; metric++) {
+            ensemble->joints[i][metric] =
+                distribution_of(draws.values[i][metric], ensemble->members);
+        }
+    }
+}

@@ -1,0 +1,81 @@
+// How far is one trajectory from the one that is taken as the truth?
+//
+// As model/distance.c measures it; the reference's samples stand at the same times.
+#include "measure/error.h"
+
+#include "model/distance.h"
+
+typedef struct Sums {
+    double square; // of the relative errors of omega
+    size_t count;
+} Sums;
+
+static bool can_compare(const Trajectory *trajectory, const Trajectory *reference)
+{
+    return trajectory->is_complete && reference->is_complete &&
+           trajectory->sample_count == reference->sample_count &&
+           trajectory->body_count == reference->body_count;
+}
+
+bool error_series(const Trajectory *trajectory, const Trajectory *reference, double *omega)
+{
+    if (!can_compare(trajectory, reference)) {
+        return false;
+    }
+    DistanceScale scales[LINKAGE_BODY_MAX];
+    distance_scales(reference, scales);
+    for (size_t k = 0; k < reference->sample_count; k++) {
+        omega[k] = distance_at(trajectory, reference, k, scales);
+    }
+    return true;
+}
+
+static void add_body(const Trajectory *trajectory, const Trajectory *reference, size_t body,
+                     const DistanceScale *scales, double horizon_s, TrajectoryError *error,
+                     Sums *sums)
+{
+    const bool is_velocity = distance_is_by_velocity(reference);
+    for (size_t k = 0; k < reference->sample_count; k++) {
+        const Motion *truth = trajectory_motion(reference, k, body);
+        const Motion *motion = trajectory_motion(trajectory, k, body);
+        const double omega = distance_of_rates(motion, truth, is_velocity) / scales->omega;
+        const double alpha = distance_of_changes(motion, truth, is_velocity) / scales->alpha;
+        if (omega > error->omega_max) {
+            error->omega_max = omega;
+            error->omega_max_time_s = reference->times[k];
+        }
+        if (reference->times[k] <= horizon_s) {
+            error->omega_max_in_horizon = fmax(error->omega_max_in_horizon, omega);
+        }
+        error->alpha_max = fmax(error->alpha_max, alpha);
+        error->angle_max_rad = fmax(error->angle_max_rad, fabs(motion->angle - truth->angle));
+        sums->square += omega * omega;
+        sums->count++;
+    }
+}
+
+TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *reference,
+                              double horizon_s)
+{
+    TrajectoryError error = {.against = "none"};
+    if (!can_compare(trajectory, reference)) {
+        return error;
+    }
+    Sums sums = {0.0, 0};
+    DistanceScale scales[LINKAGE_BODY_MAX];
+    distance_scales(reference, scales);
+    for (size_t i = 0; i < reference->body_count; i++) {
+        if (scales[i].omega > 0.0) {
+            add_body(trajectory, reference, i, &scales[i], horizon_s, &error, &sums);
+        }
+    }
+    // a horizon that holds no sample but the start says nothing
+    if (reference->sample_count > 1 && !(reference->times[1] <= horizon_s)) {
+        error.omega_max_in_horizon = NAN;
+    }
+    // a number that is not finite makes the sum not finite, though it is larger than nothing
+    error.is_known = sums.count > 0 && isfinite(sums.square);
+    error.against = reference->backend;
+    error.omega_rms = sums.count > 0 ? sqrt(sums.square / (double)sums.count) : 0.0;
+    return error;
+}

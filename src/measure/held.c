@@ -1,0 +1,329 @@
+// Which constants are best for a contact at a step that cannot be changed?
+//
+// The search is over (ln k, ln c), k and c the spring and damper that the map makes a row of: a
+// grid wide enough for every contact from the law's own length to one of a hundred steps, then
+// grids ever finer about its best points. Nothing is smooth here, for the number of steps in the
+// contact jumps, so nothing is taken of slopes.
+//
+// Constants are rows of the velocity-level model without bounce: F = ((ERP / h) d + d') / (CFM + h
+// / m). That is how they are predicted and how they are run.
+#include "measure/held.h"
+
+#include "measure/mapping_verdict.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const OdeMap HELD_MAPS[HELD_MAP_COUNT] = {ODE_MAP_TEXTBOOK, ODE_MAP_CORRECTED, ODE_MAP_MIDPOINT};
+
+enum {
+    GRID = 100,  // points a side of the first grid
+    STARTS = 4,  // of its local minima, the best, are looked at closer
+    CLOSER = 25, // points to either side of the middle of a finer grid
+    CLOSER_ROUNDS = 12
+};
+
+static const double CLOSER_RATIO = 0.3;
+static const double CLOSEST = 1e-5;
+
+// m/s: nothing is as fast, so that nothing bounces
+static const double NO_BOUNCE = 1e100;
+
+// beyond the outermost springs and dampers that a contact could want
+static const double WIDE = 30.0;
+
+// with more steps than this in a contact the corrected map adds nothing of its own to spring and
+// damper: what is found with so many is right to (omega h)^2 / 24, 3e-4, with any more
+static const double STEPS_ENOUGH = 40.0;
+
+// how long a contact may last in the search: so many times the law's, and so many steps
+static const double LONGEST_SHARE = 20.0;
+static const double LONGEST_STEPS = 400.0;
+
+// the hole of the pin that is run, as map_lone.c's: play for so many of the longer of a step and a
+// contact, and a pin for which no depth is too deep
+static const double ROOM = 20.0;
+static const double PIN_PLAYS = 10.0;
+
+static MapImpactCase impact_of(const MappingContact *contact, double step_s,
+                               const HeldSetting *setting)
+{
+    MapImpactCase impact = contact->impact;
+    impact.step = step_s;
+    impact.end = 0.0; // constants know no end
+    impact.law = map_impact_linear(setting->stiffness, setting->damping);
+    if (setting->map == ODE_MAP_MIDPOINT) {
+        impact.rows = (MapImpactRows){.map = map_get(setting->map)};
+    } else {
+        impact.rows = (MapImpactRows){
+            .cfm = setting->row.cfm,
+            .push_out = setting->row.erp,
+            .bounce_speed = NO_BOUNCE,
+        };
+    }
+    return impact;
+}
+
+static double square_of_log(double value, double asked)
+{
+    const double log_ratio = log(fmax(value, DBL_MIN) / asked);
+    return log_ratio * log_ratio;
+}
+
+// Makes the row and predicts it; the search gives up early, the prediction that is shown does not.
+static HeldSetting predict(const MappingContact *contact, double step_s, OdeMap map,
+                           double stiffness, double damping, size_t step_most)
+{
+    const MapImpact *asked = &contact->asked;
+    HeldSetting setting = {.map = map, .stiffness = stiffness, .damping = damping};
+    const MapContact at = {
+        .stiffness = stiffness,
+        .damping = damping,
+        .step = step_s,
+        .mass = contact->impact.mass,
+        .depth = asked->penetration_max,
+    };
+    setting.row = map_get(map)->convert(&at);
+    MapImpactCase impact = impact_of(contact, step_s, &setting);
+    impact.step_most = step_most;
+    const double restitution_unit = fmax(asked->restitution, MAPPING_VALID_SHARE);
+    setting.is_restitution_met = true;
+    setting.misfit = 0.0;
+    for (int i = 0; i < MAP_IMPACT_PHASES; i++) {
+        const MapImpact phase = map_impact(&impact, map_impact_phase(i));
+        impact_add_phase(&setting.predicted, i, &phase);
+        const double off = (phase.restitution - asked->restitution) / restitution_unit;
+        setting.is_restitution_met = setting.is_restitution_met && phase.is_ended &&
+                                     phase.fallbacks == 0 && fabs(off) <= MAPPING_VALID_SHARE;
+        setting.misfit += (off * off + square_of_log(phase.force_max, asked->force_max) +
+                           square_of_log(phase.penetration_max, asked->penetration_max)) /
+                          3.0;
+        if (!phase.is_ended || (step_most > 0 && !setting.is_restitution_met)) {
+            setting.misfit = INFINITY;
+            break; // neither would the others do
+        }
+    }
+    setting.misfit = sqrt(setting.misfit / MAP_IMPACT_PHASES);
+    return setting;
+}
+
+HeldSetting held_setting(const MappingContact *contact, double step_s, OdeMap map, double stiffness,
+                         double damping)
+{
+    HeldSetting setting = predict(contact, step_s, map, stiffness, damping, 0);
+    setting.verdict = verdict_judge(contact, map, step_s, &setting.predicted);
+    return setting;
+}
+
+bool held_is_better(const HeldSetting *one, const HeldSetting *other)
+{
+    if (one->is_restitution_met != other->is_restitution_met) {
+        return one->is_restitution_met;
+    }
+    return one->misfit < other->misfit;
+}
+
+typedef struct Search {
+    const MappingContact *contact;
+    OdeMap map;
+    double step_s;
+    size_t step_most;
+} Search;
+
+typedef struct Point {
+    double log_stiffness;
+    double log_damping;
+    HeldSetting setting;
+} Point;
+
+static Point look(const Search *search, double log_stiffness, double log_damping)
+{
+    return (Point){log_stiffness, log_damping,
+                   predict(search->contact, search->step_s, search->map, exp(log_stiffness),
+                           exp(log_damping), search->step_most)};
+}
+
+// Keeps a point among the best, the best first.
+static void keep(Point best[STARTS], size_t *count, const Point *point)
+{
+    size_t place = *count;
+    while (place > 0 && held_is_better(&point->setting, &best[place - 1].setting)) {
+        place--;
+    }
+    if (place == STARTS) {
+        return;
+    }
+    const size_t moved = *count - place - (*count == STARTS ? 1 : 0);
+    memmove(&best[place + 1], &best[place], moved * sizeof *best);
+    best[place] = *point;
+    *count += *count < STARTS ? 1 : 0;
+}
+
+// Whether no neighbour on the grid is better.
+static bool is_local_best(const Point *grid, int number)
+{
+    for (int i = number / GRID - 1; i <= number / GRID + 1; i++) {
+        for (int k = number % GRID - 1; k <= number % GRID + 1; k++) {
+            const bool is_on_it = i >= 0 && i < GRID && k >= 0 && k < GRID;
+            if (is_on_it && held_is_better(&grid[i * GRID + k].setting, &grid[number].setting)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+// Looks at finer and finer grids about a point and moves to the best.
+static void look_closer(const Search *search, double across_k, double across_c, Point *point)
+{
+    double share = 2.0; // of the first grid's distances
+    for (int round = 0; round < CLOSER_ROUNDS && share > CLOSEST; round++) {
+        const Point middle = *point;
+        bool is_moved = false;
+        for (int i = -CLOSER; i <= CLOSER; i++) {
+            for (int k = -CLOSER; k <= CLOSER; k++) {
+                const Point tried =
+                    look(search, middle.log_stiffness + share * across_k * i / CLOSER,
+                         middle.log_damping + share * across_c * k / CLOSER);
+                if (held_is_better(&tried.setting, &point->setting)) {
+                    *point = tried;
+                    is_moved = true;
+                }
+            }
+        }
+        // as long as it gets on it goes on, along the edge of what is allowed too
+        share *= is_moved ? 1.0 : CLOSER_RATIO;
+    }
+}
+
+// Springs from the law's own, or the stiffest that a step sees, to those of a contact of very many
+// steps; dampers from next to none to those that let nothing back.
+static void find_constants(const Search *search, double *stiffness, double *damping)
+{
+    const MappingContact *contact = search->contact;
+    const double mass = contact->impact.mass;
+    const double step_s = search->step_s;
+    const double by_step = mass / (step_s * step_s);
+    const double high = fmax(contact->secant, by_step) * WIDE;
+    const double low = fmin(contact->secant / WIDE, by_step / (LONGEST_STEPS * LONGEST_STEPS));
+    const double low_c = 1e-4 * sqrt(low * mass);
+    const double high_c = WIDE * sqrt(high * mass);
+    const double across_k = log(high / low) / (GRID - 1);
+    const double across_c = log(high_c / low_c) / (GRID - 1);
+    Point *grid = malloc(GRID * GRID * sizeof *grid);
+    assert(grid != NULL);
+    for (int i = 0; i < GRID * GRID; i++) {
+        grid[i] =
+            look(search, log(low) + across_k * (i / GRID), log(low_c) + across_c * (i % GRID));
+    }
+    Point best[STARTS];
+    size_t count = 0;
+    for (int i = 0; i < GRID * GRID; i++) {
+        if (is_local_best(grid, i)) {
+            keep(best, &count, &grid[i]);
+        }
+    }
+    free(grid);
+    for (size_t i = 0; i < count; i++) {
+        look_closer(search, across_k, across_c, &best[i]);
+    }
+    size_t chosen = 0;
+    for (size_t i = 1; i < count; i++) {
+        chosen = held_is_better(&best[i].setting, &best[chosen].setting) ? i : chosen;
+    }
+    *stiffness = exp(best[chosen].log_stiffness);
+    *damping = exp(best[chosen].log_damping);
+}
+
+void held_apply(const HeldSetting *setting, Scenario *scenario)
+{
+    ContactOptions *options = &scenario->contact;
+    options->stiffness = setting->stiffness;
+    options->exponent = 1.0;
+    options->damping = DAMPING_VISCOUS;
+    options->viscous_coefficient = setting->damping;
+    if (setting->map != ODE_MAP_MIDPOINT) {
+        options->model = CONTACT_POISSON;
+        options->bounce_speed = NO_BOUNCE;
+        options->penalty = 1.0 / setting->row.cfm;
+        scenario->ode.push_out = setting->row.erp;
+    }
+}
+
+// A pin in a hole that leaves it room, with the constants.
+static Scenario held_scenario(const MappingContact *contact, double step_s,
+                              const HeldSetting *setting)
+{
+    Scenario scenario = mapping_scenario(contact, setting->map, step_s);
+    Clearance *clearance = &scenario.linkage.joints[contact->joint.joint].clearance;
+    const double room =
+        ROOM * (contact->impact.speed * fmax(step_s, setting->predicted.duration.most) +
+                setting->predicted.penetration_max.most);
+    clearance->pin_radius = PIN_PLAYS * room;
+    clearance->hole_radius = clearance->pin_radius + room;
+    held_apply(setting, &scenario);
+    scenario.contact.friction = 0.0;
+    return scenario;
+}
+
+static ImpactDelivered deliver(const MappingContact *contact, double step_s,
+                               const HeldSetting *setting)
+{
+    const Scenario scenario = held_scenario(contact, step_s, setting);
+    return impact_deliver(&scenario, contact->joint.joint, contact->impact.mass,
+                          contact->impact.speed, setting->predicted.duration.most);
+}
+
+ImpactDelivered held_deliver(const MappingContact *contact, double step_s, OdeMap map,
+                             double stiffness, double damping)
+{
+    const HeldSetting setting = held_setting(contact, step_s, map, stiffness, damping);
+    return deliver(contact, step_s, &setting);
+}
+
+static HeldSetting search_setting(const MappingContact *contact, double step_s, OdeMap map)
+{
+    const Search search = {
+        .contact = contact,
+        .map = map,
+        .step_s = step_s,
+        .step_most = (size_t)(LONGEST_SHARE * contact->asked.duration / step_s + LONGEST_STEPS),
+    };
+    double stiffness;
+    double damping;
+    find_constants(&search, &stiffness, &damping);
+    return held_setting(contact, step_s, map, stiffness, damping);
+}
+
+// With many steps in a contact the corrected map's constants are good at any step, and the
+// textbook's, which adds a damper h k, takes that off.
+static HeldSetting find_setting(const MappingContact *contact, double step_s, OdeMap map)
+{
+    const double searched_s = contact->asked.duration / STEPS_ENOUGH;
+    if (step_s >= searched_s) {
+        return search_setting(contact, step_s, map);
+    }
+    const HeldSetting fine = search_setting(contact, searched_s, ODE_MAP_CORRECTED);
+    const double added = map == ODE_MAP_TEXTBOOK ? step_s * fine.stiffness : 0.0;
+    return fine.damping > added
+               ? held_setting(contact, step_s, map, fine.stiffness, fine.damping - added)
+               : search_setting(contact, step_s, map);
+}
+
+void held_find(const MappingContact *contact, double step_s, Held *held)
+{
+    const Joint *joint = &contact->scenario.linkage.joints[contact->joint.joint];
+    *held = (Held){
+        .step_s = step_s,
+        .flight = contact->impact.speed * step_s,
+        .play = 2.0 * linkage_radial_clearance(joint),
+    };
+    for (int i = 0; i < HELD_MAP_COUNT; i++) {
+        HeldSetting *setting = &held->settings[i];
+        *setting = find_setting(contact, step_s, HELD_MAPS[i]);
+        setting->delivered = deliver(contact, step_s, setting);
+    }
+}

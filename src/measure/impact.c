@@ -1,0 +1,169 @@
+// What does one impact of a lone pin give in ODE, and what was to be expected of it?
+//
+// The pin starts so far from the wall that it overlaps it for the first time at a place that the
+// phase chooses: whole steps of flight, and a share of one more. The shares are the middles of
+// equal parts, (i + 1/2) / 16. Plain stepping finds the first overlap at (1 - share) of a step's
+// way, staggered stepping, half a step aside, at (1/2 - share) or (3/2 - share): over all i these
+// are the same sixteen overlaps as those of the prediction.
+#include "measure/impact.h"
+
+#include "run/registry.h"
+#include "run/run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// of flight before the wall, where there is room
+static const double FLIGHT_STEPS = 10.0;
+
+// of the way from wall to wall that the pin may fly, so that it meets but one of them
+static const double FLIGHT_SHARE = 0.75;
+
+// after the contact, so that the last sample stands behind it
+static const double STEPS_BEHIND = 2.5;
+
+// of one run: some tens of milliseconds of wall time
+static const double STEPS_MOST = 1e5;
+
+static void widen(ImpactSpread *spread, int number, double value)
+{
+    spread->mean += value / MAP_IMPACT_PHASES;
+    spread->least = number == 0 ? value : fmin(spread->least, value);
+    spread->most = number == 0 ? value : fmax(spread->most, value);
+}
+
+void impact_add_phase(ImpactFigures *figures, int number, const MapImpact *impact)
+{
+    widen(&figures->restitution, number, impact->restitution);
+    widen(&figures->force_max, number, impact->force_max);
+    widen(&figures->penetration_max, number, impact->penetration_max);
+    widen(&figures->duration, number, impact->duration);
+    figures->fallbacks += impact->fallbacks;
+    if (impact->omega_h_max > figures->omega_h_max) {
+        figures->omega_h_max = impact->omega_h_max;
+        figures->omega_h_depth = impact->omega_h_depth;
+    }
+    if (impact->is_past_end) {
+        figures->is_past_end = true;
+        figures->past_end_depth = fmax(figures->past_end_depth, impact->penetration_max);
+    }
+    figures->is_ended = (number == 0 || figures->is_ended) && impact->is_ended;
+}
+
+ImpactFigures impact_figures_of(const MapImpact *impact)
+{
+    const double values[] = {impact->restitution, impact->force_max, impact->penetration_max,
+                             impact->duration};
+    return (ImpactFigures){
+        .restitution = {values[0], values[0], values[0]},
+        .force_max = {values[1], values[1], values[1]},
+        .penetration_max = {values[2], values[2], values[2]},
+        .duration = {values[3], values[3], values[3]},
+        .is_past_end = impact->is_past_end,
+        .is_ended = impact->is_ended,
+    };
+}
+
+ImpactFigures impact_predict(const MapImpactCase *impact)
+{
+    ImpactFigures figures = {.is_ended = true};
+    for (int i = 0; i < MAP_IMPACT_PHASES; i++) {
+        const MapImpact phase = map_impact(impact, map_impact_phase(i));
+        impact_add_phase(&figures, i, &phase);
+        if (!phase.is_ended && !phase.is_past_end) {
+            break; // nor would the others
+        }
+    }
+    return figures;
+}
+
+// The scenario's world with nothing in it but the pin.
+static void lone_pin(const Scenario *scenario, int joint, double mass, Scenario *lone)
+{
+    const Joint *from = &scenario->linkage.joints[joint];
+    *lone = *scenario;
+    lone->has_fourbar = false;
+    lone->point_count = 0;
+    lone->gravity = 0.0;
+    memset(&lone->linkage, 0, sizeof lone->linkage);
+    lone->linkage.body_count = 1;
+    lone->linkage.bodies[0] = (Body){
+        .name = "pin",
+        .mass = mass,
+        .inertia = 0.5 * mass * from->clearance.pin_radius * from->clearance.pin_radius,
+    };
+    lone->linkage.joint_count = 1;
+    lone->linkage.joints[0] = (Joint){
+        .kind = JOINT_CLEARANCE,
+        .body_a = LINKAGE_GROUND,
+        .body_b = 0,
+        .clearance = from->clearance,
+    };
+    memcpy(lone->linkage.joints[0].name, from->name, sizeof from->name);
+    lone->run.samples = 2;
+}
+
+// One run; false where it says nothing of one impact.
+static bool run_phase(const Scenario *lone, double speed, MapImpact *impact, char *message)
+{
+    Trajectory *run = run_scenario(lone, registry_solver(BACKEND_ODE), (RunWatch){0});
+    const JointExtremes *joint = &run->joints[0];
+    const bool is_single = run->is_complete && joint->impacts == 1;
+    if (!run->is_complete) {
+        snprintf(message, ERR_TEXT_SIZE, "%s", run->message);
+    } else if (!is_single) {
+        snprintf(message, ERR_TEXT_SIZE, "the pin had %zu contacts and not one", joint->impacts);
+    } else {
+        const size_t last = run->sample_count - 1;
+        const Spike *spike = &joint->spikes[0];
+        *impact = (MapImpact){
+            .restitution = -trajectory_motion(run, last, 0)->velocity.x / speed,
+            .force_max = spike->force_max,
+            .penetration_max = spike->penetration_max,
+            .duration = spike->duration_s,
+            .fallbacks = run->fallback_rows,
+            .is_ended = !trajectory_state(run, last, 0)->is_touching,
+        };
+    }
+    trajectory_destroy(run);
+    return is_single;
+}
+
+ImpactDelivered impact_deliver(const Scenario *scenario, int joint, double mass, double speed,
+                               double contact_s)
+{
+    ImpactDelivered delivered = {.figures = {.is_ended = true}};
+    Scenario lone;
+    lone_pin(scenario, joint, mass, &lone);
+    const double step_s = scenario->run.step;
+    const double play = linkage_radial_clearance(&lone.linkage.joints[0]);
+    const double room = 2.0 * FLIGHT_SHARE * play / (speed * step_s); // steps
+    const double whole = fmin(FLIGHT_STEPS, floor(room) - 1.0);
+    const double rest_s = contact_s + STEPS_BEHIND * step_s;
+    // past the wall and back again, and some steps behind, without the wall on the other side
+    if (!(room >= 2.0)) {
+        snprintf(delivered.message, sizeof delivered.message,
+                 "the pin flies %.3g of its play in one step", 1.5 / room);
+        return delivered;
+    }
+    if (!(rest_s / step_s <= STEPS_MOST)) {
+        snprintf(delivered.message, sizeof delivered.message, "it would take more than %.0e steps",
+                 STEPS_MOST);
+        return delivered;
+    }
+    for (int i = 0; i < MAP_IMPACT_PHASES; i++) {
+        const double flight_s = (whole + map_impact_phase(i)) * step_s;
+        Motion *start = &lone.linkage.bodies[0].start;
+        start->position.x = play - speed * flight_s;
+        start->velocity.x = speed;
+        lone.run.duration = flight_s + rest_s;
+        MapImpact impact;
+        if (!run_phase(&lone, speed, &impact, delivered.message)) {
+            return delivered;
+        }
+        impact_add_phase(&delivered.figures, i, &impact);
+    }
+    delivered.is_measured = true;
+    return delivered;
+}

@@ -1,0 +1,192 @@
+// With which mass, and how fast, do pin and hole of a joint meet?
+//
+// The mass along a normal n is 1 / (n W n), W the joint's block of the linkage's mobility
+// (model/response.h), the ideal joints holding and the other joints with play free. It is looked up
+// at instants spread over the run, in directions spread over half a turn: which of them contacts
+// choose is known only after a run, and changes with the setting that is sought.
+//
+// The closing speeds are those at the onsets of the reference's contacts, every one of them.
+#include "measure/mapping_joint.h"
+
+#include "base/clock.h"
+#include "base/sorted.h"
+#include "model/response.h"
+#include "run/registry.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { INSTANT_COUNT = 120, DIRECTION_COUNT = 24, MASS_COUNT = INSTANT_COUNT * DIRECTION_COUNT };
+
+typedef struct Gathering {
+    const Scenario *scenario;
+    Response response;
+    size_t play_count;
+    int play[LINKAGE_JOINT_MAX]; // numbers of the joints with play
+    bool was_touching[LINKAGE_JOINT_MAX];
+    double *masses[LINKAGE_JOINT_MAX]; // owned, as the next
+    size_t mass_count;                 // of each
+    double *speeds[LINKAGE_JOINT_MAX];
+    size_t speed_counts[LINKAGE_JOINT_MAX];
+    size_t speed_rooms[LINKAGE_JOINT_MAX];
+    double penetrations[LINKAGE_JOINT_MAX];
+    double forces[LINKAGE_JOINT_MAX];
+} Gathering;
+
+static void gathering_finish(Gathering *gathering)
+{
+    for (size_t i = 0; i < gathering->play_count; i++) {
+        free(gathering->masses[i]);
+        free(gathering->speeds[i]);
+    }
+    free(gathering);
+}
+
+static Gathering *gathering_start(const Scenario *scenario)
+{
+    Gathering *gathering = calloc(1, sizeof *gathering);
+    assert(gathering != NULL);
+    gathering->scenario = scenario;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        if (scenario->linkage.joints[i].kind == JOINT_CLEARANCE) {
+            gathering->masses[gathering->play_count] = calloc(MASS_COUNT, sizeof(double));
+            assert(gathering->masses[gathering->play_count] != NULL);
+            gathering->play[gathering->play_count++] = (int)i;
+        }
+    }
+    return gathering;
+}
+
+static void add_masses(Gathering *gathering, const Motion *motions)
+{
+    // at a place where the ideal joints lock, no mass is defined
+    if (!response_place(&gathering->response, motions)) {
+        return;
+    }
+    for (int k = 0; k < DIRECTION_COUNT; k++) {
+        const double angle = M_PI * k / DIRECTION_COUNT;
+        const Vec2 normal = {cos(angle), sin(angle)};
+        for (size_t i = 0; i < gathering->play_count; i++) {
+            gathering->masses[i][gathering->mass_count] =
+                response_mass(&gathering->response, 2 * i, normal);
+        }
+        gathering->mass_count++;
+    }
+}
+
+static void add_speed(Gathering *gathering, size_t play, double speed)
+{
+    if (gathering->speed_counts[play] == gathering->speed_rooms[play]) {
+        const size_t room = 2 * gathering->speed_rooms[play] + 64;
+        double *grown = realloc(gathering->speeds[play], room * sizeof *grown);
+        assert(grown != NULL);
+        gathering->speeds[play] = grown;
+        gathering->speed_rooms[play] = room;
+    }
+    gathering->speeds[play][gathering->speed_counts[play]++] = speed;
+}
+
+static void add_record(Gathering *gathering, const StepRecord *record)
+{
+    for (size_t i = 0; i < gathering->play_count; i++) {
+        const int joint = gathering->play[i];
+        const JointState *state = &record->joints[joint];
+        if (state->is_touching && !gathering->was_touching[joint] &&
+            record->approach[joint] > 0.0) {
+            add_speed(gathering, i, record->approach[joint]);
+        }
+        if (state->is_touching) {
+            gathering->penetrations[i] = fmax(gathering->penetrations[i], -state->gap);
+            gathering->forces[i] = fmax(gathering->forces[i], state->force);
+        }
+        gathering->was_touching[joint] = state->is_touching;
+    }
+}
+
+// Steps the reference to a time and takes every record on the way.
+static bool step_to(Gathering *gathering, void *state, double time_s, double *reached_s, Err *err)
+{
+    const Solver *solver = registry_solver(BACKEND_REFERENCE);
+    while (*reached_s < time_s) {
+        if (!solver->step(state, time_s, err)) {
+            return false;
+        }
+        const StepRecord record = solver->record(state);
+        add_record(gathering, &record);
+        *reached_s = record.end_s;
+    }
+    return true;
+}
+
+// Runs the reference from instant to instant, and from the last one to the end of the run.
+static bool gather(Gathering *gathering, RunWatch watch, Err *err)
+{
+    const Scenario *scenario = gathering->scenario;
+    const Solver *solver = registry_solver(BACKEND_REFERENCE);
+    const double duration_s = scenario_duration(scenario);
+    const double started_s = clock_now_s();
+    void *state = NULL;
+    if (!solver->open(scenario, &state, err)) {
+        return false;
+    }
+    bool is_right = true;
+    double reached_s = 0.0;
+    for (int k = 0; is_right && k < INSTANT_COUNT; k++) {
+        const double time_s = duration_s * (k + 0.5) / INSTANT_COUNT;
+        is_right = step_to(gathering, state, time_s, &reached_s, err);
+        if (is_right) {
+            Sample sample;
+            solver->observe(state, fmin(time_s, reached_s), &sample);
+            add_masses(gathering, sample.bodies);
+        }
+        if (watch.progress != NULL) {
+            watch.progress(reached_s / duration_s, clock_now_s() - started_s, watch.context);
+        }
+    }
+    is_right = is_right && step_to(gathering, state, duration_s, &reached_s, err);
+    solver->close(state);
+    return is_right;
+}
+
+static void conclude(Gathering *gathering, MappingJoint *joints)
+{
+    for (size_t i = 0; i < gathering->play_count; i++) {
+        double *masses = gathering->masses[i];
+        double *speeds = gathering->speeds[i];
+        const size_t mass_count = gathering->mass_count;
+        const size_t speed_count = gathering->speed_counts[i];
+        sorted_make(masses, mass_count);
+        joints[i] = (MappingJoint){
+            .joint = gathering->play[i],
+            .mass_least = masses[0],
+            .mass_median = sorted_median(masses, mass_count),
+            .mass_most = masses[mass_count - 1],
+            .onsets = speed_count,
+            .penetration_max = gathering->penetrations[i],
+            .force_max = gathering->forces[i],
+        };
+        if (speed_count > 0) {
+            sorted_make(speeds, speed_count);
+            joints[i].speed_median = sorted_median(speeds, speed_count);
+            joints[i].speed_most = speeds[speed_count - 1];
+        }
+    }
+}
+
+bool mapping_joint_measure(const Scenario *scenario, RunWatch watch,
+                           MappingJoint joints[LINKAGE_JOINT_MAX], size_t *count, Err *err)
+{
+    Gathering *gathering = gathering_start(scenario);
+    bool is_right = response_init(&scenario->linkage, false, &gathering->response, err) &&
+                    gather(gathering, watch, err);
+    if (is_right && gathering->mass_count == 0) {
+        is_right = err_set(err, ERR_SOLVER, "the ideal joints are redundant throughout the run");
+    }
+    if (is_right) {
+        conclude(gathering, joints);
+        *count = gathering->play_count;
+    }
+    gathering_finish(gathering);
+    return is_right;
+}

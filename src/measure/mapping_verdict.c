@@ -1,0 +1,292 @@
+// Is a setting right, what is wrong with it, and what would be right?
+//
+// Valid means: restitution, peak force and depth of an impact are each within MAPPING_VALID_SHARE
+// of what the law asks, wherever the steps fall. A mechanism does not choose where they do, so that
+// a right mean alone is not enough. The judgement is made on the prediction, before anything runs;
+// the same judgement on what was delivered is how it is tested. Every number that is judged is a
+// ratio, so that the same impact at another mass, length or time has the same verdict.
+//
+// A step is searched from two steps a contact down to ten thousand, in ratios of 2^(1/4): the
+// longest from which on every step tried over a factor of two is valid, and from there by bisection
+// towards the next longer one. Finer steps than that factor are taken to be no worse.
+//
+// POISSON rows ask for a restitution alone. Bounce beside a CFM gives (e - r) / (1 + r),
+// r = CFM m / h, so that r <= (e - e') / (1 + e') holds for the least e' allowed: there the penalty
+// and the step have a least and not a largest value.
+#include "measure/mapping_verdict.h"
+
+#include "contact/law.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+// well below what the laws of contact differ by among each other: for one impact of the paper's pin
+// the four laws of a cylinder in a hole give peaks from 972 to 1276 N
+const double MAPPING_VALID_SHARE = 0.05;
+
+// with fewer steps in Tc none need come near the peak: omega h is pi / 2 and more
+static const double COARSE_STEPS = 2.0;
+
+// what rounding may add to the speed of an undamped impact
+static const double GAIN_SHARE = 1e-6;
+
+static const double SEARCH_RATIO = 1.189207115002721; // 2^(1/4)
+static const double SEARCH_FINEST = 1e4;              // steps a contact
+enum { SEARCH_STREAK = 5, SEARCH_BISECTIONS = 12 };   // over a factor of two; to 1e-4 of the step
+
+const char *const VERDICT_NAMES[VERDICT_COUNT] = {
+    "valid",       "too-fine",    "past-end",     "unstable", "sticks", "too-coarse",
+    "gains-speed", "over-damped", "under-damped", "peak",     "depth",  "scatters",
+};
+
+// Of a number that has a unit: nothing but its own share will do.
+static bool is_off(double value, double asked)
+{
+    return !(fabs(value - asked) <= MAPPING_VALID_SHARE * asked);
+}
+
+// Of a restitution, which has no unit; one of 0 has no share of its own.
+static bool is_restitution_off(double value, double asked)
+{
+    return !(fabs(value - asked) <= MAPPING_VALID_SHARE * fmax(asked, MAPPING_VALID_SHARE));
+}
+
+static bool is_spread_off(const ImpactSpread *spread, double asked)
+{
+    return is_off(spread->least, asked) || is_off(spread->most, asked);
+}
+
+static bool is_valid(const MappingContact *contact, const ImpactFigures *figures)
+{
+    const MapImpact *asked = &contact->asked;
+    if (is_restitution_off(figures->restitution.least, asked->restitution) ||
+        is_restitution_off(figures->restitution.most, asked->restitution)) {
+        return false;
+    }
+    return contact->scenario.contact.model == CONTACT_POISSON ||
+           (!is_spread_off(&figures->force_max, asked->force_max) &&
+            !is_spread_off(&figures->penetration_max, asked->penetration_max));
+}
+
+VerdictKind verdict_judge(const MappingContact *contact, OdeMap map, double step_s,
+                          const ImpactFigures *figures)
+{
+    const MapImpact *asked = &contact->asked;
+    const bool is_poisson = contact->scenario.contact.model == CONTACT_POISSON;
+    if (figures->is_too_fine) {
+        return VERDICT_TOO_FINE;
+    }
+    if (figures->is_past_end) {
+        return VERDICT_PAST_END;
+    }
+    if (!figures->is_ended) {
+        return VERDICT_STICKS;
+    }
+    if (figures->fallbacks > 0) {
+        return VERDICT_UNSTABLE;
+    }
+    if (is_valid(contact, figures)) {
+        return VERDICT_VALID;
+    }
+    if (!is_poisson && map != ODE_MAP_IMPULSE && contact->half_period_s < COARSE_STEPS * step_s) {
+        return VERDICT_TOO_COARSE;
+    }
+    const double restitution = figures->restitution.mean;
+    if (figures->restitution.most > 1.0 + GAIN_SHARE &&
+        is_restitution_off(figures->restitution.most, asked->restitution)) {
+        return VERDICT_GAINS;
+    }
+    if (is_restitution_off(restitution, asked->restitution)) {
+        return restitution < asked->restitution ? VERDICT_OVER_DAMPED : VERDICT_UNDER_DAMPED;
+    }
+    if (!is_poisson && is_off(figures->force_max.mean, asked->force_max)) {
+        return VERDICT_PEAK;
+    }
+    if (!is_poisson && is_off(figures->penetration_max.mean, asked->penetration_max)) {
+        return VERDICT_DEPTH;
+    }
+    return VERDICT_SCATTERS;
+}
+
+static bool is_step_valid(const MappingContact *contact, OdeMap map, double step_s)
+{
+    const ImpactFigures figures = mapping_predict(contact, map, step_s);
+    return verdict_judge(contact, map, step_s, &figures) == VERDICT_VALID;
+}
+
+// To three digits, so that what is printed is as valid as what was found.
+static double rounded(double value, double (*round_to)(double))
+{
+    const double unit = pow(10.0, floor(log10(value)) - 2.0);
+    return round_to(value / unit) * unit;
+}
+
+static double find_step(const MappingContact *contact, OdeMap map)
+{
+    double step_s = contact->half_period_s / COARSE_STEPS;
+    double first_s = 0.0; // of the streak of valid steps
+    int streak = 0;
+    while (streak < SEARCH_STREAK) {
+        if (contact->half_period_s > SEARCH_FINEST * step_s) {
+            return 0.0;
+        }
+        if (is_step_valid(contact, map, step_s)) {
+            first_s = streak == 0 ? step_s : first_s;
+            streak++;
+        } else {
+            streak = 0;
+        }
+        step_s /= SEARCH_RATIO;
+    }
+    double valid_s = first_s;
+    double wrong_s = first_s * SEARCH_RATIO;
+    for (int i = 0; i < SEARCH_BISECTIONS; i++) {
+        const double middle_s = sqrt(valid_s * wrong_s);
+        *(is_step_valid(contact, map, middle_s) ? &valid_s : &wrong_s) = middle_s;
+    }
+    return rounded(valid_s, floor);
+}
+
+void verdict_find_steps(MappingContact *contact)
+{
+    if (contact->scenario.contact.model == CONTACT_POISSON) {
+        return;
+    }
+    for (int map = ODE_MAP_TEXTBOOK; map < ODE_MAP_IMPULSE; map++) {
+        contact->largest_s[map] = find_step(contact, (OdeMap)map);
+    }
+    contact->largest_s[ODE_MAP_IMPULSE] = INFINITY;
+}
+
+double verdict_least_penalty(const MappingContact *contact, double step_s)
+{
+    const double asked = contact->asked.restitution;
+    const double least = (1.0 - MAPPING_VALID_SHARE) * asked;
+    const double ratio = (asked - least) / (1.0 + least); // r = m / (p h)
+    return rounded(contact->impact.mass / (ratio * step_s), ceil);
+}
+
+typedef struct Words {
+    char *text;
+    size_t length;
+} Words;
+
+__attribute__((format(printf, 2, 3))) static void add(Words *words, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(words->text + words->length, VERDICT_TEXT_SIZE - words->length,
+                                 format, arguments);
+    va_end(arguments);
+    if (length > 0) {
+        words->length += (size_t)length;
+        words->length = words->length < VERDICT_TEXT_SIZE ? words->length : VERDICT_TEXT_SIZE - 1;
+    }
+}
+
+static double law_end(const MappingContact *contact)
+{
+    const int joint = contact->joint.joint;
+    return law_depth_max(&contact->impact.law,
+                         contact->scenario.linkage.joints[joint].clearance.pin_radius);
+}
+
+static void say_fault(const MappingContact *contact, const MappingRow *row, Words *words)
+{
+    const ImpactFigures *figures = &row->predicted;
+    const MapImpact *asked = &contact->asked;
+    switch (row->verdict) {
+    case VERDICT_UNSTABLE:
+        add(words,
+            "unstable: omega h reaches %.3g where the limit is %.3g, at a depth of %.3g um; the "
+            "textbook's rows stand in",
+            figures->omega_h_max, map_get(row->map)->stability_limit, 1e6 * figures->omega_h_depth);
+        return;
+    case VERDICT_TOO_FINE:
+        add(words, "too fine to try: the contact takes %.2g steps", row->steps_a_contact);
+        return;
+    case VERDICT_PAST_END:
+        add(words, "the pin goes past the end of the law: %.3g um, and it holds to %.3g um",
+            1e6 * figures->past_end_depth, 1e6 * law_end(contact));
+        return;
+    case VERDICT_STICKS:
+        add(words, "sticks: the contact does not end");
+        return;
+    case VERDICT_TOO_COARSE:
+        add(words, "too coarse: the contact takes %.2g steps", row->steps_a_contact);
+        return;
+    case VERDICT_GAINS:
+        add(words, "gains speed: asked %.3g, delivers up to %.3g", asked->restitution,
+            figures->restitution.most);
+        return;
+    case VERDICT_OVER_DAMPED:
+    case VERDICT_UNDER_DAMPED:
+        add(words, "%s: asked %.3g, delivers %.3g", VERDICT_NAMES[row->verdict], asked->restitution,
+            figures->restitution.mean);
+        return;
+    case VERDICT_PEAK:
+        add(words, "sees the peak only to %.0f %%",
+            100.0 * figures->force_max.mean / asked->force_max);
+        return;
+    case VERDICT_DEPTH:
+        add(words, "sees the depth only to %.0f %%",
+            100.0 * figures->penetration_max.mean / asked->penetration_max);
+        return;
+    default:
+        add(words,
+            "right in the mean, but scatters: restitution %.3g to %.3g, peak %.0f to %.0f %%",
+            figures->restitution.least, figures->restitution.most,
+            100.0 * figures->force_max.least / asked->force_max,
+            100.0 * figures->force_max.most / asked->force_max);
+        return;
+    }
+}
+
+// Another map that is valid at the row's step, plain stepping first; the row's own where none is.
+static OdeMap other_map(const MappingContact *contact, const MappingRow *row)
+{
+    static const OdeMap CHOICES[] = {ODE_MAP_CORRECTED, ODE_MAP_MIDPOINT, ODE_MAP_EXACT,
+                                     ODE_MAP_TEXTBOOK, ODE_MAP_IMPULSE};
+    for (size_t i = 0; i < sizeof CHOICES / sizeof *CHOICES; i++) {
+        if (CHOICES[i] != row->map && row->step_s <= contact->largest_s[CHOICES[i]]) {
+            return CHOICES[i];
+        }
+    }
+    return row->map;
+}
+
+static void say_advice(const MappingContact *contact, const MappingRow *row, Words *words)
+{
+    if (contact->scenario.contact.model == CONTACT_POISSON) {
+        const double least = verdict_least_penalty(contact, row->step_s);
+        add(words, "; use a penalty >= %.3g N s/mm, or h >= %.3g us", 1e-3 * least,
+            1e6 * row->step_s * least / contact->scenario.contact.penalty);
+        return;
+    }
+    const OdeMap other = other_map(contact, row);
+    const double largest_s = contact->largest_s[row->map];
+    if (row->verdict == VERDICT_TOO_FINE) {
+        if (largest_s > 0.0) {
+            add(words, "; h = %.3g us is enough", 1e6 * largest_s);
+        }
+        return;
+    }
+    if (other != row->map) {
+        add(words, "; use %s", OPTIONS_ODE_MAPS[other]);
+    }
+    if (largest_s > 0.0 && largest_s < row->step_s) {
+        add(words, "%s h <= %.3g us", other != row->map ? ", or" : "; use", 1e6 * largest_s);
+    }
+}
+
+void verdict_describe(const MappingContact *contact, MappingRow *row)
+{
+    Words words = {row->words, 0};
+    if (row->verdict == VERDICT_VALID) {
+        add(&words, "valid");
+        return;
+    }
+    say_fault(contact, row, &words);
+    say_advice(contact, row, &words);
+}

@@ -1,0 +1,263 @@
+// Which ways are there to run a scenario?
+#include "measure/scheme.h"
+
+#include "base/text.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { ENTRY_SIZE = 256, CHOSEN_COUNT = 4, LATER_MAX = CHOSEN_COUNT + BACKEND_COUNT };
+
+static int word_count(const char *const *words)
+{
+    int count = 0;
+    while (words[count] != NULL) {
+        count++;
+    }
+    return count;
+}
+
+// First and last word of a choice: one of them only where it makes no difference.
+typedef struct Choice {
+    int first;
+    int last;
+} Choice;
+
+static Choice choose(const char *const *words, bool matters, int as_it_is)
+{
+    return matters ? (Choice){0, word_count(words) - 1} : (Choice){as_it_is, as_it_is};
+}
+
+static void name_scheme(Scheme *scheme, bool has_map, bool has_collider)
+{
+    snprintf(scheme->name, sizeof scheme->name, "%s/%s%s%s%s%s",
+             OPTIONS_ODE_SOLVERS[scheme->solver], OPTIONS_ODE_STEPPINGS[scheme->stepping],
+             has_map ? "/" : "", has_map ? OPTIONS_ODE_MAPS[scheme->map] : "",
+             has_collider ? "/" : "", has_collider ? OPTIONS_ODE_COLLIDERS[scheme->collider] : "");
+}
+
+// Whether two choices go together in a scenario.
+static bool go_together(OdeStepping stepping, OdeMap map, bool has_play, bool has_map)
+{
+    return !(has_play && stepping == ODE_EXTRAPOLATED) &&
+           !(has_map && map == ODE_MAP_IMPULSE && stepping != ODE_STAGGERED);
+}
+
+// Those that stand for their kind: the textbook's use of ODE, the best of plain and of staggered
+// stepping, and the quick solver at its plainest and at its best.
+static bool is_usual(const Scheme *scheme, bool has_map)
+{
+    if (!has_map) {
+        return true;
+    }
+    const bool is_plain = scheme->stepping == ODE_PLAIN;
+    const bool is_first = is_plain && scheme->map == ODE_MAP_TEXTBOOK;
+    const bool is_best = !is_plain && scheme->map == ODE_MAP_IMPULSE;
+    const bool is_direct = scheme->solver == ODE_DIRECT;
+    return is_first || is_best || (is_direct && is_plain && scheme->map == ODE_MAP_CORRECTED) ||
+           (is_direct && !is_plain && scheme->map == ODE_MAP_MIDPOINT);
+}
+
+static void add_ode(const Scheme *scheme, bool has_map, bool has_collider, Scheme *schemes,
+                    size_t *count)
+{
+    assert(*count + LATER_MAX < SCHEME_MAX);
+    Scheme *added = &schemes[(*count)++];
+    *added = *scheme;
+    added->is_usual = is_usual(scheme, has_map);
+    name_scheme(added, has_map, has_collider);
+}
+
+// Steps that ODE chooses for these errors.
+static void add_chosen(const Scenario *scenario, Scheme *schemes, size_t *count)
+{
+    if (scenario_has_clearance(scenario) && scenario->contact.model == CONTACT_POISSON) {
+        return;
+    }
+    for (int digits = 3; digits < 3 + CHOSEN_COUNT; digits++) {
+        Scheme *added = &schemes[(*count)++];
+        *added = (Scheme){.backend = BACKEND_ODE, .tolerance = pow(10.0, -digits)};
+        snprintf(added->name, sizeof added->name, "auto/1e-%d", digits);
+    }
+}
+
+static size_t list_ode(const Scenario *scenario, Scheme *schemes)
+{
+    const OdeOptions *ode = &scenario->ode;
+    const bool has_play = scenario_has_clearance(scenario);
+    const bool has_map = has_play && scenario->contact.model != CONTACT_POISSON;
+    const Choice maps = choose(OPTIONS_ODE_MAPS, has_map, (int)ode->map);
+    const Choice colliders = choose(OPTIONS_ODE_COLLIDERS, has_play, (int)ode->collider);
+    const int solvers = word_count(OPTIONS_ODE_SOLVERS);
+    const int steppings = word_count(OPTIONS_ODE_STEPPINGS);
+    size_t count = 0;
+    for (int solver = 0; solver < solvers; solver++) {
+        for (int stepping = 0; stepping < steppings; stepping++) {
+            for (int map = maps.first; map <= maps.last; map++) {
+                for (int collider = colliders.first; collider <= colliders.last; collider++) {
+                    if (go_together((OdeStepping)stepping, (OdeMap)map, has_play, has_map)) {
+                        const Scheme scheme = {.backend = BACKEND_ODE,
+                                               .solver = (OdeSolver)solver,
+                                               .stepping = (OdeStepping)stepping,
+                                               .map = (OdeMap)map,
+                                               .collider = (OdeCollider)collider};
+                        add_ode(&scheme, has_map, colliders.last > colliders.first, schemes,
+                                &count);
+                    }
+                }
+            }
+        }
+    }
+    return count;
+}
+
+static void add_backend(BackendKind backend, Scheme *schemes, size_t *count)
+{
+    schemes[*count] = (Scheme){.backend = backend};
+    text_copy(schemes[*count].name, SCHEME_NAME_SIZE, OPTIONS_BACKENDS[backend]);
+    (*count)++;
+}
+
+bool scheme_check(const Scenario *scenario, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const int driven = linkage_driven_body(linkage);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if ((int)i != driven) {
+            return true;
+        }
+    }
+    return err_set(err, ERR_CASE,
+                   "there is nothing to compare: the drive prescribes how '%s' moves, and there is "
+                   "no other body whose motion could be in error",
+                   linkage->bodies[driven].name);
+}
+
+size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX])
+{
+    size_t count = list_ode(scenario, schemes);
+    add_chosen(scenario, schemes, &count);
+    add_backend(BACKEND_REFERENCE, schemes, &count);
+    if (scenario->has_fourbar && !scenario_has_clearance(scenario)) {
+        add_backend(BACKEND_ANALYTIC, schemes, &count);
+    }
+    return count;
+}
+
+bool scheme_is_chosen(const Scheme *scheme)
+{
+    return scheme->backend == BACKEND_ODE && scheme->tolerance > 0.0;
+}
+
+bool scheme_has_step(const Scheme *scheme)
+{
+    return scheme->backend == BACKEND_ODE && scheme->tolerance == 0.0;
+}
+
+void scheme_apply(const Scheme *scheme, double step_s, Scenario *scenario)
+{
+    if (!scheme_has_step(scheme)) {
+        if (scheme->tolerance > 0.0) {
+            scenario->run.step = 0.0;
+            scenario->run.tolerance = scheme->tolerance;
+        }
+        return;
+    }
+    scenario->run.step = step_s;
+    scenario->ode.solver = scheme->solver;
+    scenario->ode.stepping = scheme->stepping;
+    scenario->ode.map = scheme->map;
+    scenario->ode.collider = scheme->collider;
+}
+
+// Takes the next part of a text up to one of the separators; false where there is none.
+static bool next_part(const char **text, const char *separators, char part[ENTRY_SIZE])
+{
+    const char *start = *text + strspn(*text, separators);
+    const size_t length = strcspn(start, separators);
+    snprintf(part, ENTRY_SIZE, "%.*s", (int)length, start);
+    *text = start + length;
+    return length > 0;
+}
+
+static bool has_word(const Scheme *scheme, const char *word)
+{
+    const char *rest = scheme->name;
+    char part[ENTRY_SIZE];
+    while (next_part(&rest, "/", part)) {
+        if (strcmp(part, word) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool matches(const Scheme *scheme, const char *entry)
+{
+    char word[ENTRY_SIZE];
+    bool is_match = true;
+    if (strcmp(entry, "all") == 0) {
+        return true;
+    }
+    while (next_part(&entry, "/", word)) {
+        is_match = is_match && has_word(scheme, word);
+    }
+    return is_match;
+}
+
+static bool mark_entry(const char *entry, const Scheme *schemes, size_t count, bool *is_kept,
+                       Err *err)
+{
+    const char *names[SCHEME_MAX];
+    size_t named = 0;
+    size_t found = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (schemes[i].backend == BACKEND_ODE) {
+            names[named++] = schemes[i].name;
+            is_kept[i] = is_kept[i] || matches(&schemes[i], entry);
+            found += matches(&schemes[i], entry) ? 1 : 0;
+        }
+    }
+    if (found > 0) {
+        return true;
+    }
+    const char *nearest = text_nearest(entry, names, named);
+    return err_set(err, ERR_USAGE, "no scheme of this case is '%s'; %s '%s'", entry,
+                   nearest != NULL ? "did you mean" : "one is", nearest ? nearest : names[0]);
+}
+
+void scheme_keep_usual(Scheme *schemes, size_t *count)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < *count; i++) {
+        if (schemes[i].is_usual || !scheme_has_step(&schemes[i])) {
+            schemes[kept++] = schemes[i];
+        }
+    }
+    *count = kept;
+}
+
+bool scheme_filter(const char *list, Scheme *schemes, size_t *count, Err *err)
+{
+    bool is_kept[SCHEME_MAX] = {false};
+    char entry[ENTRY_SIZE];
+    size_t entries = 0;
+    for (; next_part(&list, ", ", entry); entries++) {
+        if (!mark_entry(entry, schemes, *count, is_kept, err)) {
+            return false;
+        }
+    }
+    if (entries == 0) {
+        return err_set(err, ERR_USAGE, "the list of schemes is empty");
+    }
+    size_t kept = 0;
+    for (size_t i = 0; i < *count; i++) {
+        if (is_kept[i] || schemes[i].backend != BACKEND_ODE) {
+            schemes[kept++] = schemes[i];
+        }
+    }
+    *count = kept;
+    return true;
+}

@@ -1,0 +1,92 @@
+// Which step is to be tried next?
+//
+// One that is a little finer. A trial ends at the first sample that is above the tolerance, which
+// is mostly soon: on random mechanisms a walk in small steps comes to the coarsest step that will
+// do at the cost of little more than that one run. To jump ahead as the order says takes fewer
+// trials and more world steps, for errors do not fall as the order says: grazing impacts come and
+// go.
+#include "measure/step_choice.h"
+
+#include "contact/law.h"
+#include "model/response.h"
+
+#include <math.h>
+
+// the next step over the last one, where that missed at once and where it missed at the end
+static const double FINER_EARLY = 0.8;
+static const double FINER_LATE = 0.7;
+
+// a trial that failed says nothing of the step that will not
+static const double AFTER_FAILURE = 0.5;
+
+// The first step is coarser than most that will do: a trial of it costs next to nothing.
+static const double FIRST_STEPS = 20.0;    // of the drive's turn, or of a run without a drive
+static const double FIRST_CONTACTS = 64.0; // half-periods of a contact, if that is less
+static const double LEAST_STEPS = 10.0;    // of any run
+
+// rad, of the contacts' own steps: the coarsest, kept down to this share of the first world step.
+// Below it the phase falls faster than the root of the world step, so that the contacts' errors, of
+// order 4, fall faster than those of the world step, of order 2, and slower than the world step,
+// for they cost evaluations.
+static const double FIRST_PHASE = 0.2;
+static const double FIRST_PHASE_UNTIL = 1.0 / 16.0;
+static const double PHASE_POWER = 0.75;
+static const double LEAST_PHASE = 1e-3;
+
+// The half-period of the stiffest contact at a tenth of its clearance, s.
+static double contact_time(const Scenario *scenario)
+{
+    static const double DEPTH = 0.1;
+    const Linkage *linkage = &scenario->linkage;
+    Motion motions[LINKAGE_BODY_MAX];
+    Response response;
+    Err unused = {ERR_NONE, ""};
+    linkage_start(linkage, motions);
+    if (!response_init(linkage, false, &response, &unused) || !response_place(&response, motions)) {
+        return INFINITY; // opening the world says what is wrong
+    }
+    double shortest_s = INFINITY;
+    for (size_t row = 0; row < response_play_rows(&response); row += 2) {
+        const Joint *joint = &linkage->joints[response_joint(&response, row)];
+        ForceLaw law;
+        if (law_of_joint(scenario, joint, &law, &unused)) {
+            const double mass = fmin(response_mass(&response, row, (Vec2){1.0, 0.0}),
+                                     response_mass(&response, row, (Vec2){0.0, 1.0}));
+            const double depth =
+                fmin(DEPTH * linkage_radial_clearance(joint), 0.5 * force_law_depth_limit(&law));
+            shortest_s = fmin(shortest_s, M_PI * sqrt(mass / force_law_tangent(&law, depth)));
+        }
+    }
+    return shortest_s;
+}
+
+StepChoice step_choice_begin(const Scenario *scenario)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const double duration_s = scenario_duration(scenario);
+    const double turn_s = linkage->driver.is_present ? linkage_period(linkage) : duration_s;
+    const double first_s = fmin(turn_s / FIRST_STEPS, duration_s / LEAST_STEPS);
+    return (StepChoice){
+        .scenario = scenario,
+        .first_step_s = fmin(first_s, FIRST_CONTACTS * contact_time(scenario)),
+    };
+}
+
+Scenario step_choice_scenario(const StepChoice *choice, double step_s)
+{
+    Scenario trial = scenario_with_step(choice->scenario, step_s);
+    const double phase_step_s = FIRST_PHASE_UNTIL * choice->first_step_s;
+    trial.ode.contact_phase =
+        fmax(FIRST_PHASE * fmin(1.0, pow(step_s / phase_step_s, PHASE_POWER)), LEAST_PHASE);
+    return trial;
+}
+
+double step_choice_finer(double step_s, double share)
+{
+    return step_s * (FINER_EARLY + (FINER_LATE - FINER_EARLY) * fmin(1.0, share));
+}
+
+double step_choice_after_failure(double step_s)
+{
+    return AFTER_FAILURE * step_s;
+}

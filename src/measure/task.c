@@ -1,0 +1,88 @@
+// What does one child of a comparison do?
+#include "measure/task.h"
+
+#include "base/clock.h"
+#include "base/shorten.h"
+#include "measure/backend_run.h"
+#include "run/registry.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const RunWatch NOBODY = {NULL, NULL};
+
+Task task_make(const Ladder *ladder, const Scenario *scenario, LadderRun run, const Truth *truth)
+{
+    const LadderPoint *point = &ladder->points[run.point];
+    const Scheme *scheme = &ladder->schemes[point->scheme];
+    Task task = {
+        .scenario = *scenario,
+        .backend = scheme->backend,
+        .run = run,
+        .truth = truth == NULL || truth->trajectory == NULL ? NULL : truth,
+    };
+    scheme_apply(scheme, point->step_s, &task.scenario);
+    return task;
+}
+
+void task_measure(const void *context, void *result)
+{
+    const Task *task = context;
+    LadderRun *run = result;
+    *run = task->run;
+    // what a step is chosen against is made once, whatever it is used for: no part of the time
+    Truth own = {.trajectory = NULL};
+    const Truth *truth = task->truth;
+    if (truth == NULL && backend_run_is_chosen(&task->scenario, task->backend)) {
+        own = truth_make(&task->scenario, NOBODY);
+        truth = &own;
+    }
+    const double started_s = clock_processor_s();
+    Trajectory *trajectory =
+        backend_run(&task->scenario, task->backend, truth, (ChosenWatch){.begin = NULL}, NULL);
+    run->processor_s = clock_processor_s() - started_s;
+    run->is_complete = trajectory->is_complete;
+    shorten_copy(run->message, sizeof run->message, trajectory->message);
+    run->steps = trajectory->steps;
+    run->evaluations = trajectory->evaluations;
+    run->wall_s = trajectory->wall_s;
+    run->hash = trajectory->hash;
+    if (run->kind == LADDER_ERROR && trajectory->is_complete) {
+        const double horizon_s = truth->is_limited ? truth->horizon_s : INFINITY;
+        run->error = error_against(trajectory, truth->trajectory, horizon_s);
+        run->error.against = NULL;
+    }
+    truth_finish(&own);
+    trajectory_destroy(trajectory);
+}
+
+void task_certify(const void *context, void *packed)
+{
+    const Task *task = context;
+    Truth truth = truth_make(&task->scenario, NOBODY);
+    truth_pack_write(&truth, packed);
+    truth_finish(&truth);
+}
+
+void task_spread(const void *context, void *result)
+{
+    const Task *task = context;
+    const Solver *solver = registry_solver(task->backend);
+    if (!backend_run_is_chosen(&task->scenario, task->backend)) {
+        ensemble_run(&task->scenario, solver, NOBODY, result);
+        return;
+    }
+    // a step that was chosen once is good for starts beside this one
+    Ensemble *ensemble = result;
+    Trajectory *run =
+        chosen_run_make(&task->scenario, task->truth, (ChosenWatch){.begin = NULL}, NULL);
+    if (run->is_complete) {
+        const Scenario scenario = chosen_run_scenario(&task->scenario, run->step_s);
+        ensemble_run(&scenario, solver, NOBODY, ensemble);
+    } else {
+        *ensemble = (Ensemble){.failed = ENSEMBLE_MEMBERS};
+        memcpy(ensemble->message, run->message, sizeof ensemble->message);
+    }
+    trajectory_destroy(run);
+}

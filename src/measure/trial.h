@@ -1,0 +1,27 @@
+// One run of ODE held against the truth as it goes, for a step that is to be chosen.
+#pragma once
+
+#include "measure/truth_window.h"
+
+// What a trial is held against, and when it is not worth running on.
+typedef struct TrialRule {
+    const Truth *truth;
+    TruthWindow window; // in which errors count
+    double tolerance;   // 1, of omega
+    bool is_last;       // it is run to its end, though it misses the tolerance
+} TrialRule;
+
+typedef struct Trial {
+    double step_s;
+    Trajectory *run;   // owned; incomplete where it failed or was given up
+    bool is_given_up;  // it missed the tolerance
+    double held_error; // 1, largest while it held the tolerance
+    double held_s;     // the last sample up to which it did; 0: not even the first
+    double error;      // 1, at the sample after that; 0 where there is none
+    bool holds;        // the tolerance, on the whole window
+} Trial;
+
+// Runs the scenario, which has its step, and looks at every sample of it. The probe may be NULL.
+Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatch watch,
+                 const RunProbe *probe);
+void trial_finish(Trial *trial);

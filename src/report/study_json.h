@@ -1,8 +1,0 @@
-// What `jointplay study --json` prints.
-#pragma once
-
-#include "report/study_report.h"
-
-#include <jansson.h>
-
-json_t *study_json_build(const StudyReport *report);

@@ -1,0 +1,313 @@
+// How does a panel with axes and lines become SVG?
+#include "write/plot.h"
+
+#include "write/xml.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+static const double TICK_LENGTH = 5.0; // pixels, as everything about the look of the picture
+static const double COLUMN = 0.5;      // what is nearer than this cannot be told apart
+
+static const double LEAST_STROKE = 0.1; // a shorter one is a point
+static const double MARK_SIZE = 7.0;
+
+static const char STYLE_SHEET[] =
+    "text{font-family:'DejaVu Sans','Liberation Sans',Arial,sans-serif;font-size:12px;"
+    "fill:#222}"
+    ".title{font-size:17px;font-weight:bold}.panel{font-size:14px;font-weight:bold}"
+    ".note{fill:#555}.grid{stroke:#e4e4e4}.zero{stroke:#b0b0b0}.frame{stroke:#444;fill:none}"
+    ".line{fill:none;stroke-linejoin:round}";
+
+void plot_begin(Text *svg, double width, double height, const char *title)
+{
+    text_append(svg,
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%g\" height=\"%g\" "
+                "viewBox=\"0 0 %g %g\">\n<title>",
+                width, height, width, height);
+    xml_append(title, svg);
+    text_append(svg, "</title>\n<style>%s</style>\n", STYLE_SHEET);
+    text_append(svg, "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n");
+}
+
+void plot_end(Text *svg)
+{
+    text_append(svg, "</svg>\n");
+}
+
+void plot_text(Text *svg, double x, double y, const char *anchor, const char *css_class,
+               const char *text)
+{
+    text_append(svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" class=\"%s\">", x, y, anchor,
+                css_class);
+    xml_append(text, svg);
+    text_append(svg, "</text>\n");
+}
+
+static void append_stroke(Text *svg, PlotStyle style)
+{
+    text_append(svg, "stroke=\"%s\" stroke-width=\"%g\" stroke-opacity=\"%g\"", style.colour,
+                style.width, style.opacity);
+    if (style.dash != NULL) {
+        text_append(svg, " stroke-dasharray=\"%s\"", style.dash);
+    }
+}
+
+void plot_sample(Text *svg, double x, double y, PlotStyle style)
+{
+    text_append(svg, "<path class=\"line\" d=\"M%.1f %.1fh30\" ", x, y);
+    append_stroke(svg, style);
+    text_append(svg, "/>\n");
+}
+
+double plot_x(const PlotPanel *panel, double x)
+{
+    return panel->left + panel->width * axis_share(&panel->x, x);
+}
+
+double plot_y(const PlotPanel *panel, double y)
+{
+    return panel->top + panel->height * (1.0 - axis_share(&panel->y, y));
+}
+
+// An axis of many decades is labelled in powers of ten, any other in plain numbers.
+static void append_tick_label(Text *svg, double value, const Axis *axis)
+{
+    const bool has_powers = axis->scale == AXIS_SYMLOG ||
+                            (axis->scale == AXIS_LOG && (axis->low < 0.009 || axis->high > 2e4));
+    if (has_powers && value != 0.0) {
+        text_append(svg, "%s10<tspan dy=\"-5\" font-size=\"9\">%.0f</tspan>",
+                    value < 0.0 ? "-" : "", round(log10(fabs(value))));
+    } else {
+        text_append(svg, fabs(value) < 1e6 ? "%.6g" : "%.3g", value);
+    }
+}
+
+static void draw_x_axis(const PlotPanel *panel)
+{
+    Text *svg = panel->svg;
+    double ticks[AXIS_TICK_MAX];
+    const size_t count = axis_ticks(&panel->x, ticks);
+    const double bottom = panel->top + panel->height;
+    for (size_t i = 0; i < count; i++) {
+        const double x = plot_x(panel, ticks[i]);
+        text_append(svg, "<path class=\"%s\" d=\"M%.1f %.1fV%.1f\"/>",
+                    ticks[i] == 0.0 && panel->x.low < 0.0 ? "zero" : "grid", x, panel->top, bottom);
+        text_append(svg, "<path class=\"frame\" d=\"M%.1f %.1fv%g\"/>", x, bottom, TICK_LENGTH);
+        text_append(svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">", x,
+                    bottom + TICK_LENGTH + 13.0);
+        append_tick_label(svg, ticks[i], &panel->x);
+        text_append(svg, "</text>\n");
+    }
+    plot_text(svg, panel->left + 0.5 * panel->width, bottom + 37.0, "middle", "", panel->x.title);
+}
+
+static void draw_y_axis(const PlotPanel *panel)
+{
+    Text *svg = panel->svg;
+    double ticks[AXIS_TICK_MAX];
+    const size_t count = axis_ticks(&panel->y, ticks);
+    for (size_t i = 0; i < count; i++) {
+        const double y = plot_y(panel, ticks[i]);
+        text_append(svg, "<path class=\"%s\" d=\"M%.1f %.1fh%.1f\"/>",
+                    ticks[i] == 0.0 ? "zero" : "grid", panel->left, y, panel->width);
+        text_append(svg, "<path class=\"frame\" d=\"M%.1f %.1fh%g\"/>", panel->left, y,
+                    -TICK_LENGTH);
+        text_append(svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">",
+                    panel->left - TICK_LENGTH - 3.0, y + 4.0);
+        append_tick_label(svg, ticks[i], &panel->y);
+        text_append(svg, "</text>\n");
+    }
+    const double x = panel->left - 58.0;
+    const double y = panel->top + 0.5 * panel->height;
+    text_append(svg, "<g transform=\"rotate(-90 %.1f %.1f)\">", x, y);
+    plot_text(svg, x, y, "middle", "", panel->y.title);
+    text_append(svg, "</g>\n");
+}
+
+// Where the fine lines of an axis stand; nothing of an axis that is not logarithmic.
+static void append_fine_lines(const PlotPanel *panel, const Axis *axis, bool is_x)
+{
+    if (axis->scale != AXIS_LOG) {
+        return;
+    }
+    for (double power = pow(10.0, floor(log10(axis->low))); power < axis->high; power *= 10.0) {
+        for (int i = 2; i < 10; i++) {
+            const double value = i * power;
+            if (value > axis->low && value < axis->high && is_x) {
+                text_append(panel->svg, "M%.1f %.1fv%.1f", plot_x(panel, value), panel->top,
+                            panel->height);
+            } else if (value > axis->low && value < axis->high) {
+                text_append(panel->svg, "M%.1f %.1fh%.1f", panel->left, plot_y(panel, value),
+                            panel->width);
+            }
+        }
+    }
+}
+
+void plot_fine_grid(const PlotPanel *panel)
+{
+    text_append(panel->svg, "<path stroke=\"#f2f2f2\" fill=\"none\" d=\"");
+    append_fine_lines(panel, &panel->x, true);
+    append_fine_lines(panel, &panel->y, false);
+    text_append(panel->svg, "\"/>\n");
+}
+
+void plot_enter(const PlotPanel *panel)
+{
+    Text *svg = panel->svg;
+    draw_x_axis(panel);
+    draw_y_axis(panel);
+    plot_text(svg, panel->left, panel->top - 10.0, "start", "panel", panel->title);
+    // the cut is named after its place, which no two panels share
+    text_append(svg,
+                "<clipPath id=\"cut-%.0f-%.0f\"><rect x=\"%g\" y=\"%g\" width=\"%g\" "
+                "height=\"%g\"/></clipPath>\n<g clip-path=\"url(#cut-%.0f-%.0f)\">\n",
+                panel->left, panel->top, panel->left, panel->top, panel->width, panel->height,
+                panel->left, panel->top);
+}
+
+void plot_leave(const PlotPanel *panel)
+{
+    text_append(panel->svg,
+                "</g>\n<rect class=\"frame\" x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\"/>\n",
+                panel->left, panel->top, panel->width, panel->height);
+}
+
+// Points that fall into one column of the picture, drawn together: a line through the first, the
+// lowest, the highest and the last of them looks the same as one through all.
+typedef struct Pile {
+    double column;
+    size_t count;
+    double low;
+    double high;
+    double last;
+} Pile;
+
+static void append_pile(Text *svg, const Pile *pile)
+{
+    if (pile->count > 2 && pile->high - pile->low > COLUMN) {
+        text_append(svg, "V%.1fV%.1f", pile->low, pile->high);
+    }
+    if (pile->count > 1) {
+        text_append(svg, "V%.1f", pile->last);
+    }
+}
+
+void plot_line(const PlotPanel *panel, size_t count, const double *x, const double *y,
+               PlotStyle style)
+{
+    Text *svg = panel->svg;
+    text_append(svg, "<path class=\"line\" d=\"");
+    Pile pile = {0};
+    for (size_t i = 0; i < count; i++) {
+        const double at_x = plot_x(panel, x[i]);
+        const double at_y = plot_y(panel, y[i]);
+        if (pile.count > 0 && floor(at_x / COLUMN) == pile.column) {
+            pile.count++;
+            pile.low = fmin(pile.low, at_y);
+            pile.high = fmax(pile.high, at_y);
+            pile.last = at_y;
+            continue;
+        }
+        append_pile(svg, &pile);
+        text_append(svg, "%c%.1f %.1f", i == 0 ? 'M' : 'L', at_x, at_y);
+        pile = (Pile){floor(at_x / COLUMN), 1, at_y, at_y, at_y};
+    }
+    append_pile(svg, &pile);
+    text_append(svg, "\" ");
+    append_stroke(svg, style);
+    text_append(svg, "/>\n");
+}
+
+static void append_title(Text *svg, const char *title)
+{
+    text_append(svg, "><title>");
+    xml_append(title, svg);
+    text_append(svg, "</title></path>\n");
+}
+
+// One column of a band, from the end that is nearer to where the line is.
+static double append_column(Text *svg, bool is_first, double x, double low, double high, double at)
+{
+    const double near = fabs(at - low) <= fabs(at - high) ? low : high;
+    const double far = near == low ? high : low;
+    text_append(svg, "%c%.1f %.1f", is_first ? 'M' : 'L', x, near);
+    if (fabs(far - near) >= LEAST_STROKE) {
+        text_append(svg, "V%.1f", far);
+        return far;
+    }
+    return near;
+}
+
+void plot_band(const PlotPanel *panel, size_t count, const double *x, const double *least,
+               const double *most, const char *title, PlotStyle style)
+{
+    Text *svg = panel->svg;
+    text_append(svg, "<path class=\"line\" d=\"");
+    double at = 0.0;
+    bool is_first = true;
+    for (size_t i = 0; i < count;) {
+        const double at_x = plot_x(panel, x[i]);
+        const double column = floor(at_x / COLUMN);
+        double low = plot_y(panel, least[i]);
+        double high = plot_y(panel, most[i]);
+        for (i++; i < count && floor(plot_x(panel, x[i]) / COLUMN) == column; i++) {
+            low = fmax(low, plot_y(panel, least[i]));
+            high = fmin(high, plot_y(panel, most[i]));
+        }
+        at = append_column(svg, is_first, at_x, low, high, is_first ? low : at);
+        is_first = false;
+    }
+    text_append(svg, "\" ");
+    append_stroke(svg, style);
+    append_title(svg, title);
+}
+
+void plot_dot(const PlotPanel *panel, double x, double y, PlotStyle style)
+{
+    text_append(panel->svg, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"2.5\" fill=\"%s\"/>\n",
+                plot_x(panel, x), plot_y(panel, y), style.colour);
+}
+
+static void append_triangle(Text *svg, double x, double y, double height, PlotStyle style)
+{
+    text_append(svg,
+                "<path class=\"mark\" d=\"M%.1f %.1fl%.1f %.1fh%.1fz\" fill=\"#fff\" "
+                "stroke=\"%s\"",
+                x, y, -0.5 * MARK_SIZE, -height, MARK_SIZE, style.colour);
+}
+
+void plot_mark(const PlotPanel *panel, double x, double y, bool is_below, const char *title,
+               PlotStyle style)
+{
+    append_triangle(panel->svg, plot_x(panel, x), plot_y(panel, y),
+                    is_below ? -MARK_SIZE : MARK_SIZE, style);
+    append_title(panel->svg, title);
+}
+
+void plot_mark_sample(Text *svg, double x, double y, PlotStyle style)
+{
+    append_triangle(svg, x, y, MARK_SIZE, style);
+    text_append(svg, "/>\n");
+}
+
+void plot_shade(const PlotPanel *panel, double from, double to)
+{
+    text_append(panel->svg,
+                "<rect class=\"shade\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" "
+                "height=\"%.1f\" fill=\"#888\" fill-opacity=\"0.18\"/>\n",
+                plot_x(panel, from), panel->top, plot_x(panel, to) - plot_x(panel, from),
+                panel->height);
+}
+
+void plot_circle(const PlotPanel *panel, double radius, PlotStyle style)
+{
+    Text *svg = panel->svg;
+    text_append(svg, "<ellipse class=\"line\" cx=\"%.2f\" cy=\"%.2f\" rx=\"%.2f\" ry=\"%.2f\" ",
+                plot_x(panel, 0.0), plot_y(panel, 0.0), plot_x(panel, radius) - plot_x(panel, 0.0),
+                plot_y(panel, 0.0) - plot_y(panel, radius));
+    append_stroke(svg, style);
+    text_append(svg, "/>\n");
+}

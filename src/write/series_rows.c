@@ -1,0 +1,104 @@
+// What stands in a row of a series?
+#include "write/series_rows.h"
+
+#include "write/csv_number.h"
+#include "write/units.h"
+
+static void write_range_heads(const Linkage *linkage, FILE *stream)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const char *name = linkage->bodies[i].name;
+        fprintf(stream, ",%s_omega_min_rad_s,%s_omega_max_rad_s", name, name);
+        fprintf(stream, ",%s_alpha_min_rad_s2,%s_alpha_max_rad_s2", name, name);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const char *name = linkage->joints[i].name;
+        fprintf(stream, ",%s_gap_min_m,%s_gap_max_m", name, name);
+        fprintf(stream, ",%s_force_min_N,%s_force_max_N", name, name);
+    }
+}
+
+// Each number behind the comma that ends the cell before it.
+static void write_cells(const double *numbers, size_t count, FILE *stream)
+{
+    for (size_t i = 0; i < count; i++) {
+        fputc(',', stream);
+        csv_number_write(stream, numbers[i]);
+    }
+}
+
+static void write_range(Range range, FILE *stream)
+{
+    write_cells((const double[]){range.least, range.most}, 2, stream);
+}
+
+// From this sample to the next.
+static void write_ranges(const Trajectory *trajectory, size_t sample, FILE *stream)
+{
+    for (size_t i = 0; i < trajectory->body_count; i++) {
+        write_range(trajectory_body_range(trajectory, sample, i, RANGES_OMEGA), stream);
+        write_range(trajectory_body_range(trajectory, sample, i, RANGES_ALPHA), stream);
+    }
+    for (size_t i = 0; i < trajectory->joint_count; i++) {
+        write_range(trajectory_joint_range(trajectory, sample, i, RANGES_GAP), stream);
+        write_range(trajectory_joint_range(trajectory, sample, i, RANGES_FORCE), stream);
+    }
+}
+
+static void write_head(const Scenario *scenario, const Trajectory *trajectory, FILE *stream)
+{
+    const Linkage *linkage = &scenario->linkage;
+    fputs("time_s,crank_deg", stream);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const char *name = linkage->bodies[i].name;
+        fprintf(stream, ",%s_angle_rad,%s_omega_rad_s,%s_alpha_rad_s2", name, name, name);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const char *name = linkage->joints[i].name;
+        fprintf(stream, ",%s_ex_m,%s_ey_m,%s_gap_m,%s_force_N", name, name, name, name);
+    }
+    for (size_t i = 0; i < scenario->point_count; i++) {
+        const char *name = scenario->points[i].name;
+        fprintf(stream, ",%s_x_m,%s_y_m", name, name);
+    }
+    if (trajectory->ranges.count > 0) {
+        write_range_heads(linkage, stream);
+    }
+    fputc('\n', stream);
+}
+
+static void write_row(const Scenario *scenario, const Trajectory *trajectory, size_t sample,
+                      FILE *stream)
+{
+    const double crank_deg = trajectory->crank_angles[sample] * UNITS_DEG;
+    csv_number_write(stream, trajectory->times[sample]);
+    write_cells(&crank_deg, 1, stream);
+    for (size_t i = 0; i < trajectory->body_count; i++) {
+        const Motion *motion = trajectory_motion(trajectory, sample, i);
+        write_cells((const double[]){motion->angle, motion->omega, motion->alpha}, 3, stream);
+    }
+    for (size_t i = 0; i < trajectory->joint_count; i++) {
+        const JointState *state = trajectory_state(trajectory, sample, i);
+        const double numbers[] = {state->eccentricity.x, state->eccentricity.y, state->gap,
+                                  state->force};
+        write_cells(numbers, 4, stream);
+    }
+    const Motion *motions = trajectory_motion(trajectory, sample, 0);
+    for (size_t i = 0; i < scenario->point_count; i++) {
+        const TracedPoint *point = &scenario->points[i];
+        const Vec2 place = linkage_point(motions, point->body, point->local);
+        write_cells((const double[]){place.x, place.y}, 2, stream);
+    }
+    if (trajectory->ranges.count > 0) {
+        write_ranges(trajectory, sample, stream);
+    }
+    fputc('\n', stream);
+}
+
+void series_rows_write(const Scenario *scenario, const Trajectory *trajectory, FILE *stream)
+{
+    write_head(scenario, trajectory, stream);
+    for (size_t i = 0; i < trajectory->sample_count; i++) {
+        write_row(scenario, trajectory, i, stream);
+    }
+}

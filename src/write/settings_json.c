@@ -1,0 +1,78 @@
+// With which versions and settings was a result made?
+#include "write/settings_json.h"
+
+#include "casefile/casefile.h"
+#include "version.h"
+#include "write/json_value.h"
+
+#include <string.h>
+
+json_t *settings_json_tool(void)
+{
+    return json_pack("{s:s, s:s, s:s, s:s}", "version", JOINTPLAY_VERSION, "ode",
+                     JOINTPLAY_ODE_VERSION, "ccd", JOINTPLAY_CCD_VERSION, "gsl",
+                     JOINTPLAY_GSL_VERSION);
+}
+
+// A list from words separated by ", ".
+static json_t *words_array(const char *words)
+{
+    json_t *list = json_array();
+    while (*words != '\0') {
+        const size_t length = strcspn(words, ",");
+        json_array_append_new(list, json_stringn(words, length));
+        words += length;
+        words += strspn(words, ", ");
+    }
+    return list;
+}
+
+static json_t *setting_value(const CasefileSetting *setting)
+{
+    const double *numbers = setting->numbers;
+    switch (setting->kind) {
+    case CASEFILE_INTEGER:
+        return json_integer((json_int_t)numbers[0]);
+    case CASEFILE_NUMBER:
+        break;
+    case CASEFILE_WORDS:
+        return words_array(setting->text);
+    default:
+        return json_value_text(setting->text);
+    }
+    if (setting->number_count == 1) {
+        return json_value_real(numbers[0]);
+    }
+    if (setting->number_count == 2) {
+        return json_pack("[o, o]", json_value_real(numbers[0]), json_value_real(numbers[1]));
+    }
+    return json_pack("{s:o, s:o, s:o}", "nominal", json_value_real(numbers[0]), "lower",
+                     json_value_real(numbers[1]), "upper", json_value_real(numbers[2]));
+}
+
+void settings_json_set(json_t *object, const Scenario *scenario)
+{
+    json_t *settings = json_object();
+    json_t *units = json_object();
+    CasefileSetting setting;
+    for (size_t i = 0; casefile_setting(scenario, i, &setting); i++) {
+        if (setting.applies) {
+            json_object_set_new(settings, setting.key, setting_value(&setting));
+        }
+        if (setting.applies && setting.unit[0] != '\0') {
+            json_object_set_new(units, setting.key, json_string(setting.unit));
+        }
+    }
+    json_object_set_new(object, "settings", settings);
+    json_object_set_new(object, "setting_units", units);
+}
+
+json_t *settings_json_all(const Scenario *scenario)
+{
+    json_t *settings = json_object();
+    CasefileSetting setting;
+    for (size_t i = 0; casefile_setting(scenario, i, &setting); i++) {
+        json_object_set_new(settings, setting.key, setting_value(&setting));
+    }
+    return settings;
+}
