@@ -5,46 +5,39 @@ set -u
 root=$1
 layers="base model contact casefile analytic reference ode run measure write cli commands"
 
-# The folder of a path below the sources: of a command, commands/<name>.
-folder_of() {
-    case $1 in
-    commands/*/*) echo "$1" | cut -d/ -f1,2 ;;
-    */*) echo "${1%%/*}" ;;
-    esac
-}
-
-rank_of() {
-    rank=0
-    for layer in $layers; do
-        rank=$((rank + 1))
-        [ "$layer" != "${1%%/*}" ] || { echo "$rank"; return; }
-    done
-    echo 0
+# Lines 'file included' for every include of one source tree.
+includes() {
+    (cd "$1" && grep -r '^#include "[a-z_]*/' . --include='*.[ch]') |
+        sed 's|^\./||; s|:#include "| |; s|".*||' | sort
 }
 
 # Lines 'file: what is wrong' for one source tree. Only cli/main.c, which lists the commands, looks
 # down on them; commands/commands.h, which declares them, belongs to all.
 broken_layers() {
-    (cd "$1" && grep -r '^#include "[a-z_]*/' . --include='*.[ch]') |
-        sed 's|^\./||; s|:#include "| |; s|".*||' | sort | while read -r file included; do
-        [ "$file" != cli/main.c ] && [ "$included" != commands/commands.h ] || continue
-        own=$(folder_of "$file")
-        other=$(folder_of "$included")
-        own_rank=$(rank_of "$own")
-        rank=$(rank_of "$other")
-        [ "$own_rank" != 0 ] || echo "$file: folder $own is no layer"
-        if [ "$rank" = 0 ] || [ "$rank" -gt "$own_rank" ]; then
-            echo "$file: includes $other/, which is not above $own/"
-        elif [ "$rank" = "$own_rank" ] && [ "$own" != "$other" ]; then
-            echo "$file: includes $other/, another command"
-        fi
-    done
+    includes "$1" | awk -v layers="$layers" '
+        function room(path, parts, n) {
+            n = split(path, parts, "/")
+            return parts[1] == "commands" && n > 2 ? parts[1] "/" parts[2] : parts[1]
+        }
+        function rank(path, parts) {
+            split(path, parts, "/")
+            return ranks[parts[1]]
+        }
+        BEGIN { count = split(layers, names, " "); for (i = 1; i <= count; i++) ranks[names[i]] = i }
+        $1 == "cli/main.c" || $2 == "commands/commands.h" { next }
+        !rank($1) { print $1 ": folder " room($1) " is no layer" }
+        !rank($2) || rank($2) > rank($1) {
+            print $1 ": includes " room($2) "/, which is not above " room($1) "/"
+            next
+        }
+        rank($2) == rank($1) && room($2) != room($1) {
+            print $1 ": includes " room($2) "/, another command"
+        }'
 }
 
 # Files that need each other, a header and its source taken as one.
 cycles() {
-    (cd "$1" && grep -r '^#include "[a-z_]*/' . --include='*.[ch]') |
-        sed 's|^\./||; s|\.[ch]:#include "| |; s|\.h".*||' | awk '$1 != $2' | sort -u |
+    includes "$1" | sed 's|\.[ch] | |; s|\.[ch]$||' | awk '$1 != $2' | sort -u |
         tsort 2>&1 >/dev/null | sed 's|^tsort: -: ||; s|^tsort: ||'
 }
 
