@@ -9,8 +9,6 @@
 // / m). That is how they are predicted and how they are run.
 #include "measure/held.h"
 
-#include "measure/mapping_verdict.h"
-
 #include <assert.h>
 #include <float.h>
 #include <math.h>

@@ -11,7 +11,7 @@
 // index a for asked: twice and half of a force are as far off.
 #pragma once
 
-#include "measure/mapping.h"
+#include "measure/mapping_verdict.h"
 
 enum { HELD_MAP_COUNT = 3 };
 
@@ -32,13 +32,12 @@ typedef struct HeldSetting {
     ImpactDelivered delivered;
 } HeldSetting;
 
-struct Held {
+typedef struct Held {
     double step_s;
     double flight;                        // m, in a step at the closing speed
     double play;                          // m, from wall to wall
     HeldSetting settings[HELD_MAP_COUNT]; // in the order of HELD_MAPS
-};
-typedef struct Held Held;
+} Held;
 
 // Searches the best constants of a contact of CONTACT_IMPACT at a step, s, and runs them in ODE.
 void held_find(const MappingContact *contact, double step_s, Held *held);

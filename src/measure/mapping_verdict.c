@@ -64,7 +64,7 @@ static bool is_valid(const MappingContact *contact, const ImpactFigures *figures
         is_restitution_off(figures->restitution.most, asked->restitution)) {
         return false;
     }
-    return contact->scenario.contact.model == CONTACT_POISSON ||
+    return mapping_contact_is_poisson(contact) ||
            (!is_spread_off(&figures->force_max, asked->force_max) &&
             !is_spread_off(&figures->penetration_max, asked->penetration_max));
 }
@@ -73,7 +73,7 @@ VerdictKind verdict_judge(const MappingContact *contact, OdeMap map, double step
                           const ImpactFigures *figures)
 {
     const MapImpact *asked = &contact->asked;
-    const bool is_poisson = contact->scenario.contact.model == CONTACT_POISSON;
+    const bool is_poisson = mapping_contact_is_poisson(contact);
     if (figures->is_too_fine) {
         return VERDICT_TOO_FINE;
     }
@@ -150,7 +150,7 @@ static double find_step(const MappingContact *contact, OdeMap map)
 
 void verdict_find_steps(MappingContact *contact)
 {
-    if (contact->scenario.contact.model == CONTACT_POISSON) {
+    if (mapping_contact_is_poisson(contact)) {
         return;
     }
     for (int map = ODE_MAP_TEXTBOOK; map < ODE_MAP_IMPULSE; map++) {
@@ -258,7 +258,7 @@ static OdeMap other_map(const MappingContact *contact, const MappingRow *row)
 
 static void say_advice(const MappingContact *contact, const MappingRow *row, Words *words)
 {
-    if (contact->scenario.contact.model == CONTACT_POISSON) {
+    if (mapping_contact_is_poisson(contact)) {
         const double least = verdict_least_penalty(contact, row->step_s);
         add(words, "; use a penalty >= %.3g N s/mm, or h >= %.3g us", 1e-3 * least,
             1e6 * row->step_s * least / contact->scenario.contact.penalty);

@@ -1,6 +1,7 @@
 // How are numbers set out for people, each under its heading and its unit?
+#include "write/table.h"
+
 #include "base/printable.h"
-#include "write/table_inside.h"
 
 #include <assert.h>
 #include <stdarg.h>

@@ -2,7 +2,7 @@
 //
 // A table no wider than its limit is written as it is. One that is wider gives up columns by their
 // importance, then breaks the words of columns that may be broken, then is written in parts.
-#include "write/table_inside.h"
+#include "write/table.h"
 
 #include <assert.h>
 #include <stdbool.h>

@@ -2,7 +2,7 @@
 // engine delivers, and the same joint at another mass, length and time.
 #pragma once
 
-#include "measure/mapping_verdict.h"
+#include "measure/mapping.h"
 
 typedef struct RandomJoint {
     MappingContact contact;

@@ -4,7 +4,7 @@
 
 #include "commands/map/mapping_inverse.h"
 #include "contact/damping.h"
-#include "measure/mapping_verdict.h"
+#include "measure/mapping.h"
 #include "run/registry.h"
 
 #include <stdio.h>
