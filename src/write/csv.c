@@ -1,8 +1,9 @@
-// How do words stay in their cell?
+// How do words and numbers stand in their cell?
 #include "write/csv.h"
 
 #include "base/printable.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,4 +33,11 @@ void csv_write_word(FILE *stream, const char *text)
         fputs(shown, stream);
     }
     free(shown);
+}
+
+void csv_write_number(FILE *stream, double value)
+{
+    if (isfinite(value)) {
+        fprintf(stream, "%.17g", value);
+    }
 }

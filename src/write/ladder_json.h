@@ -9,12 +9,6 @@
 // program.
 json_t *ladder_json_key(const Ladder *ladder, const Scenario *scenario, const char *build);
 
-// What an ensemble compares, with units.
-extern const char *const LADDER_JSON_METRICS[ENSEMBLE_METRIC_COUNT];
-
-// New reference: the distributions of the joints with play, by joint and metric.
-json_t *ladder_json_joints(const Linkage *linkage, const Ensemble *ensemble);
-
 // New references, a line each. Times carry the machine they were taken on.
 json_t *ladder_json_truth(const LadderTruth *truth);
 json_t *ladder_json_run(const Ladder *ladder, const LadderRun *run, const char *machine);
@@ -22,13 +16,13 @@ json_t *ladder_json_ensemble(const Ladder *ladder, const Linkage *linkage, size_
                              const LadderEnsemble *ensemble);
 
 // What became of a line that was taken.
-typedef enum LadderJsonFate {
+typedef enum LadderJsonTaken {
     LADDER_JSON_TAKEN,
     LADDER_JSON_UNUSED,        // not of this ladder, or there already
     LADDER_JSON_OTHER_MACHINE, // a time of another machine
     LADDER_JSON_DAMAGED,       // a key is missing or has a value of another type
-} LadderJsonFate;
+} LadderJsonTaken;
 
-// Puts a line into its place in the ladder; one that is damaged leaves it as it was.
-LadderJsonFate ladder_json_take(Ladder *ladder, const Linkage *linkage, const json_t *line,
-                                const char *machine);
+// Adds a line to the ladder; one that is damaged leaves it as it was.
+LadderJsonTaken ladder_json_take(Ladder *ladder, const Linkage *linkage, const json_t *line,
+                                 const char *machine);

@@ -1,7 +1,7 @@
 // What stands in a row of a series?
 #include "write/series_rows.h"
 
-#include "write/csv_number.h"
+#include "write/csv.h"
 #include "write/units.h"
 
 static void write_range_heads(const Linkage *linkage, FILE *stream)
@@ -23,7 +23,7 @@ static void write_cells(const double *numbers, size_t count, FILE *stream)
 {
     for (size_t i = 0; i < count; i++) {
         fputc(',', stream);
-        csv_number_write(stream, numbers[i]);
+        csv_write_number(stream, numbers[i]);
     }
 }
 
@@ -71,7 +71,7 @@ static void write_row(const Scenario *scenario, const Trajectory *trajectory, si
                       FILE *stream)
 {
     const double crank_deg = trajectory->crank_angles[sample] * UNITS_DEG;
-    csv_number_write(stream, trajectory->times[sample]);
+    csv_write_number(stream, trajectory->times[sample]);
     write_cells(&crank_deg, 1, stream);
     for (size_t i = 0; i < trajectory->body_count; i++) {
         const Motion *motion = trajectory_motion(trajectory, sample, i);

@@ -2,7 +2,6 @@
 #include "commands/compare/compare_csv.h"
 
 #include "write/csv.h"
-#include "write/csv_number.h"
 #include "write/file.h"
 
 #include <math.h>
@@ -19,10 +18,10 @@ static void write_numbers(FILE *stream, const LadderPoint *point)
                               error->angle_max_rad, point->wall_median_s, point->wall_min_s,
                               point->wall_max_s};
     fprintf(stream, "ok,%zu,%zu,", point->run.steps, point->run.evaluations);
-    csv_number_write(stream, point->error);
+    csv_write_number(stream, point->error);
     fprintf(stream, ",%d,", point->is_limited_by_truth);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        csv_number_write(stream, numbers[i]);
+        csv_write_number(stream, numbers[i]);
         fputc(',', stream);
     }
     fprintf(stream, "%d,", point->is_on_frontier);
@@ -31,7 +30,7 @@ static void write_numbers(FILE *stream, const LadderPoint *point)
 static void write_row(FILE *stream, const Ladder *ladder, const LadderPoint *point)
 {
     fprintf(stream, "%s,", ladder->schemes[point->scheme].name);
-    csv_number_write(stream, point->step_s > 0.0 ? point->step_s : NAN);
+    csv_write_number(stream, point->step_s > 0.0 ? point->step_s : NAN);
     fputc(',', stream);
     if (point->is_failed) {
         fputs("failed,,,,,,,,,,,,,", stream);

@@ -1,9 +1,8 @@
 // What do other programs read of a comparison?
 #include "commands/compare/compare_json.h"
 
-#include "write/error_json.h"
 #include "write/json_value.h"
-#include "write/ladder_json.h"
+#include "write/measured_fields.h"
 #include "write/settings_json.h"
 #include "write/units.h"
 
@@ -29,7 +28,7 @@ static json_t *truth_object(const CompareReport *report)
 static json_t *error_object(const LadderPoint *point)
 {
     json_t *object = json_object();
-    error_json_set(object, &point->run.error);
+    fields_json_set(ERROR_FIELDS, FIELD_JSON, &point->run.error, object);
     return object;
 }
 
@@ -96,7 +95,7 @@ static json_t *ensemble_object(const CompareReport *report, const LadderEnsemble
     json_object_set_new(object, "message", json_value_text(ensemble->ensemble.message));
     if (ensemble->ensemble.members > 0) {
         json_object_set_new(object, "joints",
-                            ladder_json_joints(&report->scenario->linkage, &ensemble->ensemble));
+                            ensemble_joints_json(&report->scenario->linkage, &ensemble->ensemble));
     }
     return object;
 }

@@ -68,16 +68,17 @@ static bool take_all(CompareStore *store, Ladder *ladder, bool is_quiet, Err *er
         if (json_is_null(line)) {
             continue; // damaged
         }
-        const LadderJsonFate fate = ladder_json_take(ladder, store->linkage, line, store->machine);
-        if (fate == LADDER_JSON_DAMAGED) {
+        const LadderJsonTaken taken =
+            ladder_json_take(ladder, store->linkage, line, store->machine);
+        if (taken == LADDER_JSON_DAMAGED) {
             return err_set(err, ERR_FILE,
                            "line %zu of the store %s is damaged; --fresh starts it over",
                            index + ENTRY_LINE, store->journal.path);
         }
         const bool is_run =
             json_object_get(line, "error") != NULL || json_object_get(line, "timing") != NULL;
-        store->taken += fate == LADDER_JSON_TAKEN && is_run ? 1 : 0;
-        others += fate == LADDER_JSON_OTHER_MACHINE ? 1 : 0;
+        store->taken += taken == LADDER_JSON_TAKEN && is_run ? 1 : 0;
+        others += taken == LADDER_JSON_OTHER_MACHINE ? 1 : 0;
     }
     if (is_quiet) {
         return true;

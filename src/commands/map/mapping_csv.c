@@ -2,7 +2,6 @@
 #include "commands/map/mapping_csv.h"
 
 #include "write/csv.h"
-#include "write/csv_number.h"
 #include "write/file.h"
 
 #include <math.h>
@@ -17,7 +16,7 @@ static const char HEAD[] =
 
 static void write_number(FILE *stream, double value)
 {
-    csv_number_write(stream, value);
+    csv_write_number(stream, value);
     fputc(',', stream);
 }
 

@@ -1,9 +1,8 @@
 // What do other programs read of the truth and of what was measured against it?
 #include "commands/run/run_truth_json.h"
 
-#include "write/error_json.h"
 #include "write/json_value.h"
-#include "write/ladder_json.h"
+#include "write/measured_fields.h"
 
 json_t *run_truth_json_truth(const RunReport *report)
 {
@@ -41,7 +40,7 @@ json_t *run_truth_json_error(const RunReport *report, size_t run)
     const Truth *truth = report->truth;
     json_t *object = json_object();
     json_object_set_new(object, "against", json_string(error->against));
-    error_json_set(object, error);
+    fields_json_set(ERROR_FIELDS, FIELD_JSON, error, object);
     json_object_set_new(object, "includes_play",
                         json_boolean(run_report_includes_play(report, run)));
     json_value_set(object, "horizon_s", is_certified ? truth->horizon_s : NAN);
@@ -112,6 +111,7 @@ json_t *run_truth_json_ensemble(const RunReport *report, size_t run)
     json_object_set_new(object, "members", json_integer((json_int_t)ensemble->members));
     json_object_set_new(object, "failed", json_integer((json_int_t)ensemble->failed));
     json_object_set_new(object, "message", json_value_text(ensemble->message));
-    json_object_set_new(object, "joints", ladder_json_joints(&report->scenario->linkage, ensemble));
+    json_object_set_new(object, "joints",
+                        ensemble_joints_json(&report->scenario->linkage, ensemble));
     return object;
 }

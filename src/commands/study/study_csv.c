@@ -2,7 +2,6 @@
 #include "commands/study/study_csv.h"
 
 #include "write/csv.h"
-#include "write/csv_number.h"
 #include "write/file.h"
 
 #include <inttypes.h>
@@ -27,7 +26,7 @@ static void write_head(FILE *stream, const Layout *layout)
 static void write_number(FILE *stream, double number)
 {
     fputc(',', stream);
-    csv_number_write(stream, number);
+    csv_write_number(stream, number);
 }
 
 static bool write_row(const Layout *layout, const Record *record, void *context, Err *err)

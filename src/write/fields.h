@@ -1,0 +1,76 @@
+// The field table: one row for each number of a result, with its name, unit, type, format, where in
+// the record it stands and where it is shown. The keys of JSON, the columns of CSV, the lines of a
+// store and the columns of tables for people all come from these rows.
+#pragma once
+
+#include "write/section.h"
+
+#include <jansson.h>
+#include <stddef.h>
+#include <stdio.h>
+
+// What a number is not known is null in JSON, an empty cell of CSV and a dash in a table.
+typedef enum FieldType {
+    FIELD_END,     // behind the last row
+    FIELD_NUMBER,  // double; not known where it is not finite
+    FIELD_STEP,    // double, s; a store holds none that is negative or not known
+    FIELD_DEGREES, // double, rad; files have degrees too
+    FIELD_WRAPPED, // the same from 0 to 360 degrees
+    FIELD_COUNT,   // size_t
+    FIELD_FLAG,    // bool
+    FIELD_NAME,    // const char *; NULL: not known
+    FIELD_TEXT,    // char[size], a sentence: quoted in CSV
+    FIELD_CHOICE,  // enum, by the words of `of`
+    FIELD_HASH,    // uint64_t, 16 hexadecimal digits
+    FIELD_GROUP,   // a struct with the fields `of`
+    FIELD_PART,    // a pointer to one; NULL: nothing of it is known
+    FIELD_VALUE,   // json_t *, whose reference is taken; NULL: no such key. Of JSON alone
+} FieldType;
+
+// Where a field is shown: any of these bits, and bits of a caller's own from FIELD_OWN on.
+enum {
+    FIELD_JSON = 1,
+    FIELD_CSV = 2,
+    FIELD_STORE = 4,
+    FIELD_TABLE = 8,
+    FIELD_OWN = 16,
+    FIELD_FILES = FIELD_JSON | FIELD_CSV,
+    FIELD_ALL = FIELD_FILES | FIELD_TABLE,
+};
+
+typedef struct Field {
+    // The key in files, with the unit in SI behind it. The fields of a group with a key are an
+    // object in JSON, and have the key in front of their columns in CSV; those of a group without
+    // one stand among the others.
+    const char *key;
+    const char *title; // of the column for people
+    const char *unit;  // likewise; it says what SI is multiplied by (units_per_si)
+    FieldType type;
+    size_t offset; // in the record
+    unsigned where;
+    const char *format; // for people; NULL: section_number, or the plain count
+    TableAlign align;   // beyond TABLE_RIGHT for numbers: TABLE_MINOR, TABLE_DETAIL, TABLE_KEY
+    const void *of;     // the fields of a group or part, or the words of a choice
+    size_t size;        // of FIELD_TEXT
+} Field;
+
+// Puts the fields that are shown in any place of `where` into an object, or makes one: a new
+// reference.
+void fields_json_set(const Field *fields, unsigned where, const void *record, json_t *object);
+json_t *fields_json(const Field *fields, unsigned where, const void *record);
+
+// Reads them back into a record. False where a key is missing or its value has another type; the
+// record may then be filled in part. Names, choices and parts cannot be read.
+bool fields_json_read(const Field *fields, unsigned where, const json_t *object, void *record);
+
+// Writes the heads of the columns, or the cells of a record, with the end of the line.
+void fields_csv_head(const Field *fields, unsigned where, FILE *stream);
+void fields_csv_row(const Field *fields, unsigned where, const void *record, FILE *stream);
+
+// Begins a section with a table of these columns, to be ended by section_end; without a heading
+// where that is NULL.
+Table *fields_table(const char *heading, const Field *fields, unsigned where, const Style *style,
+                    Text *text);
+
+// Fills one row of it.
+void fields_table_row(const Field *fields, unsigned where, const void *record, Table *table);

@@ -1,0 +1,18 @@
+// The field tables of what several commands measure: errors and distributions.
+#pragma once
+
+#include "measure/ensemble.h"
+#include "measure/error.h"
+#include "write/fields.h"
+
+// Of a TrajectoryError.
+extern const Field ERROR_FIELDS[];
+
+// Of the Distributions of one joint, by EnsembleMetric: a group each.
+extern const Field METRIC_FIELDS[ENSEMBLE_METRIC_COUNT + 1];
+
+// New reference: the distributions of the joints with play, by joint and metric.
+json_t *ensemble_joints_json(const Linkage *linkage, const Ensemble *ensemble);
+
+// Reads them back. False where a number is missing.
+bool ensemble_joints_read(const Linkage *linkage, const json_t *joints, Ensemble *ensemble);
