@@ -7,17 +7,20 @@
 #include "base/claims.h"
 #include "base/text.h"
 #include "cli/option_hint.h"
+#include "cli/option_values.h"
 
+#include <argp.h>
 #include <assert.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { OPTION_MAX = 32, OPTION_NAME_SIZE = 64, KEY_HELP = 'h' };
+// the key of an option without a letter is the number of its row, from KEY_FIRST on
+enum { OPTION_MAX = 32, OPTION_NAME_SIZE = 64, KEY_HELP = 'h', KEY_FIRST = 0x100 };
 
 typedef struct Reading {
     const Arguments *arguments;
-    const struct argp_option *options;
+    const struct argp_option *options; // argp's rows: those of the arguments, and --help
     void *target;
     bool is_answered;
     Err *err;
@@ -67,12 +70,10 @@ static bool fail_unknown(const Reading *reading, const char *word)
 // argp says only that something was wrong, and how far it came: the word stands there or next.
 static void explain(const Reading *reading, const struct argp_state *state)
 {
-    const int places[2] = {state->next - 1, state->next};
-    for (int i = 0; i < 2; i++) {
-        const int place = places[i];
-        if (place > 0 && place < state->argc && state->argv[place][0] == '-' &&
-            find_option(reading->options, state->argv[place]) == NULL) {
-            fail_unknown(reading, state->argv[place]);
+    for (int i = state->next - 1; i <= state->next; i++) {
+        if (i > 0 && i < state->argc && state->argv[i][0] == '-' &&
+            find_option(reading->options, state->argv[i]) == NULL) {
+            fail_unknown(reading, state->argv[i]);
             return;
         }
     }
@@ -87,27 +88,104 @@ static void explain(const Reading *reading, const struct argp_state *state)
 }
 
 // Whatever writes a file shows it by what it calls its value. No two options write the same one.
-static bool claim_file(const Reading *reading, int key, const char *value)
+static bool claim_file(const OptionRow *row, const char *value, Err *err)
 {
-    for (const struct argp_option *option = reading->options; option->name != NULL; option++) {
-        if (option->key != key || option->arg == NULL || strncmp(option->arg, "FILE", 4) != 0) {
-            continue;
-        }
-        Claim claim;
-        char user[OPTION_NAME_SIZE];
-        snprintf(user, sizeof user, "--%s", option->name);
-        if (claims_find(value, &claim) && strcmp(claim.user, user) != 0) {
-            return err_set(reading->err, ERR_USAGE, "%s and %s would both write %s", claim.user,
-                           user, value);
-        }
-        claims_note_written(user, value);
+    if (row->value == NULL || strncmp(row->value, "FILE", 4) != 0) {
+        return true;
     }
+    Claim claim;
+    char user[OPTION_NAME_SIZE];
+    snprintf(user, sizeof user, "--%s", row->name);
+    if (claims_find(value, &claim) && strcmp(claim.user, user) != 0) {
+        return err_set(err, ERR_USAGE, "%s and %s would both write %s", claim.user, user, value);
+    }
+    claims_note_written(user, value);
     return true;
+}
+
+static bool check_picture(const OptionRow *row, const char *path, Err *err)
+{
+    char user[OPTION_NAME_SIZE];
+    snprintf(user, sizeof user, "--%s", row->name);
+    return option_values_check_picture(user, path, err);
+}
+
+static bool take_text(const OptionRow *row, const char *value, const char **text, Err *err)
+{
+    if (row->name == NULL && *text != NULL) {
+        return err_set(err, ERR_USAGE, "%s, not %s and %s", row->what, *text, value);
+    }
+    *text = value;
+    return true;
+}
+
+static bool take_choice(const OptionRow *row, const char *value, const char **text, Err *err)
+{
+    Text allowed;
+    text_init(&allowed);
+    for (const char *const *word = row->words; *word != NULL; word++) {
+        text_append(&allowed, "%s%s", word == row->words ? "" : ", ", *word);
+        *text = strcmp(value, *word) == 0 ? *word : *text;
+    }
+    if (*text == NULL || strcmp(value, *text) != 0) {
+        err_set(err, ERR_USAGE, "--%s is %s; allowed: %s", row->name, value, allowed.data);
+    }
+    text_finish(&allowed);
+    return err->kind == ERR_NONE;
+}
+
+static bool take_item(const OptionRow *row, const char *value, const char **list, size_t *count,
+                      Err *err)
+{
+    if (*count == (size_t)row->high) {
+        return err_set(err, ERR_USAGE, "more than %.0f %s on one command line", row->high,
+                       row->what);
+    }
+    list[(*count)++] = value;
+    return true;
+}
+
+static bool take_value(const Reading *reading, const OptionRow *row, const char *value)
+{
+    Err *err = reading->err;
+    void *field = (char *)reading->target + row->offset;
+    switch (row->type) {
+    case OPTION_NONE:
+        return err_set(err, ERR_USAGE, "'%s' takes no argument, and '%s' is one",
+                       reading->arguments->program, value);
+    case OPTION_FLAG:
+        *(bool *)field = true;
+        return true;
+    case OPTION_PICTURE:
+        return check_picture(row, value, err) && take_text(row, value, field, err);
+    case OPTION_TEXT:
+        return take_text(row, value, field, err);
+    case OPTION_CHOICE:
+        return take_choice(row, value, field, err);
+    case OPTION_LIST:
+        return take_item(row, value, field,
+                         (size_t *)(void *)((char *)reading->target + row->count_offset), err);
+    case OPTION_COUNT:
+        return option_values_read_count(row->name, value, (size_t)row->low, (size_t)row->high,
+                                        field, err);
+    case OPTION_QUANTITY:
+        return option_values_read_quantity(row->name, value, row->dimension, field, err);
+    case OPTION_READ:
+        return row->read(value, reading->target, err);
+    }
+    return false;
+}
+
+static int key_of(const Arguments *arguments, size_t row)
+{
+    const int letter = arguments->options[row].letter;
+    return letter != 0 ? letter : KEY_FIRST + (int)row;
 }
 
 static error_t parse_key(int key, char *value, struct argp_state *state)
 {
     Reading *reading = state->input;
+    const Arguments *arguments = reading->arguments;
     if (key == KEY_HELP) {
         reading->is_answered = true;
         return 0;
@@ -119,33 +197,42 @@ static error_t parse_key(int key, char *value, struct argp_state *state)
         }
         return 0;
     }
-    if (key >= ARGP_KEY_END) {
+    const OptionRow *row = key == ARGP_KEY_ARG ? &arguments->argument : NULL;
+    for (size_t i = 0; row == NULL && i < arguments->option_count; i++) {
+        row = key_of(arguments, i) == key ? &arguments->options[i] : NULL;
+    }
+    if (row == NULL) {
         return ARGP_ERR_UNKNOWN;
     }
-    return claim_file(reading, key, value) &&
-                   reading->arguments->take(key, value, reading->target, reading->err)
-               ? 0
-               : EINVAL;
+    const bool is_taken = claim_file(row, value, reading->err) && take_value(reading, row, value);
+    return is_taken ? 0 : EINVAL;
 }
 
-bool arguments_parse(const Arguments *arguments, int argc, char **argv, void *target,
+// argp's rows of a command's options, with --help at the end.
+static void list_options(const Arguments *arguments, struct argp_option options[OPTION_MAX])
+{
+    assert(arguments->option_count + 2 <= OPTION_MAX);
+    for (size_t i = 0; i < arguments->option_count; i++) {
+        const OptionRow *row = &arguments->options[i];
+        options[i] = (struct argp_option){row->name, key_of(arguments, i), row->value, 0, row->doc,
+                                          row->group};
+    }
+    options[arguments->option_count] = (struct argp_option){
+        .name = "help", .key = KEY_HELP, .doc = "Print this and do nothing", .group = -1};
+}
+
+bool arguments_parse(const Arguments *arguments, int argc, char **argv, void *options,
                      bool *is_answered, Err *err)
 {
-    struct argp_option options[OPTION_MAX] = {0};
-    size_t count = 0;
-    for (const struct argp_option *option = arguments->options; option->name != NULL; option++) {
-        assert(count + 2 < OPTION_MAX);
-        options[count++] = *option;
-    }
-    options[count] = (struct argp_option){
-        .name = "help", .key = KEY_HELP, .doc = "Print this and do nothing", .group = -1};
+    struct argp_option rows[OPTION_MAX] = {0};
+    list_options(arguments, rows);
     const struct argp argp = {
-        .options = options,
+        .options = rows,
         .parser = parse_key,
         .args_doc = arguments->usage,
         .doc = arguments->doc,
     };
-    Reading reading = {arguments, options, target, false, err};
+    Reading reading = {arguments, rows, options, false, err};
     const unsigned flags = ARGP_NO_ERRS | ARGP_NO_EXIT | ARGP_NO_HELP;
     argp_parse(&argp, argc, argv, flags, NULL, &reading);
     *is_answered = reading.is_answered;
@@ -154,6 +241,7 @@ bool arguments_parse(const Arguments *arguments, int argc, char **argv, void *ta
         text_copy(program, sizeof program, arguments->program);
         argp_help(&argp, stdout, ARGP_HELP_STD_HELP, program);
         *err = (Err){0};
+        return true;
     }
-    return err->kind == ERR_NONE;
+    return err->kind == ERR_NONE && (arguments->check == NULL || arguments->check(options, err));
 }

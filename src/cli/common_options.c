@@ -1,45 +1,39 @@
-// What was given of the options that several commands share?
+// What do the options mean that several commands share?
 #include "cli/common_options.h"
 
-#include <assert.h>
+#include "casefile/casefile.h"
 
-bool common_options_take(int key, const char *value, CommonOptions *options, Err *err)
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+size_t common_options_count_jobs(void)
 {
-    switch (key) {
-    case COMMON_SET:
-        return option_values_take_setting(value, options->overrides, &options->override_count, err);
-    case COMMON_SCHEMES:
-        options->schemes = value;
-        return true;
-    case COMMON_JOBS:
-        return option_values_read_count("jobs", value, 1, OPTION_JOB_MAX, &options->jobs, err);
-    case COMMON_TIME_LIMIT:
-        return option_values_read_time("time-limit", value, &options->time_limit_s, err);
-    case COMMON_JSON:
-        options->is_json = true;
-        return true;
-    case COMMON_WIDE:
-        options->is_wide = true;
-        return true;
-    case COMMON_OUT:
-        options->folder = value;
-        return true;
-    default:
-        // a command that lists any other option takes it itself
-        assert(key == COMMON_QUIET);
-        options->is_quiet = true;
-        return true;
-    }
+    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    const long most = OPTION_JOB_MAX;
+    return cores < 1 ? 1 : (size_t)(cores < most ? cores : most);
 }
 
-bool common_options_take_path(const char *path, CommonOptions *options, const char *allowed,
-                              Err *err)
+bool common_options_load(const CommonOptions *options, Scenario *scenario, Err *err)
 {
-    if (options->path != NULL) {
-        return err_set(err, ERR_USAGE, "%s, not %s and %s", allowed, options->path, path);
-    }
-    options->path = path;
-    return true;
+    return casefile_load(options->path, options->overrides, options->override_count, scenario, err);
+}
+
+bool common_options_check_step(const CommonOptions *options, double step_s, Err *err)
+{
+    const char *overrides[OPTION_SETTING_MAX + 1];
+    char step[64];
+    snprintf(step, sizeof step, "run.step=%.17g s", step_s);
+    memcpy(overrides, options->overrides, options->override_count * sizeof *overrides);
+    overrides[options->override_count] = step;
+    Scenario *scenario = malloc(sizeof *scenario);
+    assert(scenario != NULL);
+    const bool is_right =
+        casefile_load(options->path, overrides, options->override_count + 1, scenario, err);
+    free(scenario);
+    return is_right;
 }
 
 bool common_options_list_schemes(const CommonOptions *options, const Scenario *scenario,

@@ -1,56 +1,17 @@
-// The options that several commands share: their rows, their keys, and what was given. Whatever a
-// command says of them in words of its own, it lists in a row of its own with the key from here.
+// The options that several commands share: their rows, and what was given.
 #pragma once
 
-#include "base/err.h"
 #include "cli/arguments.h"
-#include "cli/option_values.h"
 #include "measure/scheme.h"
 
-#include <stdbool.h>
-#include <stddef.h>
-
-// Beyond the keys of any command, which begin at 0x100 to 0x300.
 enum {
-    COMMON_SET = 0x400,
-    COMMON_SCHEMES,
-    COMMON_JOBS,
-    COMMON_TIME_LIMIT,
-    COMMON_JSON,
-    COMMON_OUT,
-    COMMON_WIDE,
-    COMMON_QUIET = 'q',
+    OPTION_SETTING_MAX = 256, // values that --set may give on one command line
+    // processes at a time that --jobs may ask for: more than there are processors are allowed, for
+    // the number is often written for another machine
+    OPTION_JOB_MAX = 256,
 };
 
-// Rows of a list of options, in a group of its help; macros, for the lists are constant.
-#define COMMON_ROW_SET(group)                                                                      \
-    {                                                                                              \
-        "set", COMMON_SET, "KEY=VALUE", 0,                                                         \
-            "Replace a value of the case, such as contact.restitution=0.8; may be given often",    \
-            group                                                                                  \
-    }
-#define COMMON_ROW_SCHEMES(group)                                                                  \
-    {                                                                                              \
-        "schemes", COMMON_SCHEMES, "LIST", 0,                                                      \
-            "Only these schemes of ODE: 'direct/corrected' is every one with both words, 'all' "   \
-            "every one",                                                                           \
-            group                                                                                  \
-    }
-#define COMMON_ROW_JSON(group)                                                                     \
-    {                                                                                              \
-        "json", COMMON_JSON, NULL, 0, "Print one JSON object instead of tables", group             \
-    }
-#define COMMON_ROW_WIDE(group)                                                                     \
-    {                                                                                              \
-        "wide", COMMON_WIDE, NULL, 0, "All columns of the tables, however wide the terminal is",   \
-            group                                                                                  \
-    }
-#define COMMON_ROW_QUIET(group)                                                                    \
-    {                                                                                              \
-        "quiet", COMMON_QUIET, NULL, 0,                                                            \
-            "Nothing on standard error but errors and a warning of long work", group               \
-    }
-
+// The first member of the options of every command that has rows of those below.
 typedef struct CommonOptions {
     const char *path; // of the case or study; NULL until it is given
     const char *overrides[OPTION_SETTING_MAX];
@@ -64,13 +25,68 @@ typedef struct CommonOptions {
     bool is_quiet;
 } CommonOptions;
 
-// Takes an option by one of the keys above. Fails with ERR_USAGE.
-bool common_options_take(int key, const char *value, CommonOptions *options, Err *err);
+// Rows of a list of options, in a group of its help.
+#define COMMON_PATH(allowed)                                                                       \
+    {                                                                                              \
+        .type = OPTION_TEXT, .offset = offsetof(CommonOptions, path), .what = allowed              \
+    }
+#define COMMON_SET(help_group)                                                                     \
+    {                                                                                              \
+        .name = "set", .value = "KEY=VALUE", .group = help_group, .type = OPTION_LIST,             \
+        .doc = "Replace a value of the case, such as contact.restitution=0.8; may be given often", \
+        .offset = offsetof(CommonOptions, overrides),                                              \
+        .count_offset = offsetof(CommonOptions, override_count), .high = OPTION_SETTING_MAX,       \
+        .what = "settings"                                                                         \
+    }
+#define COMMON_SCHEMES(help_group)                                                                 \
+    {                                                                                              \
+        .name = "schemes", .value = "LIST", .group = help_group, .type = OPTION_TEXT,              \
+        .doc = "Only these schemes of ODE: 'direct/corrected' is every one with both words, "      \
+               "'all' every one",                                                                  \
+        .offset = offsetof(CommonOptions, schemes)                                                 \
+    }
+#define COMMON_JOBS(help_group, words)                                                             \
+    {                                                                                              \
+        .name = "jobs", .value = "N", .group = help_group, .type = OPTION_COUNT, .doc = words,     \
+        .offset = offsetof(CommonOptions, jobs), .low = 1, .high = OPTION_JOB_MAX                  \
+    }
+#define COMMON_TIME_LIMIT(help_group, words)                                                       \
+    {                                                                                              \
+        .name = "time-limit", .value = "TIME", .group = help_group, .type = OPTION_QUANTITY,       \
+        .doc = words, .offset = offsetof(CommonOptions, time_limit_s), .dimension = DIMENSION_TIME \
+    }
+#define COMMON_OUT(help_group, words)                                                              \
+    {                                                                                              \
+        .name = "out", .value = "DIR", .group = help_group, .type = OPTION_TEXT, .doc = words,     \
+        .offset = offsetof(CommonOptions, folder)                                                  \
+    }
+#define COMMON_JSON(help_group)                                                                    \
+    {                                                                                              \
+        .name = "json", .group = help_group, .doc = "Print one JSON object instead of tables",     \
+        .type = OPTION_FLAG, .offset = offsetof(CommonOptions, is_json)                            \
+    }
+#define COMMON_WIDE(help_group)                                                                    \
+    {                                                                                              \
+        .name = "wide", .group = help_group,                                                       \
+        .doc = "All columns of the tables, however wide the terminal is", .type = OPTION_FLAG,     \
+        .offset = offsetof(CommonOptions, is_wide)                                                 \
+    }
+#define COMMON_QUIET(help_group)                                                                   \
+    {                                                                                              \
+        .name = "quiet", .letter = 'q', .group = help_group,                                       \
+        .doc = "Nothing on standard error but errors and a warning of long work",                  \
+        .type = OPTION_FLAG, .offset = offsetof(CommonOptions, is_quiet)                           \
+    }
 
-// Takes the one path that a command has; `allowed` says so where there are two: "map takes one
-// case". Fails with ERR_USAGE.
-bool common_options_take_path(const char *path, CommonOptions *options, const char *allowed,
-                              Err *err);
+// Processes at a time where --jobs is not given: one a processor, at most OPTION_JOB_MAX.
+size_t common_options_count_jobs(void);
+
+// Reads the case of the path with the values of --set. Fails as casefile_load does.
+bool common_options_load(const CommonOptions *options, Scenario *scenario, Err *err);
+
+// Whether the case can be run at a step, s: it is read once more with it, so that the checks and
+// their words are those of the case file. Fails as casefile_load does.
+bool common_options_check_step(const CommonOptions *options, double step_s, Err *err);
 
 // The schemes of a scenario that --schemes names, or the usual ones. Fails with ERR_USAGE for a
 // word that none of them has.

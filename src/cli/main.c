@@ -7,31 +7,40 @@
 #include "commands/commands.h"
 #include "version.h"
 
+#include <argp.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
-static bool take_option(int key, const char *value, void *target, Err *err)
+static bool fail_without_command(const char *word, void *options, Err *err)
+{
+    (void)word;
+    (void)options;
+    return err_set(err, ERR_USAGE, "no command given; 'jointplay help' lists the commands");
+}
+
+static bool print_versions(const char *value, void *options, Err *err)
 {
     (void)value;
-    (void)target;
-    if (key == 'V') {
-        printf("jointplay %s\nODE %s, libccd %s, GSL %s\n", JOINTPLAY_VERSION,
-               JOINTPLAY_ODE_VERSION, JOINTPLAY_CCD_VERSION, JOINTPLAY_GSL_VERSION);
-        return true;
-    }
-    return err_set(err, ERR_USAGE, "no command given; 'jointplay help' lists the commands");
+    (void)options;
+    (void)err;
+    printf("jointplay %s\nODE %s, libccd %s, GSL %s\n", JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION,
+           JOINTPLAY_CCD_VERSION, JOINTPLAY_GSL_VERSION);
+    return true;
 }
 
 // Answers an option that stands before any command.
 static bool answer_option(char **argv, Err *err)
 {
-    static const struct argp_option OPTIONS[] = {
-        {"version", 'V', NULL, 0, "Print the versions of the program and its libraries", 0},
-        {0},
+    static const OptionRow OPTIONS[] = {
+        {"version", NULL, "Print the versions of the program and its libraries", 0, OPTION_READ,
+         .letter = 'V', .read = print_versions},
     };
     static const Arguments ARGUMENTS = {
-        .program = "jointplay", .options = OPTIONS, .take = take_option};
+        .program = "jointplay",
+        .argument = {.type = OPTION_READ, .read = fail_without_command},
+        OPTION_ROWS(OPTIONS),
+    };
     bool is_answered;
     char *words[] = {argv[0], argv[1], NULL};
     return arguments_parse(&ARGUMENTS, 2, words, NULL, &is_answered, err);
@@ -40,7 +49,7 @@ static bool answer_option(char **argv, Err *err)
 static bool run_program(int argc, char **argv, Err *err)
 {
     if (argc < 2) {
-        return err_set(err, ERR_USAGE, "no command given; 'jointplay help' lists the commands");
+        return fail_without_command(NULL, NULL, err);
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
         command_list();

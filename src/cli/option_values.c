@@ -1,15 +1,12 @@
 // What do the values of a command line's options mean?
 #include "cli/option_values.h"
 
-#include "casefile/casefile.h"
 #include "casefile/quantity.h"
 
-#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 
 enum { PART_SIZE = 256 };
 
@@ -79,39 +76,6 @@ bool option_values_read_times(const char *name, const char *list, size_t room, d
         }
     }
     return *count > 0 || err_set(err, ERR_USAGE, "--%s: the list is empty", name);
-}
-
-bool option_values_take_setting(const char *value, const char **settings, size_t *count, Err *err)
-{
-    if (*count == OPTION_SETTING_MAX) {
-        return err_set(err, ERR_USAGE, "more than %d settings on one command line",
-                       OPTION_SETTING_MAX);
-    }
-    settings[(*count)++] = value;
-    return true;
-}
-
-bool option_values_check_step(const char *path, const char *const *settings, size_t count,
-                              double step_s, Err *err)
-{
-    const char *overrides[OPTION_SETTING_MAX + 1];
-    char step[64];
-    assert(count <= OPTION_SETTING_MAX);
-    snprintf(step, sizeof step, "run.step=%.17g s", step_s);
-    memcpy(overrides, settings, count * sizeof *overrides);
-    overrides[count] = step;
-    Scenario *scenario = malloc(sizeof *scenario);
-    assert(scenario != NULL);
-    const bool is_right = casefile_load(path, overrides, count + 1, scenario, err);
-    free(scenario);
-    return is_right;
-}
-
-size_t option_values_count_jobs(void)
-{
-    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    const long most = OPTION_JOB_MAX;
-    return cores < 1 ? 1 : (size_t)(cores < most ? cores : most);
 }
 
 bool option_values_check_picture(const char *option, const char *path, Err *err)

@@ -17,7 +17,7 @@ typedef struct CheckOptions {
     bool is_quick;
     bool is_expect_only;
     bool is_all;
-    unsigned shake; // 0: none
+    size_t shake; // seed; 0: none
     const char *junit;
     const char *markdown;
 } CheckOptions;

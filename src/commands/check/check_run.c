@@ -30,11 +30,11 @@ static bool has_slow_sample(const Baseline *baseline)
 }
 
 static void add_work(CheckWork *work, const CheckItem *item, CheckStart start, bool is_full,
-                     unsigned shake)
+                     size_t shake)
 {
     *work = (CheckWork){.scenario = item->scenario, .plan = item->baseline.plan, .start = start};
     work->plan.is_full = is_full;
-    work->start.shake = shake;
+    work->start.shake = (unsigned)shake;
     work->measure = calloc(1, sizeof *work->measure);
     assert(work->measure != NULL);
 }

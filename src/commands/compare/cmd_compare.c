@@ -1,5 +1,4 @@
 // How does speed stand against error, over every scheme and a ladder of steps?
-#include "casefile/casefile.h"
 #include "cli/doubts.h"
 #include "cli/idle_settings.h"
 #include "cli/output.h"
@@ -119,8 +118,7 @@ static bool compare_case(const CompareOptions *options, Scenario *scenario, Err 
 {
     Ladder *ladder = NULL;
     bool is_done =
-        casefile_load(options->common.path, options->common.overrides,
-                      options->common.override_count, scenario, err) &&
+        common_options_load(&options->common, scenario, err) &&
         compare_options_ladder(options, scenario, &ladder, err) &&
         (options->common.folder == NULL || file_make_folder(options->common.folder, err)) &&
         compare_files_claim(scenario, options, err);

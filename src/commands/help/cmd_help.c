@@ -14,24 +14,18 @@ typedef struct HelpOptions {
     bool is_markdown;
 } HelpOptions;
 
-enum { KEY_MARKDOWN = 'm' };
-
-static const struct argp_option OPTIONS[] = {
-    {"markdown", KEY_MARKDOWN, NULL, 0, "Of the case format: as Markdown", 0},
-    {0},
+static const OptionRow OPTIONS[] = {
+    {"markdown", NULL, "Of the case format: as Markdown", 0, OPTION_FLAG,
+     offsetof(HelpOptions, is_markdown), .letter = 'm'},
 };
 
-static bool take_option(int key, const char *value, void *target, Err *err)
+static bool read_word(const char *word, void *target, Err *err)
 {
     HelpOptions *options = target;
-    if (key == KEY_MARKDOWN) {
-        options->is_markdown = true;
-        return true;
-    }
     if (options->word_count == WORD_MAX) {
-        return err_set(err, ERR_USAGE, "one topic at a time, and '%s' is one more", value);
+        return err_set(err, ERR_USAGE, "one topic at a time, and '%s' is one more", word);
     }
-    options->words[options->word_count++] = value;
+    options->words[options->word_count++] = word;
     return true;
 }
 
@@ -74,8 +68,8 @@ static bool run_help(int argc, char **argv, Err *err)
         .program = "jointplay help",
         .usage = "[case|COMMAND]\nstudy COMMAND",
         .doc = "Tells how a command is used, or how a case file is written.",
-        .options = OPTIONS,
-        .take = take_option,
+        .argument = {.type = OPTION_READ, .read = read_word},
+        OPTION_ROWS(OPTIONS),
     };
     HelpOptions options = {0};
     bool is_answered;

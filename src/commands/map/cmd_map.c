@@ -4,6 +4,7 @@
 #include "cli/doubts.h"
 #include "cli/idle_settings.h"
 #include "cli/long_work.h"
+#include "cli/option_values.h"
 #include "cli/output.h"
 #include "cli/status_line.h"
 #include "commands/commands.h"
@@ -189,7 +190,7 @@ static bool load(const MapOptions *options, Scenario *scenario, Err *err)
     if (common->path == NULL) {
         return true;
     }
-    if (!casefile_load(common->path, common->overrides, common->override_count, scenario, err)) {
+    if (!common_options_load(common, scenario, err)) {
         return false;
     }
     if (!common->is_quiet) {

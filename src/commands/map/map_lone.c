@@ -3,6 +3,7 @@
 
 #include "casefile/casefile.h"
 #include "casefile/quantity.h"
+#include "cli/option_values.h"
 #include "contact/law.h"
 #include "contact/map_impact.h"
 

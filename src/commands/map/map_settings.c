@@ -1,6 +1,8 @@
 // What do the options of `jointplay map` ask for, beside the case?
 #include "commands/map/map_options.h"
 
+#include "cli/option_values.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // What did the paper compute, and what comes out when it is computed again?
-#include "cli/arguments.h"
+#include "cli/common_options.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "commands/commands.h"
@@ -10,42 +10,9 @@
 #include <assert.h>
 #include <stdlib.h>
 
-typedef struct PaperOptions {
-    bool is_json;
-    bool is_wide;
-    bool is_quiet;
-} PaperOptions;
+static const OptionRow OPTIONS[] = {COMMON_JSON(0), COMMON_WIDE(0), COMMON_QUIET(0)};
 
-enum { KEY_JSON = 0x100, KEY_WIDE, KEY_QUIET = 'q' };
-
-static const struct argp_option OPTIONS[] = {
-    {"json", KEY_JSON, NULL, 0, "Print one JSON object instead of tables", 0},
-    {"wide", KEY_WIDE, NULL, 0, "All columns of the tables, however wide the terminal is", 0},
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors and a warning of long work",
-     0},
-    {0},
-};
-
-static bool take_option(int key, const char *value, void *target, Err *err)
-{
-    PaperOptions *options = target;
-    switch (key) {
-    case KEY_JSON:
-        options->is_json = true;
-        return true;
-    case KEY_WIDE:
-        options->is_wide = true;
-        return true;
-    case KEY_QUIET:
-        options->is_quiet = true;
-        return true;
-    default:
-        return err_set(err, ERR_USAGE, "'jointplay paper' takes no argument, and '%s' is one",
-                       value);
-    }
-}
-
-static void print_result(const PaperResult *result, const PaperOptions *options)
+static void print_result(const PaperResult *result, const CommonOptions *options)
 {
     if (options->is_json) {
         output_json(paper_json_make(result));
@@ -65,10 +32,9 @@ static bool run_paper(int argc, char **argv, Err *err)
         .program = "jointplay paper",
         .doc = "Recomputes the tables of the paper the program grew from: printed, recomputed, "
                "difference, and what physics gives.",
-        .options = OPTIONS,
-        .take = take_option,
+        OPTION_ROWS(OPTIONS),
     };
-    PaperOptions options = {0};
+    CommonOptions options = {0};
     bool is_answered;
     if (!arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) || is_answered) {
         return err->kind == ERR_NONE;

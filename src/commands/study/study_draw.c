@@ -10,8 +10,6 @@
 
 #include <string.h>
 
-enum { KEY_X = 0x200, KEY_Y, KEY_BY, KEY_TITLE, KEY_QUIET = 'q' };
-
 typedef struct DrawOptions {
     const char *store;
     const char *file;
@@ -19,48 +17,44 @@ typedef struct DrawOptions {
     bool is_quiet;
 } DrawOptions;
 
-static const struct argp_option OPTIONS[] = {
-    {"x", KEY_X, "COLUMN", 0, "The column to the right", 1},
-    {"y", KEY_Y, "COLUMN", 0, "The column upwards (default: how often each x occurs)", 1},
-    {"by", KEY_BY, "COLUMN", 0, "A colour for each value of this setting", 1},
-    {"title", KEY_TITLE, "WORDS", 0, "The title of the picture", 1},
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 2},
-    {0},
-};
-
-static bool take_word(DrawOptions *options, const char *word, Err *err)
+static bool read_word(const char *word, void *target, Err *err)
 {
+    DrawOptions *options = target;
     if (options->file != NULL) {
         return err_set(err, ERR_USAGE, "plot takes a store and a file, and '%s' is one more", word);
     }
-    const char **place = options->store == NULL ? &options->store : &options->file;
-    *place = word;
+    *(options->store == NULL ? &options->store : &options->file) = word;
     return true;
 }
 
-static bool take_option(int key, const char *value, void *target, Err *err)
+static bool read_title(const char *title, void *options, Err *err)
 {
-    DrawOptions *options = target;
-    switch (key) {
-    case KEY_X:
-        options->plot.x = value;
-        return true;
-    case KEY_Y:
-        options->plot.y = value;
-        return true;
-    case KEY_BY:
-        options->plot.by = value;
-        return true;
-    case KEY_TITLE:
-        options->plot.title = value;
-        return source_is_one_line(value, strlen(value)) ||
-               err_set(err, ERR_USAGE, "--title: the argument is not text on one line");
-    case KEY_QUIET:
-        options->is_quiet = true;
-        return true;
-    default:
-        return take_word(options, value, err);
+    ((DrawOptions *)options)->plot.title = title;
+    return source_is_one_line(title, strlen(title)) ||
+           err_set(err, ERR_USAGE, "--title: the argument is not text on one line");
+}
+
+#define AT(field) .offset = offsetof(DrawOptions, field)
+
+static const OptionRow OPTIONS[] = {
+    {"x", "COLUMN", "The column to the right", 1, OPTION_TEXT, AT(plot.x)},
+    {"y", "COLUMN", "The column upwards (default: how often each x occurs)", 1, OPTION_TEXT,
+     AT(plot.y)},
+    {"by", "COLUMN", "A colour for each value of this setting", 1, OPTION_TEXT, AT(plot.by)},
+    {"title", "WORDS", "The title of the picture", 1, OPTION_READ, .read = read_title},
+    {"quiet", NULL, "Nothing on standard error but errors", 2, OPTION_FLAG, AT(is_quiet),
+     .letter = 'q'},
+};
+
+static bool check(void *target, Err *err)
+{
+    const DrawOptions *options = target;
+    if (options->file == NULL || options->plot.x == NULL) {
+        return err_set(err, ERR_USAGE,
+                       "%s: jointplay study plot STORE --x COLUMN --y COLUMN FILE.svg",
+                       options->file == NULL ? "a store and a file are needed" : "no --x given");
     }
+    return option_values_check_picture("plot", options->file, err);
 }
 
 static bool draw(const DrawOptions *options, Err *err)
@@ -88,20 +82,14 @@ static bool run(int argc, char **argv, Err *err)
         .doc = "Draws one column of a study over another, as SVG: a dot a run, or where many runs "
                "share each x their median and a band from 5 to 95 %."
                "\vThe first line of 'jointplay study export' names the columns.",
-        .options = OPTIONS,
-        .take = take_option,
+        .argument = {.type = OPTION_READ, .read = read_word},
+        OPTION_ROWS(OPTIONS),
+        .check = check,
     };
     DrawOptions options = {0};
     bool is_answered;
-    if (!arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) || is_answered) {
-        return err->kind == ERR_NONE;
-    }
-    if (options.file == NULL || options.plot.x == NULL) {
-        return err_set(err, ERR_USAGE,
-                       "%s: jointplay study plot STORE --x COLUMN --y COLUMN FILE.svg",
-                       options.file == NULL ? "a store and a file are needed" : "no --x given");
-    }
-    return option_values_check_picture("plot", options.file, err) && draw(&options, err);
+    return arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) &&
+           (is_answered || draw(&options, err));
 }
 
 const Command study_command_plot = {

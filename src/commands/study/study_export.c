@@ -8,8 +8,6 @@
 
 #include <string.h>
 
-enum { KEY_CSV = 0x200, KEY_JSONL, KEY_QUIET = 'q' };
-
 typedef struct ExportOptions {
     const char *store;
     const char *csv;
@@ -17,34 +15,21 @@ typedef struct ExportOptions {
     bool is_quiet;
 } ExportOptions;
 
-static const struct argp_option OPTIONS[] = {
-    {"csv", KEY_CSV, "FILE.csv", 0, "Write a row a run there (default: to standard output)", 1},
-    {"jsonl", KEY_JSONL, "FILE.jsonl", 0, "Write an object a run, each on a line of its own", 1},
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 2},
-    {0},
+#define AT(field) .offset = offsetof(ExportOptions, field)
+
+static const OptionRow OPTIONS[] = {
+    {"csv", "FILE.csv", "Write a row a run there (default: to standard output)", 1, OPTION_TEXT,
+     AT(csv)},
+    {"jsonl", "FILE.jsonl", "Write an object a run, each on a line of its own", 1, OPTION_TEXT,
+     AT(jsonl)},
+    {"quiet", NULL, "Nothing on standard error but errors", 2, OPTION_FLAG, AT(is_quiet),
+     .letter = 'q'},
 };
 
-static bool take_option(int key, const char *value, void *target, Err *err)
+static bool check(void *options, Err *err)
 {
-    ExportOptions *options = target;
-    switch (key) {
-    case KEY_CSV:
-        options->csv = value;
-        return true;
-    case KEY_JSONL:
-        options->jsonl = value;
-        return true;
-    case KEY_QUIET:
-        options->is_quiet = true;
-        return true;
-    default:
-        if (options->store != NULL) {
-            return err_set(err, ERR_USAGE, "export takes one store, not %s and %s", options->store,
-                           value);
-        }
-        options->store = value;
-        return true;
-    }
+    return ((const ExportOptions *)options)->store != NULL ||
+           err_set(err, ERR_USAGE, "no store given: jointplay study export STORE.sqlite");
 }
 
 static bool say(const char *path, bool is_quiet)
@@ -80,18 +65,14 @@ static bool run(int argc, char **argv, Err *err)
         .doc = "Writes the rows of a store, a run each, by rising number of run."
                "\vA study file stands for its usual store in the working folder; - for standard "
                "output.",
-        .options = OPTIONS,
-        .take = take_option,
+        .argument = {.type = OPTION_TEXT, AT(store), .what = "export takes one store"},
+        OPTION_ROWS(OPTIONS),
+        .check = check,
     };
     ExportOptions options = {0};
     bool is_answered;
-    if (!arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) || is_answered) {
-        return err->kind == ERR_NONE;
-    }
-    if (options.store == NULL) {
-        return err_set(err, ERR_USAGE, "no store given: jointplay study export STORE.sqlite");
-    }
-    return write_all(&options, err);
+    return arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) &&
+           (is_answered || write_all(&options, err));
 }
 
 const Command study_command_export = {

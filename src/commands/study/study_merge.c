@@ -1,7 +1,6 @@
 // How do the shards of a study become one store?
 #include "base/shell.h"
 #include "cli/arguments.h"
-#include "cli/common_options.h"
 #include "cli/output.h"
 #include "commands/study/store.h"
 #include "commands/study/study_commands.h"
@@ -15,9 +14,9 @@
 #include <string.h>
 #include <unistd.h>
 
-static const struct argp_option OPTIONS[] = {
-    COMMON_ROW_QUIET(1),
-    {0},
+static const OptionRow OPTIONS[] = {
+    {"quiet", NULL, "Nothing on standard error but errors", 1, OPTION_FLAG,
+     .offset = offsetof(StudyWords, is_quiet), .letter = 'q'},
 };
 
 // What there is in a store now.
@@ -130,8 +129,8 @@ static bool run(int argc, char **argv, Err *err)
                "names in the working folder, or those that are named."
                "\vRuns that are there already are left alone. Stores of different studies or "
                "programs are refused, and nothing is written then.",
-        .options = OPTIONS,
-        .take = study_words_take,
+        .argument = {.type = OPTION_READ, .read = study_words_read},
+        OPTION_ROWS(OPTIONS),
     };
     return study_words_run(&ARGUMENTS, argc, argv, merge_words, err);
 }

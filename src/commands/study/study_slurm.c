@@ -1,7 +1,6 @@
 // Which scripts make a study on a cluster, and what is to be typed then?
 #include "base/shell.h"
 #include "cli/arguments.h"
-#include "cli/option_values.h"
 #include "cli/output.h"
 #include "cli/written.h"
 #include "commands/study/design.h"
@@ -35,75 +34,37 @@ typedef struct SlurmOptions {
     bool is_quiet;
 } SlurmOptions;
 
-enum {
-    KEY_SHARDS = 'n',
-    KEY_CPUS = 'c',
-    KEY_TIME = 't',
-    KEY_MEMORY = 0x100,
-    KEY_PARTITION = 'p',
-    KEY_ACCOUNT = 'A',
-    KEY_REQUEUES = 0x101,
-    KEY_OUT = 'o',
-    KEY_DRY_RUN = 0x102,
-    KEY_QUIET = 'q',
+#define AT(field) .offset = offsetof(SlurmOptions, field)
+
+static const OptionRow OPTIONS[] = {
+    {"shards", "N", "Tasks of the job array, each with a store of its own", 0, OPTION_COUNT,
+     AT(shards), .low = SLURM_SHARD_LEAST, .high = SLURM_SHARD_MAX, .letter = 'n'},
+    {"cpus", "N", "Runs at a time in each task (default: 1)", 0, OPTION_COUNT, AT(cpus), .low = 1,
+     .high = SLURM_CPU_MAX, .letter = 'c'},
+    {"time", "TIME", "Time limit of each task, as Slurm writes it: 4:00:00, 1-12", 0, OPTION_TEXT,
+     AT(time), .letter = 't'},
+    {"mem", "SIZE", "Memory of each task, as Slurm writes it: 4G", 0, OPTION_TEXT, AT(memory)},
+    {"partition", "NAME", "Partition of both jobs", 0, OPTION_TEXT, AT(partition), .letter = 'p'},
+    {"account", "NAME", "Account of both jobs", 0, OPTION_TEXT, AT(account), .letter = 'A'},
+    {"requeues", "N",
+     "Times a task that is killed or runs out of time goes back in the queue (default: 10)", 0,
+     OPTION_COUNT, AT(requeues), .low = 0, .high = SLURM_REQUEUE_MAX},
+    {"out", "DIR", "Where scripts, logs and stores go (default: here)", 0, OPTION_TEXT, AT(folder),
+     .letter = 'o'},
+    {"dry-run", NULL, "Print the scripts and write nothing", 0, OPTION_FLAG, AT(is_dry)},
+    {"quiet", NULL, "Nothing on standard error but errors", 0, OPTION_FLAG, AT(is_quiet),
+     .letter = 'q'},
 };
 
-static const struct argp_option OPTIONS[] = {
-    {"shards", KEY_SHARDS, "N", 0, "Tasks of the job array, each with a store of its own", 0},
-    {"cpus", KEY_CPUS, "N", 0, "Runs at a time in each task (default: 1)", 0},
-    {"time", KEY_TIME, "TIME", 0, "Time limit of each task, as Slurm writes it: 4:00:00, 1-12", 0},
-    {"mem", KEY_MEMORY, "SIZE", 0, "Memory of each task, as Slurm writes it: 4G", 0},
-    {"partition", KEY_PARTITION, "NAME", 0, "Partition of both jobs", 0},
-    {"account", KEY_ACCOUNT, "NAME", 0, "Account of both jobs", 0},
-    {"requeues", KEY_REQUEUES, "N", 0,
-     "Times a task that is killed or runs out of time goes back in the queue (default: 10)", 0},
-    {"out", KEY_OUT, "DIR", 0, "Where scripts, logs and stores go (default: here)", 0},
-    {"dry-run", KEY_DRY_RUN, NULL, 0, "Print the scripts and write nothing", 0},
-    {"quiet", KEY_QUIET, NULL, 0, "Nothing on standard error but errors", 0},
-    {0},
-};
-
-static bool take_word(const char **target, const char *value)
+static bool check(void *target, Err *err)
 {
-    *target = value;
-    return true;
-}
-
-static bool take_option(int key, const char *value, void *target, Err *err)
-{
-    SlurmOptions *options = target;
-    switch (key) {
-    case KEY_SHARDS:
-        return option_values_read_count("shards", value, SLURM_SHARD_LEAST, SLURM_SHARD_MAX,
-                                        &options->shards, err);
-    case KEY_CPUS:
-        return option_values_read_count("cpus", value, 1, SLURM_CPU_MAX, &options->cpus, err);
-    case KEY_REQUEUES:
-        return option_values_read_count("requeues", value, 0, SLURM_REQUEUE_MAX, &options->requeues,
-                                        err);
-    case KEY_TIME:
-        return take_word(&options->time, value);
-    case KEY_MEMORY:
-        return take_word(&options->memory, value);
-    case KEY_PARTITION:
-        return take_word(&options->partition, value);
-    case KEY_ACCOUNT:
-        return take_word(&options->account, value);
-    case KEY_OUT:
-        return take_word(&options->folder, value);
-    case KEY_DRY_RUN:
-        options->is_dry = true;
-        return true;
-    case KEY_QUIET:
-        options->is_quiet = true;
-        return true;
-    default:
-        if (options->path != NULL) {
-            return err_set(err, ERR_USAGE, "one study at a time: '%s' or '%s'", options->path,
-                           value);
-        }
-        return take_word(&options->path, value);
+    const SlurmOptions *options = target;
+    if (options->path == NULL) {
+        return err_set(err, ERR_USAGE, "no study given: jointplay study slurm FILE --shards N");
     }
+    return options->shards > 0 ||
+           err_set(err, ERR_USAGE,
+                   "no number of shards given: --shards N, the tasks of the job array");
 }
 
 static bool read_options(int argc, char **argv, SlurmOptions *options, bool *is_answered, Err *err)
@@ -115,19 +76,12 @@ static bool read_options(int argc, char **argv, SlurmOptions *options, bool *is_
                "that gathers their stores, and what submits the two."
                "\vA task that is killed, preempted or runs out of time goes back in the queue and "
                "on where it stood.",
-        .options = OPTIONS,
-        .take = take_option,
+        .argument = {.type = OPTION_TEXT, AT(path), .what = "slurm takes one study"},
+        OPTION_ROWS(OPTIONS),
+        .check = check,
     };
     *options = (SlurmOptions){.folder = ".", .cpus = 1, .requeues = SLURM_REQUEUE_USUAL};
-    if (!arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err) || *is_answered) {
-        return err->kind == ERR_NONE;
-    }
-    if (options->path == NULL) {
-        return err_set(err, ERR_USAGE, "no study given: jointplay study slurm FILE --shards N");
-    }
-    return options->shards > 0 ||
-           err_set(err, ERR_USAGE,
-                   "no number of shards given: --shards N, the tasks of the job array");
+    return arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err);
 }
 
 // A shard without a run would be a job for nothing.

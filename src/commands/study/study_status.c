@@ -1,6 +1,5 @@
 // How far has a study come?
 #include "cli/arguments.h"
-#include "cli/common_options.h"
 #include "cli/output.h"
 #include "commands/study/study_commands.h"
 #include "commands/study/study_place.h"
@@ -20,7 +19,10 @@ typedef struct Parts {
     StudyPart *parts; // owned, as their stores are and their paths
 } Parts;
 
-static const struct argp_option OPTIONS[] = {COMMON_ROW_WIDE(0), {0}};
+static const OptionRow OPTIONS[] = {
+    {"wide", NULL, "All columns of the tables, however wide the terminal is", 0, OPTION_FLAG,
+     .offset = offsetof(StudyWords, is_wide)},
+};
 
 // In place of the number of runs that a store is to hold: only the store itself knows. A part of a
 // study with fewer runs than parts is to hold none.
@@ -125,8 +127,8 @@ static bool run(int argc, char **argv, Err *err)
         .usage = "FILE-or-STORE...",
         .doc = "Says how far a study has come: of a study file, by the usual names of its stores "
                "in the working folder. It may be at work at the time.",
-        .options = OPTIONS,
-        .take = study_words_take,
+        .argument = {.type = OPTION_READ, .read = study_words_read},
+        OPTION_ROWS(OPTIONS),
     };
     return study_words_run(&ARGUMENTS, argc, argv, tell, err);
 }

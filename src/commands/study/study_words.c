@@ -1,22 +1,14 @@
 // Which words was a command of `jointplay study` given?
 #include "commands/study/study_words.h"
 
-#include "cli/common_options.h"
-
 #include <assert.h>
 #include <stdlib.h>
 
-bool study_words_take(int key, const char *value, void *target, Err *err)
+bool study_words_read(const char *word, void *target, Err *err)
 {
     (void)err;
     StudyWords *words = target;
-    if (key == COMMON_QUIET) {
-        words->is_quiet = true;
-    } else if (key == COMMON_WIDE) {
-        words->is_wide = true;
-    } else {
-        words->words[words->count++] = value;
-    }
+    words->words[words->count++] = word;
     return true;
 }
 

@@ -1,7 +1,6 @@
 // The words of a command of `jointplay study` that takes any number of them.
 #pragma once
 
-#include "base/err.h"
 #include "cli/arguments.h"
 
 #include <stdbool.h>
@@ -14,8 +13,8 @@ typedef struct StudyWords {
     bool is_quiet;
 } StudyWords;
 
-// For the Arguments of such a command, whose only options may be --quiet and --wide.
-bool study_words_take(int key, const char *value, void *target, Err *err);
+// The argument of such a command.
+bool study_words_read(const char *word, void *words, Err *err);
 
 // Reads the command line and does the work with its words, unless help was all that was asked for.
 // Fails as arguments_parse does, or the work.

@@ -1,6 +1,5 @@
 // Which setting of ODE is the cheapest that is accurate enough?
 #include "base/clock.h"
-#include "casefile/casefile.h"
 #include "cli/doubts.h"
 #include "cli/idle_settings.h"
 #include "cli/output.h"
@@ -119,8 +118,7 @@ static bool tune_case(const TuneOptions *options, Scenario *scenario, Err *err)
 {
     Tune *tune = NULL;
     bool is_done =
-        casefile_load(options->common.path, options->common.overrides,
-                      options->common.override_count, scenario, err) &&
+        common_options_load(&options->common, scenario, err) &&
         tune_options_search(options, scenario, &tune, err) &&
         (options->common.folder == NULL || file_make_folder(options->common.folder, err)) &&
         tune_files_claim(scenario, options, err);

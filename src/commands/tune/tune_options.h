@@ -9,8 +9,9 @@
 
 typedef struct TuneOptions {
     CommonOptions common;
-    double error;     // 1; 0 until it is given
-    double at_step_s; // s, the only step that can be taken; 0: any
+    double error;           // 1; 0 until it is given
+    double at_step_s;       // s, the only step that can be taken; 0: any
+    const char *asked_cost; // of --cost, or NULL
     TuneCost cost;
     TuneLimit limit;
     const char *code;
