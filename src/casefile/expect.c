@@ -4,7 +4,6 @@
 //          | [backend .] error . number | [backend .] energy . number | [backend .] cost . number
 #include "casefile/expect.h"
 
-#include "casefile/expect_limit.h"
 #include "casefile/keys.h"
 
 #include <stdio.h>

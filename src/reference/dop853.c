@@ -5,8 +5,6 @@
 // Source: Hairer, Norsett, Wanner 1993, section II.10; see reference/dop853_table.c.
 #include "reference/dop853.h"
 
-#include "reference/radau.h"
-
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -114,8 +112,8 @@ double dop853_judge(const Dop853 *integrator, const double *high, const double *
 
 double dop853_try(Dop853 *integrator, double step)
 {
-    if (integrator->radau != NULL) {
-        return radau_try(integrator->radau, integrator, step);
+    if (integrator->method != NULL) {
+        return integrator->method->try_step(integrator->method, integrator, step);
     }
     integrator->tried = step;
     double y[DOP853_SIZE_MAX];
@@ -163,8 +161,8 @@ void dop853_fill(Dop853 *integrator)
     const double h = integrator->tried;
     double y[DOP853_SIZE_MAX];
     evaluate(integrator, END_STAGE, integrator->next);
-    if (integrator->radau != NULL) {
-        radau_fill(integrator->radau, integrator);
+    if (integrator->method != NULL) {
+        integrator->method->fill(integrator->method, integrator);
         return;
     }
     for (int stage = FIRST_DENSE_STAGE; stage < DOP853_STAGES; stage++) {

@@ -14,10 +14,19 @@ enum { DOP853_SIZE_MAX = 128, DOP853_POLYNOMIAL = 8 };
 // Writes dy/dt at a time and state.
 typedef void (*Dop853Rates)(double time, const double *y, double *rates, void *context);
 
-typedef struct Dop853 {
-    struct Radau *radau; // takes the steps where it is not NULL
-    size_t size;         // number of equations
-    size_t motion_size;  // of those, the first: the errors of the others are judged by themselves
+typedef struct Dop853 Dop853;
+
+// Another method that takes the steps, as dop853_try and dop853_fill do.
+typedef struct Dop853Method Dop853Method;
+struct Dop853Method {
+    double (*try_step)(Dop853Method *method, Dop853 *integrator, double step);
+    void (*fill)(Dop853Method *method, Dop853 *integrator);
+};
+
+struct Dop853 {
+    Dop853Method *method; // takes the steps where it is not NULL
+    size_t size;          // number of equations
+    size_t motion_size;   // of those, the first: the errors of the others are judged by themselves
     Dop853Rates rates;
     void *context;
     // Error allowed in each component of one step: fixed[i] + grown[i] times the step. A component
@@ -38,7 +47,7 @@ typedef struct Dop853 {
     size_t accepted;
     size_t rejected;
     size_t evaluations;
-} Dop853;
+};
 
 // Puts the integrator at a time and state; also after the right-hand side has changed.
 void dop853_start(Dop853 *integrator, double time, const double *y);

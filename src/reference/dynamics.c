@@ -7,7 +7,6 @@
 
 #include "base/dense.h"
 #include "contact/law.h"
-#include "reference/dynamics_contact.h"
 #include "reference/loops.h"
 
 enum { EQUATION_MAX = TREE_COORDINATE_MAX + 2 * TREE_LOOP_MAX };
@@ -74,7 +73,8 @@ static void load_contact(const Dynamics *dynamics, size_t number, const TreeStat
     const int hole = 2 * contact->joint;
     Vec2 from_hole;
     Vec2 from_pin;
-    dynamics_contact_places(dynamics, contact, &force->pose, &from_hole, &from_pin);
+    dynamics_contact_points(contact, &dynamics->scenario->contact, &force->pose, &from_hole,
+                            &from_pin);
     load_end(&dynamics->tree, state, hole + 1, from_pin, force->force, loads);
     load_end(&dynamics->tree, state, hole, from_hole, vec2_scale(-1.0, force->force), loads);
 }
@@ -221,7 +221,8 @@ static bool find_rates(const Dynamics *dynamics, double since_s, const double *y
     tree_evaluate(tree, since_s, y, y + n, &state->tree);
     start_loads(dynamics, loads);
     for (size_t i = 0; i < dynamics->contact_count; i++) {
-        dynamics_contact_find(dynamics, i, &state->tree, &state->contacts[i]);
+        state->contacts[i] = dynamics_contact_find(
+            &dynamics->contacts[i], &dynamics->scenario->contact, tree, &state->tree);
         if (dynamics->contacts[i].mode == CONTACT_PRESSING) {
             load_contact(dynamics, i, &state->tree, &state->contacts[i], loads);
         }
@@ -250,6 +251,16 @@ bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y
     find_motion(&dynamics->tree, solved, &loads, state);
     find_drive(dynamics, &loads, state);
     return true;
+}
+
+ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
+                              const double *y)
+{
+    const Tree *tree = &dynamics->tree;
+    TreeState state;
+    tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state);
+    return dynamics_contact_find(&dynamics->contacts[contact], &dynamics->scenario->contact, tree,
+                                 &state);
 }
 
 static void fill_sums(const Dynamics *dynamics, const DynamicsState *state, double *sums)
@@ -289,4 +300,18 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
         rates[n + i] = solved[i];
     }
     fill_sums(dynamics, &state, rates + 2 * n);
+}
+
+bool dynamics_check_depth(const Dynamics *dynamics, const DynamicsState *state, double share,
+                          Err *err)
+{
+    for (size_t i = 0; i < dynamics->contact_count; i++) {
+        const DynamicsContact *contact = &dynamics->contacts[i];
+        const Joint *joint = &dynamics->scenario->linkage.joints[contact->joint];
+        if (!law_check_depth(&contact->law, joint, state->contacts[i].pose.penetration, share,
+                             err)) {
+            return false;
+        }
+    }
+    return true;
 }

@@ -2,40 +2,7 @@
 // smooth forces while their mode is frozen.
 #pragma once
 
-#include "contact/force_law.h"
-#include "contact/pin_hole.h"
-#include "model/scenario.h"
-#include "model/trajectory.h"
-#include "reference/tree.h"
-
-// What a joint with play is doing. It changes at events only.
-typedef enum ContactMode {
-    CONTACT_APART,    // the pin is within its play
-    CONTACT_PRESSING, // it overlaps the wall and is pressed
-    CONTACT_SLACK,    // it overlaps the wall, but leaves it faster than the spring follows
-} ContactMode;
-
-typedef struct DynamicsContact {
-    int joint;
-    ForceLaw law;
-    double radial_clearance; // m
-    double hole_radius;      // m
-    ContactMode mode;
-    double impact_speed; // m/s, closing speed when the contact under way began
-    double damping_rate; // s/m, chi / v0 of it, v0 not below the law's floor
-} DynamicsContact;
-
-// A contact's quantities at one instant.
-typedef struct ContactForce {
-    PinHole pose;
-    double elastic;        // N, of the law's spring, continued as an odd function below zero depth
-    double normal;         // N, what presses in the present mode
-    double pressing;       // N, what would press in the pressing mode, not clamped at zero
-    double release;        // turns negative where a pressing contact goes slack
-    Vec2 force;            // N, on the pin, friction included
-    double damping_power;  // W, lost along the normal
-    double friction_power; // W, lost in sliding
-} ContactForce;
+#include "reference/dynamics_contact.h"
 
 typedef struct Dynamics {
     const Scenario *scenario;

@@ -9,6 +9,8 @@
 
 #include "base/root.h"
 
+#include <stdint.h>
+
 // of a step: a maximum missed by so much is too low by half the square of it, 1e-10 of itself
 static const double NARROW = 1e-5;
 

@@ -39,13 +39,6 @@ static size_t freedoms_of(const Dop853 *integrator)
     return integrator->motion_size / 2;
 }
 
-Radau *radau_create(void)
-{
-    Radau *radau = calloc(1, sizeof *radau);
-    assert(radau != NULL);
-    return radau;
-}
-
 void radau_destroy(Radau *radau)
 {
     if (radau != NULL) {
@@ -242,8 +235,9 @@ static void weigh_moved(const Radau *radau, const Dop853 *integrator, const doub
     }
 }
 
-double radau_try(Radau *radau, Dop853 *integrator, double step)
+static double try_step(Dop853Method *method, Dop853 *integrator, double step)
 {
+    Radau *radau = (Radau *)method;
     integrator->tried = step;
     const double effort = solve(radau, integrator, step) / EASY;
     if (!(effort < INFINITY)) {
@@ -270,8 +264,9 @@ double radau_try(Radau *radau, Dop853 *integrator, double step)
     return error > 1.0 ? error : fmax(error, fmin(1.0, pow(effort, 8.0)));
 }
 
-void radau_fill(Radau *radau, Dop853 *integrator)
+static void fill(Dop853Method *method, Dop853 *integrator)
 {
+    Radau *radau = (Radau *)method;
     double(*p)[DOP853_SIZE_MAX] = integrator->polynomial;
     memcpy(p[0], integrator->y, sizeof p[0]);
     memcpy(p[1], radau->moved[RADAU_STAGES - 1], sizeof p[1]);
@@ -280,4 +275,12 @@ void radau_fill(Radau *radau, Dop853 *integrator)
     }
     radau->before_s = integrator->tried;
     radau->filled = integrator->accepted;
+}
+
+Radau *radau_create(void)
+{
+    Radau *radau = calloc(1, sizeof *radau);
+    assert(radau != NULL);
+    radau->method = (Dop853Method){.try_step = try_step, .fill = fill};
+    return radau;
 }

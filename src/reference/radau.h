@@ -11,6 +11,7 @@
 enum { RADAU_FREEDOM_MAX = DOP853_SIZE_MAX / 2 };
 
 typedef struct Radau {
+    Dop853Method method; // what a Dop853 takes the steps by; the first member
     // Changes of the coordinates and their rates by which accelerations are differentiated: small
     // against what they depend on, large against rounding.
     double nudge[DOP853_SIZE_MAX];
@@ -34,7 +35,3 @@ void radau_destroy(Radau *radau);
 // How fast rates die away where the next step starts: the sum of all rates of decay, 1/s. The next
 // step takes nothing from one before.
 double radau_look(Radau *radau, Dop853 *integrator);
-
-// As dop853_try and dop853_fill.
-double radau_try(Radau *radau, Dop853 *integrator, double step);
-void radau_fill(Radau *radau, Dop853 *integrator);

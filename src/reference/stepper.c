@@ -78,7 +78,7 @@ static void allow_rounding(Stepper *stepper)
     double *fixed = stepper->integrator.fixed;
     double *grown = stepper->integrator.grown;
     double *sums = grown + dynamics_sum_index(&stepper->dynamics, 0);
-    const bool is_stiff = stepper->integrator.radau != NULL;
+    const bool is_stiff = stepper->integrator.method != NULL;
     double force = 0.0;
     double damped = 0.0;
     double moved = 0.0;

@@ -58,10 +58,10 @@ void stiffness_follow(Stiffness *stiffness, const Dynamics *dynamics, const Dyna
     const double depth = smallest_depth(dynamics, state, integrator->step);
     stiffness->steps = is_event ? 0 : stiffness->steps + 1;
     if (!(depth > 0.0)) {
-        integrator->radau = NULL;
+        integrator->method = NULL;
         return;
     }
-    if (integrator->radau == NULL && stiffness->steps < LOOK_EVERY) {
+    if (integrator->method == NULL && stiffness->steps < LOOK_EVERY) {
         return;
     }
     stiffness->steps = 0;
@@ -70,11 +70,11 @@ void stiffness_follow(Stiffness *stiffness, const Dynamics *dynamics, const Dyna
     }
     Radau *radau = stiffness->radau;
     set_nudges(&dynamics->tree, scale, depth, radau->nudge);
-    if (integrator->radau == NULL || is_event) {
+    if (integrator->method == NULL || is_event) {
         radau_look(radau, integrator);
     }
-    const double most = integrator->radau == NULL ? STIFF : EASY;
-    integrator->radau = integrator->step * radau->decay > most ? radau : NULL;
+    const double most = integrator->method == NULL ? STIFF : EASY;
+    integrator->method = integrator->step * radau->decay > most ? &radau->method : NULL;
 }
 
 void stiffness_finish(Stiffness *stiffness)

@@ -74,7 +74,7 @@ static void start_at(Dop853 *integrator, Radau *radau, Dop853Rates rates, Stiff 
     integrator->motion_size = 2;
     integrator->rates = rates;
     integrator->context = stiff;
-    integrator->radau = radau;
+    integrator->method = &radau->method;
     for (int i = 0; i < 3; i++) {
         integrator->fixed[i] = 1e-13;
     }
@@ -145,7 +145,7 @@ static size_t follow_sine(double decay, bool is_implicit)
     Dop853 integrator;
     Radau *radau = radau_create();
     start_at(&integrator, radau, held_to_a_sine, &stiff, 0.0, 1.0);
-    integrator.radau = is_implicit ? radau : NULL;
+    integrator.method = is_implicit ? &radau->method : NULL;
     integrator.step = 1e-3;
     while (integrator.time < 3.0 && integrator.accepted < 20000) {
         assert_true(dop853_attempt(&integrator, 3.0 - integrator.time));
