@@ -1,4 +1,4 @@
-// Roots and minima of functions of one variable (GSL's Brent methods behind the project's name).
+// Roots and minima of functions of one variable by Brent's methods.
 #pragma once
 
 #include <stdbool.h>
@@ -11,6 +11,6 @@ bool root_find(RootFunction f, void *context, double low, double high, double x_
                double *x);
 
 // Moves x, which lies between low and high with f(x) below both f(low) and f(high), to the minimum
-// of f there; its place is right to about 1e-8 of the interval, its value to rounding. Returns
+// of f there; its position is right to about 1e-8 of the interval, its value to rounding. Returns
 // false, x untouched, where the three do not enclose a minimum.
 bool root_minimum(RootFunction f, void *context, double low, double middle, double high, double *x);
