@@ -1,72 +1,83 @@
 // How is an engine that ends the process on its errors kept from ending ours?
 //
-// ODE calls a handler on an error and exits or aborts when the handler returns. The handlers here
-// do not return: they jump back to where the step was called. What they share with that place has
-// to be static, for ODE hands them no context; runs that are to go side by side are processes.
+// ODE calls a handler on an error and exits or aborts when the handler returns. In a step the
+// handlers here do not return: they jump back to where the step was called. ODE hands them no
+// context, so what they share with that step belongs to the thread. An error outside a step is left
+// to ODE's own handler, which reports it and aborts.
 #include "ode/engine.h"
 
+#include <assert.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <threads.h>
 
 enum { ENGINE_MESSAGE_SIZE = 256 };
 
-static jmp_buf way_back;
-static bool is_stepping = false;
-static bool has_complained = false;
-static char message[ENGINE_MESSAGE_SIZE];
+// The step under way in this thread.
+static _Thread_local struct {
+    bool is_stepping;
+    bool has_complained;
+    jmp_buf way_back;
+    char message[ENGINE_MESSAGE_SIZE];
+} thread;
+
+static void keep_message(const char *kind, int number, const char *text, va_list arguments)
+{
+    char words[ENGINE_MESSAGE_SIZE];
+    vsnprintf(words, sizeof words, text, arguments);
+    snprintf(thread.message, sizeof thread.message, "ODE %s %d: %.200s", kind, number, words);
+}
 
 static void leave(int number, const char *text, va_list arguments)
 {
-    const int written = snprintf(message, sizeof message, "ODE error %d: ", number);
-    if (written > 0 && (size_t)written < sizeof message) {
-        vsnprintf(message + written, sizeof message - (size_t)written, text, arguments);
+    keep_message("error", number, text, arguments);
+    if (thread.is_stepping) {
+        longjmp(thread.way_back, 1);
     }
-    if (is_stepping) {
-        longjmp(way_back, 1);
-    }
-    fprintf(stderr, "%s\n", message);
-    abort();
+    dSetDebugHandler(NULL);
+    dDebug(number, "%s", thread.message);
 }
 
 // ODE also reports what it can go on from, such as a failed linear complementarity problem: the
 // step's forces are then not to be trusted.
 static void note(int number, const char *text, va_list arguments)
 {
-    has_complained = true;
-    const int written = snprintf(message, sizeof message, "ODE message %d: ", number);
-    if (written > 0 && (size_t)written < sizeof message) {
-        vsnprintf(message + written, sizeof message - (size_t)written, text, arguments);
-    }
+    thread.has_complained = true;
+    keep_message("message", number, text, arguments);
 }
 
-void engine_start(void)
+static void start(void)
 {
-    static bool is_started = false;
-    if (is_started) {
-        return;
-    }
     // never closed: after a step that was left, ODE would abort over its unfinished job
     dInitODE2(0);
     dSetErrorHandler(leave);
     dSetDebugHandler(leave);
     dSetMessageHandler(note);
-    is_started = true;
+}
+
+void engine_start(void)
+{
+    static once_flag started = ONCE_FLAG_INIT;
+    call_once(&started, start);
+    // what ODE keeps for each thread; at once where it has it
+    const int has_data = dAllocateODEDataForThread(dAllocateMaskAll);
+    assert(has_data != 0);
+    (void)has_data;
 }
 
 bool engine_step(dWorldID world, double step_s, bool is_quick, Err *err)
 {
-    if (setjmp(way_back) != 0) {
-        is_stepping = false;
-        return err_set(err, ERR_SOLVER, "%s", message);
+    if (setjmp(thread.way_back) != 0) {
+        thread.is_stepping = false;
+        return err_set(err, ERR_SOLVER, "%s", thread.message);
     }
-    is_stepping = true;
-    has_complained = false;
+    thread.is_stepping = true;
+    thread.has_complained = false;
     const int status = is_quick ? dWorldQuickStep(world, step_s) : dWorldStep(world, step_s);
-    is_stepping = false;
-    if (has_complained) {
-        return err_set(err, ERR_SOLVER, "%s", message);
+    thread.is_stepping = false;
+    if (thread.has_complained) {
+        return err_set(err, ERR_SOLVER, "%s", thread.message);
     }
     return status != 0 || err_set(err, ERR_SOLVER, "ODE had no memory for the step");
 }

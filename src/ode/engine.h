@@ -1,11 +1,12 @@
-// The engine as a process-wide thing: started once, its errors caught, its own geometry class.
+// ODE, started once in a process, its errors caught.
 #pragma once
 
 #include "base/err.h"
 
 #include <ode/ode.h>
 
-// Starts ODE if it is not running yet and takes over its error handlers; it stops with the process.
+// Starts ODE if it is not running yet, for this thread too, and takes over its error handlers; it
+// stops with the process. Every thread that steps worlds calls it first.
 void engine_start(void);
 
 // One step of a world by the direct or the quick solver. ODE reports an internal error by ending

@@ -8,7 +8,11 @@
 #include "run/registry.h"
 #include "run/run.h"
 
+#include <signal.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <threads.h>
+#include <unistd.h>
 
 static const RunWatch NOBODY = {NULL, NULL};
 static const char *const JOINTS[] = {"crank-coupler", "coupler-follower", "follower-ground"};
@@ -146,6 +150,63 @@ static void an_internal_error_of_ode_becomes_a_failed_step(void **state)
     trajectory_destroy(trajectory);
 }
 
+// Steps a world whose numbers are not finite; the number of the error's kind.
+static int step_badly(void *context)
+{
+    engine_start();
+    const dWorldID world = dWorldCreate();
+    dBodySetAngularVel(dBodyCreate(world), NAN, 0.0, 0.0);
+    Err *err = context;
+    engine_step(world, 1e-3, false, err);
+    dWorldDestroy(world);
+    return (int)err->kind;
+}
+
+static void errors_of_threads_side_by_side_are_each_their_own(void **state)
+{
+    (void)state;
+    enum { THREADS = 4 };
+    thrd_t threads[THREADS];
+    Err errs[THREADS] = {{ERR_NONE, ""}};
+    engine_start();
+    for (int i = 0; i < THREADS; i++) {
+        assert_int_equal(thrd_create(&threads[i], step_badly, &errs[i]), thrd_success);
+    }
+    for (int i = 0; i < THREADS; i++) {
+        int kind = ERR_NONE;
+        assert_int_equal(thrd_join(threads[i], &kind), thrd_success);
+        assert_int_equal(kind, ERR_SOLVER);
+        assert_non_null(strstr(errs[i].text, "ODE error"));
+    }
+}
+
+static void an_error_of_ode_outside_a_step_is_reported_and_aborts(void **state)
+{
+    (void)state;
+    int pipe_ends[2];
+    char said[256] = "";
+    int status = 0;
+    engine_start();
+    assert_int_equal(pipe(pipe_ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        dup2(pipe_ends[1], STDERR_FILENO);
+        signal(SIGABRT, SIG_DFL);
+        dError(7, "the words of %s", "ODE");
+        _exit(0);
+    }
+    close(pipe_ends[1]);
+    size_t length = 0;
+    for (ssize_t part = 1; part > 0; length += (size_t)part) {
+        part = read(pipe_ends[0], said + length, sizeof said - 1 - length);
+        assert_true(part >= 0);
+    }
+    close(pipe_ends[0]);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGABRT);
+    assert_non_null(strstr(said, "the words of ODE"));
+}
+
 static void the_poisson_model_stays_near_the_wall_only_with_a_push_out(void **state)
 {
     (void)state;
@@ -173,6 +234,8 @@ int main(void)
         cmocka_unit_test(a_velocity_that_is_not_finite_fails_the_run),
         cmocka_unit_test(redundant_joint_rows_are_refused_before_ode_sees_them),
         cmocka_unit_test(an_internal_error_of_ode_becomes_a_failed_step),
+        cmocka_unit_test(errors_of_threads_side_by_side_are_each_their_own),
+        cmocka_unit_test(an_error_of_ode_outside_a_step_is_reported_and_aborts),
         cmocka_unit_test(the_poisson_model_stays_near_the_wall_only_with_a_push_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -44,7 +44,7 @@ cycles() {
 # What a library must not do: speak, or end the program it is part of.
 loud_library() {
     for layer in base model contact casefile analytic reference ode run; do
-        [ ! -d "$1/$layer" ] || grep -nE '(^|[^a-z_])(printf|puts|putchar|exit|_exit)\(' \
+        [ ! -d "$1/$layer" ] || grep -nE '(^|[^a-z_])((v?printf|puts|putchar|perror|exit|_exit)\(|std(out|err)([^a-z_]|$))' \
             "$1/$layer" -r --include='*.[ch]' | grep -v '__attribute__'
     done
 }
@@ -57,7 +57,7 @@ broken_wall() {
 broken_walls() {
     broken_wall "$1" 'ode/' '/ode/'
     broken_wall "$1" 'ccd/' '/ode/'
-    broken_wall "$1" 'gsl/' '/(base/root|commands/study/normal)\.c$'
+    broken_wall "$1" 'gsl/' '/commands/study/normal\.c$'
     broken_wall "$1" 'yaml\.h' '/casefile/document\.c$'
     broken_wall "$1" 'jansson\.h' '/(write|commands)/'
     broken_wall "$1" 'sqlite3\.h' '/commands/study/store[a-z_]*\.c$'
@@ -102,6 +102,7 @@ printf '#include "run/b.h"\n' >"$control/circle/run/a.c"
 printf '#include "run/a.h"\n' >"$control/circle/run/b.h"
 mkdir -p "$control/loud/base"
 printf 'void f(void) { printf("%%d", 1); }\n' >"$control/loud/base/f.c"
+printf 'void g(void) { fputs("1", stderr); }\n' >"$control/loud/base/g.c"
 
 caught() {
     if [ -n "$1" ]; then echo ''; else echo 'nothing was found'; fi
@@ -123,5 +124,6 @@ found=$(broken_walls "$control/walls" | sed 's|.*/||')
 report "SQLite is caught outside the store alone" \
     "$([ "$found" = 'sweep.c: includes <sqlite3.h' ] || echo "found: $found")"
 report "two files that need each other are caught" "$(caught "$(cycles "$control/circle")")"
-report "a library that prints is caught" "$(caught "$(loud_library "$control/loud")")"
+found=$(loud_library "$control/loud" | grep -o '[fg]\.c' | sort | tr -d '\n')
+report "a library that prints is caught" "$([ "$found" = f.cg.c ] || echo "found: $found")"
 report "files without a circle are not caught" "$(cycles "$control/rooms")"
