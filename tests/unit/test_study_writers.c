@@ -1,6 +1,5 @@
 // Do the exports, the tables and the pictures of a study say what is in its store?
-#include "commands/study/study_csv.h"
-#include "commands/study/study_jsonl.h"
+#include "commands/study/study_rows.h"
 #include "commands/study/study_plot.h"
 #include "commands/study/study_text.h"
 
@@ -60,7 +59,7 @@ static void csv_brings_back_every_number(void **state)
     const Layout layout = study_layout();
     make_store(60);
     Store *store = view();
-    assert_true(study_csv_write(store, out, &err));
+    assert_true(study_rows_write_csv(store, out, &err));
     store_close(store, &err);
     read_whole(out, content, sizeof content);
     static const char HEAD[] =
@@ -96,7 +95,7 @@ static void json_lines_bring_back_every_number(void **state)
     const Layout layout = study_layout();
     make_store(60);
     Store *store = view();
-    assert_true(study_jsonl_write(store, out, &err));
+    assert_true(study_rows_write_jsonl(store, out, &err));
     store_close(store, &err);
     FILE *stream = fopen(out, "r");
     for (uint64_t run = 0; run < 60; run++) {
@@ -135,7 +134,7 @@ static void an_infinity_is_an_empty_cell_and_null(void **state)
     assert_true(store_add(store, &record, &err));
     assert_true(store_close(store, &err));
     store = view();
-    assert_true(study_csv_write(store, out, &err));
+    assert_true(study_rows_write_csv(store, out, &err));
     read_whole(out, content, sizeof content);
     char *rest = strchr(content, '\n') + 1;
     for (size_t i = 0; i < 1 + layout.setting_count + 2; i++) {
@@ -144,7 +143,7 @@ static void an_infinity_is_an_empty_cell_and_null(void **state)
     assert_string_equal(next_cell(&rest), "");
     assert_string_equal(next_cell(&rest), "0.5");
     unlink(out);
-    assert_true(study_jsonl_write(store, out, &err));
+    assert_true(study_rows_write_jsonl(store, out, &err));
     store_close(store, &err);
     read_whole(out, content, sizeof content);
     json_t *row = json_loads(content, 0, NULL);
@@ -158,13 +157,13 @@ static void an_export_never_writes_over_its_store(void **state)
     Err err = {0};
     make_store(20);
     Store *store = view();
-    assert_false(study_csv_write(store, path, &err));
+    assert_false(study_rows_write_csv(store, path, &err));
     assert_int_equal(err.kind, ERR_USAGE);
     err = (Err){0};
-    assert_false(study_jsonl_write(store, path, &err));
+    assert_false(study_rows_write_jsonl(store, path, &err));
     assert_non_null(strstr(err.text, "which is the store that this command reads"));
     err = (Err){0};
-    assert_false(study_csv_write(store, "/dev/full", &err));
+    assert_false(study_rows_write_csv(store, "/dev/full", &err));
     assert_int_equal(err.kind, ERR_FILE);
     err = (Err){0};
     store_close(store, &err);

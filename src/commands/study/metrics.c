@@ -12,76 +12,153 @@
 #include <string.h>
 #include <strings.h>
 
-enum { BODY_RESULTS = 4, JOINT_RESULTS = 5 };
+// What a number of a run is of; the columns stand in this order.
+typedef enum Owner {
+    OF_BODY,  // each whose motion is not prescribed: BodyExtremes
+    OF_JOINT, // each with play: JointExtremes
+    OF_RUN,   // Trajectory
+    OF_ERROR, // TrajectoryError, in studies with a truth
+    OF_TRUTH, // Truth, likewise
+    OWNER_COUNT,
+} Owner;
 
-static const char *const BODY_NAMES[BODY_RESULTS] = {
-    "omega_max_rad_s",
-    "omega_min_rad_s",
-    "alpha_max_rad_s2",
-    "alpha_min_rad_s2",
-};
+// What must hold for a number to be there.
+typedef enum Need {
+    NOTHING,
+    FELT_PLAY,   // the solver let the joint's play happen
+    FIXED_STEP,  // the solver has one
+    TRIALS,      // the step was chosen for a tolerance
+    CERTIFICATE, // the reference is certified
+} Need;
 
-static const Column JOINT_COLUMNS[JOINT_RESULTS] = {
-    {"impacts", COLUMN_WHOLE},         {"force_max_N", COLUMN_REAL},
-    {"impulse_N_s", COLUMN_REAL},      {"penetration_max_m", COLUMN_REAL},
-    {"contact_fraction", COLUMN_REAL},
-};
+// What the results of a run are taken from.
+typedef struct Measured {
+    const Linkage *linkage;
+    const Trajectory *run;
+    const Truth *truth;    // NULL where there is none
+    TrajectoryError error; // known only where there is a truth to compare with
+} Measured;
 
-// Of the run as a whole; the last ones need a truth.
-static const Column RUN_COLUMNS[] = {
-    {"impacts", COLUMN_WHOLE},          // in all joints
-    {"alpha_peak_rad_s2", COLUMN_REAL}, // largest |alpha| of any body
-    {"energy_drive_work_J", COLUMN_REAL},
-    {"energy_dissipated_J", COLUMN_REAL},
-    {"energy_residual_J", COLUMN_REAL},
-    {"step_s", COLUMN_REAL},
-    {"steps", COLUMN_WHOLE},
-    {"evaluations", COLUMN_WHOLE},
-    {"fallback_rows", COLUMN_WHOLE},
-    {"error_estimate", COLUMN_REAL},
-    {"error_estimate_until_s", COLUMN_REAL},
-};
-static const Column ERROR_COLUMNS[] = {
-    {"error_omega_max", COLUMN_REAL}, {"error_omega_max_in_horizon", COLUMN_REAL},
-    {"error_omega_rms", COLUMN_REAL}, {"error_alpha_max", COLUMN_REAL},
-    {"error_horizon_s", COLUMN_REAL}, {"error_reference_uncertainty", COLUMN_REAL},
-};
+// One column for each owner.
+typedef struct Metric {
+    Owner owner;
+    const char *name; // with its unit
+    ColumnKind kind;
+    Need need;
+    size_t offset; // in its owner: of a size_t for COLUMN_WHOLE, of a double for COLUMN_REAL
+    double (*find)(const Measured *measured, size_t member); // NULL: the value at the offset
+    const char *meaning;
+} Metric;
 
-enum {
-    RUN_RESULTS = sizeof RUN_COLUMNS / sizeof RUN_COLUMNS[0],
-    ERROR_RESULTS = sizeof ERROR_COLUMNS / sizeof ERROR_COLUMNS[0],
-};
+static double find_contact_share(const Measured *measured, size_t joint)
+{
+    return trajectory_contact_share(measured->run, joint);
+}
 
-_Static_assert(BODY_RESULTS *LINKAGE_BODY_MAX + JOINT_RESULTS * LINKAGE_JOINT_MAX + RUN_RESULTS +
-                       ERROR_RESULTS <=
-                   RECORD_RESULT_MAX,
-               "every linkage has room for its results");
+// In all joints; NAN where the solver let no play happen.
+static double find_impacts(const Measured *measured, size_t unused)
+{
+    (void)unused;
+    double impacts = NAN;
+    for (size_t i = 0; i < measured->linkage->joint_count; i++) {
+        if (trajectory_feels_play(measured->run, &measured->linkage->joints[i])) {
+            impacts = (isnan(impacts) ? 0.0 : impacts) + (double)measured->run->joints[i].impacts;
+        }
+    }
+    return impacts;
+}
+
+static double find_alpha_peak(const Measured *measured, size_t unused)
+{
+    (void)unused;
+    double peak = 0.0;
+    for (size_t i = 0; i < measured->linkage->body_count; i++) {
+        const BodyExtremes *extremes = &measured->run->bodies[i];
+        if ((int)i != linkage_driven_body(measured->linkage)) {
+            peak = fmax(peak, fmax(extremes->alpha_max.value, -extremes->alpha_min.value));
+        }
+    }
+    return peak;
+}
+
+// clang-format off
+#define ROW(owner, of, name, kind, need, field, meaning) \
+    {owner, name, COLUMN_##kind, need, offsetof(of, field), NULL, meaning}
+#define BODY(...) ROW(OF_BODY, BodyExtremes, __VA_ARGS__)
+#define JOINT(...) ROW(OF_JOINT, JointExtremes, __VA_ARGS__)
+#define RUN(...) ROW(OF_RUN, Trajectory, __VA_ARGS__)
+#define ERROR(...) ROW(OF_ERROR, TrajectoryError, __VA_ARGS__)
+#define TRUTH(...) ROW(OF_TRUTH, Truth, __VA_ARGS__)
+#define FOUND(owner, name, kind, need, find, meaning) \
+    {owner, name, COLUMN_##kind, need, 0, find, meaning}
+
+static const Metric METRICS[] = {
+    BODY("omega_max_rad_s", REAL, NOTHING, omega_max.value, "largest angular velocity"),
+    BODY("omega_min_rad_s", REAL, NOTHING, omega_min.value, "smallest angular velocity"),
+    BODY("alpha_max_rad_s2", REAL, NOTHING, alpha_max.value, "largest angular acceleration"),
+    BODY("alpha_min_rad_s2", REAL, NOTHING, alpha_min.value, "smallest angular acceleration"),
+    JOINT("impacts", WHOLE, FELT_PLAY, impacts, "contacts begun"),
+    JOINT("force_max_N", REAL, NOTHING, force_max.value, "largest force"),
+    JOINT("impulse_N_s", REAL, FELT_PLAY, impulse, "impulse of all contacts"),
+    JOINT("penetration_max_m", REAL, FELT_PLAY, penetration_max.value, "deepest penetration"),
+    FOUND(OF_JOINT, "contact_fraction", REAL, FELT_PLAY, find_contact_share,
+          "share of the time in contact"),
+    FOUND(OF_RUN, "impacts", WHOLE, NOTHING, find_impacts, "contacts begun in all joints"),
+    FOUND(OF_RUN, "alpha_peak_rad_s2", REAL, NOTHING, find_alpha_peak,
+          "largest size of any body's angular acceleration"),
+    RUN("energy_drive_work_J", REAL, NOTHING, energy.drive_work, "work of the drive"),
+    RUN("energy_dissipated_J", REAL, NOTHING, energy.dissipated, "lost in contact damping"),
+    RUN("energy_residual_J", REAL, NOTHING, energy.residual, "missing: the solver's error"),
+    RUN("step_s", REAL, FIXED_STEP, step_s, "step of ODE"),
+    RUN("steps", WHOLE, NOTHING, steps, "steps of the solver"),
+    RUN("evaluations", WHOLE, NOTHING, evaluations, "evaluations of the equations of motion"),
+    RUN("fallback_rows", WHOLE, NOTHING, fallback_rows,
+        "contact rows for which the map asked for would not have been stable"),
+    RUN("error_estimate", REAL, TRIALS, error_estimate,
+        "upper bound of the error of omega, where the step was chosen for a tolerance"),
+    RUN("error_estimate_until_s", REAL, TRIALS, estimate_s, "time up to which that bound holds"),
+    ERROR("error_omega_max", REAL, NOTHING, omega_max,
+          "largest error of omega, relative to each body's largest omega"),
+    ERROR("error_omega_max_in_horizon", REAL, NOTHING, omega_max_in_horizon,
+          "the same up to the horizon of predictability"),
+    ERROR("error_omega_rms", REAL, NOTHING, omega_rms, "root mean square of the same"),
+    ERROR("error_alpha_max", REAL, NOTHING, alpha_max,
+          "largest error of alpha, relative to each body's largest alpha"),
+    TRUTH("error_horizon_s", REAL, CERTIFICATE, horizon_s, "horizon of predictability"),
+    TRUTH("error_reference_uncertainty", REAL, CERTIFICATE, uncertainty,
+          "uncertainty of the reference's omega, relative likewise"),
+};
+// clang-format on
+enum { METRIC_COUNT = sizeof METRICS / sizeof *METRICS };
 
 // Whether a name stands in the layout before a column; stores tell no small letters from large
 // ones.
-static bool is_taken(const Layout *layout, const Column *until, const char *name)
+static bool is_taken(const Layout *layout, const Column *until)
 {
-    for (size_t i = 0; i < layout->setting_count; i++) {
-        if (&layout->settings[i] != until && strcasecmp(layout->settings[i].name, name) == 0) {
-            return true;
-        }
-    }
-    for (size_t i = 0; i < layout->result_count; i++) {
-        if (&layout->results[i] != until && strcasecmp(layout->results[i].name, name) == 0) {
-            return true;
+    const Column *const columns[] = {layout->settings, layout->results};
+    const size_t counts[] = {layout->setting_count, layout->result_count};
+    for (size_t part = 0; part < 2; part++) {
+        for (size_t i = 0; i < counts[part]; i++) {
+            const Column *column = &columns[part][i];
+            if (column != until && strcasecmp(column->name, until->name) == 0) {
+                return true;
+            }
         }
     }
     return false;
 }
 
-// Letters and digits stay, whatever else becomes _; rad/s^2 becomes rad_s2, as in the JSON output.
-// Names that become one are numbered.
-static void name_column(const Layout *layout, Column *column, const char *words)
+// Joins two words by _. Letters and digits stay, all else becomes _; rad/s^2 becomes rad_s2, as in
+// the JSON output. Names that become one are numbered.
+static void name_column(const Layout *layout, Column *column, const char *first, const char *last)
 {
     static const char PLAIN[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
     enum { ROOM = RECORD_NAME_SIZE - 16 }; // the rest is for a number behind the name
+    const bool is_joined = first[0] != '\0' && last[0] != '\0';
+    char words[RECORD_NAME_SIZE];
     char name[ROOM];
     size_t length = 0;
+    snprintf(words, sizeof words, "%s%s%s", first, is_joined ? "_" : "", last);
     for (const char *c = words; *c != '\0' && length < ROOM - 1; c++) {
         if (*c != '^') {
             name[length++] = (char)(strchr(PLAIN, *c) != NULL ? *c : '_');
@@ -89,19 +166,9 @@ static void name_column(const Layout *layout, Column *column, const char *words)
     }
     name[length] = '\0';
     text_copy(column->name, sizeof column->name, name);
-    for (int number = 2; is_taken(layout, column, column->name); number++) {
+    for (int number = 2; is_taken(layout, column); number++) {
         snprintf(column->name, sizeof column->name, "%s_%d", name, number);
     }
-}
-
-static void add_result(Layout *layout, const char *of, const char *name, ColumnKind kind)
-{
-    assert(layout->result_count < RECORD_RESULT_MAX);
-    Column *column = &layout->results[layout->result_count++];
-    column->kind = kind;
-    char words[RECORD_NAME_SIZE];
-    snprintf(words, sizeof words, "%.80s%s%.80s", of, of[0] != '\0' ? "_" : "", name);
-    name_column(layout, column, words);
 }
 
 static void add_settings(const Spec *spec, Layout *layout)
@@ -109,134 +176,126 @@ static void add_settings(const Spec *spec, Layout *layout)
     for (size_t i = 0; i < spec->variable_count; i++) {
         const Variable *variable = &spec->variables[i];
         Column *column = &layout->settings[layout->setting_count++];
-        const char *unit = variable->is_word ? "" : variable->column_unit;
         column->kind = variable->is_word    ? COLUMN_WORD
                        : variable->is_whole ? COLUMN_WHOLE
                                             : COLUMN_REAL;
-        char words[RECORD_NAME_SIZE];
-        snprintf(words, sizeof words, "%s%s%s", variable->key, unit[0] != '\0' ? "_" : "", unit);
-        name_column(layout, column, words);
+        name_column(layout, column, variable->key, variable->is_word ? "" : variable->column_unit);
     }
 }
 
-// Whether a body's motion is a result: it is not prescribed.
-static bool is_measured(const Linkage *linkage, size_t body)
+// One result of a linkage.
+typedef struct Result {
+    const Metric *metric;
+    size_t member;  // number of its body or joint
+    const char *of; // name of that, or empty
+} Result;
+
+static bool find_member(const Linkage *linkage, Owner owner, size_t member, const char **name)
 {
-    return (int)body != linkage_driven_body(linkage);
+    if (owner == OF_BODY) {
+        *name = linkage->bodies[member].name;
+        return (int)member != linkage_driven_body(linkage);
+    }
+    if (owner == OF_JOINT) {
+        *name = linkage->joints[member].name;
+        return linkage->joints[member].kind == JOINT_CLEARANCE;
+    }
+    *name = "";
+    return true;
+}
+
+// All results of a linkage in the order of their columns.
+static size_t list_results(const Linkage *linkage, Result results[RECORD_RESULT_MAX])
+{
+    const size_t members[OWNER_COUNT] = {linkage->body_count, linkage->joint_count, 1, 1, 1};
+    size_t count = 0;
+    const char *name;
+    for (Owner owner = 0; owner < OWNER_COUNT; owner++) {
+        for (size_t i = 0; i < members[owner]; i++) {
+            for (size_t k = 0; find_member(linkage, owner, i, &name) && k < METRIC_COUNT; k++) {
+                if (METRICS[k].owner == owner) {
+                    assert(count < RECORD_RESULT_MAX);
+                    results[count++] = (Result){&METRICS[k], i, name};
+                }
+            }
+        }
+    }
+    return count;
 }
 
 void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
 {
-    const Linkage *linkage = &scenario->linkage;
+    Result results[RECORD_RESULT_MAX];
+    const size_t count = list_results(&scenario->linkage, results);
     *layout = (Layout){0};
     add_settings(spec, layout);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        for (size_t k = 0; is_measured(linkage, i) && k < BODY_RESULTS; k++) {
-            add_result(layout, linkage->bodies[i].name, BODY_NAMES[k], COLUMN_REAL);
+    for (size_t i = 0; i < count; i++) {
+        const Metric *metric = results[i].metric;
+        if (metric->owner < OF_ERROR || spec->has_truth) {
+            Column *column = &layout->results[layout->result_count++];
+            column->kind = metric->kind;
+            name_column(layout, column, results[i].of, metric->name);
         }
-    }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const bool has_play = linkage->joints[i].kind == JOINT_CLEARANCE;
-        for (size_t k = 0; has_play && k < JOINT_RESULTS; k++) {
-            add_result(layout, linkage->joints[i].name, JOINT_COLUMNS[k].name,
-                       JOINT_COLUMNS[k].kind);
-        }
-    }
-    for (size_t k = 0; k < RUN_RESULTS; k++) {
-        add_result(layout, "", RUN_COLUMNS[k].name, RUN_COLUMNS[k].kind);
-    }
-    for (size_t k = 0; spec->has_truth && k < ERROR_RESULTS; k++) {
-        add_result(layout, "", ERROR_COLUMNS[k].name, ERROR_COLUMNS[k].kind);
     }
 }
 
-// Takes results one after another.
-typedef struct Taker {
-    size_t count;
-    double *results;
-} Taker;
-
-static void take(Taker *taker, double value)
+static bool is_there(const Metric *metric, const Measured *measured, size_t member)
 {
-    taker->results[taker->count++] = isfinite(value) ? value : NAN;
+    if (metric->owner >= OF_ERROR && !measured->error.is_known) {
+        return false;
+    }
+    switch (metric->need) {
+    case FELT_PLAY:
+        return trajectory_feels_play(measured->run, &measured->linkage->joints[member]);
+    case FIXED_STEP:
+        return measured->run->step_s > 0.0;
+    case TRIALS:
+        return measured->run->trials > 0;
+    case CERTIFICATE:
+        return measured->truth->message[0] == '\0';
+    default:
+        return true;
+    }
 }
 
-// Returns the largest |alpha| of any body.
-static double take_bodies(const Linkage *linkage, const Trajectory *run, Taker *taker)
+static double read_value(const Metric *metric, const Measured *measured, size_t member)
 {
-    double peak = 0.0;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        const BodyExtremes *extremes = &run->bodies[i];
-        if (is_measured(linkage, i)) {
-            take(taker, extremes->omega_max.value);
-            take(taker, extremes->omega_min.value);
-            take(taker, extremes->alpha_max.value);
-            take(taker, extremes->alpha_min.value);
-            peak = fmax(peak, fmax(extremes->alpha_max.value, -extremes->alpha_min.value));
-        }
-    }
-    return peak;
-}
-
-// Returns the impacts in all joints; NAN where the run let no play happen.
-static double take_joints(const Linkage *linkage, const Trajectory *run, Taker *taker)
-{
-    double impacts = NAN;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const JointExtremes *extremes = &run->joints[i];
-        if (linkage->joints[i].kind != JOINT_CLEARANCE) {
-            continue;
-        }
-        const bool is_felt = trajectory_feels_play(run, &linkage->joints[i]);
-        take(taker, is_felt ? (double)extremes->impacts : NAN);
-        take(taker, extremes->force_max.value);
-        take(taker, is_felt ? extremes->impulse : NAN);
-        take(taker, is_felt ? extremes->penetration_max.value : NAN);
-        take(taker, is_felt ? trajectory_contact_share(run, i) : NAN);
-        if (is_felt) {
-            impacts = (isnan(impacts) ? 0.0 : impacts) + (double)extremes->impacts;
-        }
-    }
-    return impacts;
-}
-
-static void take_error(const Trajectory *run, const Truth *truth, Taker *taker)
-{
-    const bool has_truth = truth != NULL && truth->trajectory->is_complete;
-    const bool is_certified = has_truth && truth->message[0] == '\0';
-    TrajectoryError error = {0};
-    if (has_truth) {
-        error = error_against(run, truth->trajectory, truth->horizon_s);
-    }
-    take(taker, error.is_known ? error.omega_max : NAN);
-    take(taker, error.is_known ? error.omega_max_in_horizon : NAN);
-    take(taker, error.is_known ? error.omega_rms : NAN);
-    take(taker, error.is_known ? error.alpha_max : NAN);
-    take(taker, error.is_known && is_certified ? truth->horizon_s : NAN);
-    take(taker, error.is_known && is_certified ? truth->uncertainty : NAN);
+    const void *const owners[OWNER_COUNT] = {
+        &measured->run->bodies[metric->owner == OF_BODY ? member : 0],
+        &measured->run->joints[metric->owner == OF_JOINT ? member : 0],
+        measured->run,
+        &measured->error,
+        measured->truth,
+    };
+    const void *value = (const char *)owners[metric->owner] + metric->offset;
+    return metric->find != NULL           ? metric->find(measured, member)
+           : metric->kind == COLUMN_WHOLE ? (double)*(const size_t *)value
+                                          : *(const double *)value;
 }
 
 void metrics_take(const Scenario *scenario, const Trajectory *trajectory, const Truth *truth,
                   double results[RECORD_RESULT_MAX])
 {
     assert(trajectory->is_complete);
-    const Linkage *linkage = &scenario->linkage;
-    for (size_t i = 0; i < RECORD_RESULT_MAX; i++) {
-        results[i] = NAN;
+    Measured measured = {.linkage = &scenario->linkage, .run = trajectory, .truth = truth};
+    if (truth != NULL && truth->trajectory->is_complete) {
+        measured.error = error_against(trajectory, truth->trajectory, truth->horizon_s);
     }
-    Taker taker = {0, results};
-    const double peak = take_bodies(linkage, trajectory, &taker);
-    const double impacts = take_joints(linkage, trajectory, &taker);
-    take(&taker, impacts);
-    take(&taker, peak);
-    take(&taker, trajectory->energy.drive_work);
-    take(&taker, trajectory->energy.dissipated);
-    take(&taker, trajectory->energy.residual);
-    take(&taker, trajectory->step_s > 0.0 ? trajectory->step_s : NAN);
-    take(&taker, (double)trajectory->steps);
-    take(&taker, (double)trajectory->evaluations);
-    take(&taker, (double)trajectory->fallback_rows);
-    take(&taker, trajectory->trials > 0 ? trajectory->error_estimate : NAN);
-    take(&taker, trajectory->trials > 0 ? trajectory->estimate_s : NAN);
-    take_error(trajectory, truth, &taker);
+    Result list[RECORD_RESULT_MAX];
+    const size_t count = list_results(measured.linkage, list);
+    for (size_t i = 0; i < RECORD_RESULT_MAX; i++) {
+        const bool is_known = i < count && is_there(list[i].metric, &measured, list[i].member);
+        const double value = is_known ? read_value(list[i].metric, &measured, list[i].member) : NAN;
+        results[i] = isfinite(value) ? value : NAN;
+    }
+}
+
+void metrics_describe(bool is_markdown, Text *text)
+{
+    static const char *const OWNERS[OWNER_COUNT] = {"<body>_", "<joint>_"};
+    for (size_t i = 0; i < METRIC_COUNT; i++) {
+        const char *owner = OWNERS[METRICS[i].owner] == NULL ? "" : OWNERS[METRICS[i].owner];
+        text_append(text, is_markdown ? "| `%s%s` | %s |\n" : "    %s%s\n        %s\n", owner,
+                    METRICS[i].name, METRICS[i].meaning);
+    }
 }

@@ -12,3 +12,6 @@ void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout);
 // no error.
 void metrics_take(const Scenario *scenario, const Trajectory *trajectory, const Truth *truth,
                   double results[RECORD_RESULT_MAX]);
+
+// Appends what each result is, for people: a line or more each, or the rows of a Markdown table.
+void metrics_describe(bool is_markdown, Text *text);

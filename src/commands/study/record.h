@@ -1,6 +1,7 @@
 // What a study keeps of a run: which columns there are, and one row of them.
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -16,6 +17,11 @@ typedef enum ColumnKind {
     COLUMN_REAL,  // a number, SI
     COLUMN_WHOLE, // a whole number
     COLUMN_WORD,  // of settings only
+    // of the columns that every study has
+    COLUMN_RUN,
+    COLUMN_FATE,
+    COLUMN_REASON,
+    COLUMN_HASH,
 } ColumnKind;
 
 typedef struct Column {
@@ -37,11 +43,11 @@ typedef enum Fate {
     FATE_FAILED,    // the solver gave up: a number that is not finite, a step too long
     FATE_ENDED,     // its process ended by a signal or by itself, without a result
     FATE_TIMED_OUT, // it took longer than its limit
-    FATE_NO_MEMORY, // it wanted more than its limit
+    FATE_NO_MEMORY, // it needed more than its limit
     FATE_COUNT,
 } Fate;
 
-// The word of each fate, as people and files see it.
+// The word of each, as people and files see it.
 extern const char *const FATE_WORDS[FATE_COUNT];
 
 typedef union Cell {
@@ -57,5 +63,33 @@ typedef struct Record {
     Cell settings[RECORD_SETTING_MAX];
     double results[RECORD_RESULT_MAX]; // NAN where there is none
     uint64_t hash;                     // of the trajectory; 0 where there is none
-    double wall_s; // that its process took, the one thing that is never twice the same
+    double wall_s; // that its process took, the only column that differs from run to run
 } Record;
+
+// One column of the rows and where a record holds its value: a double of COLUMN_REAL and
+// COLUMN_WHOLE, text of COLUMN_WORD and COLUMN_REASON.
+typedef struct RecordField {
+    const char *name;
+    ColumnKind kind;
+    size_t offset;
+} RecordField;
+
+// The field of a number in the order of the store and of all files: run, the settings, fate,
+// reason, the results, hash, wall_s. False behind the last.
+bool record_field(const Layout *layout, size_t number, RecordField *field);
+
+// Where a record holds the value of a field, and the value of one that holds a number or text.
+static inline void *record_target(Record *record, const RecordField *field)
+{
+    return (char *)record + field->offset;
+}
+
+static inline double record_number(const Record *record, const RecordField *field)
+{
+    return *(const double *)((const char *)record + field->offset);
+}
+
+static inline const char *record_text(const Record *record, const RecordField *field)
+{
+    return (const char *)record + field->offset;
+}

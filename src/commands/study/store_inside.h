@@ -111,6 +111,12 @@ void store_schema_finish(Store *store);
 
 // store_row.c: the rows
 
+// Binds all columns of a row to the statement that adds one.
+void store_row_bind(const Layout *layout, struct sqlite3_stmt *statement, const Record *record);
+
+// The checksum of what is never twice the same.
+int32_t store_row_effort_checksum(uint64_t run, double wall_s);
+
 // The statement that reads rows by rising number: parameter 1 is the number before the first, 2 the
 // most that are wanted (-1: all).
 bool store_row_prepare(Store *store, struct sqlite3_stmt **statement, Err *err);
@@ -118,8 +124,10 @@ bool store_row_prepare(Store *store, struct sqlite3_stmt **statement, Err *err);
 // Takes the row that the statement stands at. Fails with ERR_FILE where it is not what was written.
 bool store_row_take(const Store *store, struct sqlite3_stmt *statement, Record *record, Err *err);
 
-// Puts a row in the place of the one of its run, in the transaction that store_commit ends.
-bool store_replace(Store *store, const Record *record, Err *err);
-
 // Whether two rows are the same in all but their effort.
 bool store_row_is_same(const Layout *layout, const Record *a, const Record *b);
+
+// store_write.c: adding and deleting them
+
+// Puts a row in the place of the one of its run, in the transaction that store_commit ends.
+bool store_replace(Store *store, const Record *record, Err *err);

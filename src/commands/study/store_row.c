@@ -3,6 +3,9 @@
 // SQLite has no checksums: a bit that turned on the disk would be another number. So each row
 // carries one of its own over all that is written, 32 bits of it. NAN is NULL. The sign of a zero
 // is lost: a REAL without a fraction is kept as a whole number, which also makes it short.
+//
+// Rows are read in portions, and the file is let go of in between, so that whoever looks at a store
+// never holds up the process that works on it.
 #include "base/hash.h"
 #include "commands/study/store_inside.h"
 
@@ -13,6 +16,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { PORTION = 64 }; // rows of some 5 kB at a time
 
 // Whole numbers of this size and below have a double of their own.
 static const double WHOLE_MAX = 9007199254740992.0; // 2^53
@@ -41,7 +46,7 @@ static int32_t make_checksum(const Layout *layout, const Record *record)
     return (int32_t)(uint32_t)(hash >> 32);
 }
 
-static int32_t make_effort_checksum(uint64_t run, double wall_s)
+int32_t store_row_effort_checksum(uint64_t run, double wall_s)
 {
     const uint64_t hash = hash_value(hash_number(HASH_START, (double)run), wall_s);
     return (int32_t)(uint32_t)(hash >> 32);
@@ -54,202 +59,57 @@ static bool is_same_number(double a, double b)
 
 bool store_row_is_same(const Layout *layout, const Record *a, const Record *b)
 {
-    bool is_same = a->run == b->run && a->fate == b->fate && a->hash == b->hash &&
-                   strcmp(a->reason, b->reason) == 0;
-    for (size_t i = 0; i < layout->setting_count && is_same; i++) {
-        is_same = layout->settings[i].kind == COLUMN_WORD
-                      ? strcmp(a->settings[i].word, b->settings[i].word) == 0
-                      : is_same_number(a->settings[i].number, b->settings[i].number);
-    }
-    for (size_t i = 0; i < layout->result_count && is_same; i++) {
-        is_same = is_same_number(a->results[i], b->results[i]);
+    bool is_same = a->run == b->run && a->fate == b->fate && a->hash == b->hash;
+    RecordField field;
+    for (size_t i = 0; record_field(layout, i, &field) && field.kind != COLUMN_HASH; i++) {
+        const bool is_text = field.kind == COLUMN_WORD || field.kind == COLUMN_REASON;
+        const bool is_number = field.kind == COLUMN_REAL || field.kind == COLUMN_WHOLE;
+        is_same =
+            is_same && (!is_text || strcmp(record_text(a, &field), record_text(b, &field)) == 0) &&
+            (!is_number || is_same_number(record_number(a, &field), record_number(b, &field)));
     }
     return is_same;
 }
 
-static void bind_number(sqlite3_stmt *statement, int place, double value, ColumnKind kind)
+static void bind_number(sqlite3_stmt *statement, int parameter, double value, ColumnKind kind)
 {
     if (kind == COLUMN_WHOLE && fabs(value) <= WHOLE_MAX && value == rint(value)) {
-        sqlite3_bind_int64(statement, place, (sqlite3_int64)value);
+        sqlite3_bind_int64(statement, parameter, (sqlite3_int64)value);
     } else {
-        sqlite3_bind_double(statement, place, value);
+        sqlite3_bind_double(statement, parameter, value);
     }
 }
 
-static void bind_record(const Store *store, sqlite3_stmt *statement, const Record *record)
+void store_row_bind(const Layout *layout, sqlite3_stmt *statement, const Record *record)
 {
-    const Layout *layout = store->layout;
-    int place = 1;
-    sqlite3_bind_int64(statement, place++, (sqlite3_int64)record->run);
-    for (size_t i = 0; i < layout->setting_count; i++) {
-        if (layout->settings[i].kind == COLUMN_WORD) {
-            sqlite3_bind_text(statement, place++, record->settings[i].word, -1, SQLITE_STATIC);
-        } else {
-            bind_number(statement, place++, record->settings[i].number, layout->settings[i].kind);
+    int parameter = 1;
+    RecordField field = {.kind = COLUMN_RUN};
+    for (size_t i = 0; field.kind != COLUMN_HASH; i++, parameter++) {
+        record_field(layout, i, &field);
+        switch (field.kind) {
+        case COLUMN_RUN:
+            sqlite3_bind_int64(statement, parameter, (sqlite3_int64)record->run);
+            break;
+        case COLUMN_FATE:
+            sqlite3_bind_int(statement, parameter, (int)record->fate);
+            break;
+        case COLUMN_WORD:
+            sqlite3_bind_text(statement, parameter, record_text(record, &field), -1, SQLITE_STATIC);
+            break;
+        case COLUMN_REASON:
+            sqlite3_bind_text(statement, parameter,
+                              record->reason[0] == '\0' ? NULL : record->reason, -1, SQLITE_STATIC);
+            break;
+        case COLUMN_HASH:
+            sqlite3_bind_int64(statement, parameter, (sqlite3_int64)record->hash);
+            break;
+        case COLUMN_REAL:
+        case COLUMN_WHOLE:
+            bind_number(statement, parameter, record_number(record, &field), field.kind);
+            break;
         }
     }
-    sqlite3_bind_int(statement, place++, (int)record->fate);
-    sqlite3_bind_text(statement, place++, record->reason[0] == '\0' ? NULL : record->reason, -1,
-                      SQLITE_STATIC);
-    for (size_t i = 0; i < layout->result_count; i++) {
-        bind_number(statement, place++, record->results[i], layout->results[i].kind);
-    }
-    sqlite3_bind_int64(statement, place++, (sqlite3_int64)record->hash);
-    sqlite3_bind_int(statement, place++, make_checksum(layout, record));
-}
-
-static bool step_to_end(Store *store, sqlite3_stmt *statement, uint64_t run, Err *err)
-{
-    const int status = sqlite3_step(statement);
-    if ((status & 0xff) == SQLITE_CONSTRAINT) {
-        err_set(err, ERR_FILE, "run %" PRIu64 " is in the store %s already", run, store->path);
-    } else if (status != SQLITE_DONE) {
-        store_fail(store, "write", err);
-    }
-    sqlite3_reset(statement);
-    return status == SQLITE_DONE;
-}
-
-// SQLite may have ended the transaction by itself.
-static bool take_back(Store *store)
-{
-    sqlite3_exec(store->base, "ROLLBACK", NULL, NULL, NULL);
-    store->is_changing = false;
-    return false;
-}
-
-static bool prepare_adding(Store *store, Err *err)
-{
-    if (store->add_run != NULL && store->add_effort != NULL) {
-        return true;
-    }
-    const size_t count = 5 + store->layout->setting_count + store->layout->result_count;
-    Text sql;
-    text_init(&sql);
-    text_append(&sql, "INSERT INTO run VALUES (");
-    for (size_t i = 0; i < count; i++) {
-        text_append(&sql, i == 0 ? "?" : ", ?");
-    }
-    text_append(&sql, ")");
-    const bool is_ready =
-        store_prepare(store, sql.data, &store->add_run, err) &&
-        store_prepare(store, "INSERT INTO effort VALUES (?, ?, ?)", &store->add_effort, err);
-    text_finish(&sql);
-    return is_ready;
-}
-
-static bool begin(Store *store, Err *err)
-{
-    store->is_changing = store->is_changing || store_run_sql(store, "BEGIN IMMEDIATE", err);
-    return store->is_changing;
-}
-
-bool store_add(Store *store, const Record *record, Err *err)
-{
-    if (!prepare_adding(store, err) || !begin(store, err)) {
-        return false;
-    }
-    bind_record(store, store->add_run, record);
-    if (!step_to_end(store, store->add_run, record->run, err)) {
-        return take_back(store);
-    }
-    sqlite3_bind_int64(store->add_effort, 1, (sqlite3_int64)record->run);
-    sqlite3_bind_double(store->add_effort, 2, record->wall_s);
-    sqlite3_bind_int(store->add_effort, 3, make_effort_checksum(record->run, record->wall_s));
-    return step_to_end(store, store->add_effort, record->run, err) || take_back(store);
-}
-
-bool store_commit(Store *store, Err *err)
-{
-    if (store->is_changing && !store_run_sql(store, "COMMIT", err)) {
-        return take_back(store);
-    }
-    store->is_changing = false;
-    return true;
-}
-
-bool store_has(Store *store, uint64_t run, bool *has, Err *err)
-{
-    if (!store_prepare(store, "SELECT 1 FROM run WHERE run = ?", &store->find, err)) {
-        return false;
-    }
-    sqlite3_bind_int64(store->find, 1, (sqlite3_int64)run);
-    const int status = sqlite3_step(store->find);
-    const bool is_read =
-        status == SQLITE_ROW || status == SQLITE_DONE || store_fail(store, "read", err);
-    *has = status == SQLITE_ROW;
-    sqlite3_reset(store->find);
-    return is_read;
-}
-
-static bool delete_run(Store *store, uint64_t run, Err *err)
-{
-    Text sql;
-    text_init(&sql);
-    text_append(&sql,
-                "DELETE FROM effort WHERE run = %" PRId64 "; DELETE FROM run WHERE run = %" PRId64,
-                (int64_t)run, (int64_t)run);
-    const bool is_gone = store_run_sql(store, sql.data, err);
-    text_finish(&sql);
-    return is_gone;
-}
-
-// Deletes the rows that are not what was once written, in the transaction that is open.
-static bool forget_damaged(Store *store, uint64_t *forgotten, Err *err)
-{
-    Record *record = malloc(sizeof *record);
-    assert(record != NULL);
-    int64_t behind = -1;
-    bool is_done = store_row_prepare(store, &store->rows, err);
-    for (int status = SQLITE_ROW; is_done && status == SQLITE_ROW;) {
-        sqlite3_bind_int64(store->rows, 1, behind);
-        sqlite3_bind_int64(store->rows, 2, -1);
-        Err damage = {0};
-        while ((status = sqlite3_step(store->rows)) == SQLITE_ROW &&
-               store_row_take(store, store->rows, record, &damage)) {
-        }
-        sqlite3_reset(store->rows);
-        if (status == SQLITE_ROW) {
-            behind = (int64_t)record->run;
-            (*forgotten)++;
-            is_done = delete_run(store, record->run, err);
-        } else {
-            is_done = status == SQLITE_DONE || store_fail(store, "read", err);
-        }
-    }
-    free(record);
-    return is_done &&
-           store_run_sql(store, "DELETE FROM effort WHERE run NOT IN (SELECT run FROM run)", err);
-}
-
-bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err)
-{
-    if (!store_commit(store, err) || !begin(store, err)) {
-        return false;
-    }
-    // there are errors only where the study has a truth; a run without them has missed it
-    const size_t columns = store->layout->setting_count + store->layout->result_count;
-    const bool has_errors = store_column(store->layout, STORE_ERROR_COLUMN) < columns;
-    *forgotten = 0;
-    const bool is_done =
-        forget_damaged(store, forgotten, err) &&
-        store_run_sql(store,
-                      has_errors ? "DELETE FROM effort WHERE run IN "
-                                   "(SELECT run FROM run WHERE fate <> 0 OR "
-                                   "error_omega_max IS NULL); "
-                                   "DELETE FROM run WHERE fate <> 0 OR error_omega_max IS NULL"
-                                 : "DELETE FROM effort WHERE run IN "
-                                   "(SELECT run FROM run WHERE fate <> 0); "
-                                   "DELETE FROM run WHERE fate <> 0",
-                      err);
-    *forgotten += is_done ? (uint64_t)sqlite3_changes64(store->base) : 0;
-    return is_done ? store_commit(store, err) : take_back(store);
-}
-
-bool store_replace(Store *store, const Record *record, Err *err)
-{
-    return begin(store, err) && delete_run(store, record->run, err) &&
-           store_add(store, record, err);
+    sqlite3_bind_int(statement, parameter, make_checksum(layout, record));
 }
 
 bool store_row_prepare(Store *store, sqlite3_stmt **statement, Err *err)
@@ -260,45 +120,55 @@ bool store_row_prepare(Store *store, sqlite3_stmt **statement, Err *err)
                          statement, err);
 }
 
-static double column_number(sqlite3_stmt *statement, int place)
+static double column_number(sqlite3_stmt *statement, int column)
 {
-    return sqlite3_column_type(statement, place) == SQLITE_NULL
+    return sqlite3_column_type(statement, column) == SQLITE_NULL
                ? NAN
-               : sqlite3_column_double(statement, place);
+               : sqlite3_column_double(statement, column);
 }
 
-static void column_words(sqlite3_stmt *statement, int place, char *words, size_t size)
+static void column_words(sqlite3_stmt *statement, int column, char *words, size_t size)
 {
-    const char *text = (const char *)sqlite3_column_text(statement, place);
+    const char *text = (const char *)sqlite3_column_text(statement, column);
     text_copy(words, size, text == NULL ? "" : text);
 }
 
 bool store_row_take(const Store *store, sqlite3_stmt *statement, Record *record, Err *err)
 {
-    const Layout *layout = store->layout;
-    int place = 0;
-    record->run = (uint64_t)sqlite3_column_int64(statement, place++);
-    for (size_t i = 0; i < layout->setting_count; i++, place++) {
-        Cell *cell = &record->settings[i];
-        if (layout->settings[i].kind == COLUMN_WORD) {
-            column_words(statement, place, cell->word, sizeof cell->word);
-        } else {
-            cell->number = column_number(statement, place);
+    int column = 0;
+    int fate = 0;
+    RecordField field = {.kind = COLUMN_RUN};
+    for (size_t i = 0; field.kind != COLUMN_HASH; i++, column++) {
+        record_field(store->layout, i, &field);
+        void *target = record_target(record, &field);
+        switch (field.kind) {
+        case COLUMN_RUN:
+        case COLUMN_HASH:
+            *(uint64_t *)target = (uint64_t)sqlite3_column_int64(statement, column);
+            break;
+        case COLUMN_FATE:
+            fate = sqlite3_column_int(statement, column);
+            record->fate = (Fate)fate;
+            break;
+        case COLUMN_WORD:
+            column_words(statement, column, target, RECORD_WORD_SIZE);
+            break;
+        case COLUMN_REASON:
+            column_words(statement, column, target, RECORD_REASON_SIZE);
+            break;
+        case COLUMN_REAL:
+        case COLUMN_WHOLE:
+            *(double *)target = column_number(statement, column);
+            break;
         }
     }
-    const int fate = sqlite3_column_int(statement, place++);
-    record->fate = (Fate)fate;
-    column_words(statement, place++, record->reason, sizeof record->reason);
-    for (size_t i = 0; i < layout->result_count; i++) {
-        record->results[i] = column_number(statement, place++);
-    }
-    record->hash = (uint64_t)sqlite3_column_int64(statement, place++);
-    const sqlite3_int64 checksum = sqlite3_column_int64(statement, place++);
-    record->wall_s = column_number(statement, place++);
-    const bool is_effort =
-        sqlite3_column_type(statement, place) != SQLITE_NULL &&
-        sqlite3_column_int64(statement, place) == make_effort_checksum(record->run, record->wall_s);
-    if (fate >= 0 && fate < FATE_COUNT && is_effort && checksum == make_checksum(layout, record)) {
+    const sqlite3_int64 checksum = sqlite3_column_int64(statement, column++);
+    record->wall_s = column_number(statement, column++);
+    const bool is_effort = sqlite3_column_type(statement, column) != SQLITE_NULL &&
+                           sqlite3_column_int64(statement, column) ==
+                               store_row_effort_checksum(record->run, record->wall_s);
+    if (fate >= 0 && fate < FATE_COUNT && is_effort &&
+        checksum == make_checksum(store->layout, record)) {
         return true;
     }
     char words[STORE_WORDS_SIZE];
@@ -307,4 +177,48 @@ bool store_row_take(const Store *store, sqlite3_stmt *statement, Record *record,
              "makes it again",
              record->run);
     return store_fail_damaged(store, words, err);
+}
+
+// Reads the rows behind a number into the portion; their count.
+static bool read_portion(Store *store, sqlite3_int64 behind, Record *portion, size_t *count,
+                         Err *err)
+{
+    sqlite3_bind_int64(store->rows, 1, behind);
+    sqlite3_bind_int(store->rows, 2, PORTION);
+    *count = 0;
+    int status;
+    bool is_read = true;
+    while (is_read && (status = sqlite3_step(store->rows)) == SQLITE_ROW) {
+        is_read = store_row_take(store, store->rows, &portion[*count], err);
+        // a damaged tree may come back to where it was
+        if (is_read && (sqlite3_int64)portion[*count].run <= behind) {
+            is_read = store_fail_damaged(store, "its runs do not stand in order", err);
+        }
+        behind = (sqlite3_int64)portion[*count].run;
+        (*count)++;
+    }
+    is_read = is_read && (status == SQLITE_DONE || store_fail(store, "read", err));
+    sqlite3_reset(store->rows);
+    return is_read;
+}
+
+bool store_each(Store *store, StoreTaker take, void *context, Err *err)
+{
+    if (!store_file_check(store, err) || !store_row_prepare(store, &store->rows, err)) {
+        return false;
+    }
+    Record *portion = calloc(PORTION, sizeof *portion);
+    assert(portion != NULL);
+    sqlite3_int64 behind = -1;
+    size_t count = PORTION;
+    bool is_done = true;
+    while (is_done && count == PORTION) {
+        is_done = read_portion(store, behind, portion, &count, err);
+        for (size_t i = 0; i < count && is_done; i++) {
+            is_done = take(store->layout, &portion[i], context, err);
+        }
+        behind = count > 0 ? (sqlite3_int64)portion[count - 1].run : behind;
+    }
+    free(portion);
+    return is_done;
 }

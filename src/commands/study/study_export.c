@@ -2,9 +2,8 @@
 #include "cli/arguments.h"
 #include "cli/written.h"
 #include "commands/study/study_commands.h"
-#include "commands/study/study_csv.h"
-#include "commands/study/study_jsonl.h"
 #include "commands/study/study_place.h"
+#include "commands/study/study_rows.h"
 
 #include <string.h>
 
@@ -51,9 +50,9 @@ static bool write_all(const ExportOptions *options, Err *err)
     const bool is_written =
         (csv == NULL || file_claim("--csv", FILE_TABLE, csv, err)) &&
         (options->jsonl == NULL || file_claim("--jsonl", FILE_ROWS, options->jsonl, err)) &&
-        (csv == NULL || (study_csv_write(store, csv, err) && say(csv, options->is_quiet))) &&
-        (options->jsonl == NULL ||
-         (study_jsonl_write(store, options->jsonl, err) && say(options->jsonl, options->is_quiet)));
+        (csv == NULL || (study_rows_write_csv(store, csv, err) && say(csv, options->is_quiet))) &&
+        (options->jsonl == NULL || (study_rows_write_jsonl(store, options->jsonl, err) &&
+                                    say(options->jsonl, options->is_quiet)));
     return store_close(store, err) && is_written;
 }
 

@@ -1,8 +1,4 @@
-// How does a study keep what it has, whatever ends it?
-//
-// A run is a row; rows are committed together every second or so, and a commit is there after a
-// power cut or not at all. What is looked at is read in portions, and let go of in between, so that
-// whoever looks never holds up who works.
+// How is a store opened, and whose rows may go into it?
 #include "commands/study/store_inside.h"
 
 #include <assert.h>
@@ -10,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-enum { PORTION = 64 }; // rows of some 5 kB at a time
 
 static Store *make_store(const char *path)
 {
@@ -128,48 +122,4 @@ const char *store_key(const Store *store, const char *name)
         }
     }
     return NULL;
-}
-
-// Reads the rows behind a number into the portion; their count.
-static bool read_portion(Store *store, sqlite3_int64 behind, Record *portion, size_t *count,
-                         Err *err)
-{
-    sqlite3_bind_int64(store->rows, 1, behind);
-    sqlite3_bind_int(store->rows, 2, PORTION);
-    *count = 0;
-    int status;
-    bool is_read = true;
-    while (is_read && (status = sqlite3_step(store->rows)) == SQLITE_ROW) {
-        is_read = store_row_take(store, store->rows, &portion[*count], err);
-        // a damaged tree may come back to where it was
-        if (is_read && (sqlite3_int64)portion[*count].run <= behind) {
-            is_read = store_fail_damaged(store, "its runs do not stand in order", err);
-        }
-        behind = (sqlite3_int64)portion[*count].run;
-        (*count)++;
-    }
-    is_read = is_read && (status == SQLITE_DONE || store_fail(store, "read", err));
-    sqlite3_reset(store->rows);
-    return is_read;
-}
-
-bool store_each(Store *store, StoreTaker take, void *context, Err *err)
-{
-    if (!store_file_check(store, err) || !store_row_prepare(store, &store->rows, err)) {
-        return false;
-    }
-    Record *portion = calloc(PORTION, sizeof *portion);
-    assert(portion != NULL);
-    sqlite3_int64 behind = -1;
-    size_t count = PORTION;
-    bool is_done = true;
-    while (is_done && count == PORTION) {
-        is_done = read_portion(store, behind, portion, &count, err);
-        for (size_t i = 0; i < count && is_done; i++) {
-            is_done = take(store->layout, &portion[i], context, err);
-        }
-        behind = count > 0 ? (sqlite3_int64)portion[count - 1].run : behind;
-    }
-    free(portion);
-    return is_done;
 }

@@ -2,7 +2,7 @@
 //
 // fill the lanes -> wait -> take in what has ended -> commit now and then -> tell.
 #include "base/clock.h"
-#include "commands/study/sweep_floor.h"
+#include "commands/study/sweep_pool.h"
 
 #include <assert.h>
 #include <math.h>
@@ -59,35 +59,35 @@ static void tell(const Sweep *sweep, SweepState *state, Times *times)
     sweep->tell(state, sweep->context);
 }
 
-static bool keep(SweepFloor *floor, Times *times, Err *err)
+static bool keep(SweepPool *pool, Times *times, Err *err)
 {
     const double clock_s = clock_now_s();
     if (clock_s - times->told_s >= TELL_S) {
-        tell(floor->sweep, floor->state, times);
+        tell(pool->sweep, pool->state, times);
     }
     // a slow disk is asked less often
     const double pause_s = fmax(COMMIT_S, times->commit_s / COMMIT_SHARE);
-    if (!floor->has_news || clock_s - times->committed_s < pause_s) {
+    if (!pool->has_news || clock_s - times->committed_s < pause_s) {
         return true;
     }
-    floor->has_news = false;
-    return commit(floor->sweep, times, err);
+    pool->has_news = false;
+    return commit(pool->sweep, times, err);
 }
 
-static bool go_on(SweepFloor *floor, Times *times, SweepEnd *end, Err *err)
+static bool go_on(SweepPool *pool, Times *times, SweepEnd *end, Err *err)
 {
-    const Sweep *sweep = floor->sweep;
+    const Sweep *sweep = pool->sweep;
     *end = SWEEP_COMPLETE;
-    while (sweep_floor_has_more(floor)) {
+    while (sweep_pool_has_more(pool)) {
         if (sweep->should_stop(sweep->context)) {
             *end = SWEEP_STOPPED;
             break;
         }
-        if (!sweep_floor_fill(floor, err)) {
+        if (!sweep_pool_fill(pool, err)) {
             return false;
         }
-        child_wait(floor->children, floor->job_count, PAUSE_S);
-        if (!sweep_floor_take(floor, err) || !keep(floor, times, err)) {
+        child_wait(pool->children, pool->job_count, PAUSE_S);
+        if (!sweep_pool_take(pool, err) || !keep(pool, times, err)) {
             return false;
         }
     }
@@ -103,10 +103,10 @@ bool sweep_execute(const Sweep *sweep, SweepEnd *end, SweepState *state, Err *er
     }
     const double started_s = clock_now_s();
     Times times = {started_s, started_s, started_s, 0.0};
-    SweepFloor floor;
-    sweep_floor_open(sweep, state, &floor);
-    const bool is_done = go_on(&floor, &times, end, err);
+    SweepPool pool;
+    sweep_pool_open(sweep, state, &pool);
+    const bool is_done = go_on(&pool, &times, end, err);
     tell(sweep, state, &times);
-    sweep_floor_close(&floor);
+    sweep_pool_close(&pool);
     return is_done;
 }

@@ -14,7 +14,7 @@ typedef struct SweepJob {
     Record record;
 } SweepJob;
 
-typedef struct SweepFloor {
+typedef struct SweepPool {
     const Sweep *sweep;
     const SweepWork *work;
     SweepState *state;
@@ -30,20 +30,20 @@ typedef struct SweepFloor {
     uint64_t end;  // number of runs of the study
     size_t busy;   // processes
     bool has_news; // rows were added to the store
-} SweepFloor;
+} SweepPool;
 
-void sweep_floor_open(const Sweep *sweep, SweepState *state, SweepFloor *floor);
+void sweep_pool_open(const Sweep *sweep, SweepState *state, SweepPool *pool);
 
 // Ends the processes that are still there.
-void sweep_floor_close(SweepFloor *floor);
+void sweep_pool_close(SweepPool *pool);
 
 // Whether anything is left to be done.
-bool sweep_floor_has_more(const SweepFloor *floor);
+bool sweep_pool_has_more(const SweepPool *pool);
 
 // Gives all that are free something to do, as far as there is something. Fails with ERR_FILE where
 // the store does, with ERR_SOLVER where not a single process can be had.
-bool sweep_floor_fill(SweepFloor *floor, Err *err);
+bool sweep_pool_fill(SweepPool *pool, Err *err);
 
 // Takes what has ended into the store and the state, and drops the groups that are through.
 // ERR_FILE.
-bool sweep_floor_take(SweepFloor *floor, Err *err);
+bool sweep_pool_take(SweepPool *pool, Err *err);

@@ -1,0 +1,283 @@
+// Which process is to be started next, and what became of those that ended?
+//
+// There are as many lanes as jobs; in each a process works and another one, made ready, stands
+// behind it. Runs start by rising number. A truth is a process like a run, and is started early
+// enough for runs to wait for none: as soon as fewer runs than jobs are ready to start. One group
+// more than there are jobs is open at a time, so that there is always something to start: of those
+// open, each has a process, or a run that is ready.
+#include "commands/study/sweep_pool.h"
+
+#include "base/clock.h"
+#include "commands/study/lane.h"
+#include "commands/study/last_words.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+void sweep_pool_open(const Sweep *sweep, SweepState *state, SweepPool *pool)
+{
+    *pool = (SweepPool){
+        .sweep = sweep,
+        .work = sweep->work == NULL ? &SWEEP_WORK : sweep->work,
+        .state = state,
+        .lanes = lane_open(),
+        .lane_count = sweep->jobs,
+        .ended_s = calloc(sweep->jobs, sizeof *pool->ended_s),
+        .job_count = SWEEP_LANE_DEPTH * sweep->jobs,
+        .jobs = calloc(SWEEP_LANE_DEPTH * sweep->jobs, sizeof *pool->jobs),
+        .children = calloc(SWEEP_LANE_DEPTH * sweep->jobs, sizeof *pool->children),
+        .group_count = sweep->jobs + 1,
+        .groups = calloc(sweep->jobs + 1, sizeof *pool->groups),
+        .end = design_run_count(sweep->spec),
+    };
+    assert(pool->ended_s != NULL && pool->jobs != NULL && pool->children != NULL &&
+           pool->groups != NULL);
+    for (size_t i = 0; i < pool->job_count; i++) {
+        pool->jobs[i].place = (SweepPlace){
+            .work = pool->work,
+            .words = last_words_open(),
+            .lanes = pool->lanes,
+            .lane = i % pool->lane_count,
+        };
+    }
+}
+
+void sweep_pool_close(SweepPool *pool)
+{
+    for (size_t i = 0; i < pool->job_count; i++) {
+        child_kill(&pool->children[i]);
+        last_words_close(pool->jobs[i].place.words);
+    }
+    for (size_t i = 0; i < pool->group_count; i++) {
+        sweep_group_close(&pool->groups[i]);
+    }
+    lane_close(pool->lanes);
+    free(pool->ended_s);
+    free(pool->jobs);
+    free(pool->children);
+    free(pool->groups);
+}
+
+// The first group by number of run that has a run to start, and whether the runs to start are
+// enough for every job.
+static SweepGroup *find_ready(const SweepPool *pool, bool *are_enough)
+{
+    SweepGroup *first = NULL;
+    uint64_t ready = 0;
+    for (size_t i = 0; i < pool->group_count; i++) {
+        SweepGroup *group = &pool->groups[i];
+        if (group->state == SWEEP_GROUP_READY && group->next < group->end) {
+            ready += group->end - group->next;
+            first = first == NULL || group->next < first->next ? group : first;
+        }
+    }
+    *are_enough = ready >= pool->lane_count;
+    return first;
+}
+
+static SweepGroup *find_group(const SweepPool *pool, SweepGroupState state)
+{
+    for (size_t i = 0; i < pool->group_count; i++) {
+        if (pool->groups[i].state == state) {
+            return &pool->groups[i];
+        }
+    }
+    return NULL;
+}
+
+// Opens the next group where there is room for it and one is left.
+static bool open_next(SweepPool *pool, SweepGroup **opened, Err *err)
+{
+    SweepGroup *group = find_group(pool, SWEEP_GROUP_NONE);
+    *opened = NULL;
+    if (group == NULL || pool->from >= pool->end) {
+        return true;
+    }
+    uint64_t run;
+    if (!sweep_group_next(pool->sweep, pool->from, pool->end, &run, err)) {
+        return false;
+    }
+    pool->from = run;
+    if (run < pool->end) {
+        sweep_group_open(pool->sweep, run, group);
+        pool->from = group->end;
+        *opened = group;
+    }
+    return true;
+}
+
+// Starts a process. Where the system has none left but others are there, one will be free when
+// they are done. The limit of its time is the lane's, for it may have to wait.
+static bool start(SweepPool *pool, size_t number, SweepGroup *group, bool *is_started, Err *err)
+{
+    SweepJob *job = &pool->jobs[number];
+    Child *child = &pool->children[number];
+    Err reason = {0};
+    ChildLimits limits =
+        job->is_truth ? sweep_group_limits(pool->sweep) : pool->sweep->spec->limits;
+    job->place.limit_s = limits.time_s;
+    limits.time_s = 0.0;
+    last_words_clear(job->place.words);
+    if (job->is_truth) {
+        group->wanted->place = job->place;
+        *is_started = child_start(child, sweep_work_certify, group->wanted, group->packed,
+                                  group->packed_size, limits, &reason);
+    } else {
+        job->run.place = job->place;
+        *is_started = child_start(child, sweep_work_run, &job->run, &job->record,
+                                  sizeof job->record, limits, &reason);
+    }
+    pool->busy += *is_started ? 1 : 0;
+    job->group = *is_started ? group : NULL;
+    return *is_started || pool->busy > 0 || err_set_lines(err, reason.kind, reason.text);
+}
+
+static bool start_truth(SweepPool *pool, size_t number, SweepGroup *group, bool *is_started,
+                        Err *err)
+{
+    pool->jobs[number].is_truth = true;
+    if (!start(pool, number, group, is_started, err)) {
+        return false;
+    }
+    group->state = *is_started ? SWEEP_GROUP_MAKING : SWEEP_GROUP_WANTED;
+    return true;
+}
+
+static bool start_run(SweepPool *pool, size_t number, SweepGroup *group, bool *is_started, Err *err)
+{
+    SweepJob *job = &pool->jobs[number];
+    job->is_truth = false;
+    job->run = (SweepRun){
+        .spec = pool->sweep->spec,
+        .layout = pool->sweep->layout,
+        .truth = group->has_truth ? &group->truth : NULL,
+        .run = group->next,
+    };
+    if (!start(pool, number, group, is_started, err)) {
+        return false;
+    }
+    if (!*is_started) {
+        return true;
+    }
+    group->busy++;
+    return sweep_group_next(pool->sweep, group->next + 1, group->end, &group->next, err);
+}
+
+// Gives a free job something to do, where there is something.
+static bool fill(SweepPool *pool, size_t number, bool *is_started, Err *err)
+{
+    bool are_enough;
+    SweepGroup *ready = find_ready(pool, &are_enough);
+    *is_started = false;
+    while (!are_enough) {
+        SweepGroup *group = find_group(pool, SWEEP_GROUP_WANTED);
+        if (group == NULL && !open_next(pool, &group, err)) {
+            return false;
+        }
+        if (group == NULL) {
+            break;
+        }
+        if (group->state == SWEEP_GROUP_WANTED) {
+            return start_truth(pool, number, group, is_started, err);
+        }
+        // it needs no truth, or can have none
+        ready = find_ready(pool, &are_enough);
+    }
+    return ready == NULL || start_run(pool, number, ready, is_started, err);
+}
+
+static size_t count_lane(const SweepPool *pool, size_t lane)
+{
+    size_t count = 0;
+    for (size_t i = lane; i < pool->job_count; i += pool->lane_count) {
+        count += pool->jobs[i].group != NULL ? 1 : 0;
+    }
+    return count;
+}
+
+// Empty lanes come first, then those with nothing ready.
+bool sweep_pool_fill(SweepPool *pool, Err *err)
+{
+    bool is_started = true;
+    for (size_t depth = 0; depth < SWEEP_LANE_DEPTH; depth++) {
+        for (size_t i = 0; i < pool->job_count && is_started; i++) {
+            if (pool->jobs[i].group == NULL &&
+                count_lane(pool, pool->jobs[i].place.lane) <= depth &&
+                !fill(pool, i, &is_started, err)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+// How long a process was at work, as far as its parent can tell: it may have had to wait.
+static double time_of(SweepPool *pool, const SweepJob *job, const Child *child)
+{
+    double *ended_s = &pool->ended_s[job->place.lane];
+    const double from_s = child->started_s > *ended_s ? child->started_s : *ended_s;
+    *ended_s = clock_now_s();
+    return *ended_s - from_s;
+}
+
+static bool take_run(SweepPool *pool, SweepJob *job, const Child *child, double wall_s, Err *err)
+{
+    SweepState *state = pool->state;
+    Record *record = &job->record;
+    if (child->end != CHILD_DONE) {
+        sweep_work_lost(&job->run, child, wall_s, record);
+    }
+    state->inside_s += record->wall_s;
+    state->made++;
+    state->done++;
+    state->failed += record->fate != FATE_OK ? 1 : 0;
+    state->without_truth += record->fate == FATE_OK && job->group->lacks_truth ? 1 : 0;
+    job->group->busy--;
+    pool->has_news = true;
+    return store_add(pool->sweep->store, record, err);
+}
+
+static void take_truth(SweepPool *pool, SweepGroup *group, const Child *child, double wall_s)
+{
+    char reason[RECORD_REASON_SIZE] = "";
+    pool->state->inside_s += wall_s;
+    if (sweep_group_take(group, child, reason) && pool->state->no_truth[0] == '\0') {
+        memcpy(pool->state->no_truth, reason, sizeof reason);
+    }
+}
+
+bool sweep_pool_take(SweepPool *pool, Err *err)
+{
+    bool is_taken = true;
+    for (size_t i = 0; i < pool->job_count && is_taken; i++) {
+        SweepJob *job = &pool->jobs[i];
+        SweepGroup *group = job->group;
+        if (group == NULL || pool->children[i].end == CHILD_RUNNING) {
+            continue;
+        }
+        Child *child = &pool->children[i];
+        const double wall_s = time_of(pool, job, child);
+        sweep_work_tell_time(&job->place, child);
+        if (job->is_truth) {
+            take_truth(pool, group, child, wall_s);
+        } else {
+            is_taken = take_run(pool, job, child, wall_s, err);
+        }
+        job->group = NULL;
+        pool->busy--;
+        if (group->state == SWEEP_GROUP_READY && group->next == group->end && group->busy == 0) {
+            sweep_group_close(group);
+        }
+    }
+    return is_taken;
+}
+
+bool sweep_pool_has_more(const SweepPool *pool)
+{
+    bool is_open = pool->from < pool->end;
+    for (size_t i = 0; i < pool->group_count; i++) {
+        is_open = is_open || pool->groups[i].state != SWEEP_GROUP_NONE;
+    }
+    return is_open;
+}
