@@ -3,10 +3,9 @@
 // Its steps are the sample intervals, a degree of the crank at most. Play is ignored, so that with
 // play the difference of another solver to this one is the effect of the play plus that solver's
 // error.
-#include "analytic/analytic.h"
-
 #include "analytic/fourbar_motion.h"
 #include "analytic/inverse_dynamics.h"
+#include "model/solver.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -193,7 +192,6 @@ static void analytic_extremes(const void *state, double from_s, BodyExtremes *bo
 
 const Solver ANALYTIC_SOLVER = {
     .name = "analytic",
-    .summary = "closed-form four-bar with ideal joints",
     .is_ideal = true,
     .open = analytic_open,
     .step = analytic_step,

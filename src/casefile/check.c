@@ -4,6 +4,8 @@
 #include "casefile/build.h"
 #include "casefile/keys.h"
 #include "casefile/wanted.h"
+#include "contact/damping.h"
+#include "contact/law.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -92,10 +94,8 @@ bool check_required(const Entries *entries, Err *err)
 static bool needs_width(const Scenario *scenario)
 {
     const ContactOptions *contact = &scenario->contact;
-    const bool is_cylinder = contact->law == LAW_JOHNSON || contact->law == LAW_RADZIMOVSKY ||
-                             contact->law == LAW_ESDU_78035 ||
-                             contact->law == LAW_DUBOWSKY_FREUDENSTEIN;
-    return is_cylinder && contact->stiffness == 0.0 && contact->model == CONTACT_IMPACT;
+    return law_get(contact->law)->needs_width && contact->stiffness == 0.0 &&
+           contact->model == CONTACT_IMPACT;
 }
 
 static bool check_sizes(const Entries *entries, size_t index, const Joint *joint, Err *err)
@@ -168,12 +168,8 @@ static bool check_contact(const Entries *entries, const Scenario *scenario, Err 
                             "another damping, or contact.viscous-coefficient such as 100 N s/m",
                             err, "damping viscous needs contact.viscous-coefficient");
     }
-    // these factors have the restitution below a fraction line, or grow without bound towards 0
-    const bool divides = contact->damping == DAMPING_FLORES ||
-                         contact->damping == DAMPING_GONTHIER ||
-                         contact->damping == DAMPING_HU_GUO || contact->damping == DAMPING_EXACT;
     static const char *const LOSSES[] = {"contact.restitution", "contact.damping"};
-    if (divides && contact->restitution == 0.0) {
+    if (contact->restitution == 0.0 && !isfinite(damping_factor(contact->damping, 0.0))) {
         const Entry *entry = entries_blame(entries, LOSSES, 2, 0);
         return source_error(
             entry->source, entry->node->span, "above 0 and up to 1, or another damping", err,

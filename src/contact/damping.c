@@ -103,8 +103,18 @@ static double exact(double e)
 
 double damping_factor(DampingKind kind, double restitution)
 {
+    static double (*const FACTORS[DAMPING_COUNT])(double restitution) = {
+        [DAMPING_NONE] = none,
+        [DAMPING_LANKARANI_NIKRAVESH] = lankarani_nikravesh,
+        [DAMPING_HUNT_CROSSLEY] = hunt_crossley,
+        [DAMPING_FLORES] = flores,
+        [DAMPING_GONTHIER] = gonthier,
+        [DAMPING_HU_GUO] = hu_guo,
+        [DAMPING_EXACT] = exact,
+        [DAMPING_VISCOUS] = none,
+    };
     assert(restitution >= 0.0 && restitution <= 1.0);
-    return damping_get(kind)->factor(restitution);
+    return FACTORS[kind](restitution);
 }
 
 double damping_delivered(double chi)
@@ -159,24 +169,4 @@ double damping_linear_ratio(double restitution)
     assert(is_found);
     (void)is_found;
     return zeta;
-}
-
-static const Damping DAMPINGS[] = {
-    [DAMPING_NONE] = {"none", "no damping: every impact gives back its speed", "", none},
-    [DAMPING_LANKARANI_NIKRAVESH] = {"lankarani-nikravesh", "chi = 3 (1 - e^2) / 4",
-                                     "Lankarani and Nikravesh 1990; the paper's Eq. (6)",
-                                     lankarani_nikravesh},
-    [DAMPING_HUNT_CROSSLEY] = {"hunt-crossley", "chi = 3 (1 - e) / 2", "Hunt and Crossley 1975",
-                               hunt_crossley},
-    [DAMPING_FLORES] = {"flores", "chi = 8 (1 - e) / (5 e)", "Flores et al. 2011", flores},
-    [DAMPING_GONTHIER] = {"gonthier", "chi = (1 - e^2) / e", "Gonthier et al. 2004", gonthier},
-    [DAMPING_HU_GUO] = {"hu-guo", "chi = 3 (1 - e) / (2 e)", "Hu and Guo 2015", hu_guo},
-    [DAMPING_EXACT] = {"exact", "the chi that delivers the restitution asked for",
-                       "chi (1 + e) = ln((1 + chi) / (1 - chi e))", exact},
-    [DAMPING_VISCOUS] = {"viscous", "a constant coefficient: F = F_el + c d'", "", none},
-};
-
-const Damping *damping_get(DampingKind kind)
-{
-    return &DAMPINGS[kind];
 }

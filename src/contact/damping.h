@@ -3,19 +3,9 @@
 
 #include "model/options.h"
 
-// One hysteretic damping law: F = F_el (1 + chi d'/v0).
-typedef struct Damping {
-    const char *name;    // as in a case
-    const char *summary; // one line for people
-    const char *source;  // where the formula stands
-    // chi, 1, for the restitution asked for, 0 < e <= 1. Every law gives 0 at e = 1.
-    double (*factor)(double restitution);
-} Damping;
-
-// The law of one kind. DAMPING_NONE and DAMPING_VISCOUS are there too: their factor is 0.
-const Damping *damping_get(DampingKind kind);
-
-// chi, 1, of one kind for a restitution 0 < e <= 1.
+// chi, 1, of one kind of hysteretic damping, F = F_el (1 + chi d'/v0), for the restitution asked
+// for, 0 <= e <= 1; 0 of DAMPING_NONE and DAMPING_VISCOUS. Every law gives 0 at e = 1; some are
+// infinite at 0.
 double damping_factor(DampingKind kind, double restitution);
 
 // The restitution that F = K d^n (1 + chi d'/v0) really delivers, whatever n, K, mass and speed;

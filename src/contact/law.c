@@ -6,15 +6,8 @@
 
 #include <math.h>
 
-static const Law *const LAWS[] = {
-    [LAW_HERTZ_SOCKET] = &law_hertz_socket,
-    [LAW_JOHNSON] = &law_johnson,
-    [LAW_RADZIMOVSKY] = &law_radzimovsky,
-    [LAW_ESDU_78035] = &law_esdu_78035,
-    [LAW_DUBOWSKY_FREUDENSTEIN] = &law_dubowsky_freudenstein,
-    [LAW_PAPER_TABLE_2] = &law_paper_table_2,
-    [LAW_PAPER_TABLE_3] = &law_paper_table_3,
-};
+#define MEMBER(id, word, law) [id] = &law,
+static const Law *const LAWS[] = {OPTIONS_LAW_LIST(MEMBER)};
 
 const Law *law_get(LawKind kind)
 {
@@ -27,35 +20,34 @@ double law_effective_modulus(const ContactPair *pair)
     return penalty_effective_modulus(&material);
 }
 
-static bool check_pair(const Law *law, const ContactPair *pair, Err *err)
+static bool check_pair(LawKind kind, const ContactPair *pair, Err *err)
 {
+    const Law *law = law_get(kind);
+    const char *name = OPTIONS_LAWS[kind];
     if (!(pair->pin_radius > 0.0 && pair->hole_radius > pair->pin_radius)) {
-        return err_set(err, ERR_CASE, "the contact law %s needs a pin smaller than its hole",
-                       law->name);
+        return err_set(err, ERR_CASE, "the contact law %s needs a pin smaller than its hole", name);
     }
     if (!(pair->youngs_modulus > 0.0) || !(fabs(pair->poisson_ratio) < 1.0)) {
         return err_set(err, ERR_CASE,
                        "the contact law %s needs a Young's modulus above 0 and a Poisson's ratio"
                        " between -1 and 1",
-                       law->name);
+                       name);
     }
     if (law->needs_width && !(pair->width > 0.0)) {
-        return err_set(err, ERR_CASE, "the contact law %s needs the width of the joint", law->name);
+        return err_set(err, ERR_CASE, "the contact law %s needs the width of the joint", name);
     }
     if (law->needs_force && !(pair->reference_force > 0.0)) {
-        return err_set(err, ERR_CASE, "the contact law %s needs a reference force above 0",
-                       law->name);
+        return err_set(err, ERR_CASE, "the contact law %s needs a reference force above 0", name);
     }
     return true;
 }
 
 bool law_make(LawKind kind, const ContactPair *pair, ForceLaw *law, Err *err)
 {
-    const Law *member = law_get(kind);
-    if (!check_pair(member, pair, err)) {
+    if (!check_pair(kind, pair, err)) {
         return false;
     }
-    member->make(pair, law);
+    law_get(kind)->make(pair, law);
     return true;
 }
 

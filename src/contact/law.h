@@ -17,11 +17,8 @@ typedef struct ContactPair {
 } ContactPair;
 
 typedef struct Law {
-    const char *name;    // as in a case
-    const char *summary; // one line for people
-    const char *source;  // where it stands
-    bool needs_width;    // whether the joint must have a width
-    bool needs_force;    // whether the reference force must be above 0
+    bool needs_width; // whether the joint must have a width
+    bool needs_force; // whether the reference force must be above 0
     // Makes the undamped force law. The pair has been checked.
     void (*make)(const ContactPair *pair, ForceLaw *law);
 } Law;
@@ -57,11 +54,6 @@ bool law_check_depth(const ForceLaw *law, const Joint *joint, double depth, doub
 // E* = E / (2 (1 - nu^2)), Pa.
 double law_effective_modulus(const ContactPair *pair);
 
-// The members, for the registry.
-extern const Law law_hertz_socket;
-extern const Law law_johnson;
-extern const Law law_radzimovsky;
-extern const Law law_esdu_78035;
-extern const Law law_dubowsky_freudenstein;
-extern const Law law_paper_table_2;
-extern const Law law_paper_table_3;
+// The members, by the names in OPTIONS_LAW_LIST.
+#define LAW_DECLARE(id, word, law) extern const Law law;
+OPTIONS_LAW_LIST(LAW_DECLARE)

@@ -16,10 +16,4 @@ static void make_hertz_socket(const ContactPair *pair, ForceLaw *law)
     *law = force_law_power(4.0 / 3.0 * law_effective_modulus(pair) * sqrt(radius), 1.5);
 }
 
-const Law law_hertz_socket = {
-    .name = "hertz-socket",
-    .summary = "sphere in a spherical socket: F = K d^1.5",
-    .source = "the paper's Eq. (3)",
-    .needs_width = false,
-    .make = make_hertz_socket,
-};
+const Law law_hertz_socket = {.make = make_hertz_socket};

@@ -1,27 +1,32 @@
 // Which ERP and CFM make ODE's contact row the spring and damper that was asked for, and which
 // spring and damper is an ERP and a CFM?
 //
-// ODE's row, F >= 0      v_out + CFM F = (ERP / h) d
-// textbook               ERP = h k / (h k + c), CFM = 1 / (h k + c): F = k (d - h v_out) - c v_out,
-//                        implicit Euler, always stable, damping raised by h k
-// corrected              ERP = h k / c, CFM = 1 / c: F = k d - c v_out, spring explicit and damper
-//                        implicit; symplectic, no damping of its own, stable for omega h < 2
-// midpoint               CFM = 2 / c, ERP = h F0 / (c d / 2), F0 = k d + (c / 2) d': F = k d - (c /
-// 2)
-//                        (v_out - d'), damper on the mean of the old and the new speed; second
-//                        order where d stands at mid-step; stable for omega h < 2
-// exact                  CFM = h a / (m (1 - a)), ERP = b h / (1 - a), with a = exp(-2 z omega h)
-// and
-//                        b h = 1 + a - 2 exp(-z omega h) cos(omega_d h): then d and d' follow
-//                        d'_new = a d' - b d, d_new = d + h d'_new, of determinant a and of the
-//                        trace of the continuous oscillator; for omega h < pi
-// inverses               textbook kp = ERP / (h CFM), kd = (1 - ERP) / CFM; corrected the same kp,
-//                        kd = 1 / CFM; midpoint kd = 2 / CFM, kp = ERP / (h CFM) - (kd / 2) d' / d;
-//                        exact a = r / (1 + r), r = CFM m / h, z omega h = ln(1 + 1 / r) / 2, and
-//                        sin^2 of half of omega_d h = (b h - (1 - e^-zoh)^2) / (4 e^-zoh)
+// clang-format off
+// ODE's row, F >= 0   v_out + CFM F = (ERP / h) d
+// textbook            ERP = h k / (h k + c),  CFM = 1 / (h k + c):  F = k (d - h v_out) - c v_out
+//                     implicit Euler, always stable, damping raised by h k
+// corrected           ERP = h k / c,  CFM = 1 / c:  F = k d - c v_out
+//                     spring explicit and damper implicit; symplectic, no damping of its own,
+//                     stable for omega h < 2
+// midpoint            CFM = 2 / c,  ERP = h F0 / (c d / 2),  F0 = k d + (c / 2) d':
+//                     F = k d - (c / 2) (v_out - d')
+//                     damper on the mean of the old and the new speed; second order where d stands
+//                     at mid-step; stable for omega h < 2
+// exact               CFM = h a / (m (1 - a)),  ERP = b h / (1 - a),  a = exp(-2 z omega h),
+//                     b h = 1 + a - 2 exp(-z omega h) cos(omega_d h): then d and d' follow
+//                     d'_new = a d' - b d,  d_new = d + h d'_new, of determinant a and of the trace
+//                     of the continuous oscillator; for omega h < pi
+// inverses  textbook  kp = ERP / (h CFM),  kd = (1 - ERP) / CFM
+//          corrected  kp likewise,  kd = 1 / CFM
+//           midpoint  kd = 2 / CFM,  kp = ERP / (h CFM) - (kd / 2) d' / d
+//              exact  a = r / (1 + r),  r = CFM m / h,  z omega h = ln(1 + 1 / r) / 2,
+//                     sin^2(omega_d h / 2) = (b h - (1 - e^-zoh)^2) / (4 e^-zoh),  zoh = z omega h
+// Poisson             F = p d':  CFM = 1 / p
+// bounce with CFM     delivered e' = (e - r) / (1 + r),  r = CFM m / h
+// clang-format on
+//
 // 1 - ERP = c / (h k + c) is kept beside ERP: from ERP as a double alone, kd would be wrong by up
-// to eps/2 (h k + c) / c of itself, eps = 2.2e-16. Poisson                F = p d': CFM = 1 / p
-// bounce with CFM        delivered e' = (e - r) / (1 + r), r = CFM m / h
+// to eps/2 (h k + c) / c of itself, eps = 2.2e-16.
 //
 // At c = 0 the corrected map has no finite CFM. A damper c = 1e-10 h k stands in: it changes the
 // force by 1e-10 h v_out / d of itself.
@@ -157,14 +162,10 @@ double map_bounce_delivered(double restitution, double cfm, double mass, double 
 }
 
 static const Map MAPS[] = {
-    [ODE_MAP_TEXTBOOK] = {"textbook", "implicit Euler: always stable, adds damping h k", INFINITY,
-                          0.0, false, textbook, invert_textbook},
-    [ODE_MAP_CORRECTED] = {"corrected", "spring explicit, damper implicit: adds no damping", 2.0,
-                           STAND_IN_SHARE, false, corrected, invert_corrected},
-    [ODE_MAP_MIDPOINT] = {"midpoint", "damper on the mean of old and new speed: second order", 2.0,
-                          STAND_IN_SHARE, false, midpoint, invert_midpoint},
-    [ODE_MAP_EXACT] = {"exact", "frequency and decay of the continuous oscillator, for its mass",
-                       M_PI, STAND_IN_SHARE, true, exact, invert_exact},
+    [ODE_MAP_TEXTBOOK] = {INFINITY, 0.0, false, textbook, invert_textbook},
+    [ODE_MAP_CORRECTED] = {2.0, STAND_IN_SHARE, false, corrected, invert_corrected},
+    [ODE_MAP_MIDPOINT] = {2.0, STAND_IN_SHARE, false, midpoint, invert_midpoint},
+    [ODE_MAP_EXACT] = {M_PI, STAND_IN_SHARE, true, exact, invert_exact},
 };
 
 const Map *map_get(OdeMap kind)

@@ -26,8 +26,6 @@ typedef struct MapContact {
 } MapContact;
 
 typedef struct Map {
-    const char *name;       // as in a case
-    const char *summary;    // one line for people
     double stability_limit; // 1: omega h must stay below it; infinite where it always holds
     double stand_in_share;  // 1: of h k, the damper that stands in for none; 0 for no need
     bool needs_mass;        // whether it looks at the effective mass

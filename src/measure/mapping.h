@@ -6,8 +6,8 @@
 
 enum {
     MAPPING_STEP_MAX = 32,
-    MAPPING_LAW_MAX = 8,      // all of the family and the stiffness that a case gives
-    MAPPING_CONTACT_MAX = 64, // joints times laws
+    MAPPING_LAW_MAX = LAW_COUNT + 1, // all of the family and the stiffness that a case gives
+    MAPPING_CONTACT_MAX = 64,        // joints times laws
 };
 
 typedef struct MappingSettings {

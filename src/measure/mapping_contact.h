@@ -5,7 +5,7 @@
 #include "measure/impact.h"
 #include "measure/mapping_joint.h"
 
-enum { MAPPING_MAP_COUNT = 5 }; // textbook to impulse
+enum { MAPPING_MAP_COUNT = ODE_MAP_COUNT };
 
 // Where a number comes from.
 typedef enum MappingSource {

@@ -1,29 +1,16 @@
 // What does the program do when nothing is said? Every default, and why it is that number.
 #include "model/options.h"
 
+#define WORD(id, word, ...) word,
+
 const char *const OPTIONS_CONTACT_MODELS[] = {"impact", "poisson", NULL};
-const char *const OPTIONS_LAWS[] = {
-    "hertz-socket",          "johnson",       "radzimovsky",   "esdu-78035",
-    "dubowsky-freudenstein", "paper-table-2", "paper-table-3", NULL,
-};
-const char *const OPTIONS_DAMPINGS[] = {
-    "none",
-    "lankarani-nikravesh",
-    "hunt-crossley",
-    "flores",
-    "gonthier",
-    "hu-guo",
-    "exact",
-    "viscous",
-    NULL,
-};
+const char *const OPTIONS_LAWS[] = {OPTIONS_LAW_LIST(WORD) NULL};
+const char *const OPTIONS_DAMPINGS[] = {OPTIONS_DAMPING_LIST(WORD) NULL};
 const char *const OPTIONS_ODE_SOLVERS[] = {"direct", "quick", NULL};
 const char *const OPTIONS_ODE_STEPPINGS[] = {"plain", "staggered", "extrapolated", NULL};
-const char *const OPTIONS_ODE_MAPS[] = {
-    "textbook", "corrected", "midpoint", "exact", "impulse", NULL,
-};
+const char *const OPTIONS_ODE_MAPS[] = {OPTIONS_ODE_MAP_LIST(WORD) NULL};
 const char *const OPTIONS_ODE_COLLIDERS[] = {"pin-hole", NULL};
-const char *const OPTIONS_BACKENDS[] = {"analytic", "reference", "ode", NULL};
+const char *const OPTIONS_BACKENDS[] = {OPTIONS_BACKEND_LIST(WORD) NULL};
 
 MaterialOptions material_options_default(void)
 {

@@ -4,34 +4,61 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+// Families of alternatives that are meant to grow: one line a member, its enumerator, its word in a
+// case and, where the member is an object, that. The enumeration, the list of words and the
+// registry follow from it, in this order.
+
+// clang-format off
+
+// The elastic laws, F(penetration); see contact/law.h.
+#define OPTIONS_LAW_LIST(member) \
+    member(LAW_HERTZ_SOCKET, "hertz-socket", law_hertz_socket) \
+    member(LAW_JOHNSON, "johnson", law_johnson) \
+    member(LAW_RADZIMOVSKY, "radzimovsky", law_radzimovsky) \
+    member(LAW_ESDU_78035, "esdu-78035", law_esdu_78035) \
+    member(LAW_DUBOWSKY_FREUDENSTEIN, "dubowsky-freudenstein", law_dubowsky_freudenstein) \
+    member(LAW_PAPER_TABLE_2, "paper-table-2", law_paper_table_2) \
+    member(LAW_PAPER_TABLE_3, "paper-table-3", law_paper_table_3)
+
+// Where the energy of an impact goes; see contact/damping.h.
+#define OPTIONS_DAMPING_LIST(member) \
+    member(DAMPING_NONE, "none") \
+    member(DAMPING_LANKARANI_NIKRAVESH, "lankarani-nikravesh") \
+    member(DAMPING_HUNT_CROSSLEY, "hunt-crossley") \
+    member(DAMPING_FLORES, "flores") \
+    member(DAMPING_GONTHIER, "gonthier") \
+    member(DAMPING_HU_GUO, "hu-guo") \
+    member(DAMPING_EXACT, "exact") \
+    member(DAMPING_VISCOUS, "viscous")
+
+// How stiffness and damping become ERP and CFM; see contact/map.h. Last the one that makes no row:
+// with ODE_STAGGERED the contact is integrated within the step.
+#define OPTIONS_ODE_MAP_LIST(member) \
+    member(ODE_MAP_TEXTBOOK, "textbook") \
+    member(ODE_MAP_CORRECTED, "corrected") \
+    member(ODE_MAP_MIDPOINT, "midpoint") \
+    member(ODE_MAP_EXACT, "exact") \
+    member(ODE_MAP_IMPULSE, "impulse")
+
+// The solvers; see model/solver.h.
+#define OPTIONS_BACKEND_LIST(member) \
+    member(BACKEND_ANALYTIC, "analytic", ANALYTIC_SOLVER) \
+    member(BACKEND_REFERENCE, "reference", REFERENCE_SOLVER) \
+    member(BACKEND_ODE, "ode", ODE_SOLVER)
+
+// clang-format on
+#define OPTIONS_ENUMERATOR(id, ...) id,
+
+typedef enum LawKind { OPTIONS_LAW_LIST(OPTIONS_ENUMERATOR) LAW_COUNT } LawKind;
+typedef enum DampingKind { OPTIONS_DAMPING_LIST(OPTIONS_ENUMERATOR) DAMPING_COUNT } DampingKind;
+typedef enum OdeMap { OPTIONS_ODE_MAP_LIST(OPTIONS_ENUMERATOR) ODE_MAP_COUNT } OdeMap;
+typedef enum BackendKind { OPTIONS_BACKEND_LIST(OPTIONS_ENUMERATOR) BACKEND_COUNT } BackendKind;
+
 // The model of what happens where pin and hole overlap.
 typedef enum ContactModel {
     CONTACT_IMPACT,  // spring and damper: force from penetration and its rate
     CONTACT_POISSON, // velocity-level penalty with restitution: force from closing speed
 } ContactModel;
-
-// The elastic law, F(penetration).
-typedef enum LawKind {
-    LAW_HERTZ_SOCKET,          // sphere in a spherical socket, the paper's Eq. (3)
-    LAW_JOHNSON,               // cylinder in a cylindrical hole
-    LAW_RADZIMOVSKY,           // cylinders
-    LAW_ESDU_78035,            // cylinder in a hole
-    LAW_DUBOWSKY_FREUDENSTEIN, // cylinder in a hole
-    LAW_PAPER_TABLE_2,         // linear, k = 2 a E* with the paper's a
-    LAW_PAPER_TABLE_3,         // the power law behind the paper's Table III
-} LawKind;
-
-// Where the energy of an impact goes.
-typedef enum DampingKind {
-    DAMPING_NONE,
-    DAMPING_LANKARANI_NIKRAVESH,
-    DAMPING_HUNT_CROSSLEY,
-    DAMPING_FLORES,
-    DAMPING_GONTHIER,
-    DAMPING_HU_GUO,
-    DAMPING_EXACT,   // the factor that delivers the restitution asked for
-    DAMPING_VISCOUS, // a constant coefficient
-} DampingKind;
 
 typedef enum OdeSolver { ODE_DIRECT, ODE_QUICK } OdeSolver;
 typedef enum OdeCollider { ODE_COLLIDER_PIN_HOLE } OdeCollider;
@@ -42,22 +69,6 @@ typedef enum OdeStepping {
     ODE_STAGGERED,    // positions half a step behind: a leapfrog
     ODE_EXTRAPOLATED, // several staggered worlds of different steps, for ideal joints
 } OdeStepping;
-
-// How stiffness and damping become ERP and CFM, or the contact's impulse a force.
-typedef enum OdeMap {
-    ODE_MAP_TEXTBOOK,
-    ODE_MAP_CORRECTED,
-    ODE_MAP_MIDPOINT,
-    ODE_MAP_EXACT,
-    ODE_MAP_IMPULSE, // no row: the contact is integrated within the step; of ODE_STAGGERED
-} OdeMap;
-
-typedef enum BackendKind {
-    BACKEND_ANALYTIC,
-    BACKEND_REFERENCE,
-    BACKEND_ODE,
-    BACKEND_COUNT,
-} BackendKind;
 
 // The words that stand for the choices above, in their order; each list ends in NULL.
 extern const char *const OPTIONS_CONTACT_MODELS[];

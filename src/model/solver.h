@@ -39,9 +39,8 @@ typedef struct SolverModel {
 } SolverModel;
 
 typedef struct Solver {
-    const char *name;    // as in a case's list of backends
-    const char *summary; // one line for people
-    bool is_ideal;       // takes every joint as ideal, whatever its play
+    const char *name; // as in a case's list of backends
+    bool is_ideal;    // takes every joint as ideal, whatever its play
     // Makes the state at time zero. On failure *state stays NULL.
     bool (*open)(const Scenario *scenario, void **state, Err *err);
     // Takes one step of the solver's own choosing towards stop_s. It may end beyond stop_s only
@@ -57,3 +56,7 @@ typedef struct Solver {
     void (*extremes)(const void *state, double from_s, BodyExtremes *bodies);
     void (*close)(void *state);
 } Solver;
+
+// The solvers, by the names in OPTIONS_BACKEND_LIST.
+#define SOLVER_DECLARE(id, word, solver) extern const Solver solver;
+OPTIONS_BACKEND_LIST(SOLVER_DECLARE)

@@ -237,7 +237,6 @@ static SolverModel extrapolated_model(const void *state)
 
 const Solver STEPPING_EXTRAPOLATED = {
     .name = "extrapolated",
-    .summary = "staggered worlds of different steps side by side, of ideal joints",
     .open = extrapolated_open,
     .step = extrapolated_step,
     .record = extrapolated_record,

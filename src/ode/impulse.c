@@ -171,7 +171,6 @@ static SolverModel impulse_model(const void *state)
 
 const Solver STEPPING_IMPULSE = {
     .name = "impulse",
-    .summary = "staggered, the contacts integrated within each step",
     .open = impulse_open,
     .step = impulse_step,
     .record = impulse_record,

@@ -1,8 +1,7 @@
 // How does the linkage move in ODE? (A solver.)
 //
 // Hands on to the way of stepping that the scenario asks for; each is a solver of its own.
-#include "ode/ode_solver.h"
-
+#include "model/solver.h"
 #include "ode/stepping.h"
 
 #include <assert.h>
@@ -78,7 +77,6 @@ static void ode_close(void *state)
 
 const Solver ODE_SOLVER = {
     .name = "ode",
-    .summary = "Open Dynamics Engine",
     .open = ode_open,
     .step = ode_step,
     .record = ode_record,

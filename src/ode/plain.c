@@ -206,7 +206,6 @@ static SolverModel plain_model(const void *state)
 
 const Solver STEPPING_PLAIN = {
     .name = "plain",
-    .summary = "read at the end of each step, as ODE's manual says",
     .open = plain_open,
     .step = plain_step,
     .record = plain_record,

@@ -339,7 +339,6 @@ static SolverModel staggered_model(const void *state)
 
 const Solver STEPPING_STAGGERED = {
     .name = "staggered",
-    .summary = "read as a leapfrog: places half a step behind the speeds",
     .open = staggered_open,
     .step = staggered_step,
     .record = staggered_record,

@@ -4,8 +4,7 @@
 // method of order 8 (reference/dop853.h); contact begin and end are events, between which the
 // right-hand side is smooth. A step of the integrator is handed on in parts that end where a force
 // or a depth has its maximum, so that no peak is missed whatever the step.
-#include "reference/reference.h"
-
+#include "model/solver.h"
 #include "reference/loops.h"
 #include "reference/peaks.h"
 #include "reference/refusal.h"
@@ -234,7 +233,6 @@ static SolverModel reference_model(const void *state)
 
 const Solver REFERENCE_SOLVER = {
     .name = "reference",
-    .summary = "equations of motion with contact events, order 8",
     .open = reference_open,
     .step = reference_step,
     .record = reference_record,

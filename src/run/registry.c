@@ -1,17 +1,10 @@
 // Which solver stands behind which word of a case?
 #include "run/registry.h"
 
-#include "analytic/analytic.h"
-#include "ode/ode_solver.h"
-#include "reference/reference.h"
-
 #include <assert.h>
 
-static const Solver *const SOLVERS[BACKEND_COUNT] = {
-    [BACKEND_ANALYTIC] = &ANALYTIC_SOLVER,
-    [BACKEND_REFERENCE] = &REFERENCE_SOLVER,
-    [BACKEND_ODE] = &ODE_SOLVER,
-};
+#define MEMBER(id, word, solver) [id] = &solver,
+static const Solver *const SOLVERS[] = {OPTIONS_BACKEND_LIST(MEMBER)};
 
 const Solver *registry_solver(BackendKind backend)
 {

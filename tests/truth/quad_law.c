@@ -112,9 +112,10 @@ static QuadLaw named_law(const Scenario *scenario, const Joint *joint)
                          1);
     case LAW_PAPER_TABLE_3:
         return power_law(modulus * sqrtq((Quad)5 / 1000) * powq((Quad)4 / 3, 1.5), 1.5);
+    default: // of a law that no case here names
+        assert(false);
+        return power_law(0, 1);
     }
-    assert(false);
-    return power_law(0, 1);
 }
 
 QuadLaw quad_law(const Scenario *scenario, const Joint *joint)

@@ -108,12 +108,11 @@ static void the_exact_factor_delivers_what_is_asked(void **state)
 static void every_law_gives_no_damping_for_restitution_1(void **state)
 {
     (void)state;
-    for (int kind = DAMPING_NONE; kind <= DAMPING_VISCOUS; kind++) {
+    for (int kind = DAMPING_NONE; kind < DAMPING_COUNT; kind++) {
         assert_near(damping_factor((DampingKind)kind, 1.0), 0.0, 0.0);
-        assert_string_equal(damping_get((DampingKind)kind)->name, OPTIONS_DAMPINGS[kind]);
     }
     assert_near(damping_delivered(0.0), 1.0, 0.0);
-    assert_null(OPTIONS_DAMPINGS[DAMPING_VISCOUS + 1]);
+    assert_null(OPTIONS_DAMPINGS[DAMPING_COUNT]);
 }
 
 static void two_steel_spheres_meet_as_hertz_says(void **state)

@@ -6,8 +6,6 @@
 
 #include <string.h>
 
-enum { LAW_COUNT = LAW_PAPER_TABLE_3 + 1 };
-
 // the paper's joint: hole 10.015, pin 9.986, width 13 mm, steel, at its force of 1.05 N
 static const ContactPair PAPER_PAIR = {
     .hole_radius = 5.0075e-3,
@@ -24,17 +22,6 @@ static ForceLaw paper_law(LawKind kind)
     Err err = {0};
     assert_true(law_make(kind, &PAPER_PAIR, &law, &err));
     return law;
-}
-
-static void names_are_the_words_of_a_case(void **state)
-{
-    (void)state;
-    for (int i = 0; i < LAW_COUNT; i++) {
-        assert_string_equal(law_get((LawKind)i)->name, OPTIONS_LAWS[i]);
-        assert_true(strlen(law_get((LawKind)i)->summary) > 0);
-        assert_true(strlen(law_get((LawKind)i)->source) > 0);
-    }
-    assert_null(OPTIONS_LAWS[LAW_COUNT]);
 }
 
 static void the_socket_has_the_stiffness_of_the_papers_equation_3(void **state)
@@ -177,7 +164,6 @@ static void the_options_make_the_whole_law(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_are_the_words_of_a_case),
         cmocka_unit_test(the_socket_has_the_stiffness_of_the_papers_equation_3),
         cmocka_unit_test(approach_and_stiffness_at_the_papers_force_are_the_known_ones),
         cmocka_unit_test(the_cylinder_laws_satisfy_their_books_formulas),

@@ -57,17 +57,6 @@ static MapContact oscillator(double zeta, double step)
     return (MapContact){.stiffness = 1.0, .damping = 2.0 * zeta, .step = step, .mass = 1.0};
 }
 
-static void names_are_the_words_of_a_case(void **state)
-{
-    (void)state;
-    for (int kind = ODE_MAP_TEXTBOOK; kind < ODE_MAP_IMPULSE; kind++) {
-        assert_string_equal(map_get((OdeMap)kind)->name, OPTIONS_ODE_MAPS[kind]);
-        assert_true(strlen(map_get((OdeMap)kind)->summary) > 0);
-    }
-    assert_string_equal(OPTIONS_ODE_MAPS[ODE_MAP_IMPULSE], "impulse");
-    assert_null(OPTIONS_ODE_MAPS[ODE_MAP_IMPULSE + 1]);
-}
-
 static void each_map_makes_the_row_the_force_it_says(void **state)
 {
     (void)state;
@@ -217,7 +206,6 @@ static void a_penalty_is_the_inverse_of_a_cfm(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_are_the_words_of_a_case),
         cmocka_unit_test(each_map_makes_the_row_the_force_it_says),
         cmocka_unit_test(the_midpoint_map_holds_at_any_depth_and_speed),
         cmocka_unit_test(the_exact_map_turns_and_decays_like_the_continuous_oscillator),

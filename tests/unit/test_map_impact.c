@@ -124,7 +124,7 @@ static ErpCfm explicit_spring(const MapContact *contact)
 }
 
 static const Map WITHOUT_LIMIT = {
-    .name = "", .stability_limit = INFINITY, .convert = explicit_spring};
+    .stability_limit = INFINITY, .convert = explicit_spring};
 
 static void the_predicted_restitution_is_the_known_one(void **state)
 {

@@ -137,7 +137,7 @@ static bool fill_laws(const ContactPair *pair, double force, PhysicalLaw laws[PH
         }
         const double approach = force_law_penetration(&law, force);
         laws[kind] = (PhysicalLaw){
-            .name = law_get((LawKind)kind)->name,
+            .name = OPTIONS_LAWS[kind],
             .approach = approach,
             .tangent = force_law_tangent(&law, approach),
         };

@@ -21,7 +21,7 @@ typedef struct PhysicalLaw {
 } PhysicalLaw;
 
 enum {
-    PHYSICAL_LAW_COUNT = LAW_PAPER_TABLE_3 + 1,
+    PHYSICAL_LAW_COUNT = LAW_COUNT,
     PHYSICAL_BASE_ROW = 9, // of 1000 rpm
 };
 

@@ -16,6 +16,8 @@
 #include <math.h>
 #include <string.h>
 
+#define IDENTIFIER(id, ...) #id,
+
 // A way of stepping: the file it is in and the name of its table of functions.
 typedef struct Stepping {
     const char *file;
@@ -173,8 +175,7 @@ static void write_run(const Scenario *scenario, Text *text)
     const OdeOptions *ode = &scenario->ode;
     static const char *const SOLVERS[] = {"ODE_DIRECT", "ODE_QUICK"};
     static const char *const STEPPINGS[] = {"ODE_PLAIN", "ODE_STAGGERED", "ODE_EXTRAPOLATED"};
-    static const char *const MAPS[] = {"ODE_MAP_TEXTBOOK", "ODE_MAP_CORRECTED", "ODE_MAP_MIDPOINT",
-                                       "ODE_MAP_EXACT", "ODE_MAP_IMPULSE"};
+    static const char *const MAPS[] = {OPTIONS_ODE_MAP_LIST(IDENTIFIER)};
     text_append(text,
                 "    .run = {.revolutions = %s,\n"
                 "            .duration = %s, // s, without a drive\n"
