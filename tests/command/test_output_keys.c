@@ -1,0 +1,244 @@
+// Does docs/output.md list every key of the JSON that each command prints?
+//
+// A key is listed if a code span in the command's section of the page has it as a whole word. Keys
+// that are names of the case (bodies, joints, settings) are not looked for. Each command has a
+// control: with one of its keys erased from the page, that key is found missing, and no other.
+#include "program.h"
+
+#include <ctype.h>
+
+enum { PAGE_SIZE = 1 << 17, KEY_SIZE = 64, MISSING_SIZE = 4096 };
+
+// objects whose keys are names, not words of the format
+static const char *const NAMED[] = {"bodies", "joints", "reactions",  "corner",
+                                    "alone",  "keys",   "spike_match"};
+
+// objects whose contents are the user's own
+static const char *const FREE[] = {"settings", "setting_units"};
+
+static bool is_among(const char *const *words, size_t count, const char *word)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (word != NULL && strcmp(words[i], word) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// The page, and where the command's part of it begins and ends.
+typedef struct Section {
+    char *begin;
+    char *end;
+} Section;
+
+static Section find_section(char *page, const char *command)
+{
+    char heading[KEY_SIZE];
+    snprintf(heading, sizeof heading, "# What `jointplay %s` writes\n", command);
+    Section section = {.begin = strstr(page, heading)};
+    assert_non_null(section.begin);
+    char *next = strstr(section.begin, "\n# ");
+    section.end = next == NULL ? section.begin + strlen(section.begin) : next;
+    return section;
+}
+
+static bool is_word_part(char letter)
+{
+    return isalnum((unsigned char)letter) || letter == '_';
+}
+
+// The first place at which a code span has the key as a whole word; NULL where none does.
+static char *find_key(Section section, const char *key)
+{
+    const size_t length = strlen(key);
+    bool is_code = false;
+    for (char *at = section.begin; at < section.end; at++) {
+        is_code = *at == '`' ? !is_code : is_code;
+        if (is_code && strncmp(at, key, length) == 0 && !is_word_part(at[-1]) &&
+            !is_word_part(at[length])) {
+            return at;
+        }
+    }
+    return NULL;
+}
+
+// What the page lacks: each key once, with a blank behind it.
+typedef struct Missing {
+    Section section;
+    size_t key_count; // keys looked for
+    char keys[MISSING_SIZE];
+} Missing;
+
+static void look_for_key(Missing *missing, const char *key)
+{
+    char word[KEY_SIZE + 2];
+    snprintf(word, sizeof word, " %s ", key);
+    missing->key_count++;
+    if (find_key(missing->section, key) == NULL && strstr(missing->keys, word) == NULL) {
+        const size_t length = strlen(missing->keys);
+        snprintf(missing->keys + length, MISSING_SIZE - length, "%s%s ", length == 0 ? " " : "",
+                 key);
+    }
+}
+
+// Looks for the keys of an object and of all within it; name is the key under which it stands.
+static void look_for_keys(Missing *missing, json_t *value, const char *name)
+{
+    size_t index = 0;
+    const char *key = NULL;
+    json_t *child = NULL;
+    json_array_foreach(value, index, child)
+    {
+        look_for_keys(missing, child, NULL);
+    }
+    const bool has_names = is_among(NAMED, sizeof NAMED / sizeof *NAMED, name);
+    json_object_foreach(value, key, child)
+    {
+        if (!has_names) {
+            look_for_key(missing, key);
+        }
+        if (!is_among(FREE, sizeof FREE / sizeof *FREE, key)) {
+            look_for_keys(missing, child, has_names ? NULL : key);
+        }
+    }
+}
+
+// Keys shared by all commands are listed once, as those of a run.
+static void look_for_tool(json_t *root, char *page)
+{
+    Missing missing = {.section = find_section(page, "run")};
+    look_for_keys(&missing, json_object_get(root, "tool"), NULL);
+    assert_string_equal(missing.keys, "");
+}
+
+// Erases a key from every code span of a section.
+static void erase_key(Section section, const char *key)
+{
+    for (char *at; (at = find_key(section, key)) != NULL;) {
+        memset(at, '#', strlen(key));
+    }
+}
+
+static void read_page(char page[PAGE_SIZE])
+{
+    FILE *stream = fopen(getenv("JOINTPLAY_PAGE"), "r");
+    assert_non_null(stream);
+    const size_t length = fread(page, 1, PAGE_SIZE - 1, stream);
+    assert_in_range(length, 1, PAGE_SIZE - 2);
+    page[length] = '\0';
+    fclose(stream);
+}
+
+// Runs one command and holds its JSON against its section; then the control, with one key erased.
+static void check_keys(void **state, const char *command, const char *words, const char *erased)
+{
+    static char page[PAGE_SIZE];
+    Program *program = *state;
+    read_page(page);
+    program_run(program, words);
+    json_t *root = json_loads(program->output, 0, NULL);
+    if (root == NULL) {
+        print_error("%s: no JSON, status %d:\n%s\n", words, program->status, program->errors);
+    }
+    assert_non_null(root);
+    look_for_tool(root, page);
+    json_object_clear(json_object_get(root, "tool"));
+
+    Missing missing = {.section = find_section(page, command)};
+    look_for_keys(&missing, root, NULL);
+    assert_string_equal(missing.keys, "");
+    assert_true(missing.key_count > 10);
+
+    Missing control = {.section = missing.section};
+    char only[KEY_SIZE + 2];
+    snprintf(only, sizeof only, " %s ", erased);
+    erase_key(control.section, erased);
+    look_for_keys(&control, root, NULL);
+    assert_string_equal(control.keys, only);
+    json_decref(root);
+}
+
+#define FIRST_CONTACTS "\"$cases\"/paper/impact-k66.yaml --set run.revolutions=0.02"
+
+static void every_key_of_run_is_listed(void **state)
+{
+    check_keys(state, "run", "run -q --json " FIRST_CONTACTS, "transmission_angle_min_rad");
+    // beyond the horizon: ensembles
+    check_keys(state, "run",
+               "run -q --json \"$cases\"/literature/four-bar-half-mm.yaml --step '4 us' "
+               "--set run.revolutions=0.18",
+               "deviation");
+}
+
+static void every_key_of_compare_is_listed(void **state)
+{
+    check_keys(state, "compare",
+               "compare -q --json \"$cases\"/literature/pin-in-hole-drop.yaml --store kept "
+               "--steps '20 us, 10 us, 5 us' --set 'run.duration=10 ms'",
+               "on_frontier");
+}
+
+static void every_key_of_map_is_listed(void **state)
+{
+    check_keys(state, "map", "map -q --json " FIRST_CONTACTS " --steps '1 us' --penalty",
+               "penalty_cfm_m_N_s");
+    check_keys(state, "map", "map -q --json " FIRST_CONTACTS " --at-step '1 ms'", "flight_m");
+    check_keys(state, "map", "map -q --json --erp 0.5 --cfm 1e-3 --step '1 us' --mass '0.1 kg'",
+               "damping_ratio");
+}
+
+static void every_key_of_tune_is_listed(void **state)
+{
+    check_keys(state, "tune", "tune -q --json --error 1e-2 " FIRST_CONTACTS, "inverse_mass_1_kg");
+    check_keys(state, "tune", "tune -q --json --at-step '100 us' " FIRST_CONTACTS, "is_row");
+}
+
+static void every_key_of_check_is_listed(void **state)
+{
+    check_keys(state, "check",
+               "check -q --quick --json --baselines \"$cases\"/../results/baseline "
+               "\"$cases\"/paper/ideal-nominal.yaml",
+               "bands_off");
+}
+
+static void every_key_of_study_is_listed(void **state)
+{
+    char path[PROGRAM_PATH_SIZE];
+    program_path(*state, "some.yaml", path);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fprintf(stream,
+            "case: %s/paper/impact-k66.yaml\n"
+            "set: {run.revolutions: 0.01}\n"
+            "vary: {run.step: [4 us, 2 us]}\n",
+            getenv("JOINTPLAY_CASES"));
+    fclose(stream);
+    check_keys(state, "study", "study -q --json some.yaml", "inside_share");
+}
+
+static void every_key_of_paper_is_listed(void **state)
+{
+    check_keys(state, "paper", "paper -q --json", "contact_half_angle_rad");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(every_key_of_run_is_listed, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(every_key_of_compare_is_listed, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(every_key_of_map_is_listed, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(every_key_of_tune_is_listed, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(every_key_of_check_is_listed, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(every_key_of_study_is_listed, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(every_key_of_paper_is_listed, program_set_up,
+                                        program_tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
