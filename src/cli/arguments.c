@@ -221,8 +221,8 @@ static void list_options(const Arguments *arguments, struct argp_option options[
         .name = "help", .key = KEY_HELP, .doc = "Print this and do nothing", .group = -1};
 }
 
-bool arguments_parse(const Arguments *arguments, int argc, char **argv, void *options,
-                     bool *is_answered, Err *err)
+bool arguments_run(const Arguments *arguments, int argc, char **argv, void *options,
+                   bool (*work)(void *options, Err *err), Err *err)
 {
     struct argp_option rows[OPTION_MAX] = {0};
     list_options(arguments, rows);
@@ -235,7 +235,6 @@ bool arguments_parse(const Arguments *arguments, int argc, char **argv, void *op
     Reading reading = {arguments, rows, options, false, err};
     const unsigned flags = ARGP_NO_ERRS | ARGP_NO_EXIT | ARGP_NO_HELP;
     argp_parse(&argp, argc, argv, flags, NULL, &reading);
-    *is_answered = reading.is_answered;
     if (reading.is_answered) {
         char program[OPTION_NAME_SIZE];
         text_copy(program, sizeof program, arguments->program);
@@ -243,5 +242,6 @@ bool arguments_parse(const Arguments *arguments, int argc, char **argv, void *op
         *err = (Err){0};
         return true;
     }
-    return err->kind == ERR_NONE && (arguments->check == NULL || arguments->check(options, err));
+    return err->kind == ERR_NONE && (arguments->check == NULL || arguments->check(options, err)) &&
+           work(options, err);
 }

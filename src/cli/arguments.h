@@ -53,9 +53,9 @@ typedef struct Arguments {
 // A table of rows, in the initializer of Arguments.
 #define OPTION_ROWS(rows) .options = (rows), .option_count = sizeof(rows) / sizeof *(rows)
 
-// Reads a command line into the options, a structure that holds the defaults. Options and arguments
-// may come in any order. Fails with ERR_USAGE; an option that does not exist is answered with the
-// one that may have been meant. Where --help was asked for it is printed and *is_answered is true:
-// there is nothing left to do.
-bool arguments_parse(const Arguments *arguments, int argc, char **argv, void *options,
-                     bool *is_answered, Err *err);
+// Reads a command line into the options, a structure that holds the defaults, and does the work
+// with them. Options and arguments may come in any order. Where --help is among them it is printed,
+// and nothing else is done. Fails with ERR_USAGE, or as the work does; an option that does not
+// exist is answered with the one that may have been meant.
+bool arguments_run(const Arguments *arguments, int argc, char **argv, void *options,
+                   bool (*work)(void *options, Err *err), Err *err);

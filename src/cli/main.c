@@ -29,6 +29,12 @@ static bool print_versions(const char *value, void *options, Err *err)
     return true;
 }
 
+static bool do_nothing(void *options, Err *err)
+{
+    (void)options;
+    return err->kind == ERR_NONE;
+}
+
 // Answers an option that stands before any command.
 static bool answer_option(char **argv, Err *err)
 {
@@ -41,9 +47,8 @@ static bool answer_option(char **argv, Err *err)
         .argument = {.type = OPTION_READ, .read = fail_without_command},
         OPTION_ROWS(OPTIONS),
     };
-    bool is_answered;
     char *words[] = {argv[0], argv[1], NULL};
-    return arguments_parse(&ARGUMENTS, 2, words, NULL, &is_answered, err);
+    return arguments_run(&ARGUMENTS, 2, words, NULL, do_nothing, err);
 }
 
 static bool run_program(int argc, char **argv, Err *err)

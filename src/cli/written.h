@@ -1,16 +1,15 @@
 // Files that the program leaves behind, each with a word on standard error unless quiet.
 #pragma once
 
+#include "base/err.h"
 #include "write/file_kind.h"
 #include "write/journal.h"
-#include "write/json_value.h"
 
-// Says that a file was written; always true.
+// Says that a file was written, unless it is a stream; always true.
 bool written_say(const char *path, bool is_quiet);
 
 // Says, unless quiet, which lines of a journal are damaged, if any.
 void written_damage(const Journal *journal, bool is_quiet);
 
-// Writes text, or a result as JSON, to a file, whole or not at all. ERR_FILE.
+// Writes text to a file, whole or not at all. ERR_FILE.
 bool written_text(FileKind kind, const char *path, const char *text, bool is_quiet, Err *err);
-bool written_json(const char *path, const json_t *object, bool is_quiet, Err *err);

@@ -59,26 +59,26 @@ static bool check_together(void *target, Err *err)
     return true;
 }
 
-bool check_options_read(int argc, char **argv, CheckOptions *options, bool *is_answered, Err *err)
+const Arguments CHECK_ARGUMENTS = {
+    .program = "jointplay check",
+    .usage = "[CASE...]",
+    .doc = "Holds the numbers of cases against their baselines and against the limits that the "
+           "cases set themselves (expect:): every number in its band, or exit status 1 and its "
+           "name. Without a case, all that have a baseline."
+           "\vA baseline that is missing, damaged or of another case is an error; a case that "
+           "sets limits needs none.",
+    .argument = {.type = OPTION_LIST,
+                 AT(paths),
+                 .count_offset = offsetof(CheckOptions, path_count),
+                 .high = CHECK_PATH_MAX,
+                 .what = "cases"},
+    OPTION_ROWS(OPTIONS),
+    .check = check_together,
+};
+
+void check_options_init(CheckOptions *options)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay check",
-        .usage = "[CASE...]",
-        .doc = "Holds the numbers of cases against their baselines and against the limits that the "
-               "cases set themselves (expect:): every number in its band, or exit status 1 and its "
-               "name. Without a case, all that have a baseline."
-               "\vA baseline that is missing, damaged or of another case is an error; a case that "
-               "sets limits needs none.",
-        .argument = {.type = OPTION_LIST,
-                     AT(paths),
-                     .count_offset = offsetof(CheckOptions, path_count),
-                     .high = CHECK_PATH_MAX,
-                     .what = "cases"},
-        OPTION_ROWS(OPTIONS),
-        .check = check_together,
-    };
     *options = (CheckOptions){.folder = DEFAULT_FOLDER,
                               .common.jobs = common_options_count_jobs(),
                               .common.time_limit_s = DEFAULT_TIME_LIMIT};
-    return arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err);
 }

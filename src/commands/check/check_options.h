@@ -22,6 +22,5 @@ typedef struct CheckOptions {
     const char *markdown;
 } CheckOptions;
 
-// Reads the command line; where help was asked for it is printed and *is_answered is true.
-// ERR_USAGE.
-bool check_options_read(int argc, char **argv, CheckOptions *options, bool *is_answered, Err *err);
+extern const Arguments CHECK_ARGUMENTS;
+void check_options_init(CheckOptions *options);

@@ -38,6 +38,7 @@ typedef struct CheckReport {
     size_t case_count;
     const CheckCase *cases;
     bool is_full;
+    bool is_all;       // every number is shown, not the worst of each case alone
     bool is_blessed;   // the rows are what a new baseline changes of the old one
     size_t test_count; // statistical tests in all cases
     double rate;       // false-alarm rate of all of them together

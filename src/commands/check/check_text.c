@@ -128,10 +128,10 @@ static void write_case(const CheckReport *report, const CheckCase *item, bool is
     text_append(text, "%s%s\n", item->note[0] != '\0' ? "\n  " : "", item->note);
 }
 
-void check_text_write(const CheckReport *report, bool is_all, const Style *style, Text *text)
+void check_text_write(const CheckReport *report, const Style *style, Text *text)
 {
     for (size_t i = 0; i < report->case_count; i++) {
-        write_case(report, &report->cases[i], is_all, style, text);
+        write_case(report, &report->cases[i], report->is_all, style, text);
     }
     const size_t errors = check_report_errors(report);
     const size_t differing = check_report_differing(report);

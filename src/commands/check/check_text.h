@@ -5,5 +5,5 @@
 #include "commands/check/check_report.h"
 #include "write/style.h"
 
-// Appends the report; `is_all` for every number, else the worst of each case.
-void check_text_write(const CheckReport *report, bool is_all, const Style *style, Text *text);
+// Appends the report.
+void check_text_write(const CheckReport *report, const Style *style, Text *text);

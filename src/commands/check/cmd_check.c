@@ -1,7 +1,6 @@
 // Have the numbers of any case moved by more than they may?
 #include "cli/interrupt.h"
-#include "cli/output.h"
-#include "cli/written.h"
+#include "cli/results.h"
 #include "commands/check/check_json.h"
 #include "commands/check/check_junit.h"
 #include "commands/check/check_markdown.h"
@@ -15,43 +14,32 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static bool write_with(FileKind kind, void (*write)(const CheckReport *report, Text *text),
-                       const CheckReport *report, const char *path, bool is_quiet, Err *err)
+static json_t *build_json(const void *report)
 {
-    if (path == NULL) {
-        return true;
-    }
-    Text text;
-    text_init(&text);
-    write(report, &text);
-    const bool is_written =
-        written_text(kind, path, text.data, is_quiet || file_is_stream(path), err);
-    text_finish(&text);
-    return is_written;
+    return check_json_build(report);
 }
 
-// A comment that is printed takes the place of the tables.
-static bool prints_markdown(const CheckOptions *options)
+static void write_text(const void *report, const Style *style, Text *text)
 {
-    return options->markdown != NULL && file_is_stream(options->markdown);
+    check_text_write(report, style, text);
 }
 
-static void print_report(const CheckReport *report, const CheckOptions *options)
+static void write_junit(const void *report, Text *text)
 {
-    if (options->common.is_json) {
-        output_json(check_json_build(report));
-        return;
-    }
-    if (prints_markdown(options)) {
-        return;
-    }
-    Text text;
-    text_init(&text);
-    const Style style = output_style(stdout, options->common.is_wide);
-    check_text_write(report, options->is_all, &style, &text);
-    output_text(&text, &style);
-    text_finish(&text);
+    check_junit_write(report, text);
 }
+
+static void write_markdown(const void *report, Text *text)
+{
+    check_markdown_write(report, text);
+}
+
+static const ResultFile FILES[] = {
+    {"--junit", offsetof(CheckOptions, junit), .kind = FILE_JUNIT, .text = write_junit},
+    {"--markdown", offsetof(CheckOptions, markdown), .kind = FILE_COMMENT, .text = write_markdown},
+};
+
+static const Results RESULTS = {.json = build_json, .text = write_text, RESULT_FILES(FILES)};
 
 // A limit of the case itself comes before what its baseline says.
 static bool refuse_case(const CheckReport *report, const CheckCase *item, Err *err)
@@ -95,13 +83,6 @@ static bool conclude(const CheckReport *report, Err *err)
     return true;
 }
 
-static bool claim_files(const CheckOptions *options, Err *err)
-{
-    return (options->junit == NULL || file_claim("--junit", FILE_JUNIT, options->junit, err)) &&
-           (options->markdown == NULL ||
-            file_claim("--markdown", FILE_COMMENT, options->markdown, err));
-}
-
 // Who was stopped while making baselines has been told what is kept, and ends by the same signal.
 static void end_if_stopped(void)
 {
@@ -119,11 +100,12 @@ static bool check_items(const CheckOptions *options, CheckItem *items, size_t co
         is_done = check_run_execute(options, items, count, &run, err);
     }
     if (is_done) {
-        print_report(&run.report, options);
-        is_done = write_with(FILE_JUNIT, check_junit_write, &run.report, options->junit,
-                             options->common.is_quiet, err) &&
-                  write_with(FILE_COMMENT, check_markdown_write, &run.report, options->markdown,
-                             options->common.is_quiet, err);
+        run.report.is_all = options->is_all;
+        // a comment that is printed takes the place of the tables
+        if (options->markdown == NULL || !file_is_stream(options->markdown)) {
+            results_print(&RESULTS, &options->common, &run.report);
+        }
+        is_done = results_write(&RESULTS, &options->common, "", &run.report, err);
         end_if_stopped();
         is_done = is_done && conclude(&run.report, err);
     }
@@ -131,20 +113,25 @@ static bool check_items(const CheckOptions *options, CheckItem *items, size_t co
     return is_done;
 }
 
+static bool check_cases(void *target, Err *err)
+{
+    const CheckOptions *options = target;
+    CheckItem *items = NULL;
+    size_t count = 0;
+    const bool is_done = (!options->is_blessing || file_make_folder(options->folder, err)) &&
+                         check_list_make(options, &items, &count, err) &&
+                         results_claim(&RESULTS, &options->common, "", err) &&
+                         check_items(options, items, count, err);
+    check_list_destroy(items, count);
+    return is_done;
+}
+
 static bool run_check(int argc, char **argv, Err *err)
 {
-    CheckOptions *options = calloc(1, sizeof *options);
+    CheckOptions *options = malloc(sizeof *options);
     assert(options != NULL);
-    bool is_answered;
-    bool is_done = check_options_read(argc, argv, options, &is_answered, err);
-    if (is_done && !is_answered) {
-        CheckItem *items = NULL;
-        size_t count = 0;
-        is_done = (!options->is_blessing || file_make_folder(options->folder, err)) &&
-                  check_list_make(options, &items, &count, err) && claim_files(options, err) &&
-                  check_items(options, items, count, err);
-        check_list_destroy(items, count);
-    }
+    check_options_init(options);
+    const bool is_done = arguments_run(&CHECK_ARGUMENTS, argc, argv, options, check_cases, err);
     free(options);
     return is_done;
 }

@@ -1,19 +1,16 @@
 // How does speed stand against error, over every scheme and a ladder of steps?
-#include "cli/doubts.h"
-#include "cli/idle_settings.h"
-#include "cli/output.h"
+#include "cli/results.h"
+#include "cli/warnings.h"
 #include "commands/commands.h"
-#include "commands/compare/compare_files.h"
+#include "commands/compare/compare_csv.h"
 #include "commands/compare/compare_json.h"
 #include "commands/compare/compare_options.h"
+#include "commands/compare/compare_plot.h"
 #include "commands/compare/compare_progress.h"
 #include "commands/compare/compare_store.h"
 #include "commands/compare/compare_text.h"
-#include "write/file.h"
-#include "write/json_value.h"
 
 #include <assert.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 // The store keeps, the progress watches.
@@ -42,20 +39,40 @@ static void wait(const char *doing, void *context)
     compare_progress_show(&((Listening *)context)->progress, doing);
 }
 
-static void print_report(const CompareReport *report, const CommonOptions *options)
+static json_t *build_json(const void *report)
 {
-    if (options->is_json) {
-        output_json(compare_json_build(report));
-        return;
-    }
-    Text text;
-    text_init(&text);
-    const Style style = output_style(stdout, options->is_wide);
-    compare_text_write(report, &style, &text);
-    text_append(&text, "\n");
-    output_text(&text, &style);
-    text_finish(&text);
+    return compare_json_build(report);
 }
+
+static void write_text(const void *report, const Style *style, Text *text)
+{
+    compare_text_write(report, style, text);
+}
+
+static bool write_csv(const void *report, const char *path, Err *err)
+{
+    return compare_csv_write(report, path, err);
+}
+
+static void write_plot(const void *report, Text *svg)
+{
+    compare_plot_write(report, svg);
+}
+
+static const ResultFile FILES[] = {
+    {.ending = ".txt", .kind = FILE_REPORT},
+    {"--csv", offsetof(CompareOptions, csv), ".csv", FILE_TABLE, .write = write_csv},
+    {"--plot", offsetof(CompareOptions, plot), ".svg", FILE_PICTURE, .text = write_plot},
+    {.ending = ".json", .kind = FILE_RESULT},
+};
+
+static const Results RESULTS = {
+    .suffix = "-compare",
+    .is_followed = true,
+    .json = build_json,
+    .text = write_text,
+    RESULT_FILES(FILES),
+};
 
 // A point that fails is a result; a comparison in which every one of ODE's fails is none.
 static bool check_points(const Ladder *ladder, Err *err)
@@ -93,12 +110,13 @@ static bool compare_ladder(const CompareOptions *options, const Scenario *scenar
     }
     ladder_conclude(ladder);
     const CompareReport report = {scenario, ladder, listening.store.machine};
-    print_report(&report, &options->common);
-    return compare_files_write(&report, options, err) && check_points(ladder, err);
+    results_print(&RESULTS, &options->common, &report);
+    return results_write(&RESULTS, &options->common, scenario->path, &report, err) &&
+           check_points(ladder, err);
 }
 
-// Names the settings of the command line that no scheme and no truth makes use of.
-static void say_idle(const CompareOptions *options, const Scenario *scenario)
+// Warns of the settings that no scheme and no truth makes use of.
+static void warn(const CompareOptions *options, const Scenario *scenario)
 {
     // a comparison runs all backends and both solvers of ODE, whatever the case says
     Scenario *whole = malloc(sizeof *whole);
@@ -109,39 +127,32 @@ static void say_idle(const CompareOptions *options, const Scenario *scenario)
         whole->run.backends[i] = (BackendKind)i;
     }
     whole->ode.solver = ODE_QUICK;
-    doubts_say(whole);
-    idle_settings_say(whole, options->common.overrides, options->common.override_count);
+    warnings_say(whole, &options->common);
     free(whole);
 }
 
-static bool compare_case(const CompareOptions *options, Scenario *scenario, Err *err)
+static bool compare_case(void *target, Err *err)
 {
+    const CompareOptions *options = target;
     Ladder *ladder = NULL;
-    bool is_done =
-        common_options_load(&options->common, scenario, err) &&
-        compare_options_ladder(options, scenario, &ladder, err) &&
-        (options->common.folder == NULL || file_make_folder(options->common.folder, err)) &&
-        compare_files_claim(scenario, options, err);
-    if (is_done && !options->common.is_quiet) {
-        say_idle(options, scenario);
+    Scenario *scenario = calloc(1, sizeof *scenario);
+    assert(scenario != NULL);
+    bool is_done = common_options_load(&options->common, scenario, err) &&
+                   compare_options_ladder(options, scenario, &ladder, err) &&
+                   results_claim(&RESULTS, &options->common, scenario->path, err);
+    if (is_done) {
+        warn(options, scenario);
+        is_done = compare_ladder(options, scenario, ladder, err);
     }
-    is_done = is_done && compare_ladder(options, scenario, ladder, err);
     ladder_destroy(ladder);
+    free(scenario);
     return is_done;
 }
 
 static bool compare_run(int argc, char **argv, Err *err)
 {
-    CompareOptions options;
-    bool is_answered;
-    if (!compare_options_read(argc, argv, &options, &is_answered, err) || is_answered) {
-        return err->kind == ERR_NONE;
-    }
-    Scenario *scenario = calloc(1, sizeof *scenario);
-    assert(scenario != NULL);
-    const bool is_done = compare_case(&options, scenario, err);
-    free(scenario);
-    return is_done;
+    CompareOptions options = compare_options_default();
+    return arguments_run(&COMPARE_ARGUMENTS, argc, argv, &options, compare_case, err);
 }
 
 const Command cmd_compare = {

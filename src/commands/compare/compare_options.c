@@ -36,24 +36,23 @@ static bool check(void *options, Err *err)
            err_set(err, ERR_USAGE, "no case given: jointplay compare CASE.yaml");
 }
 
-bool compare_options_read(int argc, char **argv, CompareOptions *options, bool *is_answered,
-                          Err *err)
+const Arguments COMPARE_ARGUMENTS = {
+    .program = "jointplay compare",
+    .usage = "CASE",
+    .doc = "Runs every scheme of ODE over a ladder of steps and prints speed against error, "
+           "the frontier, the order observed and the cheapest setting."
+           "\vFinished runs are kept in a store under $XDG_CACHE_HOME or ~/.cache: whoever "
+           "ends the program at any moment goes on where it stood.",
+    .argument = COMMON_PATH("compare takes one case"),
+    OPTION_ROWS(OPTIONS),
+    .check = check,
+};
+
+CompareOptions compare_options_default(void)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay compare",
-        .usage = "CASE",
-        .doc = "Runs every scheme of ODE over a ladder of steps and prints speed against error, "
-               "the frontier, the order observed and the cheapest setting."
-               "\vFinished runs are kept in a store under $XDG_CACHE_HOME or ~/.cache: whoever "
-               "ends the program at any moment goes on where it stood.",
-        .argument = COMMON_PATH("compare takes one case"),
-        OPTION_ROWS(OPTIONS),
-        .check = check,
-    };
-    *options = (CompareOptions){.repeats = LADDER_REPEAT_LEAST,
-                                .common.jobs = common_options_count_jobs(),
-                                .common.time_limit_s = DEFAULT_TIME_LIMIT};
-    return arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err);
+    return (CompareOptions){.repeats = LADDER_REPEAT_LEAST,
+                            .common.jobs = common_options_count_jobs(),
+                            .common.time_limit_s = DEFAULT_TIME_LIMIT};
 }
 
 static bool read_steps(const CompareOptions *options, double *steps, size_t *count, Err *err)

@@ -18,10 +18,8 @@ typedef struct CompareOptions {
     const char *plot;
 } CompareOptions;
 
-// Reads the command line; where help was asked for it is printed and *is_answered is true.
-// ERR_USAGE.
-bool compare_options_read(int argc, char **argv, CompareOptions *options, bool *is_answered,
-                          Err *err);
+extern const Arguments COMPARE_ARGUMENTS;
+CompareOptions compare_options_default(void);
 
 // The ladder that the options ask for: schemes of the scenario, steps coarse to fine. Fails with
 // ERR_USAGE for a step that is none or that the scenario cannot be run at.

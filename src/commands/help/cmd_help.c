@@ -62,6 +62,20 @@ static bool explain_command(const HelpOptions *options, Err *err)
     return command->run((int)options->word_count + 1, pointers, err);
 }
 
+static bool explain(void *target, Err *err)
+{
+    const HelpOptions *options = target;
+    if (options->word_count == 0) {
+        command_list();
+        return true;
+    }
+    if (options->word_count == 1 && strcmp(options->words[0], "case") == 0) {
+        describe_case(options->is_markdown);
+        return true;
+    }
+    return explain_command(options, err);
+}
+
 static bool run_help(int argc, char **argv, Err *err)
 {
     static const Arguments ARGUMENTS = {
@@ -72,19 +86,7 @@ static bool run_help(int argc, char **argv, Err *err)
         OPTION_ROWS(OPTIONS),
     };
     HelpOptions options = {0};
-    bool is_answered;
-    if (!arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) || is_answered) {
-        return err->kind == ERR_NONE;
-    }
-    if (options.word_count == 0) {
-        command_list();
-        return true;
-    }
-    if (options.word_count == 1 && strcmp(options.words[0], "case") == 0) {
-        describe_case(options.is_markdown);
-        return true;
-    }
-    return explain_command(&options, err);
+    return arguments_run(&ARGUMENTS, argc, argv, &options, explain, err);
 }
 
 const Command cmd_help = {

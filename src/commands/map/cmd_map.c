@@ -1,21 +1,20 @@
 // Which ERP, CFM and step for a joint with play, and what do they deliver?
 #include "base/clock.h"
-#include "casefile/casefile.h"
-#include "cli/doubts.h"
-#include "cli/idle_settings.h"
 #include "cli/long_work.h"
 #include "cli/option_values.h"
 #include "cli/output.h"
+#include "cli/results.h"
 #include "cli/status_line.h"
+#include "cli/warnings.h"
 #include "commands/commands.h"
-#include "commands/map/map_files.h"
 #include "commands/map/map_lone.h"
 #include "commands/map/map_options.h"
+#include "commands/map/mapping_csv.h"
 #include "commands/map/mapping_inverse.h"
 #include "commands/map/mapping_inverse_text.h"
 #include "commands/map/mapping_json.h"
+#include "commands/map/mapping_plot.h"
 #include "commands/map/mapping_text.h"
-#include "write/file.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -61,25 +60,56 @@ static void tell_run(double share, double wall_s, void *context)
     tell(telling, words);
 }
 
-static void print_text(Text *text, const Style *style)
+static json_t *build_json(const void *report)
 {
-    text_append(text, "\n");
-    output_text(text, style);
-    text_finish(text);
+    return mapping_json_build(report);
 }
 
-static void print_report(const MappingReport *report, const CommonOptions *options)
+static void write_text(const void *report, const Style *style, Text *text)
 {
-    if (options->is_json) {
-        output_json(mapping_json_build(report));
-        return;
-    }
-    Text text;
-    text_init(&text);
-    const Style style = output_style(stdout, options->is_wide);
-    mapping_text_write(report, &style, &text);
-    print_text(&text, &style);
+    mapping_text_write(report, style, text);
 }
+
+static bool write_csv(const void *report, const char *path, Err *err)
+{
+    return mapping_csv_write(report, path, err);
+}
+
+static void write_plot(const void *report, Text *svg)
+{
+    mapping_plot_write(report, svg);
+}
+
+static const ResultFile FILES[] = {
+    {.ending = ".txt", .kind = FILE_REPORT},
+    {"--csv", offsetof(MapOptions, csv), ".csv", FILE_TABLE, .write = write_csv},
+    {"--plot", offsetof(MapOptions, plot), ".svg", FILE_PICTURE, .text = write_plot},
+    {.ending = ".json", .kind = FILE_RESULT},
+};
+
+static const Results RESULTS = {
+    .suffix = "-map",
+    .is_followed = true,
+    .json = build_json,
+    .text = write_text,
+    RESULT_FILES(FILES),
+};
+
+static json_t *build_inverse_json(const void *inverse)
+{
+    return mapping_inverse_json(inverse);
+}
+
+static void write_inverse_text(const void *inverse, const Style *style, Text *text)
+{
+    mapping_inverse_text(inverse, style, text);
+}
+
+static const Results INVERSE_RESULTS = {
+    .is_followed = true,
+    .json = build_inverse_json,
+    .text = write_inverse_text,
+};
 
 // The paper's estimate where it was asked for; a word about it where it could be.
 static bool make_penalty(const MapOptions *options, const Scenario *scenario, Telling *telling,
@@ -108,8 +138,8 @@ static void say_hint(const MapOptions *options, const Scenario *scenario)
 static bool map_scenario(const MapOptions *options, const Scenario *scenario,
                          const MappingSettings *settings, Err *err)
 {
-    if ((options->common.folder != NULL && !file_make_folder(options->common.folder, err)) ||
-        !map_files_claim(scenario, options, err)) {
+    const char *path = scenario->path[0] != '\0' ? scenario->path : "lone-contact";
+    if (!results_claim(&RESULTS, &options->common, path, err)) {
         return false;
     }
     Telling telling = {status_line_start(options->common.is_quiet), clock_now_s(),
@@ -122,8 +152,8 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario,
     status_line_end(&telling.line);
     if (is_done) {
         const MappingReport report = {scenario, &mapping, penalty};
-        print_report(&report, &options->common);
-        is_done = map_files_write(&report, options, err);
+        results_print(&RESULTS, &options->common, &report);
+        is_done = results_write(&RESULTS, &options->common, path, &report, err);
         say_hint(options, scenario);
     }
     free(penalty);
@@ -170,14 +200,8 @@ static bool read_row(const MapOptions *options, const Scenario *scenario, Err *e
                        ? inverse_of_pair(options->kp, options->kd, options->step_s, inverse, err)
                        : inverse_of_row(options->erp, options->cfm, options->step_s, inverse, err);
     is_read = is_read && add_masses(options, scenario, inverse, err);
-    if (is_read && options->common.is_json) {
-        output_json(mapping_inverse_json(inverse));
-    } else if (is_read) {
-        Text text;
-        text_init(&text);
-        const Style style = output_style(stdout, options->common.is_wide);
-        mapping_inverse_text(inverse, &style, &text);
-        print_text(&text, &style);
+    if (is_read) {
+        results_print(&INVERSE_RESULTS, &options->common, inverse);
     }
     free(inverse);
     return is_read;
@@ -193,10 +217,7 @@ static bool load(const MapOptions *options, Scenario *scenario, Err *err)
     if (!common_options_load(common, scenario, err)) {
         return false;
     }
-    if (!common->is_quiet) {
-        doubts_say(scenario);
-        idle_settings_say(scenario, common->overrides, common->override_count);
-    }
+    warnings_say(scenario, common);
     return true;
 }
 
@@ -215,21 +236,23 @@ static bool map_lone(const MapOptions *options, Scenario *scenario, Err *err)
            map_scenario(options, scenario, &settings, err);
 }
 
-static bool map_run(int argc, char **argv, Err *err)
+static bool do_map(void *target, Err *err)
 {
-    MapOptions options;
-    bool is_answered;
-    if (!map_options_read(argc, argv, &options, &is_answered, err) || is_answered) {
-        return err->kind == ERR_NONE;
-    }
+    const MapOptions *options = target;
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
-    const bool is_done = options.is_inverse
-                             ? load(&options, scenario, err) && read_row(&options, scenario, err)
-                         : options.stiffness != NULL ? map_lone(&options, scenario, err)
-                                                     : map_case(&options, scenario, err);
+    const bool is_done = options->is_inverse
+                             ? load(options, scenario, err) && read_row(options, scenario, err)
+                         : options->stiffness != NULL ? map_lone(options, scenario, err)
+                                                      : map_case(options, scenario, err);
     free(scenario);
     return is_done;
+}
+
+static bool map_run(int argc, char **argv, Err *err)
+{
+    MapOptions options = {0};
+    return arguments_run(&MAP_ARGUMENTS, argc, argv, &options, do_map, err);
 }
 
 const Command cmd_map = {

@@ -206,20 +206,15 @@ static bool check(void *target, Err *err)
                    "or --erp X --cfm Y --step TIME");
 }
 
-bool map_options_read(int argc, char **argv, MapOptions *options, bool *is_answered, Err *err)
-{
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay map",
-        .usage = "CASE\n--stiffness K --mass MASS [--step TIME]\n--erp X --cfm Y --step TIME "
-                 "[--mass MASS] [CASE]\n"
-                 "--kp K --kd C --step TIME [--mass MASS] [CASE]",
-        .doc = "Tells which ERP, CFM and step to use for each joint with play, and what they "
-               "deliver, predicted and measured in ODE; or which spring, damper and restitution "
-               "an ERP and a CFM are.",
-        .argument = COMMON_PATH("map takes one case"),
-        OPTION_ROWS(OPTIONS),
-        .check = check,
-    };
-    *options = (MapOptions){0};
-    return arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err);
-}
+const Arguments MAP_ARGUMENTS = {
+    .program = "jointplay map",
+    .usage = "CASE\n--stiffness K --mass MASS [--step TIME]\n--erp X --cfm Y --step TIME "
+             "[--mass MASS] [CASE]\n"
+             "--kp K --kd C --step TIME [--mass MASS] [CASE]",
+    .doc = "Tells which ERP, CFM and step to use for each joint with play, and what they "
+           "deliver, predicted and measured in ODE; or which spring, damper and restitution "
+           "an ERP and a CFM are.",
+    .argument = COMMON_PATH("map takes one case"),
+    OPTION_ROWS(OPTIONS),
+    .check = check,
+};

@@ -27,9 +27,7 @@ typedef struct MapOptions {
     const char *plot;
 } MapOptions;
 
-// Reads the command line; where help was asked for it is printed and *is_answered is true.
-// ERR_USAGE.
-bool map_options_read(int argc, char **argv, MapOptions *options, bool *is_answered, Err *err);
+extern const Arguments MAP_ARGUMENTS;
 
 // The settings that the options ask for. Fails with ERR_USAGE.
 bool map_options_settings(const MapOptions *options, const Scenario *scenario,

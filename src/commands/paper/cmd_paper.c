@@ -1,29 +1,43 @@
 // What did the paper compute, and what comes out when it is computed again?
-#include "cli/common_options.h"
-#include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/results.h"
 #include "commands/commands.h"
 #include "commands/paper/paper_json.h"
 #include "commands/paper/paper_text.h"
-#include "write/json_value.h"
 
 #include <assert.h>
 #include <stdlib.h>
 
 static const OptionRow OPTIONS[] = {COMMON_JSON(0), COMMON_WIDE(0), COMMON_QUIET(0)};
 
-static void print_result(const PaperResult *result, const CommonOptions *options)
+static json_t *build_json(const void *result)
 {
-    if (options->is_json) {
-        output_json(paper_json_make(result));
-        return;
+    return paper_json_make(result);
+}
+
+static void write_text(const void *result, const Style *style, Text *text)
+{
+    paper_text_write(result, style, text);
+}
+
+static const Results RESULTS = {.json = build_json, .text = write_text};
+
+static bool compute(void *target, Err *err)
+{
+    const CommonOptions *options = target;
+    PaperResult *result = calloc(1, sizeof *result);
+    assert(result != NULL);
+    Progress progress;
+    progress_begin(&progress, options->is_quiet);
+    const RunWatch watch = progress_watch(&progress, "paper");
+    const bool is_computed = paper_compute(result, watch, err);
+    progress_end(&progress);
+    if (is_computed) {
+        results_print(&RESULTS, options, result);
     }
-    Text text;
-    text_init(&text);
-    const Style style = output_style(stdout, options->is_wide);
-    paper_text_write(result, &style, &text);
-    output_text(&text, &style);
-    text_finish(&text);
+    const bool is_reproduced = is_computed && paper_check(result, err);
+    free(result);
+    return is_reproduced;
 }
 
 static bool run_paper(int argc, char **argv, Err *err)
@@ -35,23 +49,7 @@ static bool run_paper(int argc, char **argv, Err *err)
         OPTION_ROWS(OPTIONS),
     };
     CommonOptions options = {0};
-    bool is_answered;
-    if (!arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) || is_answered) {
-        return err->kind == ERR_NONE;
-    }
-    PaperResult *result = calloc(1, sizeof *result);
-    assert(result != NULL);
-    Progress progress;
-    progress_begin(&progress, options.is_quiet);
-    const RunWatch watch = progress_watch(&progress, "paper");
-    const bool is_computed = paper_compute(result, watch, err);
-    progress_end(&progress);
-    if (is_computed) {
-        print_result(result, &options);
-    }
-    const bool is_reproduced = is_computed && paper_check(result, err);
-    free(result);
-    return is_reproduced;
+    return arguments_run(&ARGUMENTS, argc, argv, &options, compute, err);
 }
 
 const Command cmd_paper = {

@@ -1,11 +1,11 @@
 // What do the backends of a case make of it?
 #include "casefile/casefile.h"
-#include "cli/common_options.h"
-#include "cli/doubts.h"
-#include "cli/idle_settings.h"
 #include "cli/output.h"
+#include "cli/results.h"
+#include "cli/warnings.h"
 #include "commands/commands.h"
 #include "commands/run/case_run.h"
+#include "commands/run/plot_run.h"
 #include "commands/run/run_files.h"
 #include "commands/run/run_json.h"
 #include "commands/run/run_text.h"
@@ -103,24 +103,47 @@ static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
     return true;
 }
 
+static json_t *build_json(const void *report)
+{
+    return run_json_build(report);
+}
+
+static void write_text(const void *report, const Style *style, Text *text)
+{
+    run_text_write(report, style, text);
+}
+
+static void write_plot(const void *report, Text *svg)
+{
+    plot_run_write(report, svg);
+}
+
+static const ResultFile FILES[] = {
+    {"--plot", offsetof(RunCommand, plot), ".svg", FILE_PICTURE, .text = write_plot},
+    {.ending = ".txt", .kind = FILE_REPORT},
+    {.ending = ".json", .kind = FILE_RESULT},
+};
+
+static const Results RESULTS = {
+    .suffix = "",
+    .is_followed = true,
+    .json = build_json,
+    .text = write_text,
+    RESULT_FILES(FILES),
+};
+
 static bool report_case(const RunCommand *command, const CaseRun *run, json_t *objects, Err *err)
 {
+    const CommonOptions *common = &command->common;
     if (objects != NULL) {
         json_array_append_new(objects, run_json_build(&run->report));
     } else {
-        Text text;
-        text_init(&text);
-        const Style style = output_style(stdout, command->common.is_wide);
-        run_text_write(&run->report, &style, &text);
-        text_append(&text, "\n");
-        output_text(&text, &style);
-        text_finish(&text);
+        results_print(&RESULTS, common, &run->report);
     }
-    const bool is_quiet = command->common.is_quiet;
-    return (command->series == NULL || run_files_series(run, command->series, is_quiet, err)) &&
-           (command->plot == NULL || run_files_plot(run, command->plot, is_quiet, err)) &&
-           (command->common.folder == NULL ||
-            run_files_folder(run, command->common.folder, is_quiet, err));
+    return (command->series == NULL ||
+            run_files_series(run, command->series, common->is_quiet, err)) &&
+           (common->folder == NULL || run_files_folder(run, common, err)) &&
+           results_write(&RESULTS, common, run->scenario.path, &run->report, err);
 }
 
 // One case is one object, several are {"cases": [...]}.
@@ -151,27 +174,22 @@ static bool count_failures(const RunCommand *command, const CaseRun *runs, Err *
 // What cannot be written is told before anything runs.
 static bool claim_files(const RunCommand *command, const CaseRun *runs, Err *err)
 {
-    if (!run_files_claim(&runs[0], command->series, command->plot, err) ||
-        (command->common.folder != NULL && !file_make_folder(command->common.folder, err))) {
-        return false;
+    const CommonOptions *common = &command->common;
+    bool is_claimed = command->series == NULL || run_files_claim(&runs[0], command->series, err);
+    for (size_t i = 0; i < command->case_count && is_claimed; i++) {
+        is_claimed = results_claim(&RESULTS, common, runs[i].scenario.path, err) &&
+                     (common->folder == NULL || run_files_claim_folder(&runs[i], common, err));
     }
-    for (size_t i = 0; command->common.folder != NULL && i < command->case_count; i++) {
-        if (!run_files_claim_folder(&runs[i], command->common.folder, err)) {
-            return false;
-        }
-    }
-    return true;
+    return is_claimed;
 }
 
-static bool run_cases(const RunCommand *command, CaseRun *runs, Err *err)
+static bool run_all(const RunCommand *command, CaseRun *runs, Err *err)
 {
     if (!load_cases(command, runs, err) || !claim_files(command, runs, err)) {
         return false;
     }
-    for (size_t i = 0; !command->common.is_quiet && i < command->case_count; i++) {
-        doubts_say(&runs[i].scenario);
-        idle_settings_say(&runs[i].scenario, command->common.overrides,
-                          command->common.override_count);
+    for (size_t i = 0; i < command->case_count; i++) {
+        warnings_say(&runs[i].scenario, &command->common);
     }
     json_t *objects = command->common.is_json ? json_array() : NULL;
     bool is_reported = true;
@@ -205,6 +223,19 @@ static bool check_command(void *target, Err *err)
     return true;
 }
 
+static bool run_cases(void *target, Err *err)
+{
+    const RunCommand *command = target;
+    CaseRun *runs = calloc(command->case_count, sizeof *runs);
+    assert(runs != NULL);
+    const bool is_done = run_all(command, runs, err);
+    for (size_t i = 0; i < command->case_count; i++) {
+        case_run_finish(&runs[i]);
+    }
+    free(runs);
+    return is_done;
+}
+
 static bool run_run(int argc, char **argv, Err *err)
 {
     static const Arguments ARGUMENTS = {
@@ -223,21 +254,12 @@ static bool run_run(int argc, char **argv, Err *err)
     };
     RunCommand command = {0};
     text_init(&command.backends);
-    bool is_answered;
-    if (arguments_parse(&ARGUMENTS, argc, argv, &command, &is_answered, err) && !is_answered) {
-        CaseRun *runs = calloc(command.case_count, sizeof *runs);
-        assert(runs != NULL);
-        run_cases(&command, runs, err);
-        for (size_t i = 0; i < command.case_count; i++) {
-            case_run_finish(&runs[i]);
-        }
-        free(runs);
-    }
+    const bool is_done = arguments_run(&ARGUMENTS, argc, argv, &command, run_cases, err);
     for (size_t i = 0; i < command.owned_count; i++) {
         free(command.owned[i]);
     }
     text_finish(&command.backends);
-    return err->kind == ERR_NONE;
+    return is_done;
 }
 
 const Command cmd_run = {

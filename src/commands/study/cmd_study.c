@@ -46,12 +46,8 @@ static bool run(int argc, char **argv, Err *err)
     if (argc > 1 && argv[1][0] != '-' && !check_word(argv[1], err)) {
         return false;
     }
-    StudyOptions options;
-    bool is_answered;
-    if (!study_options_read(argc, argv, &options, &is_answered, err) || is_answered) {
-        return err->kind == ERR_NONE;
-    }
-    return study_run(&options, err);
+    StudyOptions options = study_options_default();
+    return arguments_run(&STUDY_ARGUMENTS, argc, argv, &options, study_run, err);
 }
 
 const Command cmd_study = {

@@ -57,8 +57,9 @@ static bool check(void *target, Err *err)
     return option_values_check_picture("plot", options->file, err);
 }
 
-static bool draw(const DrawOptions *options, Err *err)
+static bool draw(void *target, Err *err)
 {
+    const DrawOptions *options = target;
     char path[FILE_PATH_SIZE];
     Store *store = study_place_find(options->store, path, err) ? store_view(path, err) : NULL;
     if (store == NULL) {
@@ -87,9 +88,7 @@ static bool run(int argc, char **argv, Err *err)
         .check = check,
     };
     DrawOptions options = {0};
-    bool is_answered;
-    return arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) &&
-           (is_answered || draw(&options, err));
+    return arguments_run(&ARGUMENTS, argc, argv, &options, draw, err);
 }
 
 const Command study_command_plot = {

@@ -31,13 +31,9 @@ static bool check(void *options, Err *err)
            err_set(err, ERR_USAGE, "no store given: jointplay study export STORE.sqlite");
 }
 
-static bool say(const char *path, bool is_quiet)
+static bool write_all(void *target, Err *err)
 {
-    return file_is_stream(path) || written_say(path, is_quiet);
-}
-
-static bool write_all(const ExportOptions *options, Err *err)
-{
+    const ExportOptions *options = target;
     char path[FILE_PATH_SIZE];
     if (!study_place_find(options->store, path, err)) {
         return false;
@@ -50,9 +46,10 @@ static bool write_all(const ExportOptions *options, Err *err)
     const bool is_written =
         (csv == NULL || file_claim("--csv", FILE_TABLE, csv, err)) &&
         (options->jsonl == NULL || file_claim("--jsonl", FILE_ROWS, options->jsonl, err)) &&
-        (csv == NULL || (study_rows_write_csv(store, csv, err) && say(csv, options->is_quiet))) &&
+        (csv == NULL ||
+         (study_rows_write_csv(store, csv, err) && written_say(csv, options->is_quiet))) &&
         (options->jsonl == NULL || (study_rows_write_jsonl(store, options->jsonl, err) &&
-                                    say(options->jsonl, options->is_quiet)));
+                                    written_say(options->jsonl, options->is_quiet)));
     return store_close(store, err) && is_written;
 }
 
@@ -69,9 +66,7 @@ static bool run(int argc, char **argv, Err *err)
         .check = check,
     };
     ExportOptions options = {0};
-    bool is_answered;
-    return arguments_parse(&ARGUMENTS, argc, argv, &options, &is_answered, err) &&
-           (is_answered || write_all(&options, err));
+    return arguments_run(&ARGUMENTS, argc, argv, &options, write_all, err);
 }
 
 const Command study_command_export = {

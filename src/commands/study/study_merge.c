@@ -101,8 +101,9 @@ static bool merge_study(const char *study, bool is_quiet, Err *err)
 }
 
 // A study file alone, or a store and those that go into it.
-static bool merge_words(const StudyWords *words, Err *err)
+static bool merge_words(void *target, Err *err)
 {
+    const StudyWords *words = target;
     if (words->count == 1 && study_place_is_study(words->words[0])) {
         return merge_study(words->words[0], words->is_quiet, err);
     }

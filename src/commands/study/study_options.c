@@ -84,21 +84,21 @@ static bool check(void *target, Err *err)
            study_place_store(options->common.path, options->shard, options->store, err);
 }
 
-bool study_options_read(int argc, char **argv, StudyOptions *options, bool *is_answered, Err *err)
+const Arguments STUDY_ARGUMENTS = {
+    .program = "jointplay study",
+    .usage = "FILE\nstatus FILE-or-STORE...\nexport FILE-or-STORE\nmerge FILE\n"
+             "merge OUT.sqlite IN.sqlite...\nplot FILE-or-STORE FILE.svg\nslurm FILE",
+    .doc = "Makes the runs of a study that its store does not hold yet, each in a process of "
+           "its own, and keeps them in the store."
+           "\vWhoever ends the program at any moment goes on where it stood with the same "
+           "command. 'jointplay study status --help' and so on tell more of the others.",
+    .argument = COMMON_PATH("study takes one file"),
+    OPTION_ROWS(OPTIONS),
+    .check = check,
+};
+
+StudyOptions study_options_default(void)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay study",
-        .usage = "FILE\nstatus FILE-or-STORE...\nexport FILE-or-STORE\nmerge FILE\n"
-                 "merge OUT.sqlite IN.sqlite...\nplot FILE-or-STORE FILE.svg\nslurm FILE",
-        .doc = "Makes the runs of a study that its store does not hold yet, each in a process of "
-               "its own, and keeps them in the store."
-               "\vWhoever ends the program at any moment goes on where it stood with the same "
-               "command. 'jointplay study status --help' and so on tell more of the others.",
-        .argument = COMMON_PATH("study takes one file"),
-        OPTION_ROWS(OPTIONS),
-        .check = check,
-    };
     _Static_assert((int)SWEEP_JOB_MAX >= (int)OPTION_JOB_MAX, "a default that is refused");
-    *options = (StudyOptions){.common.jobs = common_options_count_jobs(), .shard = {0, 1}};
-    return arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err);
+    return (StudyOptions){.common.jobs = common_options_count_jobs(), .shard = {0, 1}};
 }

@@ -15,9 +15,8 @@ typedef struct StudyOptions {
     bool is_dry;
 } StudyOptions;
 
-// Reads the command line; where help was asked for it is printed and *is_answered is true.
-// ERR_USAGE.
-bool study_options_read(int argc, char **argv, StudyOptions *options, bool *is_answered, Err *err);
+extern const Arguments STUDY_ARGUMENTS;
+StudyOptions study_options_default(void);
 
 // Reads a part of a study, "2/3" being the second of three. ERR_USAGE.
 bool study_options_read_shard(const char *text, Shard *shard, Err *err);

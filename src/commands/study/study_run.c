@@ -187,8 +187,9 @@ static bool make_runs(const StudyOptions *options, const Spec *spec, const Layou
     return print_report(&report, &options->common, err) && check_runs(&report, err);
 }
 
-bool study_run(const StudyOptions *options, Err *err)
+bool study_run(void *target, Err *err)
 {
+    const StudyOptions *options = target;
     Spec *spec = calloc(1, sizeof *spec);
     Layout *layout = calloc(1, sizeof *layout);
     assert(spec != NULL && layout != NULL);

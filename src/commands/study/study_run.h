@@ -5,7 +5,7 @@
 
 // Makes them and prints what came of it. Fails with ERR_FILE and ERR_CASE where a file is wrong,
 // with ERR_SOLVER where every run failed.
-bool study_run(const StudyOptions *options, Err *err);
+bool study_run(void *options, Err *err);
 
 // Prints what would be run, and runs nothing.
 bool study_run_dry(const StudyOptions *options, const Spec *spec, const Layout *layout, Err *err);

@@ -67,23 +67,6 @@ static bool check(void *target, Err *err)
                    "no number of shards given: --shards N, the tasks of the job array");
 }
 
-static bool read_options(int argc, char **argv, SlurmOptions *options, bool *is_answered, Err *err)
-{
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay study slurm",
-        .usage = "FILE --shards N",
-        .doc = "Writes the scripts that make a study on a cluster: a job array of shards, a job "
-               "that gathers their stores, and what submits the two."
-               "\vA task that is killed, preempted or runs out of time goes back in the queue and "
-               "on where it stood.",
-        .argument = {.type = OPTION_TEXT, AT(path), .what = "slurm takes one study"},
-        OPTION_ROWS(OPTIONS),
-        .check = check,
-    };
-    *options = (SlurmOptions){.folder = ".", .cpus = 1, .requeues = SLURM_REQUEUE_USUAL};
-    return arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err);
-}
-
 // A shard without a run would be a job for nothing.
 static bool check_shards(const SlurmOptions *options, Err *err)
 {
@@ -213,8 +196,9 @@ static void say_next(const SlurmJob *job, const SlurmOptions *options)
     }
 }
 
-static bool make_scripts(const SlurmOptions *options, Err *err)
+static bool make_scripts(void *target, Err *err)
 {
+    const SlurmOptions *options = target;
     char program[FILE_PATH_SIZE];
     char study[FILE_PATH_SIZE];
     char folder[FILE_PATH_SIZE];
@@ -251,10 +235,19 @@ static bool make_scripts(const SlurmOptions *options, Err *err)
 
 static bool run(int argc, char **argv, Err *err)
 {
-    SlurmOptions options;
-    bool is_answered = false;
-    return read_options(argc, argv, &options, &is_answered, err) &&
-           (is_answered || make_scripts(&options, err));
+    static const Arguments ARGUMENTS = {
+        .program = "jointplay study slurm",
+        .usage = "FILE --shards N",
+        .doc = "Writes the scripts that make a study on a cluster: a job array of shards, a job "
+               "that gathers their stores, and what submits the two."
+               "\vA task that is killed, preempted or runs out of time goes back in the queue and "
+               "on where it stood.",
+        .argument = {.type = OPTION_TEXT, AT(path), .what = "slurm takes one study"},
+        OPTION_ROWS(OPTIONS),
+        .check = check,
+    };
+    SlurmOptions options = {.folder = ".", .cpus = 1, .requeues = SLURM_REQUEUE_USUAL};
+    return arguments_run(&ARGUMENTS, argc, argv, &options, make_scripts, err);
 }
 
 const Command study_command_slurm = {

@@ -103,8 +103,9 @@ static bool print_parts(const Parts *parts, bool is_wide, Err *err)
     return is_written;
 }
 
-static bool tell(const StudyWords *words, Err *err)
+static bool tell(void *target, Err *err)
 {
+    const StudyWords *words = target;
     if (words->count == 0) {
         return err_set(err, ERR_USAGE, "no study given: jointplay study status STUDY.yaml");
     }

@@ -13,14 +13,12 @@ bool study_words_read(const char *word, void *target, Err *err)
 }
 
 bool study_words_run(const Arguments *arguments, int argc, char **argv,
-                     bool (*work)(const StudyWords *words, Err *err), Err *err)
+                     bool (*work)(void *words, Err *err), Err *err)
 {
     // no command line has more words than it has arguments
     StudyWords words = {.words = calloc((size_t)argc, sizeof *words.words)};
     assert(words.words != NULL);
-    bool is_answered;
-    const bool is_done = arguments_parse(arguments, argc, argv, &words, &is_answered, err) &&
-                         (is_answered || work(&words, err));
+    const bool is_done = arguments_run(arguments, argc, argv, &words, work, err);
     free(words.words);
     return is_done;
 }

@@ -17,6 +17,6 @@ typedef struct StudyWords {
 bool study_words_read(const char *word, void *words, Err *err);
 
 // Reads the command line and does the work with its words, unless help was all that was asked for.
-// Fails as arguments_parse does, or the work.
+// Fails as arguments_run does, or the work.
 bool study_words_run(const Arguments *arguments, int argc, char **argv,
-                     bool (*work)(const StudyWords *words, Err *err), Err *err);
+                     bool (*work)(void *words, Err *err), Err *err);

@@ -1,18 +1,20 @@
 // Which setting of ODE is the cheapest that is accurate enough?
 #include "base/clock.h"
-#include "cli/doubts.h"
-#include "cli/idle_settings.h"
+#include "cli/long_work.h"
 #include "cli/output.h"
+#include "cli/results.h"
 #include "cli/status_line.h"
+#include "cli/warnings.h"
 #include "commands/commands.h"
-#include "commands/tune/tune_files.h"
+#include "commands/tune/tune_carriers.h"
+#include "commands/tune/tune_gazebo.h"
 #include "commands/tune/tune_held_text.h"
 #include "commands/tune/tune_json.h"
+#include "commands/tune/tune_mujoco.h"
 #include "commands/tune/tune_options.h"
 #include "commands/tune/tune_search.h"
 #include "commands/tune/tune_setting.h"
 #include "commands/tune/tune_text.h"
-#include "write/file.h"
 #include "write/units.h"
 
 #include <assert.h>
@@ -39,19 +41,69 @@ static void wait(const char *doing, void *context)
     }
 }
 
-static void print_report(const TuneReport *report, const CommonOptions *options)
+static json_t *build_json(const void *report)
 {
-    if (options->is_json) {
-        output_json(tune_json_build(report));
-        return;
-    }
-    Text text;
-    text_init(&text);
-    const Style style = output_style(stdout, options->is_wide);
-    tune_text_write(report, &style, &text);
-    output_text(&text, &style);
-    text_finish(&text);
+    return tune_json_build(report);
 }
+
+static void write_text(const void *report, const Style *style, Text *text)
+{
+    tune_text_write(report, style, text);
+}
+
+// Whether there is a contact to write; where there is none, why.
+static bool has_contact(const TuneReport *report, bool is_found, const char *reason,
+                        const char **nothing)
+{
+    *nothing = scenario_has_clearance(report->scenario) ? reason : "no joint of the case has play";
+    return is_found;
+}
+
+static bool write_code(const void *target, Text *text, const char **nothing, Err *err)
+{
+    const TuneReport *report = target;
+    const TuneTrial *trial = tune_carriers_trial(report);
+    if (!has_contact(report, trial != NULL, "no run has an error that means anything", nothing)) {
+        return false;
+    }
+    if (!scheme_has_step(&report->tune->schemes[trial->scheme].scheme)) {
+        // its step is chosen once more, against a truth of its own
+        long_work_warn("choosing the step for the code",
+                       report->tune->truth.wall_s + trial->run.wall_s, true);
+    }
+    return tune_carriers_code(report, text, err);
+}
+
+static const char NO_CONSTANTS[] = "no contact with constants that was tried is stable";
+
+static bool write_sdf(const void *report, Text *text, const char **nothing, Err *err)
+{
+    (void)err;
+    tune_gazebo_write(report, text);
+    return has_contact(report, text->length > 0, NO_CONSTANTS, nothing);
+}
+
+static bool write_mjcf(const void *report, Text *text, const char **nothing, Err *err)
+{
+    (void)err;
+    tune_mujoco_write(report, text);
+    return has_contact(report, text->length > 0, NO_CONSTANTS, nothing);
+}
+
+static const ResultFile FILES[] = {
+    {"--code", offsetof(TuneOptions, code), ".c", FILE_CODE, .may = write_code},
+    {"--sdf", offsetof(TuneOptions, sdf), ".sdf", FILE_SDF, .may = write_sdf},
+    {"--mjcf", offsetof(TuneOptions, mjcf), ".xml", FILE_MJCF, .may = write_mjcf},
+    {.ending = ".txt", .kind = FILE_REPORT},
+    {.ending = ".json", .kind = FILE_RESULT},
+};
+
+static const Results RESULTS = {
+    .suffix = "-tune",
+    .json = build_json,
+    .text = write_text,
+    RESULT_FILES(FILES),
+};
 
 // That nothing meets the error is a result, with a status of its own.
 static bool check_met(const TuneReport *report, Err *err)
@@ -95,17 +147,16 @@ static bool search(const TuneOptions *options, const Scenario *scenario, Tune *t
 
 // Names the settings of the command line that have no effect: those that nothing makes use of, and
 // those that are what is searched for.
-static void say_idle(const TuneOptions *options, const Scenario *scenario)
+static void warn(const TuneOptions *options, const Scenario *scenario)
 {
     Scenario *whole = malloc(sizeof *whole);
     assert(whole != NULL);
     *whole = *scenario;
     // the search tries both solvers, whatever the case says
     whole->ode.solver = ODE_QUICK;
-    doubts_say(whole);
-    idle_settings_say(whole, options->common.overrides, options->common.override_count);
+    warnings_say(whole, &options->common);
     free(whole);
-    for (size_t i = 0; i < options->common.override_count; i++) {
+    for (size_t i = 0; !options->common.is_quiet && i < options->common.override_count; i++) {
         if (tune_setting_replaces(options->common.overrides[i])) {
             const char *given = options->common.overrides[i];
             output_say("without effect: %.*s (it is what tune searches for)\n",
@@ -114,40 +165,36 @@ static void say_idle(const TuneOptions *options, const Scenario *scenario)
     }
 }
 
-static bool tune_case(const TuneOptions *options, Scenario *scenario, Err *err)
+static bool tune_case(void *target, Err *err)
 {
+    const TuneOptions *options = target;
+    const CommonOptions *common = &options->common;
     Tune *tune = NULL;
-    bool is_done =
-        common_options_load(&options->common, scenario, err) &&
-        tune_options_search(options, scenario, &tune, err) &&
-        (options->common.folder == NULL || file_make_folder(options->common.folder, err)) &&
-        tune_files_claim(scenario, options, err);
-    if (is_done && !options->common.is_quiet) {
-        say_idle(options, scenario);
-    }
-    is_done = is_done && search(options, scenario, tune, err);
+    Scenario *scenario = calloc(1, sizeof *scenario);
+    assert(scenario != NULL);
+    bool is_done = common_options_load(common, scenario, err) &&
+                   tune_options_search(options, scenario, &tune, err) &&
+                   results_claim(&RESULTS, common, scenario->path, err);
     if (is_done) {
-        const TuneReport report = {scenario, tune, options->common.overrides,
-                                   options->common.override_count, options->common.time_limit_s};
-        print_report(&report, &options->common);
-        is_done = tune_files_write(&report, options, err) && check_met(&report, err);
+        warn(options, scenario);
+        is_done = search(options, scenario, tune, err);
+    }
+    if (is_done) {
+        const TuneReport report = {scenario, tune, common->overrides, common->override_count,
+                                   common->time_limit_s};
+        results_print(&RESULTS, common, &report);
+        is_done = results_write(&RESULTS, common, scenario->path, &report, err) &&
+                  check_met(&report, err);
     }
     tune_destroy(tune);
+    free(scenario);
     return is_done;
 }
 
 static bool tune_run(int argc, char **argv, Err *err)
 {
-    TuneOptions options;
-    bool is_answered;
-    if (!tune_options_read(argc, argv, &options, &is_answered, err) || is_answered) {
-        return err->kind == ERR_NONE;
-    }
-    Scenario *scenario = calloc(1, sizeof *scenario);
-    assert(scenario != NULL);
-    const bool is_done = tune_case(&options, scenario, err);
-    free(scenario);
-    return is_done;
+    TuneOptions options = tune_options_default();
+    return arguments_run(&TUNE_ARGUMENTS, argc, argv, &options, tune_case, err);
 }
 
 const Command cmd_tune = {

@@ -126,22 +126,22 @@ static bool check(void *target, Err *err)
     return settle_cost(options, err);
 }
 
-bool tune_options_read(int argc, char **argv, TuneOptions *options, bool *is_answered, Err *err)
+const Arguments TUNE_ARGUMENTS = {
+    .program = "jointplay tune",
+    .usage = "CASE",
+    .doc = "Searches for the cheapest setting of ODE whose error, found by running it against "
+           "the certified reference, meets --error, and prints it as numbers, as ODE C code, "
+           "and as far as they go for Gazebo and MuJoCo, with all that was tried."
+           "\vExit status 1 says that no setting meets the error, or none within --max-cost.",
+    .argument = COMMON_PATH("tune takes one case"),
+    OPTION_ROWS(OPTIONS),
+    .check = check,
+};
+
+TuneOptions tune_options_default(void)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay tune",
-        .usage = "CASE",
-        .doc = "Searches for the cheapest setting of ODE whose error, found by running it against "
-               "the certified reference, meets --error, and prints it as numbers, as ODE C code, "
-               "and as far as they go for Gazebo and MuJoCo, with all that was tried."
-               "\vExit status 1 says that no setting meets the error, or none within --max-cost.",
-        .argument = COMMON_PATH("tune takes one case"),
-        OPTION_ROWS(OPTIONS),
-        .check = check,
-    };
-    *options = (TuneOptions){.common.jobs = common_options_count_jobs(),
-                             .common.time_limit_s = DEFAULT_TIME_LIMIT};
-    return arguments_parse(&ARGUMENTS, argc, argv, options, is_answered, err);
+    return (TuneOptions){.common.jobs = common_options_count_jobs(),
+                         .common.time_limit_s = DEFAULT_TIME_LIMIT};
 }
 
 bool tune_options_search(const TuneOptions *options, const Scenario *scenario, Tune **tune,

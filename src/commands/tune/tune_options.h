@@ -19,9 +19,8 @@ typedef struct TuneOptions {
     const char *mjcf;
 } TuneOptions;
 
-// Reads the command line; where help was asked for it is printed and *is_answered is true.
-// ERR_USAGE.
-bool tune_options_read(int argc, char **argv, TuneOptions *options, bool *is_answered, Err *err);
+extern const Arguments TUNE_ARGUMENTS;
+TuneOptions tune_options_default(void);
 
 // The search that the options ask for, with nothing run yet. Fails with ERR_USAGE for schemes that
 // the case does not have, with ERR_CASE for a case in which nothing could be tuned.

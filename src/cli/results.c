@@ -1,0 +1,140 @@
+// How does a command give away its results?
+//
+// Every file is claimed before the work: what cannot be written is said before anything runs.
+#include "cli/results.h"
+
+#include "cli/output.h"
+#include "cli/written.h"
+#include "write/file.h"
+
+#include <stdio.h>
+
+enum { ENDING_SIZE = 32 }; // "-compare.json"
+
+void results_print(const Results *results, const CommonOptions *options, const void *report)
+{
+    if (options->is_json) {
+        output_json(results->json(report));
+        return;
+    }
+    Text text;
+    text_init(&text);
+    const Style style = output_style(stdout, options->is_wide);
+    results->text(report, &style, &text);
+    text_append(&text, "%s", results->is_followed ? "\n" : "");
+    output_text(&text, &style);
+    text_finish(&text);
+}
+
+bool results_path(const CommonOptions *options, const char *name, const char *ending, char *path,
+                  Err *err)
+{
+    const int length = snprintf(path, FILE_PATH_SIZE, "%s/%s%s", options->folder, name, ending);
+    return (length >= 0 && length < FILE_PATH_SIZE) ||
+           err_set(err, ERR_FILE, "the path of %s%s is too long", name, ending);
+}
+
+// The path of a file in the folder, by its row.
+static bool find_path(const Results *results, const CommonOptions *options, const char *case_path,
+                      const ResultFile *file, char path[FILE_PATH_SIZE], Err *err)
+{
+    char name[SCENARIO_PATH_SIZE];
+    char ending[ENDING_SIZE];
+    file_stem(case_path, name, sizeof name);
+    snprintf(ending, sizeof ending, "%s%s", results->suffix, file->ending);
+    return results_path(options, name, ending, path, err);
+}
+
+// The path that an option gives, or NULL.
+static const char *path_of(const ResultFile *file, const CommonOptions *options)
+{
+    return file->option == NULL
+               ? NULL
+               : *(const char *const *)(const void *)((const char *)options + file->offset);
+}
+
+bool results_claim(const Results *results, const CommonOptions *options, const char *case_path,
+                   Err *err)
+{
+    for (size_t i = 0; i < results->file_count; i++) {
+        const ResultFile *file = &results->files[i];
+        const char *path = path_of(file, options);
+        if (path != NULL && !file_claim(file->option, file->kind, path, err)) {
+            return false;
+        }
+    }
+    if (options->folder == NULL) {
+        return true;
+    }
+    if (!file_make_folder(options->folder, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < results->file_count; i++) {
+        const ResultFile *file = &results->files[i];
+        char path[FILE_PATH_SIZE];
+        if (file->ending != NULL && !(find_path(results, options, case_path, file, path, err) &&
+                                      file_claim("--out", file->kind, path, err))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// What a file holds; false where that is nothing.
+static bool fill(const Results *results, const ResultFile *file, const void *report, Text *text,
+                 const char **nothing, Err *err)
+{
+    if (file->may != NULL) {
+        return file->may(report, text, nothing, err);
+    }
+    if (file->text != NULL) {
+        file->text(report, text);
+    } else if (file->kind == FILE_RESULT) {
+        json_t *object = results->json(report);
+        json_value_write(object, JSON_VALUE_FLAGS, text);
+        text_append(text, "\n");
+        json_decref(object);
+    } else {
+        results->text(report, &STYLE_PLAIN, text);
+        output_fold(text, &STYLE_PLAIN);
+    }
+    return true;
+}
+
+static bool write_file(const Results *results, const ResultFile *file, const char *path,
+                       bool is_quiet, const void *report, Err *err)
+{
+    if (file->write != NULL) {
+        return file->write(report, path, err) && written_say(path, is_quiet);
+    }
+    Text text;
+    text_init(&text);
+    const char *nothing = "";
+    const bool is_filled = fill(results, file, report, &text, &nothing, err);
+    const bool is_done = is_filled ? written_text(file->kind, path, text.data, is_quiet, err)
+                                   : err->kind == ERR_NONE;
+    if (!is_filled && is_done && !is_quiet) {
+        output_say("not written: %s (%s)\n", path, nothing);
+    }
+    text_finish(&text);
+    return is_done;
+}
+
+bool results_write(const Results *results, const CommonOptions *options, const char *case_path,
+                   const void *report, Err *err)
+{
+    bool is_done = true;
+    for (size_t i = 0; i < results->file_count && is_done; i++) {
+        const char *path = path_of(&results->files[i], options);
+        is_done = path == NULL ||
+                  write_file(results, &results->files[i], path, options->is_quiet, report, err);
+    }
+    for (size_t i = 0; options->folder != NULL && i < results->file_count && is_done; i++) {
+        const ResultFile *file = &results->files[i];
+        char path[FILE_PATH_SIZE];
+        is_done = file->ending == NULL ||
+                  (find_path(results, options, case_path, file, path, err) &&
+                   write_file(results, file, path, options->is_quiet, report, err));
+    }
+    return is_done;
+}
