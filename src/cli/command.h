@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/err.h"
+#include "base/text.h"
 
 #include <stdbool.h>
 
@@ -11,6 +12,9 @@ typedef struct Command {
     // Does it. argv[0] is the command's name. Data go to standard output, words to standard error;
     // an error is only set, never printed.
     bool (*run)(int argc, char **argv, Err *err);
+    // Appends the format of the file that it reads, for 'jointplay help'. NULL: it has none of its
+    // own.
+    void (*describe)(bool is_markdown, Text *text);
 } Command;
 
 // All of them, in the order in which they are listed; ends in NULL.

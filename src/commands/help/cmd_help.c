@@ -15,7 +15,7 @@ typedef struct HelpOptions {
 } HelpOptions;
 
 static const OptionRow OPTIONS[] = {
-    {"markdown", NULL, "Of the case format: as Markdown", 0, OPTION_FLAG,
+    {"markdown", NULL, "Of the format of a file: as Markdown", 0, OPTION_FLAG,
      offsetof(HelpOptions, is_markdown), .letter = 'm'},
 };
 
@@ -29,20 +29,26 @@ static bool read_word(const char *word, void *target, Err *err)
     return true;
 }
 
-static void describe_case(bool is_markdown)
+static void describe_case(bool is_markdown, Text *text)
+{
+    if (is_markdown) {
+        casefile_describe_markdown(text);
+    } else {
+        casefile_describe(text);
+    }
+}
+
+static void print_format(void (*describe)(bool is_markdown, Text *text), bool is_markdown)
 {
     Text text;
     text_init(&text);
-    if (is_markdown) {
-        casefile_describe_markdown(&text);
-    } else {
-        casefile_describe(&text);
-    }
+    describe(is_markdown, &text);
     fputs(text.data, stdout);
     text_finish(&text);
 }
 
-// A command's own --help; of 'study status' that of the second word.
+// A command's own --help, and the format of its file; of 'study status' the help of the second
+// word.
 static bool explain_command(const HelpOptions *options, Err *err)
 {
     const Command *command = command_find_topic(options->words[0], "case", err);
@@ -53,13 +59,25 @@ static bool explain_command(const HelpOptions *options, Err *err)
         return err_set(err, ERR_USAGE, "one topic at a time: '%s' or '%s'", options->words[0],
                        options->words[1]);
     }
+    const bool has_format = options->word_count == 1 && command->describe != NULL;
+    if (has_format && options->is_markdown) {
+        print_format(command->describe, true);
+        return true;
+    }
     char words[WORD_MAX + 1][WORD_SIZE] = {""};
     char *pointers[WORD_MAX + 2] = {NULL};
     for (size_t i = 0; i <= options->word_count; i++) {
         text_copy(words[i], WORD_SIZE, i < options->word_count ? options->words[i] : "--help");
         pointers[i] = words[i];
     }
-    return command->run((int)options->word_count + 1, pointers, err);
+    if (!command->run((int)options->word_count + 1, pointers, err)) {
+        return false;
+    }
+    if (has_format) {
+        puts("");
+        print_format(command->describe, false);
+    }
+    return true;
 }
 
 static bool explain(void *target, Err *err)
@@ -70,7 +88,7 @@ static bool explain(void *target, Err *err)
         return true;
     }
     if (options->word_count == 1 && strcmp(options->words[0], "case") == 0) {
-        describe_case(options->is_markdown);
+        print_format(describe_case, options->is_markdown);
         return true;
     }
     return explain_command(options, err);
@@ -81,7 +99,7 @@ static bool run_help(int argc, char **argv, Err *err)
     static const Arguments ARGUMENTS = {
         .program = "jointplay help",
         .usage = "[case|COMMAND]\nstudy COMMAND",
-        .doc = "Tells how a command is used, or how a case file is written.",
+        .doc = "Tells how a command is used, or how a case or study file is written.",
         .argument = {.type = OPTION_READ, .read = read_word},
         OPTION_ROWS(OPTIONS),
     };

@@ -54,4 +54,5 @@ const Command cmd_study = {
     .name = "study",
     .summary = "sweeps values of a case into a store; resumes where it was stopped",
     .run = run,
+    .describe = spec_describe,
 };

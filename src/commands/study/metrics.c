@@ -115,7 +115,7 @@ static const Metric METRICS[] = {
     RUN("fallback_rows", WHOLE, NOTHING, fallback_rows,
         "contact rows for which the map asked for would not have been stable"),
     RUN("error_estimate", REAL, TRIALS, error_estimate,
-        "upper bound of the error of omega, where the step was chosen for a tolerance"),
+        "upper bound of the error of omega, for a step chosen for a tolerance"),
     RUN("error_estimate_until_s", REAL, TRIALS, estimate_s, "time up to which that bound holds"),
     ERROR("error_omega_max", REAL, NOTHING, omega_max,
           "largest error of omega, relative to each body's largest omega"),

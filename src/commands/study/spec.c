@@ -64,6 +64,26 @@ uint64_t spec_print(const Spec *spec)
     return hash_number(print, spec->has_truth ? 1.0 : 0.0);
 }
 
+const Variable *spec_variable(const Spec *spec, const char *key)
+{
+    for (size_t i = 0; i < spec->variable_count; i++) {
+        if (strcmp(spec->variables[i].key, key) == 0) {
+            return &spec->variables[i];
+        }
+    }
+    return NULL;
+}
+
+bool spec_sets(const Spec *spec, const char *key)
+{
+    const size_t length = strlen(key);
+    bool is_set = false;
+    for (size_t i = 0; i < spec->set_count; i++) {
+        is_set = is_set || (strncmp(spec->set[i], key, length) == 0 && spec->set[i][length] == '=');
+    }
+    return is_set;
+}
+
 void spec_finish(Spec *spec)
 {
     free(spec->path);

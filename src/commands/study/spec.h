@@ -17,7 +17,7 @@ enum {
     SPEC_TEXT_SIZE = 256,
 };
 
-// In place of a key of the case: the way to run it, by the names of compare/scheme.h.
+// In place of a key of the case: the way to run it, by the names of measure/scheme.h.
 static const char SPEC_SCHEME_KEY[] = "scheme";
 
 typedef enum VariableKind {
@@ -76,8 +76,16 @@ typedef struct Spec {
 // place; the spec is then empty. A study that could have no run is an error.
 bool spec_read(const char *path, Spec *spec, Err *err);
 
+// Appends what may stand in a study file and which columns its runs have, for people: for a
+// terminal, or as a page of the documentation.
+void spec_describe(bool is_markdown, Text *text);
+
 // Accepts a zeroed spec.
 void spec_finish(Spec *spec);
+
+// What a study does with a key: the variable that it is, or NULL; whether it is set for all runs.
+const Variable *spec_variable(const Spec *spec, const char *key);
+bool spec_sets(const Spec *spec, const char *key);
 
 // The fingerprint of all that decides what the runs are, which stands in the spec as well.
 uint64_t spec_print(const Spec *spec);

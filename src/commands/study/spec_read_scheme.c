@@ -24,16 +24,6 @@ static size_t list_schemes(const Spec *spec, Scheme schemes[2 * SCHEME_MAX])
     return count;
 }
 
-static const Variable *find_variable(const Spec *spec, const char *key)
-{
-    for (size_t i = 0; i < spec->variable_count; i++) {
-        if (strcmp(spec->variables[i].key, key) == 0) {
-            return &spec->variables[i];
-        }
-    }
-    return NULL;
-}
-
 static bool check_scheme(const Reading *reading, const Node *node, const Scheme *schemes,
                          size_t count)
 {
@@ -52,7 +42,7 @@ static bool check_scheme(const Reading *reading, const Node *node, const Scheme 
     }
     const Spec *spec = reading->spec;
     if (scheme_has_step(found) && spec->base->run.step == 0.0 &&
-        find_variable(spec, "run.step") == NULL) {
+        spec_variable(spec, "run.step") == NULL) {
         return spec_read_refuse(reading, node, "run.step under set or vary, such as 1 us",
                                 "%s needs a step, which is auto in the case", node->text);
     }
@@ -65,13 +55,7 @@ static bool check_scheme_alone(const Reading *reading, const Node *value)
     static const char *const KEYS[] = {"ode.solver", "ode.stepping", "ode.map", "ode.collider",
                                        "run.tolerance"};
     for (size_t i = 0; i < sizeof KEYS / sizeof KEYS[0]; i++) {
-        bool is_there = find_variable(reading->spec, KEYS[i]) != NULL;
-        const size_t length = strlen(KEYS[i]);
-        for (size_t k = 0; k < reading->spec->set_count; k++) {
-            const char *set = reading->spec->set[k];
-            is_there = is_there || (strncmp(set, KEYS[i], length) == 0 && set[length] == '=');
-        }
-        if (is_there) {
+        if (spec_variable(reading->spec, KEYS[i]) != NULL || spec_sets(reading->spec, KEYS[i])) {
             return source_error(&reading->source, keys_span(value), "one of the two", reading->err,
                                 "scheme and %s exclude each other", KEYS[i]);
         }
@@ -79,12 +63,10 @@ static bool check_scheme_alone(const Reading *reading, const Node *value)
     return true;
 }
 
-bool spec_read_check_schemes(const Reading *reading, const Node *vary)
+bool spec_read_check_schemes(const Reading *reading)
 {
-    const Node *value = vary != NULL ? vary->first : NULL;
-    while (value != NULL && strcmp(value->key->text, SPEC_SCHEME_KEY) != 0) {
-        value = value->next;
-    }
+    const Node *value =
+        reading->vary != NULL ? spec_read_child(reading->vary, SPEC_SCHEME_KEY) : NULL;
     if (value == NULL) {
         return true;
     }
@@ -92,9 +74,8 @@ bool spec_read_check_schemes(const Reading *reading, const Node *vary)
     assert(schemes != NULL);
     const size_t count = list_schemes(reading->spec, schemes);
     bool is_good = check_scheme_alone(reading, value);
-    const bool is_one = value->kind == NODE_SCALAR;
-    for (const Node *item = is_one ? value : value->first; is_good && item != NULL;
-         item = is_one ? NULL : item->next) {
+    for (const Node *item = spec_read_first(value); is_good && item != NULL;
+         item = spec_read_next(value, item)) {
         is_good = check_scheme(reading, item, schemes, count);
     }
     free(schemes);

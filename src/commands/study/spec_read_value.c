@@ -1,11 +1,9 @@
 // What does a value of a study file say, by itself?
 #include "base/shorten.h"
 #include "base/text.h"
-#include "casefile/quantity.h"
 #include "commands/study/spec_read.h"
 
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { MESSAGE_SIZE = 256 };
@@ -30,64 +28,23 @@ bool spec_read_single(const Reading *reading, const Node *node, const char *what
            spec_read_refuse(reading, node, allowed, "%s takes a single value", what);
 }
 
-bool spec_read_whole(const Reading *reading, const Node *node, const char *what, double low,
-                     double high, uint64_t *number)
+const Node *spec_read_child(const Node *map, const char *name)
 {
-    char allowed[QUANTITY_TEXT_SIZE];
-    snprintf(allowed, sizeof allowed, "a whole number from %.0f to %.0f", low, high);
-    size_t read = 0;
-    Complaint complaint;
-    if (!spec_read_single(reading, node, what, allowed)) {
-        return false;
+    const Node *child = map->first;
+    while (child != NULL && strcmp(child->key->text, name) != 0) {
+        child = child->next;
     }
-    if (!quantity_integer(node->text, &read, &complaint)) {
-        return spec_read_refuse(reading, node, allowed, "%s", complaint.text);
-    }
-    if (!((double)read >= low && (double)read <= high)) {
-        return spec_read_refuse(reading, node, allowed, "%s is out of range: %.60s", what,
-                                node->text);
-    }
-    *number = read;
-    return true;
+    return child;
 }
 
-bool spec_read_word(const Reading *reading, const Node *node, const char *what,
-                    const char *const *words, size_t *number)
+const Node *spec_read_first(const Node *list)
 {
-    size_t count = 0;
-    while (words[count] != NULL) {
-        count++;
-    }
-    for (size_t i = 0; node->kind == NODE_SCALAR && i < count; i++) {
-        if (strcmp(words[i], node->text) == 0) {
-            *number = i;
-            return true;
-        }
-    }
-    const char *word = node->kind == NODE_SCALAR ? node->text : "";
-    const char *nearest = text_nearest(word, words, count);
-    Text allowed;
-    text_init(&allowed);
-    for (size_t i = 0; i < count; i++) {
-        text_append(&allowed, "%s%s", i > 0 ? ", " : "", words[i]);
-    }
-    spec_read_refuse(reading, node, allowed.data, "'%.40s' is no choice for %s%s%s%s", word, what,
-                     nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-                     nearest != NULL ? "'?" : "");
-    text_finish(&allowed);
-    return false;
+    return list->kind == NODE_SCALAR ? list : list->first;
 }
 
-bool spec_read_has_all(const Reading *reading, const Node *map, const char *const *names,
-                       const Node *const *values, size_t count, const char *allowed)
+const Node *spec_read_next(const Node *list, const Node *item)
 {
-    for (size_t i = 0; i < count; i++) {
-        if (values[i] == NULL) {
-            return source_error(&reading->source, keys_span(map), allowed, reading->err,
-                                "%s is missing", names[i]);
-        }
-    }
-    return true;
+    return item == list ? NULL : item->next;
 }
 
 void spec_read_write(const Node *node, Text *text)
@@ -119,9 +76,10 @@ void spec_read_write(const Node *node, Text *text)
     }
 }
 
-bool spec_read_number(const Reading *reading, const ProbeKey *key, const Node *node,
-                      bool is_checked, Variable *variable, double *number)
+bool spec_read_number(Reading *reading, const Node *node, bool is_checked, double *number)
 {
+    const ProbeKey *key = &reading->key;
+    Variable *variable = reading->variable;
     ProbeNumber read;
     if (is_checked && !probe_check(reading->probe, &reading->source, key, node, reading->err)) {
         return false;

@@ -1,0 +1,242 @@
+// Which keys has a study file, and what does each take?
+//
+// One row a key drives reading, messages, `help study` and docs/study-format.md. What stands under
+// keys of the case (set, vary, draw.keys) is read by functions.
+#include "base/text.h"
+#include "commands/study/metrics.h"
+#include "commands/study/spec_read.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PAGE_WIDTH = 80, INDENT = 8 };
+
+static const double EXACT_MAX = 9007199254740992.0; // 2^53: whole numbers up to it are exact
+
+static const char *const METHODS[] = {
+    [DRAW_RANDOM] = "random", [DRAW_LATIN_HYPERCUBE] = "latin-hypercube", NULL};
+static const char *const SCALES[] = {"linear", "log", NULL};
+static const char *const FLAGS[] = {"false", "true", NULL};
+
+#define AT(member) .offset = offsetof(Spec, member)
+#define IN(member) .offset = offsetof(Variable, member)
+
+const SpecKey SPEC_KEYS[] = {
+    {SPEC_TOP, "title", SPEC_KEY_LINE, AT(title), .doc = "What the study asks, for people"},
+    {SPEC_TOP, "case", SPEC_KEY_PART, true, .read = spec_read_case,
+     .value = "the path of a case file, relative to the study file",
+     .doc = "The case, which must be one by itself with what is set"},
+    {SPEC_TOP, "set", SPEC_KEY_PART, .read = spec_read_set, .value = "KEY: value, ...",
+     .doc = "Values of keys of the case for every run, as --set gives them"},
+    {SPEC_TOP, "vary", SPEC_KEY_PART, .read = spec_read_vary,
+     .value = "KEY: value, KEY: [value, value], KEY: {from: value, to: value, count: 8}, ...",
+     .doc = "A grid: every combination of all values is run. KEY is a key of the case, or scheme: "
+            "the way to run it by the names of 'jointplay compare'"},
+    {SPEC_TOP, "draw", SPEC_KEY_MAP, .of = SPEC_DRAW, .doc = "Values at random"},
+    {SPEC_TOP, "limits", SPEC_KEY_MAP, .of = SPEC_LIMITS, .doc = "What one run may use"},
+    {SPEC_TOP, "truth", SPEC_KEY_FLAG, AT(has_truth), .words = FLAGS, .what = "truth",
+     .doc = "Whether each run is compared with the certified reference of its own values"},
+
+    // a run of four months is a slip of the pen, and a process takes 1 ms to start
+    {SPEC_LIMITS, "time", SPEC_KEY_LIMIT, AT(limits.time_s), .low = 1e-3, .high = 1e7,
+     .dimension = DIMENSION_TIME, .what = "the time", .doc = "Wall time"},
+    // the program starts with no less, and no machine has a millionth of the most
+    {SPEC_LIMITS, "memory", SPEC_KEY_LIMIT, AT(limits.memory_bytes), .low = 1e7, .high = 1e15,
+     .dimension = DIMENSION_MEMORY, .what = "the memory", .doc = "Address space"},
+
+    {SPEC_DRAW, "count", SPEC_KEY_WHOLE, true, AT(draws), .low = 1.0, .high = EXACT_MAX,
+     .what = "the count of draws", .doc = "Draws, each of which is run at every point of the grid"},
+    {SPEC_DRAW, "keys", SPEC_KEY_PART, true, .read = spec_read_draws,
+     .value = "KEY: tolerance, KEY: {distribution: ...}, ...",
+     .doc = "Keys of the case that take numbers, with a distribution each"},
+    {SPEC_DRAW, "method", SPEC_KEY_CHOICE, AT(method), .words = METHODS, .what = "method",
+     .doc = "latin-hypercube takes one value from each of `count` equal shares of a distribution"},
+    {SPEC_DRAW, "seed", SPEC_KEY_WHOLE, AT(seed), .low = 0.0, .high = EXACT_MAX, .what = "the seed",
+     .doc = "The same seed gives the same values on every machine"},
+
+    {SPEC_RANGE, "from", SPEC_KEY_VALUE, true, IN(low), .doc = "The first number"},
+    {SPEC_RANGE, "to", SPEC_KEY_VALUE, true, IN(high), .doc = "The last number, above the first"},
+    {SPEC_RANGE, "count", SPEC_KEY_WHOLE, true, IN(count), .low = 2.0, .high = EXACT_MAX,
+     .what = "a range's count", .doc = "Numbers, both ends included"},
+    {SPEC_RANGE, "scale", SPEC_KEY_CHOICE, IN(kind), .low = VARIABLE_LINEAR, .words = SCALES,
+     .what = "scale", .doc = "Even steps, or even steps of the logarithm"},
+
+    {SPEC_DISTRIBUTION, "uniform", SPEC_KEY_PART, .read = spec_read_uniform,
+     .value = "[low, high], or tolerance",
+     .doc = "Evenly between the limits, or those of the tolerance that the case gives"},
+    {SPEC_DISTRIBUTION, "log-uniform", SPEC_KEY_PART, .read = spec_read_log_uniform,
+     .value = "[low, high]", .doc = "The same in the logarithm"},
+    {SPEC_DISTRIBUTION, "normal", SPEC_KEY_PART, .read = spec_read_normal,
+     .value = "{mean, deviation, low, high}, or tolerance",
+     .doc = "Normal, cut off at the limits; the limits of a tolerance are 3 deviations from the "
+            "mean in their middle"},
+    {SPEC_DISTRIBUTION, "triangular", SPEC_KEY_PART, .read = spec_read_triangular,
+     .value = "{low, mode, high}", .doc = "Triangular, most often at the mode"},
+
+    {SPEC_NORMAL, "mean", SPEC_KEY_VALUE, true, IN(centre), .doc = "Before it is cut off"},
+    {SPEC_NORMAL, "deviation", SPEC_KEY_DIFFERENCE, true, IN(deviation),
+     .doc = "Before it is cut off"},
+    {SPEC_NORMAL, "low", SPEC_KEY_VALUE, IN(low), .doc = "Lower limit"},
+    {SPEC_NORMAL, "high", SPEC_KEY_VALUE, IN(high), .doc = "Upper limit"},
+
+    {SPEC_TRIANGULAR, "low", SPEC_KEY_VALUE, true, IN(low), .doc = "Lower limit"},
+    {SPEC_TRIANGULAR, "mode", SPEC_KEY_VALUE, true, IN(centre), .doc = "The most frequent value"},
+    {SPEC_TRIANGULAR, "high", SPEC_KEY_VALUE, true, IN(high), .doc = "Upper limit"},
+};
+const size_t SPEC_KEY_COUNT = sizeof SPEC_KEYS / sizeof *SPEC_KEYS;
+
+const SpecGroupRow SPEC_GROUPS[SPEC_GROUP_COUNT] = {
+    [SPEC_TOP] = {"", "case: with the path of a case file, relative to the study file"},
+    [SPEC_LIMITS] = {"limits", ""},
+    [SPEC_DRAW] = {"draw", "count: 1000, and keys: with a distribution each"},
+    [SPEC_RANGE] = {"vary.KEY", "{from: VALUE, to: VALUE, count: 8}, and scale: log"},
+    [SPEC_DISTRIBUTION] = {"draw.keys.KEY", ""},
+    [SPEC_NORMAL] = {"draw.keys.KEY.normal", "{mean: VALUE, deviation: VALUE}, and low: and high:"},
+    [SPEC_TRIANGULAR] = {"draw.keys.KEY.triangular", "{low: VALUE, mode: VALUE, high: VALUE}"},
+};
+
+Spec spec_default(void)
+{
+    // minutes of a chaotic case end in a row that says so, and the two cores of a small machine
+    // with 4 GB go on
+    return (Spec){
+        .draws = 1,
+        .method = DRAW_LATIN_HYPERCUBE,
+        .seed = 1,
+        .has_truth = true,
+        .limits = {.time_s = 60.0, .memory_bytes = 2000000000},
+    };
+}
+
+// What a key takes, in words.
+void spec_key_allowed(const SpecKey *key, Text *text)
+{
+    switch (key->type) {
+    case SPEC_KEY_LINE:
+        text_append(text, "text on one line, at most %d bytes", SPEC_TEXT_SIZE - 1);
+        break;
+    case SPEC_KEY_WHOLE:
+        text_append(text, "a whole number from %.0f to %.0f", key->low, key->high);
+        break;
+    case SPEC_KEY_LIMIT:
+        text_append(text, "none, or %g to %g %s", key->low, key->high, units_si(key->dimension));
+        break;
+    case SPEC_KEY_FLAG:
+    case SPEC_KEY_CHOICE:
+        for (size_t i = 0; key->words[i] != NULL; i++) {
+            text_append(text, "%s%s", i > 0 ? ", " : "", key->words[i]);
+        }
+        break;
+    case SPEC_KEY_VALUE:
+    case SPEC_KEY_DIFFERENCE:
+        text_append(text, "a value of KEY");
+        break;
+    case SPEC_KEY_MAP:
+        text_append(text, "keys of its own, below");
+        break;
+    case SPEC_KEY_PART:
+        text_append(text, "%s", key->value);
+        break;
+    }
+}
+
+static const char EXAMPLE[] = "title: Which map and step for which speed?\n"
+                              "case: ../paper/impact-k66.yaml\n"
+                              "set: {run.revolutions: 0.2}\n"
+                              "vary:\n"
+                              "  drive.speed: {from: 100 rpm, to: 1500 rpm, count: 15}\n"
+                              "  scheme: [direct/plain/textbook, direct/staggered/impulse]\n"
+                              "  run.step: {from: 0.3 us, to: 30 us, count: 8, scale: log}\n"
+                              "draw:\n"
+                              "  count: 100\n"
+                              "  keys:\n"
+                              "    contact.restitution: {uniform: [0.85, 0.95]}\n"
+                              "limits: {time: 60 s, memory: 2 GB}\n";
+
+static const char RULES[] =
+    "A study file has the rules of a case file: quantities carry their unit, unknown and doubled "
+    "keys are errors. It has vary, draw, or both; a key of the case stands under one of set, vary "
+    "and draw, by its whole path, such as joints.crank-coupler.hole.";
+
+static void describe_default(const SpecKey *key, Text *text)
+{
+    const Spec spec = spec_default();
+    const void *value = (const char *)&spec + key->offset;
+    if (key->is_required) {
+        text_append(text, "required");
+    } else if (key->type == SPEC_KEY_FLAG) {
+        text_append(text, "%s", key->words[*(const bool *)value ? 1 : 0]);
+    } else if (key->type == SPEC_KEY_CHOICE) {
+        // of a range: the first word
+        text_append(text, "%s", key->words[key->group < SPEC_RANGE ? *(const int *)value : 0]);
+    } else if (key->type == SPEC_KEY_WHOLE) {
+        text_append(text, "%.0f", (double)*(const uint64_t *)value);
+    } else if (key->dimension == DIMENSION_TIME) {
+        text_append(text, "%g s", *(const double *)value);
+    } else if (key->dimension == DIMENSION_MEMORY) {
+        text_append(text, "%g GB", 1e-9 * (double)*(const size_t *)value);
+    } else {
+        text_append(text, "none");
+    }
+}
+
+// Appends words in lines that fit the page, indented.
+static void append_folded(const Text *words, Text *text)
+{
+    Text folded;
+    text_init(&folded);
+    text_append(&folded, "%s", words->data);
+    text_fold(&folded, PAGE_WIDTH - INDENT);
+    for (const char *line = folded.data; *line != '\0'; line += *line == '\n' ? 1 : 0) {
+        const int length = (int)strcspn(line, "\n");
+        text_append(text, "%*s%.*s\n", INDENT, "", length, line);
+        line += length;
+    }
+    text_finish(&folded);
+}
+
+static void describe_key(const SpecKey *key, bool is_markdown, Text *text)
+{
+    const char *group = SPEC_GROUPS[key->group].path;
+    const char *dot = group[0] != '\0' ? "." : "";
+    Text words;
+    text_init(&words);
+    if (is_markdown) {
+        spec_key_allowed(key, &words);
+        text_append(&words, " | ");
+        describe_default(key, &words);
+        text_append(text, "| `%s%s%s` | %s | %s |\n", group, dot, key->name, words.data, key->doc);
+    } else {
+        text_append(&words, "%s: ", key->doc);
+        spec_key_allowed(key, &words);
+        text_append(&words, key->is_required ? "; " : "; default: ");
+        describe_default(key, &words);
+        text_append(text, "    %s%s%s\n", group, dot, key->name);
+        append_folded(&words, text);
+    }
+    text_finish(&words);
+}
+
+void spec_describe(bool is_markdown, Text *text)
+{
+    text_append(text,
+                is_markdown ? "# The study file\n\nThis page is generated from the "
+                              "program's own table of keys; a test holds it against the "
+                              "program. What studies are for, and how they are run: "
+                              "[studies](studies.md).\n\n%s\n\n```yaml\n%s```\n\n"
+                              "| key | value | default | meaning |\n|---|---|---|---|\n"
+                            : "A study file\n\n%s\n\n%s\n",
+                RULES, EXAMPLE);
+    if (!is_markdown) {
+        text_fold(text, PAGE_WIDTH);
+    }
+    for (size_t i = 0; i < SPEC_KEY_COUNT; i++) {
+        describe_key(&SPEC_KEYS[i], is_markdown, text);
+    }
+    text_append(text, is_markdown ? "\n## The columns of its runs\n\nA column for each key under "
+                                    "vary and draw, then:\n\n| column | meaning |\n|---|---|\n"
+                                  : "\nThe columns of its runs: one for each key under vary and "
+                                    "draw, then\n\n");
+    metrics_describe(is_markdown, text);
+}
