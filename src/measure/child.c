@@ -35,15 +35,15 @@ static const size_t LITTLE_MEMORY = (size_t)16 << 20;
 
 // the sanitizer's shadow lies in terabytes of address space, which no limit would let it have
 #if defined(__SANITIZE_ADDRESS__)
-enum { CAN_LIMIT_MEMORY = 0 };
+const bool CHILD_CAN_LIMIT_MEMORY = false;
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)
-enum { CAN_LIMIT_MEMORY = 0 };
+const bool CHILD_CAN_LIMIT_MEMORY = false;
 #else
-enum { CAN_LIMIT_MEMORY = 1 };
+const bool CHILD_CAN_LIMIT_MEMORY = true;
 #endif
 #else
-enum { CAN_LIMIT_MEMORY = 1 };
+const bool CHILD_CAN_LIMIT_MEMORY = true;
 #endif
 
 static void limit(__rlimit_resource_t resource, size_t most)
@@ -96,7 +96,7 @@ static void settle_in(pid_t parent, ChildLimits limits)
         _exit(1);
     }
     limit(RLIMIT_CORE, 0);
-    if (limits.memory_bytes > 0 && CAN_LIMIT_MEMORY) {
+    if (limits.memory_bytes > 0 && CHILD_CAN_LIMIT_MEMORY) {
         limit_memory(limits.memory_bytes);
     }
 }

@@ -8,6 +8,10 @@
 
 enum { CHILD_TEXT_SIZE = 128 };
 
+// False under the address sanitizer, which needs terabytes of address space: a limit of memory is
+// then ignored.
+extern const bool CHILD_CAN_LIMIT_MEMORY;
+
 // What a child may use; 0 stands for no limit.
 typedef struct ChildLimits {
     double time_s;       // by the clock on the wall
