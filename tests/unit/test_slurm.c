@@ -28,20 +28,16 @@ static const SlurmJob JOB = {
     .requeues = 4,
 };
 
-typedef void (*Writer)(const SlurmJob *job, Text *text);
-
-static const Writer WRITERS[] = {slurm_write_array, slurm_write_gather, slurm_write_submit};
-
 static void every_script_is_one_to_bash(void **state)
 {
     (void)state;
     for (size_t name = 0; name < sizeof NASTY / sizeof *NASTY; name++) {
         SlurmJob job = JOB;
         job.program = job.study = job.folder = job.stem = NASTY[name];
-        for (size_t i = 0; i < sizeof WRITERS / sizeof *WRITERS; i++) {
+        for (size_t i = 0; i < SLURM_SCRIPT_COUNT; i++) {
             Text text;
             text_init(&text);
-            WRITERS[i](&job, &text);
+            slurm_write(&job, (SlurmScript)i, &text);
             FILE *shell = popen("bash -n", "w");
             assert_non_null(shell);
             fputs(text.data, shell);
@@ -70,7 +66,7 @@ static void what_was_asked_for_stands_in_the_array(void **state)
     job.account = "p_joints";
     Text text;
     text_init(&text);
-    slurm_write_array(&job, &text);
+    slurm_write(&job, SLURM_ARRAY, &text);
     assert_line(&text, "#SBATCH --array=1-7");
     assert_line(&text, "#SBATCH --cpus-per-task=3");
     assert_line(&text, "#SBATCH --time=1-12:00");
@@ -92,8 +88,8 @@ static void what_was_not_asked_for_is_left_to_slurm(void **state)
     static const char *const OPTIONS[] = {"--time", "--mem", "--partition", "--account"};
     Text text;
     text_init(&text);
-    slurm_write_array(&JOB, &text);
-    slurm_write_gather(&JOB, &text);
+    slurm_write(&JOB, SLURM_ARRAY, &text);
+    slurm_write(&JOB, SLURM_GATHER, &text);
     for (size_t i = 0; i < sizeof OPTIONS / sizeof *OPTIONS; i++) {
         assert_null(strstr(text.data, OPTIONS[i]));
     }
@@ -107,7 +103,7 @@ static void options_stand_before_the_first_command(void **state)
     for (size_t i = 0; i < 2; i++) {
         Text text;
         text_init(&text);
-        WRITERS[i](&JOB, &text);
+        slurm_write(&JOB, (SlurmScript)i, &text);
         const char *command = strstr(text.data, "\nset -u\n");
         assert_non_null(command);
         assert_null(strstr(command, "\n#SBATCH"));

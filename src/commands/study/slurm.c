@@ -1,5 +1,7 @@
 // How does a study go past one machine?
 //
+// The scripts are slurm_*.sh beside this file, with @word@ where a job's own values go.
+//
 // A task of a job array makes one shard into a store of its own, so that no two machines ever write
 // to one file. A store keeps every run that was finished, so that a task which is put back in the
 // queue goes on where it stood: the script only has to tell what is worth another try.
@@ -14,7 +16,7 @@
 
 #include "base/shell.h"
 
-#include <inttypes.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -130,13 +132,9 @@ bool slurm_check(const SlurmJob *job, Err *err)
                    job->account);
 }
 
-// What both jobs ask of Slurm.
-static void write_head(const SlurmJob *job, const char *ending, uint64_t cpus, Text *text)
+// What both jobs ask of Slurm beyond their names and processors.
+static void append_asked(const SlurmJob *job, Text *text)
 {
-    char name[NAME_SIZE];
-    find_name(job->stem, name);
-    text_append(text, "#SBATCH --job-name=%s%s\n#SBATCH --cpus-per-task=%" PRIu64 "\n", name,
-                ending, cpus);
     const struct {
         const char *option;
         const char *value;
@@ -149,154 +147,64 @@ static void write_head(const SlurmJob *job, const char *ending, uint64_t cpus, T
             text_append(text, "#SBATCH --%s=%s\n", asked[i].option, asked[i].value);
         }
     }
-    text_append(text, "#SBATCH --requeue\n#SBATCH --open-mode=append\n");
 }
 
-static void write_variable(const char *name, const char *value, Text *text)
+// Appends what stands for a word between two @. False where it is none of them.
+static bool append_value(const SlurmJob *job, const char *word, size_t length, Text *text)
 {
-    text_append(text, "%s=", name);
-    shell_append_word(text, value);
-    text_append(text, "\n");
-}
-
-static void write_variables(const SlurmJob *job, Text *text)
-{
-    text_append(text, "\nset -u\n");
-    write_variable("program", job->program, text);
-    write_variable("folder", job->folder, text);
-    text_append(text, "shards=%" PRIu64 "\n", job->shards);
-}
-
-// What a task does.
-static const char ARRAY_BODY[] =
-    "\n"
-    "# By its place in the array: one of the tasks has the number of the whole array.\n"
-    "task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\n"
-    "restarts=${SLURM_RESTART_COUNT:-0}\n"
-    "say() { printf '%s %s: %s\\n' \"$(date '+%F %T')\" \"$task\" \"$*\"; }\n"
-    "\n"
-    "# Slurm tells this shell alone, a minute before the time limit; the study ends in good\n"
-    "# order when it is told.\n"
-    "child=\n"
-    "is_told=\n"
-    "tell() { is_told=yes; [ -z \"$child\" ] || kill -TERM \"$child\" 2>/dev/null; }\n"
-    "trap tell TERM\n"
-    "\n"
-    "cd \"$folder\" || exit 5\n"
-    "say \"shard $SLURM_ARRAY_TASK_ID of $shards on ${SLURMD_NODENAME:-?}, try "
-    "$((restarts + 1))\"\n"
-    "\"$program\" study \"$study\" --shard \"$SLURM_ARRAY_TASK_ID/$shards\" \\\n"
-    "    --jobs \"$SLURM_CPUS_PER_TASK\" &\n"
-    "child=$!\n"
-    "[ -z \"$is_told\" ] || tell\n"
-    "# a signal ends the wait, but not yet the study\n"
-    "while kill -0 \"$child\" 2>/dev/null; do wait \"$child\"; done\n"
-    "wait \"$child\"\n"
-    "status=$?\n"
-    "[ \"$status\" != 0 ] || { say complete; exit 0; }\n"
-    "# nothing to be tried again: the gather job says what is missing, if anything is\n"
-    "[ \"$status\" != 4 ] || { say 'over, but no run went well'; exit 4; }\n"
-    "\n"
-    "if [ -n \"$is_told\" ]; then\n"
-    "    reason='told to end'\n"
-    "elif [ \"$status\" -gt 128 ]; then\n"
-    "    reason=\"killed (status $status)\"\n"
-    "elif [ \"$status\" = 5 ] && [ \"$restarts\" -gt 0 ]; then\n"
-    "    reason='could not use its store, which an earlier try may still hold'\n"
-    "else\n"
-    "    say \"failed with status $status; another try would end the same\"\n"
-    "    exit \"$status\"\n"
-    "fi\n"
-    "# whoever is cancelled or put back already is no longer running: that is left as it is\n"
-    "if [ \"$(squeue --noheader --jobs=\"$task\" --format=%T)\" != RUNNING ]; then\n"
-    "    say \"$reason\"\n"
-    "    exit \"$status\"\n"
-    "fi\n"
-    "if [ \"$restarts\" -ge \"$requeues\" ]; then\n"
-    "    say \"$reason after $restarts requeues, the most; submit the study again to go on\"\n"
-    "    exit \"$status\"\n"
-    "fi\n"
-    "say \"$reason; back in the queue\"\n"
-    "scontrol requeue \"$task\"\n"
-    "exit \"$status\"\n";
-
-void slurm_write_array(const SlurmJob *job, Text *text)
-{
+    const struct {
+        const char *word;
+        const char *value; // as a word of the shell; NULL: the number
+        size_t number;
+    } VALUES[] = {
+        {"program", job->program, 0},      {"study", job->study, 0},
+        {"folder", job->folder, 0},        {"stem", job->stem, 0},
+        {"cpus", NULL, job->cpus},         {"shards", NULL, job->shards},
+        {"requeues", NULL, job->requeues},
+    };
     char name[NAME_SIZE];
-    find_name(job->stem, name);
-    text_append(text, "#!/bin/bash\n"
-                      "# One shard of a study: a task of a job array. "
-                      "Written by 'jointplay study slurm'.\n");
-    write_head(job, "", job->cpus, text);
-    text_append(text,
-                "#SBATCH --array=1-%" PRIu64 "\n"
-                "#SBATCH --signal=B:TERM@60\n"
-                "#SBATCH --output=%s.%%a-of-%" PRIu64 ".log\n",
-                job->shards, name, job->shards);
-    write_variables(job, text);
-    write_variable("study", job->study, text);
-    text_append(text, "requeues=%" PRIu64 "\n", job->requeues);
-    text_append(text, "%s", ARRAY_BODY);
+    for (size_t i = 0; i < sizeof VALUES / sizeof *VALUES; i++) {
+        if (strlen(VALUES[i].word) == length && strncmp(VALUES[i].word, word, length) == 0) {
+            if (VALUES[i].value != NULL) {
+                shell_append_word(text, VALUES[i].value);
+            } else {
+                text_append(text, "%zu", VALUES[i].number);
+            }
+            return true;
+        }
+    }
+    if (strncmp(word, "name@", length + 1) == 0) {
+        find_name(job->stem, name);
+        text_append(text, "%s", name);
+        return true;
+    }
+    if (strncmp(word, "asked@", length + 1) == 0) {
+        append_asked(job, text);
+        return true;
+    }
+    return false;
 }
 
-// A task that has failed leaves gaps and not a job that waits for ever: the gather job follows
-// whatever became of the array (afterany, not afterok), and looks for itself what is missing.
-static const char GATHER_BODY[] =
-    "\n"
-    "cd \"$folder\" || exit 5\n"
-    "stores=()\n"
-    "for ((i = 1; i <= shards; i++)); do\n"
-    "    store=./$stem.$i-of-$shards.sqlite\n"
-    "    if [ -e \"$store\" ]; then stores+=(\"$store\"); else echo \"there is no $store\"; fi\n"
-    "done\n"
-    "words=$(\"$program\" study merge \"./$stem.sqlite\" \"${stores[@]}\" 2>&1)\n"
-    "status=$?\n"
-    "printf '%s\\n' \"$words\"\n"
-    "[ $status = 0 ] || exit $status\n"
-    "\"$program\" study status \"./$stem.sqlite\" || exit\n"
-    "[[ $words =~ holds\\ ([0-9]+)\\ of\\ ([0-9]+) ]]\n"
-    "if [ \"${BASH_REMATCH[1]-0}\" != \"${BASH_REMATCH[2]-all}\" ]; then\n"
-    "    echo \"runs are missing; the logs of the shards say why, and ./$stem.submit.sh once more "
-    "\"\\\n"
-    "        \"makes them\"\n"
-    "    exit 1\n"
-    "fi\n";
+// slurm_array.sh, slurm_gather.sh and slurm_submit.sh, put into the program by the build.
+extern const char embedded_slurm_array[];
+extern const char embedded_slurm_gather[];
+extern const char embedded_slurm_submit[];
 
-void slurm_write_gather(const SlurmJob *job, Text *text)
+void slurm_write(const SlurmJob *job, SlurmScript script, Text *text)
 {
-    char name[NAME_SIZE];
-    find_name(job->stem, name);
-    text_append(text, "#!/bin/bash\n"
-                      "# Gathers the shards of a study. Written by 'jointplay study slurm'.\n");
-    write_head(job, ".gather", 1, text);
-    text_append(text, "#SBATCH --output=%s.gather.log\n", name);
-    write_variables(job, text);
-    write_variable("stem", job->stem, text);
-    text_append(text, "%s", GATHER_BODY);
-}
-
-static const char SUBMIT_BODY[] =
-    "\n"
-    "# Options given here go to both jobs. Runs that are there already are not made again, so "
-    "that\n"
-    "# whatever is missing is made by submitting once more.\n"
-    "cd \"$folder\"\n"
-    "array=$(sbatch --parsable \"$@\" \"./$stem.array.sh\")\n"
-    "array=${array%%;*}\n"
-    "if ! gather=$(sbatch --parsable --dependency=\"afterany:$array\" \"$@\" "
-    "\"./$stem.gather.sh\"); then\n"
-    "    scancel \"$array\"\n"
-    "    exit 1\n"
-    "fi\n"
-    "echo \"array $array of $shards shards, then gather ${gather%%;*}\"\n";
-
-void slurm_write_submit(const SlurmJob *job, Text *text)
-{
-    text_append(text, "#!/bin/bash\n"
-                      "# Submits a study to Slurm: its shards, and what gathers them. "
-                      "Written by 'jointplay study slurm'.\n"
-                      "set -eu\n");
-    write_variable("folder", job->folder, text);
-    write_variable("stem", job->stem, text);
-    text_append(text, "shards=%" PRIu64 "\n%s", job->shards, SUBMIT_BODY);
+    static const char *const SCRIPTS[SLURM_SCRIPT_COUNT] = {
+        embedded_slurm_array, embedded_slurm_gather, embedded_slurm_submit};
+    const char *rest = SCRIPTS[script];
+    while (*rest != '\0') {
+        const size_t plain = strcspn(rest, "@");
+        text_append(text, "%.*s", (int)plain, rest);
+        rest += plain;
+        if (*rest == '@') {
+            const size_t length = strspn(rest + 1, "abcdefghijklmnopqrstuvwxyz");
+            const bool is_value =
+                rest[1 + length] == '@' && append_value(job, rest + 1, length, text);
+            text_append(text, is_value ? "" : "@");
+            rest += is_value ? length + 2 : 1;
+        }
+    }
 }

@@ -6,7 +6,7 @@
 #include "base/text.h"
 
 #include <stdbool.h>
-#include <stdint.h>
+#include <stddef.h>
 
 enum {
     SLURM_ARRAY_USUAL = 1000,     // tasks of an array where MaxArraySize is its default of 1001
@@ -24,9 +24,9 @@ typedef struct SlurmJob {
     const char *study;     // the study file
     const char *folder;    // where scripts, logs and stores go
     const char *stem;      // that their names begin with
-    uint64_t shards;       // tasks of the array
-    uint64_t cpus;         // of a task: runs at a time
-    uint64_t requeues;     // after which a task that is killed or runs out of time is left as it is
+    size_t shards;         // tasks of the array
+    size_t cpus;           // of a task: runs at a time
+    size_t requeues;       // after which a task that is killed or runs out of time is left as it is
     const char *time;      // limit of a job as Slurm writes it, or NULL: that of the partition
     const char *memory;    // of a job as Slurm writes it, or NULL: that of the partition
     const char *partition; // or NULL
@@ -37,7 +37,12 @@ typedef struct SlurmJob {
 // ERR_USAGE, saying what would be allowed.
 bool slurm_check(const SlurmJob *job, Err *err);
 
-// The scripts, whose names are STEM.array.sh, STEM.gather.sh and STEM.submit.sh.
-void slurm_write_array(const SlurmJob *job, Text *text);
-void slurm_write_gather(const SlurmJob *job, Text *text);
-void slurm_write_submit(const SlurmJob *job, Text *text);
+// The scripts, by the endings of their names: STEM.array.sh, STEM.gather.sh, STEM.submit.sh.
+typedef enum SlurmScript {
+    SLURM_ARRAY,
+    SLURM_GATHER,
+    SLURM_SUBMIT,
+    SLURM_SCRIPT_COUNT,
+} SlurmScript;
+
+void slurm_write(const SlurmJob *job, SlurmScript script, Text *text);

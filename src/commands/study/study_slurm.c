@@ -18,18 +18,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { SCRIPT_COUNT = 3, SCRIPT_RIGHTS = 0777 };
+enum { SCRIPT_RIGHTS = 0777 };
 
 typedef struct SlurmOptions {
     const char *path; // of the study
-    const char *folder;
-    size_t shards; // 0: not given
-    size_t cpus;
-    size_t requeues;
-    const char *time;
-    const char *memory;
-    const char *partition;
-    const char *account;
+    SlurmJob job;     // its folder as given; the other paths are found
     bool is_dry;
     bool is_quiet;
 } SlurmOptions;
@@ -38,19 +31,20 @@ typedef struct SlurmOptions {
 
 static const OptionRow OPTIONS[] = {
     {"shards", "N", "Tasks of the job array, each with a store of its own", 0, OPTION_COUNT,
-     AT(shards), .low = SLURM_SHARD_LEAST, .high = SLURM_SHARD_MAX, .letter = 'n'},
-    {"cpus", "N", "Runs at a time in each task (default: 1)", 0, OPTION_COUNT, AT(cpus), .low = 1,
-     .high = SLURM_CPU_MAX, .letter = 'c'},
+     AT(job.shards), .low = SLURM_SHARD_LEAST, .high = SLURM_SHARD_MAX, .letter = 'n'},
+    {"cpus", "N", "Runs at a time in each task (default: 1)", 0, OPTION_COUNT, AT(job.cpus),
+     .low = 1, .high = SLURM_CPU_MAX, .letter = 'c'},
     {"time", "TIME", "Time limit of each task, as Slurm writes it: 4:00:00, 1-12", 0, OPTION_TEXT,
-     AT(time), .letter = 't'},
-    {"mem", "SIZE", "Memory of each task, as Slurm writes it: 4G", 0, OPTION_TEXT, AT(memory)},
-    {"partition", "NAME", "Partition of both jobs", 0, OPTION_TEXT, AT(partition), .letter = 'p'},
-    {"account", "NAME", "Account of both jobs", 0, OPTION_TEXT, AT(account), .letter = 'A'},
+     AT(job.time), .letter = 't'},
+    {"mem", "SIZE", "Memory of each task, as Slurm writes it: 4G", 0, OPTION_TEXT, AT(job.memory)},
+    {"partition", "NAME", "Partition of both jobs", 0, OPTION_TEXT, AT(job.partition),
+     .letter = 'p'},
+    {"account", "NAME", "Account of both jobs", 0, OPTION_TEXT, AT(job.account), .letter = 'A'},
     {"requeues", "N",
      "Times a task that is killed or runs out of time goes back in the queue (default: 10)", 0,
-     OPTION_COUNT, AT(requeues), .low = 0, .high = SLURM_REQUEUE_MAX},
-    {"out", "DIR", "Where scripts, logs and stores go (default: here)", 0, OPTION_TEXT, AT(folder),
-     .letter = 'o'},
+     OPTION_COUNT, AT(job.requeues), .low = 0, .high = SLURM_REQUEUE_MAX},
+    {"out", "DIR", "Where scripts, logs and stores go (default: here)", 0, OPTION_TEXT,
+     AT(job.folder), .letter = 'o'},
     {"dry-run", NULL, "Print the scripts and write nothing", 0, OPTION_FLAG, AT(is_dry)},
     {"quiet", NULL, "Nothing on standard error but errors", 0, OPTION_FLAG, AT(is_quiet),
      .letter = 'q'},
@@ -62,7 +56,7 @@ static bool check(void *target, Err *err)
     if (options->path == NULL) {
         return err_set(err, ERR_USAGE, "no study given: jointplay study slurm FILE --shards N");
     }
-    return options->shards > 0 ||
+    return options->job.shards > 0 ||
            err_set(err, ERR_USAGE,
                    "no number of shards given: --shards N, the tasks of the job array");
 }
@@ -73,11 +67,11 @@ static bool check_shards(const SlurmOptions *options, Err *err)
     Spec *spec = calloc(1, sizeof *spec);
     assert(spec != NULL);
     bool is_right = spec_read(options->path, spec, err);
-    if (is_right && options->shards > design_run_count(spec)) {
+    if (is_right && options->job.shards > design_run_count(spec)) {
         is_right =
             err_set(err, ERR_USAGE,
                     "--shards is %zu; the study has %" PRIu64 " runs, and a shard has at least one",
-                    options->shards, design_run_count(spec));
+                    options->job.shards, design_run_count(spec));
     }
     spec_finish(spec);
     free(spec);
@@ -107,16 +101,7 @@ static bool find_stem(const char *study, char stem[FILE_PATH_SIZE], Err *err)
     return true;
 }
 
-typedef struct Script {
-    const char *ending;
-    void (*write)(const SlurmJob *job, Text *text);
-} Script;
-
-static const Script SCRIPTS[SCRIPT_COUNT] = {
-    {"array.sh", slurm_write_array},
-    {"gather.sh", slurm_write_gather},
-    {"submit.sh", slurm_write_submit},
-};
+static const char *const ENDINGS[SLURM_SCRIPT_COUNT] = {"array.sh", "gather.sh", "submit.sh"};
 
 // A script may be run by whoever may read it, as far as the user's mask lets them.
 static bool let_run(const char *path, Err *err)
@@ -129,7 +114,7 @@ static bool let_run(const char *path, Err *err)
 
 static bool find_script(const SlurmJob *job, size_t number, char path[FILE_PATH_SIZE], Err *err)
 {
-    const char *ending = SCRIPTS[number].ending;
+    const char *ending = ENDINGS[number];
     const int length = snprintf(path, FILE_PATH_SIZE, "%s/%s.%s", job->folder, job->stem, ending);
     return (length >= 0 && length < FILE_PATH_SIZE) ||
            err_set(err, ERR_FILE, "the path of %s.%s is too long", job->stem, ending);
@@ -137,7 +122,7 @@ static bool find_script(const SlurmJob *job, size_t number, char path[FILE_PATH_
 
 static bool claim_scripts(const SlurmJob *job, Err *err)
 {
-    for (size_t i = 0; i < SCRIPT_COUNT; i++) {
+    for (size_t i = 0; i < SLURM_SCRIPT_COUNT; i++) {
         char path[FILE_PATH_SIZE];
         if (!find_script(job, i, path, err) || !file_claim("--out", FILE_SCRIPT, path, err)) {
             return false;
@@ -148,14 +133,14 @@ static bool claim_scripts(const SlurmJob *job, Err *err)
 
 static bool write_scripts(const SlurmJob *job, const SlurmOptions *options, Err *err)
 {
-    for (size_t i = 0; i < SCRIPT_COUNT; i++) {
+    for (size_t i = 0; i < SLURM_SCRIPT_COUNT; i++) {
         char path[FILE_PATH_SIZE];
         if (!find_script(job, i, path, err)) {
             return false;
         }
         Text text;
         text_init(&text);
-        SCRIPTS[i].write(job, &text);
+        slurm_write(job, i, &text);
         const bool is_written = written_text(FILE_SCRIPT, path, text.data, options->is_quiet, err);
         text_finish(&text);
         if (!is_written || !let_run(path, err)) {
@@ -169,11 +154,11 @@ static void print_scripts(const SlurmJob *job)
 {
     Text text;
     text_init(&text);
-    for (size_t i = 0; i < SCRIPT_COUNT; i++) {
+    for (size_t i = 0; i < SLURM_SCRIPT_COUNT; i++) {
         text_append(&text, "%s==> ", i == 0 ? "" : "\n");
         text_append_shown(&text, job->stem);
-        text_append(&text, ".%s <==\n", SCRIPTS[i].ending);
-        SCRIPTS[i].write(job, &text);
+        text_append(&text, ".%s <==\n", ENDINGS[i]);
+        slurm_write(job, i, &text);
     }
     fputs(text.data, stdout);
     text_finish(&text);
@@ -190,7 +175,7 @@ static void say_next(const SlurmJob *job, const SlurmOptions *options)
     printf("%s\n", text.data);
     text_finish(&text);
     if (!options->is_quiet && job->shards > SLURM_ARRAY_USUAL) {
-        output_say("jointplay: %" PRIu64 " shards are more than a job array has tasks unless "
+        output_say("jointplay: %zu shards are more than a job array has tasks unless "
                    "MaxArraySize is raised ('scontrol show config'); %d is usual\n",
                    job->shards, SLURM_ARRAY_USUAL);
     }
@@ -203,23 +188,15 @@ static bool make_scripts(void *target, Err *err)
     char study[FILE_PATH_SIZE];
     char folder[FILE_PATH_SIZE];
     char stem[FILE_PATH_SIZE];
-    const SlurmJob job = {
-        .program = program,
-        .study = study,
-        .folder = folder,
-        .stem = stem,
-        .shards = options->shards,
-        .cpus = options->cpus,
-        .requeues = options->requeues,
-        .time = options->time,
-        .memory = options->memory,
-        .partition = options->partition,
-        .account = options->account,
-    };
+    SlurmJob job = options->job;
+    job.program = program;
+    job.study = study;
+    job.folder = folder;
+    job.stem = stem;
     if (!slurm_check(&job, err) || !check_shards(options, err) ||
-        (!options->is_dry && !file_make_folder(options->folder, err)) ||
+        (!options->is_dry && !file_make_folder(options->job.folder, err)) ||
         !find_stem(options->path, stem, err) || !find_whole("/proc/self/exe", program, err) ||
-        !find_whole(options->path, study, err) || !find_whole(options->folder, folder, err)) {
+        !find_whole(options->path, study, err) || !find_whole(options->job.folder, folder, err)) {
         return false;
     }
     if (options->is_dry) {
@@ -246,7 +223,7 @@ static bool run(int argc, char **argv, Err *err)
         OPTION_ROWS(OPTIONS),
         .check = check,
     };
-    SlurmOptions options = {.folder = ".", .cpus = 1, .requeues = SLURM_REQUEUE_USUAL};
+    SlurmOptions options = {.job = {.folder = ".", .cpus = 1, .requeues = SLURM_REQUEUE_USUAL}};
     return arguments_run(&ARGUMENTS, argc, argv, &options, make_scripts, err);
 }
 
