@@ -37,30 +37,24 @@ static bool verify(Store *store, Err *err)
 
 bool store_reasons(Store *store, size_t most, StoreReason *reasons, size_t *count, Err *err)
 {
+    sqlite3_stmt *row = NULL;
+    bool is_read =
+        verify(store, err) &&
+        store_prepare(store,
+                      "SELECT fate, reason, count(*) AS runs, min(run) FROM run WHERE fate <> 0 "
+                      "GROUP BY fate, reason ORDER BY runs DESC, min(run)",
+                      &row, err);
     *count = 0;
-    sqlite3_stmt *statement = NULL;
-    if (!verify(store, err) ||
-        !store_prepare(store,
-                       "SELECT fate, reason, count(*) AS runs, min(run) FROM run WHERE fate <> 0 "
-                       "GROUP BY fate, reason ORDER BY runs DESC, min(run) LIMIT ?",
-                       &statement, err)) {
-        return false;
-    }
-    sqlite3_bind_int64(statement, 1, (sqlite3_int64)most);
-    int status;
-    while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
-        const int fate = sqlite3_column_int(statement, 0);
-        if (fate > FATE_OK && fate < FATE_COUNT) {
+    while (store_step(store, &row, &is_read, err)) {
+        const int fate = sqlite3_column_int(row, 0);
+        if (fate > FATE_OK && fate < FATE_COUNT && *count < most) {
             StoreReason *reason = &reasons[(*count)++];
-            const char *words = (const char *)sqlite3_column_text(statement, 1);
             *reason = (StoreReason){.fate = (Fate)fate,
-                                    .count = (uint64_t)sqlite3_column_int64(statement, 2),
-                                    .example = (uint64_t)sqlite3_column_int64(statement, 3)};
-            text_copy(reason->reason, sizeof reason->reason, words == NULL ? "" : words);
+                                    .count = (uint64_t)sqlite3_column_int64(row, 2),
+                                    .example = (uint64_t)sqlite3_column_int64(row, 3)};
+            store_take_words(row, 1, reason->reason, sizeof reason->reason);
         }
     }
-    const bool is_read = status == SQLITE_DONE || store_fail(store, "read", err);
-    sqlite3_finalize(statement);
     return is_read;
 }
 
@@ -83,34 +77,22 @@ size_t store_column(const Layout *layout, const char *name)
 bool store_values(Store *store, size_t column, size_t most, Cell *values, size_t *count, Err *err)
 {
     const Column *wanted = store_column_at(store->layout, column);
-    if (!verify(store, err)) {
-        return false;
-    }
+    sqlite3_stmt *row = NULL;
     Text sql;
     text_init(&sql);
     text_append(&sql, "SELECT DISTINCT ");
     store_shape_quote(&sql, wanted->name);
-    text_append(&sql, " AS value FROM run WHERE value IS NOT NULL ORDER BY value LIMIT ?");
-    sqlite3_stmt *statement = NULL;
-    const bool is_ready = store_prepare(store, sql.data, &statement, err);
+    text_append(&sql, " AS value FROM run WHERE value IS NOT NULL ORDER BY value LIMIT %zu",
+                most + 1);
+    bool is_read = verify(store, err) && store_prepare(store, sql.data, &row, err);
     text_finish(&sql);
-    if (!is_ready) {
-        return false;
-    }
-    sqlite3_bind_int64(statement, 1, (sqlite3_int64)most + 1);
-    *count = 0;
-    int status;
-    while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
+    for (*count = 0; store_step(store, &row, &is_read, err); (*count)++) {
         if (*count < most && wanted->kind == COLUMN_WORD) {
-            const char *words = (const char *)sqlite3_column_text(statement, 0);
-            text_copy(values[*count].word, RECORD_WORD_SIZE, words == NULL ? "" : words);
+            store_take_words(row, 0, values[*count].word, RECORD_WORD_SIZE);
         } else if (*count < most) {
-            values[*count].number = sqlite3_column_double(statement, 0);
+            values[*count].number = sqlite3_column_double(row, 0);
         }
-        (*count)++;
     }
-    const bool is_read = status == SQLITE_DONE || store_fail(store, "read", err);
-    sqlite3_finalize(statement);
     return is_read;
 }
 

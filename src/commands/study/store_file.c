@@ -283,19 +283,31 @@ void store_file_close(Store *store)
     }
 }
 
+bool store_step(Store *store, sqlite3_stmt **statement, bool *is_good, Err *err)
+{
+    const int status = *is_good ? sqlite3_step(*statement) : SQLITE_DONE;
+    if (status == SQLITE_ROW) {
+        return true;
+    }
+    *is_good = *is_good && (status == SQLITE_DONE || store_fail(store, "read", err));
+    sqlite3_finalize(*statement);
+    *statement = NULL;
+    return false;
+}
+
 bool store_file_check(Store *store, Err *err)
 {
-    sqlite3_stmt *statement = NULL;
-    if (!store_prepare(store, "PRAGMA quick_check(1)", &statement, err)) {
-        return false;
-    }
-    bool is_whole = sqlite3_step(statement) == SQLITE_ROW || store_fail(store, "read", err);
-    if (is_whole) {
-        const char *words = (const char *)sqlite3_column_text(statement, 0);
-        const char *line = words == NULL ? "" : strrchr(words, '\n');
+    sqlite3_stmt *row = NULL;
+    bool is_whole = store_prepare(store, "PRAGMA quick_check(1)", &row, err);
+    while (store_step(store, &row, &is_whole, err)) {
+        const char *words = (const char *)sqlite3_column_text(row, 0);
+        const char *line = words == NULL ? NULL : strrchr(words, '\n');
         is_whole = (words != NULL && strcmp(words, "ok") == 0) ||
-                   store_fail_damaged(store, line == NULL ? words : line + (line[0] == '\n'), err);
+                   store_fail_damaged(store,
+                                      line != NULL    ? line + 1
+                                      : words != NULL ? words
+                                                      : "",
+                                      err);
     }
-    sqlite3_finalize(statement);
     return is_whole;
 }

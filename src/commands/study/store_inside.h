@@ -68,6 +68,10 @@ bool store_file_is_at_work(const char *path);
 bool store_run_sql(Store *store, const char *sql, Err *err);
 bool store_prepare(Store *store, const char *sql, struct sqlite3_stmt **statement, Err *err);
 
+// Goes to the next row of a query. False behind the last, on failure, and where `*is_good` was
+// false already, which it is then; the statement is finished.
+bool store_step(Store *store, struct sqlite3_stmt **statement, bool *is_good, Err *err);
+
 // store_beside.c: what stands beside the file
 
 // Refuses what would make SQLite write or delete another file than the store and its journal. To be
@@ -94,7 +98,8 @@ bool store_shape_read(Store *store, Layout *layout, Err *err);
 // Appends the name of a column as SQL writes it.
 void store_shape_quote(Text *sql, const char *name);
 
-// A copy of a value; the empty word of NULL.
+// The text of a value, cut to so many bytes, or a copy of it; empty for NULL.
+void store_take_words(struct sqlite3_stmt *row, int column, char *words, size_t size);
 char *store_copy_column(struct sqlite3_stmt *statement, int column);
 
 // store_schema.c: whose rows they are
@@ -103,9 +108,12 @@ char *store_copy_column(struct sqlite3_stmt *statement, int column);
 bool store_schema_make(Store *store, const StoreHead *head, Err *err);
 bool store_schema_read(Store *store, Err *err);
 
-// The first thing in which a store differs from what is asked for, as words; false where nothing
-// does.
-bool store_schema_differs(const Store *store, const StoreHead *head, Text *words);
+// What a store holds, borrowed from it.
+StoreHead store_schema_head(const Store *store);
+
+// Whether the store is of the study that is asked for, by itself (NULL) or by a store that it is
+// merged with. Fails with ERR_FILE, saying what differs.
+bool store_schema_check(const Store *store, const StoreHead *head, const char *source, Err *err);
 
 void store_schema_finish(Store *store);
 

@@ -96,27 +96,6 @@ static bool advance(Cursor *cursor, bool *has_row, Err *err)
             store_fail_damaged(cursor->store, "its runs do not stand in order", err));
 }
 
-static StoreHead head_of(const Store *store)
-{
-    StoreHead head = {
-        .layout = store->layout, .run_count = store->run_count, .key_count = store->key_count};
-    memcpy(head.keys, store->keys, sizeof head.keys);
-    return head;
-}
-
-static bool check_alike(const Store *first, const Store *other, Err *err)
-{
-    const StoreHead head = head_of(first);
-    Text words;
-    text_init(&words);
-    // "there" and "here" are the two files, in the order in which the message names them
-    const bool is_alike = !store_schema_differs(other, &head, &words) ||
-                          err_set(err, ERR_FILE, "%s cannot be merged with %s: %s", other->path,
-                                  first->path, words.data);
-    text_finish(&words);
-    return is_alike;
-}
-
 static bool open_source(Merge *merge, const char *path, Err *err)
 {
     Cursor *cursor = &merge->cursors[merge->count];
@@ -130,7 +109,8 @@ static bool open_source(Merge *merge, const char *path, Err *err)
     }
     merge->count++;
     bool has_row = false;
-    if (!check_alike(merge->cursors[0].store, cursor->store, err) ||
+    const StoreHead head = store_schema_head(merge->cursors[0].store);
+    if (!store_schema_check(cursor->store, &head, merge->cursors[0].store->path, err) ||
         !store_file_check(cursor->store, err) ||
         !store_run_sql(cursor->store, "PRAGMA cache_size = 16", err) ||
         !store_row_prepare(cursor->store, &cursor->rows, err)) {
@@ -169,7 +149,7 @@ static bool open_sources(Merge *merge, const char *target, const char *const *so
 static bool open_target(Merge *merge, const char *path, Err *err)
 {
     const Store *first = merge->cursors[0].store;
-    const StoreHead head = head_of(first);
+    const StoreHead head = store_schema_head(first);
     merge->target = store_open_target(path, &head, first->path, err);
     return merge->target != NULL;
 }

@@ -29,23 +29,6 @@ static void destroy(Store *store)
     free(store);
 }
 
-// Whether the store is of the study that is asked for, by itself or by a store that is merged into
-// it.
-static bool check_study(const Store *store, const StoreHead *head, const char *source, Err *err)
-{
-    Text words;
-    text_init(&words);
-    const bool is_same = !store_schema_differs(store, head, &words);
-    if (!is_same && source == NULL) {
-        err_set(err, ERR_FILE, "the store %s holds other runs: %s; --fresh starts it over",
-                store->path, words.data);
-    } else if (!is_same) {
-        err_set(err, ERR_FILE, "%s cannot be merged with %s: %s", store->path, source, words.data);
-    }
-    text_finish(&words);
-    return is_same;
-}
-
 // Makes the tables where there are none, and holds those that are there against what is asked for.
 static bool settle(Store *store, const StoreHead *head, const char *source, Err *err)
 {
@@ -54,7 +37,7 @@ static bool settle(Store *store, const StoreHead *head, const char *source, Err 
         (!is_there && !store_schema_make(store, head, err))) {
         return false;
     }
-    return store_schema_read(store, err) && check_study(store, head, source, err) &&
+    return store_schema_read(store, err) && store_schema_check(store, head, source, err) &&
            (!is_there || store_file_check(store, err));
 }
 

@@ -127,12 +127,6 @@ static double column_number(sqlite3_stmt *statement, int column)
                : sqlite3_column_double(statement, column);
 }
 
-static void column_words(sqlite3_stmt *statement, int column, char *words, size_t size)
-{
-    const char *text = (const char *)sqlite3_column_text(statement, column);
-    text_copy(words, size, text == NULL ? "" : text);
-}
-
 bool store_row_take(const Store *store, sqlite3_stmt *statement, Record *record, Err *err)
 {
     int column = 0;
@@ -151,10 +145,10 @@ bool store_row_take(const Store *store, sqlite3_stmt *statement, Record *record,
             record->fate = (Fate)fate;
             break;
         case COLUMN_WORD:
-            column_words(statement, column, target, RECORD_WORD_SIZE);
+            store_take_words(statement, column, target, RECORD_WORD_SIZE);
             break;
         case COLUMN_REASON:
-            column_words(statement, column, target, RECORD_REASON_SIZE);
+            store_take_words(statement, column, target, RECORD_REASON_SIZE);
             break;
         case COLUMN_REAL:
         case COLUMN_WHOLE:

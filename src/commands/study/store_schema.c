@@ -125,38 +125,33 @@ bool store_schema_make(Store *store, const StoreHead *head, Err *err)
     return is_made;
 }
 
-// The key, and the checksum that was written with it.
+// The key, the number of runs, and the checksum that was written with them.
 static bool read_values(Store *store, char checksum[STORE_WORDS_SIZE], Err *err)
 {
-    sqlite3_stmt *statement = NULL;
-    if (!store_prepare(store, "SELECT name, value, words FROM study ORDER BY rowid", &statement,
-                       err)) {
-        return false;
-    }
-    int status;
-    while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
-        char *name = store_copy_column(statement, 0);
-        char *value = store_copy_column(statement, 1);
+    sqlite3_stmt *row = NULL;
+    bool is_read =
+        store_prepare(store, "SELECT name, value, words FROM study ORDER BY rowid", &row, err);
+    while (store_step(store, &row, &is_read, err)) {
+        char *name = store_copy_column(row, 0);
+        char *value = store_copy_column(row, 1);
         const bool is_count = strcmp(name, RUNS) == 0;
         const bool is_checksum = strcmp(name, CHECKSUM) == 0;
+        if (!is_count && !is_checksum && store->key_count < STORE_KEY_MAX) {
+            store->keys[store->key_count++] = (StoreKey){name, value, store_copy_column(row, 2)};
+            continue;
+        }
         if (is_count) {
             store->run_count = strtoull(value, NULL, 10);
         } else if (is_checksum) {
             text_copy(checksum, STORE_WORDS_SIZE, value);
-        } else if (store->key_count < STORE_KEY_MAX) {
-            store->keys[store->key_count++] =
-                (StoreKey){name, value, store_copy_column(statement, 2)};
-            continue;
         }
         free(name);
         free(value);
     }
-    const bool is_read = status == SQLITE_DONE || store_fail(store, "read", err);
-    sqlite3_finalize(statement);
     return is_read;
 }
 
-static StoreHead own_head(const Store *store)
+StoreHead store_schema_head(const Store *store)
 {
     StoreHead head = {
         .layout = store->layout, .run_count = store->run_count, .key_count = store->key_count};
@@ -174,7 +169,7 @@ bool store_schema_read(Store *store, Err *err)
     if (!store_shape_read(store, store->layout, err) || !read_values(store, stored, err)) {
         return false;
     }
-    const StoreHead head = own_head(store);
+    const StoreHead head = store_schema_head(store);
     make_checksum(&head, checksum);
     return strcmp(stored, checksum) == 0 ||
            store_fail_damaged(store, "its key and columns are not what was once written", err);
@@ -205,7 +200,8 @@ static bool columns_differ(const char *what, const Column *there, size_t there_c
     return false;
 }
 
-bool store_schema_differs(const Store *store, const StoreHead *head, Text *words)
+// The first thing in which a store differs from what is asked for, as words; "there" is the store.
+static bool differs(const Store *store, const StoreHead *head, Text *words)
 {
     for (size_t i = 0; i < head->key_count; i++) {
         const StoreKey *here = &head->keys[i];
@@ -233,6 +229,21 @@ bool store_schema_differs(const Store *store, const StoreHead *head, Text *words
                           here->setting_count, words) ||
            columns_differ("result", there->results, there->result_count, here->results,
                           here->result_count, words);
+}
+
+bool store_schema_check(const Store *store, const StoreHead *head, const char *source, Err *err)
+{
+    Text words;
+    text_init(&words);
+    const bool is_same = !differs(store, head, &words);
+    if (!is_same && source == NULL) {
+        err_set(err, ERR_FILE, "the store %s holds other runs: %s; --fresh starts it over",
+                store->path, words.data);
+    } else if (!is_same) {
+        err_set(err, ERR_FILE, "%s cannot be merged with %s: %s", store->path, source, words.data);
+    }
+    text_finish(&words);
+    return is_same;
 }
 
 void store_schema_finish(Store *store)

@@ -76,6 +76,12 @@ void store_shape_append(const Layout *layout, Text *sql)
     }
 }
 
+void store_take_words(sqlite3_stmt *row, int column, char *words, size_t size)
+{
+    const char *text = (const char *)sqlite3_column_text(row, column);
+    text_copy(words, size, text == NULL ? "" : text);
+}
+
 char *store_copy_column(sqlite3_stmt *statement, int column)
 {
     const char *words = (const char *)sqlite3_column_text(statement, column);
@@ -119,99 +125,80 @@ static bool refuse_object(const Store *store, sqlite3_stmt *statement, Err *err)
                    store->path, found);
 }
 
-// Every object that there must be, once, and no other. `run` receives the words of that table.
-static bool check_objects(const Store *store, sqlite3_stmt *statement, char **run, Err *err)
+// Every object once, and no other. `run` receives the words of that table.
+static bool read_objects(Store *store, char **run, Err *err)
 {
     bool is_there[OBJECT_COUNT] = {false};
-    int status;
-    while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
-        const size_t object = find_object(statement);
+    sqlite3_stmt *row = NULL;
+    bool is_right =
+        store_prepare(store, "SELECT type, name, tbl_name, sql FROM sqlite_schema", &row, err);
+    while (store_step(store, &row, &is_right, err)) {
+        const size_t object = find_object(row);
         if (object == OBJECT_COUNT || is_there[object]) {
-            return refuse_object(store, statement, err);
+            is_right = refuse_object(store, row, err);
+            continue;
         }
         is_there[object] = true;
         if (OBJECTS[object].name == RUN) {
-            *run = store_copy_column(statement, 3);
+            *run = store_copy_column(row, 3);
         }
     }
-    if (status != SQLITE_DONE) {
-        return store_fail(store, "read", err);
+    for (size_t i = 0; i < OBJECT_COUNT && is_right; i++) {
+        is_right =
+            is_there[i] || err_set(err, ERR_FILE, "%s is no store of a study: it has no %s %s",
+                                   store->path, OBJECTS[i].type, OBJECTS[i].name);
     }
-    for (size_t i = 0; i < OBJECT_COUNT; i++) {
-        if (!is_there[i]) {
-            return err_set(err, ERR_FILE, "%s is no store of a study: it has no %s %s", store->path,
-                           OBJECTS[i].type, OBJECTS[i].name);
-        }
-    }
-    return true;
+    return is_right;
 }
 
-// Takes one column of the table; where nothing takes it, it is missing in what is made of them.
-static void take_column(Layout *layout, const char *name, const char *type, bool is_result)
+// Adds a column where there is room; one that is left out is missing in the words made of them.
+static void add_column(Column *columns, size_t *count, size_t most, sqlite3_stmt *row)
 {
-    size_t *count = is_result ? &layout->result_count : &layout->setting_count;
-    Column *columns = is_result ? layout->results : layout->settings;
-    if (*count < (is_result ? (size_t)RECORD_RESULT_MAX : (size_t)RECORD_SETTING_MAX)) {
+    if (*count < most) {
         Column *column = &columns[(*count)++];
-        text_copy(column->name, sizeof column->name, name);
+        store_take_words(row, 0, column->name, sizeof column->name);
         for (size_t kind = 0; kind < TYPE_COUNT; kind++) {
-            if (strcmp(type, TYPES[kind]) == 0) {
-                column->kind = (ColumnKind)kind;
-            }
+            column->kind = is_word(row, 1, TYPES[kind]) ? (ColumnKind)kind : column->kind;
         }
     }
 }
 
+// The settings stand before `fate`, the results behind it.
 static bool read_columns(Store *store, Layout *layout, Err *err)
 {
-    sqlite3_stmt *statement = NULL;
-    if (!store_prepare(store, "SELECT name, type FROM pragma_table_info('run') ORDER BY cid",
-                       &statement, err)) {
-        return false;
-    }
+    sqlite3_stmt *row = NULL;
+    bool is_read = store_prepare(
+        store, "SELECT name, type FROM pragma_table_info('run') ORDER BY cid", &row, err);
     bool is_result = false;
-    int status;
-    while ((status = sqlite3_step(statement)) == SQLITE_ROW) {
-        char *name = store_copy_column(statement, 0);
-        char *type = store_copy_column(statement, 1);
-        const bool is_own = strcmp(name, RUN) == 0 || strcmp(name, "reason") == 0 ||
-                            strcmp(name, "hash") == 0 || strcmp(name, "checksum") == 0;
-        if (strcmp(name, "fate") == 0) {
+    while (store_step(store, &row, &is_read, err)) {
+        if (is_word(row, 0, "fate")) {
             is_result = true;
-        } else if (!is_own) {
-            take_column(layout, name, type, is_result);
+        } else if (is_word(row, 0, RUN) || is_word(row, 0, "reason") || is_word(row, 0, "hash") ||
+                   is_word(row, 0, "checksum")) {
+            continue;
+        } else if (is_result) {
+            add_column(layout->results, &layout->result_count, RECORD_RESULT_MAX, row);
+        } else {
+            add_column(layout->settings, &layout->setting_count, RECORD_SETTING_MAX, row);
         }
-        free(name);
-        free(type);
     }
-    const bool is_read = status == SQLITE_DONE || store_fail(store, "read", err);
-    sqlite3_finalize(statement);
     return is_read;
 }
 
 bool store_shape_is_there(Store *store, bool *is_there, Err *err)
 {
-    sqlite3_stmt *statement = NULL;
-    if (!store_prepare(store, "SELECT 1 FROM sqlite_schema LIMIT 1", &statement, err)) {
-        return false;
+    sqlite3_stmt *row = NULL;
+    bool is_read = store_prepare(store, "SELECT 1 FROM sqlite_schema LIMIT 1", &row, err);
+    for (*is_there = false; store_step(store, &row, &is_read, err);) {
+        *is_there = true;
     }
-    const int status = sqlite3_step(statement);
-    const bool is_read =
-        status == SQLITE_ROW || status == SQLITE_DONE || store_fail(store, "read", err);
-    *is_there = status == SQLITE_ROW;
-    sqlite3_finalize(statement);
     return is_read;
 }
 
 bool store_shape_read(Store *store, Layout *layout, Err *err)
 {
     char *run = NULL;
-    sqlite3_stmt *statement = NULL;
-    bool is_right = store_prepare(store, "SELECT type, name, tbl_name, sql FROM sqlite_schema",
-                                  &statement, err) &&
-                    check_objects(store, statement, &run, err);
-    sqlite3_finalize(statement);
-    is_right = is_right && read_columns(store, layout, err);
+    bool is_right = read_objects(store, &run, err) && read_columns(store, layout, err);
     if (is_right) {
         Text sql;
         text_init(&sql);
