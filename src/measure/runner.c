@@ -5,155 +5,125 @@
 #include "measure/runner.h"
 
 #include "base/clock.h"
-#include "measure/child.h"
+#include "measure/pool.h"
 #include "measure/task.h"
 #include "measure/truth_child.h"
 
 #include <assert.h>
-#include <stdio.h>
-#include <stdlib.h>
 
-static const double PAUSE_S = 0.2; // between two looks of the listener
-// One child at work.
-typedef struct Job {
-    bool is_busy;
-    size_t number; // of the run, or of the scheme
-    Task task;
-    union {
-        LadderRun run;
-        Ensemble ensemble;
-    } result;
-} Job;
-
-// A kind of work, of which several may go on at a time.
-typedef struct Work {
+// Runs of one kind, or ensembles, that are being made.
+typedef struct Stage {
+    const Runner *runner;
+    const Truth *truth;
     const char *doing;
-    size_t jobs;
-    size_t runs; // that one job makes, each of which may take the whole time limit
+    size_t from; // number of the run, or of the scheme, from which on to look for the next
     size_t end;  // number behind the last
-    size_t (*next)(const Runner *runner, size_t from); // number that is to be done
-    Task (*make)(const Runner *runner, size_t number, const Truth *truth);
-    ChildWork work;
-    size_t result_size;
-    bool (*finish)(const Runner *runner, Job *job, const Child *child, Err *err);
-} Work;
+    Task task;   // that is about to begin
+} Stage;
 
-static ChildLimits limits_of(const Runner *runner, size_t runs)
+static bool wait(void *owner)
 {
-    return (ChildLimits){.time_s = (double)runs * runner->time_limit_s,
-                         .memory_bytes = TASK_MEMORY_LIMIT};
-}
-
-static bool start_job(const Runner *runner, const Work *work, size_t number, const Truth *truth,
-                      Job *job, Child *child, Err *err)
-{
-    job->number = number;
-    job->task = work->make(runner, number, truth);
-    job->is_busy = child_start(child, work->work, &job->task, &job->result, work->result_size,
-                               limits_of(runner, work->runs), err);
-    return job->is_busy;
-}
-
-// Fills the free places, waits, and takes in what has ended. False where something cannot go on.
-static bool turn(const Runner *runner, const Work *work, const Truth *truth, Job *jobs,
-                 Child *children, size_t *number, size_t *busy, Err *err)
-{
-    for (size_t i = 0; i < work->jobs && *number < work->end; i++) {
-        if (!jobs[i].is_busy) {
-            if (!start_job(runner, work, *number, truth, &jobs[i], &children[i], err)) {
-                return false;
-            }
-            (*busy)++;
-            *number = work->next(runner, *number + 1);
-        }
-    }
-    runner->listener.wait(work->doing, runner->listener.context);
-    child_wait(children, work->jobs, PAUSE_S);
-    for (size_t i = 0; i < work->jobs; i++) {
-        if (jobs[i].is_busy && children[i].end != CHILD_RUNNING) {
-            jobs[i].is_busy = false;
-            (*busy)--;
-            if (!work->finish(runner, &jobs[i], &children[i], err)) {
-                return false;
-            }
-        }
-    }
+    const Stage *stage = owner;
+    const RunnerListener *listener = &stage->runner->listener;
+    listener->wait(stage->doing, listener->context);
     return true;
 }
 
-static bool do_work(const Runner *runner, const Work *work, const Truth *truth, Err *err)
+static bool next_run(void *owner, size_t *number, const void **context)
 {
-    Job *jobs = calloc(work->jobs, sizeof *jobs);
-    Child *children = calloc(work->jobs, sizeof *children);
-    assert(jobs != NULL && children != NULL);
-    size_t number = work->next(runner, 0);
-    size_t busy = 0;
-    bool is_going = true;
-    while (is_going && (busy > 0 || number < work->end)) {
-        is_going = turn(runner, work, truth, jobs, children, &number, &busy, err);
+    Stage *stage = owner;
+    const Ladder *ladder = stage->runner->ladder;
+    *number = ladder_next(ladder, stage->from);
+    if (*number >= stage->end) {
+        return false;
     }
-    for (size_t i = 0; i < work->jobs; i++) {
-        child_kill(&children[i]);
-    }
-    free(jobs);
-    free(children);
-    return is_going;
+    stage->from = *number + 1;
+    stage->task =
+        task_make(ladder, stage->runner->scenario, ladder_run(ladder, *number), stage->truth);
+    *context = &stage->task;
+    return true;
 }
 
-static size_t next_run(const Runner *runner, size_t from)
+static bool take_run(void *owner, size_t number, const void *result, const Child *child, Err *err)
 {
-    return ladder_next(runner->ladder, from);
-}
-
-static Task make_run(const Runner *runner, size_t number, const Truth *truth)
-{
-    return task_make(runner->ladder, runner->scenario, ladder_run(runner->ladder, number), truth);
-}
-
-static bool finish_run(const Runner *runner, Job *job, const Child *child, Err *err)
-{
-    LadderRun *run = &job->result.run;
-    if (child->end != CHILD_DONE) {
-        char words[CHILD_TEXT_SIZE];
-        child_describe(child, words);
-        *run = ladder_run(runner->ladder, job->number);
-        run->is_lost = true;
-        snprintf(run->message, sizeof run->message, "the run's process %s", words);
-    }
-    const bool is_new = ladder_add(runner->ladder, run);
+    const Runner *runner = ((Stage *)owner)->runner;
+    const LadderRun run = task_run(ladder_run(runner->ladder, number), result, child);
+    const bool is_new = ladder_add(runner->ladder, &run);
     assert(is_new);
-    return runner->listener.keep_run(run, runner->listener.context, err);
+    return runner->listener.keep_run(&run, runner->listener.context, err);
 }
 
 // Ensembles belong to the reference and to ODE's schemes that have a point.
-static size_t next_ensemble(const Runner *runner, size_t from)
+static bool next_ensemble(void *owner, size_t *number, const void **context)
 {
-    const Ladder *ladder = runner->ladder;
-    while (from < ladder->scheme_count && (ladder->ensembles[from].is_known ||
-                                           ladder_finest(ladder, from) == ladder->point_count)) {
-        from++;
+    Stage *stage = owner;
+    const Ladder *ladder = stage->runner->ladder;
+    while (stage->from < stage->end &&
+           (ladder->ensembles[stage->from].is_known ||
+            ladder_finest(ladder, stage->from) == ladder->point_count)) {
+        stage->from++;
     }
-    return from;
+    if (stage->from == stage->end) {
+        return false;
+    }
+    *number = stage->from++;
+    const LadderRun run = {.point = ladder_finest(ladder, *number)};
+    stage->task = task_make(ladder, stage->runner->scenario, run, stage->truth);
+    *context = &stage->task;
+    return true;
 }
 
-static Task make_ensemble(const Runner *runner, size_t number, const Truth *truth)
+static bool take_ensemble(void *owner, size_t number, const void *result, const Child *child,
+                          Err *err)
 {
-    const LadderRun run = {.point = ladder_finest(runner->ladder, number)};
-    return task_make(runner->ladder, runner->scenario, run, truth);
-}
-
-static bool finish_ensemble(const Runner *runner, Job *job, const Child *child, Err *err)
-{
-    LadderEnsemble *ensemble = &runner->ladder->ensembles[job->number];
-    const size_t point = ladder_finest(runner->ladder, job->number);
+    const Runner *runner = ((Stage *)owner)->runner;
+    LadderEnsemble *ensemble = &runner->ladder->ensembles[number];
+    const size_t point = ladder_finest(runner->ladder, number);
     *ensemble = (LadderEnsemble){.is_known = true, .step_s = runner->ladder->points[point].step_s};
     if (child->end == CHILD_DONE) {
-        ensemble->ensemble = job->result.ensemble;
+        ensemble->ensemble = *(const Ensemble *)result;
     } else {
         ensemble->ensemble.failed = ENSEMBLE_MEMBERS;
         child_describe(child, ensemble->ensemble.message);
     }
-    return runner->listener.keep_ensemble(job->number, ensemble, runner->listener.context, err);
+    return runner->listener.keep_ensemble(number, ensemble, runner->listener.context, err);
+}
+
+static bool make_runs(const Runner *runner, const Truth *truth, const char *doing, size_t jobs,
+                      size_t end, Err *err)
+{
+    Stage stage = {.runner = runner, .truth = truth, .doing = doing, .end = end};
+    const Pool pool = {
+        .jobs = jobs,
+        .work = task_measure,
+        .result_size = sizeof(LadderRun),
+        .limits = {.time_s = runner->time_limit_s, .memory_bytes = TASK_MEMORY_LIMIT},
+        .next = next_run,
+        .take = take_run,
+        .wait = wait,
+        .owner = &stage,
+    };
+    return pool_run(&pool, err);
+}
+
+static bool make_ensembles(const Runner *runner, const Truth *truth, Err *err)
+{
+    Stage stage = {.runner = runner,
+                   .truth = truth,
+                   .doing = "ensembles",
+                   .end = runner->ladder->scheme_count};
+    const Pool pool = {
+        .jobs = runner->jobs,
+        .work = task_spread,
+        .result_size = sizeof(Ensemble),
+        .limits = {.time_s = ENSEMBLE_MEMBERS * runner->time_limit_s,
+                   .memory_bytes = TASK_MEMORY_LIMIT},
+        .next = next_ensemble,
+        .take = take_ensemble,
+        .wait = wait,
+        .owner = &stage,
+    };
+    return pool_run(&pool, err);
 }
 
 static bool make_truth(const Runner *runner, Truth *truth, Err *err)
@@ -195,20 +165,13 @@ static bool needs_truth(const Runner *runner)
 bool runner_execute(const Runner *runner, Err *err)
 {
     const Ladder *ladder = runner->ladder;
-    const Work errors = {"error runs",        runner->jobs,      1,
-                         ladder->point_count, next_run,          make_run,
-                         task_measure,        sizeof(LadderRun), finish_run};
-    const Work timings = {
-        "timing runs",     1,         1, ladder_run_total(ladder), next_run, make_run, task_measure,
-        sizeof(LadderRun), finish_run};
-    const Work ensembles = {"ensembles",          runner->jobs,     ENSEMBLE_MEMBERS,
-                            ladder->scheme_count, next_ensemble,    make_ensemble,
-                            task_spread,          sizeof(Ensemble), finish_ensemble};
+    const size_t total = ladder_run_total(ladder);
     Truth truth = {0};
-    const bool is_done = (!needs_truth(runner) || make_truth(runner, &truth, err)) &&
-                         do_work(runner, &errors, &truth, err) &&
-                         do_work(runner, &timings, &truth, err) &&
-                         (!ladder->truth.is_limited || do_work(runner, &ensembles, &truth, err));
+    const bool is_done =
+        (!needs_truth(runner) || make_truth(runner, &truth, err)) &&
+        make_runs(runner, &truth, "error runs", runner->jobs, ladder->point_count, err) &&
+        make_runs(runner, &truth, "timing runs", 1, total, err) &&
+        (!ladder->truth.is_limited || make_ensembles(runner, &truth, err));
     truth_finish(&truth);
     return is_done;
 }

@@ -3,8 +3,6 @@
 
 #include "measure/ladder.h"
 
-enum { RUNNER_JOB_MAX = 64 };
-
 // Who is told what. A keeper that fails ends everything with its error.
 typedef struct RunnerListener {
     bool (*keep_truth)(const LadderTruth *truth, void *context, Err *err);

@@ -57,6 +57,18 @@ void task_measure(const void *context, void *result)
     trajectory_destroy(trajectory);
 }
 
+LadderRun task_run(LadderRun asked, const LadderRun *result, const Child *child)
+{
+    char words[CHILD_TEXT_SIZE];
+    if (child->end == CHILD_DONE) {
+        return *result;
+    }
+    child_describe(child, words);
+    asked.is_lost = true;
+    snprintf(asked.message, sizeof asked.message, "the run's process %s", words);
+    return asked;
+}
+
 void task_certify(const void *context, void *packed)
 {
     const Task *task = context;

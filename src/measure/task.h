@@ -1,6 +1,7 @@
 // The pieces of work that a comparison gives to child processes.
 #pragma once
 
+#include "measure/child.h"
 #include "measure/ladder.h"
 #include "measure/truth_pack.h"
 
@@ -28,3 +29,7 @@ Task task_make(const Ladder *ladder, const Scenario *scenario, LadderRun run, co
 void task_measure(const void *task, void *run);
 void task_certify(const void *task, void *packed);
 void task_spread(const void *task, void *ensemble);
+
+// What came of a child that did task_measure: its result, or where it did not come back the run
+// that was asked for, lost.
+LadderRun task_run(LadderRun asked, const LadderRun *result, const Child *child);

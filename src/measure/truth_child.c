@@ -1,59 +1,79 @@
-// How is the truth had without its dangers?
+// Computes the reference in a child process, so that a crash cannot take the program down.
 #include "measure/truth_child.h"
 
-#include "measure/child.h"
+#include "measure/pool.h"
 #include "measure/task.h"
 #include "measure/truth_pack.h"
 
 #include <assert.h>
 #include <stdlib.h>
 
-static const double PAUSE_S = 0.2; // between two signs of life
+typedef struct Making {
+    const TruthChild *work;
+    Task *task;
+    Truth *truth;
+    bool is_begun;
+    bool is_stopped;
+} Making;
 
-// True where the child came back whole.
-static bool certify(const TruthChild *work, void *packed, size_t size, Err *err)
+static bool next(void *owner, size_t *number, const void **context)
 {
-    Task *task = calloc(1, sizeof *task);
-    assert(task != NULL);
-    task->scenario = *work->scenario;
-    const ChildLimits limits = {.time_s = TASK_TRUTH_RUNS * work->run_limit_s,
-                                .memory_bytes = TASK_MEMORY_LIMIT};
-    Child child = {0};
-    bool is_done = child_start(&child, task_certify, task, packed, size, limits, err);
-    while (is_done && child.end == CHILD_RUNNING) {
-        work->wait("making and certifying the reference", work->context);
-        child_wait(&child, 1, PAUSE_S);
-        if (work->should_stop != NULL && work->should_stop(work->context)) {
-            child_kill(&child);
-            is_done = err_set(err, ERR_SOLVER, "stopped");
-        }
-    }
-    if (is_done && child.end != CHILD_DONE) {
+    Making *making = owner;
+    *number = 0;
+    *context = making->task;
+    const bool is_first = !making->is_begun;
+    making->is_begun = true;
+    return is_first;
+}
+
+static bool take(void *owner, size_t number, const void *packed, const Child *child, Err *err)
+{
+    (void)number;
+    Making *making = owner;
+    if (child->end != CHILD_DONE) {
         char words[CHILD_TEXT_SIZE];
-        child_describe(&child, words);
-        is_done =
-            err_set(err, ERR_SOLVER, "there is no truth to compare with: its process %s", words);
+        child_describe(child, words);
+        return err_set(err, ERR_SOLVER, "there is no truth to compare with: its process %s", words);
     }
-    free(task);
-    return is_done;
+    *making->truth = truth_pack_read(making->work->scenario, packed);
+    const Trajectory *trajectory = making->truth->trajectory;
+    return trajectory->is_complete ||
+           err_set(err, ERR_SOLVER, "there is no truth to compare with: %s", trajectory->message);
+}
+
+static bool wait(void *owner)
+{
+    Making *making = owner;
+    const TruthChild *work = making->work;
+    making->is_stopped = work->should_stop != NULL && work->should_stop(work->context);
+    work->wait("making and certifying the reference", work->context);
+    return !making->is_stopped;
 }
 
 bool truth_child_make(const TruthChild *work, Truth *truth, Err *err)
 {
-    const size_t size = truth_pack_size(work->scenario);
-    void *packed = malloc(size);
-    assert(packed != NULL);
+    Making making = {.work = work, .task = calloc(1, sizeof *making.task), .truth = truth};
+    assert(making.task != NULL);
+    making.task->scenario = *work->scenario;
     *truth = (Truth){.trajectory = NULL};
-    bool is_made = certify(work, packed, size, err);
-    if (is_made) {
-        *truth = truth_pack_read(work->scenario, packed);
-        is_made = truth->trajectory->is_complete ||
-                  err_set(err, ERR_SOLVER, "there is no truth to compare with: %s",
-                          truth->trajectory->message);
+    const Pool pool = {
+        .jobs = 1,
+        .work = task_certify,
+        .result_size = truth_pack_size(work->scenario),
+        .limits = {.time_s = TASK_TRUTH_RUNS * work->run_limit_s,
+                   .memory_bytes = TASK_MEMORY_LIMIT},
+        .next = next,
+        .take = take,
+        .wait = wait,
+        .owner = &making,
+    };
+    bool is_made = pool_run(&pool, err);
+    if (making.is_stopped) {
+        is_made = err_set(err, ERR_SOLVER, "stopped");
     }
     if (!is_made) {
         truth_finish(truth);
     }
-    free(packed);
+    free(making.task);
     return is_made;
 }

@@ -6,34 +6,28 @@
 // whole mechanism is not derived but run.
 #include "commands/tune/tune_held.h"
 
-#include "commands/tune/tune_pool.h"
 #include "measure/mapping_joint.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
-bool tune_held_run(const TuneSearch *search, const Truth *truth, Err *err)
+static void apply_scheme(void *owner, size_t number, Scenario *scenario)
 {
-    Tune *tune = search->tune;
-    TunePool pool;
-    tune_pool_init(&pool, search->jobs, search->time_limit_s);
-    bool is_going = true;
-    size_t next = 0;
-    while (is_going && (next < tune->scheme_count || pool.busy > 0)) {
-        while (is_going && next < tune->scheme_count && tune_pool_has_place(&pool)) {
-            const Task task = tune_search_task(search, LADDER_ERROR, truth, next, tune->held_s);
-            is_going = tune_pool_start(&pool, &task, next++, err);
-        }
-        search->wait("running all schemes at the step", search->context);
-        size_t tag;
-        LadderRun run;
-        while (is_going && pool.busy > 0 && tune_pool_take(&pool, &tag, &run)) {
-            tune_take_held(tune, tag, &run);
-        }
-    }
-    tune_pool_finish(&pool);
-    return is_going;
+    const Tune *tune = owner;
+    tune_apply(&tune->schemes[number], tune->held_s, scenario);
+}
+
+static void take_scheme(void *tune, size_t number, const LadderRun *run)
+{
+    tune_take_held(tune, number, run);
+}
+
+bool tune_held_run(const TuneSearch *search, Err *err)
+{
+    const TuneRuns runs = {"running all schemes at the step", search->tune->scheme_count,
+                           apply_scheme, take_scheme, .owner = search->tune};
+    return tune_runs_make(search, &runs, err);
 }
 
 static void watch_run(double share, double wall_s, void *context)

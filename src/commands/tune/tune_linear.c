@@ -9,7 +9,6 @@
 #include "commands/tune/tune_linear.h"
 
 #include "commands/tune/tune_held.h"
-#include "commands/tune/tune_pool.h"
 #include "contact/damping.h"
 #include "contact/law.h"
 #include "model/response.h"
@@ -187,40 +186,23 @@ static int choose_least(const Tune *tune, bool with_rows)
     return chosen;
 }
 
-static bool run_linears(const TuneSearch *search, const Truth *truth, Err *err)
+static void apply_linear(void *tune, size_t number, Scenario *scenario)
 {
-    Tune *tune = search->tune;
-    TunePool pool;
-    tune_pool_init(&pool, search->jobs, search->time_limit_s);
-    bool is_going = true;
-    size_t next = 0;
-    while (is_going && (next < tune->linear_count || pool.busy > 0)) {
-        while (is_going && next < tune->linear_count && tune_pool_has_place(&pool)) {
-            const Task task = {
-                .scenario = tune_linear_scenario(search->scenario, &tune->linears[next]),
-                .backend = BACKEND_ODE,
-                .run = {.kind = LADDER_ERROR},
-                .truth = truth,
-            };
-            is_going = tune_pool_start(&pool, &task, next++, err);
-        }
-        search->wait("running a linear contact", search->context);
-        size_t tag;
-        LadderRun run;
-        while (is_going && pool.busy > 0 && tune_pool_take(&pool, &tag, &run)) {
-            tune->linears[tag].run = run;
-            tune->linears[tag].error = tune_error(tune, &run, tune->linears[tag].reason);
-        }
-    }
-    tune_pool_finish(&pool);
-    return is_going;
+    *scenario = tune_linear_scenario(scenario, &((const Tune *)tune)->linears[number]);
 }
 
-bool tune_linear_run(const TuneSearch *search, const Truth *truth, Err *err)
+static void take_linear(void *tune, size_t number, const LadderRun *run)
+{
+    TuneLinear *linear = &((Tune *)tune)->linears[number];
+    linear->run = *run;
+    linear->error = tune_error(tune, run, linear->reason);
+}
+
+bool tune_linear_run(const TuneSearch *search, Err *err)
 {
     Tune *tune = search->tune;
     ForceLaw law;
-    find_contact(search->scenario, truth->trajectory, &tune->contact);
+    find_contact(search->scenario, search->truth->trajectory, &tune->contact);
     if (!tune->contact.is_known) {
         return true;
     }
@@ -230,7 +212,12 @@ bool tune_linear_run(const TuneSearch *search, const Truth *truth, Err *err)
     }
     const bool is_held = tune->held_s > 0.0;
     list_linears(search, &law, tune);
-    if ((is_held && !tune_held_constants(search, err)) || !run_linears(search, truth, err)) {
+    if (is_held && !tune_held_constants(search, err)) {
+        return false;
+    }
+    const TuneRuns runs = {"running a linear contact", tune->linear_count, apply_linear,
+                           take_linear, .owner = tune};
+    if (!tune_runs_make(search, &runs, err)) {
         return false;
     }
     tune->linear = is_held ? choose_least(tune, false) : choose_linear(tune);

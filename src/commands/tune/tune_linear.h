@@ -1,7 +1,7 @@
 // What can a contact with constant spring and damper deliver, as Gazebo and MuJoCo have it?
 #pragma once
 
-#include "commands/tune/tune_search.h"
+#include "commands/tune/tune_runs.h"
 #include "contact/force_law.h"
 
 // The spring, N/m, that gives the law's force at a depth, m.
@@ -17,4 +17,4 @@ Scenario tune_linear_scenario(const Scenario *scenario, const TuneLinear *linear
 
 // Looks up the deepest contact in the truth, runs constants taken from it at several depths and
 // steps against the truth, and chooses among them. Does nothing where no joint has play.
-bool tune_linear_run(const TuneSearch *search, const Truth *truth, Err *err);
+bool tune_linear_run(const TuneSearch *search, Err *err);

@@ -8,13 +8,9 @@
 #include "base/clock.h"
 #include "commands/tune/tune_held.h"
 #include "commands/tune/tune_linear.h"
-#include "commands/tune/tune_pool.h"
 #include "measure/truth_child.h"
 
-#include <assert.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 // steps of one run: some minutes
 static const double STEPS_MOST = 1e8;
@@ -30,22 +26,9 @@ static const double FINALIST = 2.5;
 
 static const double TOLERANCE_LEAST = 1e-9; // what the case file allows of run.tolerance
 
-Task tune_search_task(const TuneSearch *search, LadderKind kind, const Truth *truth, size_t scheme,
-                      double value)
-{
-    Task task = {
-        .scenario = *search->scenario,
-        .backend = BACKEND_ODE,
-        .run = {.kind = kind},
-        .truth = truth,
-    };
-    tune_apply(&search->tune->schemes[scheme], value, &task.scenario);
-    return task;
-}
-
 // One pass of the search: over which schemes, and how long a run may take.
 typedef struct Pass {
-    const char *doing;
+    const TuneSearch *search;
     bool is_in[SCHEME_MAX];
     double limit_s;
 } Pass;
@@ -61,8 +44,9 @@ static double best_cost(const Tune *tune, const Pass *pass)
     return best;
 }
 
-static bool is_too_long(const TuneSearch *search, const Pass *pass, size_t scheme)
+static bool is_too_long(const Pass *pass, size_t scheme)
 {
+    const TuneSearch *search = pass->search;
     const TuneScheme *owner = &search->tune->schemes[scheme];
     const double value = tune_value(owner->next);
     if (!scheme_has_step(&owner->scheme)) {
@@ -74,9 +58,9 @@ static bool is_too_long(const TuneSearch *search, const Pass *pass, size_t schem
 
 // The scheme of the pass whose next setting is the cheapest, or TUNE_NONE; ends those that are
 // done.
-static int choose(const TuneSearch *search, const Pass *pass)
+static int choose(const Pass *pass)
 {
-    Tune *tune = search->tune;
+    Tune *tune = pass->search->tune;
     const double best = best_cost(tune, pass);
     int chosen = TUNE_NONE;
     double least = INFINITY;
@@ -93,7 +77,7 @@ static int choose(const TuneSearch *search, const Pass *pass)
                                : cost;
         if (own > margin * best) {
             scheme->fate = TUNE_DEARER;
-        } else if (is_too_long(search, pass, (size_t)i)) {
+        } else if (is_too_long(pass, (size_t)i)) {
             scheme->fate = TUNE_TOO_LONG;
         } else if (cost < least) {
             least = cost;
@@ -103,51 +87,55 @@ static int choose(const TuneSearch *search, const Pass *pass)
     return chosen;
 }
 
-static bool run_pass(const TuneSearch *search, const Truth *truth, const Pass *pass, Err *err)
+static bool choose_next(void *owner, size_t *number)
 {
-    Tune *tune = search->tune;
-    TunePool pool;
-    tune_pool_init(&pool, search->jobs, search->time_limit_s);
-    bool is_going = true;
-    int next = choose(search, pass);
-    while (is_going && (next != TUNE_NONE || pool.busy > 0)) {
-        while (is_going && next != TUNE_NONE && tune_pool_has_place(&pool)) {
-            TuneScheme *scheme = &tune->schemes[next];
-            const Task task = tune_search_task(search, LADDER_ERROR, truth, (size_t)next,
-                                               tune_value(scheme->next));
-            is_going = tune_pool_start(&pool, &task, (size_t)next, err);
-            scheme->is_busy = is_going;
-            next = choose(search, pass);
-        }
-        search->wait(pass->doing, search->context);
-        size_t tag;
-        LadderRun run;
-        while (is_going && pool.busy > 0 && tune_pool_take(&pool, &tag, &run)) {
-            tune->schemes[tag].is_busy = false;
-            tune_take(tune, tag, tune->schemes[tag].next, &run);
-        }
-        next = choose(search, pass);
+    const Pass *pass = owner;
+    const int chosen = choose(pass);
+    if (chosen != TUNE_NONE) {
+        pass->search->tune->schemes[chosen].is_busy = true;
+        *number = (size_t)chosen;
     }
-    tune_pool_finish(&pool);
-    return is_going;
+    return chosen != TUNE_NONE;
 }
 
-static bool search_all(const TuneSearch *search, const Truth *truth, Err *err)
+static void apply_next(void *owner, size_t number, Scenario *scenario)
 {
-    Pass pass = {.doing = "searching", .limit_s = search->time_limit_s};
+    const TuneScheme *scheme = &((const Pass *)owner)->search->tune->schemes[number];
+    tune_apply(scheme, tune_value(scheme->next), scenario);
+}
+
+static void take_next(void *owner, size_t number, const LadderRun *run)
+{
+    Tune *tune = ((const Pass *)owner)->search->tune;
+    tune->schemes[number].is_busy = false;
+    tune_take(tune, number, tune->schemes[number].next, run);
+}
+
+static bool run_pass(Pass *pass, const char *doing, Err *err)
+{
+    const TuneRuns runs = {.doing = doing,
+                           .apply = apply_next,
+                           .take = take_next,
+                           .owner = pass,
+                           .choose = choose_next};
+    return tune_runs_make(pass->search, &runs, err);
+}
+
+static bool search_all(const TuneSearch *search, Err *err)
+{
+    Pass pass = {.search = search, .limit_s = search->time_limit_s};
     for (size_t i = 0; i < search->tune->scheme_count; i++) {
         pass.is_in[i] = true;
     }
-    return run_pass(search, truth, &pass, err);
+    return run_pass(&pass, "searching", err);
 }
 
 // Goes on with the plain rows alone, where none of them has met the target: some users have a loop
 // of their own and want nothing but numbers.
-static bool search_plain(const TuneSearch *search, const Truth *truth, Err *err)
+static bool search_plain(const TuneSearch *search, Err *err)
 {
     Tune *tune = search->tune;
-    Pass pass = {.doing = "searching plain rows",
-                 .limit_s = fmin(PLAIN_LIMIT_S, search->time_limit_s)};
+    Pass pass = {.search = search, .limit_s = fmin(PLAIN_LIMIT_S, search->time_limit_s)};
     for (size_t i = 0; i < tune->scheme_count; i++) {
         pass.is_in[i] = tune_is_plain_row(tune, search->scenario, i);
     }
@@ -159,91 +147,121 @@ static bool search_plain(const TuneSearch *search, const Truth *truth, Err *err)
             tune->schemes[i].fate = TUNE_OPEN;
         }
     }
-    return run_pass(search, truth, &pass, err);
+    return run_pass(&pass, "searching plain rows", err);
+}
+
+// A look at what can be had within the limit: a setting for each of some schemes.
+typedef struct Look {
+    Tune *tune;
+    size_t schemes[SCHEME_MAX];
+    int notches[SCHEME_MAX];
+} Look;
+
+// The notch of the finest setting of a scheme that is within the limit.
+static int find_within(const Tune *tune, size_t scheme)
+{
+    const TuneScheme *owner = &tune->schemes[scheme];
+    const double most = tune->cost == TUNE_STEPS ? (double)tune->limit.steps : tune->limit.time_s;
+    int notch = owner->first;
+    while (tune_cost(tune, scheme, notch + 1) <= most && notch < owner->next + 30 &&
+           scheme_has_step(&owner->scheme)) {
+        notch++;
+    }
+    return notch;
+}
+
+static bool is_run(const Tune *tune, size_t scheme, int notch)
+{
+    for (size_t i = 0; i < tune->trial_count; i++) {
+        if (tune->trials[i].scheme == scheme && tune->trials[i].notch == notch) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void apply_look(void *owner, size_t number, Scenario *scenario)
+{
+    const Look *look = owner;
+    const TuneScheme *scheme = &look->tune->schemes[look->schemes[number]];
+    tune_apply(scheme, tune_value(look->notches[number]), scenario);
+}
+
+static void take_look(void *owner, size_t number, const LadderRun *run)
+{
+    const Look *look = owner;
+    TuneScheme *scheme = &look->tune->schemes[look->schemes[number]];
+    const TuneScheme kept = *scheme;
+    tune_take(look->tune, look->schemes[number], look->notches[number], run);
+    // a look aside: the search itself stays where it was
+    scheme->fate = kept.fate;
+    scheme->next = kept.next;
+    scheme->pending = kept.pending;
+    scheme->best = kept.best;
 }
 
 // The finest setting of each scheme that is within the limit, where it has not been run: what can
 // be had for that cost.
-static bool search_within(const TuneSearch *search, const Truth *truth, Err *err)
+static bool search_within(const TuneSearch *search, Err *err)
 {
-    Tune *tune = search->tune;
-    const double most = tune->cost == TUNE_STEPS ? (double)tune->limit.steps : tune->limit.time_s;
-    TunePool pool;
-    tune_pool_init(&pool, search->jobs, search->time_limit_s);
-    bool is_going = true;
-    for (size_t i = 0; i < tune->scheme_count && is_going; i++) {
-        TuneScheme *scheme = &tune->schemes[i];
-        int notch = scheme->first;
-        while (tune_cost(tune, i, notch + 1) <= most && notch < scheme->next + 30 &&
-               scheme_has_step(&scheme->scheme)) {
-            notch++;
-        }
-        bool is_known = false;
-        for (size_t k = 0; k < tune->trial_count; k++) {
-            is_known = is_known || (tune->trials[k].scheme == i && tune->trials[k].notch == notch);
-        }
-        if (is_known || scheme->trials == 0) {
-            continue;
-        }
-        const Task task = tune_search_task(search, LADDER_ERROR, truth, i, tune_value(notch));
-        is_going = tune_pool_start(&pool, &task, i, err);
-        size_t tag;
-        LadderRun run;
-        while (is_going && pool.busy > 0) {
-            search->wait("looking at what the cost allows", search->context);
-            if (tune_pool_take(&pool, &tag, &run)) {
-                const TuneScheme kept = *scheme;
-                tune_take(tune, tag, notch, &run);
-                // a look aside: the search itself stays where it was
-                scheme->fate = kept.fate;
-                scheme->next = kept.next;
-                scheme->pending = kept.pending;
-                scheme->best = kept.best;
-            }
+    const Tune *tune = search->tune;
+    Look look = {.tune = search->tune};
+    size_t count = 0;
+    for (size_t i = 0; i < tune->scheme_count; i++) {
+        const int notch = find_within(tune, i);
+        if (tune->schemes[i].trials > 0 && !is_run(tune, i, notch)) {
+            look.schemes[count] = i;
+            look.notches[count++] = notch;
         }
     }
-    tune_pool_finish(&pool);
-    return is_going;
+    const TuneRuns runs = {"looking at what the cost allows", count, apply_look, take_look,
+                           .owner = &look};
+    return tune_runs_make(search, &runs, err);
 }
 
-static bool is_finalist(const Tune *tune, int scheme, double best)
+// The schemes that are timed.
+typedef struct Finalists {
+    Tune *tune;
+    size_t count;
+    size_t schemes[SCHEME_MAX];
+} Finalists;
+
+static void apply_finalist(void *owner, size_t number, Scenario *scenario)
 {
-    const TuneTrial *trial = tune_best(tune, scheme);
-    return trial != NULL && tune_trial_cost(tune, trial) <= FINALIST * best;
+    const Finalists *finalists = owner;
+    const Tune *tune = finalists->tune;
+    const size_t scheme = finalists->schemes[number % finalists->count];
+    tune_apply(&tune->schemes[scheme], tune_best(tune, (int)scheme)->value, scenario);
+}
+
+static void take_finalist(void *owner, size_t number, const LadderRun *run)
+{
+    const Finalists *finalists = owner;
+    TuneScheme *scheme = &finalists->tune->schemes[finalists->schemes[number % finalists->count]];
+    if (run->is_complete) {
+        scheme->processor_s[scheme->timed] = run->processor_s;
+        scheme->wall_s[scheme->timed++] = run->wall_s;
+    }
 }
 
 // Times the finalists in turn, one run at a time, so that whatever slows the machine down slows
 // all.
-static bool time_finalists(const TuneSearch *search, const Truth *truth, Err *err)
+static bool time_finalists(const TuneSearch *search, Err *err)
 {
     Tune *tune = search->tune;
     const TuneTrial *winner = tune_best(tune, tune->winner);
     const double best = winner != NULL ? tune_trial_cost(tune, winner) : INFINITY;
-    TunePool pool;
-    tune_pool_init(&pool, 1, search->time_limit_s);
-    bool is_going = true;
-    for (size_t round = 0; round < TUNE_REPEATS; round++) {
-        for (int i = 0; i < (int)tune->scheme_count && is_going; i++) {
-            TuneScheme *scheme = &tune->schemes[i];
-            if (!is_finalist(tune, i, best)) {
-                continue;
-            }
-            const Task task = tune_search_task(search, LADDER_TIMING, truth, (size_t)i,
-                                               tune_best(tune, i)->value);
-            is_going = tune_pool_start(&pool, &task, (size_t)i, err);
-            size_t tag;
-            LadderRun run;
-            while (is_going && pool.busy > 0) {
-                search->wait("timing the finalists", search->context);
-                if (tune_pool_take(&pool, &tag, &run) && run.is_complete) {
-                    scheme->processor_s[scheme->timed] = run.processor_s;
-                    scheme->wall_s[scheme->timed++] = run.wall_s;
-                }
-            }
+    Finalists finalists = {.tune = tune};
+    for (size_t i = 0; i < tune->scheme_count; i++) {
+        const TuneTrial *trial = tune_best(tune, (int)i);
+        if (trial != NULL && tune_trial_cost(tune, trial) <= FINALIST * best) {
+            finalists.schemes[finalists.count++] = i;
         }
     }
-    tune_pool_finish(&pool);
-    return is_going;
+    const TuneRuns runs = {"timing the finalists", TUNE_REPEATS * finalists.count,
+                           apply_finalist,         take_finalist,
+                           .owner = &finalists,    .is_timing = true};
+    return tune_runs_make(search, &runs, err);
 }
 
 // Whether errors can be told from the truth's own at all.
@@ -263,49 +281,50 @@ static bool check_target(const Tune *tune, Err *err)
 }
 
 // All schemes at the step that is held; where none meets the target, the longest step that does.
-static bool search_held(const TuneSearch *search, const Truth *truth, Err *err)
+static bool search_held(const TuneSearch *search, Err *err)
 {
     Tune *tune = search->tune;
-    bool is_done = tune_held_run(search, truth, err);
+    bool is_done = tune_held_run(search, err);
     tune_conclude(tune, search->scenario);
     if (is_done && !tune_is_met_held(tune)) {
-        is_done = search_all(search, truth, err);
+        is_done = search_all(search, err);
         tune_conclude(tune, search->scenario);
     }
     return is_done;
 }
 
 // The cheapest setting of all.
-static bool search_cheapest(const TuneSearch *search, const Truth *truth, Err *err)
+static bool search_cheapest(const TuneSearch *search, Err *err)
 {
     Tune *tune = search->tune;
-    bool is_done = search_all(search, truth, err) && search_plain(search, truth, err);
+    bool is_done = search_all(search, err) && search_plain(search, err);
     if (is_done && (tune->limit.steps > 0 || tune->limit.time_s > 0.0)) {
-        is_done = search_within(search, truth, err);
+        is_done = search_within(search, err);
     }
     tune_conclude(tune, search->scenario);
-    is_done = is_done && time_finalists(search, truth, err);
+    is_done = is_done && time_finalists(search, err);
     tune_conclude(tune, search->scenario);
     return is_done;
 }
 
-bool tune_search_execute(const TuneSearch *search, Err *err)
+bool tune_search_execute(const TuneSearch *asked, Err *err)
 {
-    Tune *tune = search->tune;
-    const TruthChild work = {.scenario = search->scenario,
-                             .run_limit_s = search->time_limit_s,
-                             .wait = search->wait,
-                             .context = search->context};
+    Tune *tune = asked->tune;
+    const TruthChild work = {.scenario = asked->scenario,
+                             .run_limit_s = asked->time_limit_s,
+                             .wait = asked->wait,
+                             .context = asked->context};
     const double started_s = clock_now_s();
     Truth truth = {.trajectory = NULL};
     bool is_done = truth_child_make(&work, &truth, err);
     if (is_done) {
         tune->truth = ladder_truth_of(&truth, clock_now_s() - started_s);
     }
+    TuneSearch search = *asked;
+    search.truth = &truth;
     is_done = is_done && check_target(tune, err) &&
-              (tune->held_s > 0.0 ? search_held(search, &truth, err)
-                                  : search_cheapest(search, &truth, err)) &&
-              tune_linear_run(search, &truth, err);
+              (tune->held_s > 0.0 ? search_held(&search, err) : search_cheapest(&search, err)) &&
+              tune_linear_run(&search, err);
     truth_finish(&truth);
     return is_done;
 }

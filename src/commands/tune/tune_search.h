@@ -1,22 +1,7 @@
-// Makes the runs of a search, each in a process of its own.
+// Searches for the cheapest setting.
 #pragma once
 
-#include "commands/tune/tune.h"
-#include "measure/task.h"
-
-// What the search may use, and who is told of it.
-typedef struct TuneSearch {
-    Tune *tune;
-    const Scenario *scenario;
-    size_t jobs;                                    // runs at a time; timing runs go one by one
-    double time_limit_s;                            // of one run
-    void (*wait)(const char *doing, void *context); // a few times a second
-    void *context;
-} TuneSearch;
-
-// The run of a scheme at a step or tolerance.
-Task tune_search_task(const TuneSearch *search, LadderKind kind, const Truth *truth, size_t scheme,
-                      double value);
+#include "commands/tune/tune_runs.h"
 
 // Makes the truth and searches: always the cheapest setting that is left, until what is left costs
 // more than the best that meets the target. Then the plain rows on their own, the finest steps

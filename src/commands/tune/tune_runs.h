@@ -1,0 +1,33 @@
+// The runs of a search, made side by side, each in a process of its own.
+#pragma once
+
+#include "commands/tune/tune.h"
+#include "measure/task.h"
+
+// What the search may use, and who is told of it.
+typedef struct TuneSearch {
+    Tune *tune;
+    const Scenario *scenario;
+    size_t jobs;                                    // runs at a time; timing runs go one by one
+    double time_limit_s;                            // of one run
+    void (*wait)(const char *doing, void *context); // a few times a second
+    void *context;
+    const Truth *truth; // that runs are held against; the search makes it
+} TuneSearch;
+
+// Runs of one kind.
+typedef struct TuneRuns {
+    const char *doing; // as the listener is told
+    size_t count;      // their numbers are those below
+    // Makes the scenario of the search that of a run.
+    void (*apply)(void *owner, size_t number, Scenario *scenario);
+    // Takes in a run that is over; one whose process died or hung is not complete.
+    void (*take)(void *owner, size_t number, const LadderRun *run);
+    void *owner;
+    // Chooses the next run; false: none can begin now. NULL: each once, by rising number.
+    bool (*choose)(void *owner, size_t *number);
+    bool is_timing; // one at a time, and nothing but the time is measured
+} TuneRuns;
+
+// Makes the runs until none is left. Fails with ERR_SOLVER where the system has no process left.
+bool tune_runs_make(const TuneSearch *search, const TuneRuns *runs, Err *err);
