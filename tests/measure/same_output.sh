@@ -49,9 +49,9 @@ run_all() {
     case=$cases/paper/impact-k66.yaml
     keep compare.json "$program" compare --quiet --json --fresh --store=journal.jsonl \
         --steps='30 us, 10 us' --csv=compare.csv "$case"
-    keep tune.json "$program" tune --quiet --json --cost=steps --error=1e-2 --sdf=tune.sdf \
+    keep tune.json "$program" tune --quiet --json --jobs=1 --cost=steps --error=1e-2 --sdf=tune.sdf \
         --mjcf=tune.mjcf "$case"
-    keep tune-held.json "$program" tune --quiet --json --cost=steps --at-step='1 ms' "$case"
+    keep tune-held.json "$program" tune --quiet --json --jobs=1 --cost=steps --at-step='1 ms' "$case"
     keep map-lone.json "$program" map --quiet --json --stiffness='1e9 N/m^1.5' --mass='1 kg' \
         --step='1 ms'
     keep map-inverse.json "$program" map --quiet --json --erp=0.2 --cfm=1e-5 --step='1 ms'

@@ -1,9 +1,39 @@
-// The numbers of one run, added to a measure.
+// What a regression check measures, a list of numbers with names, and how those of one run get into
+// it.
 #pragma once
 
-#include "commands/check/check_measure.h"
 #include "measure/error.h"
 #include "model/scale.h"
+
+enum { CHECK_NAME_SIZE = 112, CHECK_METRIC_MAX = 2048, CHECK_MESSAGE_SIZE = 512 };
+
+typedef enum CheckKind {
+    CHECK_REAL,
+    CHECK_COUNT, // a whole number
+    CHECK_HASH,  // of a trajectory: equal or not
+} CheckKind;
+
+// One number. Its name says where it is from and what its unit is:
+// "ode/coupler/alpha_max_rad_s2", and "ode-to-horizon/..." where the run was cut short at the
+// horizon of predictability.
+typedef struct CheckMetric {
+    char name[CHECK_NAME_SIZE];
+    CheckKind kind;
+    bool is_slow;  // measured where CheckPlan.is_full
+    double value;  // in the unit of its name
+    double scale;  // likewise, above 0 or 0: what a spread is a share of
+    double floor;  // likewise: what rounding alone may change, whatever an ensemble says
+    uint64_t hash; // of CHECK_HASH
+} CheckMetric;
+
+typedef struct CheckMeasure {
+    bool is_complete; // false: the message says which run failed and why
+    char message[CHECK_MESSAGE_SIZE];
+    size_t count;
+    CheckMetric metrics[CHECK_METRIC_MAX];
+    // SI, by expectation of the scenario and by backend; NAN where it was not measured
+    double expected[EXPECTATION_MAX][BACKEND_COUNT];
+} CheckMeasure;
 
 // Where numbers are added, and what they are scaled by.
 typedef struct CheckAdd {

@@ -1,13 +1,12 @@
 // How is a scenario measured?
 //
-// On each of its backends, as compare/check_add.c lists. Where the motion cannot be predicted to
+// On each of its backends, as check_add.c lists. Where the motion cannot be predicted to
 // its end it is measured twice: to its end, and up to the horizon, where every number still is one.
 // The error is then measured in the latter alone.
 #include "commands/check/check_measure.h"
 
 #include "base/shorten.h"
 #include "base/text.h"
-#include "commands/check/check_add.h"
 #include "commands/check/expect_value.h"
 #include "measure/backend_run.h"
 #include "model/perturb.h"
