@@ -86,7 +86,7 @@ int main(void)
             times[row][repetition] = timers[row](&scene, &sum);
         }
     }
-    printf("%-24s %12s %10s\n", "", "ns a query", "ratio");
+    printf("%-24s %12s %10s\n", "", "ns/query", "ratio");
     double first = 0.0;
     for (int row = 0; row < ROWS; row++) {
         sorted_make(times[row], REPETITIONS);

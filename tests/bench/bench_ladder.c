@@ -45,7 +45,7 @@ int main(void)
         climb(&scenario, truth, repetition, rungs);
     }
     printf("%10s %8s %12s %8s %12s %10s %10s\n", "step, us", "steps", "omega error", "order",
-           "alpha error", "wall, ms", "us a step");
+           "alpha error", "wall, ms", "us/step");
     for (int i = 0; i < RUNGS; i++) {
         Rung *rung = &rungs[i];
         sorted_make(rung->wall_s, REPETITIONS);

@@ -89,7 +89,7 @@ int main(void)
     for (int number = 0; number < PROBLEMS; number++) {
         print_problem(number);
     }
-    printf("\n%10s %12s %14s\n", "impacts", "evaluations", "for an impact");
+    printf("\n%10s %12s %14s\n", "impacts", "evaluations", "per impact");
     print_impacts(0.005);
     print_impacts(0.05);
     print_impacts(0.5);

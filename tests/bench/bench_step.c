@@ -87,7 +87,7 @@ int main(void)
                 row == 0 ? bare_us(&rows[row].scenario) : run_us(&rows[row].scenario);
         }
     }
-    printf("%-26s %12s %12s %10s\n", "", "us a step", "smallest", "ratio");
+    printf("%-26s %12s %12s %10s\n", "", "us/step", "smallest", "ratio");
     double first = 0.0;
     for (int row = 0; row < ROWS; row++) {
         sorted_make(times[row], REPETITIONS);
