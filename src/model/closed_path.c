@@ -34,28 +34,15 @@ static double find_size(const Linkage *linkage)
 {
     double size = 0.0;
     for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
-        const Joint *first = &linkage->joints[i / 2];
-        const int body = i % 2 == 0 ? first->body_a : first->body_b;
-        const Vec2 anchor = i % 2 == 0 ? first->anchor_a : first->anchor_b;
-        for (size_t k = 0; body != LINKAGE_GROUND && k < linkage->joint_count; k++) {
-            const Joint *other = &linkage->joints[k];
-            if (other->body_a == body) {
-                size = fmax(size, vec2_length(vec2_sub(other->anchor_a, anchor)));
-            }
-            if (other->body_b == body) {
-                size = fmax(size, vec2_length(vec2_sub(other->anchor_b, anchor)));
+        const JointEnd end = linkage_end(&linkage->joints[i / 2], i % 2);
+        for (size_t k = 0; end.body != LINKAGE_GROUND && k < i; k++) {
+            const JointEnd other = linkage_end(&linkage->joints[k / 2], k % 2);
+            if (other.body == end.body) {
+                size = fmax(size, vec2_length(vec2_sub(other.anchor, end.anchor)));
             }
         }
     }
     return size;
-}
-
-static void place_bodies(const ClosedPath *path, const double *at, Motion *motions)
-{
-    for (size_t i = 0; i < path->linkage->body_count; i++) {
-        motions[i].position = (Vec2){path->size * at[3 * i], path->size * at[3 * i + 1]};
-        motions[i].angle = at[3 * i + 2];
-    }
 }
 
 // The joints' rows at a position, and what each joint misses; returns the largest of it, in L.
@@ -63,20 +50,19 @@ static double evaluate(const ClosedPath *path, const double *at, Jacobian *jacob
                        double missing[KINEMATICS_ROW_MAX])
 {
     const Linkage *linkage = path->linkage;
-    bool include[LINKAGE_JOINT_MAX];
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[LINKAGE_BODY_MAX] = {0};
     double largest = 0.0;
-    place_bodies(path, at, motions);
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        const Vec2 opening = vec2_sub(linkage_point(motions, joint->body_a, joint->anchor_a),
-                                      linkage_point(motions, joint->body_b, joint->anchor_b));
-        missing[2 * i] = opening.x / path->size;
-        missing[2 * i + 1] = opening.y / path->size;
-        largest = fmax(largest, vec2_length(opening) / path->size);
-        include[i] = true;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i].position = (Vec2){path->size * at[3 * i], path->size * at[3 * i + 1]};
+        motions[i].angle = at[3 * i + 2];
     }
-    kinematics_jacobian(linkage, motions, include, false, jacobian);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Vec2 opening = linkage_joint_gap(linkage, motions, (int)i).position;
+        missing[2 * i] = -opening.x / path->size;
+        missing[2 * i + 1] = -opening.y / path->size;
+        largest = fmax(largest, vec2_length(opening) / path->size);
+    }
+    kinematics_jacobian(linkage, motions, NULL, false, jacobian);
     for (size_t row = 0; row < jacobian->rows; row++) {
         for (size_t column = 2; column < jacobian->columns; column += 3) {
             jacobian->entries[row * jacobian->columns + column] /= path->size;

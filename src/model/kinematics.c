@@ -22,21 +22,6 @@ static const double CLOSED = 1e-13;
 // pivots of a linkage that moves freely are above 1e-3 of the largest; below this it is stuck
 static const double LOOP_INDEPENDENT = 1e-9;
 
-static void fill_body(Jacobian *jacobian, size_t row, const Motion *motions, int body, Vec2 local,
-                      double sign)
-{
-    if (body == LINKAGE_GROUND) {
-        return;
-    }
-    const Vec2 arm = vec2_rotate(motions[body].angle, local);
-    double *x_row = jacobian->entries + row * jacobian->columns + 3 * (size_t)body;
-    double *y_row = x_row + jacobian->columns;
-    x_row[0] = sign;
-    x_row[2] = -sign * arm.y;
-    y_row[1] = sign;
-    y_row[2] = sign * arm.x;
-}
-
 void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bool *include,
                          bool with_driver, Jacobian *jacobian)
 {
@@ -44,17 +29,38 @@ void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bo
     jacobian->columns = 3 * linkage->body_count;
     memset(jacobian->entries, 0, sizeof jacobian->entries);
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (include[i]) {
-            fill_body(jacobian, jacobian->rows, motions, joint->body_a, joint->anchor_a, -1.0);
-            fill_body(jacobian, jacobian->rows, motions, joint->body_b, joint->anchor_b, 1.0);
-            jacobian->rows += 2;
+        if (include != NULL && !include[i]) {
+            continue;
         }
+        for (int side = 0; side < 2; side++) {
+            const JointEnd end = linkage_end(&linkage->joints[i], side);
+            if (end.body == LINKAGE_GROUND) {
+                continue;
+            }
+            const double sign = side == 0 ? -1.0 : 1.0;
+            const Vec2 arm = vec2_rotate(motions[end.body].angle, end.anchor);
+            double *x_row = jacobian->entries + jacobian->rows * jacobian->columns + 3 * end.body;
+            double *y_row = x_row + jacobian->columns;
+            x_row[0] = sign;
+            x_row[2] = -sign * arm.y;
+            y_row[1] = sign;
+            y_row[2] = sign * arm.x;
+        }
+        jacobian->rows += 2;
     }
     if (with_driver && linkage->driver.is_present) {
         const size_t column = 3 * (size_t)linkage_driven_body(linkage) + 2;
         jacobian->entries[jacobian->rows * jacobian->columns + column] = 1.0;
         jacobian->rows++;
+    }
+}
+
+void kinematics_move(const Linkage *linkage, const double *change, Motion *motions)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i].position.x += change[3 * i];
+        motions[i].position.y += change[3 * i + 1];
+        motions[i].angle += change[3 * i + 2];
     }
 }
 
@@ -75,10 +81,7 @@ double kinematics_closure_error(const Linkage *linkage, const Motion *motions)
 {
     double largest = 0.0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        const Vec2 a = linkage_point(motions, joint->body_a, joint->anchor_a);
-        const Vec2 b = linkage_point(motions, joint->body_b, joint->anchor_b);
-        largest = fmax(largest, vec2_length(vec2_sub(b, a)));
+        largest = fmax(largest, vec2_length(linkage_joint_gap(linkage, motions, (int)i).position));
     }
     return largest;
 }
@@ -86,12 +89,8 @@ double kinematics_closure_error(const Linkage *linkage, const Motion *motions)
 // Solves J u = right hand side for every joint and the driver; u has three entries a body.
 static bool solve_rows(const Linkage *linkage, const Motion *motions, double *right)
 {
-    bool include[LINKAGE_JOINT_MAX];
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        include[i] = true;
-    }
     Jacobian jacobian;
-    kinematics_jacobian(linkage, motions, include, true, &jacobian);
+    kinematics_jacobian(linkage, motions, NULL, true, &jacobian);
     return jacobian.rows == jacobian.columns &&
            dense_solve(jacobian.columns, jacobian.entries, right);
 }
@@ -100,9 +99,8 @@ static bool solve_rows(const Linkage *linkage, const Motion *motions, double *ri
 static double linkage_size(const Linkage *linkage)
 {
     double size = 0.0;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        size = fmax(size, vec2_length(linkage->joints[i].anchor_a));
-        size = fmax(size, vec2_length(linkage->joints[i].anchor_b));
+    for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
+        size = fmax(size, vec2_length(linkage_end(&linkage->joints[i / 2], i % 2).anchor));
     }
     return size;
 }
@@ -113,27 +111,19 @@ static bool newton(const Linkage *linkage, double crank_angle, Motion *motions)
     for (int iteration = 0; iteration < ITERATION_MAX; iteration++) {
         double residual[KINEMATICS_ROW_MAX] = {0.0};
         for (size_t i = 0; i < linkage->joint_count; i++) {
-            const Joint *joint = &linkage->joints[i];
-            const Vec2 a = linkage_point(motions, joint->body_a, joint->anchor_a);
-            const Vec2 b = linkage_point(motions, joint->body_b, joint->anchor_b);
-            residual[2 * i] = a.x - b.x;
-            residual[2 * i + 1] = a.y - b.y;
+            const Vec2 gap = linkage_joint_gap(linkage, motions, (int)i).position;
+            residual[2 * i] = -gap.x;
+            residual[2 * i + 1] = -gap.y;
         }
-        const int crank = linkage_driven_body(linkage);
-        residual[2 * linkage->joint_count] = crank_angle - motions[crank].angle;
-        const bool is_closed = kinematics_closure_error(linkage, motions) <= CLOSED * size &&
-                               fabs(residual[2 * linkage->joint_count]) <= CLOSED;
-        if (is_closed) {
+        double *turn = &residual[2 * linkage->joint_count];
+        *turn = crank_angle - motions[linkage_driven_body(linkage)].angle;
+        if (fabs(*turn) <= CLOSED && kinematics_closure_error(linkage, motions) <= CLOSED * size) {
             return true;
         }
         if (!solve_rows(linkage, motions, residual)) {
             return false;
         }
-        for (size_t i = 0; i < linkage->body_count; i++) {
-            motions[i].position.x += residual[3 * i];
-            motions[i].position.y += residual[3 * i + 1];
-            motions[i].angle += residual[3 * i + 2];
-        }
+        kinematics_move(linkage, residual, motions);
     }
     return false;
 }

@@ -16,10 +16,13 @@ typedef struct Jacobian {
     double entries[KINEMATICS_ROW_MAX * KINEMATICS_COLUMN_MAX];
 } Jacobian;
 
-// The constraint Jacobian: two rows a joint for which `include` is true, then one row for the
-// driver if there is one and `with_driver` is set.
+// The constraint Jacobian: two rows a joint for which `include` is true (all where it is NULL),
+// then one row for the driver if there is one and `with_driver` is set.
 void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bool *include,
                          bool with_driver, Jacobian *jacobian);
+
+// Adds a change, three numbers a body, to the positions and angles.
+void kinematics_move(const Linkage *linkage, const double *change, Motion *motions);
 
 // The freedoms left with the driver free: three a body less the independent constraint rows.
 // With `ideal_only`, joints with clearance are left open (two freedoms more each).

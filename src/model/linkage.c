@@ -41,14 +41,9 @@ double linkage_reach(const Linkage *linkage, int body)
 {
     const Body *own = &linkage->bodies[body];
     double reach = sqrt(own->inertia / own->mass);
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (joint->body_a == body) {
-            reach = fmax(reach, vec2_length(joint->anchor_a));
-        }
-        if (joint->body_b == body) {
-            reach = fmax(reach, vec2_length(joint->anchor_b));
-        }
+    for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
+        const JointEnd end = linkage_end(&linkage->joints[i / 2], i % 2);
+        reach = end.body == body ? fmax(reach, vec2_length(end.anchor)) : reach;
     }
     return reach;
 }
@@ -98,26 +93,22 @@ Vec2 linkage_point_velocity(const Motion *motions, int body, Vec2 local)
     return vec2_add(motion->velocity, vec2_scale(motion->omega, vec2_perp(arm)));
 }
 
-// Adds, with a sign, the place and the velocity of one end of a joint.
-static void add_end(const Motion *motions, int body, Vec2 anchor, double sign, JointGap *gap)
-{
-    if (body == LINKAGE_GROUND) {
-        gap->place = vec2_add(gap->place, vec2_scale(sign, anchor));
-        return;
-    }
-    const Motion *motion = &motions[body];
-    const Vec2 arm = vec2_rotate(motion->angle, anchor);
-    const Vec2 turning = vec2_scale(motion->omega, vec2_perp(arm));
-    gap->place = vec2_add(gap->place, vec2_scale(sign, vec2_add(motion->position, arm)));
-    gap->velocity = vec2_add(gap->velocity, vec2_scale(sign, vec2_add(motion->velocity, turning)));
-}
-
 JointGap linkage_joint_gap(const Linkage *linkage, const Motion *motions, int joint)
 {
-    const Joint *data = &linkage->joints[joint];
     JointGap gap = {{0.0, 0.0}, {0.0, 0.0}};
-    add_end(motions, data->body_b, data->anchor_b, 1.0, &gap);
-    add_end(motions, data->body_a, data->anchor_a, -1.0, &gap);
+    for (int side = 1; side >= 0; side--) {
+        const JointEnd end = linkage_end(&linkage->joints[joint], side);
+        const double sign = side == 1 ? 1.0 : -1.0;
+        if (end.body == LINKAGE_GROUND) {
+            gap.position = vec2_add(gap.position, vec2_scale(sign, end.anchor));
+            continue;
+        }
+        const Motion *motion = &motions[end.body];
+        const Vec2 arm = vec2_rotate(motion->angle, end.anchor);
+        const Vec2 velocity = vec2_add(motion->velocity, vec2_scale(motion->omega, vec2_perp(arm)));
+        gap.position = vec2_add(gap.position, vec2_scale(sign, vec2_add(motion->position, arm)));
+        gap.velocity = vec2_add(gap.velocity, vec2_scale(sign, velocity));
+    }
     return gap;
 }
 

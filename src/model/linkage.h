@@ -73,6 +73,18 @@ typedef struct Linkage {
     Driver driver;
 } Linkage;
 
+// One side of a joint: 0 that of body a, 1 that of body b.
+typedef struct JointEnd {
+    int body;
+    Vec2 anchor;
+} JointEnd;
+
+static inline JointEnd linkage_end(const Joint *joint, int side)
+{
+    return side == 0 ? (JointEnd){joint->body_a, joint->anchor_a}
+                     : (JointEnd){joint->body_b, joint->anchor_b};
+}
+
 // The centre distance at which pin and hole touch: hole radius minus pin radius, m.
 double linkage_radial_clearance(const Joint *joint);
 
@@ -106,11 +118,10 @@ void linkage_start(const Linkage *linkage, Motion *motions);
 Vec2 linkage_point(const Motion *motions, int body, Vec2 local);
 Vec2 linkage_point_velocity(const Motion *motions, int body, Vec2 local);
 
-// Where the second anchor of a joint (the pin) is against the first (the hole), m, and how fast it
-// moves there, m/s.
+// Where the second anchor of a joint (the pin) is against the first (the hole), and how it moves.
 typedef struct JointGap {
-    Vec2 place;
-    Vec2 velocity;
+    Vec2 position; // m
+    Vec2 velocity; // m/s
 } JointGap;
 
 JointGap linkage_joint_gap(const Linkage *linkage, const Motion *motions, int joint);

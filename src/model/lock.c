@@ -52,13 +52,9 @@ static Linkage idealised(const Linkage *linkage, LockJoints joints)
 static size_t rank_with(const Linkage *linkage, const Motion *motions, int body)
 {
     enum { ROWS = KINEMATICS_ROW_MAX + 3 };
-    bool include[LINKAGE_JOINT_MAX];
     double rows[ROWS * KINEMATICS_COLUMN_MAX] = {0.0};
     Jacobian jacobian;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        include[i] = true;
-    }
-    kinematics_jacobian(linkage, motions, include, true, &jacobian);
+    kinematics_jacobian(linkage, motions, NULL, true, &jacobian);
     memcpy(rows, jacobian.entries, jacobian.rows * jacobian.columns * sizeof *rows);
     size_t count = jacobian.rows;
     for (size_t i = 0; body >= 0 && i < 3; i++) {
@@ -79,22 +75,32 @@ static size_t number_determined(const Linkage *linkage, const Motion *motions, i
     return count;
 }
 
+// Counts the anchors of a body or the ground from a point of it.
+static void move_anchors(Linkage *part, int body, Vec2 origin)
+{
+    for (size_t i = 0; i < part->joint_count; i++) {
+        Joint *joint = &part->joints[i];
+        if (joint->body_a == body) {
+            joint->anchor_a = vec2_sub(joint->anchor_a, origin);
+        }
+        if (joint->body_b == body) {
+            joint->anchor_b = vec2_sub(joint->anchor_b, origin);
+        }
+    }
+}
+
 // Counts a body's angles and lengths from its first joint, so that it does not matter where its
 // frame lies.
 static void move_frame(Linkage *part, int body, Motion *motion)
 {
-    Vec2 first = {0.0, 0.0};
-    bool has_first = false;
     for (size_t i = 0; i < 2 * part->joint_count; i++) {
-        Joint *joint = &part->joints[i / 2];
-        Vec2 *anchor = i % 2 == 0 ? &joint->anchor_a : &joint->anchor_b;
-        if ((i % 2 == 0 ? joint->body_a : joint->body_b) == body) {
-            first = has_first ? first : *anchor;
-            has_first = true;
-            *anchor = vec2_sub(*anchor, first);
+        const JointEnd end = linkage_end(&part->joints[i / 2], i % 2);
+        if (end.body == body) {
+            move_anchors(part, body, end.anchor);
+            motion->position = vec2_add(motion->position, vec2_rotate(motion->angle, end.anchor));
+            return;
         }
     }
-    motion->position = vec2_add(motion->position, vec2_rotate(motion->angle, first));
 }
 
 // Puts the world's origin into the driver's pivot.
@@ -104,15 +110,7 @@ static void move_origin(Linkage *part, Motion *motions)
     for (size_t i = 0; i < part->body_count; i++) {
         motions[i].position = vec2_sub(motions[i].position, pivot);
     }
-    for (size_t i = 0; i < part->joint_count; i++) {
-        Joint *joint = &part->joints[i];
-        if (joint->body_a == LINKAGE_GROUND) {
-            joint->anchor_a = vec2_sub(joint->anchor_a, pivot);
-        }
-        if (joint->body_b == LINKAGE_GROUND) {
-            joint->anchor_b = vec2_sub(joint->anchor_b, pivot);
-        }
-    }
+    move_anchors(part, LINKAGE_GROUND, pivot);
 }
 
 // Takes out of the linkage what the driver determines. Returns whether that is more than the driven

@@ -113,11 +113,7 @@ bool nearest_places(const Linkage *linkage, Motion *motions)
         if (step == STEP_MAX || !least_change(linkage, motions, &demand, change)) {
             return false;
         }
-        for (size_t i = 0; i < linkage->body_count; i++) {
-            motions[i].position.x += change[3 * i];
-            motions[i].position.y += change[3 * i + 1];
-            motions[i].angle += change[3 * i + 2];
-        }
+        kinematics_move(linkage, change, motions);
     }
     return true;
 }

@@ -67,22 +67,19 @@ size_t response_play_rows(const Response *response)
 static void place_joint(Response *response, size_t row, const Motion *motions)
 {
     const Linkage *linkage = response->linkage;
-    const Joint *joint = &linkage->joints[response->joint_of[row]];
-    const int bodies[2] = {joint->body_a, joint->body_b};
-    const Vec2 anchors[2] = {joint->anchor_a, joint->anchor_b};
     ResponseRow *x_row = &response->rows[row];
     ResponseRow *y_row = &response->rows[row + 1];
-    for (int end = 0; end < 2; end++) {
+    for (int side = 0; side < 2; side++) {
+        const JointEnd end = linkage_end(&linkage->joints[response->joint_of[row]], side);
         const bool is_fixed =
-            bodies[end] == LINKAGE_GROUND || bodies[end] == linkage_driven_body(linkage);
-        const double sign = end == 0 ? -1.0 : 1.0;
-        const Vec2 arm =
-            is_fixed ? anchors[end] : vec2_rotate(motions[bodies[end]].angle, anchors[end]);
-        x_row->body[end] = y_row->body[end] = is_fixed ? LINKAGE_GROUND : bodies[end];
-        x_row->x[end] = sign;
-        x_row->turn[end] = -sign * arm.y;
-        y_row->y[end] = sign;
-        y_row->turn[end] = sign * arm.x;
+            end.body == LINKAGE_GROUND || end.body == linkage_driven_body(linkage);
+        const double sign = side == 0 ? -1.0 : 1.0;
+        const Vec2 arm = is_fixed ? end.anchor : vec2_rotate(motions[end.body].angle, end.anchor);
+        x_row->body[side] = y_row->body[side] = is_fixed ? LINKAGE_GROUND : end.body;
+        x_row->x[side] = sign;
+        x_row->turn[side] = -sign * arm.y;
+        y_row->y[side] = sign;
+        y_row->turn[side] = sign * arm.x;
     }
 }
 
@@ -206,15 +203,19 @@ void response_free(const Response *response, const Motion *motions, double gravi
     memcpy(rates, gamma + response->ideal_rows, response_play_rows(response) * sizeof *rates);
 }
 
-static void add_row(const Linkage *linkage, const ResponseRow *row, double impulse, double *changes)
+// Adds what an impulse in a row does to its bodies: changes of their speeds, or without a linkage
+// the impulses themselves.
+static void add_row(const Linkage *linkage, const ResponseRow *row, double impulse, double *sums)
 {
     for (int end = 0; end < 2; end++) {
         if (row->body[end] != LINKAGE_GROUND) {
-            const Body *body = &linkage->bodies[row->body[end]];
-            double *change = changes + 3 * row->body[end];
-            change[0] += row->x[end] * impulse / body->mass;
-            change[1] += row->y[end] * impulse / body->mass;
-            change[2] += row->turn[end] * impulse / body->inertia;
+            const Body *body = linkage != NULL ? &linkage->bodies[row->body[end]] : NULL;
+            const double mass = body != NULL ? body->mass : 1.0;
+            const double inertia = body != NULL ? body->inertia : 1.0;
+            double *sum = sums + 3 * row->body[end];
+            sum[0] += row->x[end] * impulse / mass;
+            sum[1] += row->y[end] * impulse / mass;
+            sum[2] += row->turn[end] * impulse / inertia;
         }
     }
 }
@@ -258,16 +259,7 @@ void response_load(const Response *response, const double *impulses, double *loa
 {
     memset(loads, 0, 3 * response->linkage->body_count * sizeof *loads);
     for (size_t i = response->ideal_rows; i < response->row_count; i++) {
-        const ResponseRow *row = &response->rows[i];
-        const double impulse = impulses[i - response->ideal_rows];
-        for (int end = 0; end < 2; end++) {
-            if (row->body[end] != LINKAGE_GROUND) {
-                double *load = loads + 3 * row->body[end];
-                load[0] += row->x[end] * impulse;
-                load[1] += row->y[end] * impulse;
-                load[2] += row->turn[end] * impulse;
-            }
-        }
+        add_row(NULL, &response->rows[i], impulses[i - response->ideal_rows], loads);
     }
 }
 
@@ -295,14 +287,14 @@ void response_close(const Response *response, const double *openings, double *ch
     }
 }
 
-void response_openings(const Response *response, const Motion *motions, double *places,
+void response_openings(const Response *response, const Motion *motions, double *positions,
                        double *rates)
 {
     const Linkage *linkage = response->linkage;
     for (size_t row = 0; row < response->ideal_rows; row += 2) {
         const JointGap gap = linkage_joint_gap(linkage, motions, response->joint_of[row]);
-        places[row] = gap.place.x;
-        places[row + 1] = gap.place.y;
+        positions[row] = gap.position.x;
+        positions[row + 1] = gap.position.y;
         rates[row] = gap.velocity.x;
         rates[row + 1] = gap.velocity.y;
     }

@@ -12,14 +12,9 @@ static double driven_span(const Linkage *linkage)
     const int driven = linkage_driven_body(linkage);
     const Vec2 pivot = linkage->joints[linkage->driver.joint].anchor_b;
     double span = 0.0;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (joint->body_a == driven) {
-            span = fmax(span, vec2_length(vec2_sub(joint->anchor_a, pivot)));
-        }
-        if (joint->body_b == driven) {
-            span = fmax(span, vec2_length(vec2_sub(joint->anchor_b, pivot)));
-        }
+    for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
+        const JointEnd end = linkage_end(&linkage->joints[i / 2], i % 2);
+        span = end.body == driven ? fmax(span, vec2_length(vec2_sub(end.anchor, pivot))) : span;
     }
     return span > 0.0 ? span : linkage_reach(linkage, driven);
 }

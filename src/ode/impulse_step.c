@@ -90,8 +90,8 @@ static void fill_rows(ImpulseStep *step)
         const size_t row = i * encounter->rows_a_joint;
         const Joint *joint = &linkage->joints[encounter->joints[i].joint];
         const JointGap gap = linkage_joint_gap(linkage, step->before, encounter->joints[i].joint);
-        encounter->place[row] = gap.place.x;
-        encounter->place[row + 1] = gap.place.y;
+        encounter->place[row] = gap.position.x;
+        encounter->place[row + 1] = gap.position.y;
         encounter->speed[row] = gap.velocity.x;
         encounter->speed[row + 1] = gap.velocity.y;
         if (encounter->rows_a_joint == 4) {
