@@ -105,11 +105,11 @@ static bool build(const Entries *entries, Scenario *scenario, Err *err)
         *err = own; // it has its place already
         return false;
     }
+    static const char FORMAT[] = "the mechanism cannot be solved at its start: %s";
     const Entry *speed = entries_find(entries, "drive.speed", 0);
-    const EntryGroup *top = entries_group(entries, "", 0);
-    return source_error(speed != NULL ? speed->source : top->source,
-                        speed != NULL ? speed->node->span : top->node->span, NULL, err,
-                        "the mechanism cannot be solved at its start: %s", own.text);
+    return speed != NULL
+               ? entries_refuse(speed, err, FORMAT, own.text)
+               : entries_refuse_group(entries_group(entries, "", 0), err, FORMAT, own.text);
 }
 
 bool assemble_scenario(const Entries *entries, Scenario *scenario, Err *err)

@@ -16,8 +16,6 @@ static const double STEPS_MAX = 1e9;
 // 1e7 samples of a four-bar fill some 4 GB.
 static const double SAMPLES_MAX = 1e7;
 
-enum { ALLOWED_SIZE = 192 };
-
 static bool has_rival(const Entries *entries, const SchemaRow *row, size_t index)
 {
     for (size_t i = 0; i < entries->count; i++) {
@@ -57,7 +55,7 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
     } else {
         wanted_describe(entries, row, &allowed);
     }
-    source_error(group->source, keys_span(group->node), allowed.data, err, "%s is missing", path);
+    entries_refuse_group(group, err, "%s is missing\nallowed: %s", path, allowed.data);
     text_finish(&allowed);
     return false;
 }
@@ -105,15 +103,12 @@ static bool check_sizes(const Entries *entries, size_t index, const Joint *joint
     if (hole == NULL || pin == NULL || linkage_radial_clearance(joint) > 0.0) {
         return true;
     }
-    static const char *const SIZES[] = {"joints.*.pin", "joints.*.hole"};
-    const Entry *culprit = entries_blame(entries, SIZES, 2, index);
+    const Entry *culprit = entries_blame(entries, "joints.*.pin joints.*.hole", index);
     const bool hole_is_new = culprit == hole;
-    char allowed[ALLOWED_SIZE];
-    snprintf(allowed, sizeof allowed, hole_is_new ? "a hole above %.60s" : "a pin below %.60s",
-             hole_is_new ? pin->node->text : hole->node->text);
-    return source_error(culprit->source, culprit->node->span, allowed, err,
-                        "the pin (%.60s) must be smaller than the hole (%.60s)", pin->node->text,
-                        hole->node->text);
+    return entries_refuse(
+        culprit, err, "the pin (%.60s) must be smaller than the hole (%.60s)\nallowed: %s %.60s",
+        pin->node->text, hole->node->text, hole_is_new ? "a hole above" : "a pin below",
+        hole_is_new ? pin->node->text : hole->node->text);
 }
 
 static bool check_joint(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
@@ -129,22 +124,23 @@ static bool check_joint(const Entries *entries, size_t index, const Scenario *sc
     const double radial = linkage_radial_clearance(joint);
     const double start = vec2_length(joint->clearance.start);
     if (!(start <= radial)) {
-        static const char *const PLACES[] = {"joints.*.start", "joints.*.radial-clearance",
-                                             "joints.*.hole", "joints.*.pin"};
-        const Entry *entry = entries_blame(entries, PLACES, 4, index);
-        char allowed[ALLOWED_SIZE];
-        snprintf(allowed, sizeof allowed, "up to the radial clearance, %.6g um", 1e6 * radial);
-        return source_error(entry->source, entry->node->span, allowed, err,
-                            "the pin starts %.6g um off the centre, inside the metal", 1e6 * start);
+        return entries_refuse(
+            entries_blame(entries,
+                          "joints.*.start joints.*.radial-clearance joints.*.hole joints.*.pin",
+                          index),
+            err,
+            "the pin starts %.6g um off the centre, inside the metal\n"
+            "allowed: up to the radial clearance, %.6g um",
+            1e6 * start, 1e6 * radial);
     }
     if (needs_width(scenario) && joint->clearance.width == 0.0) {
         const Entry *law = entries_find(entries, "contact.law", 0);
-        const bool law_is_new = law != NULL && law->source->is_override;
-        return source_error(law_is_new ? law->source : group->source,
-                            law_is_new ? law->node->span : keys_span(group->node),
-                            "width: 13 mm, or a law without it", err,
-                            "the law %s needs the width of joint %s",
-                            OPTIONS_LAWS[scenario->contact.law], joint->name);
+        static const char FORMAT[] = "the law %s needs the width of joint %s\n"
+                                     "allowed: width: 13 mm, or a law without it";
+        const char *name = OPTIONS_LAWS[scenario->contact.law];
+        return law != NULL && law->source->is_override
+                   ? entries_refuse(law, err, FORMAT, name, joint->name)
+                   : entries_refuse_group(group, err, FORMAT, name, joint->name);
     }
     return true;
 }
@@ -152,28 +148,26 @@ static bool check_joint(const Entries *entries, size_t index, const Scenario *sc
 static bool check_contact(const Entries *entries, const Scenario *scenario, Err *err)
 {
     const ContactOptions *contact = &scenario->contact;
-    const Entry *model = entries_find(entries, "contact.model", 0);
     if (contact->model == CONTACT_POISSON && contact->penalty == 0.0 &&
         !scenario->linkage.driver.is_present) {
-        return source_error(model->source, model->node->span,
-                            "impact, or contact.penalty such as 973.33 N s/mm", err,
-                            "the paper's estimate of the penalty needs the speed of a drive");
+        return entries_refuse(entries_find(entries, "contact.model", 0), err,
+                              "the paper's estimate of the penalty needs the speed of a "
+                              "drive\nallowed: impact, or contact.penalty such as 973.33 N s/mm");
     }
     const Entry *damping = entries_find(entries, "contact.damping", 0);
     if (damping == NULL || contact->model != CONTACT_IMPACT) {
         return true;
     }
     if (contact->damping == DAMPING_VISCOUS && contact->viscous_coefficient == 0.0) {
-        return source_error(damping->source, damping->node->span,
-                            "another damping, or contact.viscous-coefficient such as 100 N s/m",
-                            err, "damping viscous needs contact.viscous-coefficient");
+        return entries_refuse(damping, err,
+                              "damping viscous needs contact.viscous-coefficient\nallowed: another "
+                              "damping, or contact.viscous-coefficient such as 100 N s/m");
     }
-    static const char *const LOSSES[] = {"contact.restitution", "contact.damping"};
     if (contact->restitution == 0.0 && !isfinite(damping_factor(contact->damping, 0.0))) {
-        const Entry *entry = entries_blame(entries, LOSSES, 2, 0);
-        return source_error(
-            entry->source, entry->node->span, "above 0 and up to 1, or another damping", err,
-            "damping %s has no finite factor at restitution 0", OPTIONS_DAMPINGS[contact->damping]);
+        return entries_refuse(entries_blame(entries, "contact.restitution contact.damping", 0), err,
+                              "damping %s has no finite factor at restitution 0\nallowed: above 0 "
+                              "and up to 1, or another damping",
+                              OPTIONS_DAMPINGS[contact->damping]);
     }
     return true;
 }
@@ -181,96 +175,87 @@ static bool check_contact(const Entries *entries, const Scenario *scenario, Err 
 static bool check_steps(const Entries *entries, const RunOptions *run, double duration,
                         bool is_driven, Err *err)
 {
-    static const char *const LENGTHS[] = {"run.step", "run.revolutions", "run.duration",
-                                          "drive.speed"};
-    const Entry *entry = entries_blame(entries, LENGTHS, 4, 0);
+    const Entry *entry =
+        entries_blame(entries, "run.step run.revolutions run.duration drive.speed", 0);
     if (run->step == 0.0) {
         return true; // chosen as the run goes
     }
     const double steps = duration / run->step;
-    char allowed[ALLOWED_SIZE];
     if (!(steps <= STEPS_MAX)) {
-        snprintf(allowed, sizeof allowed, "at most %g steps: here a step of %.3g s or more, or %s",
-                 STEPS_MAX, duration / STEPS_MAX,
-                 is_driven ? "fewer revolutions" : "a shorter run");
-        return source_error(entry->source, entry->node->span, allowed, err,
-                            "the run of %.4g s takes %.3g steps of %.3g s", duration, steps,
-                            run->step);
+        return entries_refuse(entry, err,
+                              "the run of %.4g s takes %.3g steps of %.3g s\n"
+                              "allowed: at most %g steps: here a step of %.3g s or more, or %s",
+                              duration, steps, run->step, STEPS_MAX, duration / STEPS_MAX,
+                              is_driven ? "fewer revolutions" : "a shorter run");
     }
-    if (!(run->step <= duration)) {
-        snprintf(allowed, sizeof allowed, "a step of %.3g s or less", duration);
-        return source_error(entry->source, entry->node->span, allowed, err,
-                            "the step (%.3g s) is longer than the run", run->step);
-    }
-    return true;
+    return run->step <= duration || entries_refuse(entry, err,
+                                                   "the step (%.3g s) is longer than the run\n"
+                                                   "allowed: a step of %.3g s or less",
+                                                   run->step, duration);
 }
 
 static bool check_samples(const Entries *entries, const RunOptions *run, Err *err)
 {
-    static const char *const NUMBERS[] = {"run.samples", "run.revolutions"};
     const double samples = run->revolutions * (double)run->samples;
     if (samples <= SAMPLES_MAX && samples >= 1.0) {
         return true;
     }
     // the defaults alone are sane, so that one of the two is given
-    const Entry *entry = entries_blame(entries, NUMBERS, 2, 0);
-    char allowed[ALLOWED_SIZE];
-    snprintf(allowed, sizeof allowed, "1 to %g samples in the whole run", SAMPLES_MAX);
-    return source_error(entry->source, entry->node->span, allowed, err,
-                        "the run holds %.3g samples (%g revolutions with %zu each)", samples,
-                        run->revolutions, run->samples);
+    return entries_refuse(entries_blame(entries, "run.samples run.revolutions", 0), err,
+                          "the run holds %.3g samples (%g revolutions with %zu each)\n"
+                          "allowed: 1 to %g samples in the whole run",
+                          samples, run->revolutions, run->samples, SAMPLES_MAX);
 }
 
 // With a drive a run is counted in its revolutions, without one in seconds.
 static bool check_length(const Entries *entries, bool is_driven, Err *err)
 {
     const Entry *wrong = entries_find(entries, is_driven ? "run.duration" : "run.revolutions", 0);
-    return wrong == NULL ||
-           source_error(wrong->source, wrong->node->span,
-                        is_driven ? "revolutions of the drive, such as revolutions: 1"
-                                  : "a duration, such as duration: 60 ms",
-                        err,
-                        is_driven ? "a run with a drive has no duration of its own"
-                                  : "without a drive there are no revolutions");
+    if (wrong == NULL) {
+        return true;
+    }
+    return is_driven ? entries_refuse(wrong, err,
+                                      "a run with a drive has no duration of its own\n"
+                                      "allowed: revolutions of the drive, such as revolutions: 1")
+                     : entries_refuse(wrong, err,
+                                      "without a drive there are no revolutions\n"
+                                      "allowed: a duration, such as duration: 60 ms");
 }
 
 // What is reported begins before the run ends.
 static bool check_report(const Entries *entries, const Scenario *scenario, bool is_driven, Err *err)
 {
-    static const char *const KEYS[] = {"run.report-from", "run.revolutions", "run.duration"};
     const RunOptions *run = &scenario->run;
-    const Entry *own = entries_find(entries, KEYS[0], 0);
+    const Entry *own = entries_find(entries, "run.report-from", 0);
     if (own == NULL) {
         return true;
     }
     if (run->is_report_from_in_turns && !is_driven) {
-        return source_error(own->source, own->node->span, "a time, such as 60 ms", err,
-                            "without a drive there are no revolutions");
+        return entries_refuse(
+            own, err, "without a drive there are no revolutions\nallowed: a time, such as 60 ms");
     }
     if (scenario_reports_any(scenario)) {
         return true;
     }
-    const Entry *entry = entries_blame(entries, KEYS, 3, 0);
-    char allowed[ALLOWED_SIZE];
+    const Entry *entry = entries_blame(entries, "run.report-from run.revolutions run.duration", 0);
+    char turns[64] = "";
     if (is_driven) {
-        snprintf(allowed, sizeof allowed, "less than the run, %g revolution%s or %.4g s",
-                 run->revolutions, run->revolutions == 1.0 ? "" : "s", scenario_duration(scenario));
-    } else {
-        snprintf(allowed, sizeof allowed, "less than the run, %.4g s", scenario_duration(scenario));
+        snprintf(turns, sizeof turns, "%g revolution%s or ", run->revolutions,
+                 run->revolutions == 1.0 ? "" : "s");
     }
-    return source_error(entry->source, entry->node->span, allowed, err,
-                        "run.report-from (%.40s) is not before the end of the run",
-                        own->node->text);
+    return entries_refuse(entry, err,
+                          "run.report-from (%.40s) is not before the end of the run\n"
+                          "allowed: less than the run, %s%.4g s",
+                          own->node->text, turns, scenario_duration(scenario));
 }
 
 static bool check_backends(const Entries *entries, const RunOptions *run, Err *err)
 {
     for (size_t i = 0; entries->form == SCHEMA_LONG && i < run->backend_count; i++) {
         if (run->backends[i] == BACKEND_ANALYTIC) {
-            const Entry *entry = entries_find(entries, "run.backends", 0);
-            return source_error(entry->source, entry->node->span, "reference, ode", err,
-                                "the analytic backend knows four-bars only, in a case with "
-                                "four-bar");
+            return entries_refuse(entries_find(entries, "run.backends", 0), err,
+                                  "the analytic backend knows four-bars only, in a case with "
+                                  "four-bar\nallowed: reference, ode");
         }
     }
     return true;
@@ -283,23 +268,21 @@ static bool check_stepping(const Entries *entries, const Scenario *scenario, Err
     const bool has_play = scenario_has_clearance(scenario);
     const bool is_impact = has_play && scenario->contact.model == CONTACT_IMPACT;
     if (scenario->run.step == 0.0) {
-        static const char *const KEYS[] = {"run.step", "contact.model"};
-        const Entry *entry = entries_blame(entries, KEYS, 2, 0);
+        const Entry *entry = entries_blame(entries, "run.step contact.model", 0);
         return !has_play || is_impact ||
-               source_error(entry->source, entry->node->span,
-                            "a step such as 1 us, or contact.model: impact", err,
-                            "a step can only be chosen for the impact model");
+               entries_refuse(entry, err,
+                              "a step can only be chosen for the impact model\nallowed: a step "
+                              "such as 1 us, or contact.model: impact");
     }
     if (has_play && ode->stepping == ODE_EXTRAPOLATED) {
-        const Entry *entry = entries_find(entries, "ode.stepping", 0);
-        return source_error(entry->source, entry->node->span, "plain, staggered", err,
-                            "extrapolated stepping is for ideal joints: contacts are not smooth");
+        return entries_refuse(entries_find(entries, "ode.stepping", 0), err,
+                              "extrapolated stepping is for ideal joints: contacts are not "
+                              "smooth\nallowed: plain, staggered");
     }
     if (is_impact && ode->map == ODE_MAP_IMPULSE && ode->stepping != ODE_STAGGERED) {
-        static const char *const KEYS[] = {"ode.map", "ode.stepping"};
-        const Entry *entry = entries_blame(entries, KEYS, 2, 0);
-        return source_error(entry->source, entry->node->span, "stepping: staggered, or another map",
-                            err, "map impulse needs stepping staggered");
+        return entries_refuse(
+            entries_blame(entries, "ode.map ode.stepping", 0), err,
+            "map impulse needs stepping staggered\nallowed: stepping: staggered, or another map");
     }
     return true;
 }
@@ -308,9 +291,8 @@ static bool check_run(const Entries *entries, const Scenario *scenario, Err *err
 {
     const bool is_driven = scenario->linkage.driver.is_present;
     if (is_driven && scenario->linkage.driver.speed == 0.0) {
-        const Entry *speed = entries_find(entries, "drive.speed", 0);
-        return source_error(speed->source, speed->node->span, "any speed but 0", err,
-                            "the crank does not turn");
+        return entries_refuse(entries_find(entries, "drive.speed", 0), err,
+                              "the crank does not turn\nallowed: any speed but 0");
     }
     return check_length(entries, is_driven, err) &&
            check_report(entries, scenario, is_driven, err) &&
@@ -331,9 +313,10 @@ static bool check_drive(const Entries *entries, const Linkage *linkage, Err *err
     if (!has_play && (driven->body_a == LINKAGE_GROUND || driven->body_b == LINKAGE_GROUND)) {
         return true;
     }
-    return source_error(entry->source, entry->node->span, "an ideal joint with the ground", err,
-                        "the drive cannot turn a body about joint '%s', which %s", driven->name,
-                        has_play ? "has play" : "is not with the ground");
+    return entries_refuse(entry, err,
+                          "the drive cannot turn a body about joint '%s', which %s\nallowed: an "
+                          "ideal joint with the ground",
+                          driven->name, has_play ? "has play" : "is not with the ground");
 }
 
 // Speeds at the start are the drive's where it determines them.
@@ -341,9 +324,10 @@ static bool check_speeds(const Entries *entries, const Linkage *linkage, Err *er
 {
     const Entry *entry = entries_speed(entries, linkage->body_count);
     return entry == NULL || !build_is_determined(linkage) ||
-           source_error(entry->source, entry->node->span, "no velocity and no spin", err,
-                        "the drive determines how body '%s' moves",
-                        linkage->bodies[entry->index].name);
+           entries_refuse(
+               entry, err,
+               "the drive determines how body '%s' moves\nallowed: no velocity and no spin",
+               linkage->bodies[entry->index].name);
 }
 
 bool check_values(const Entries *entries, const Scenario *scenario, Err *err)
@@ -351,9 +335,9 @@ bool check_values(const Entries *entries, const Scenario *scenario, Err *err)
     const Linkage *linkage = &scenario->linkage;
     const EntryGroup *bodies = entries_group(entries, "bodies", 0);
     if (linkage->body_count == 0) {
-        return source_error(bodies->source, keys_span(bodies->node),
-                            "pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm]}", err,
-                            "a case needs a body");
+        return entries_refuse_group(bodies, err,
+                                    "a case needs a body\nallowed: pin: {mass: 0.1 kg, inertia: 2 "
+                                    "kg mm^2, at: [0 mm, 0 mm]}");
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (!check_joint(entries, i, scenario, err)) {

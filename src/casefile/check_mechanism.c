@@ -1,12 +1,7 @@
 // Is this a mechanism at all?
 #include "casefile/check_mechanism.h"
 
-#include "casefile/keys.h"
-
 #include <math.h>
-#include <stdio.h>
-
-enum { ALLOWED_SIZE = 192 };
 
 static bool has_joint(const Linkage *linkage, int body)
 {
@@ -23,10 +18,10 @@ static bool check_bodies(const Entries *entries, const Linkage *linkage, Err *er
     for (size_t i = 0; i < linkage->body_count; i++) {
         if (!has_joint(linkage, (int)i)) {
             const EntryGroup *group = entries_group(entries, "bodies.*", i);
-            return source_error(group->source, keys_span(group->node),
-                                "a joint between it and the ground or another body", err,
-                                "the body '%s' has no joint: nothing holds it",
-                                linkage->bodies[i].name);
+            return entries_refuse_group(group, err,
+                                        "the body '%s' has no joint: nothing holds it\nallowed: a "
+                                        "joint between it and the ground or another body",
+                                        linkage->bodies[i].name);
         }
     }
     return true;
@@ -65,23 +60,18 @@ static double shortest_link(const Entries *entries, const Scenario *scenario, si
 
 static bool check_play(const Entries *entries, const Scenario *scenario, size_t number, Err *err)
 {
-    static const char *const SIZES[] = {"joints.*.radial-clearance", "joints.*.hole",
-                                        "joints.*.pin"};
     const Joint *joint = &scenario->linkage.joints[number];
     const double shortest = shortest_link(entries, scenario, number);
     const double radial = linkage_radial_clearance(joint);
     if (joint->kind != JOINT_CLEARANCE || radial < shortest) {
         return true;
     }
-    const Entry *entry = entries_blame(entries, SIZES, 3, number);
-    char allowed[ALLOWED_SIZE];
-    snprintf(allowed, sizeof allowed,
-             "a radial clearance far below %.6g mm, the next joint's distance; usual are 5 to "
-             "500 um",
-             1e3 * shortest);
-    return source_error(entry->source, entry->node->span, allowed, err,
-                        "the radial clearance of joint '%s' (%.6g mm) is as long as a link",
-                        joint->name, 1e3 * radial);
+    return entries_refuse(
+        entries_blame(entries, "joints.*.radial-clearance joints.*.hole joints.*.pin", number), err,
+        "the radial clearance of joint '%s' (%.6g mm) is as long as a link\n"
+        "allowed: a radial clearance far below %.6g mm, the next joint's "
+        "distance; usual are 5 to 500 um",
+        joint->name, 1e3 * radial, 1e3 * shortest);
 }
 
 bool check_mechanism(const Entries *entries, const Scenario *scenario, Err *err)

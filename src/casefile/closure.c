@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { ALLOWED_SIZE = 192 };
+enum { STARTS_SIZE = 192 };
 
 // Relative: as close as this to a dead centre, the accelerations are those of rounding errors.
 static const double MARGIN = 1e-9;
@@ -22,15 +22,9 @@ static const double DEGREE = M_PI / 180.0;
 
 // Where a message points: at the first of these that overrides the case, else at the first given.
 // The start is not to blame for a turn, nor the revolutions for the start.
-enum { BLAMED_COUNT = 5 };
-static const char *const BLAMED[BLAMED_COUNT + 1] = {
-    "drive.start",
-    "four-bar.crank.length",
-    "four-bar.ground.length",
-    "four-bar.coupler.length",
-    "four-bar.follower.length",
-    "run.revolutions",
-};
+#define BLAMED                                                                                     \
+    "four-bar.crank.length four-bar.ground.length four-bar.coupler.length "                        \
+    "four-bar.follower.length"
 
 // The cosines of the crank angles at which the loop just closes.
 typedef struct Reach {
@@ -64,8 +58,10 @@ static const Entry *longest_link(const Entries *entries, const FourBar *fourbar,
     for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
         longest = lengths[i] > lengths[longest] ? i : longest;
     }
+    static const char *const PATHS[] = {"four-bar.crank.length", "four-bar.ground.length",
+                                        "four-bar.coupler.length", "four-bar.follower.length"};
     *length = lengths[longest];
-    return entries_find(entries, BLAMED[1 + longest], 0);
+    return entries_find(entries, PATHS[longest], 0);
 }
 
 // The start angles that close, in words.
@@ -95,28 +91,26 @@ static bool check_start(const Entries *entries, const Scenario *scenario, const 
     if (reach->cos_low >= 1.0 || reach->cos_high <= -1.0) {
         const double sum = fourbar->ground.nominal + fourbar->crank.nominal +
                            fourbar->coupler.nominal + fourbar->follower.nominal;
-        char shorter[ALLOWED_SIZE];
-        snprintf(shorter, sizeof shorter, "less than the other three together, %.6g mm",
-                 1e3 * (sum - longest));
-        return source_error(link->source, link->node->span, shorter, err,
-                            "the mechanism closes at no crank angle: this link is too long");
+        return entries_refuse(link, err,
+                              "the mechanism closes at no crank angle: this link is too long\n"
+                              "allowed: less than the other three together, %.6g mm",
+                              1e3 * (sum - longest));
     }
     if (diagonal > reach->shortest + margin && diagonal < reach->longest - margin) {
         return true;
     }
-    const Entry *blamed = entries_blame(entries, BLAMED, BLAMED_COUNT, 0);
+    const Entry *blamed = entries_blame(entries, "drive.start " BLAMED, 0);
     // a start that nobody gave is not to blame: the longest link is
     const bool is_at_home =
         strcmp(blamed->row->path, "drive.start") != 0 && !blamed->source->is_override;
-    const Entry *entry = is_at_home ? link : blamed;
-    char allowed[ALLOWED_SIZE];
-    describe_starts(reach, allowed, sizeof allowed);
-    return source_error(entry->source, entry->node->span, allowed, err,
-                        "the mechanism does not close at the start, %.4g deg: crank pin and "
-                        "follower pivot are %.4g mm apart, coupler and follower join distances "
-                        "between %.4g and %.4g mm",
-                        start / DEGREE, 1e3 * diagonal, 1e3 * reach->shortest,
-                        1e3 * reach->longest);
+    char starts[STARTS_SIZE];
+    describe_starts(reach, starts, sizeof starts);
+    return entries_refuse(is_at_home ? link : blamed, err,
+                          "the mechanism does not close at the start, %.4g deg: crank pin and "
+                          "follower pivot are %.4g mm apart, coupler and follower join distances "
+                          "between %.4g and %.4g mm\nallowed: %s",
+                          start / DEGREE, 1e3 * diagonal, 1e3 * reach->shortest,
+                          1e3 * reach->longest, starts);
 }
 
 // What all joints together give way, m.
@@ -171,34 +165,30 @@ bool closure_check(const Entries *entries, const Scenario *scenario, Err *err)
     if (!(free_travel(&most, driver) / (2.0 * M_PI) <= scenario->run.revolutions)) {
         return true;
     }
-    const Entry *entry = entries_blame(entries, BLAMED + 1, BLAMED_COUNT, 0);
-    char allowed[ALLOWED_SIZE];
-    snprintf(allowed, sizeof allowed,
-             "less than %.4g revolutions, or a crank that turns fully (crank or ground the "
-             "shortest link, and with the longest shorter than the other two together)",
-             turns);
-    return source_error(entry->source, entry->node->span, allowed, err,
-                        "the crank cannot turn through the run: from %.4g deg it reaches a dead "
-                        "centre at %.4g deg (the mechanism is a %s)",
-                        driver->start / DEGREE, (driver->start + direction * travel) / DEGREE,
-                        FOURBAR_GRASHOF_NAMES[fourbar_grashof(fourbar)]);
+    const Entry *entry = entries_blame(entries, BLAMED " run.revolutions", 0);
+    return entries_refuse(
+        entry, err,
+        "the crank cannot turn through the run: from %.4g deg it reaches a dead centre at %.4g deg "
+        "(the mechanism is a %s)\nallowed: less than %.4g revolutions, or a crank that turns fully "
+        "(crank or ground the shortest link, and with the longest shorter than the other two "
+        "together)",
+        driver->start / DEGREE, (driver->start + direction * travel) / DEGREE,
+        FOURBAR_GRASHOF_NAMES[fourbar_grashof(fourbar)], turns);
 }
 
 bool closure_check_ideal(const Entries *entries, const Scenario *scenario, Err *err)
 {
-    static const char *const GIVEN[] = {"run.revolutions", "drive.speed"};
     const Driver *driver = &scenario->linkage.driver;
     const Lock lock =
         lock_find(&scenario->linkage, LOCK_IDEAL_ONLY, 2.0 * M_PI * scenario->run.revolutions);
     if (lock.state != LOCK_FOUND) {
         return true;
     }
-    const Entry *entry = entries_blame(entries, GIVEN, sizeof GIVEN / sizeof *GIVEN, 0);
-    char allowed[ALLOWED_SIZE];
-    snprintf(allowed, sizeof allowed, "less than %.4g revolutions, or lengths with which it turns",
-             fabs(lock.crank_angle - driver->start) / (2.0 * M_PI));
-    return source_error(entry->source, entry->node->span, allowed, err,
-                        "the crank cannot turn through the run: from %.4g deg it turns up to "
-                        "%.6g deg, where the mechanism locks",
-                        driver->start / DEGREE, lock.crank_angle / DEGREE);
+    const Entry *entry = entries_blame(entries, "run.revolutions drive.speed", 0);
+    return entries_refuse(entry, err,
+                          "the crank cannot turn through the run: from %.4g deg it turns up to "
+                          "%.6g deg, where the mechanism locks\nallowed: less than %.4g "
+                          "revolutions, or lengths with which it turns",
+                          driver->start / DEGREE, lock.crank_angle / DEGREE,
+                          fabs(lock.crank_angle - driver->start) / (2.0 * M_PI));
 }

@@ -40,37 +40,63 @@ int entries_number(const Entries *entries, SchemaFamily family, const char *name
     return -1;
 }
 
-const Entry *entries_find(const Entries *entries, const char *path, size_t index)
+// The entry of a path of so many bytes.
+static const Entry *find_entry(const Entries *entries, const char *path, size_t length,
+                               size_t index)
 {
     for (size_t i = 0; i < entries->count; i++) {
         const Entry *entry = &entries->entries[i];
-        if (entry->index == index && strcmp(entry->row->path, path) == 0) {
+        if (entry->index == index && strlen(entry->row->path) == length &&
+            strncmp(entry->row->path, path, length) == 0) {
             return entry;
         }
     }
     return NULL;
 }
 
-const Entry *entries_blame(const Entries *entries, const char *const *paths, size_t count,
-                           size_t index)
+const Entry *entries_find(const Entries *entries, const char *path, size_t index)
+{
+    return find_entry(entries, path, strlen(path), index);
+}
+
+const Entry *entries_blame(const Entries *entries, const char *paths, size_t index)
 {
     const Entry *blamed = NULL;
-    for (size_t i = 0; i < count; i++) {
-        const Entry *entry = entries_find(entries, paths[i], index);
+    for (const char *path = paths; *path != '\0'; path += strspn(path, " ")) {
+        const size_t length = strcspn(path, " ");
+        const Entry *entry = find_entry(entries, path, length, index);
         const bool is_new = entry != NULL && entry->source->is_override;
         if (entry != NULL && (blamed == NULL || (is_new && !blamed->source->is_override))) {
             blamed = entry;
         }
+        path += length;
     }
     return blamed;
 }
 
+bool entries_refuse(const Entry *entry, Err *err, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    source_refuse(entry->source, entry->node->span, err, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool entries_refuse_group(const EntryGroup *group, Err *err, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    source_refuse(group->source, keys_span(group->node), err, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
 const Entry *entries_speed(const Entries *entries, size_t body_count)
 {
-    static const char *const SPEEDS[] = {"bodies.*.velocity", "bodies.*.spin"};
     const Entry *found = NULL;
     for (size_t i = 0; found == NULL && i < body_count; i++) {
-        found = entries_blame(entries, SPEEDS, 2, i);
+        found = entries_blame(entries, "bodies.*.velocity bodies.*.spin", i);
     }
     return found;
 }
@@ -88,11 +114,11 @@ const EntryGroup *entries_group(const Entries *entries, const char *path, size_t
 
 bool entries_has_play(const Entries *entries, size_t joint)
 {
-    static const char *const KEYS[] = {"joints.*.hole", "joints.*.pin", "joints.*.radial-clearance",
-                                       "joints.*.width", "joints.*.start"};
+    static const char KEYS[] = "joints.*.hole joints.*.pin joints.*.radial-clearance "
+                               "joints.*.width joints.*.start";
     const bool is_named = entries_group(entries, "joints.*", joint) != NULL;
-    return is_named && (entries->form == SCHEMA_SHORT ||
-                        entries_blame(entries, KEYS, sizeof KEYS / sizeof KEYS[0], joint) != NULL);
+    return is_named &&
+           (entries->form == SCHEMA_SHORT || entries_blame(entries, KEYS, joint) != NULL);
 }
 
 bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFamily family,

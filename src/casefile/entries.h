@@ -58,10 +58,16 @@ bool entries_key(Entries *entries, const char *key, size_t key_start, const Sour
 // The entry of a row's path (with `*`), or NULL where the key was not given.
 const Entry *entries_find(const Entries *entries, const char *path, size_t index);
 
-// The entry to point at where several keys do not fit together: of those given, the first that
-// overrides the case, else the first. NULL where none is given.
-const Entry *entries_blame(const Entries *entries, const char *const *paths, size_t count,
-                           size_t index);
+// The entry to point at where several keys, their paths separated by blanks, do not fit together:
+// of those given, the first that overrides the case, else the first. NULL where none is given.
+const Entry *entries_blame(const Entries *entries, const char *paths, size_t index);
+
+// Fails with a message that points at an entry's value, or at the key of a group: what is wrong
+// and, behind "\nallowed: ", what would be right.
+bool entries_refuse(const Entry *entry, Err *err, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+bool entries_refuse_group(const EntryGroup *group, Err *err, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 // The first velocity or spin that the case gives of so many bodies; NULL where it gives none.
 const Entry *entries_speed(const Entries *entries, size_t body_count);

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { ALLOWED_SIZE = 192 };
+enum { REASON_SIZE = 192 };
 
 static const double INDEPENDENT = 1e-9; // of the largest pivot, as in model/kinematics.c
 
@@ -57,11 +57,11 @@ static bool check_redundancy(const Entries *entries, const Linkage *linkage, con
     const size_t rank = dense_rank(rows, jacobian.columns, jacobian.entries, INDEPENDENT);
     const EntryGroup *joints = entries_group(entries, "joints", 0);
     return rank == rows ||
-           source_error(joints->source, keys_span(joints->node),
-                        "play in one of them, one joint less, or another start", err,
-                        "ideal joints%s hold what others hold already: %zu of their %zu "
-                        "constraints are independent at the start",
-                        linkage->driver.is_present ? " and drive" : "", rank, rows);
+           entries_refuse_group(joints, err,
+                                "ideal joints%s hold what others hold already: %zu of their %zu "
+                                "constraints are independent at the start\nallowed: play in one of "
+                                "them, one joint less, or another start",
+                                linkage->driver.is_present ? " and drive" : "", rank, rows);
 }
 
 // The driven body moves as the drive says, unless the case says how it moves.
@@ -81,20 +81,18 @@ static void turn_driven_body(const Entries *entries, const Linkage *linkage, Mot
 static bool refuse_speeds(const Entry *entry, const Linkage *linkage, int joint, double distance,
                           const Motion *nearest, Err *err)
 {
-    char allowed[ALLOWED_SIZE];
-    char reason[ALLOWED_SIZE] = "the driven body does not turn as the drive does";
+    char reason[REASON_SIZE] = "the driven body does not turn as the drive does";
     const Motion *motion = &nearest[entry->index];
-    snprintf(allowed, sizeof allowed,
-             "speeds that keep the joints closed, for %s next to these velocity: [%.12g m/s, "
-             "%.12g m/s], spin: %.12g rad/s",
-             linkage->bodies[entry->index].name, motion->velocity.x, motion->velocity.y,
-             motion->omega);
     if (joint >= 0) {
         snprintf(reason, sizeof reason,
                  "the speeds at the start pull the ideal joint '%s' apart by %.4g m/s",
                  linkage->joints[joint].name, distance);
     }
-    return source_error(entry->source, entry->node->span, allowed, err, "%s", reason);
+    return entries_refuse(entry, err,
+                          "%s\nallowed: speeds that keep the joints closed, for %s next to these "
+                          "velocity: [%.12g m/s, %.12g m/s], spin: %.12g rad/s",
+                          reason, linkage->bodies[entry->index].name, motion->velocity.x,
+                          motion->velocity.y, motion->omega);
 }
 
 // Speeds that the case gives must agree with ideal joints and drive. Where it gives none, a drive
@@ -133,10 +131,12 @@ static bool refuse_places(const Entries *entries, const Linkage *linkage, Err *e
         return err_set(err, ERR_CASE, "the joints cannot all be closed");
     }
     return start != NULL
-               ? source_error(start->source, start->node->span, "centred", err,
-                              "the pins cannot all stand where they are to start")
-               : source_error(at->source, at->node->span, "joints and bodies of one size", err,
-                              "the joints cannot all be closed to rounding where they are");
+               ? entries_refuse(
+                     start, err,
+                     "the pins cannot all stand where they are to start\nallowed: centred")
+               : entries_refuse(at, err,
+                                "the joints cannot all be closed to rounding where they "
+                                "are\nallowed: joints and bodies of one size");
 }
 
 bool place_linkage(const Entries *entries, Scenario *scenario, Err *err)

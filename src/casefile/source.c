@@ -108,15 +108,10 @@ static void append_line(const Source *source, Place place, size_t length, Text *
     }
 }
 
-bool source_error(const Source *source, Span span, const char *allowed, Err *err,
-                  const char *format, ...)
+// Sets the error: the message with its position, the line, and what would be allowed.
+static bool set_error(const Source *source, Span span, const char *allowed, Err *err,
+                      const char *message)
 {
-    char message[MESSAGE_SIZE];
-    va_list arguments;
-    va_start(arguments, format);
-    shorten_list(message, sizeof message, format, arguments);
-    va_end(arguments);
-
     const Place place = find_place(source, span.start + source->shift);
     char *name = printable_copy(source->name, false);
     Text text;
@@ -135,6 +130,32 @@ bool source_error(const Source *source, Span span, const char *allowed, Err *err
     }
     err_set_lines(err, source->is_option ? ERR_USAGE : ERR_CASE, text.data);
     text_finish(&text);
+    return false;
+}
+
+bool source_error(const Source *source, Span span, const char *allowed, Err *err,
+                  const char *format, ...)
+{
+    char message[MESSAGE_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    shorten_list(message, sizeof message, format, arguments);
+    va_end(arguments);
+    return set_error(source, span, allowed, err, message);
+}
+
+bool source_refuse(const Source *source, Span span, Err *err, const char *format, va_list arguments)
+{
+    static const char MARK[] = "\nallowed: ";
+    char *words = printable_format(format, arguments);
+    char *mark = strstr(words, MARK);
+    if (mark != NULL) {
+        *mark = '\0';
+    }
+    char message[MESSAGE_SIZE];
+    shorten_copy(message, sizeof message, words);
+    set_error(source, span, mark != NULL ? mark + strlen(MARK) : NULL, err, message);
+    free(words);
     return false;
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/err.h"
 
+#include <stdarg.h>
 #include <stddef.h>
 
 // A stretch of a text, in characters from its start (not bytes); `end` stands behind the last.
@@ -26,6 +27,10 @@ typedef struct Source {
 // tail under the span, and "allowed: ..." where `allowed` is neither NULL nor empty. False always.
 bool source_error(const Source *source, Span span, const char *allowed, Err *err,
                   const char *format, ...) __attribute__((format(printf, 5, 6)));
+
+// The same, with what would be allowed in the format: "the step is too long\nallowed: 1 s or less".
+bool source_refuse(const Source *source, Span span, Err *err, const char *format, va_list arguments)
+    __attribute__((format(printf, 4, 0)));
 
 // Bytes at the start of the text that are valid UTF-8 without control characters other than tabs
 // and line breaks; equal to size where all of it is text.
