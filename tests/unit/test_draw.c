@@ -233,7 +233,7 @@ static void check_order(uint64_t seed, uint64_t count)
 {
     uint8_t *is_taken = calloc(count, 1);
     for (uint64_t i = 0; i < count; i++) {
-        const uint64_t place = draw_place(seed, draw_stream("key"), count, i);
+        const uint64_t place = draw_position(seed, draw_stream("key"), count, i);
         if (place >= count || is_taken[place]) {
             fail_msg("of %llu items, item %llu goes where another one is",
                      (unsigned long long)count, (unsigned long long)i);
@@ -253,8 +253,8 @@ static void every_item_has_a_place_of_its_own(void **state)
     check_order(1, 1048573);
     // places of a count as large as there may be are in range, and differ
     const uint64_t most = (uint64_t)1 << 53;
-    assert_true(draw_place(1, 2, most, most - 1) < most);
-    assert_true(draw_place(1, 2, most, 0) != draw_place(1, 2, most, 1));
+    assert_true(draw_position(1, 2, most, most - 1) < most);
+    assert_true(draw_position(1, 2, most, 0) != draw_position(1, 2, most, 1));
 }
 
 // Chi squared of the 24 orders of 4 items over so many streams.
@@ -265,7 +265,7 @@ static double orders_chi_squared(bool is_shuffled)
     for (uint64_t stream = 0; stream < STREAMS; stream++) {
         size_t order = 0;
         for (uint64_t i = 0; i < 4; i++) {
-            order = 4 * order + (size_t)(is_shuffled ? draw_place(1, stream, 4, i) : i);
+            order = 4 * order + (size_t)(is_shuffled ? draw_position(1, stream, 4, i) : i);
         }
         counts[order]++;
     }

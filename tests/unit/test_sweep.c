@@ -55,13 +55,17 @@ static void write_study(Study *study, int steps, bool has_truth, const char *lim
     char folder[PATH_SIZE];
     assert_non_null(stream);
     assert_non_null(getcwd(folder, sizeof folder));
+    char step[64] = "50 us"; // a range has at least two numbers
+    if (steps > 1) {
+        snprintf(step, sizeof step, "{from: 50 us, to: 100 us, count: %d}", steps);
+    }
     fprintf(stream,
             "title: a test\ncase: %s/cases/paper/ideal-nominal.yaml\n"
             "set: {run.samples: 36}\n"
             "vary:\n  drive.speed: [500 rpm, 1000 rpm, 1500 rpm]\n"
-            "  run.step: {from: 50 us, to: 100 us, count: %d}\n"
+            "  run.step: %s\n"
             "truth: %s\nlimits: %s\n",
-            folder, steps, has_truth ? "true" : "false", limits);
+            folder, step, has_truth ? "true" : "false", limits);
     fclose(stream);
 }
 
@@ -124,7 +128,7 @@ static SweepEnd sweep(Study *study, const SweepWork *work, size_t jobs, Shard sh
         .shard = shard,
         .jobs = jobs,
         .store = study->store,
-        .tell = no_telling,
+        .report = no_telling,
         .should_stop = should_stop,
         .context = study,
         .work = work,

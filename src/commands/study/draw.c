@@ -1,9 +1,9 @@
 // Which value does a variable have in a draw?
 //
-// Random numbers come from a counter: three rounds of a 64-bit mixer, over seed, stream and place.
-// Each round is a bijection in which every bit of what goes in flips every bit of what comes out
-// with a chance of a half (Stafford's variant 13 of MurmurHash3's finaliser, as in Steele, Lea and
-// Flood, Fast splittable pseudorandom number generators, OOPSLA 2014).
+// Random numbers come from a counter: three rounds of a 64-bit mixer, over seed, stream and
+// position. Each round is a bijection in which every bit of what goes in flips every bit of what
+// comes out with a chance of a half (Stafford's variant 13 of MurmurHash3's finaliser, as in
+// Steele, Lea and Flood, Fast splittable pseudorandom number generators, OOPSLA 2014).
 //
 // A Latin hypercube of n draws takes draw i of a variable from the share
 //     u = (s(i) + r) / n,
@@ -11,7 +11,7 @@
 // halves of a number's bits, each in turn changed by a random function of the other. That is a
 // bijection whatever the function; a result beyond n is put in again until it is not (Black and
 // Rogaway, Ciphers with arbitrary finite domains, CT-RSA 2002), at most four times on the average.
-// The network makes even permutations alone: half of the time the first two places are swapped.
+// The network makes even permutations alone: half of the time the first two positions are swapped.
 //
 // Values follow from shares by the inverse of their distribution:
 //     uniform      low + u (high - low)
@@ -31,7 +31,7 @@
 enum { ROUND_COUNT = 10 };
 
 // What keeps the numbers of one purpose apart from another's.
-typedef enum Purpose { PURPOSE_SHARE, PURPOSE_PLACE } Purpose;
+typedef enum Purpose { PURPOSE_SHARE, PURPOSE_POSITION } Purpose;
 
 static uint64_t mix(uint64_t bits)
 {
@@ -41,18 +41,18 @@ static uint64_t mix(uint64_t bits)
     return bits ^ (bits >> 31);
 }
 
-static uint64_t random_bits(uint64_t seed, uint64_t stream, Purpose purpose, uint64_t place)
+static uint64_t random_bits(uint64_t seed, uint64_t stream, Purpose purpose, uint64_t position)
 {
-    return mix(mix(mix(seed) ^ (stream + (uint64_t)purpose)) ^ place);
+    return mix(mix(mix(seed) ^ (stream + (uint64_t)purpose)) ^ position);
 }
 
-double draw_share(uint64_t seed, uint64_t stream, uint64_t place)
+double draw_share(uint64_t seed, uint64_t stream, uint64_t position)
 {
     // 52 bits and a half: the ends 0 and 1 are out of reach
-    return ((double)(random_bits(seed, stream, PURPOSE_SHARE, place) >> 12) + 0.5) * 0x1p-52;
+    return ((double)(random_bits(seed, stream, PURPOSE_SHARE, position) >> 12) + 0.5) * 0x1p-52;
 }
 
-uint64_t draw_place(uint64_t seed, uint64_t stream, uint64_t count, uint64_t item)
+uint64_t draw_position(uint64_t seed, uint64_t stream, uint64_t count, uint64_t item)
 {
     assert(item < count);
     unsigned half = 1;
@@ -60,20 +60,20 @@ uint64_t draw_place(uint64_t seed, uint64_t stream, uint64_t count, uint64_t ite
         half++;
     }
     const uint64_t mask = ((uint64_t)1 << half) - 1;
-    const uint64_t own = random_bits(seed, stream, PURPOSE_PLACE, count);
-    uint64_t place = item;
+    const uint64_t own = random_bits(seed, stream, PURPOSE_POSITION, count);
+    uint64_t position = item;
     do {
-        uint64_t left = place >> half;
-        uint64_t right = place & mask;
+        uint64_t left = position >> half;
+        uint64_t right = position & mask;
         for (uint64_t round = 0; round < ROUND_COUNT; round++) {
             const uint64_t next = left ^ (mix(own ^ (right * ROUND_COUNT + round)) & mask);
             left = right;
             right = next;
         }
-        place = left << half | right;
-        place ^= place < 2 ? own >> 63 : 0;
-    } while (place >= count);
-    return place;
+        position = left << half | right;
+        position ^= position < 2 ? own >> 63 : 0;
+    } while (position >= count);
+    return position;
 }
 
 uint64_t draw_stream(const char *key)
@@ -88,9 +88,9 @@ double draw_variable_share(const Spec *spec, const Variable *variable, uint64_t 
     if (spec->method == DRAW_RANDOM) {
         return share;
     }
-    const double place = (double)draw_place(spec->seed, stream, spec->draws, draw);
+    const double position = (double)draw_position(spec->seed, stream, spec->draws, draw);
     // what rounding would lift into the next share stays in its own
-    return fmin(place + share, nextafter(place + 1.0, 0.0)) / (double)spec->draws;
+    return fmin(position + share, nextafter(position + 1.0, 0.0)) / (double)spec->draws;
 }
 
 static double normal_value(const Variable *variable, double share)

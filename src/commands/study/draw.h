@@ -1,15 +1,15 @@
-// Random numbers by their place: what a draw of a variable is follows from its number alone, so
+// Random numbers by their position: what a draw of a variable is follows from its number alone, so
 // that no list of draws is ever held, and any machine can make any of them.
 #pragma once
 
 #include "commands/study/spec.h"
 
-// A number above 0 and below 1 of a stream, independent of all other places and streams.
-double draw_share(uint64_t seed, uint64_t stream, uint64_t place);
+// A number above 0 and below 1 of a stream, independent of all other positions and streams.
+double draw_share(uint64_t seed, uint64_t stream, uint64_t position);
 
-// The place of an item, below count, in an order of the items 0 to count - 1 that is as good as
+// The position of an item, below count, in an order of the items 0 to count - 1 that is as good as
 // shuffled: another for each stream. Needs no memory. The count is 1 to 2^53.
-uint64_t draw_place(uint64_t seed, uint64_t stream, uint64_t count, uint64_t item);
+uint64_t draw_position(uint64_t seed, uint64_t stream, uint64_t count, uint64_t item);
 
 // The stream of a variable: that of its key, so that one variable more changes no other's draws.
 uint64_t draw_stream(const char *key);

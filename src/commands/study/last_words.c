@@ -1,6 +1,6 @@
-// How is the complaint of a dying process heard, and no terminal spoilt by it?
+// How is the last message of a dying process kept, and kept off the terminal?
 //
-// Both streams lead to a file in memory, which takes a limited number of bytes and drops the rest.
+// Both streams go to a file in memory of limited size; what is written beyond it is dropped.
 #define _GNU_SOURCE // memfd_create
 
 #include "commands/study/last_words.h"
@@ -23,32 +23,32 @@ enum {
 
 int last_words_open(void)
 {
-    const int place = memfd_create("last words", MFD_CLOEXEC);
+    const int file = memfd_create("last words", MFD_CLOEXEC);
     // parent and child share one position: each write goes to the end
-    if (place >= 0) {
-        fcntl(place, F_SETFL, O_APPEND);
+    if (file >= 0) {
+        fcntl(file, F_SETFL, O_APPEND);
     }
-    return place;
+    return file;
 }
 
-void last_words_close(int place)
+void last_words_close(int file)
 {
-    if (place >= 0) {
-        close(place);
+    if (file >= 0) {
+        close(file);
     }
 }
 
-void last_words_clear(int place)
+void last_words_clear(int file)
 {
-    if (place >= 0 && ftruncate(place, 0) != 0) {
-        // then the words of one child are taken for another's, which is no reason to stop
+    if (file >= 0 && ftruncate(file, 0) != 0) {
+        // the message of one child is then taken for another's, which is no reason to stop
         return;
     }
 }
 
-void last_words_listen(int place)
+void last_words_listen(int file)
 {
-    const int target = place >= 0 ? place : open("/dev/null", O_WRONLY | O_CLOEXEC);
+    const int target = file >= 0 ? file : open("/dev/null", O_WRONLY | O_CLOEXEC);
     dup2(target, STDOUT_FILENO);
     dup2(target, STDERR_FILENO);
     // a write beyond the limit then fails, and ends no one
@@ -57,16 +57,16 @@ void last_words_listen(int place)
     setrlimit(RLIMIT_FSIZE, &most);
 }
 
-void last_words_read(int place, char *line, size_t size)
+void last_words_read(int file, char *line, size_t size)
 {
     char tail[TAIL_SIZE + 1];
     struct stat known;
     line[0] = '\0';
-    if (place < 0 || fstat(place, &known) != 0) {
+    if (file < 0 || fstat(file, &known) != 0) {
         return;
     }
     const off_t from = known.st_size > TAIL_SIZE ? known.st_size - TAIL_SIZE : 0;
-    const ssize_t count = pread(place, tail, TAIL_SIZE, from);
+    const ssize_t count = pread(file, tail, TAIL_SIZE, from);
     size_t end = count > 0 ? (size_t)count : 0;
     while (end > 0 && isspace((unsigned char)tail[end - 1])) {
         end--;

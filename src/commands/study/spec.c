@@ -99,3 +99,22 @@ void spec_finish(Spec *spec)
     }
     *spec = (Spec){0};
 }
+
+Spec *spec_open(const char *path, Err *err)
+{
+    Spec *spec = malloc(sizeof *spec);
+    assert(spec != NULL);
+    if (!spec_read(path, spec, err)) {
+        free(spec);
+        return NULL;
+    }
+    return spec;
+}
+
+void spec_close(Spec *spec)
+{
+    if (spec != NULL) {
+        spec_finish(spec);
+        free(spec);
+    }
+}

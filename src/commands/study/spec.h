@@ -83,6 +83,10 @@ void spec_describe(bool is_markdown, Text *text);
 // Accepts a zeroed spec.
 void spec_finish(Spec *spec);
 
+// The same for a spec of its own; NULL on failure. Closing accepts NULL.
+Spec *spec_open(const char *path, Err *err);
+void spec_close(Spec *spec);
+
 // What a study does with a key: the variable that it is, or NULL; whether it is set for all runs.
 const Variable *spec_variable(const Spec *spec, const char *key);
 bool spec_sets(const Spec *spec, const char *key);

@@ -4,7 +4,7 @@
 #include "cli/option_values.h"
 #include "cli/written.h"
 #include "commands/study/study_commands.h"
-#include "commands/study/study_place.h"
+#include "commands/study/study_path.h"
 #include "commands/study/study_plot.h"
 #include "write/file.h"
 
@@ -61,7 +61,7 @@ static bool draw(void *target, Err *err)
 {
     const DrawOptions *options = target;
     char path[FILE_PATH_SIZE];
-    Store *store = study_place_find(options->store, path, err) ? store_view(path, err) : NULL;
+    Store *store = study_path_find(options->store, path, err) ? store_view(path, err) : NULL;
     if (store == NULL) {
         return false;
     }

@@ -1,6 +1,6 @@
 // What would a study run?
 #include "cli/output.h"
-#include "commands/study/study_run.h"
+#include "commands/study/study_commands.h"
 #include "commands/study/study_text.h"
 #include "write/table.h"
 

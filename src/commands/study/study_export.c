@@ -2,7 +2,7 @@
 #include "cli/arguments.h"
 #include "cli/written.h"
 #include "commands/study/study_commands.h"
-#include "commands/study/study_place.h"
+#include "commands/study/study_path.h"
 #include "commands/study/study_rows.h"
 
 #include <string.h>
@@ -35,7 +35,7 @@ static bool write_all(void *target, Err *err)
 {
     const ExportOptions *options = target;
     char path[FILE_PATH_SIZE];
-    if (!study_place_find(options->store, path, err)) {
+    if (!study_path_find(options->store, path, err)) {
         return false;
     }
     Store *store = store_view(path, err);

@@ -1,8 +1,26 @@
 // What did a study do, for a program that asks?
 #include "commands/study/study_json.h"
 
+#include "write/fields.h"
 #include "write/json_value.h"
 #include "write/settings_json.h"
+
+#define AT(type, member) type, offsetof(StudyReport, member), .where = FIELD_JSON
+
+// What this process did of it.
+static const Field EFFORT_FIELDS[] = {
+    {"made", NULL, NULL, AT(FIELD_COUNT, state.made)},
+    {"failed", NULL, NULL, AT(FIELD_COUNT, state.failed)},
+    {"without_truth", NULL, NULL, AT(FIELD_COUNT, state.without_truth)},
+    {"why_without_truth", NULL, NULL, AT(FIELD_TEXT, state.no_truth)},
+    {"jobs", NULL, NULL, AT(FIELD_COUNT, jobs)},
+    {"wall_s", NULL, NULL, AT(FIELD_NUMBER, state.wall_s)},
+    {"inside_s", NULL, NULL, AT(FIELD_NUMBER, state.inside_s)},
+    {"inside_share", NULL, NULL, AT(FIELD_NUMBER, inside_share)},
+    {"children_cpu_s", NULL, NULL, AT(FIELD_NUMBER, children_cpu_s)},
+    {"own_cpu_s", NULL, NULL, AT(FIELD_NUMBER, own_cpu_s)},
+    {0},
+};
 
 // Counts of runs are whole numbers, and below 2^53.
 static json_t *whole(uint64_t count)
@@ -10,49 +28,25 @@ static json_t *whole(uint64_t count)
     return json_integer((json_int_t)count);
 }
 
-static json_t *build_fates(const StoreCount *count)
+json_t *study_json_build(const StudyReport *report)
 {
     json_t *fates = json_object();
     for (int i = 0; i < FATE_COUNT; i++) {
-        json_object_set_new(fates, FATE_WORDS[i], whole(count->fates[i]));
+        json_object_set_new(fates, FATE_WORDS[i], whole(report->count.fates[i]));
     }
-    return fates;
-}
-
-// What this process did of it.
-static json_t *build_effort(const StudyReport *report)
-{
-    const SweepState *state = &report->state;
-    json_t *effort = json_object();
-    json_object_set_new(effort, "made", whole(state->made));
-    json_object_set_new(effort, "failed", whole(state->failed));
-    json_object_set_new(effort, "without_truth", whole(state->without_truth));
-    json_object_set_new(effort, "why_without_truth", json_value_text(state->no_truth));
-    json_object_set_new(effort, "jobs", whole(report->jobs));
-    json_value_set(effort, "wall_s", state->wall_s);
-    json_value_set(effort, "inside_s", state->inside_s);
-    json_value_set(effort, "inside_share", study_report_inside(report));
-    json_value_set(effort, "children_cpu_s", report->children_cpu_s);
-    json_value_set(effort, "own_cpu_s", report->own_cpu_s);
-    return effort;
-}
-
-json_t *study_json_build(const StudyReport *report)
-{
-    const Spec *spec = report->spec;
     json_t *object = json_object();
     json_object_set_new(object, "tool", settings_json_tool());
-    json_object_set_new(object, "study", json_value_text(spec->path));
-    json_object_set_new(object, "title", json_value_text(spec->title));
-    json_object_set_new(object, "case", json_value_text(spec->case_path));
+    json_object_set_new(object, "study", json_value_text(report->spec->path));
+    json_object_set_new(object, "title", json_value_text(report->spec->title));
+    json_object_set_new(object, "case", json_value_text(report->spec->case_path));
     json_object_set_new(object, "store", json_value_text(report->store));
     json_object_set_new(object, "shard",
                         json_pack("{s:o, s:o}", "index", whole(report->shard.index + 1), "count",
                                   whole(report->shard.count)));
     json_object_set_new(object, "runs", whole(report->state.total));
     json_object_set_new(object, "done", whole(report->state.done));
-    json_object_set_new(object, "fates", build_fates(&report->count));
+    json_object_set_new(object, "fates", fates);
     json_value_set(object, "wall_s", report->count.wall_s);
-    json_object_set_new(object, "now", build_effort(report));
+    json_object_set_new(object, "now", fields_json(EFFORT_FIELDS, FIELD_JSON, report));
     return object;
 }

@@ -4,7 +4,7 @@
 #include "cli/output.h"
 #include "commands/study/store.h"
 #include "commands/study/study_commands.h"
-#include "commands/study/study_place.h"
+#include "commands/study/study_path.h"
 #include "commands/study/study_words.h"
 
 #include <assert.h>
@@ -44,7 +44,7 @@ static bool merge(const char *target, const char *const *sources, size_t count, 
 static char *find_shard(const char *study, Shard shard, Err *err)
 {
     char path[FILE_PATH_SIZE];
-    if (!study_place_store(study, shard, path, err) ||
+    if (!study_path_store(study, shard, path, err) ||
         (access(path, F_OK) != 0 &&
          !err_set(err, ERR_FILE,
                   "there is no %s in the working folder; make it with --shard %" PRIu64 "/%" PRIu64
@@ -81,13 +81,13 @@ static bool merge_study(const char *study, bool is_quiet, Err *err)
 {
     char target[FILE_PATH_SIZE];
     uint64_t shards;
-    if (!study_place_store(study, (Shard){0, 1}, target, err) ||
-        !study_place_count_shards(study, &shards, err)) {
+    if (!study_path_store(study, (Shard){0, 1}, target, err) ||
+        !study_path_count_shards(study, &shards, err)) {
         return false;
     }
     if (shards == 0) {
         char shard[FILE_PATH_SIZE];
-        if (study_place_store(study, (Shard){0, 2}, shard, err)) {
+        if (study_path_store(study, (Shard){0, 2}, shard, err)) {
             char *path = shell_copy_path(study);
             err_set(err, ERR_FILE,
                     "there are no parts of %s in the working folder, such as %s; 'jointplay "
@@ -104,10 +104,10 @@ static bool merge_study(const char *study, bool is_quiet, Err *err)
 static bool merge_words(void *target, Err *err)
 {
     const StudyWords *words = target;
-    if (words->count == 1 && study_place_is_study(words->words[0])) {
+    if (words->count == 1 && study_path_is_study(words->words[0])) {
         return merge_study(words->words[0], words->is_quiet, err);
     }
-    if (words->count > 1 && study_place_is_study(words->words[0])) {
+    if (words->count > 1 && study_path_is_study(words->words[0])) {
         return err_set(err, ERR_USAGE,
                        "%s is a study file, and stores are merged into a store: jointplay study "
                        "merge OUT.sqlite IN.sqlite...",

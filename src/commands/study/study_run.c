@@ -1,24 +1,44 @@
 // Which runs of a study are missing, and what comes of them?
-#include "commands/study/study_run.h"
+#include "commands/study/study_commands.h"
 
 #include "base/clock.h"
 #include "cli/interrupt.h"
 #include "cli/output.h"
-#include "commands/study/key.h"
+#include "cli/status_line.h"
 #include "commands/study/metrics.h"
 #include "commands/study/study_json.h"
-#include "commands/study/study_progress.h"
 #include "commands/study/study_text.h"
+#include "version.h"
+#include "write/build_print.h"
 
 #include <assert.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 
-static void tell(const SweepState *state, void *line)
+enum { PRINT_SIZE = 17 };
+
+// How far it has come, and how long the rest will take.
+static void show_progress(const SweepState *state, void *line)
 {
-    study_progress_show(line, state);
+    if (!status_line_is_due(line, state->wall_s)) {
+        return;
+    }
+    Text words;
+    text_init(&words);
+    text_append(&words, "%" PRIu64 " of %" PRIu64 " runs", state->done, state->total);
+    if (state->failed > 0) {
+        text_append(&words, ", %" PRIu64 " failed", state->failed);
+    }
+    if (state->made > 0) {
+        const double rate = (double)state->made / state->wall_s;
+        text_append(&words, ", %.3g runs/s", rate);
+        status_line_append_left(&words, (double)(state->total - state->done) / rate);
+    }
+    status_line_show(line, words.data);
+    text_finish(&words);
 }
 
 static bool should_stop(void *line)
@@ -61,7 +81,7 @@ static void append_effort(const StudyReport *report, Text *text)
     text_append(text,
                 "\nMade %" PRIu64 " runs in %.4g s, %zu at a time; %.1f %% of that time was spent "
                 "inside runs.\nThey are kept in ",
-                state->made, state->wall_s, report->jobs, 100.0 * study_report_inside(report));
+                state->made, state->wall_s, report->jobs, 100.0 * report->inside_share);
     text_append_shown(text, report->store);
     text_append(text, ".\n");
     if (state->without_truth > 0) {
@@ -121,25 +141,43 @@ static bool prepare_store(const StudyOptions *options, Store *store, Err *err)
     return true;
 }
 
+// Opens the store by what makes its rows those of one study and one program, so that results never
+// mix. The machine is no part of it, for shards are made on many; nor are the limits, which decide
+// whether a run comes to its end, and not to which.
+static Store *open_store(const StudyOptions *options, const Spec *spec, const Layout *layout,
+                         Err *err)
+{
+    char print[PRINT_SIZE];
+    char build[BUILD_PRINT_SIZE];
+    snprintf(print, sizeof print, "%016" PRIx64, spec->print);
+    build_print(build);
+    const StoreHead head = {
+        .layout = layout,
+        .run_count = design_run_count(spec),
+        .key_count = 4,
+        .keys = {{"study", print, "the study file or its case has changed"},
+                 {"program", JOINTPLAY_VERSION, "another version of jointplay made it"},
+                 {"ode", JOINTPLAY_ODE_VERSION, "it was made with another version of ODE"},
+                 {"build", build, "another build of jointplay made it"}},
+    };
+    return store_open(options->store, &head, options->is_fresh, err);
+}
+
 // Makes what is missing. The store is closed in any case, with what was made in it.
 static bool sweep(const StudyOptions *options, const Spec *spec, const Layout *layout,
                   SweepEnd *end, SweepState *state, Err *err)
 {
-    StudyKey *key = malloc(sizeof *key);
-    assert(key != NULL);
-    key_make(spec, layout, key);
     StatusLine line = status_line_start(options->common.is_quiet);
-    Sweep order = {
+    const Sweep order = {
         .spec = spec,
         .layout = layout,
         .shard = options->shard,
         .jobs = options->common.jobs,
-        .store = store_open(options->store, &key->head, options->is_fresh, err),
-        .tell = tell,
+        .store = open_store(options, spec, layout, err),
+        .report = show_progress,
         .should_stop = should_stop,
         .context = &line,
     };
-    free(key);
     if (order.store == NULL) {
         return false;
     }
@@ -184,21 +222,22 @@ static bool make_runs(const StudyOptions *options, const Spec *spec, const Layou
     }
     report.children_cpu_s = cpu_time(RUSAGE_CHILDREN);
     report.own_cpu_s = cpu_time(RUSAGE_SELF);
+    const double offered_s = (double)report.jobs * report.state.wall_s;
+    report.inside_share =
+        report.state.made > 0 && offered_s > 0.0 ? report.state.inside_s / offered_s : NAN;
     return print_report(&report, &options->common, err) && check_runs(&report, err);
 }
 
 bool study_run(void *target, Err *err)
 {
     const StudyOptions *options = target;
-    Spec *spec = calloc(1, sizeof *spec);
+    Spec *spec = spec_open(options->common.path, err);
     Layout *layout = calloc(1, sizeof *layout);
-    assert(spec != NULL && layout != NULL);
-    const bool is_done = spec_read(options->common.path, spec, err) &&
-                         find_layout(spec, layout, err) &&
+    assert(layout != NULL);
+    const bool is_done = spec != NULL && find_layout(spec, layout, err) &&
                          (options->is_dry ? study_run_dry(options, spec, layout, err)
                                           : make_runs(options, spec, layout, err));
-    spec_finish(spec);
-    free(spec);
+    spec_close(spec);
     free(layout);
     return is_done;
 }

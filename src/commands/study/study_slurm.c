@@ -6,7 +6,7 @@
 #include "commands/study/design.h"
 #include "commands/study/slurm.h"
 #include "commands/study/study_commands.h"
-#include "commands/study/study_place.h"
+#include "commands/study/study_path.h"
 #include "write/file.h"
 
 #include <assert.h>
@@ -64,17 +64,13 @@ static bool check(void *target, Err *err)
 // A shard without a run would be a job for nothing.
 static bool check_shards(const SlurmOptions *options, Err *err)
 {
-    Spec *spec = calloc(1, sizeof *spec);
-    assert(spec != NULL);
-    bool is_right = spec_read(options->path, spec, err);
-    if (is_right && options->job.shards > design_run_count(spec)) {
-        is_right =
-            err_set(err, ERR_USAGE,
-                    "--shards is %zu; the study has %" PRIu64 " runs, and a shard has at least one",
-                    options->job.shards, design_run_count(spec));
-    }
-    spec_finish(spec);
-    free(spec);
+    Spec *spec = spec_open(options->path, err);
+    const bool is_right = spec != NULL && (options->job.shards <= design_run_count(spec) ||
+                                           err_set(err, ERR_USAGE,
+                                                   "--shards is %zu; the study has %" PRIu64
+                                                   " runs, and a shard has at least one",
+                                                   options->job.shards, design_run_count(spec)));
+    spec_close(spec);
     return is_right;
 }
 
@@ -94,7 +90,7 @@ static bool find_whole(const char *path, char target[FILE_PATH_SIZE], Err *err)
 // What the names of the study's stores begin with.
 static bool find_stem(const char *study, char stem[FILE_PATH_SIZE], Err *err)
 {
-    if (!study_place_store(study, (Shard){0, 1}, stem, err)) {
+    if (!study_path_store(study, (Shard){0, 1}, stem, err)) {
         return false;
     }
     *strrchr(stem, '.') = '\0';

@@ -2,7 +2,7 @@
 #include "cli/arguments.h"
 #include "cli/output.h"
 #include "commands/study/study_commands.h"
-#include "commands/study/study_place.h"
+#include "commands/study/study_path.h"
 #include "commands/study/study_text.h"
 #include "commands/study/study_words.h"
 
@@ -71,10 +71,9 @@ static bool add_study(Parts *parts, const char *study, Err *err)
 {
     uint64_t shards;
     char path[FILE_PATH_SIZE];
-    Spec *spec = calloc(1, sizeof *spec);
-    assert(spec != NULL);
-    bool is_added = spec_read(study, spec, err) && study_place_count_shards(study, &shards, err) &&
-                    study_place_store(study, (Shard){0, 1}, path, err);
+    Spec *spec = spec_open(study, err);
+    bool is_added = spec != NULL && study_path_count_shards(study, &shards, err) &&
+                    study_path_store(study, (Shard){0, 1}, path, err);
     // a store of all is what the parts were merged into, or are to be
     if (is_added && (shards == 0 || access(path, F_OK) == 0)) {
         is_added = add_part(parts, path, design_run_count(spec), err);
@@ -82,11 +81,10 @@ static bool add_study(Parts *parts, const char *study, Err *err)
     }
     for (uint64_t i = 0; is_added && i < shards; i++) {
         const Shard shard = {i, shards};
-        is_added = study_place_store(study, shard, path, err) &&
+        is_added = study_path_store(study, shard, path, err) &&
                    add_part(parts, path, design_shard_count(spec, shard), err);
     }
-    spec_finish(spec);
-    free(spec);
+    spec_close(spec);
     return is_added;
 }
 
@@ -113,8 +111,8 @@ static bool tell(void *target, Err *err)
     for (size_t i = 0; i < words->count && is_told; i++) {
         Parts parts = {0};
         const char *word = words->words[i];
-        is_told = (study_place_is_study(word) ? add_study(&parts, word, err)
-                                              : add_part(&parts, word, WANTED_UNKNOWN, err)) &&
+        is_told = (study_path_is_study(word) ? add_study(&parts, word, err)
+                                             : add_part(&parts, word, WANTED_UNKNOWN, err)) &&
                   print_parts(&parts, words->is_wide, err);
         is_told = finish_parts(&parts, err) && is_told;
     }

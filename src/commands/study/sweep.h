@@ -7,7 +7,7 @@
 
 enum { SWEEP_JOB_MAX = 256 };
 
-// How far a sweep has come; told a few times a second.
+// How far a sweep has come; reported a few times a second.
 typedef struct SweepState {
     uint64_t total;                    // runs of the shard
     uint64_t done;                     // of them in the store, those of earlier included
@@ -30,7 +30,7 @@ typedef struct Sweep {
     Shard shard;
     size_t jobs; // runs at a time
     Store *store;
-    void (*tell)(const SweepState *state, void *context);
+    void (*report)(const SweepState *state, void *context);
     bool (*should_stop)(void *context); // asked often: true ends it in good order
     void *context;
     const SweepWork *work; // what the processes do; NULL for the usual: study/sweep_work.h

@@ -1,6 +1,6 @@
-// How does a sweep go on, turn by turn?
+// How does a sweep proceed?
 //
-// fill the lanes -> wait -> take in what has ended -> commit now and then -> tell.
+// fill the slots -> wait -> take in what has ended -> commit now and then -> report.
 #include "base/clock.h"
 #include "commands/study/sweep_pool.h"
 
@@ -10,13 +10,13 @@
 static const double PAUSE_S = 0.2;       // between two looks at who wants it to stop
 static const double COMMIT_S = 0.25;     // between two commits: what a power cut takes away
 static const double COMMIT_SHARE = 0.02; // of the time that commits may take at most
-static const double TELL_S = 0.1;        // between two words of progress
+static const double REPORT_S = 0.1;      // between two words of progress
 
 // When what was done last.
 typedef struct Times {
     double started_s; // all by the clock
     double committed_s;
-    double told_s;
+    double reported_s;
     double commit_s; // that the last commit took
 } Times;
 
@@ -52,18 +52,18 @@ static bool commit(const Sweep *sweep, Times *times, Err *err)
     return is_kept;
 }
 
-static void tell(const Sweep *sweep, SweepState *state, Times *times)
+static void report(const Sweep *sweep, SweepState *state, Times *times)
 {
-    times->told_s = clock_now_s();
-    state->wall_s = times->told_s - times->started_s;
-    sweep->tell(state, sweep->context);
+    times->reported_s = clock_now_s();
+    state->wall_s = times->reported_s - times->started_s;
+    sweep->report(state, sweep->context);
 }
 
 static bool keep(SweepPool *pool, Times *times, Err *err)
 {
     const double clock_s = clock_now_s();
-    if (clock_s - times->told_s >= TELL_S) {
-        tell(pool->sweep, pool->state, times);
+    if (clock_s - times->reported_s >= REPORT_S) {
+        report(pool->sweep, pool->state, times);
     }
     // a slow disk is asked less often
     const double pause_s = fmax(COMMIT_S, times->commit_s / COMMIT_SHARE);
@@ -106,7 +106,7 @@ bool sweep_execute(const Sweep *sweep, SweepEnd *end, SweepState *state, Err *er
     SweepPool pool;
     sweep_pool_open(sweep, state, &pool);
     const bool is_done = go_on(&pool, &times, end, err);
-    tell(sweep, state, &times);
+    report(sweep, state, &times);
     sweep_pool_close(&pool);
     return is_done;
 }

@@ -1,6 +1,6 @@
 // Which process is to be started next, and what became of those that ended?
 //
-// There are as many lanes as jobs; in each a process works and another one, made ready, stands
+// There are as many slots as jobs; in each a process works and another one, made ready, stands
 // behind it. Runs start by rising number. A truth is a process like a run, and is started early
 // enough for runs to wait for none: as soon as fewer runs than jobs are ready to start. One group
 // more than there are jobs is open at a time, so that there is always something to start: of those
@@ -8,8 +8,8 @@
 #include "commands/study/sweep_pool.h"
 
 #include "base/clock.h"
-#include "commands/study/lane.h"
 #include "commands/study/last_words.h"
+#include "commands/study/slot.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -21,12 +21,12 @@ void sweep_pool_open(const Sweep *sweep, SweepState *state, SweepPool *pool)
         .sweep = sweep,
         .work = sweep->work == NULL ? &SWEEP_WORK : sweep->work,
         .state = state,
-        .lanes = lane_open(),
-        .lane_count = sweep->jobs,
+        .slots = slot_open(),
+        .slot_count = sweep->jobs,
         .ended_s = calloc(sweep->jobs, sizeof *pool->ended_s),
-        .job_count = SWEEP_LANE_DEPTH * sweep->jobs,
-        .jobs = calloc(SWEEP_LANE_DEPTH * sweep->jobs, sizeof *pool->jobs),
-        .children = calloc(SWEEP_LANE_DEPTH * sweep->jobs, sizeof *pool->children),
+        .job_count = SWEEP_SLOT_DEPTH * sweep->jobs,
+        .jobs = calloc(SWEEP_SLOT_DEPTH * sweep->jobs, sizeof *pool->jobs),
+        .children = calloc(SWEEP_SLOT_DEPTH * sweep->jobs, sizeof *pool->children),
         .group_count = sweep->jobs + 1,
         .groups = calloc(sweep->jobs + 1, sizeof *pool->groups),
         .end = design_run_count(sweep->spec),
@@ -34,11 +34,11 @@ void sweep_pool_open(const Sweep *sweep, SweepState *state, SweepPool *pool)
     assert(pool->ended_s != NULL && pool->jobs != NULL && pool->children != NULL &&
            pool->groups != NULL);
     for (size_t i = 0; i < pool->job_count; i++) {
-        pool->jobs[i].place = (SweepPlace){
+        pool->jobs[i].slot = (SweepSlot){
             .work = pool->work,
             .words = last_words_open(),
-            .lanes = pool->lanes,
-            .lane = i % pool->lane_count,
+            .slots = pool->slots,
+            .number = i % pool->slot_count,
         };
     }
 }
@@ -47,12 +47,12 @@ void sweep_pool_close(SweepPool *pool)
 {
     for (size_t i = 0; i < pool->job_count; i++) {
         child_kill(&pool->children[i]);
-        last_words_close(pool->jobs[i].place.words);
+        last_words_close(pool->jobs[i].slot.words);
     }
     for (size_t i = 0; i < pool->group_count; i++) {
         sweep_group_close(&pool->groups[i]);
     }
-    lane_close(pool->lanes);
+    slot_close(pool->slots);
     free(pool->ended_s);
     free(pool->jobs);
     free(pool->children);
@@ -72,7 +72,7 @@ static SweepGroup *find_ready(const SweepPool *pool, bool *are_enough)
             first = first == NULL || group->next < first->next ? group : first;
         }
     }
-    *are_enough = ready >= pool->lane_count;
+    *are_enough = ready >= pool->slot_count;
     return first;
 }
 
@@ -108,7 +108,7 @@ static bool open_next(SweepPool *pool, SweepGroup **opened, Err *err)
 }
 
 // Starts a process. Where the system has none left but others are there, one will be free when
-// they are done. The limit of its time is the lane's, for it may have to wait.
+// they are done. The limit of its time is the slot's, for it may have to wait.
 static bool start(SweepPool *pool, size_t number, SweepGroup *group, bool *is_started, Err *err)
 {
     SweepJob *job = &pool->jobs[number];
@@ -116,15 +116,15 @@ static bool start(SweepPool *pool, size_t number, SweepGroup *group, bool *is_st
     Err reason = {0};
     ChildLimits limits =
         job->is_truth ? sweep_group_limits(pool->sweep) : pool->sweep->spec->limits;
-    job->place.limit_s = limits.time_s;
+    job->slot.limit_s = limits.time_s;
     limits.time_s = 0.0;
-    last_words_clear(job->place.words);
+    last_words_clear(job->slot.words);
     if (job->is_truth) {
-        group->wanted->place = job->place;
+        group->wanted->slot = job->slot;
         *is_started = child_start(child, sweep_work_certify, group->wanted, group->packed,
                                   group->packed_size, limits, &reason);
     } else {
-        job->run.place = job->place;
+        job->run.slot = job->slot;
         *is_started = child_start(child, sweep_work_run, &job->run, &job->record,
                                   sizeof job->record, limits, &reason);
     }
@@ -187,23 +187,23 @@ static bool fill(SweepPool *pool, size_t number, bool *is_started, Err *err)
     return ready == NULL || start_run(pool, number, ready, is_started, err);
 }
 
-static size_t count_lane(const SweepPool *pool, size_t lane)
+static size_t count_slot(const SweepPool *pool, size_t slot)
 {
     size_t count = 0;
-    for (size_t i = lane; i < pool->job_count; i += pool->lane_count) {
+    for (size_t i = slot; i < pool->job_count; i += pool->slot_count) {
         count += pool->jobs[i].group != NULL ? 1 : 0;
     }
     return count;
 }
 
-// Empty lanes come first, then those with nothing ready.
+// Empty slots come first, then those with nothing ready.
 bool sweep_pool_fill(SweepPool *pool, Err *err)
 {
     bool is_started = true;
-    for (size_t depth = 0; depth < SWEEP_LANE_DEPTH; depth++) {
+    for (size_t depth = 0; depth < SWEEP_SLOT_DEPTH; depth++) {
         for (size_t i = 0; i < pool->job_count && is_started; i++) {
             if (pool->jobs[i].group == NULL &&
-                count_lane(pool, pool->jobs[i].place.lane) <= depth &&
+                count_slot(pool, pool->jobs[i].slot.number) <= depth &&
                 !fill(pool, i, &is_started, err)) {
                 return false;
             }
@@ -215,7 +215,7 @@ bool sweep_pool_fill(SweepPool *pool, Err *err)
 // How long a process was at work, as far as its parent can tell: it may have had to wait.
 static double time_of(SweepPool *pool, const SweepJob *job, const Child *child)
 {
-    double *ended_s = &pool->ended_s[job->place.lane];
+    double *ended_s = &pool->ended_s[job->slot.number];
     const double from_s = child->started_s > *ended_s ? child->started_s : *ended_s;
     *ended_s = clock_now_s();
     return *ended_s - from_s;
@@ -258,7 +258,7 @@ bool sweep_pool_take(SweepPool *pool, Err *err)
         }
         Child *child = &pool->children[i];
         const double wall_s = time_of(pool, job, child);
-        sweep_work_tell_time(&job->place, child);
+        sweep_work_mark_timeout(&job->slot, child);
         if (job->is_truth) {
             take_truth(pool, group, child, wall_s);
         } else {

@@ -3,13 +3,13 @@
 
 #include "commands/study/sweep_group.h"
 
-enum { SWEEP_LANE_DEPTH = 2 }; // processes of a lane: one at work, one ready
+enum { SWEEP_SLOT_DEPTH = 2 }; // processes of a slot: one at work, one ready
 
 // One process.
 typedef struct SweepJob {
     SweepGroup *group; // NULL: none
     bool is_truth;
-    SweepPlace place;
+    SweepSlot slot;
     SweepRun run;
     Record record;
 } SweepJob;
@@ -18,10 +18,10 @@ typedef struct SweepPool {
     const Sweep *sweep;
     const SweepWork *work;
     SweepState *state;
-    int lanes;
-    size_t lane_count;
-    double *ended_s;  // by the clock, of each lane's last process
-    size_t job_count; // those of lane k are k, k + lane_count, ...
+    int slots;
+    size_t slot_count;
+    double *ended_s;  // by the clock, of each slot's last process
+    size_t job_count; // those of slot k are k, k + slot_count, ...
     SweepJob *jobs;
     Child *children; // of the jobs
     size_t group_count;

@@ -1,14 +1,13 @@
-// What does one process of a sweep do, and what is said of one that never came back?
+// What does one process of a sweep do, and which record stands for one that ended without a result?
 //
-// values -> scenario -> trajectory -> metrics -> record. Nothing is given back on the way: the
-// process ends, and all it had goes with it.
+// values -> scenario -> trajectory -> metrics -> record. Memory is not freed: the process ends.
 #include "commands/study/sweep_work.h"
 
 #include "base/clock.h"
 #include "base/shorten.h"
 #include "commands/study/design.h"
-#include "commands/study/lane.h"
 #include "commands/study/last_words.h"
+#include "commands/study/slot.h"
 #include "measure/backend_run.h"
 #include "run/registry.h"
 
@@ -87,10 +86,10 @@ static void certify(const SweepTruth *truth, void *packed)
 
 const SweepWork SWEEP_WORK = {run, certify};
 
-static void enter(const SweepPlace *place)
+static void enter(const SweepSlot *slot)
 {
-    last_words_listen(place->words);
-    lane_enter(place->lanes, place->lane, place->limit_s);
+    last_words_listen(slot->words);
+    slot_enter(slot->slots, slot->number, slot->limit_s);
     errno = 0;
 }
 
@@ -98,26 +97,26 @@ void sweep_work_run(const void *context, void *result)
 {
     const SweepRun *task = context;
     Record *record = result;
-    enter(&task->place);
+    enter(&task->slot);
     const double started_s = clock_now_s();
-    task->place.work->run(task, record);
+    task->slot.work->run(task, record);
     record->wall_s = clock_now_s() - started_s;
-    lane_leave(task->place.lanes, task->place.lane);
+    slot_leave(task->slot.slots, task->slot.number);
 }
 
 void sweep_work_certify(const void *context, void *packed)
 {
     const SweepTruth *task = context;
-    enter(&task->place);
-    task->place.work->certify(task, packed);
-    lane_leave(task->place.lanes, task->place.lane);
+    enter(&task->slot);
+    task->slot.work->certify(task, packed);
+    slot_leave(task->slot.slots, task->slot.number);
 }
 
-void sweep_work_tell_time(const SweepPlace *place, Child *child)
+void sweep_work_mark_timeout(const SweepSlot *slot, Child *child)
 {
-    if (child->end == CHILD_SIGNALLED && child->code == SIGALRM && place->limit_s > 0.0) {
+    if (child->end == CHILD_SIGNALLED && child->code == SIGALRM && slot->limit_s > 0.0) {
         child->end = CHILD_TIMED_OUT;
-        child->limits.time_s = place->limit_s;
+        child->limits.time_s = slot->limit_s;
     }
 }
 
@@ -143,7 +142,7 @@ void sweep_work_lost(const SweepRun *task, const Child *child, double wall_s, Re
     forget_results(record);
     design_values(task->spec, task->run, record->settings);
     child_describe(child, words);
-    last_words_read(task->place.words, said, sizeof said);
+    last_words_read(task->slot.words, said, sizeof said);
     record->fate = fate_of(child->end);
     snprintf(record->reason, sizeof record->reason, "%s%s%s", words, said[0] != '\0' ? ": " : "",
              said);

@@ -1,22 +1,22 @@
-// What the processes of a sweep do: one run, one truth. Tests put other work in its place.
+// What the processes of a sweep do: one run, one truth. Tests replace it.
 #pragma once
 
 #include "commands/study/metrics.h"
 #include "commands/study/sweep.h"
 #include "measure/task.h"
 
-// Where a process works.
-typedef struct SweepPlace {
+// The worker slot of a process, and what it needs there.
+typedef struct SweepSlot {
     const SweepWork *work;
-    int words; // where what it says goes: base/last_words.h
-    int lanes; // study/lane.h
-    size_t lane;
+    int words;      // where its output goes: study/last_words.h
+    int slots;      // study/slot.h
+    size_t number;  // of the slot
     double limit_s; // of its work
-} SweepPlace;
+} SweepSlot;
 
 // A run as its process sees it.
 typedef struct SweepRun {
-    SweepPlace place;
+    SweepSlot slot;
     const Spec *spec;
     const Layout *layout;
     const Truth *truth; // NULL where there is none
@@ -25,7 +25,7 @@ typedef struct SweepRun {
 
 // A truth as its process sees it.
 typedef struct SweepTruth {
-    SweepPlace place;
+    SweepSlot slot;
     Task task; // its scenario alone
 } SweepTruth;
 
@@ -36,13 +36,13 @@ struct SweepWork {
 
 extern const SweepWork SWEEP_WORK;
 
-// Each is a ChildWork: takes a SweepRun or SweepTruth, waits for its lane, and does its work out of
-// everyone's earshot.
+// Each is a ChildWork: takes a SweepRun or SweepTruth, waits for its slot, and does its work with
+// its output captured.
 void sweep_work_run(const void *task, void *record);
 void sweep_work_certify(const void *task, void *packed);
 
-// Tells a process that its lane's limit ended from one that a signal did.
-void sweep_work_tell_time(const SweepPlace *place, Child *child);
+// Marks a process that its slot's time limit ended as timed out; SIGALRM did it.
+void sweep_work_mark_timeout(const SweepSlot *slot, Child *child);
 
 // The record of a run whose process ended without one: why is in the child and in its last words.
 void sweep_work_lost(const SweepRun *run, const Child *child, double wall_s, Record *record);

@@ -1,5 +1,5 @@
 // Where is the store of a study?
-#include "commands/study/study_place.h"
+#include "commands/study/study_path.h"
 
 #include <assert.h>
 #include <dirent.h>
@@ -20,7 +20,7 @@ static int stem_length(const char *study)
     return (int)(dot == NULL || dot == base ? strlen(base) : (size_t)(dot - base));
 }
 
-bool study_place_store(const char *study, Shard shard, char path[FILE_PATH_SIZE], Err *err)
+bool study_path_store(const char *study, Shard shard, char path[FILE_PATH_SIZE], Err *err)
 {
     const int length =
         shard.count == 1
@@ -31,16 +31,16 @@ bool study_place_store(const char *study, Shard shard, char path[FILE_PATH_SIZE]
            err_set(err, ERR_FILE, "the path of the store of %s is too long", study);
 }
 
-bool study_place_is_study(const char *word)
+bool study_path_is_study(const char *word)
 {
     const char *dot = strrchr(base_name(word), '.');
     return dot != NULL && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0);
 }
 
-bool study_place_find(const char *word, char path[FILE_PATH_SIZE], Err *err)
+bool study_path_find(const char *word, char path[FILE_PATH_SIZE], Err *err)
 {
-    if (study_place_is_study(word)) {
-        return study_place_store(word, (Shard){0, 1}, path, err);
+    if (study_path_is_study(word)) {
+        return study_path_store(word, (Shard){0, 1}, path, err);
     }
     return snprintf(path, FILE_PATH_SIZE, "%s", word) < FILE_PATH_SIZE ||
            err_set(err, ERR_FILE, "the path of the store is too long");
@@ -60,12 +60,12 @@ static uint64_t read_shards(const char *study, const char *name)
     }
     // it is the name only if it would be made just so
     const bool is_name = index >= 1 && index <= count && count > 1 && count <= DESIGN_SHARD_MAX &&
-                         study_place_store(study, (Shard){index - 1, count}, made, &err) &&
+                         study_path_store(study, (Shard){index - 1, count}, made, &err) &&
                          strcmp(made, name) == 0;
     return is_name ? count : 0;
 }
 
-bool study_place_count_shards(const char *study, uint64_t *shards, Err *err)
+bool study_path_count_shards(const char *study, uint64_t *shards, Err *err)
 {
     *shards = 0;
     DIR *folder = opendir(".");

@@ -1,11 +1,11 @@
 // How does the next process begin the moment the one before it is done?
 //
-// Each lane is a byte of a file in memory, and who works holds the lock on it: a lock of the
-// process, which ends with it however that comes about. The clock of the limit runs from when the
-// lock was had; the system keeps it, for the parent cannot know that moment.
+// Each slot is a byte of a file in memory, locked by the process that works: the lock ends with the
+// process, however it ends. The time limit counts from the moment the lock is taken; the system's
+// timer measures it, because the parent cannot know that moment.
 #define _GNU_SOURCE // memfd_create
 
-#include "commands/study/lane.h"
+#include "commands/study/slot.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -15,22 +15,22 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-int lane_open(void)
+int slot_open(void)
 {
-    return memfd_create("lanes", MFD_CLOEXEC);
+    return memfd_create("slots", MFD_CLOEXEC);
 }
 
-void lane_close(int lanes)
+void slot_close(int slots)
 {
-    if (lanes >= 0) {
-        close(lanes);
+    if (slots >= 0) {
+        close(slots);
     }
 }
 
-static void lock(int lanes, size_t lane, short kind)
+static void lock(int slots, size_t slot, short kind)
 {
-    struct flock what = {.l_type = kind, .l_whence = SEEK_SET, .l_start = (off_t)lane, .l_len = 1};
-    while (lanes >= 0 && fcntl(lanes, F_SETLKW, &what) != 0 && errno == EINTR) {
+    struct flock what = {.l_type = kind, .l_whence = SEEK_SET, .l_start = (off_t)slot, .l_len = 1};
+    while (slots >= 0 && fcntl(slots, F_SETLKW, &what) != 0 && errno == EINTR) {
     }
 }
 
@@ -48,17 +48,17 @@ static void set_timer(double limit_s)
     setitimer(ITIMER_REAL, &timer, NULL);
 }
 
-void lane_enter(int lanes, size_t lane, double limit_s)
+void slot_enter(int slots, size_t slot, double limit_s)
 {
-    lock(lanes, lane, F_WRLCK);
+    lock(slots, slot, F_WRLCK);
     if (limit_s > 0.0) {
         set_timer(limit_s);
     }
 }
 
-void lane_leave(int lanes, size_t lane)
+void slot_leave(int slots, size_t slot)
 {
     const struct itimerval never = {0};
     setitimer(ITIMER_REAL, &never, NULL);
-    lock(lanes, lane, F_UNLCK);
+    lock(slots, slot, F_UNLCK);
 }
