@@ -16,7 +16,7 @@ static const double UNSTABLE = 1.0;
 
 static bool is_truth(const Ladder *ladder, const LadderPoint *point)
 {
-    return strcmp(ladder->schemes[point->scheme].name, ladder->truth.backend) == 0;
+    return strcmp(point->name, ladder->truth.backend) == 0;
 }
 
 static double error_of(const Ladder *ladder, const LadderPoint *point)

@@ -45,7 +45,12 @@ Ladder *ladder_create(const Scheme *schemes, size_t scheme_count, const double *
         const bool has_step = scheme_has_step(&schemes[i]);
         for (size_t k = 0; k < (has_step ? step_count : 1); k++) {
             LadderPoint *point = &ladder->points[ladder->point_count++];
-            *point = (LadderPoint){.scheme = i, .step_s = has_step ? steps[k] : 0.0};
+            *point = (LadderPoint){
+                .scheme = i,
+                .name = ladder->schemes[i].name,
+                .is_first = k == 0,
+                .step_s = has_step ? steps[k] : 0.0,
+            };
         }
     }
     return ladder;
@@ -63,7 +68,7 @@ size_t ladder_find(const Ladder *ladder, const char *scheme, double step_s)
 {
     for (size_t i = 0; i < ladder->point_count; i++) {
         const LadderPoint *point = &ladder->points[i];
-        if (point->step_s == step_s && strcmp(ladder->schemes[point->scheme].name, scheme) == 0) {
+        if (point->step_s == step_s && strcmp(point->name, scheme) == 0) {
             return i;
         }
     }

@@ -42,7 +42,9 @@ typedef struct LadderRun {
 // One scheme at one step.
 typedef struct LadderPoint {
     size_t scheme;
-    double step_s; // 0 where the scheme chooses its own
+    const char *name; // of the scheme
+    bool is_first;    // of its scheme
+    double step_s;    // 0 where the scheme chooses its own
     bool is_measured;
     LadderRun run;                            // LADDER_ERROR, where it is measured
     bool is_timed[LADDER_REPEAT_MAX];         // by round

@@ -53,6 +53,7 @@ static void add_contact(Mapping *mapping, const Scenario *scenario, const Mappin
         };
         text_copy(contact->lack, sizeof contact->lack, lack.text);
     }
+    contact->mass_source = mapping->settings.mass_source;
     contact->speed_source = speed_source;
 }
 
@@ -137,6 +138,8 @@ static bool make_contacts(Mapping *mapping, MappingWatch watch, Err *err)
 
 static void fill_soft(const MappingContact *contact, MappingRow *row)
 {
+    row->soft = (ErpCfm){NAN, NAN, NAN};
+    row->stability_limit = NAN;
     const ContactOptions *options = &contact->scenario.contact;
     if (mapping_contact_is_poisson(contact)) {
         row->soft = map_row(contact->scenario.ode.push_out, map_poisson_cfm(options->penalty));
@@ -149,11 +152,16 @@ static void fill_soft(const MappingContact *contact, MappingRow *row)
             .depth = contact->asked.penetration_max,
         };
         row->soft = map_get(row->map)->convert(&at);
+        row->stability_limit = map_get(row->map)->stability_limit;
     }
 }
 
 static void fill_row(const MappingContact *contact, MappingRow *row)
 {
+    const Scenario scenario = mapping_scenario(contact, row->map, row->step_s);
+    row->contact = contact;
+    row->map_name = mapping_contact_is_poisson(contact) ? "poisson" : OPTIONS_ODE_MAPS[row->map];
+    row->stepping = scenario.ode.stepping;
     row->steps_a_contact = contact->half_period_s / row->step_s;
     row->omega_h = sqrt(contact->tangent / contact->impact.mass) * row->step_s;
     fill_soft(contact, row);
@@ -167,7 +175,6 @@ static void fill_row(const MappingContact *contact, MappingRow *row)
                  MAPPING_STEPS_MOST);
         return;
     }
-    const Scenario scenario = mapping_scenario(contact, row->map, row->step_s);
     row->delivered = impact_deliver(&scenario, contact->joint.joint, contact->impact.mass,
                                     contact->impact.speed, row->predicted.duration.most);
 }

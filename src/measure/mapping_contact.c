@@ -120,7 +120,14 @@ bool mapping_contact_make(const Scenario *scenario, const MappingJoint *joint, d
             options->penalty =
                 penalty_estimate(scenario->linkage.driver.speed, &scenario->material);
         }
-        made.asked = (MapImpact){.restitution = options->restitution, .is_ended = true};
+        made.asked = (MapImpact){
+            .restitution = options->restitution,
+            .force_max = NAN,
+            .penetration_max = NAN,
+            .duration = NAN,
+            .is_ended = true,
+        };
+        made.half_period_s = made.secant = made.tangent = made.damping = made.equivalent = NAN;
         *contact = made;
         return true;
     }

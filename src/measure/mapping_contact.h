@@ -24,8 +24,10 @@ typedef struct MappingContact {
     ErrKind lack_kind;
     Scenario scenario;    // with this law
     MapImpactCase impact; // mass and speed used; of the step and rows nothing
+    MappingSource mass_source;
     MappingSource speed_source;
-    MapImpact asked;      // the law's own impact
+    MapImpact asked;      // the law's own impact; NAN of CONTACT_POISSON, as the next five, but for
+                          // the restitution
     double half_period_s; // Tc: the contact's length without damping
     double secant;        // k at the deepest point, N/m
     double tangent;       // dF/dd there, N/m

@@ -27,9 +27,13 @@ extern const char *const VERDICT_NAMES[VERDICT_COUNT]; // one word each
 enum { VERDICT_TEXT_SIZE = 192 };
 
 typedef struct MappingRow {
+    const MappingContact *contact;
     OdeMap map;
+    const char *map_name; // "poisson" of CONTACT_POISSON, which has no map
+    OdeStepping stepping;
     double step_s;
-    ErpCfm soft;            // of the row at the law's deepest point; not of ODE_MAP_IMPULSE
+    ErpCfm soft;            // of the row at the law's deepest point; NAN of ODE_MAP_IMPULSE
+    double stability_limit; // 1, of omega h; NAN where there is none, as the next two
     double steps_a_contact; // 1, Tc / h
     double omega_h;         // 1, at the deepest point
     ImpactFigures predicted;

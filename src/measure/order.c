@@ -76,6 +76,9 @@ Order order_fit(size_t count, const double *steps, const double *errors, double 
     }
     if (best.is_known) {
         best.order = slope(best.first, best.last, steps, errors);
+        best.points = best.last - best.first + 1;
+        best.from_s = steps[best.first];
+        best.to_s = steps[best.last];
     }
     return best;
 }

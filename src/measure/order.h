@@ -9,6 +9,9 @@ typedef struct Order {
     double order;  // 1: error ~ step^order
     size_t first;  // of the steps the fit is over, in the order given
     size_t last;   //
+    size_t points; // of the fit
+    double from_s; // its coarsest and its finest step
+    double to_s;   //
     double spread; // 1: largest less smallest of the orders from one step to the next in there
 } Order;
 

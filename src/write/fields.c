@@ -5,6 +5,7 @@
 #include "write/fields.h"
 
 #include "write/csv.h"
+#include "write/file.h"
 #include "write/json_value.h"
 #include "write/units.h"
 
@@ -16,20 +17,21 @@
 
 enum { HASH_DIGITS = 16 };
 
-static const void *value_at(const Field *field, const void *record)
+// A value by its field: where it stands, or what a function found.
+typedef struct Value {
+    const void *at;   // NULL: not known
+    double number;    // of FIELD_NUMBER and its like
+    const char *word; // of those that are words; NULL: not known
+} Value;
+
+static bool is_in_file(const Field *field, unsigned where)
 {
-    return record == NULL ? NULL : (const char *)record + field->offset;
+    return (field->where & where) != 0 && field->type != FIELD_LABEL;
 }
 
 static bool is_number(const Field *field)
 {
     return field->type >= FIELD_NUMBER && field->type <= FIELD_WRAPPED;
-}
-
-// The record of a group or part.
-static const void *inner_record(const Field *field, const void *value)
-{
-    return field->type == FIELD_PART && value != NULL ? *(const void *const *)value : value;
 }
 
 static bool has_inner(const Field *field)
@@ -44,59 +46,82 @@ static double file_number(const Field *field, double value)
                                           : value;
 }
 
-static const char *word_of(const Field *field, const void *value)
+// The record of a group or part, or NULL.
+static const void *inner_record(const Field *field, const void *record)
+{
+    if (record == NULL || field->type == FIELD_PART) {
+        return record == NULL ? NULL : field->part(record);
+    }
+    return (const char *)record + field->offset;
+}
+
+static const char *find_word(const Field *field, const void *record, const void *at)
 {
     switch (field->type) {
     case FIELD_NAME:
-        return *(const char *const *)value;
+        return field->word != NULL ? field->word(record) : *(const char *const *)at;
     case FIELD_CHOICE:
-        return ((const char *const *)field->of)[*(const unsigned *)value];
+        return ((const char *const *)field->of)[*(const unsigned *)at];
+    case FIELD_TEXT:
+        return field->word != NULL ? field->word(record) : at;
     default:
-        return value;
+        return NULL;
     }
 }
 
-static json_t *json_of(const Field *field, const void *value)
+static Value find_value(const Field *field, const void *record)
 {
-    if (value == NULL) {
+    if (record == NULL) {
+        return (Value){.at = NULL, .number = NAN};
+    }
+    const void *at = (const char *)record + field->offset;
+    Value value = {.at = at, .word = find_word(field, record, at)};
+    if (is_number(field)) {
+        value.number = field->number != NULL ? field->number(record) : *(const double *)at;
+    }
+    return value;
+}
+
+static json_t *json_of(const Field *field, const void *record)
+{
+    const Value value = find_value(field, record);
+    if (value.at == NULL) {
         return json_null();
     }
     switch (field->type) {
     case FIELD_COUNT:
-        return json_integer((json_int_t)(*(const size_t *)value));
+        return json_integer((json_int_t)(*(const size_t *)value.at));
     case FIELD_FLAG:
-        return json_boolean(*(const bool *)value);
+        return json_boolean(*(const bool *)value.at);
     case FIELD_HASH:
-        return json_sprintf("%016" PRIx64, *(const uint64_t *)value);
+        return json_sprintf("%016" PRIx64, *(const uint64_t *)value.at);
+    case FIELD_VALUE:
+        return field->json(record);
     case FIELD_NAME:
     case FIELD_TEXT:
     case FIELD_CHOICE:
-        return word_of(field, value) == NULL ? json_null() : json_value_text(word_of(field, value));
+        return value.word == NULL ? json_null() : json_value_text(value.word);
     default:
         assert(is_number(field));
-        return json_value_real(file_number(field, *(const double *)value));
+        return json_value_real(file_number(field, value.number));
     }
 }
 
 void fields_json_set(const Field *fields, unsigned where, const void *record, json_t *object)
 {
     for (const Field *field = fields; field->type != FIELD_END; field++) {
-        const void *value = value_at(field, record);
-        const void *inner = inner_record(field, value);
-        if ((field->where & where) == 0) {
+        if (!is_in_file(field, where)) {
             continue;
         }
-        if (field->type == FIELD_VALUE) {
-            json_t *made = *(json_t *const *)value;
-            if (made != NULL) {
-                json_object_set_new(object, field->key, made);
-            }
-        } else if (!has_inner(field)) {
-            json_object_set_new(object, field->key, json_of(field, value));
-        } else if (field->key != NULL) {
+        if (!has_inner(field)) {
+            json_object_set_new(object, field->key, json_of(field, record));
+            continue;
+        }
+        const void *inner = inner_record(field, record);
+        if (field->key != NULL) {
             json_object_set_new(object, field->key,
                                 inner == NULL ? json_null() : fields_json(field->of, where, inner));
-        } else if (inner != NULL) {
+        } else if (inner != NULL || field->has_nulls) {
             fields_json_set(field->of, where, inner, object);
         }
     }
@@ -152,7 +177,7 @@ bool fields_json_read(const Field *fields, unsigned where, const json_t *object,
     bool is_right = json_is_object(object);
     for (const Field *field = fields; is_right && field->type != FIELD_END; field++) {
         const json_t *json = field->key == NULL ? object : json_object_get(object, field->key);
-        is_right = (field->where & where) == 0 ||
+        is_right = !is_in_file(field, where) ||
                    read_value(field, where, json, (char *)record + field->offset);
     }
     return is_right;
@@ -162,7 +187,7 @@ static size_t csv_heads(const Field *fields, unsigned where, const char *prefix,
                         FILE *stream)
 {
     for (const Field *field = fields; field->type != FIELD_END; field++) {
-        if ((field->where & where) == 0) {
+        if (!is_in_file(field, where)) {
             continue;
         }
         if (has_inner(field)) {
@@ -183,30 +208,34 @@ void fields_csv_head(const Field *fields, unsigned where, FILE *stream)
     fputc('\n', stream);
 }
 
-static void csv_cell(const Field *field, const void *value, FILE *stream)
+static void csv_cell(const Field *field, const void *record, FILE *stream)
 {
+    const Value value = find_value(field, record);
+    if (value.at == NULL) {
+        return;
+    }
     switch (field->type) {
     case FIELD_COUNT:
-        fprintf(stream, "%zu", *(const size_t *)value);
+        fprintf(stream, "%zu", *(const size_t *)value.at);
         break;
     case FIELD_FLAG:
-        fprintf(stream, "%d", *(const bool *)value);
+        fprintf(stream, "%d", *(const bool *)value.at);
         break;
     case FIELD_HASH:
-        fprintf(stream, "%016" PRIx64, *(const uint64_t *)value);
+        fprintf(stream, "%016" PRIx64, *(const uint64_t *)value.at);
         break;
     case FIELD_TEXT:
-        if (word_of(field, value)[0] != '\0') {
-            csv_write_quoted(stream, word_of(field, value));
+        if (value.word[0] != '\0') {
+            csv_write_quoted(stream, value.word);
         }
         break;
     case FIELD_NAME:
     case FIELD_CHOICE:
-        csv_write_word(stream, word_of(field, value) == NULL ? "" : word_of(field, value));
+        csv_write_word(stream, value.word == NULL ? "" : value.word);
         break;
     default:
         assert(is_number(field));
-        csv_write_number(stream, file_number(field, *(const double *)value));
+        csv_write_number(stream, file_number(field, value.number));
     }
 }
 
@@ -214,18 +243,15 @@ static size_t csv_cells(const Field *fields, unsigned where, const void *record,
                         FILE *stream)
 {
     for (const Field *field = fields; field->type != FIELD_END; field++) {
-        const void *value = value_at(field, record);
-        if ((field->where & where) == 0) {
+        if (!is_in_file(field, where)) {
             continue;
         }
         if (has_inner(field)) {
-            count = csv_cells(field->of, where, inner_record(field, value), count, stream);
+            count = csv_cells(field->of, where, inner_record(field, record), count, stream);
             continue;
         }
         fputs(count > 0 ? "," : "", stream);
-        if (value != NULL) {
-            csv_cell(field, value, stream);
-        }
+        csv_cell(field, record, stream);
         count++;
     }
     return count;
@@ -235,6 +261,20 @@ void fields_csv_row(const Field *fields, unsigned where, const void *record, FIL
 {
     csv_cells(fields, where, record, 0, stream);
     fputc('\n', stream);
+}
+
+bool fields_csv_write(const Field *fields, unsigned where, const void *records, size_t count,
+                      size_t size, const char *path, Err *err)
+{
+    WholeFile file;
+    if (!file_begin(&file, FILE_TABLE, path, err)) {
+        return false;
+    }
+    fields_csv_head(fields, where, file.stream);
+    for (size_t i = 0; i < count; i++) {
+        fields_csv_row(fields, where, (const char *)records + i * size, file.stream);
+    }
+    return file_end(&file, err);
 }
 
 static size_t count_columns(const Field *fields, unsigned where)
@@ -277,40 +317,45 @@ Table *fields_table(const char *heading, const Field *fields, unsigned where, co
     return table;
 }
 
+static void absent_cell(const Field *field, Table *table)
+{
+    table_cell(table, "%s", field->absent == NULL ? "-" : field->absent);
+}
+
 static void number_cell(const Field *field, double value, Table *table)
 {
-    const double shown = field->type == FIELD_WRAPPED
-                             ? units_wrapped_deg(value)
-                             : value * units_per_si(field->unit == NULL ? "" : field->unit);
-    if (field->format == NULL) {
-        section_number_or_dash(table, isfinite(shown), shown);
+    const double per_si = field->per_si != 0.0 ? field->per_si : units_per_si(field->unit);
+    const double shown = field->type == FIELD_WRAPPED ? units_wrapped_deg(value) : value * per_si;
+    if (!isfinite(shown)) {
+        absent_cell(field, table);
+    } else if (field->format == NULL) {
+        section_number(table, shown);
     } else {
         section_finite(table, field->format, shown);
     }
 }
 
-static void table_cell_of(const Field *field, const void *value, Table *table)
+static void write_cell(const Field *field, const void *record, Table *table)
 {
-    if (value == NULL) {
-        table_cell(table, "-");
-    } else if (is_number(field)) {
-        number_cell(field, *(const double *)value, table);
-    } else if (field->type == FIELD_COUNT) {
-        table_cell(table, "%zu", *(const size_t *)value);
+    const Value value = find_value(field, record);
+    if (is_number(field)) {
+        number_cell(field, value.number, table);
+    } else if (field->type == FIELD_COUNT && value.at != NULL) {
+        table_cell(table, "%zu", *(const size_t *)value.at);
+    } else if (value.word != NULL) {
+        table_cell(table, "%s", value.word);
     } else {
-        const char *word = word_of(field, value);
-        table_cell(table, "%s", word == NULL ? "-" : word);
+        absent_cell(field, table);
     }
 }
 
 void fields_table_row(const Field *fields, unsigned where, const void *record, Table *table)
 {
     for (const Field *field = fields; field->type != FIELD_END; field++) {
-        const void *value = value_at(field, record);
         if ((field->where & where) != 0 && has_inner(field)) {
-            fields_table_row(field->of, where, inner_record(field, value), table);
-        } else if ((field->where & where) != 0) {
-            table_cell_of(field, value, table);
+            fields_table_row(field->of, where, inner_record(field, record), table);
+        } else if ((field->where & where) != 0 && field->type != FIELD_LABEL) {
+            write_cell(field, record, table);
         }
     }
 }

@@ -3,13 +3,14 @@
 // store and the columns of tables for people all come from these rows.
 #pragma once
 
+#include "base/err.h"
 #include "write/section.h"
 
 #include <jansson.h>
 #include <stddef.h>
 #include <stdio.h>
 
-// What a number is not known is null in JSON, an empty cell of CSV and a dash in a table.
+// What is not known is null in JSON, an empty cell of CSV and a dash in a table.
 typedef enum FieldType {
     FIELD_END,     // behind the last row
     FIELD_NUMBER,  // double; not known where it is not finite
@@ -23,8 +24,10 @@ typedef enum FieldType {
     FIELD_CHOICE,  // enum, by the words of `of`
     FIELD_HASH,    // uint64_t, 16 hexadecimal digits
     FIELD_GROUP,   // a struct with the fields `of`
-    FIELD_PART,    // a pointer to one; NULL: nothing of it is known
-    FIELD_VALUE,   // json_t *, whose reference is taken; NULL: no such key. Of JSON alone
+    FIELD_PART,    // the same, of a record that `part` finds; NULL: nothing of it is known, and
+                   // without a key of its own there are none of its keys in JSON
+    FIELD_VALUE,   // what `json` makes. Of JSON alone
+    FIELD_LABEL,   // of tables alone: a cell that the caller fills, before the row
 } FieldType;
 
 // Where a field is shown: any of these bits, and bits of a caller's own from FIELD_OWN on.
@@ -43,15 +46,25 @@ typedef struct Field {
     // object in JSON, and have the key in front of their columns in CSV; those of a group without
     // one stand among the others.
     const char *key;
-    const char *title; // of the column for people
-    const char *unit;  // likewise; it says what SI is multiplied by (units_per_si)
     FieldType type;
-    size_t offset; // in the record
     unsigned where;
+    const char *title;  // of the column for people
+    const char *unit;   // likewise; it says what SI is multiplied by (units_per_si)
     const char *format; // for people; NULL: section_number, or the plain count
+    size_t offset;      // in the record
+    double per_si;      // where the unit says nothing of it
     TableAlign align;   // beyond TABLE_RIGHT for numbers: TABLE_MINOR, TABLE_DETAIL, TABLE_KEY
+    const char *absent; // for people, in place of what is not known; NULL: a dash
     const void *of;     // the fields of a group or part, or the words of a choice
-    size_t size;        // of FIELD_TEXT
+    size_t size;        // of FIELD_TEXT, where it is read
+    bool has_nulls;     // of FIELD_PART without a key: where it is not known its keys are null
+    // how a value is found that does not stand in the record as it is; then the offset is not used
+    union {
+        double (*number)(const void *record);    // of FIELD_NUMBER and its like
+        const char *(*word)(const void *record); // of FIELD_NAME and FIELD_TEXT
+        const void *(*part)(const void *record); // of FIELD_PART
+        json_t *(*json)(const void *record);     // of FIELD_VALUE: a new reference
+    };
 } Field;
 
 // Puts the fields that are shown in any place of `where` into an object, or makes one: a new
@@ -66,6 +79,11 @@ bool fields_json_read(const Field *fields, unsigned where, const json_t *object,
 // Writes the heads of the columns, or the cells of a record, with the end of the line.
 void fields_csv_head(const Field *fields, unsigned where, FILE *stream);
 void fields_csv_row(const Field *fields, unsigned where, const void *record, FILE *stream);
+
+// Writes records that stand `size` bytes apart to a file, a row each under one head, whole or not
+// at all. ERR_FILE.
+bool fields_csv_write(const Field *fields, unsigned where, const void *records, size_t count,
+                      size_t size, const char *path, Err *err);
 
 // Begins a section with a table of these columns, to be ended by section_end; without a heading
 // where that is NULL.

@@ -30,37 +30,37 @@ enum {
     RUN = ERROR | TIMING
 };
 
-#define TRUTH(member)      offsetof(LadderTruth, member)
-#define LINE(member)       offsetof(Line, member)
+#define TRUTH(member)      .offset = offsetof(LadderTruth, member)
+#define LINE(member)       .offset = offsetof(Line, member)
 #define TEXT(type, member) .size = sizeof(((type *)NULL)->member)
 
 // clang-format off
 static const Field TRUTH_FIELDS[] = {
-    {"backend",     .type = FIELD_TEXT,   TRUTH(backend),     FIELD_STORE, TEXT(LadderTruth, backend)},
-    {"uncertainty", .type = FIELD_NUMBER, TRUTH(uncertainty), FIELD_STORE},
-    {"horizon_s",   .type = FIELD_NUMBER, TRUTH(horizon_s),   FIELD_STORE},
-    {"growth",      .type = FIELD_NUMBER, TRUTH(growth),      FIELD_STORE},
-    {"is_limited",  .type = FIELD_FLAG,   TRUTH(is_limited),  FIELD_STORE},
-    {"wall_s",      .type = FIELD_NUMBER, TRUTH(wall_s),      FIELD_STORE},
-    {"message",     .type = FIELD_TEXT,   TRUTH(message),     FIELD_STORE, TEXT(LadderTruth, message)},
+    {"backend", FIELD_TEXT, FIELD_STORE, TRUTH(backend), TEXT(LadderTruth, backend)},
+    {"uncertainty", FIELD_NUMBER, FIELD_STORE, TRUTH(uncertainty)},
+    {"horizon_s", FIELD_NUMBER, FIELD_STORE, TRUTH(horizon_s)},
+    {"growth", FIELD_NUMBER, FIELD_STORE, TRUTH(growth)},
+    {"is_limited", FIELD_FLAG, FIELD_STORE, TRUTH(is_limited)},
+    {"wall_s", FIELD_NUMBER, FIELD_STORE, TRUTH(wall_s)},
+    {"message", FIELD_TEXT, FIELD_STORE, TRUTH(message), TEXT(LadderTruth, message)},
     {0},
 };
 
 static const Field LINE_FIELDS[] = {
-    {"scheme",      .type = FIELD_TEXT,   LINE(scheme),           RUN | ENSEMBLE, TEXT(Line, scheme)},
-    {"step_s",      .type = FIELD_STEP,   LINE(step_s),           RUN | ENSEMBLE},
-    {"is_complete", .type = FIELD_FLAG,   LINE(run.is_complete),  RUN},
-    {"message",     .type = FIELD_TEXT,   LINE(run.message),      RUN, TEXT(Line, run.message)},
-    {"wall_s",      .type = FIELD_NUMBER, LINE(run.wall_s),       RUN},
-    {"steps",       .type = FIELD_COUNT,  LINE(run.steps),        ERROR},
-    {"evaluations", .type = FIELD_COUNT,  LINE(run.evaluations),  ERROR},
-    {"hash",        .type = FIELD_HASH,   LINE(run.hash),         ERROR},
-    {NULL,          .type = FIELD_GROUP,  LINE(run.error),        ERROR, .of = ERROR_FIELDS},
-    {"round",       .type = FIELD_COUNT,  LINE(run.round),        TIMING},
-    {"machine",     .type = FIELD_TEXT,   LINE(machine),          TIMING, TEXT(Line, machine)},
-    {"members",     .type = FIELD_COUNT,  LINE(ensemble.members), ENSEMBLE},
-    {"failed",      .type = FIELD_COUNT,  LINE(ensemble.failed),  ENSEMBLE},
-    {"message",     .type = FIELD_TEXT,   LINE(ensemble.message), ENSEMBLE, TEXT(Line, ensemble.message)},
+    {"scheme", FIELD_TEXT, RUN | ENSEMBLE, LINE(scheme), TEXT(Line, scheme)},
+    {"step_s", FIELD_STEP, RUN | ENSEMBLE, LINE(step_s)},
+    {"is_complete", FIELD_FLAG, RUN, LINE(run.is_complete)},
+    {"message", FIELD_TEXT, RUN, LINE(run.message), TEXT(Line, run.message)},
+    {"wall_s", FIELD_NUMBER, RUN, LINE(run.wall_s)},
+    {"steps", FIELD_COUNT, ERROR, LINE(run.steps)},
+    {"evaluations", FIELD_COUNT, ERROR, LINE(run.evaluations)},
+    {"hash", FIELD_HASH, ERROR, LINE(run.hash)},
+    {NULL, FIELD_GROUP, ERROR, LINE(run.error), .of = ERROR_FIELDS},
+    {"round", FIELD_COUNT, TIMING, LINE(run.round)},
+    {"machine", FIELD_TEXT, TIMING, LINE(machine), TEXT(Line, machine)},
+    {"members", FIELD_COUNT, ENSEMBLE, LINE(ensemble.members)},
+    {"failed", FIELD_COUNT, ENSEMBLE, LINE(ensemble.failed)},
+    {"message", FIELD_TEXT, ENSEMBLE, LINE(ensemble.message), TEXT(Line, ensemble.message)},
     {0},
 };
 // clang-format on
@@ -84,7 +84,7 @@ json_t *ladder_json_run(const Ladder *ladder, const LadderRun *run, const char *
 {
     const LadderPoint *point = &ladder->points[run->point];
     Line line = {.step_s = point->step_s, .run = *run};
-    text_copy(line.scheme, sizeof line.scheme, ladder->schemes[point->scheme].name);
+    text_copy(line.scheme, sizeof line.scheme, point->name);
     text_copy(line.machine, sizeof line.machine, machine);
     return run->kind == LADDER_ERROR
                ? json_pack("{s:o}", "error", fields_json(LINE_FIELDS, ERROR | FIELD_STORE, &line))

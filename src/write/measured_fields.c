@@ -1,44 +1,44 @@
 // What are errors and distributions called, and in which units?
 #include "write/measured_fields.h"
 
-#define ERROR(member)  offsetof(TrajectoryError, member)
-#define SPREAD(member) offsetof(Distribution, member)
-#define METRIC(number) (sizeof(Distribution) * (number))
+#define ERROR(member)  .offset = offsetof(TrajectoryError, member)
+#define SPREAD(member) .offset = offsetof(Distribution, member)
+#define METRIC(number) .offset = sizeof(Distribution) * (number)
 
 enum { KEPT = FIELD_JSON | FIELD_STORE, SHOWN = KEPT | FIELD_CSV };
 
 // clang-format off
 const Field ERROR_FIELDS[] = {
-    {"is_known",             NULL, NULL, FIELD_FLAG,   ERROR(is_known),             .where = FIELD_STORE},
-    {"omega_max",            NULL, NULL, FIELD_NUMBER, ERROR(omega_max),            .where = SHOWN},
-    {"omega_max_time_s",     NULL, NULL, FIELD_NUMBER, ERROR(omega_max_time_s),     .where = KEPT},
-    {"omega_max_in_horizon", NULL, NULL, FIELD_NUMBER, ERROR(omega_max_in_horizon), .where = KEPT},
-    {"omega_rms",            NULL, NULL, FIELD_NUMBER, ERROR(omega_rms),            .where = SHOWN},
-    {"alpha_max",            NULL, NULL, FIELD_NUMBER, ERROR(alpha_max),            .where = SHOWN},
-    {"angle_max_rad",        NULL, NULL, FIELD_NUMBER, ERROR(angle_max_rad),        .where = SHOWN},
+    {"is_known", FIELD_FLAG, FIELD_STORE, ERROR(is_known)},
+    {"omega_max", FIELD_NUMBER, SHOWN, ERROR(omega_max)},
+    {"omega_max_time_s", FIELD_NUMBER, KEPT, ERROR(omega_max_time_s)},
+    {"omega_max_in_horizon", FIELD_NUMBER, KEPT, ERROR(omega_max_in_horizon)},
+    {"omega_rms", FIELD_NUMBER, SHOWN, ERROR(omega_rms)},
+    {"alpha_max", FIELD_NUMBER, SHOWN, ERROR(alpha_max)},
+    {"angle_max_rad", FIELD_NUMBER, SHOWN, ERROR(angle_max_rad)},
     {0},
 };
 
 static const Field DISTRIBUTION_FIELDS[] = {
-    {"low",       "low",    "", FIELD_NUMBER, SPREAD(low),       .where = KEPT},
-    {"median",    "median", "", FIELD_NUMBER, SPREAD(median),    .where = KEPT},
-    {"high",      "high",   "", FIELD_NUMBER, SPREAD(high),      .where = KEPT},
-    {"mean",      "mean",   "", FIELD_NUMBER, SPREAD(mean),      .where = KEPT},
-    {"deviation", "+-",     "", FIELD_NUMBER, SPREAD(deviation), .where = KEPT},
+    {"low", FIELD_NUMBER, KEPT, "low", "", SPREAD(low)},
+    {"median", FIELD_NUMBER, KEPT, "median", "", SPREAD(median)},
+    {"high", FIELD_NUMBER, KEPT, "high", "", SPREAD(high)},
+    {"mean", FIELD_NUMBER, KEPT, "mean", "", SPREAD(mean)},
+    {"deviation", FIELD_NUMBER, KEPT, "+-", "", SPREAD(deviation)},
     {0},
 };
 
 const Field METRIC_FIELDS[ENSEMBLE_METRIC_COUNT + 1] = {
-    {"force_max_N",       "force max",  "N",   FIELD_GROUP, METRIC(ENSEMBLE_FORCE_MAX),
-     KEPT, .of = DISTRIBUTION_FIELDS},
-    {"impulse_N_s",       "impulse",    "N s", FIELD_GROUP, METRIC(ENSEMBLE_IMPULSE),
-     KEPT, .of = DISTRIBUTION_FIELDS},
-    {"impacts",           "impacts",    "",    FIELD_GROUP, METRIC(ENSEMBLE_IMPACTS),
-     KEPT, .of = DISTRIBUTION_FIELDS},
-    {"penetration_max_m", "deepest",    "um",  FIELD_GROUP, METRIC(ENSEMBLE_PENETRATION_MAX),
-     KEPT, .of = DISTRIBUTION_FIELDS},
-    {"contact_fraction",  "in contact", "%",   FIELD_GROUP, METRIC(ENSEMBLE_CONTACT_SHARE),
-     KEPT, .of = DISTRIBUTION_FIELDS},
+    {"force_max_N", FIELD_GROUP, KEPT, "force max", "N", METRIC(ENSEMBLE_FORCE_MAX),
+     .of = DISTRIBUTION_FIELDS},
+    {"impulse_N_s", FIELD_GROUP, KEPT, "impulse", "N s", METRIC(ENSEMBLE_IMPULSE),
+     .of = DISTRIBUTION_FIELDS},
+    {"impacts", FIELD_GROUP, KEPT, "impacts", "", METRIC(ENSEMBLE_IMPACTS),
+     .of = DISTRIBUTION_FIELDS},
+    {"penetration_max_m", FIELD_GROUP, KEPT, "deepest", "um", METRIC(ENSEMBLE_PENETRATION_MAX),
+     .of = DISTRIBUTION_FIELDS},
+    {"contact_fraction", FIELD_GROUP, KEPT, "in contact", "%", METRIC(ENSEMBLE_CONTACT_SHARE),
+     .of = DISTRIBUTION_FIELDS},
     {0},
 };
 // clang-format on

@@ -67,6 +67,14 @@ void settings_json_set(json_t *object, const Scenario *scenario)
     json_object_set_new(object, "setting_units", units);
 }
 
+void settings_json_begin(json_t *object, const Scenario *scenario)
+{
+    json_object_set_new(object, "tool", settings_json_tool());
+    json_object_set_new(object, "case", json_value_text(scenario->path));
+    json_object_set_new(object, "title", json_value_text(scenario->title));
+    settings_json_set(object, scenario);
+}
+
 json_t *settings_json_all(const Scenario *scenario)
 {
     json_t *settings = json_object();

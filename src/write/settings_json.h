@@ -8,6 +8,9 @@
 // New references: version, ode, ccd, gsl; a setting's value in SI.
 json_t *settings_json_tool(void);
 
+// Puts "tool", "case", "title", "settings" and "setting_units" into the object of a result.
+void settings_json_begin(json_t *object, const Scenario *scenario);
+
 // Puts "settings" and "setting_units" into the object: those that the scenario makes use of, by
 // the key they have in a case file.
 void settings_json_set(json_t *object, const Scenario *scenario);

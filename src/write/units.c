@@ -13,7 +13,7 @@ double units_per_si(const char *unit)
         {"deg", &UNITS_DEG}, {"rpm", &UNITS_RPM}, {"mm", &UNITS_MM}, {"mm/s", &UNITS_MM},
         {"um", &UNITS_UM},   {"ms", &UNITS_MS},   {"us", &UNITS_US}, {"%", &UNITS_PERCENT},
     };
-    for (size_t i = 0; i < sizeof UNITS / sizeof *UNITS; i++) {
+    for (size_t i = 0; unit != NULL && i < sizeof UNITS / sizeof *UNITS; i++) {
         if (strcmp(unit, UNITS[i].word) == 0) {
             return *UNITS[i].per_si;
         }

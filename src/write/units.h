@@ -14,7 +14,7 @@ static const double UNITS_US = 1e6;                // per s
 static const double UNITS_PERCENT = 1e2;           // per 1
 
 // How many of a unit make one of SI, by the word for it in a table: 1e3 of "ms"; 1 of SI's own and
-// of any other word.
+// of any other word, and of NULL.
 double units_per_si(const char *unit);
 
 // An angle in degrees, 0 to 360. Angles that print as 360.0 are 0.

@@ -1,8 +1,5 @@
 // Is everything about a comparison told, in words, numbers and a picture?
-#include "commands/compare/compare_csv.h"
-#include "commands/compare/compare_json.h"
-#include "commands/compare/compare_plot.h"
-#include "commands/compare/compare_text.h"
+#include "commands/compare/compare_report.h"
 #include "write/file.h"
 
 #include "close.h"
@@ -229,7 +226,7 @@ static void a_spreadsheet_has_as_many_cells_in_every_row(void **state)
     // a point without an error has an empty cell and its reason
     fixture->ladder->points[0].run.error.omega_max_in_horizon = NAN;
     ladder_conclude(fixture->ladder);
-    assert_true(compare_csv_write(&fixture->report, path, &err));
+    assert_true(compare_rows_write_csv(&fixture->report, path, &err));
     char line[4096];
     FILE *stream = fopen(path, "r");
     size_t lines = 0;
@@ -249,7 +246,7 @@ static void a_spreadsheet_has_as_many_cells_in_every_row(void **state)
     fclose(stream);
     unlink(path);
     assert_int_equal(lines, 1 + fixture->ladder->point_count);
-    assert_false(compare_csv_write(&fixture->report, "/nowhere/at/all.csv", &err));
+    assert_false(compare_rows_write_csv(&fixture->report, "/nowhere/at/all.csv", &err));
     assert_int_equal(err.kind, ERR_FILE);
 }
 
@@ -277,7 +274,7 @@ static void a_number_that_does_not_exist_is_an_empty_cell_and_null(void **state)
     Err err = {0};
     fixture->ladder->points[1].run.error.alpha_max = NAN;
     fixture->ladder->points[2].run.error.alpha_max = 0.25;
-    assert_true(compare_csv_write(&fixture->report, path, &err));
+    assert_true(compare_rows_write_csv(&fixture->report, path, &err));
     json_t *root = compare_json_build(&fixture->report);
     const json_t *scheme = json_array_get(json_object_get(root, "schemes"), 0);
     const json_t *points = json_object_get(scheme, "points");

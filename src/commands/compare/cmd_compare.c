@@ -2,13 +2,10 @@
 #include "cli/results.h"
 #include "cli/warnings.h"
 #include "commands/commands.h"
-#include "commands/compare/compare_csv.h"
-#include "commands/compare/compare_json.h"
 #include "commands/compare/compare_options.h"
-#include "commands/compare/compare_plot.h"
 #include "commands/compare/compare_progress.h"
+#include "commands/compare/compare_report.h"
 #include "commands/compare/compare_store.h"
-#include "commands/compare/compare_text.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -39,38 +36,18 @@ static void wait(const char *doing, void *context)
     compare_progress_show(&((Listening *)context)->progress, doing);
 }
 
-static json_t *build_json(const void *report)
-{
-    return compare_json_build(report);
-}
-
-static void write_text(const void *report, const Style *style, Text *text)
-{
-    compare_text_write(report, style, text);
-}
-
-static bool write_csv(const void *report, const char *path, Err *err)
-{
-    return compare_csv_write(report, path, err);
-}
-
-static void write_plot(const void *report, Text *svg)
-{
-    compare_plot_write(report, svg);
-}
-
 static const ResultFile FILES[] = {
     {.ending = ".txt", .kind = FILE_REPORT},
-    {"--csv", offsetof(CompareOptions, csv), ".csv", FILE_TABLE, .write = write_csv},
-    {"--plot", offsetof(CompareOptions, plot), ".svg", FILE_PICTURE, .text = write_plot},
+    {"--csv", offsetof(CompareOptions, csv), ".csv", FILE_TABLE, .write = compare_rows_write_csv},
+    {"--plot", offsetof(CompareOptions, plot), ".svg", FILE_PICTURE, .text = compare_plot_write},
     {.ending = ".json", .kind = FILE_RESULT},
 };
 
 static const Results RESULTS = {
     .suffix = "-compare",
     .is_followed = true,
-    .json = build_json,
-    .text = write_text,
+    .json = compare_json_build,
+    .text = compare_text_write,
     RESULT_FILES(FILES),
 };
 
@@ -85,9 +62,8 @@ static bool check_points(const Ladder *ladder, Err *err)
         }
         failed = point->step_s > 0.0 && failed == NULL ? point : failed;
     }
-    return failed == NULL ||
-           err_set(err, ERR_SOLVER, "every run of ODE failed: %s at %.4g us: %s",
-                   ladder->schemes[failed->scheme].name, 1e6 * failed->step_s, failed->reason);
+    return failed == NULL || err_set(err, ERR_SOLVER, "every run of ODE failed: %s at %.4g us: %s",
+                                     failed->name, 1e6 * failed->step_s, failed->reason);
 }
 
 static bool compare_ladder(const CompareOptions *options, const Scenario *scenario, Ladder *ladder,

@@ -3,8 +3,7 @@
 // Both axes are logarithmic. Colour tells stepping and map, whole or broken line the solver, full
 // or hollow dots the collider. What is faster and more accurate than all else lies on the wide
 // pale line. The axes are ODE's: a solver far below their edge is an arrow there.
-#include "commands/compare/compare_plot.h"
-
+#include "commands/compare/compare_report.h"
 #include "write/plot.h"
 #include "write/units.h"
 
@@ -188,7 +187,7 @@ static void draw_scheme(const PlotPanel *panel, const Ladder *ladder, size_t sch
 }
 
 // A solver that chooses its own steps: a diamond, or an arrow on the lower edge.
-static void draw_other(const PlotPanel *panel, const Ladder *ladder, const LadderPoint *point)
+static void draw_other(const PlotPanel *panel, const LadderPoint *point)
 {
     const double x = at_x(panel, point->wall_median_s);
     const double edge = panel->top + panel->height;
@@ -202,7 +201,7 @@ static void draw_other(const PlotPanel *panel, const Ladder *ladder, const Ladde
                     x, y, edge - 4.0);
     }
     char words[SCHEME_NAME_SIZE + 32];
-    snprintf(words, sizeof words, "%s, %.1g", ladder->schemes[point->scheme].name, point->error);
+    snprintf(words, sizeof words, "%s, %.1g", point->name, point->error);
     const bool is_right = x > panel->left + 0.7 * panel->width;
     plot_text(panel->svg, is_right ? x - 11.0 : x + 11.0, y + 4.0, is_right ? "end" : "start", "",
               words);
@@ -267,8 +266,9 @@ static void draw_head(const CompareReport *report, Text *svg)
     plot_text(svg, PANEL_LEFT, 56.0, "start", "note", words);
 }
 
-void compare_plot_write(const CompareReport *report, Text *svg)
+void compare_plot_write(const void *of, Text *svg)
 {
+    const CompareReport *report = of;
     const Ladder *ladder = report->ladder;
     plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT, report->scenario->title);
     draw_head(report, svg);
@@ -292,7 +292,7 @@ void compare_plot_write(const CompareReport *report, Text *svg)
     }
     for (size_t i = 0; i < ladder->point_count; i++) {
         if (ladder->points[i].step_s == 0.0 && is_drawn(&ladder->points[i])) {
-            draw_other(&panel, ladder, &ladder->points[i]);
+            draw_other(&panel, &ladder->points[i]);
         }
     }
     label_frontier(&panel, frontier, count);

@@ -2,26 +2,15 @@
 //
 // Beyond the horizon two starts that differ by nothing measurable part. What stays are
 // distributions over many starts, and whether a scheme's agree with the reference's.
-#include "commands/compare/compare_text.h"
-#include "write/table.h"
+#include "commands/compare/compare_report.h"
+#include "write/measured_fields.h"
 #include "write/units.h"
 
 #include <stdio.h>
 
-// One column: a metric as people read it.
-typedef struct Column {
-    EnsembleMetric metric;
-    const char *title;
-    const char *unit;
-    double scale;
-} Column;
-
-static const Column COLUMNS[] = {
-    {ENSEMBLE_IMPACTS, "impacts", "", 1.0},
-    {ENSEMBLE_FORCE_MAX, "force max", "N", 1.0},
-    {ENSEMBLE_IMPULSE, "impulse", "N s", 1.0},
-    {ENSEMBLE_PENETRATION_MAX, "deepest", "um", 1e6},
-    {ENSEMBLE_CONTACT_SHARE, "in contact", "%", 1e2},
+static const EnsembleMetric COLUMNS[] = {
+    ENSEMBLE_IMPACTS,         ENSEMBLE_FORCE_MAX,     ENSEMBLE_IMPULSE,
+    ENSEMBLE_PENETRATION_MAX, ENSEMBLE_CONTACT_SHARE,
 };
 enum { COLUMN_COUNT = sizeof COLUMNS / sizeof COLUMNS[0] };
 
@@ -31,12 +20,13 @@ static void spread_row(Table *table, const CompareReport *report, size_t scheme,
     table_cell(table, "%s", report->ladder->schemes[scheme].name);
     table_cell(table, ensemble->step_s > 0.0 ? "%.4g" : "its own", ensemble->step_s * UNITS_US);
     for (int i = 0; i < COLUMN_COUNT; i++) {
-        const Distribution *d = &ensemble->ensemble.joints[joint][COLUMNS[i].metric];
+        const Distribution *d = &ensemble->ensemble.joints[joint][COLUMNS[i]];
         if (ensemble->ensemble.members == 0) {
             table_cell(table, "failed");
         } else {
-            table_cell(table, "%.4g [%.4g, %.4g]", d->median * COLUMNS[i].scale,
-                       d->low * COLUMNS[i].scale, d->high * COLUMNS[i].scale);
+            const double scale = units_per_si(METRIC_FIELDS[COLUMNS[i]].unit);
+            table_cell(table, "%.4g [%.4g, %.4g]", d->median * scale, d->low * scale,
+                       d->high * scale);
         }
     }
 }
@@ -61,7 +51,8 @@ static void write_joint(const CompareReport *report, size_t joint, const Style *
     table_head(table, 0, "scheme", "", TABLE_LEFT);
     table_head(table, 1, "step", "us", TABLE_RIGHT);
     for (int i = 0; i < COLUMN_COUNT; i++) {
-        table_head(table, (size_t)(2 + i), COLUMNS[i].title, COLUMNS[i].unit, TABLE_RIGHT);
+        const Field *metric = &METRIC_FIELDS[COLUMNS[i]];
+        table_head(table, (size_t)(2 + i), metric->title, metric->unit, TABLE_RIGHT);
     }
     for (size_t i = 0; i < report->ladder->scheme_count; i++) {
         if (report->ladder->ensembles[i].is_known) {

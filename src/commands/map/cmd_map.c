@@ -7,14 +7,9 @@
 #include "cli/status_line.h"
 #include "cli/warnings.h"
 #include "commands/commands.h"
-#include "commands/map/map_lone.h"
 #include "commands/map/map_options.h"
-#include "commands/map/mapping_csv.h"
 #include "commands/map/mapping_inverse.h"
-#include "commands/map/mapping_inverse_text.h"
-#include "commands/map/mapping_json.h"
-#include "commands/map/mapping_plot.h"
-#include "commands/map/mapping_text.h"
+#include "commands/map/mapping_report.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -60,55 +55,25 @@ static void tell_run(double share, double wall_s, void *context)
     tell(telling, words);
 }
 
-static json_t *build_json(const void *report)
-{
-    return mapping_json_build(report);
-}
-
-static void write_text(const void *report, const Style *style, Text *text)
-{
-    mapping_text_write(report, style, text);
-}
-
-static bool write_csv(const void *report, const char *path, Err *err)
-{
-    return mapping_csv_write(report, path, err);
-}
-
-static void write_plot(const void *report, Text *svg)
-{
-    mapping_plot_write(report, svg);
-}
-
 static const ResultFile FILES[] = {
     {.ending = ".txt", .kind = FILE_REPORT},
-    {"--csv", offsetof(MapOptions, csv), ".csv", FILE_TABLE, .write = write_csv},
-    {"--plot", offsetof(MapOptions, plot), ".svg", FILE_PICTURE, .text = write_plot},
+    {"--csv", offsetof(MapOptions, csv), ".csv", FILE_TABLE, .write = mapping_rows_write_csv},
+    {"--plot", offsetof(MapOptions, plot), ".svg", FILE_PICTURE, .text = mapping_plot_write},
     {.ending = ".json", .kind = FILE_RESULT},
 };
 
 static const Results RESULTS = {
     .suffix = "-map",
     .is_followed = true,
-    .json = build_json,
-    .text = write_text,
+    .json = mapping_json_build,
+    .text = mapping_text_write,
     RESULT_FILES(FILES),
 };
 
-static json_t *build_inverse_json(const void *inverse)
-{
-    return mapping_inverse_json(inverse);
-}
-
-static void write_inverse_text(const void *inverse, const Style *style, Text *text)
-{
-    mapping_inverse_text(inverse, style, text);
-}
-
 static const Results INVERSE_RESULTS = {
     .is_followed = true,
-    .json = build_inverse_json,
-    .text = write_inverse_text,
+    .json = mapping_inverse_json,
+    .text = mapping_inverse_text,
 };
 
 // The paper's estimate where it was asked for; a word about it where it could be.

@@ -1,5 +1,5 @@
 // Which scenario is a contact of which only stiffness, mass and step are known?
-#include "commands/map/map_lone.h"
+#include "commands/map/map_options.h"
 
 #include "casefile/casefile.h"
 #include "casefile/quantity.h"

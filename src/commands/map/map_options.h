@@ -32,3 +32,9 @@ extern const Arguments MAP_ARGUMENTS;
 // The settings that the options ask for. Fails with ERR_USAGE.
 bool map_options_settings(const MapOptions *options, const Scenario *scenario,
                           MappingSettings *settings, Err *err);
+
+// Makes the scenario of one pin at its wall from the options, with the same words and checks as a
+// case file, and puts mass, speed and steps into the settings. Without --clearance the hole is as
+// wide as the steps need. Fails with ERR_USAGE.
+bool map_lone_make(const MapOptions *options, Scenario *scenario, MappingSettings *settings,
+                   Err *err);

@@ -1,10 +1,5 @@
 // Which constants are best at a step that cannot be changed, and what are they worth?
-#include "commands/map/mapping_held.h"
-
-#include "commands/map/mapping_json.h"
-#include "measure/mapping_verdict.h"
-#include "write/json_value.h"
-#include "write/section.h"
+#include "commands/map/mapping_report.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -143,53 +138,4 @@ void mapping_held_text(const MappingContact *contact, const Style *style, Text *
                         setting->delivered.message);
         }
     }
-}
-
-static json_t *figures_object(const ImpactFigures *figures, bool is_known)
-{
-    if (!is_known) {
-        return json_null();
-    }
-    json_t *object = json_object();
-    json_object_set_new(object, "restitution", mapping_spread_object(&figures->restitution));
-    json_object_set_new(object, "force_max_N", mapping_spread_object(&figures->force_max));
-    json_object_set_new(object, "penetration_max_m",
-                        mapping_spread_object(&figures->penetration_max));
-    json_object_set_new(object, "duration_s", mapping_spread_object(&figures->duration));
-    return object;
-}
-
-static json_t *setting_object(const HeldSetting *setting)
-{
-    json_t *object = json_object();
-    json_object_set_new(object, "map", json_string(OPTIONS_ODE_MAPS[setting->map]));
-    json_value_set(object, "erp", setting->row.erp);
-    json_value_set(object, "cfm_m_N_s", setting->row.cfm);
-    json_value_set(object, "stiffness_N_m", setting->stiffness);
-    json_value_set(object, "damping_N_s_m", setting->damping);
-    json_object_set_new(object, "verdict", json_string(VERDICT_NAMES[setting->verdict]));
-    json_object_set_new(object, "restitution_met", json_boolean(setting->is_restitution_met));
-    json_value_set(object, "misfit", setting->misfit);
-    json_object_set_new(object, "predicted",
-                        figures_object(&setting->predicted, setting->predicted.is_ended));
-    json_object_set_new(
-        object, "delivered",
-        figures_object(&setting->delivered.figures, setting->delivered.is_measured));
-    json_object_set_new(object, "message", json_value_text(setting->delivered.message));
-    return object;
-}
-
-json_t *mapping_held_json(const MappingContact *contact)
-{
-    const Held *held = contact->held;
-    json_t *object = json_object();
-    json_value_set(object, "step_s", held->step_s);
-    json_value_set(object, "flight_m", held->flight);
-    json_value_set(object, "play_m", held->play);
-    json_t *settings = json_array();
-    for (int i = 0; i < HELD_MAP_COUNT; i++) {
-        json_array_append_new(settings, setting_object(&held->settings[i]));
-    }
-    json_object_set_new(object, "settings", settings);
-    return object;
 }

@@ -1,7 +1,11 @@
 // Which spring and damper are an ERP and a CFM, and what do they give back?
 #pragma once
 
+#include "base/text.h"
 #include "measure/impact.h"
+#include "write/style.h"
+
+#include <jansson.h>
 
 enum { INVERSE_READING_COUNT = 3, INVERSE_MASS_MAX = LINKAGE_JOINT_MAX };
 
@@ -45,3 +49,7 @@ bool inverse_of_row(double erp, double cfm, double step_s, Inverse *inverse, Err
 // Adds a mass, kg, of a joint; 0 kg for none known: then only readings that need none are there.
 // The name must outlive the inverse.
 void inverse_add_mass(Inverse *inverse, const char *joint, double mass);
+
+// What is printed of an Inverse: as text, and as JSON, a new reference.
+void mapping_inverse_text(const void *inverse, const Style *style, Text *text);
+json_t *mapping_inverse_json(const void *inverse);

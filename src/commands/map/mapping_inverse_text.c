@@ -1,6 +1,5 @@
 // What spring, damper and restitution are an ERP and a CFM?
-#include "commands/map/mapping_inverse_text.h"
-
+#include "commands/map/mapping_inverse.h"
 #include "write/json_value.h"
 #include "write/number.h"
 #include "write/section.h"
@@ -80,8 +79,9 @@ static void write_mass(const Inverse *inverse, const InverseMass *mass, const St
     }
 }
 
-void mapping_inverse_text(const Inverse *inverse, const Style *style, Text *text)
+void mapping_inverse_text(const void *of, const Style *style, Text *text)
 {
+    const Inverse *inverse = of;
     if (inverse->is_pair) {
         text_append(text, "%skp = %.6g N/m and kd = %.6g N s/m at a step of %.4g us%s\n\n",
                     style->heading, inverse->kp, inverse->kd, inverse->step_s * UNITS_US,
@@ -130,8 +130,9 @@ static json_t *mass_object(const InverseMass *mass)
     return object;
 }
 
-json_t *mapping_inverse_json(const Inverse *inverse)
+json_t *mapping_inverse_json(const void *of)
 {
+    const Inverse *inverse = of;
     json_t *object = json_object();
     json_object_set_new(object, "tool", settings_json_tool());
     json_object_set_new(object, "given", json_string(inverse->is_pair ? "kp-kd" : "erp-cfm"));

@@ -3,8 +3,7 @@
 // The largest errors, wherever the steps fall, relative to what the law asks: left of the
 // restitution, right of the peak force. Lines are predicted, dots delivered; what is valid lies in
 // the pale band.
-#include "commands/map/mapping_plot.h"
-
+#include "commands/map/mapping_report.h"
 #include "write/plot.h"
 #include "write/units.h"
 
@@ -146,8 +145,8 @@ static void draw_contact(const MappingReport *report, size_t number, Text *svg)
     char words[LINKAGE_NAME_SIZE + 256];
     mapping_report_law(contact, law);
     snprintf(words, sizeof words, "%s, %s: %.4g kg at %.4g m/s, asked: restitution %.3g",
-             mapping_report_joint(report, contact)->name, law, contact->impact.mass,
-             contact->impact.speed, contact->asked.restitution);
+             mapping_report_joint(contact)->name, law, contact->impact.mass, contact->impact.speed,
+             contact->asked.restitution);
     plot_text(svg, PANEL_LEFT, top - 14.0, "start", "", words);
     if (contact->lack[0] != '\0') {
         plot_text(svg, PANEL_LEFT, top + 14.0, "start", "note", "not mapped: see the tables");
@@ -175,8 +174,9 @@ static void draw_legend(const MappingReport *report, Text *svg)
               "the largest error wherever the steps fall");
 }
 
-void mapping_plot_write(const MappingReport *report, Text *svg)
+void mapping_plot_write(const void *of, Text *svg)
 {
+    const MappingReport *report = of;
     const size_t count = report->mapping->contact_count;
     const size_t drawn = count < PICTURE_CONTACTS ? count : PICTURE_CONTACTS;
     plot_begin(svg, PICTURE_WIDTH, HEAD_HEIGHT + ROW_HEIGHT * (double)drawn,

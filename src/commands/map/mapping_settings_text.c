@@ -1,7 +1,5 @@
 // What do the settings of a contact come to, what is wrong with them, and what do they deliver?
-#include "commands/map/mapping_settings_text.h"
-
-#include "write/section.h"
+#include "commands/map/mapping_report.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -10,52 +8,14 @@
 
 enum { FAULT_KEY_SIZE = 64 };
 
-static bool is_first_of_map(const MappingRow *rows, size_t index)
-{
-    return index == 0 || rows[index].map != rows[index - 1].map;
-}
-
-static void begin_row(const MappingReport *report, const MappingRow *rows, size_t index,
-                      Table *table)
-{
-    const bool is_first = is_first_of_map(rows, index);
-    if (is_first && index > 0) {
-        table_rule(table);
-    }
-    table_cell(table, "%s", is_first ? mapping_report_map(report, &rows[index]) : "");
-    table_cell(table, "%.4g", rows[index].step_s * UNITS_US);
-}
-
-static void write_settings(const MappingReport *report, const MappingContact *contact,
+static void write_settings(const MappingContact *contact, const MappingRow *rows,
                            const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"map", "", TABLE_LEFT},
-        {"step", "us", TABLE_RIGHT},
-        {"Tc / h", "1", TABLE_RIGHT | TABLE_MINOR},
-        {"omega h", "1", TABLE_RIGHT | TABLE_DETAIL},
-        {"ERP", "1", TABLE_RIGHT},
-        {"CFM", "1/(N s/m)", TABLE_RIGHT},
-        {"verdict", "", TABLE_LEFT},
-    };
-    const bool is_poisson = mapping_report_is_poisson(report);
-    const MappingRow *rows = &report->mapping->rows[contact->first_row];
-    Table *table = section_begin("Settings", 7, HEADS, style, text);
-    for (size_t i = 0; i < contact->row_count; i++) {
-        const bool has_row = rows[i].map != ODE_MAP_IMPULSE;
-        begin_row(report, rows, i, table);
-        section_finite(table, "%.3g", is_poisson ? NAN : rows[i].steps_a_contact);
-        section_finite(table, "%.3g", is_poisson ? NAN : rows[i].omega_h);
-        section_finite(table, "%.6g", has_row ? rows[i].soft.erp : NAN);
-        section_finite(table, "%.6g", has_row ? rows[i].soft.cfm : NAN);
-        table_cell(table, "%s", VERDICT_NAMES[rows[i].verdict]);
-    }
-    section_end(table, text);
-    if (!is_poisson) {
+    const ForceLaw *law = &contact->impact.law;
+    mapping_rows_write_table(rows, contact->row_count, style, text);
+    if (!mapping_contact_is_poisson(contact)) {
         text_append(text, "  ERP and CFM at the law's deepest point%s\n",
-                    contact->impact.law.family == FORCE_LAW_POWER &&
-                            contact->impact.law.exponent == 1.0 &&
-                            contact->impact.law.hysteresis == 0.0
+                    law->family == FORCE_LAW_POWER && law->exponent == 1.0 && law->hysteresis == 0.0
                         ? "; of a linear spring and damper they hold at any depth, but for the "
                           "midpoint's ERP."
                         : "; the engine is given them anew at the depth of each step.");
@@ -63,10 +23,9 @@ static void write_settings(const MappingReport *report, const MappingContact *co
 }
 
 // What is wrong with each setting that is not valid, and what would be right.
-static void write_faults(const MappingReport *report, const MappingContact *contact,
-                         const Style *style, Text *text)
+static void write_faults(const MappingContact *contact, const MappingRow *rows, const Style *style,
+                         Text *text)
 {
-    const MappingRow *rows = &report->mapping->rows[contact->first_row];
     bool is_begun = false;
     for (size_t i = 0; i < contact->row_count; i++) {
         if (rows[i].verdict == VERDICT_VALID) {
@@ -78,8 +37,7 @@ static void write_faults(const MappingReport *report, const MappingContact *cont
             is_begun = true;
         }
         char key[FAULT_KEY_SIZE];
-        snprintf(key, sizeof key, "%s, %.4g us", mapping_report_map(report, &rows[i]),
-                 rows[i].step_s * UNITS_US);
+        snprintf(key, sizeof key, "%s, %.4g us", rows[i].map_name, rows[i].step_s * UNITS_US);
         text_append(text, "  %s: %s\n", key, rows[i].words);
     }
 }
@@ -92,8 +50,8 @@ static void pair_cells(Table *table, const MappingRow *row, const ImpactSpread *
     section_finite(table, "%.4g", row->delivered.is_measured ? unit * delivered->mean : NAN);
 }
 
-static void write_figures(const MappingReport *report, const MappingContact *contact,
-                          const Style *style, Text *text)
+static void write_figures(const MappingContact *contact, const MappingRow *rows, const Style *style,
+                          Text *text)
 {
     // the length of the contact is in the JSON and the CSV: 80 columns have no room for it
     static const SectionHead HEADS[] = {
@@ -106,9 +64,8 @@ static void write_figures(const MappingReport *report, const MappingContact *con
         {"depth, um", "predicted", TABLE_RIGHT},
         {"", "in ODE", TABLE_RIGHT},
     };
-    const MappingRow *rows = &report->mapping->rows[contact->first_row];
     Table *table = section_begin("Predicted and delivered", 8, HEADS, style, text);
-    if (!mapping_report_is_poisson(report)) {
+    if (!mapping_contact_is_poisson(contact)) {
         const MapImpact *asked = &contact->asked;
         const double values[] = {asked->restitution, asked->force_max,
                                  asked->penetration_max * UNITS_UM};
@@ -123,7 +80,7 @@ static void write_figures(const MappingReport *report, const MappingContact *con
     for (size_t i = 0; i < contact->row_count; i++) {
         const ImpactFigures *predicted = &rows[i].predicted;
         const ImpactFigures *delivered = &rows[i].delivered.figures;
-        begin_row(report, rows, i, table);
+        mapping_rows_begin(rows, i, table);
         pair_cells(table, &rows[i], &predicted->restitution, &delivered->restitution, 1.0);
         pair_cells(table, &rows[i], &predicted->force_max, &delivered->force_max, 1.0);
         pair_cells(table, &rows[i], &predicted->penetration_max, &delivered->penetration_max,
@@ -133,15 +90,14 @@ static void write_figures(const MappingReport *report, const MappingContact *con
 }
 
 // Why rows could not be run; neighbours alike are told once.
-static void write_unmeasured(const MappingReport *report, const MappingContact *contact, Text *text)
+static void write_unmeasured(const MappingContact *contact, const MappingRow *rows, Text *text)
 {
     const char *last = "";
     for (size_t i = 0; i < contact->row_count; i++) {
-        const MappingRow *row = &report->mapping->rows[contact->first_row + i];
+        const MappingRow *row = &rows[i];
         if (!row->delivered.is_measured && strcmp(row->delivered.message, last) != 0) {
-            text_append(text, "  not run in ODE: %s at %.4g us: %s\n",
-                        mapping_report_map(report, row), row->step_s * UNITS_US,
-                        row->delivered.message);
+            text_append(text, "  not run in ODE: %s at %.4g us: %s\n", row->map_name,
+                        row->step_s * UNITS_US, row->delivered.message);
         }
         last = row->delivered.is_measured ? "" : row->delivered.message;
     }
@@ -150,8 +106,9 @@ static void write_unmeasured(const MappingReport *report, const MappingContact *
 void mapping_settings_text_write(const MappingReport *report, const MappingContact *contact,
                                  const Style *style, Text *text)
 {
-    write_settings(report, contact, style, text);
-    write_faults(report, contact, style, text);
-    write_figures(report, contact, style, text);
-    write_unmeasured(report, contact, text);
+    const MappingRow *rows = &report->mapping->rows[contact->first_row];
+    write_settings(contact, rows, style, text);
+    write_faults(contact, rows, style, text);
+    write_figures(contact, rows, style, text);
+    write_unmeasured(contact, rows, text);
 }

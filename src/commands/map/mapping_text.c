@@ -1,16 +1,23 @@
 // Which ERP, CFM and step for this joint, and what do they deliver?
-#include "commands/map/mapping_text.h"
-
-#include "commands/map/mapping_held.h"
-#include "commands/map/mapping_penalty_text.h"
-#include "commands/map/mapping_settings_text.h"
-#include "write/section.h"
+#include "commands/map/mapping_report.h"
 #include "write/units.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { LAW_DAMPING_SIZE = 64, STABLE_SIZE = 96 };
+
+void mapping_report_law(const MappingContact *contact, char law[MAPPING_REPORT_LAW_SIZE])
+{
+    const ForceLaw *built = &contact->impact.law;
+    if (strcmp(contact->law_name, "stiffness") == 0) {
+        snprintf(law, MAPPING_REPORT_LAW_SIZE, "K = %.4g N/m^%.3g", built->stiffness,
+                 built->exponent);
+    } else {
+        snprintf(law, MAPPING_REPORT_LAW_SIZE, "%s", contact->law_name);
+    }
+}
 
 static void write_head(const MappingReport *report, const Style *style, Text *text)
 {
@@ -161,15 +168,16 @@ static void write_longest(const MappingReport *report, const MappingContact *con
     }
 }
 
-void mapping_text_write(const MappingReport *report, const Style *style, Text *text)
+void mapping_text_write(const void *of, const Style *style, Text *text)
 {
+    const MappingReport *report = of;
     write_head(report, style, text);
     for (size_t i = 0; i < report->mapping->contact_count; i++) {
         const MappingContact *contact = &report->mapping->contacts[i];
         char law[MAPPING_REPORT_LAW_SIZE];
         mapping_report_law(contact, law);
-        text_append(text, "\n%s%s, %s%s\n\n", style->heading,
-                    mapping_report_joint(report, contact)->name, law, style->end);
+        text_append(text, "\n%s%s, %s%s\n\n", style->heading, mapping_report_joint(contact)->name,
+                    law, style->end);
         write_sources(report, contact, text);
         if (contact->lack[0] != '\0') {
             text_append(text, "  not mapped  %s\n", contact->lack);
@@ -186,6 +194,6 @@ void mapping_text_write(const MappingReport *report, const Style *style, Text *t
         }
     }
     if (report->penalty != NULL) {
-        mapping_penalty_text_write(report, style, text);
+        mapping_penalty_text_write(report->penalty, style, text);
     }
 }

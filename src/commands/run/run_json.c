@@ -133,10 +133,7 @@ static json_t *message_object(const char *message)
 json_t *run_json_build(const RunReport *report)
 {
     json_t *object = json_object();
-    json_object_set_new(object, "tool", settings_json_tool());
-    json_object_set_new(object, "case", json_value_text(report->scenario->path));
-    json_object_set_new(object, "title", json_value_text(report->scenario->title));
-    settings_json_set(object, report->scenario);
+    settings_json_begin(object, report->scenario);
     if (report->summary != NULL) {
         json_object_set_new(object, "kinematics", analytic_json_kinematics(report));
         json_object_set_new(object, "inverse_dynamics", analytic_json_forces(report));

@@ -200,10 +200,7 @@ json_t *tune_json_build(const TuneReport *report)
 {
     const Tune *tune = report->tune;
     json_t *object = json_object();
-    json_object_set_new(object, "tool", settings_json_tool());
-    json_object_set_new(object, "case", json_value_text(report->scenario->path));
-    json_object_set_new(object, "title", json_value_text(report->scenario->title));
-    settings_json_set(object, report->scenario);
+    settings_json_begin(object, report->scenario);
     set_asked(object, tune);
     json_object_set_new(object, "truth", truth_object(&tune->truth));
     json_object_set_new(object, "is_met", json_boolean(tune_report_is_met(report)));

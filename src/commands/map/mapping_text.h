@@ -1,8 +1,0 @@
-// A mapping for people.
-#pragma once
-
-#include "base/text.h"
-#include "commands/map/mapping_report.h"
-#include "write/style.h"
-
-void mapping_text_write(const MappingReport *report, const Style *style, Text *text);
