@@ -5,20 +5,20 @@
 #include "write/json_value.h"
 #include "write/settings_json.h"
 
-#define AT(type, member) type, offsetof(StudyReport, member), .where = FIELD_JSON
+#define AT(type, member) type, FIELD_JSON, .offset = offsetof(StudyReport, member)
 
 // What this process did of it.
 static const Field EFFORT_FIELDS[] = {
-    {"made", NULL, NULL, AT(FIELD_COUNT, state.made)},
-    {"failed", NULL, NULL, AT(FIELD_COUNT, state.failed)},
-    {"without_truth", NULL, NULL, AT(FIELD_COUNT, state.without_truth)},
-    {"why_without_truth", NULL, NULL, AT(FIELD_TEXT, state.no_truth)},
-    {"jobs", NULL, NULL, AT(FIELD_COUNT, jobs)},
-    {"wall_s", NULL, NULL, AT(FIELD_NUMBER, state.wall_s)},
-    {"inside_s", NULL, NULL, AT(FIELD_NUMBER, state.inside_s)},
-    {"inside_share", NULL, NULL, AT(FIELD_NUMBER, inside_share)},
-    {"children_cpu_s", NULL, NULL, AT(FIELD_NUMBER, children_cpu_s)},
-    {"own_cpu_s", NULL, NULL, AT(FIELD_NUMBER, own_cpu_s)},
+    {"made", AT(FIELD_COUNT, state.made)},
+    {"failed", AT(FIELD_COUNT, state.failed)},
+    {"without_truth", AT(FIELD_COUNT, state.without_truth)},
+    {"why_without_truth", AT(FIELD_TEXT, state.no_truth)},
+    {"jobs", AT(FIELD_COUNT, jobs)},
+    {"wall_s", AT(FIELD_NUMBER, state.wall_s)},
+    {"inside_s", AT(FIELD_NUMBER, state.inside_s)},
+    {"inside_share", AT(FIELD_NUMBER, inside_share)},
+    {"children_cpu_s", AT(FIELD_NUMBER, children_cpu_s)},
+    {"own_cpu_s", AT(FIELD_NUMBER, own_cpu_s)},
     {0},
 };
 
