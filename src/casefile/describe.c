@@ -39,9 +39,9 @@ static const char EXPECT_EXAMPLE[] = "expect:\n"
                                      "  ode.error.omega_max: below 1e-3\n";
 
 static const char *const RULES[] = {
-    "A case is one YAML document of at most 1 MiB. Every quantity carries its unit; numbers have a "
-    "decimal point.",
-    "A case has either four-bar, with a mechanism of that kind, or bodies, with any planar "
+    "A case is one YAML document of at most 1 MiB. Every quantity has its unit; the decimal "
+    "separator is a point.",
+    "A case has either four-bar, for a mechanism of that kind, or bodies, for any planar "
     "linkage.",
     "Unknown and doubled keys are errors, as are anchors, aliases and tags.",
     "On the command line, --set KEY=VALUE takes a key's whole path: --set run.step=2us. It "
@@ -262,15 +262,14 @@ static void describe_expectation(const ExpectRow *row, bool is_page, Text *text)
 static void describe_expect(bool is_page, Text *text)
 {
     static const char WORDS[] =
-        "Limits of your own for numbers of the runs, each a path and a limit. `jointplay check` "
-        "judges them, with a baseline or without. A path may begin with a backend, as in "
-        "ode.joints.pin.force_max; without one the limit is for every backend of the case that "
-        "feels the play, and of an error for every one that is not the reference itself. Extremes "
-        "are those of every step of the whole run, errors those up to the horizon of "
-        "predictability.";
+        "Your own limits for numbers of the runs, each a path and a limit. `jointplay check` "
+        "judges them, with or without a baseline. A path may begin with a backend, as in "
+        "ode.joints.pin.force_max; without one the limit applies to every backend of the case that "
+        "models the play, and for an error to every one except the reference itself. Extremes are "
+        "taken over every step of the whole run, errors up to the predictability horizon.";
     text_append(text,
-                is_page ? "\n## `expect`\n\n%s\n\nA limit is one of: `%s`. Ends belong to "
-                          "between and within, and not to below and above.\n\n"
+                is_page ? "\n## `expect`\n\n%s\n\nA limit is one of: `%s`. The ends are "
+                          "included in between and within, and excluded from below and above.\n\n"
                           "```yaml\n%s```\n\n| path | units | meaning |\n|---|---|---|\n"
                         : "\nexpect\n",
                 WORDS, EXPECT_FORMS, EXPECT_EXAMPLE);
@@ -299,8 +298,8 @@ void casefile_describe(Text *text)
 void casefile_describe_markdown(Text *text)
 {
     text_append(text, "# The case file\n\n"
-                      "This page is generated from the program's own schema; a test holds it "
-                      "against the program.\n\n");
+                      "This page is generated from the program's own schema; a test compares it "
+                      "with the program.\n\n");
     for (size_t i = 0; i < RULE_COUNT; i++) {
         text_append(text, "- %s\n", RULES[i]);
     }

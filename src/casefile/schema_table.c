@@ -112,9 +112,9 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
 #define LINK(link, body, words) \
     LENGTH(link, words), \
     {.path = "four-bar." #link ".mass", .form = SCHEMA_SHORT, MASS(body), \
-     .doc = "of the " #link}, \
+     .doc = "mass of the " #link}, \
     {.path = "four-bar." #link ".inertia", .form = SCHEMA_SHORT, INERTIA(body), \
-     .doc = "about the centre of mass, which is at mid-link"}
+     .doc = "moment of inertia about the centre of mass, which is at mid-link"}
 #define BODY .family = SCHEMA_BODY, .form = SCHEMA_LONG
 #define JOINT(field) \
     .family = SCHEMA_JOINT, AT(linkage.joints[0].clearance.field), .needs = LOOSE
@@ -134,53 +134,54 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "open: the follower pin lies to the left of the line from crank pin to the follower's "
             "ground pivot; crossed: to the right"},
 
-    {.path = "bodies.*.mass", BODY, MASS(0), .needs = MEMBER, .doc = "of the body"},
+    {.path = "bodies.*.mass", BODY, MASS(0), .needs = MEMBER, .doc = "mass of the body"},
     {.path = "bodies.*.inertia", BODY, INERTIA(0), .needs = MEMBER,
-     .doc = "about the centre of mass"},
+     .doc = "moment of inertia about the centre of mass"},
     {.path = "bodies.*.at", BODY, .type = SCHEMA_VECTOR, .dimension = DIMENSION_LENGTH,
      AT(linkage.bodies[0].start.position), .low = -1e3, .high = 1e3, .is_required = true,
-     .needs = MEMBER, .doc = "[x, y] of its centre of mass at time zero"},
+     .needs = MEMBER, .doc = "position [x, y] of the centre of mass at time zero"},
     {.path = "bodies.*.angle", BODY, .dimension = DIMENSION_ANGLE,
      AT(linkage.bodies[0].start.angle), .low = -FULL_TURN, .high = FULL_TURN,
      .needs = MEMBER,
-     .doc = "of its own x axis at time zero, counter-clockwise from the world's"},
+     .doc = "angle of the body's own x axis at time zero, counter-clockwise from the world's"},
     {.path = "bodies.*.velocity", BODY, .type = SCHEMA_VECTOR, .dimension = DIMENSION_SPEED,
      AT(linkage.bodies[0].start.velocity), .low = -1e4, .high = 1e4, .needs = MEMBER | FREE,
-     .doc = "[x, y] of its centre of mass at time zero; not where the drive determines it"},
+     .doc = "velocity [x, y] of the centre of mass at time zero; not allowed if the drive "
+            "determines it"},
     {.path = "bodies.*.spin", BODY, .dimension = DIMENSION_ANGULAR_SPEED,
      AT(linkage.bodies[0].start.omega), .low = -1e6, .high = 1e6, .needs = MEMBER | FREE,
-     .doc = "its angular speed at time zero, counter-clockwise positive; not where the drive "
+     .doc = "angular velocity at time zero, counter-clockwise positive; not allowed if the drive "
             "determines it"},
 
     {.path = "joints.*.between", .type = SCHEMA_BETWEEN, .family = SCHEMA_JOINT,
      .form = SCHEMA_LONG, AT(linkage.joints[0]), .is_required = true,
      .needs = MEMBER,
-     .doc = "[carrier of the hole, carrier of the pin]: two bodies, or a body and ground"},
+     .doc = "[body with the hole, body with the pin]: two bodies, or a body and ground"},
     {.path = "joints.*.at", .type = SCHEMA_ANCHOR, .family = SCHEMA_JOINT, .form = SCHEMA_LONG,
      .dimension = DIMENSION_LENGTH, AT(linkage.joints[0].anchor_a), .low = -1e3, .high = 1e3,
      .is_required = true, .needs = MEMBER,
-     .doc = "[x, y] in the world at time zero, of hole and pin as they stand concentric; a start "
+     .doc = "position [x, y] in the world at time zero, with hole and pin concentric; a start "
             "off the centre then moves the bodies"},
     {.path = "joints.*.hole", .type = SCHEMA_DIAMETER, .dimension = DIMENSION_LENGTH,
      JOINT(hole_radius), .low = 1e-6, .high = 1e2, .is_required = true,
      .rivalry = SCHEMA_SIZES, .side = 0,
-     .doc = "diameter of the hole, without tolerance; in place of radial-clearance"},
+     .doc = "diameter of the hole, without tolerance; instead of radial-clearance"},
     {.path = "joints.*.pin", .type = SCHEMA_DIAMETER, .dimension = DIMENSION_LENGTH,
      JOINT(pin_radius), .low = 1e-6, .high = 1e2, .is_required = true,
      .rivalry = SCHEMA_SIZES, .side = 0,
-     .doc = "diameter of the pin, smaller than the hole; in place of radial-clearance"},
+     .doc = "diameter of the pin, smaller than the hole; instead of radial-clearance"},
     {.path = "joints.*.radial-clearance", .type = SCHEMA_RADIAL_CLEARANCE,
      .dimension = DIMENSION_LENGTH, .family = SCHEMA_JOINT,
      AT(linkage.joints[0].clearance), .low = 1e-9, .high = 0.1, .needs = LOOSE,
      .rivalry = SCHEMA_SIZES, .side = 1, .default_words = "from hole and pin",
-     .doc = "hole radius less pin radius, in place of hole and pin; the pin is then 10 mm in "
-            "diameter and the hole larger by twice this"},
+     .doc = "hole radius minus pin radius, instead of hole and pin; the pin then has a diameter "
+            "of 10 mm and the hole twice this more"},
     {.path = "joints.*.width", .dimension = DIMENSION_LENGTH, JOINT(width),
      .low = 1e-6, .high = 1e2, .default_words = "none",
-     .doc = "length over which pin and hole touch; needed by the laws of cylinders"},
+     .doc = "length over which pin and hole touch; required by the laws of cylinders"},
     {.path = "joints.*.start", .type = SCHEMA_VECTOR, .dimension = DIMENSION_LENGTH,
      JOINT(start), .low = -0.1, .high = 0.1, .default_words = "centred",
-     .doc = "pin centre less hole centre at time zero: centred, or [x, y], no longer than the "
+     .doc = "pin centre minus hole centre at time zero: centred, or [x, y], no longer than the "
             "radial clearance"},
 
     {.path = "drive.joint", .type = SCHEMA_JOINT_NAME, .form = SCHEMA_LONG,
@@ -188,19 +189,20 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "the ideal joint with the ground about which the drive turns a body"},
     {.path = "drive.speed", .dimension = DIMENSION_ANGULAR_SPEED, AT(linkage.driver.speed),
      .low = -1e6, .high = 1e6, .is_required = true, .needs = DRIVE,
-     .doc = "of the driven body, constant, counter-clockwise positive; not 0"},
+     .doc = "angular velocity of the driven body, constant, counter-clockwise positive; not 0"},
     {.path = "drive.start", .form = SCHEMA_SHORT, .dimension = DIMENSION_ANGLE,
      AT(linkage.driver.start), .low = -FULL_TURN, .high = FULL_TURN,
-     .doc = "angle of the crank at time zero, counter-clockwise from the ground link; with bodies "
-            "their angles say it"},
+     .doc = "angle of the crank at time zero, counter-clockwise from the ground link; with "
+            "bodies, their angles define it"},
     {.path = "gravity", .dimension = DIMENSION_ACCELERATION, AT(gravity),
-     .low = -1e3, .high = 1e3, .doc = "downward, along -y; 0 m/s^2 for none"},
+     .low = -1e3, .high = 1e3,
+     .doc = "acceleration of gravity, downward, along -y; 0 m/s^2 for none"},
 
     {.path = "material.youngs-modulus", .dimension = DIMENSION_PRESSURE,
      AT(material.youngs_modulus), .low = 1e3, .high = 1e13, .needs = MATERIAL,
-     .doc = "of pin and hole alike"},
+     .doc = "Young's modulus of pin and hole"},
     {.path = "material.poisson-ratio", AT(material.poisson_ratio), .low = 0.0, .high = 0.5,
-     .needs = MATERIAL, .doc = "of pin and hole alike"},
+     .needs = MATERIAL, .doc = "Poisson's ratio of pin and hole"},
 
     {.path = "contact.model", .type = SCHEMA_CHOICE, AT(contact.model),
      .words = OPTIONS_CONTACT_MODELS, .needs = PLAY,
@@ -208,73 +210,75 @@ const SchemaRow SCHEMA_ROWS[] = {
             "with restitution"},
     {.path = "contact.law", .type = SCHEMA_CHOICE, AT(contact.law), .words = OPTIONS_LAWS,
      .rivalry = SCHEMA_ELASTICITY, .side = 0, .needs = LAW,
-     .doc = "elastic law of the impact model; in place of stiffness"},
+     .doc = "elastic law of the impact model; instead of stiffness"},
     {.path = "contact.stiffness", .type = SCHEMA_STIFFNESS, .dimension = DIMENSION_STIFFNESS,
      AT(contact), .low = 0.0, .high = 1e24, .low_is_open = true,
      .rivalry = SCHEMA_ELASTICITY, .side = 1, .default_words = "from the law",
      .needs = STIFFNESS,
-     .doc = "K in F = K d^n, in place of a law; the unit gives n: N/m^1.5, N/mm^1.5, N/m"},
+     .doc = "K in F = K d^n, instead of a law; n follows from the unit: N/m^1.5, N/mm^1.5, N/m"},
     {.path = "contact.damping", .type = SCHEMA_CHOICE, AT(contact.damping),
      .words = OPTIONS_DAMPINGS, .needs = IMPACT,
-     .doc = "where the impact model loses energy"},
+     .doc = "damping law of the impact model"},
     {.path = "contact.restitution", AT(contact.restitution), .low = 0.0, .high = 1.0,
-     .needs = PLAY, .doc = "speed after an impact over speed before it, asked for"},
+     .needs = PLAY, .doc = "desired ratio of the speeds after and before an impact"},
     {.path = "contact.viscous-coefficient", .dimension = DIMENSION_DAMPING,
      AT(contact.viscous_coefficient), .low = 0.0, .high = 1e12, .low_is_open = true,
      .default_words = "none", .needs = VISCOUS,
-     .doc = "force over penetration rate; needed by damping: viscous"},
+     .doc = "force over penetration rate; required by damping: viscous"},
     {.path = "contact.friction", AT(contact.friction), .low = 0.0, .high = 1.0,
-     .needs = PLAY, .doc = "Coulomb's coefficient; 0: none"},
+     .needs = PLAY, .doc = "Coulomb's friction coefficient; 0 for none"},
     {.path = "contact.friction-speed", .dimension = DIMENSION_SPEED, AT(contact.friction_speed),
      .low = 0.0, .high = 1e3, .low_is_open = true, .needs = FRICTION,
-     .doc = "sliding speed over which friction sets in, of the reference and of map impulse"},
+     .doc = "sliding speed over which friction sets in, in the reference and with map impulse"},
     {.path = "contact.penalty", .dimension = DIMENSION_DAMPING, AT(contact.penalty),
      .low = 0.0, .high = 1e12, .low_is_open = true,
      .default_words = "the paper's Eq. (9) at the drive's speed", .needs = POISSON,
      .doc = "force over closing speed in the poisson model"},
     {.path = "contact.bounce-speed", .dimension = DIMENSION_SPEED, AT(contact.bounce_speed),
      .low = 0.0, .high = 1e3, .needs = POISSON,
-     .doc = "poisson model: slower impacts do not bounce"},
+     .doc = "in the poisson model, impacts below this speed do not bounce"},
     {.path = "contact.impact-speed-floor", .dimension = DIMENSION_SPEED,
      AT(contact.impact_speed_floor), .low = 0.0, .high = 1e3, .low_is_open = true,
-     .needs = IMPACT, .doc = "smallest impact speed the damping laws divide by"},
+     .needs = IMPACT, .doc = "smallest impact speed by which the damping laws divide"},
 
     {.path = "run.revolutions", AT(run.revolutions), .low = 0.0, .high = 1e6,
-     .low_is_open = true, .needs = DRIVE, .doc = "of the drive; may be a fraction"},
+     .low_is_open = true, .needs = DRIVE,
+     .doc = "revolutions of the drive in the run; may be a fraction"},
     {.path = "run.duration", .form = SCHEMA_LONG, .dimension = DIMENSION_TIME, AT(run.duration),
      .low = 0.0, .high = 1e6, .low_is_open = true, .needs = NO_DRIVE,
-     .doc = "of a case without a drive, in place of revolutions"},
+     .doc = "duration of a run without a drive, instead of revolutions"},
     {.path = "run.samples", .type = SCHEMA_INTEGER, AT(run.samples), .low = 1.0, .high = 1e7,
-     .doc = "written per revolution of the drive, or in the whole run without one"},
+     .doc = "samples written per revolution of the drive, or in the whole run without one"},
     {.path = "run.step", .dimension = DIMENSION_TIME, AT(run.step), .low = 0.0, .high = 1.0,
      .low_is_open = true, .zero_word = "auto", .needs = ODE,
      .default_words = "auto; 1 us where ode.stepping or ode.map is given, or the model is poisson",
-     .doc = "of ode; auto: chosen so that the error is the tolerance, with stepping staggered and "
-            "map impulse, or, of ideal joints, extrapolated"},
+     .doc = "step of ode; auto: chosen so that the error is within the tolerance, with stepping "
+            "staggered and map impulse, or stepping extrapolated if all joints are ideal"},
     {.path = "run.tolerance", AT(run.tolerance), .low = 1e-9, .high = 0.1,
      .needs = ODE | CHOSEN_STEP,
-     .doc = "of step auto: the largest error in omega, relative to each body's largest omega, up "
-            "to the predictability horizon"},
+     .doc = "with step auto: the largest allowed error of omega, relative to each body's largest "
+            "omega, up to the predictability horizon"},
     {.path = "run.most-steps", .type = SCHEMA_INTEGER, AT(run.most_steps), .low = 1e3, .high = 1e12,
      .needs = ODE | CHOSEN_STEP,
-     .doc = "of step auto: world steps of all trials together; what they do not reach is said"},
+     .doc = "with step auto: the limit for the world steps of all trials together; if it is too "
+            "low, the run reports up to when the tolerance is met"},
     {.path = "run.spike-threshold", AT(run.spike_threshold), .low = 1e-3, .high = 1e3,
      .needs = PLAY,
-     .doc = "least height of a spike, over what ideal joints show: the range of the angular "
-            "acceleration, the largest force; without a drive over a tenth of the signal's range"},
+     .doc = "smallest height of a spike, relative to what ideal joints show: the range of the "
+            "angular acceleration, the largest force; without a drive, relative to a tenth of "
+            "the signal's range"},
     {.path = "run.report-from", .type = SCHEMA_SPAN, .dimension = DIMENSION_TIME,
      AT(run.report_from), .low = 0.0, .high = 1e6, .needs = LATER,
-     .doc = "extremes, contacts and spikes are those from this time on, such as 1 revolution: a "
-            "start that was only assumed is left out; errors, energy, series and picture are "
-            "those of the whole run"},
+     .doc = "extremes, contacts and spikes are reported from this time on, such as 1 revolution, "
+            "to exclude an assumed start; errors, energy, series and picture cover the whole run"},
     {.path = "run.backends", .type = SCHEMA_BACKENDS, AT(run.backends),
      .words = OPTIONS_BACKENDS,
-     .doc = "the solvers to run, in this order: a word or a list; reference, ode where a case "
-            "with bodies says nothing, as analytic knows four-bars only"},
+     .doc = "the solvers to run, in this order: a word or a list; the default of a case with "
+            "bodies is reference, ode, because analytic supports four-bars only"},
 
     {.path = "reference.tolerance", AT(reference.tolerance), .low = 1e-14, .high = 1e-3,
      .needs = REFERENCE,
-     .doc = "of each step's error, relative to the size of each coordinate and speed"},
+     .doc = "limit for each step's error, relative to the size of each coordinate and velocity"},
 
     {.path = "ode.solver", .type = SCHEMA_CHOICE, AT(ode.solver), .words = OPTIONS_ODE_SOLVERS,
      .needs = ODE, .doc = "direct: dWorldStep; quick: dWorldQuickStep"},
@@ -282,69 +286,73 @@ const SchemaRow SCHEMA_ROWS[] = {
      .words = OPTIONS_ODE_STEPPINGS, .needs = ODE | GIVEN_STEP,
      .default_words = "staggered; plain with map textbook, corrected or exact, or model poisson",
      .doc = "plain: read at the end of each step; staggered: positions half a step behind the "
-            "speeds, second order; extrapolated: several steps side by side, of ideal joints only"},
+            "velocities, second order; extrapolated: several steps side by side, for ideal "
+            "joints only"},
     {.path = "ode.map", .type = SCHEMA_CHOICE, AT(ode.map), .words = OPTIONS_ODE_MAPS,
      .needs = ODE | IMPACT | GIVEN_STEP,
      .default_words = "impulse; textbook with stepping plain or model poisson",
      .doc = "how stiffness and damping become ERP and CFM; impulse: neither, the contact is "
-            "integrated within the step, of staggered stepping only"},
+            "integrated within the step, with staggered stepping only"},
     {.path = "ode.collider", .type = SCHEMA_CHOICE, AT(ode.collider),
      .words = OPTIONS_ODE_COLLIDERS, .needs = ODE | PLAY,
-     .doc = "what finds the contact of pin and hole"},
+     .doc = "how the contact of pin and hole is found"},
     {.path = "ode.erp", AT(ode.erp), .low = 0.0, .high = 1.0, .needs = ODE | PLAIN,
-     .doc = "error reduction of the ideal joints, per step, of plain stepping; others have 1"},
+     .doc = "error reduction of the ideal joints per step, with plain stepping; otherwise it is 1"},
     {.path = "ode.cfm", .plain_unit = "s/kg", AT(ode.cfm), .low = 0.0, .high = 1e6, .needs = ODE,
-     .doc = "constraint force mixing of the ideal joints, in s/kg = m/(N s), written plain"},
+     .doc = "constraint force mixing of the ideal joints, in s/kg = m/(N s), written without a "
+            "unit"},
     {.path = "ode.push-out", AT(ode.push_out), .low = 0.0, .high = 1.0,
      .needs = ODE | POISSON, .doc = "ERP of the contact in the poisson model"},
     {.path = "ode.iterations", .type = SCHEMA_INTEGER, AT(ode.iterations), .low = 1.0,
-     .high = 1e6, .needs = ODE | QUICK, .doc = "of the quick solver, per step"},
+     .high = 1e6, .needs = ODE | QUICK, .doc = "iterations of the quick solver per step"},
     {.path = "ode.over-relaxation", AT(ode.over_relaxation), .low = 0.0, .high = 2.0,
-     .low_is_open = true, .needs = ODE | QUICK, .doc = "of the quick solver"},
+     .low_is_open = true, .needs = ODE | QUICK, .doc = "over-relaxation of the quick solver"},
     {.path = "ode.seed", .type = SCHEMA_INTEGER, AT(ode.seed), .low = 0.0, .high = 4294967295.0,
-     .needs = ODE | QUICK, .doc = "of the order in which the quick solver visits rows"},
+     .needs = ODE | QUICK, .doc = "seed for the order in which the quick solver visits rows"},
     {.path = "ode.settle-steps", .type = SCHEMA_INTEGER, AT(ode.settle_steps), .low = 0.0,
      .high = 1e7, .needs = ODE | IDEAL | PLAIN,
-     .doc = "of plain stepping, run before time zero where every joint is ideal"},
+     .doc = "with plain stepping and ideal joints only: steps run before time zero"},
     {.path = "ode.levels", .type = SCHEMA_INTEGER, AT(ode.levels), .low = 2.0, .high = 6.0,
      .needs = ODE | EXTRAPOLATED,
-     .doc = "worlds side by side, of extrapolated stepping: the order is one more"},
+     .doc = "with extrapolated stepping: worlds side by side; the order is one more"},
     {.path = "ode.gear", .type = SCHEMA_INTEGER, AT(ode.gear), .low = 1.0, .high = 64.0,
      .needs = ODE | LOCAL | GIVEN_STEP,
-     .doc = "of map impulse: so many times finer are the steps while a pin touches or is about to"},
+     .doc = "with map impulse: steps are this many times finer while a pin touches or is about to"},
     {.path = "ode.contact-phase", AT(ode.contact_phase), .low = 1e-3, .high = 0.5,
      .needs = ODE | LOCAL | GIVEN_STEP, .plain_unit = "rad",
-     .doc = "of map impulse: how far a contact's own oscillation gets in one local step, in rad, "
-            "written plain"},
+     .doc = "with map impulse: how far a contact's own oscillation advances in one local step, "
+            "in rad, written without a unit"},
 
     {.path = "points.*.body", .type = SCHEMA_BODY_NAME, POINT(body), .is_required = true,
-     .doc = "the body that carries the point"},
+     .doc = "the body to which the point belongs"},
     {.path = "points.*.along", .type = SCHEMA_ALONG, .dimension = DIMENSION_LENGTH,
      POINT(local.x), .low = -1e3, .high = 1e3, .is_required = true,
-     .doc = "from the link's first joint towards its second; with bodies, from the centre of mass "
-            "along the body's x axis"},
+     .doc = "distance from the link's first joint towards its second; with bodies, from the "
+            "centre of mass along the body's x axis"},
     {.path = "points.*.offset", .dimension = DIMENSION_LENGTH, POINT(local.y), .low = -1e3,
-     .high = 1e3, .doc = "to the left of that direction"},
+     .high = 1e3, .doc = "distance to the left of that direction"},
 
     {.path = "expect", .type = SCHEMA_EXPECT, AT(expectations), .default_words = "none",
      .doc = "limits for numbers of the runs, which `jointplay check` judges: see below"},
 };
 
 const SchemaGroup SCHEMA_GROUPS[] = {
-    {"", "Keys that stand in no group."},
-    {"four-bar", "The links of a four-bar. A length may carry a tolerance: 108 +- 0.3 mm, 108 +0.1/-0.2 mm."},
-    {"bodies", "In place of four-bar, any linkage: up to 16 rigid bodies, by names of letters, "
+    {"", "Keys outside any group."},
+    {"four-bar", "The links of a four-bar. A length may have a tolerance: 108 +- 0.3 mm, "
+                 "108 +0.1/-0.2 mm."},
+    {"bodies", "Any linkage, instead of four-bar: up to 16 rigid bodies, with names of letters, "
                "digits, - and _."},
-    {"joints", "Of a four-bar those with play, by name: crank-coupler, coupler-follower, "
-               "follower-ground; a joint not named is ideal, the drive joint ground-crank always "
-               "is. With bodies every joint, up to 24, by any name; without sizes it is ideal."},
-    {"drive", "How the crank turns; a case with bodies may do without."},
-    {"material", "Of pins and holes; steel where nothing is said."},
-    {"contact", "What happens where pin and hole meet."},
-    {"run", "How long, how fine, and on which solvers."},
-    {"reference", "How exact the reference is."},
+    {"joints", "With four-bar, the joints with play, by name: crank-coupler, coupler-follower, "
+               "follower-ground; a joint that is not named is ideal, and the drive joint "
+               "ground-crank always is. With bodies, every joint, up to 24, with any name; a joint "
+               "without sizes is ideal."},
+    {"drive", "How the crank turns; optional with bodies."},
+    {"material", "Material of pins and holes; steel by default."},
+    {"contact", "The contact between pin and hole."},
+    {"run", "Duration, samples, step and solvers."},
+    {"reference", "Accuracy of the reference."},
     {"ode", "How the Open Dynamics Engine is used."},
-    {"points", "Points of bodies whose path is written out, at most 4, by names of letters, "
+    {"points", "Points of bodies whose paths are written, at most 4, with names of letters, "
                "digits, - and _."},
 };
 // clang-format on
