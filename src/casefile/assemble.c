@@ -5,7 +5,6 @@
 
 #include "casefile/build.h"
 #include "casefile/check.h"
-#include "casefile/check_mechanism.h"
 #include "casefile/closure.h"
 #include "casefile/place.h"
 #include "casefile/store.h"
@@ -116,7 +115,7 @@ bool assemble_scenario(const Entries *entries, Scenario *scenario, Err *err)
 {
     Scenario built = scenario_default();
     if (!check_required(entries, err) || !store_entries(entries, &built, err) ||
-        !check_values(entries, &built, err) || !check_mechanism(entries, &built, err) ||
+        !check_values(entries, &built, err) || !closure_check_members(entries, &built, err) ||
         !build(entries, &built, err)) {
         return false;
     }

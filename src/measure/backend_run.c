@@ -14,5 +14,5 @@ Trajectory *backend_run(const Scenario *scenario, BackendKind backend, const Tru
     if (backend_run_is_chosen(scenario, backend)) {
         return chosen_run_make(scenario, truth, watch, probe);
     }
-    return run_probed(scenario, registry_solver(backend), watch.run, probe);
+    return run_guarded(scenario, registry_solver(backend), watch.run, probe, NULL);
 }

@@ -3,7 +3,7 @@
 
 #include "measure/chosen_run.h"
 
-// Runs the scenario, as run_probed does. Where ODE's step is to be chosen the trials are held
+// Runs the scenario, as run_guarded does. Where ODE's step is to be chosen the trials are held
 // against the truth, which is made for it where it is NULL; no other run needs one.
 Trajectory *backend_run(const Scenario *scenario, BackendKind backend, const Truth *truth,
                         ChosenWatch watch, const RunProbe *probe);

@@ -12,6 +12,46 @@
 #include <assert.h>
 #include <stdlib.h>
 
+// of the time: a step that ends short of it by rounding has reached it
+static const double SAME_TIME = 1e-12;
+
+enum { BEAT_EVERY = 64 }; // steps, between two samples
+
+// A solver taken from sample to sample, without anything recorded on the way.
+typedef struct Walk {
+    void *state; // of the solver
+    bool has_step;
+    double reached_s;
+} Walk;
+
+static void beat(const GrowthWork *work)
+{
+    if (work->pulse.beat != NULL) {
+        work->pulse.beat(work->pulse.context);
+    }
+}
+
+// Goes on to a time, not before the last one, and looks at the bodies there.
+static bool walk_to(const GrowthWork *work, Walk *walk, double time_s, Sample *sample, Err *err)
+{
+    const double near_s = time_s - SAME_TIME * time_s;
+    size_t steps = 0;
+    // a first step comes before the first sample, though it may have no length
+    while (!walk->has_step || walk->reached_s < near_s) {
+        if (!work->solver->step(walk->state, time_s, err)) {
+            return false;
+        }
+        walk->has_step = true;
+        walk->reached_s = work->solver->record(walk->state).end_s;
+        if (++steps % BEAT_EVERY == 0) {
+            beat(work);
+        }
+    }
+    beat(work);
+    work->solver->observe(walk->state, fmin(time_s, walk->reached_s), sample);
+    return true;
+}
+
 // The perturbed runs, side by side.
 typedef struct Runs {
     size_t count;
@@ -26,8 +66,7 @@ static bool open_runs(const GrowthWork *work, Runs *runs, Growth *growth)
     for (size_t i = 0; i < work->basis->count; i++) {
         runs->scenarios[i] = *work->scenario;
         perturb_along(&runs->scenarios[i], work->basis->changes[i], work->size);
-        if (!walk_open(&runs->walks[i], work->solver, &runs->scenarios[i], work->pulse,
-                       &growth->failure)) {
+        if (!work->solver->open(&runs->scenarios[i], &runs->walks[i].state, &growth->failure)) {
             return false;
         }
         runs->count++;
@@ -35,10 +74,13 @@ static bool open_runs(const GrowthWork *work, Runs *runs, Growth *growth)
     return true;
 }
 
-static void close_runs(Runs *runs, Growth *growth)
+static void close_runs(const Solver *solver, Runs *runs, Growth *growth)
 {
     for (size_t i = 0; i < runs->count; i++) {
-        walk_close(&runs->walks[i], &growth->steps, &growth->evaluations);
+        const SolverModel model = solver->model(runs->walks[i].state);
+        growth->steps += model.steps;
+        growth->evaluations += model.evaluations;
+        solver->close(runs->walks[i].state);
     }
     free(runs->scenarios);
 }
@@ -74,7 +116,7 @@ static bool find_at(const GrowthWork *work, Runs *runs, size_t k, double *found,
     Gram grams[LINKAGE_BODY_MAX] = {{0.0, 0.0, 0.0}};
     for (size_t i = 0; i < runs->count; i++) {
         Sample sample;
-        if (!walk_to(&runs->walks[i], beside->times[k], &sample, &growth->failure)) {
+        if (!walk_to(work, &runs->walks[i], beside->times[k], &sample, &growth->failure)) {
             return false;
         }
         for (size_t body = 0; body < beside->body_count; body++) {
@@ -114,6 +156,6 @@ Growth growth_find(const GrowthWork *work)
             growth.until_s = beside->times[k];
         }
     }
-    close_runs(&runs, &growth);
+    close_runs(work->solver, &runs, &growth);
     return growth;
 }

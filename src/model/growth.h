@@ -2,7 +2,13 @@
 #pragma once
 
 #include "model/perturb.h"
-#include "model/walk.h"
+#include "model/solver.h"
+
+// A sign of life from work that takes long.
+typedef struct GrowthPulse {
+    void (*beat)(void *context); // NULL: nobody waits for it
+    void *context;
+} GrowthPulse;
 
 typedef struct GrowthWork {
     const Solver *solver;
@@ -13,7 +19,7 @@ typedef struct GrowthWork {
     double size;                 // of their perturbations
     double most;                 // growth at which it ends
     double until_s;              // or here, s
-    WalkPulse pulse;
+    GrowthPulse pulse;
 } GrowthWork;
 
 typedef struct Growth {

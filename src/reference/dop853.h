@@ -3,10 +3,17 @@
 // taken.
 #pragma once
 
-#include "reference/dop853_table.h"
-
 #include <stdbool.h>
 #include <stddef.h>
+
+// The method's coefficients (reference/dop853_table.c).
+enum { DOP853_STAGES = 16, DOP853_DENSE_ROWS = 4 };
+
+extern const double DOP853_NODE[DOP853_STAGES];
+extern const double DOP853_COUPLING[DOP853_STAGES][DOP853_STAGES]; // row 12: the step's weights
+extern const double DOP853_ERROR_5[DOP853_STAGES];
+extern const double DOP853_ERROR_3[DOP853_STAGES];
+extern const double DOP853_DENSE[DOP853_DENSE_ROWS][DOP853_STAGES];
 
 // the most equations: three coordinates and rates a body, sums; a multiple of eight
 enum { DOP853_SIZE_MAX = 128, DOP853_POLYNOMIAL = 8 };

@@ -4,7 +4,7 @@
 // Stages 1 to 12 make the step, 13 is the derivative at its end, 14 to 16 are for dense output.
 // Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.,
 // 1993, section II.10. The order conditions up to c^7 are a test.
-#include "reference/dop853_table.h"
+#include "reference/dop853.h"
 
 // clang-format off
 const double DOP853_NODE[DOP853_STAGES] = {

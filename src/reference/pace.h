@@ -14,3 +14,7 @@ typedef struct Pace {
 // blame where steps or events have come so close together that the run would not end.
 bool pace_keep(Pace *pace, const Dynamics *dynamics, const EventList *events, double time_s,
                Err *err);
+
+// The equations for the accelerations have no solution: masses and inertias too far apart for the
+// digits of a double, or joints that hold each other up. Returns false, with ERR_SOLVER.
+bool pace_undetermined(const Linkage *linkage, Err *err);

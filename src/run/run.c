@@ -181,13 +181,7 @@ static void show_extremes(const Scenario *scenario, Trajectory *trajectory)
 
 Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatch watch)
 {
-    return run_probed(scenario, solver, watch, NULL);
-}
-
-Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch watch,
-                       const RunProbe *probe)
-{
-    return run_guarded(scenario, solver, watch, probe, NULL);
+    return run_guarded(scenario, solver, watch, NULL, NULL);
 }
 
 Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch watch,

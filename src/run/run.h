@@ -35,10 +35,6 @@ typedef struct RunGuard {
 // complete and says when and why. The caller destroys it.
 Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatch watch);
 
-// The same with a probe and ranges; without them where it is NULL.
-Trajectory *run_probed(const Scenario *scenario, const Solver *solver, RunWatch watch,
-                       const RunProbe *probe);
-
-// The same with a guard; without one where it is NULL.
+// The same with a probe and ranges, and with a guard; without them where they are NULL.
 Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch watch,
                         const RunProbe *probe, const RunGuard *guard);

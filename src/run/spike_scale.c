@@ -21,12 +21,8 @@ static const double MOVES_FREELY = 1e-6;
 // Whether the linkage is clear of every dead centre, whichever way its numbers are rounded.
 static bool moves_freely(const Linkage *linkage, const Motion *motions)
 {
-    bool include[LINKAGE_JOINT_MAX];
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        include[i] = true;
-    }
     Jacobian jacobian;
-    kinematics_jacobian(linkage, motions, include, true, &jacobian);
+    kinematics_jacobian(linkage, motions, NULL, true, &jacobian);
     return dense_rank(jacobian.rows, jacobian.columns, jacobian.entries, MOVES_FREELY) ==
            jacobian.columns;
 }

@@ -346,5 +346,5 @@ const RunProbe TRACER_PROBE = {tracer_begin, tracer_look, tracer_end};
 
 Trajectory *tracer_run(const Scenario *scenario, const Solver *solver, RunWatch watch)
 {
-    return run_probed(scenario, solver, watch, &TRACER_PROBE);
+    return run_guarded(scenario, solver, watch, &TRACER_PROBE, NULL);
 }
