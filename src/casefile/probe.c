@@ -8,7 +8,6 @@
 #include "casefile/check.h"
 #include "casefile/input.h"
 #include "casefile/keys.h"
-#include "casefile/quantity.h"
 #include "casefile/store.h"
 
 #include <assert.h>
@@ -110,63 +109,32 @@ bool probe_check(const Probe *probe, const Source *source, const ProbeKey *key, 
     return is_good;
 }
 
-static bool read_number(const ProbeKey *key, const char *text, ProbeNumber *number,
-                        Complaint *complaint)
-{
-    ToleratedLength length;
-    double exponent;
-    size_t whole;
-    bool is_in_turns;
-    text_copy(number->unit, sizeof number->unit, units_si(key->row->dimension));
-    switch (key->row->type) {
-    case SCHEMA_INTEGER:
-        if (!quantity_integer(text, &whole, complaint)) {
-            return false;
-        }
-        number->value = (double)whole;
-        return true;
-    case SCHEMA_STIFFNESS:
-        if (!quantity_stiffness(text, &number->value, &exponent, complaint)) {
-            return false;
-        }
-        snprintf(number->unit, sizeof number->unit, exponent == 1.0 ? "N/m" : "N/m^%.17g",
-                 exponent);
-        return true;
-    case SCHEMA_SPAN:
-        if (!quantity_span(text, &number->value, &is_in_turns, complaint)) {
-            return false;
-        }
-        text_copy(number->unit, sizeof number->unit, is_in_turns ? "revolutions" : "s");
-        return true;
-    case SCHEMA_TOLERATED:
-        if (!quantity_tolerated(text, &length, complaint)) {
-            return false;
-        }
-        if (length.lower < length.upper) {
-            snprintf(complaint->text, sizeof complaint->text, "this value has a tolerance");
-            snprintf(complaint->allowed, sizeof complaint->allowed, "a length alone");
-            return false;
-        }
-        number->value = length.nominal;
-        return true;
-    default:
-        return quantity_parse(text, key->row->dimension, &number->value, complaint);
-    }
-}
-
 bool probe_number(const Source *source, const ProbeKey *key, const Node *value, ProbeNumber *number,
                   Err *err)
 {
-    ProbeNumber read = {0};
+    const SchemaRow *row = key->row;
+    StoredNumber read;
     Complaint complaint = {0};
     if (value->kind != NODE_SCALAR || value->text[0] == '\0') {
-        return source_error(source, keys_span(value), units_example(key->row->dimension), err,
+        return source_error(source, keys_span(value), units_example(row->dimension), err,
                             "expected a single value");
     }
-    if (!read_number(key, value->text, &read, &complaint)) {
+    if (!store_read(row, value->text, &read, &complaint)) {
         return source_error(source, value->span, complaint.allowed, err, "%s", complaint.text);
     }
-    *number = read;
+    if (read.length.lower < read.length.upper) {
+        return source_error(source, value->span, "a length alone", err,
+                            "this value has a tolerance");
+    }
+    number->value = read.value;
+    text_copy(number->unit, sizeof number->unit,
+              row->type != SCHEMA_SPAN ? units_si(row->dimension)
+              : read.is_in_turns       ? "revolutions"
+                                       : "s");
+    if (row->type == SCHEMA_STIFFNESS) {
+        snprintf(number->unit, sizeof number->unit, read.exponent == 1.0 ? "N/m" : "N/m^%.17g",
+                 read.exponent);
+    }
     return true;
 }
 

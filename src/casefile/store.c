@@ -3,7 +3,6 @@
 
 #include "base/shorten.h"
 #include "casefile/expect.h"
-#include "casefile/quantity.h"
 #include "casefile/wanted.h"
 
 #include <float.h>
@@ -76,94 +75,102 @@ static bool check_range(const Target *target, const Node *node, double value)
                         "%s is out of range: %.60s", target->path, node->text);
 }
 
-// What a quantity_ function read of a node: its complaint gets a place, its number a range.
-static bool accept(const Target *target, const Node *node, bool is_read, const Complaint *complaint,
-                   double value)
+bool store_read(const SchemaRow *row, const char *text, StoredNumber *number, Complaint *complaint)
 {
-    return is_read ? check_range(target, node, value)
-                   : source_error(target->entry->source, node->span, complaint->allowed,
-                                  target->err, "%s", complaint->text);
+    size_t whole = 0;
+    bool is_read = false;
+    *number = (StoredNumber){.value = 0.0};
+    switch (row->type) {
+    case SCHEMA_INTEGER:
+        is_read = quantity_integer(text, &whole, complaint);
+        number->value = (double)whole; // exact: it is at most 2^53
+        return is_read;
+    case SCHEMA_STIFFNESS:
+        return quantity_stiffness(text, &number->value, &number->exponent, complaint);
+    case SCHEMA_SPAN:
+        return quantity_span(text, &number->value, &number->is_in_turns, complaint);
+    case SCHEMA_TOLERATED:
+        is_read = quantity_tolerated(text, &number->length, complaint);
+        number->value = number->length.nominal;
+        return is_read;
+    default:
+        return quantity_parse(text, row->dimension, &number->value, complaint);
+    }
 }
 
-// One number of the row's dimension, from its node or from one of a pair.
-static bool read_number(const Target *target, const Node *node, double *value)
+// One number, from its node or from one of a pair, in the range of its row.
+static bool read_number(const Target *target, const Node *node, StoredNumber *number)
 {
+    const SchemaRow *row = target->entry->row;
     Complaint complaint;
     if (!check_scalar(target, node)) {
         return false;
     }
-    const bool is_read =
-        quantity_parse(node->text, target->entry->row->dimension, value, &complaint);
+    if (store_read(row, node->text, number, &complaint)) {
+        return check_range(target, node, number->value);
+    }
+    const bool is_special = row->type == SCHEMA_INTEGER || row->type == SCHEMA_STIFFNESS ||
+                            row->type == SCHEMA_SPAN || row->type == SCHEMA_TOLERATED;
     // a size with a tolerance is a fair thing to try
-    const char *sign = strstr(node->text, "+-") != NULL  ? "+-"
-                       : strstr(node->text, "±") != NULL ? "±"
-                                                         : NULL;
-    if (!is_read && sign != NULL) {
+    const char *sign = is_special                         ? NULL
+                       : strstr(node->text, "+-") != NULL ? "+-"
+                       : strstr(node->text, "±") != NULL  ? "±"
+                                                          : NULL;
+    if (sign != NULL) {
         return source_error(target->entry->source, node->span, "a value without tolerance",
                             target->err, "%s takes no tolerance (%s)", target->path, sign);
     }
-    return accept(target, node, is_read, &complaint, *value);
-}
-
-// A number, or the word that stands for 0.
-static bool store_quantity(const Target *target, double *field)
-{
-    const Node *node = target->entry->node;
-    const char *word = target->entry->row->zero_word;
-    if (word != NULL && node->kind == NODE_SCALAR && strcmp(node->text, word) == 0) {
-        *field = 0.0;
-        return true;
-    }
-    if (word != NULL && node->kind == NODE_SCALAR && strcspn(node->text, "0123456789") > 1) {
-        return refuse(target, node->span, "'%.40s' is no choice for %s", node->text, target->path);
-    }
-    double number = 0.0;
-    if (!read_number(target, node, &number)) {
-        return false;
-    }
-    *field = number;
-    return true;
-}
-
-static bool store_tolerated(const Target *target)
-{
-    const Node *node = target->entry->node;
-    Complaint complaint;
-    ToleratedLength length = {0};
-    if (!check_scalar(target, node)) {
-        return false;
-    }
-    const bool is_read = quantity_tolerated(node->text, &length, &complaint);
-    if (!accept(target, node, is_read, &complaint, length.nominal)) {
-        return false;
-    }
-    if (!(length.nominal + length.lower > 0.0)) {
-        return source_error(target->entry->source, node->span,
-                            "a tolerance smaller than the length", target->err,
-                            "with its tolerance %s falls to 0 or below", target->path);
-    }
-    *(ToleratedLength *)target->field = length;
-    return true;
-}
-
-static bool store_integer(const Target *target)
-{
-    const Node *node = target->entry->node;
-    Complaint complaint;
-    size_t value = 0;
-    if (!check_scalar(target, node)) {
-        return false;
-    }
-    const bool is_read = quantity_integer(node->text, &value, &complaint);
-    if (!is_read) {
+    if (row->type == SCHEMA_INTEGER) {
         char range[QUANTITY_TEXT_SIZE];
-        describe_range(target->entry->row, range);
+        describe_range(row, range);
         snprintf(complaint.allowed, sizeof complaint.allowed, "a whole number, %.64s", range);
     }
-    if (!accept(target, node, is_read, &complaint, (double)value)) {
+    return source_error(target->entry->source, node->span, complaint.allowed, target->err, "%s",
+                        complaint.text);
+}
+
+// A number of any kind, or the word that stands for 0.
+static bool store_number(const Target *target, Scenario *scenario)
+{
+    const Node *node = target->entry->node;
+    const SchemaRow *row = target->entry->row;
+    const char *word = row->zero_word;
+    StoredNumber number = {.value = 0.0};
+    const bool is_word = word != NULL && node->kind == NODE_SCALAR && strcmp(node->text, word) == 0;
+    if (word != NULL && !is_word && node->kind == NODE_SCALAR &&
+        strcspn(node->text, "0123456789") > 1) {
+        return refuse(target, node->span, "'%.40s' is no choice for %s", node->text, target->path);
+    }
+    if (!is_word && !read_number(target, node, &number)) {
         return false;
     }
-    *(size_t *)target->field = value;
+    switch (row->type) {
+    case SCHEMA_INTEGER:
+        *(size_t *)target->field = (size_t)number.value;
+        break;
+    case SCHEMA_TOLERATED:
+        if (!(number.length.nominal + number.length.lower > 0.0)) {
+            return source_error(target->entry->source, node->span,
+                                "a tolerance smaller than the length", target->err,
+                                "with its tolerance %s falls to 0 or below", target->path);
+        }
+        *(ToleratedLength *)target->field = number.length;
+        break;
+    case SCHEMA_STIFFNESS:
+        scenario->contact.stiffness = number.value;
+        scenario->contact.exponent = number.exponent;
+        break;
+    case SCHEMA_SPAN:
+        scenario->run.report_from = number.value;
+        scenario->run.is_report_from_in_turns = number.is_in_turns;
+        break;
+    case SCHEMA_RADIAL_CLEARANCE:
+        ((Clearance *)target->field)->pin_radius = PIN_RADIUS;
+        ((Clearance *)target->field)->hole_radius = PIN_RADIUS + number.value;
+        break;
+    default: // SCHEMA_ALONG is moved once the links are known
+        *(double *)target->field = row->type == SCHEMA_DIAMETER ? 0.5 * number.value : number.value;
+    }
     return true;
 }
 
@@ -231,38 +238,6 @@ static bool store_text(const Target *target, char *field, size_t size)
     return true;
 }
 
-static bool store_stiffness(const Target *target, ContactOptions *contact)
-{
-    const Node *node = target->entry->node;
-    Complaint complaint;
-    double stiffness = 0.0;
-    double exponent = 0.0;
-    if (!check_scalar(target, node)) {
-        return false;
-    }
-    const bool is_read = quantity_stiffness(node->text, &stiffness, &exponent, &complaint);
-    if (!accept(target, node, is_read, &complaint, stiffness)) {
-        return false;
-    }
-    contact->stiffness = stiffness;
-    contact->exponent = exponent;
-    return true;
-}
-
-static bool store_span(const Target *target, RunOptions *run)
-{
-    const Node *node = target->entry->node;
-    Complaint complaint;
-    double span = 0.0;
-    if (!check_scalar(target, node)) {
-        return false;
-    }
-    const bool is_read =
-        quantity_span(node->text, &span, &run->is_report_from_in_turns, &complaint);
-    run->report_from = span;
-    return accept(target, node, is_read, &complaint, span);
-}
-
 // The two items of a list of two; false for anything else.
 static bool find_pair(const Node *node, const Node *pair[2])
 {
@@ -275,7 +250,8 @@ static bool store_vector(const Target *target)
 {
     const Node *node = target->entry->node;
     const SchemaRow *row = target->entry->row;
-    Vec2 read = {0.0, 0.0};
+    StoredNumber x = {.value = 0.0};
+    StoredNumber y = x;
     const bool is_word = row->default_words != NULL && node->kind == NODE_SCALAR &&
                          strcmp(node->text, row->default_words) == 0;
     const Node *pair[2];
@@ -288,11 +264,10 @@ static bool store_vector(const Target *target)
         return refuse(target, node->span, "%s takes %s", target->path,
                       row->dimension == DIMENSION_SPEED ? "two speeds" : "a place");
     }
-    if (!is_word &&
-        (!read_number(target, pair[0], &read.x) || !read_number(target, pair[1], &read.y))) {
+    if (!is_word && (!read_number(target, pair[0], &x) || !read_number(target, pair[1], &y))) {
         return false;
     }
-    *(Vec2 *)target->field = read;
+    *(Vec2 *)target->field = (Vec2){x.value, y.value};
     return true;
 }
 
@@ -337,38 +312,18 @@ static void seat_pin(Clearance *clearance)
     }
 }
 
-static bool store_radial_clearance(const Target *target, Clearance *clearance)
-{
-    double radial = 0.0;
-    if (!read_number(target, target->entry->node, &radial)) {
-        return false;
-    }
-    clearance->pin_radius = PIN_RADIUS;
-    clearance->hole_radius = PIN_RADIUS + radial;
-    return true;
-}
-
 bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
 {
     Target target = {.entries = entries, .entry = entry, .err = err};
     schema_path(entry->row, entries_name(entries, entry->row, entry->index), target.path);
     target.field = schema_field(entry->row, scenario, entry->index);
-    double number = 0.0;
     switch (entry->row->type) {
-    case SCHEMA_TOLERATED:
-        return store_tolerated(&target);
-    case SCHEMA_INTEGER:
-        return store_integer(&target);
     case SCHEMA_CHOICE:
         return find_word(&target, entry->node, target.field); // an enumeration is an int
     case SCHEMA_BACKENDS:
         return store_backends(&target, &scenario->run);
     case SCHEMA_TEXT:
         return store_text(&target, target.field, SCENARIO_TITLE_SIZE);
-    case SCHEMA_STIFFNESS:
-        return store_stiffness(&target, &scenario->contact);
-    case SCHEMA_SPAN:
-        return store_span(&target, &scenario->run);
     case SCHEMA_VECTOR:
     case SCHEMA_ANCHOR: // moved to its body's frame once the bodies are placed
         if (!store_vector(&target)) {
@@ -386,15 +341,7 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return find_name(&target, entry->node, SCHEMA_JOINT, false, target.field);
     case SCHEMA_EXPECT:
         return expect_store(entries, entry, scenario, err);
-    case SCHEMA_RADIAL_CLEARANCE:
-        return store_radial_clearance(&target, target.field);
-    case SCHEMA_QUANTITY:
-        return store_quantity(&target, target.field);
-    default: // SCHEMA_ALONG is moved once the links are known
-        if (!read_number(&target, entry->node, &number)) {
-            return false;
-        }
-        *(double *)target.field = entry->row->type == SCHEMA_DIAMETER ? 0.5 * number : number;
-        return true;
+    default:
+        return store_number(&target, scenario);
     }
 }
