@@ -34,10 +34,10 @@ static LadderRun run_of(double error, size_t steps)
     };
 }
 
-static void take(Tune *tune, size_t scheme, int notch, double error, size_t steps)
+static void take(Tune *tune, size_t scheme, int index, double error, size_t steps)
 {
     const LadderRun run = run_of(error, steps);
-    tune_take(tune, scheme, notch, &run);
+    tune_take(tune, scheme, index, &run);
 }
 
 static void values_are_preferred_numbers(void **state)
@@ -69,8 +69,8 @@ static void a_lucky_dip_is_no_setting(void **state)
     assert_null(tune_best(tune, 0));
     take(tune, 0, 42, 8e-4, 1600);
     take(tune, 0, 43, 7e-4, 2000);
-    assert_int_equal(tune_best(tune, 0)->notch, 42);
-    assert_int_equal(tune->schemes[0].fate, TUNE_MEETS);
+    assert_int_equal(tune_best(tune, 0)->index, 42);
+    assert_int_equal(tune->schemes[0].outcome, TUNE_MEETS);
     tune_destroy(tune);
 }
 
@@ -79,10 +79,10 @@ static void only_steps_that_no_order_reaches_are_left_out(void **state)
     (void)state;
     const Scenario scenario = loose();
     Tune *tune = search(&scenario, "direct/plain/corrected,direct/staggered/midpoint", 1e-4);
-    // 1e-1 to 4e-4 is a factor 250: at order 2 a step 15.8 times finer, twelve notches
+    // 1e-1 to 4e-4 is a factor 250: at order 2 a step 15.8 times finer, twelve indices
     take(tune, 0, 20, 1e-1, 100);
     assert_int_equal(tune->schemes[0].next, 31);
-    // at order 6 a step 2.5 times finer: four notches, less what is rounded down
+    // at order 6 a step 2.5 times finer: four indices, less what is rounded down
     take(tune, 1, 20, 1e-1, 100);
     assert_int_equal(tune->schemes[1].next, 23);
     // near the target none is left out

@@ -1,5 +1,5 @@
 // What do other programs read of a regression check?
-#include "commands/check/check_json.h"
+#include "commands/check/check_report.h"
 
 #include "write/json_value.h"
 #include "write/settings_json.h"

@@ -7,7 +7,7 @@
 //
 // Jenkins takes what stands before the last dot of a class name for its package: the class of
 // cases/paper/impact-k66.yaml is cases.paper.impact-k66, and no other dot stands in a name.
-#include "commands/check/check_junit.h"
+#include "commands/check/check_report.h"
 
 #include "write/xml.h"
 

@@ -1,5 +1,5 @@
 // What should who reads a change see of a regression check?
-#include "commands/check/check_markdown.h"
+#include "commands/check/check_report.h"
 
 #include "base/printable.h"
 

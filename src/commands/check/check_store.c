@@ -4,10 +4,98 @@
 // setting that it makes use of.
 #include "commands/check/check_store.h"
 
-#include "commands/check/measure_json.h"
+#include "base/text.h"
+#include "write/fields.h"
 #include "write/json_value.h"
 
+#include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
+
+// A plan, and why it has no truth, which is empty where it has one.
+typedef struct PlanLine {
+    CheckPlan plan;
+    char no_truth[CHECK_NOTE_SIZE];
+} PlanLine;
+
+#define PLAN(member) offsetof(PlanLine, member)
+
+// clang-format off
+static const Field PLAN_FIELDS[] = {
+    {"has_truth",   .type = FIELD_FLAG,   PLAN(plan.has_truth),   FIELD_STORE},
+    {"uncertainty", .type = FIELD_NUMBER, PLAN(plan.uncertainty), FIELD_STORE},
+    {"is_limited",  .type = FIELD_FLAG,   PLAN(plan.is_limited),  FIELD_STORE},
+    {"horizon_s",   .type = FIELD_NUMBER, PLAN(plan.horizon_s),   FIELD_STORE},
+    {"is_full",     .type = FIELD_FLAG,   PLAN(plan.is_full),     FIELD_STORE},
+    {"no_truth",    .type = FIELD_TEXT,   PLAN(no_truth),         FIELD_STORE, .size = CHECK_NOTE_SIZE},
+    {0},
+};
+// clang-format on
+
+static json_t *start_array(CheckStart start)
+{
+    return json_pack("[I, f, I]", (json_int_t)start.member, start.share, (json_int_t)start.shake);
+}
+
+// {"start": [member, share, shake], "metrics": [[name, kind, is slow, value, scale, floor], ...]};
+// of a hash the value is its hexadecimal digits.
+static json_t *start_line(CheckStart start, const CheckMeasure *measure)
+{
+    json_t *metrics = json_array();
+    for (size_t i = 0; i < measure->count; i++) {
+        const CheckMetric *metric = &measure->metrics[i];
+        json_t *value = metric->kind == CHECK_HASH ? json_sprintf("%016" PRIx64, metric->hash)
+                                                   : json_real(metric->value);
+        json_array_append_new(metrics,
+                              json_pack("[s, i, b, o, f, f]", metric->name, (int)metric->kind,
+                                        (int)metric->is_slow, value, metric->scale, metric->floor));
+    }
+    return json_pack("{s:o, s:o}", "start", start_array(start), "metrics", metrics);
+}
+
+static bool take_metric(json_t *line, CheckMetric *metric)
+{
+    const char *name;
+    int kind;
+    int is_slow;
+    json_t *value;
+    if (json_unpack(line, "[s, i, b, o, F, F]", &name, &kind, &is_slow, &value, &metric->scale,
+                    &metric->floor) != 0 ||
+        kind < CHECK_REAL || kind > CHECK_HASH ||
+        (kind == CHECK_HASH ? !json_is_string(value) : !json_is_number(value))) {
+        return false;
+    }
+    text_copy(metric->name, sizeof metric->name, name);
+    metric->kind = (CheckKind)kind;
+    metric->is_slow = is_slow != 0;
+    if (metric->kind == CHECK_HASH) {
+        metric->hash = strtoull(json_string_value(value), NULL, 16);
+    } else {
+        metric->value = json_number_value(value);
+    }
+    return true;
+}
+
+// Whether a line is of that start; it then fills the measure. False also where it is damaged.
+static bool take_start(const json_t *line, CheckStart start, CheckMeasure *measure)
+{
+    const json_t *metrics = json_object_get(line, "metrics");
+    json_t *wanted = start_array(start);
+    const bool is_it = json_equal(json_object_get(line, "start"), wanted) != 0;
+    json_decref(wanted);
+    const size_t count = json_array_size(metrics);
+    if (!is_it || count == 0 || count > CHECK_METRIC_MAX) {
+        return false;
+    }
+    *measure = (CheckMeasure){.is_complete = true, .count = count};
+    for (size_t i = 0; i < count; i++) {
+        if (!take_metric(json_array_get(metrics, i), &measure->metrics[i])) {
+            *measure = (CheckMeasure){.is_complete = false};
+            return false;
+        }
+    }
+    return true;
+}
 
 static json_t *make_key(const CheckItem *item)
 {
@@ -24,7 +112,7 @@ static json_t *make_key(const CheckItem *item)
 bool check_store_open(CheckStore *store, const CheckItem *item, Err *err)
 {
     char path[FILE_PATH_SIZE + sizeof ".partial"];
-    *store = (CheckStore){.taken = 0};
+    *store = (CheckStore){0};
     snprintf(path, sizeof path, "%s.partial", item->baseline_path);
     json_t *key = make_key(item);
     Err own = {0};
@@ -41,7 +129,10 @@ bool check_store_take_plan(const CheckStore *store, CheckPlan *plan, char *no_tr
     json_t *line;
     json_array_foreach(store->journal.entries, index, line)
     {
-        if (measure_json_take_plan(line, plan, no_truth, size)) {
+        PlanLine kept;
+        if (fields_json_read(PLAN_FIELDS, FIELD_STORE, json_object_get(line, "plan"), &kept)) {
+            *plan = kept.plan;
+            text_copy(no_truth, size, kept.no_truth);
             return true;
         }
     }
@@ -57,7 +148,10 @@ static bool keep(CheckStore *store, json_t *line, Err *err)
 
 bool check_store_keep_plan(CheckStore *store, const CheckPlan *plan, const char *no_truth, Err *err)
 {
-    return keep(store, measure_json_plan(plan, no_truth), err);
+    PlanLine line = {.plan = *plan};
+    text_copy(line.no_truth, sizeof line.no_truth, no_truth);
+    return keep(store, json_pack("{s:o}", "plan", fields_json(PLAN_FIELDS, FIELD_STORE, &line)),
+                err);
 }
 
 void check_store_take(CheckStore *store, CheckWork *works, size_t count)
@@ -67,9 +161,8 @@ void check_store_take(CheckStore *store, CheckWork *works, size_t count)
     json_array_foreach(store->journal.entries, index, line)
     {
         for (size_t i = 0; i < count; i++) {
-            if (!works[i].is_over && measure_json_take(line, works[i].start, works[i].measure)) {
+            if (!works[i].is_over && take_start(line, works[i].start, works[i].measure)) {
                 works[i].is_over = true;
-                store->taken++;
             }
         }
     }
@@ -77,7 +170,7 @@ void check_store_take(CheckStore *store, CheckWork *works, size_t count)
 
 bool check_store_keep(CheckStore *store, const CheckWork *work, Err *err)
 {
-    return keep(store, measure_json_build(work->start, work->measure), err);
+    return keep(store, start_line(work->start, work->measure), err);
 }
 
 size_t check_store_count(const CheckStore *store)

@@ -9,7 +9,6 @@
 
 typedef struct CheckStore {
     Journal journal;
-    size_t taken; // starts that were there
 } CheckStore;
 
 // Opens the file of an item, or makes it. One that is of another state of the case or the program,

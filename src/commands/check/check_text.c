@@ -1,5 +1,5 @@
 // Which numbers of which case have moved, and how near are the others to their bands?
-#include "commands/check/check_text.h"
+#include "commands/check/check_report.h"
 
 #include "write/section.h"
 

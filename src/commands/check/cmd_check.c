@@ -1,12 +1,9 @@
 // Have the numbers of any case moved by more than they may?
 #include "cli/interrupt.h"
 #include "cli/results.h"
-#include "commands/check/check_json.h"
-#include "commands/check/check_junit.h"
-#include "commands/check/check_markdown.h"
 #include "commands/check/check_options.h"
+#include "commands/check/check_report.h"
 #include "commands/check/check_run.h"
-#include "commands/check/check_text.h"
 #include "commands/commands.h"
 #include "write/file.h"
 

@@ -6,15 +6,11 @@
 #include "cli/status_line.h"
 #include "cli/warnings.h"
 #include "commands/commands.h"
-#include "commands/tune/tune_carriers.h"
-#include "commands/tune/tune_gazebo.h"
-#include "commands/tune/tune_held_text.h"
-#include "commands/tune/tune_json.h"
-#include "commands/tune/tune_mujoco.h"
+#include "commands/tune/tune_export.h"
 #include "commands/tune/tune_options.h"
+#include "commands/tune/tune_report.h"
 #include "commands/tune/tune_search.h"
 #include "commands/tune/tune_setting.h"
-#include "commands/tune/tune_text.h"
 #include "write/units.h"
 
 #include <assert.h>
@@ -62,7 +58,7 @@ static bool has_contact(const TuneReport *report, bool is_found, const char *rea
 static bool write_code(const void *target, Text *text, const char **nothing, Err *err)
 {
     const TuneReport *report = target;
-    const TuneTrial *trial = tune_carriers_trial(report);
+    const TuneTrial *trial = tune_export_trial(report);
     if (!has_contact(report, trial != NULL, "no run has an error that means anything", nothing)) {
         return false;
     }
@@ -71,7 +67,7 @@ static bool write_code(const void *target, Text *text, const char **nothing, Err
         long_work_warn("choosing the step for the code",
                        report->tune->truth.wall_s + trial->run.wall_s, true);
     }
-    return tune_carriers_code(report, text, err);
+    return tune_export_code(report, text, err);
 }
 
 static const char NO_CONSTANTS[] = "no contact with constants that was tried is stable";

@@ -1,7 +1,7 @@
 // Which setting is to be tried next, and what do the trials say?
 //
 // Values of the grid: the R10 series of ISO 3, v(n) = 10^(-n/10) in preferred numbers. A trial at
-// notch n with error e > X rules out the notches that would have to fall faster than order p:
+// index n with error e > X rules out those m that would need a higher order than p:
 //     m - n <= (10 / p) log10(e / (SLACK X))
 // with p above any order that the stepping has. What is left is tried from coarse to fine, so that
 // the first two neighbours that meet X are the cheapest of the scheme on the grid, however unevenly
@@ -16,12 +16,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NOTCHES_A_DECADE = 10, LEVELS_SPARE = 3 };
+enum { STEPS_A_DECADE = 10 };
 
-static const double PREFERRED[NOTCHES_A_DECADE] = {1.0,  8.0, 6.3, 5.0, 4.0,
-                                                   3.15, 2.5, 2.0, 1.6, 1.25};
+static const double PREFERRED[STEPS_A_DECADE] = {1.0,  8.0, 6.3, 5.0, 4.0,
+                                                 3.15, 2.5, 2.0, 1.6, 1.25};
 
-// the coarsest step: so many in a run, or in a turn of the drive, whichever is shorter
+// the coarsest step: this many in a run or in a turn of the drive, whichever is shorter
 static const double COARSEST_STEPS = 20.0;
 
 // the coarsest tolerance, over the target: chosen steps aim below it, and mostly get there
@@ -30,7 +30,7 @@ static const double COARSEST_TOLERANCE = 6.0;
 // what the case file allows of run.tolerance
 static const double TOLERANCE_MOST = 0.1;
 
-// errors may dip below the trend by so much
+// errors may be below the trend by this factor
 static const double SLACK = 4.0;
 
 // orders that no stepping exceeds between one trial and the next, contacts coming and going
@@ -43,7 +43,7 @@ static const double TIE = 1.1;
 // errors this close are the same
 static const double SAME = 1.01;
 
-// speeds that are off by their own size follow nothing
+// speeds that are off by their own size mean that the run is unstable
 static const double UNSTABLE = 1.0;
 
 // a decade finer must take a third off the error, by its median, once a run takes as long as this,
@@ -51,35 +51,35 @@ static const double UNSTABLE = 1.0;
 static const double STALL_GAIN = 0.67;
 static const double STALL_S = 0.5;
 
-double tune_value(int notch)
+double tune_value(int index)
 {
-    const int place = ((notch % NOTCHES_A_DECADE) + NOTCHES_A_DECADE) % NOTCHES_A_DECADE;
-    const int decade = (notch - place) / NOTCHES_A_DECADE + (place > 0 ? 1 : 0);
+    const int within = ((index % STEPS_A_DECADE) + STEPS_A_DECADE) % STEPS_A_DECADE;
+    const int decade = (index - within) / STEPS_A_DECADE + (within > 0 ? 1 : 0);
     char digits[64];
     // by way of its digits: the very number that a reader of them gets
-    snprintf(digits, sizeof digits, "%.4ge%d", PREFERRED[place], -decade);
+    snprintf(digits, sizeof digits, "%.4ge%d", PREFERRED[within], -decade);
     return strtod(digits, NULL);
 }
 
-// The notch of the largest value that is not above this one.
-static int notch_below(double value)
+// The index of the largest value that is not above this one.
+static int index_below(double value)
 {
-    int notch = (int)floor(-NOTCHES_A_DECADE * log10(value)) - 1;
-    while (tune_value(notch) > value) {
-        notch++;
+    int index = (int)floor(-STEPS_A_DECADE * log10(value)) - 1;
+    while (tune_value(index) > value) {
+        index++;
     }
-    return notch;
+    return index;
 }
 
-static int first_notch(const Scenario *scenario, const Scheme *scheme, double target)
+static int first_index(const Scenario *scenario, const Scheme *scheme, double target)
 {
     if (!scheme_has_step(scheme)) {
-        return notch_below(fmin(TOLERANCE_MOST, COARSEST_TOLERANCE * target));
+        return index_below(fmin(TOLERANCE_MOST, COARSEST_TOLERANCE * target));
     }
     const double duration_s = scenario_duration(scenario);
     const double turn_s =
         scenario->linkage.driver.is_present ? linkage_period(&scenario->linkage) : duration_s;
-    return notch_below(fmin(duration_s, turn_s) / COARSEST_STEPS);
+    return index_below(fmin(duration_s, turn_s) / COARSEST_STEPS);
 }
 
 static void add_scheme(Tune *tune, const Scenario *scenario, const Scheme *scheme)
@@ -93,7 +93,7 @@ static void add_scheme(Tune *tune, const Scenario *scenario, const Scheme *schem
         .wall_median_s = NAN,
         .processor_median_s = NAN,
         .processor_least_s = NAN,
-        .first = first_notch(scenario, scheme, tune->target),
+        .first = first_index(scenario, scheme, tune->target),
     };
     added->next = added->first;
     if (!scheme_has_step(scheme)) {
@@ -161,8 +161,8 @@ double tune_error(const Tune *tune, const LadderRun *run, char reason[LADDER_MES
     return why != NULL ? NAN : error;
 }
 
-// How many notches further an error can meet the target at best.
-static int notches_ahead(const Tune *tune, const TuneScheme *scheme, double error)
+// How many indices further an error can meet the target at best.
+static int indices_ahead(const Tune *tune, const TuneScheme *scheme, double error)
 {
     const Scheme *data = &scheme->scheme;
     const bool is_first_order = scheme_has_step(data) && data->stepping == ODE_PLAIN;
@@ -172,26 +172,26 @@ static int notches_ahead(const Tune *tune, const TuneScheme *scheme, double erro
     if (isnan(error)) {
         return 1;
     }
-    const double ahead = NOTCHES_A_DECADE / order * log10(error / (SLACK * tune->target));
+    const double ahead = STEPS_A_DECADE / order * log10(error / (SLACK * tune->target));
     return ahead > 1.0 ? (int)floor(ahead) : 1;
 }
 
 // Whether the trials of the last decade are hardly better than those of the decade before.
 static bool has_stalled(const Tune *tune, const TuneTrial *last)
 {
-    double before[NOTCHES_A_DECADE];
-    double since[NOTCHES_A_DECADE];
+    double before[STEPS_A_DECADE];
+    double since[STEPS_A_DECADE];
     size_t before_count = 0;
     size_t since_count = 0;
     for (size_t i = 0; i < tune->trial_count; i++) {
         const TuneTrial *trial = &tune->trials[i];
-        const int back = last->notch - trial->notch;
+        const int back = last->index - trial->index;
         if (trial->scheme != last->scheme || !isfinite(trial->error) || back < 0) {
             continue;
         }
-        if (back < NOTCHES_A_DECADE && since_count < NOTCHES_A_DECADE) {
+        if (back < STEPS_A_DECADE && since_count < STEPS_A_DECADE) {
             since[since_count++] = trial->error;
-        } else if (back < 2 * NOTCHES_A_DECADE && before_count < NOTCHES_A_DECADE) {
+        } else if (back < 2 * STEPS_A_DECADE && before_count < STEPS_A_DECADE) {
             before[before_count++] = trial->error;
         }
     }
@@ -206,7 +206,7 @@ static bool has_stalled(const Tune *tune, const TuneTrial *last)
 }
 
 // Keeps a run as a trial of its scheme.
-static TuneTrial *add_trial(Tune *tune, size_t scheme, int notch, double value,
+static TuneTrial *add_trial(Tune *tune, size_t scheme, int index, double value,
                             const LadderRun *run)
 {
     if (tune->trial_count == tune->trial_room) {
@@ -216,7 +216,7 @@ static TuneTrial *add_trial(Tune *tune, size_t scheme, int notch, double value,
     }
     const int number = (int)tune->trial_count++;
     TuneTrial *trial = &tune->trials[number];
-    *trial = (TuneTrial){.scheme = scheme, .notch = notch, .value = value, .run = *run};
+    *trial = (TuneTrial){.scheme = scheme, .index = index, .value = value, .run = *run};
     trial->error = tune_error(tune, run, trial->reason);
     trial->meets = trial->error + tune->truth.uncertainty <= tune->target;
     TuneScheme *owner = &tune->schemes[scheme];
@@ -228,19 +228,19 @@ static TuneTrial *add_trial(Tune *tune, size_t scheme, int notch, double value,
     return trial;
 }
 
-void tune_take(Tune *tune, size_t scheme, int notch, const LadderRun *run)
+void tune_take(Tune *tune, size_t scheme, int index, const LadderRun *run)
 {
     const int number = (int)tune->trial_count;
-    const TuneTrial *trial = add_trial(tune, scheme, notch, tune_value(notch), run);
+    const TuneTrial *trial = add_trial(tune, scheme, index, tune_value(index), run);
     TuneScheme *owner = &tune->schemes[scheme];
     // the first that meets the target waits for its finer neighbour
     if (trial->meets && owner->pending != TUNE_NONE) {
         owner->best = owner->pending;
-        owner->fate = TUNE_MEETS;
+        owner->outcome = TUNE_MEETS;
     } else {
         owner->pending = trial->meets ? number : TUNE_NONE;
-        owner->next = notch + (trial->meets ? 1 : notches_ahead(tune, owner, trial->error));
-        owner->fate = !trial->meets && has_stalled(tune, trial) ? TUNE_STALLED : owner->fate;
+        owner->next = index + (trial->meets ? 1 : indices_ahead(tune, owner, trial->error));
+        owner->outcome = !trial->meets && has_stalled(tune, trial) ? TUNE_STALLED : owner->outcome;
     }
 }
 
@@ -256,7 +256,7 @@ void tune_hold(Tune *tune, double step_s)
         }
     }
     tune->scheme_count = kept;
-    int below = notch_below(step_s);
+    int below = index_below(step_s);
     below += tune_value(below) < step_s ? 0 : 1;
     for (size_t i = 0; i < kept; i++) {
         tune->schemes[i].first = tune->schemes[i].next = below;
@@ -265,7 +265,7 @@ void tune_hold(Tune *tune, double step_s)
 
 void tune_take_held(Tune *tune, size_t scheme, const LadderRun *run)
 {
-    // its place is before all that may be searched after it
+    // it stands before all that may be searched after it
     add_trial(tune, scheme, tune->schemes[scheme].first - 1, tune->held_s, run);
 }
 

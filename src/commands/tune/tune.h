@@ -1,8 +1,8 @@
 // The cheapest setting of ODE whose error, found by running it, meets a target.
 //
 // Steps and tolerances come from a grid of preferred numbers, ten to a decade. A setting counts
-// only where the next finer one of its scheme meets the target as well: an error that dips by luck
-// at one step is no setting to give to anyone.
+// only where the next finer one of its scheme meets the target as well: an error that is small by luck
+// at one step is no basis for a recommendation.
 //
 // Of a user who is held to one step the question is another: which scheme has the least error at
 // that step, and where it does not meet the target, which is the longest step that does.
@@ -25,7 +25,7 @@ typedef enum TuneCost { TUNE_TIME, TUNE_STEPS, TUNE_LENGTH } TuneCost;
 // One setting that was run.
 typedef struct TuneTrial {
     size_t scheme;
-    int notch;    // its place on the grid, counted from the coarsest value
+    int index;    // on the grid, counted from the coarsest value
     double value; // step, s; of a scheme that chooses its steps the tolerance, 1
     LadderRun run;
     double error;                     // 1: as of a ladder's point; NAN where there is none
@@ -34,21 +34,21 @@ typedef struct TuneTrial {
 } TuneTrial;
 
 // How the search of a scheme ended.
-typedef enum TuneFate {
-    TUNE_OPEN,    // not yet
-    TUNE_MEETS,   // two neighbours meet the target
-    TUNE_DEARER,  // whatever is left to try costs more than a setting that meets it
-    TUNE_STALLED, // finer steps have stopped to help
-    TUNE_TOO_LONG // what is left to try takes longer than a run may, or more steps
-} TuneFate;
+typedef enum TuneOutcome {
+    TUNE_OPEN,     // not yet
+    TUNE_MEETS,    // two neighbours meet the target
+    TUNE_COSTLIER, // whatever is left to try costs more than a setting that meets it
+    TUNE_STALLED,  // finer steps do not help any more
+    TUNE_TOO_LONG  // what is left to try takes longer than a run may, or more steps
+} TuneOutcome;
 
 typedef struct TuneScheme {
     Scheme scheme;
-    int first; // notch of the coarsest setting
-    int next;  // notch that is to be tried next
+    int first; // index of the coarsest setting
+    int next;  // index that is to be tried next
     bool is_busy;
     int pending; // trial that meets the target and is not confirmed yet, or TUNE_NONE
-    TuneFate fate;
+    TuneOutcome outcome;
     int best;  // trial: the coarsest that is confirmed; TUNE_NONE
     int least; // trial of the least error, or TUNE_NONE
     size_t trials;
@@ -122,9 +122,9 @@ typedef struct Tune {
     int row;    // the ERP and CFM, at a step that is held
 } Tune;
 
-// The value of a notch: 1, 0.8, 0.63, 0.5, 0.4, 0.315, 0.25, 0.2, 0.16, 0.125, 0.1, ... the R10
-// series of ISO 3 downwards. Notches may be negative.
-double tune_value(int notch);
+// The value of an index of the grid: 1, 0.8, 0.63, 0.5, 0.4, 0.315, 0.25, 0.2, 0.16, 0.125, 0.1, ... the R10
+// series of ISO 3 downwards. Indices may be negative.
+double tune_value(int index);
 
 // A search with nothing run yet: the schemes of ODE among those given, the several tolerances of
 // steps that are chosen as one scheme.
@@ -141,8 +141,8 @@ bool tune_is_plain_row(const Tune *tune, const Scenario *scenario, size_t scheme
 // The error of a run that is over, NAN with the reason where it has none.
 double tune_error(const Tune *tune, const LadderRun *run, char reason[LADDER_MESSAGE_SIZE]);
 
-// Takes in a run at a notch of a scheme, and moves that scheme on.
-void tune_take(Tune *tune, size_t scheme, int notch, const LadderRun *run);
+// Takes in a run at an index of a scheme, and moves that scheme on.
+void tune_take(Tune *tune, size_t scheme, int index, const LadderRun *run);
 
 // Holds a search with nothing run yet to a step, s: schemes that choose their own are left out, and
 // what is searched for, should it come to that, is the longest step below it.
@@ -157,8 +157,8 @@ bool tune_is_met_held(const Tune *tune);
 // What a setting would cost at the least, in the cost's own unit (s or steps), from the trials of
 // its scheme; 0 where there are none. Of one that was run: the least time where it was timed, else
 // its work at the rate of its scheme.
-double tune_cost(const Tune *tune, size_t scheme, int notch);
-double tune_time(const Tune *tune, size_t scheme, int notch); // s, whatever the cost is
+double tune_cost(const Tune *tune, size_t scheme, int index);
+double tune_time(const Tune *tune, size_t scheme, int index); // s, whatever the cost is
 double tune_trial_cost(const Tune *tune, const TuneTrial *trial);
 
 // Whether the run of a trial is within the limit.

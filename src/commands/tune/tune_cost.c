@@ -81,7 +81,7 @@ static const TuneTrial *find_finest(const Tune *tune, size_t scheme)
     for (size_t i = 0; i < tune->trial_count; i++) {
         const TuneTrial *trial = &tune->trials[i];
         if (trial->scheme == scheme && trial->run.is_complete &&
-            (finest == NULL || trial->notch > finest->notch)) {
+            (finest == NULL || trial->index > finest->index)) {
             finest = trial;
         }
     }
@@ -89,30 +89,30 @@ static const TuneTrial *find_finest(const Tune *tune, size_t scheme)
 }
 
 // World steps of a setting, at the least: tolerances say nothing of steps.
-static double steps_at(const Tune *tune, const TuneTrial *finest, int notch)
+static double steps_at(const Tune *tune, const TuneTrial *finest, int index)
 {
     const bool has_step = scheme_has_step(&tune->schemes[finest->scheme].scheme);
-    return (double)finest->run.steps * (has_step ? finest->value / tune_value(notch) : 1.0);
+    return (double)finest->run.steps * (has_step ? finest->value / tune_value(index) : 1.0);
 }
 
-double tune_time(const Tune *tune, size_t scheme, int notch)
+double tune_time(const Tune *tune, size_t scheme, int index)
 {
     const TuneTrial *finest = find_finest(tune, scheme);
     return finest == NULL ? 0.0
-                          : rate_of(tune, scheme) * work_of(tune, steps_at(tune, finest, notch),
+                          : rate_of(tune, scheme) * work_of(tune, steps_at(tune, finest, index),
                                                             (double)finest->run.evaluations);
 }
 
-double tune_cost(const Tune *tune, size_t scheme, int notch)
+double tune_cost(const Tune *tune, size_t scheme, int index)
 {
     if (tune->cost == TUNE_LENGTH) {
-        return 1.0 / tune_value(notch);
+        return 1.0 / tune_value(index);
     }
     const TuneTrial *finest = find_finest(tune, scheme);
     if (tune->cost == TUNE_TIME || finest == NULL) {
-        return tune_time(tune, scheme, notch);
+        return tune_time(tune, scheme, index);
     }
-    return steps_at(tune, finest, notch);
+    return steps_at(tune, finest, index);
 }
 
 bool tune_is_within(const Tune *tune, const TuneTrial *trial)

@@ -6,9 +6,9 @@
 // so that each of two equal surfaces has 2 kp and kd / 2. The soft_erp and soft_cfm of a surface
 // are read and not used. max_vel bounds the speed at which a contact pushes apart, 0.01 m/s unless
 // said otherwise; min_depth is the overlap that is left alone.
-#include "commands/tune/tune_gazebo.h"
+#include "commands/tune/tune_export.h"
 
-#include "commands/tune/tune_held_text.h"
+#include "commands/tune/tune_report.h"
 #include "contact/map.h"
 #include "write/number.h"
 

@@ -1,7 +1,6 @@
 // What is the best that can be had at a step that cannot be changed?
-#include "commands/tune/tune_held_text.h"
+#include "commands/tune/tune_report.h"
 
-#include "commands/tune/tune_answer.h"
 #include "commands/tune/tune_setting.h"
 #include "write/number.h"
 #include "write/section.h"
@@ -60,7 +59,7 @@ static void write_longest(const TuneReport *report, Text *text)
     append_longest(tune, &words);
     text_append(text, " T%s:\n\n", words.data + 1);
     text_finish(&words);
-    tune_answer_setting(report, longest, text);
+    tune_setting_write(report, longest, text);
 }
 
 static void scheme_row(const Tune *tune, const TuneTrial *trial, Table *table)
@@ -68,7 +67,7 @@ static void scheme_row(const Tune *tune, const TuneTrial *trial, Table *table)
     table_cell(table, "%s", tune->schemes[trial->scheme].scheme.name);
     section_finite(table, "%.2e", trial->error);
     table_cell(table, "%zu", trial->run.steps);
-    table_cell(table, "%.4g", tune_answer_time(tune, trial) * UNITS_MS);
+    table_cell(table, "%.4g", tune_setting_time(tune, trial) * UNITS_MS);
     const bool is_best = tune->held != TUNE_NONE && trial == &tune->trials[tune->held];
     table_cell(table, "%s",
                is_best                                  ? "the least"
@@ -123,7 +122,7 @@ void tune_held_text_answer(const TuneReport *report, const Style *style, Text *t
     text_append(text, "\n%s%s%s\n\n", style->heading, heading_at(tune, "Best setting", heading),
                 style->end);
     if (tune->held != TUNE_NONE) {
-        tune_answer_setting(report, &tune->trials[tune->held], text);
+        tune_setting_write(report, &tune->trials[tune->held], text);
     } else {
         text_append(text, "  none\n");
     }

@@ -1,22 +1,19 @@
 // What do other programs read of a search?
-#include "commands/tune/tune_json.h"
+#include "commands/tune/tune_report.h"
 
-#include "commands/tune/tune_carriers.h"
-#include "commands/tune/tune_gazebo.h"
-#include "commands/tune/tune_mujoco.h"
+#include "commands/tune/tune_export.h"
 #include "commands/tune/tune_setting.h"
-#include "commands/tune/tune_snippet.h"
 #include "write/json_value.h"
 #include "write/settings_json.h"
 
 #include <inttypes.h>
 #include <string.h>
 
-static const char *const FATES[] = {[TUNE_OPEN] = "open",
-                                    [TUNE_MEETS] = "meets",
-                                    [TUNE_DEARER] = "dearer",
-                                    [TUNE_STALLED] = "stalled",
-                                    [TUNE_TOO_LONG] = "too-long"};
+static const char *const OUTCOMES[] = {[TUNE_OPEN] = "open",
+                                       [TUNE_MEETS] = "meets",
+                                       [TUNE_COSTLIER] = "dearer",
+                                       [TUNE_STALLED] = "stalled",
+                                       [TUNE_TOO_LONG] = "too-long"};
 
 static json_t *truth_object(const LadderTruth *truth)
 {
@@ -88,7 +85,7 @@ static json_t *scheme_object(const Tune *tune, size_t number)
     const TuneTrial *best = tune_best(tune, (int)number);
     json_t *object = json_object();
     json_object_set_new(object, "scheme", json_string(scheme->scheme.name));
-    json_object_set_new(object, "fate", json_string(FATES[scheme->fate]));
+    json_object_set_new(object, "fate", json_string(OUTCOMES[scheme->outcome]));
     json_object_set_new(object, "runs", json_integer((json_int_t)scheme->trials));
     json_object_set_new(object, "best", best != NULL ? trial_object(tune, best) : json_null());
     json_value_set(object, "processor_median_s", scheme->processor_median_s);
@@ -172,7 +169,7 @@ static json_t *mujoco_object(const TuneReport *report)
 
 static json_t *loop_object(const TuneReport *report)
 {
-    const TuneTrial *plain = tune_carriers_plain(report->tune);
+    const TuneTrial *plain = tune_export_plain(report->tune);
     json_t *object = setting_object(report, plain);
     if (plain != NULL) {
         Text text;

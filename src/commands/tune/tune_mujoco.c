@@ -14,7 +14,7 @@
 // r and v are those before the step: the spring is explicit, where the textbook's row in ODE is
 // implicit and stable at any step. So omega h and C h / m, m the effective mass, stay below a
 // tenth.
-#include "commands/tune/tune_mujoco.h"
+#include "commands/tune/tune_export.h"
 
 #include "write/number.h"
 

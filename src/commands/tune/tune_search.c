@@ -66,7 +66,7 @@ static int choose(const Pass *pass)
     double least = INFINITY;
     for (int i = 0; i < (int)tune->scheme_count; i++) {
         TuneScheme *scheme = &tune->schemes[i];
-        if (!pass->is_in[i] || scheme->is_busy || scheme->fate != TUNE_OPEN) {
+        if (!pass->is_in[i] || scheme->is_busy || scheme->outcome != TUNE_OPEN) {
             continue;
         }
         const double cost = tune_cost(tune, (size_t)i, scheme->next);
@@ -76,9 +76,9 @@ static int choose(const Pass *pass)
                                ? tune_trial_cost(tune, &tune->trials[scheme->pending])
                                : cost;
         if (own > margin * best) {
-            scheme->fate = TUNE_DEARER;
+            scheme->outcome = TUNE_COSTLIER;
         } else if (is_too_long(pass, (size_t)i)) {
-            scheme->fate = TUNE_TOO_LONG;
+            scheme->outcome = TUNE_TOO_LONG;
         } else if (cost < least) {
             least = cost;
             chosen = i;
@@ -143,8 +143,8 @@ static bool search_plain(const TuneSearch *search, Err *err)
         return true;
     }
     for (size_t i = 0; i < tune->scheme_count; i++) {
-        if (pass.is_in[i] && tune->schemes[i].fate == TUNE_DEARER) {
-            tune->schemes[i].fate = TUNE_OPEN;
+        if (pass.is_in[i] && tune->schemes[i].outcome == TUNE_COSTLIER) {
+            tune->schemes[i].outcome = TUNE_OPEN;
         }
     }
     return run_pass(&pass, "searching plain rows", err);
@@ -154,26 +154,26 @@ static bool search_plain(const TuneSearch *search, Err *err)
 typedef struct Look {
     Tune *tune;
     size_t schemes[SCHEME_MAX];
-    int notches[SCHEME_MAX];
+    int indices[SCHEME_MAX];
 } Look;
 
-// The notch of the finest setting of a scheme that is within the limit.
+// The index of the finest setting of a scheme that is within the limit.
 static int find_within(const Tune *tune, size_t scheme)
 {
     const TuneScheme *owner = &tune->schemes[scheme];
     const double most = tune->cost == TUNE_STEPS ? (double)tune->limit.steps : tune->limit.time_s;
-    int notch = owner->first;
-    while (tune_cost(tune, scheme, notch + 1) <= most && notch < owner->next + 30 &&
+    int index = owner->first;
+    while (tune_cost(tune, scheme, index + 1) <= most && index < owner->next + 30 &&
            scheme_has_step(&owner->scheme)) {
-        notch++;
+        index++;
     }
-    return notch;
+    return index;
 }
 
-static bool is_run(const Tune *tune, size_t scheme, int notch)
+static bool is_run(const Tune *tune, size_t scheme, int index)
 {
     for (size_t i = 0; i < tune->trial_count; i++) {
-        if (tune->trials[i].scheme == scheme && tune->trials[i].notch == notch) {
+        if (tune->trials[i].scheme == scheme && tune->trials[i].index == index) {
             return true;
         }
     }
@@ -184,7 +184,7 @@ static void apply_look(void *owner, size_t number, Scenario *scenario)
 {
     const Look *look = owner;
     const TuneScheme *scheme = &look->tune->schemes[look->schemes[number]];
-    tune_apply(scheme, tune_value(look->notches[number]), scenario);
+    tune_apply(scheme, tune_value(look->indices[number]), scenario);
 }
 
 static void take_look(void *owner, size_t number, const LadderRun *run)
@@ -192,9 +192,9 @@ static void take_look(void *owner, size_t number, const LadderRun *run)
     const Look *look = owner;
     TuneScheme *scheme = &look->tune->schemes[look->schemes[number]];
     const TuneScheme kept = *scheme;
-    tune_take(look->tune, look->schemes[number], look->notches[number], run);
+    tune_take(look->tune, look->schemes[number], look->indices[number], run);
     // a look aside: the search itself stays where it was
-    scheme->fate = kept.fate;
+    scheme->outcome = kept.outcome;
     scheme->next = kept.next;
     scheme->pending = kept.pending;
     scheme->best = kept.best;
@@ -208,10 +208,10 @@ static bool search_within(const TuneSearch *search, Err *err)
     Look look = {.tune = search->tune};
     size_t count = 0;
     for (size_t i = 0; i < tune->scheme_count; i++) {
-        const int notch = find_within(tune, i);
-        if (tune->schemes[i].trials > 0 && !is_run(tune, i, notch)) {
+        const int index = find_within(tune, i);
+        if (tune->schemes[i].trials > 0 && !is_run(tune, i, index)) {
             look.schemes[count] = i;
-            look.notches[count++] = notch;
+            look.indices[count++] = index;
         }
     }
     const TuneRuns runs = {"looking at what the cost allows", count, apply_look, take_look,

@@ -21,3 +21,11 @@ void tune_setting_command(const TuneReport *report, const TuneTrial *trial, cons
 
 // The scheme and its step or tolerance, for people.
 void tune_setting_words(const TuneReport *report, const TuneTrial *trial, Text *text);
+
+// What a setting takes of the processor, s: a median where it was timed, else the one run that
+// found its error.
+double tune_setting_time(const Tune *tune, const TuneTrial *trial);
+
+// Appends the setting of a trial: its words, error and cost, its keys of a case, and its command
+// line.
+void tune_setting_write(const TuneReport *report, const TuneTrial *trial, Text *text);

@@ -3,7 +3,7 @@
 // The row that ODE makes of a contact, at the depth d found before the step:
 //     k = F(d) / d,  c = chi F(d) / v0 (or the constant damper)
 // and from them soft_erp and soft_cfm by the map of the setting, as contact/map.c.
-#include "commands/tune/tune_snippet.h"
+#include "commands/tune/tune_export.h"
 
 #include "contact/law.h"
 #include "write/number.h"

@@ -1,9 +1,8 @@
 // What is the cheapest setting, how is it given on, and what was tried?
-#include "commands/tune/tune_text.h"
+#include "commands/tune/tune_report.h"
+#include "commands/tune/tune_setting.h"
 
-#include "commands/tune/tune_answer.h"
-#include "commands/tune/tune_carriers.h"
-#include "commands/tune/tune_held_text.h"
+#include "commands/tune/tune_export.h"
 #include "write/section.h"
 #include "write/units.h"
 
@@ -62,7 +61,7 @@ static void write_unmet(const TuneReport *report, Text *text)
                     tune->target);
     } else {
         text_append(text, "  none within the cost. The cheapest that meets the error:\n");
-        tune_answer_setting(report, best, text);
+        tune_setting_write(report, best, text);
     }
     if (tune->within == TUNE_NONE) {
         text_append(text, tune_report_has_limit(report)
@@ -72,25 +71,25 @@ static void write_unmet(const TuneReport *report, Text *text)
     }
     text_append(text, "\n  The least error%s:\n",
                 tune_report_has_limit(report) ? " within the cost" : " of all that was tried");
-    tune_answer_setting(report, &tune->trials[tune->within], text);
+    tune_setting_write(report, &tune->trials[tune->within], text);
 }
 
 static void write_answer(const TuneReport *report, const Style *style, Text *text)
 {
     text_append(text, "\n%sCheapest setting%s\n\n", style->heading, style->end);
     if (tune_report_is_met(report)) {
-        tune_answer_setting(report, tune_best(report->tune, report->tune->winner), text);
+        tune_setting_write(report, tune_best(report->tune, report->tune->winner), text);
     } else {
         write_unmet(report, text);
     }
 }
 
-static const char *fate_words(const Tune *tune, const TuneScheme *scheme)
+static const char *outcome_words(const Tune *tune, const TuneScheme *scheme)
 {
-    switch (scheme->fate) {
+    switch (scheme->outcome) {
     case TUNE_MEETS:
         return "meets it, and so does the next finer one";
-    case TUNE_DEARER:
+    case TUNE_COSTLIER:
         if (tune->cost == TUNE_LENGTH) {
             return "shorter ones were not tried";
         }
@@ -131,13 +130,13 @@ static void scheme_row(const TuneReport *report, int number, Table *table)
         value_cell(table, scheme, shown->value);
         table_cell(table, "%.2e", shown->error);
         table_cell(table, "%zu", shown->run.steps);
-        table_cell(table, "%.4g", tune_answer_time(tune, shown) * UNITS_MS);
+        table_cell(table, "%.4g", tune_setting_time(tune, shown) * UNITS_MS);
     }
     table_cell(table, "%s%s",
                number != tune->winner ? ""
                : tune->held_s > 0.0   ? "longest step; "
                                       : "cheapest; ",
-               fate_words(tune, scheme));
+               outcome_words(tune, scheme));
 }
 
 static void write_schemes(const TuneReport *report, const Style *style, Text *text)
@@ -165,8 +164,8 @@ static const TuneTrial *next_trial(const Tune *tune, size_t scheme, const TuneTr
     const TuneTrial *next = NULL;
     for (size_t i = 0; i < tune->trial_count; i++) {
         const TuneTrial *trial = &tune->trials[i];
-        if (trial->scheme == scheme && (last == NULL || trial->notch > last->notch) &&
-            (next == NULL || trial->notch < next->notch)) {
+        if (trial->scheme == scheme && (last == NULL || trial->index > last->index) &&
+            (next == NULL || trial->index < next->index)) {
             next = trial;
         }
     }
@@ -269,7 +268,7 @@ void tune_text_write(const TuneReport *report, const Style *style, Text *text)
     if (is_searched) {
         write_schemes(report, style, text);
     }
-    tune_carriers_write(report, style, text);
+    tune_export_write(report, style, text);
     if (is_searched) {
         write_trials(report, style, text);
     }

@@ -1,12 +1,9 @@
 // What becomes of a setting outside this program?
-#include "commands/tune/tune_carriers.h"
+#include "commands/tune/tune_export.h"
 
 #include "commands/tune/tune_code.h"
-#include "commands/tune/tune_gazebo.h"
-#include "commands/tune/tune_held_text.h"
-#include "commands/tune/tune_mujoco.h"
+#include "commands/tune/tune_report.h"
 #include "commands/tune/tune_setting.h"
-#include "commands/tune/tune_snippet.h"
 #include "measure/chosen_run.h"
 #include "write/section.h"
 #include "write/units.h"
@@ -16,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const TuneTrial *tune_carriers_trial(const TuneReport *report)
+const TuneTrial *tune_export_trial(const TuneReport *report)
 {
     const Tune *tune = report->tune;
     if (tune->held_s > 0.0) {
@@ -44,9 +41,9 @@ static bool choose_step(Scenario *scenario, Err *err)
     return is_chosen;
 }
 
-bool tune_carriers_code(const TuneReport *report, Text *text, Err *err)
+bool tune_export_code(const TuneReport *report, Text *text, Err *err)
 {
-    const TuneTrial *trial = tune_carriers_trial(report);
+    const TuneTrial *trial = tune_export_trial(report);
     assert(trial != NULL);
     Scenario *scenario = malloc(sizeof *scenario);
     assert(scenario != NULL);
@@ -83,7 +80,7 @@ static void append_indented(const char *lines, Text *text)
 static void write_code(const TuneReport *report, const Style *style, Text *text)
 {
     text_append(text, "\n%sAs ODE C code%s\n\n", style->heading, style->end);
-    if (tune_carriers_trial(report) == NULL) {
+    if (tune_export_trial(report) == NULL) {
         text_append(text, "  There is no setting to write.\n");
         return;
     }
@@ -91,7 +88,7 @@ static void write_code(const TuneReport *report, const Style *style, Text *text)
                       "gives the same run, bit for bit: cc FILE.c -o run -lode -lm\n");
 }
 
-const TuneTrial *tune_carriers_plain(const Tune *tune)
+const TuneTrial *tune_export_plain(const Tune *tune)
 {
     if (tune->held_s > 0.0) {
         return tune->held_plain != TUNE_NONE ? &tune->trials[tune->held_plain] : NULL;
@@ -103,7 +100,7 @@ const TuneTrial *tune_carriers_plain(const Tune *tune)
 static void write_loop(const TuneReport *report, const Style *style, Text *text)
 {
     const Tune *tune = report->tune;
-    const TuneTrial *plain = tune_carriers_plain(tune);
+    const TuneTrial *plain = tune_export_plain(tune);
     const TuneTrial *winner = tune_best(tune, tune->winner);
     if (!scenario_has_clearance(report->scenario)) {
         return;
@@ -243,7 +240,7 @@ static void write_mujoco(const TuneReport *report, const Style *style, Text *tex
     text_finish(&lines);
 }
 
-void tune_carriers_write(const TuneReport *report, const Style *style, Text *text)
+void tune_export_write(const TuneReport *report, const Style *style, Text *text)
 {
     write_code(report, style, text);
     write_loop(report, style, text);

@@ -1,6 +1,5 @@
 // Do the constants for other programs come to the contact that they stand for?
-#include "commands/tune/tune_gazebo.h"
-#include "commands/tune/tune_mujoco.h"
+#include "commands/tune/tune_export.h"
 
 #include "commands/tune/tune_linear.h"
 #include "contact/law.h"
