@@ -16,11 +16,12 @@
 
 #include "base/shell.h"
 
-#include <stdint.h>
+#include <assert.h>
+#include <regex.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { NAME_SIZE = 128, FIELD_MAX = 3, DIGIT_MAX = 6 };
+enum { NAME_SIZE = 128 };
 
 // A name for what Slurm reads by rules of its own, where % and quotes mean something.
 static void find_name(const char *stem, char name[NAME_SIZE])
@@ -32,119 +33,76 @@ static void find_name(const char *stem, char name[NAME_SIZE])
     }
 }
 
-// Whether a word is of letters, digits and a few marks, the first a letter or digit.
-static bool is_plain(const char *word, const char *marks)
+// What both jobs ask of Slurm where it is given, by regular expressions of what Slurm takes.
+static const struct {
+    const char *option;
+    size_t offset; // in a SlurmJob
+    const char *pattern;
+    const char *allowed;
+} ASKED[] = {
+    {"time", offsetof(SlurmJob, time), "^([0-9]{1,6}-)?[0-9]{1,6}(:[0-9]{1,6}){0,2}$",
+     "what Slurm takes, MINUTES, MINUTES:SECONDS, HOURS:MINUTES:SECONDS, DAYS-HOURS, "
+     "DAYS-HOURS:MINUTES or DAYS-HOURS:MINUTES:SECONDS"},
+    {"mem", offsetof(SlurmJob, memory), "^0*[1-9][0-9]*[KMGTkmgt]?$",
+     "what Slurm takes, a whole number above 0 with K, M, G or T behind it, or nothing for "
+     "megabytes"},
+    {"partition", offsetof(SlurmJob, partition), "^[A-Za-z0-9][A-Za-z0-9._,-]*$",
+     "names of letters, digits and ._-, with commas between them"},
+    {"account", offsetof(SlurmJob, account), "^[A-Za-z0-9][A-Za-z0-9._-]*$",
+     "letters, digits and ._-"},
+};
+enum { ASKED_COUNT = sizeof ASKED / sizeof *ASKED };
+
+static const char *asked_value(const SlurmJob *job, size_t i)
 {
-    static const char PLAIN[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
-    size_t length = strspn(word, PLAIN);
-    if (length == 0) {
-        return false;
-    }
-    while (word[length] != '\0' &&
-           (strchr(PLAIN, word[length]) != NULL || strchr(marks, word[length]) != NULL)) {
-        length++;
-    }
-    return word[length] == '\0';
+    return *(const char *const *)(const void *)((const char *)job + ASKED[i].offset);
 }
 
-// Reads whole numbers between colons, at most so many; 0 where it is anything else.
-static size_t read_fields(const char *text, size_t most, uint64_t fields[FIELD_MAX])
+static bool is_match(const char *word, const char *pattern)
 {
-    for (size_t count = 0; count < most; count++) {
-        const size_t digits = strspn(text, "0123456789");
-        if (digits == 0 || digits > DIGIT_MAX) {
-            return 0;
-        }
-        fields[count] = 0;
-        for (size_t i = 0; i < digits; i++) {
-            fields[count] = 10 * fields[count] + (uint64_t)(text[i] - '0');
-        }
-        text += digits;
-        if (*text == '\0') {
-            return count + 1;
-        }
-        if (*text++ != ':') {
-            return 0;
-        }
-    }
-    return 0;
+    regex_t compiled;
+    const int status = regcomp(&compiled, pattern, REG_EXTENDED | REG_NOSUB);
+    assert(status == 0);
+    const bool is_found = regexec(&compiled, word, 0, NULL, 0) == 0;
+    regfree(&compiled);
+    return is_found;
 }
 
-// The time limit in seconds: M, M:S, H:M:S, D-H, D-H:M or D-H:M:S; 0 where it is none of these.
-static uint64_t read_time(const char *text)
+// Hours come first, but for M and M:S.
+static unsigned long seconds_of(const char *time)
 {
-    uint64_t days[FIELD_MAX] = {0};
-    uint64_t fields[FIELD_MAX] = {0};
-    char day[DIGIT_MAX + 1];
-    const size_t length = strcspn(text, "-");
-    const bool has_days = text[length] == '-';
-    text_copy(day, sizeof day, text);
-    if (has_days && length <= DIGIT_MAX) {
-        day[length] = '\0';
+    unsigned long days = 0, fields[3] = {0};
+    const bool has_days = strchr(time, '-') != NULL;
+    const int count = sscanf(has_days ? strchr(time, '-') + 1 : time, "%lu:%lu:%lu", &fields[0],
+                             &fields[1], &fields[2]);
+    if (has_days) {
+        sscanf(time, "%lu", &days);
     }
-    const size_t count = read_fields(has_days ? text + length + 1 : text, FIELD_MAX, fields);
-    if (count == 0 || (has_days && read_fields(day, 1, days) == 0)) {
-        return 0;
-    }
-    // hours come first, but for M and M:S
-    const bool has_hours = has_days || count == FIELD_MAX;
-    return has_hours ? 86400 * days[0] + 3600 * fields[0] + 60 * fields[1] + fields[2]
-                     : 60 * fields[0] + fields[1];
-}
-
-static bool memory_is_right(const char *text)
-{
-    const size_t digits = strspn(text, "0123456789");
-    const char *unit = text + digits;
-    return digits > 0 && strspn(text, "0") < digits &&
-           (*unit == '\0' || (strchr("KMGTkmgt", *unit) != NULL && unit[1] == '\0'));
+    return has_days || count == 3 ? 86400 * days + 3600 * fields[0] + 60 * fields[1] + fields[2]
+                                  : 60 * fields[0] + fields[1];
 }
 
 bool slurm_check(const SlurmJob *job, Err *err)
 {
-    if (job->time != NULL && read_time(job->time) == 0) {
-        return err_set(err, ERR_USAGE,
-                       "--time is %s; allowed: what Slurm takes, MINUTES, MINUTES:SECONDS, "
-                       "HOURS:MINUTES:SECONDS, DAYS-HOURS, DAYS-HOURS:MINUTES or "
-                       "DAYS-HOURS:MINUTES:SECONDS",
-                       job->time);
+    for (size_t i = 0; i < ASKED_COUNT; i++) {
+        const char *value = asked_value(job, i);
+        if (value != NULL && !is_match(value, ASKED[i].pattern)) {
+            return err_set(err, ERR_USAGE, "--%s is %s; allowed: %s", ASKED[i].option, value,
+                           ASKED[i].allowed);
+        }
     }
-    if (job->time != NULL && read_time(job->time) < 60 * SLURM_TIME_LEAST_MINUTES) {
-        return err_set(err, ERR_USAGE,
-                       "--time is %s; allowed: %d minutes and more, for a job is told to end a "
-                       "minute or two before",
-                       job->time, SLURM_TIME_LEAST_MINUTES);
-    }
-    if (job->memory != NULL && !memory_is_right(job->memory)) {
-        return err_set(err, ERR_USAGE,
-                       "--mem is %s; allowed: what Slurm takes, a whole number above 0 with K, M, "
-                       "G or T behind it, or nothing for megabytes",
-                       job->memory);
-    }
-    if (job->partition != NULL && !is_plain(job->partition, "._-,")) {
-        return err_set(err, ERR_USAGE,
-                       "--partition is %s; allowed: names of letters, digits and ._-, with commas "
-                       "between them",
-                       job->partition);
-    }
-    return job->account == NULL || is_plain(job->account, "._-") ||
-           err_set(err, ERR_USAGE, "--account is %s; allowed: letters, digits and ._-",
-                   job->account);
+    return job->time == NULL || seconds_of(job->time) >= 60 * SLURM_TIME_LEAST_MINUTES ||
+           err_set(err, ERR_USAGE,
+                   "--time is %s; allowed: %d minutes and more, for a job is told to end a "
+                   "minute or two before",
+                   job->time, SLURM_TIME_LEAST_MINUTES);
 }
 
-// What both jobs ask of Slurm beyond their names and processors.
 static void append_asked(const SlurmJob *job, Text *text)
 {
-    const struct {
-        const char *option;
-        const char *value;
-    } asked[] = {{"time", job->time},
-                 {"mem", job->memory},
-                 {"partition", job->partition},
-                 {"account", job->account}};
-    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
-        if (asked[i].value != NULL) {
-            text_append(text, "#SBATCH --%s=%s\n", asked[i].option, asked[i].value);
+    for (size_t i = 0; i < ASKED_COUNT; i++) {
+        if (asked_value(job, i) != NULL) {
+            text_append(text, "#SBATCH --%s=%s\n", ASKED[i].option, asked_value(job, i));
         }
     }
 }

@@ -42,22 +42,14 @@ static void make_checksum(const StoreHead *head, char words[STORE_WORDS_SIZE])
     snprintf(words, STORE_WORDS_SIZE, "%016" PRIx64, hash);
 }
 
-// The name of the column of that number, those that every store has behind the layout's.
-static const char *column_name(const Layout *layout, size_t i)
+// The names of columns in SQL: those of the rows, and the checksum. NULL behind the last.
+static const char *column_name(const Layout *layout, size_t number)
 {
-    static const char *const OWN[] = {"run", "fate", "reason", "hash", "checksum", "wall_s"};
-    if (i < layout->setting_count) {
-        return layout->settings[i].name;
-    }
-    i -= layout->setting_count;
-    if (i < layout->result_count) {
-        return layout->results[i].name;
-    }
-    i -= layout->result_count;
-    return i < sizeof OWN / sizeof *OWN ? OWN[i] : NULL;
+    RecordField field = {.name = NULL};
+    return number == 0 ? CHECKSUM : record_field(layout, number - 1, &field) ? field.name : NULL;
 }
 
-// SQL does not tell capitals from small letters in the names of columns.
+// SQL does not tell capitals from small letters in them.
 static bool check_names(const Layout *layout, Err *err)
 {
     const char *name;

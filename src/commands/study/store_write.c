@@ -129,8 +129,7 @@ static bool forget_damaged(Store *store, uint64_t *forgotten, Err *err)
         }
     }
     free(record);
-    return is_done &&
-           store_run_sql(store, "DELETE FROM effort WHERE run NOT IN (SELECT run FROM run)", err);
+    return is_done;
 }
 
 bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err)
@@ -142,18 +141,16 @@ bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err)
     const size_t columns = store->layout->setting_count + store->layout->result_count;
     const bool has_errors = store_column(store->layout, STORE_ERROR_COLUMN) < columns;
     *forgotten = 0;
-    const bool is_done =
-        forget_damaged(store, forgotten, err) &&
-        store_run_sql(store,
-                      has_errors ? "DELETE FROM effort WHERE run IN "
-                                   "(SELECT run FROM run WHERE fate <> 0 OR "
-                                   "error_omega_max IS NULL); "
-                                   "DELETE FROM run WHERE fate <> 0 OR error_omega_max IS NULL"
-                                 : "DELETE FROM effort WHERE run IN "
-                                   "(SELECT run FROM run WHERE fate <> 0); "
-                                   "DELETE FROM run WHERE fate <> 0",
-                      err);
+    bool is_done = forget_damaged(store, forgotten, err) &&
+                   store_run_sql(store,
+                                 has_errors ? "DELETE FROM run WHERE fate <> 0 OR "
+                                              "error_omega_max IS NULL"
+                                            : "DELETE FROM run WHERE fate <> 0",
+                                 err);
     *forgotten += is_done ? (uint64_t)sqlite3_changes64(store->base) : 0;
+    is_done =
+        is_done &&
+        store_run_sql(store, "DELETE FROM effort WHERE run NOT IN (SELECT run FROM run)", err);
     return is_done ? store_commit(store, err) : take_back(store);
 }
 

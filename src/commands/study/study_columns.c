@@ -26,6 +26,20 @@ bool study_columns_find(const Layout *layout, const char *name, StudyColumns wan
            err_set(err, ERR_USAGE, "the column %s holds words, and numbers are wanted", name);
 }
 
+bool study_columns_groups(Store *store, const char *by, size_t most, size_t *column, Cell *values,
+                          size_t *count, Err *err)
+{
+    *count = 1;
+    if (by == NULL) {
+        return true;
+    }
+    return study_columns_find(store_layout(store), by, STUDY_SETTING, column, err) &&
+           store_values(store, *column, most, values, count, err) &&
+           (*count <= most ||
+            err_set(err, ERR_USAGE, "%s has more than %zu values, too many to tell apart", by,
+                    most));
+}
+
 void study_columns_word(const Layout *layout, size_t column, const Cell *value,
                         char words[RECORD_WORD_SIZE])
 {

@@ -114,22 +114,6 @@ static void put_in_order(StudyPoints *points)
     points->x_count = count_x(points);
 }
 
-static bool find_groups(Store *store, const char *by, StudyPoints *points, Err *err)
-{
-    points->group_count = 1;
-    if (by == NULL) {
-        return true;
-    }
-    if (!study_columns_find(store_layout(store), by, STUDY_SETTING, &points->by, err) ||
-        !store_values(store, points->by, STUDY_GROUP_MAX, points->groups, &points->group_count,
-                      err)) {
-        return false;
-    }
-    return points->group_count <= STUDY_GROUP_MAX ||
-           err_set(err, ERR_USAGE, "%s has more than %d values, too many to tell apart", by,
-                   STUDY_GROUP_MAX);
-}
-
 bool study_points_read(Store *store, const char *x, const char *y, const char *by,
                        StudyPoints *points, Err *err)
 {
@@ -138,7 +122,8 @@ bool study_points_read(Store *store, const char *x, const char *y, const char *b
     Gathering gathering = {.points = points, .has_y = y != NULL, .has_by = by != NULL};
     bool is_read = study_columns_find(layout, x, STUDY_NUMBER, &gathering.x, err) &&
                    (y == NULL || study_columns_find(layout, y, STUDY_NUMBER, &gathering.y, err)) &&
-                   find_groups(store, by, points, err) &&
+                   study_columns_groups(store, by, STUDY_GROUP_MAX, &points->by, points->groups,
+                                        &points->group_count, err) &&
                    store_each(store, take_row, &gathering, err);
     if (is_read && points->count == 0) {
         is_read = err_set(err, ERR_USAGE, "no run of the study has a number in %s%s%s", x,

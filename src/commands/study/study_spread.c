@@ -16,22 +16,6 @@ typedef struct Groups {
     Cell values[GROUP_MAX];
 } Groups;
 
-static bool find_groups(Store *store, const char *by, Groups *groups, Err *err)
-{
-    const Layout *layout = store_layout(store);
-    *groups = (Groups){.count = 1, .is_by = by != NULL};
-    if (by == NULL) {
-        return true;
-    }
-    if (!study_columns_find(layout, by, STUDY_SETTING, &groups->by, err) ||
-        !store_values(store, groups->by, GROUP_MAX, groups->values, &groups->count, err)) {
-        return false;
-    }
-    return groups->count <= GROUP_MAX ||
-           err_set(err, ERR_USAGE, "%s has more than %d values, too many to tell apart", by,
-                   GROUP_MAX);
-}
-
 static bool spread_row(Store *store, Table *table, const Groups *groups, size_t result,
                        size_t group, Err *err)
 {
@@ -62,8 +46,9 @@ bool study_text_summary(Store *store, const char *by, const Style *style, Text *
                                        {"95 %", "", TABLE_RIGHT}, {"most", "", TABLE_RIGHT}};
     enum { TAIL_COUNT = sizeof TAIL / sizeof *TAIL };
     const Layout *layout = store_layout(store);
-    Groups groups;
-    if (!find_groups(store, by, &groups, err)) {
+    Groups groups = {.is_by = by != NULL};
+    if (!study_columns_groups(store, by, GROUP_MAX, &groups.by, groups.values, &groups.count,
+                              err)) {
         return false;
     }
     SectionHead heads[HEAD_MAX] = {{"result", "", TABLE_LEFT}};
