@@ -79,7 +79,7 @@ static void read_all(const char *path)
     printf(", read at %.0f rows/s", (double)count / (clock_now_s() - start));
     StoreSpread spread;
     start = clock_now_s();
-    must(store_spread(store, 4, 0, NULL, &spread, &err), &err);
+    must(store_spread(store, 4, &spread, &err), &err);
     printf(", one column's quantiles in %.3f s, peak %.1f MB\n", clock_now_s() - start, peak_mb());
     must(store_close(store, &err), &err);
 }

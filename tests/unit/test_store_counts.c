@@ -45,7 +45,7 @@ static void an_empty_store_counts_nothing(void **state)
     assert_near(count.wall_s, 0.0, 0.0);
     assert_true(store_reasons(store, 2, reasons, &reason_count, &err));
     assert_int_equal(reason_count, 0);
-    assert_true(store_spread(store, 4, 0, NULL, &spread, &err));
+    assert_true(store_spread(store, 4, &spread, &err));
     assert_int_equal(spread.count, 0);
     assert_true(isnan(spread.least) && isnan(spread.median) && isnan(spread.most));
     store_close(store, &err);
@@ -137,17 +137,9 @@ static void quantiles_are_values_of_their_rank(void **state)
     Store *store = store_view(path, &err);
     // a real result, then a whole one
     for (size_t result = 3; result < 25; result += 20) {
-        assert_true(store_spread(store, 4 + result, 0, NULL, &spread, &err));
+        assert_true(store_spread(store, 4 + result, &spread, &err));
         expect_spread(&spread, values, list_values(result, false, 0.0, values));
     }
-    const Cell speed = {.number = 10.471975511965978 * 2.0};
-    assert_true(store_spread(store, 9, 0, &speed, &spread, &err));
-    expect_spread(&spread, values, list_values(5, true, speed.number, values));
-    assert_true(spread.count < RUNS / 5);
-    Cell scheme;
-    strcpy(scheme.word, "no such scheme");
-    assert_true(store_spread(store, 9, 2, &scheme, &spread, &err));
-    assert_int_equal(spread.count, 0);
     store_close(store, &err);
 }
 

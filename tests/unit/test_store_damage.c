@@ -116,7 +116,7 @@ static bool read_by(int reader, Store *store, Err *err)
     case 2:
         return store_values(store, 0, 8, values, &reason_count, err);
     case 3:
-        return store_spread(store, 4, 0, NULL, &spread, err);
+        return store_spread(store, 4, &spread, err);
     default:
         return store_each(store, hold_row, &rows, err);
     }

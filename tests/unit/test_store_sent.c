@@ -278,7 +278,7 @@ static void looking_at_a_store_changes_no_file(void **state)
     make_store(FEW);
     const uint64_t before = hash_folder();
     Store *store = store_view(path, &err);
-    assert_true(store_count(store, &count, &err) && store_spread(store, 4, 0, NULL, &spread, &err));
+    assert_true(store_count(store, &count, &err) && store_spread(store, 4, &spread, &err));
     assert_int_equal(count.rows, FEW);
     assert_true(hash_folder() == before);
     assert_true(store_close(store, &err));

@@ -68,9 +68,6 @@ bool store_count(Store *store, StoreCount *count, Err *err);
 const Layout *store_layout(const Store *store);
 const char *store_key(const Store *store, const char *name);
 
-// The path that it was opened by.
-const char *store_path(const Store *store);
-
 // The number of a column by name, settings first; the number of all columns where there is none.
 size_t store_column(const Layout *layout, const char *name);
 const Column *store_column_at(const Layout *layout, size_t column);
@@ -100,9 +97,7 @@ typedef struct StoreSpread {
     double most;
 } StoreSpread;
 
-// Only over the runs whose value in the column `by` is that one; NULL: all.
-bool store_spread(Store *store, size_t column, size_t by, const Cell *value, StoreSpread *spread,
-                  Err *err);
+bool store_spread(Store *store, size_t column, StoreSpread *spread, Err *err);
 
 // Forgets the rows of failed runs and those that are damaged, so that they are made again, and in a
 // study with a truth those of runs that have missed theirs. `forgotten` is their number.

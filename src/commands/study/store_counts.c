@@ -97,32 +97,19 @@ bool store_values(Store *store, size_t column, size_t most, Cell *values, size_t
 }
 
 // The statement that counts the values, or that brings them in ascending order.
-static bool prepare_values(Store *store, const Column *column, const Column *by, const Cell *value,
-                           bool is_count, sqlite3_stmt **statement, Err *err)
+static bool prepare_values(Store *store, const Column *column, bool is_count,
+                           sqlite3_stmt **statement, Err *err)
 {
     Text sql;
     text_init(&sql);
-    text_append(&sql, "SELECT ");
-    text_append(&sql, is_count ? "count(" : "");
+    text_append(&sql, is_count ? "SELECT count(*) FROM run WHERE fate = 0 AND "
+                               : "SELECT * FROM (SELECT ");
     store_shape_quote(&sql, column->name);
-    text_append(&sql, is_count ? ") FROM run WHERE fate = 0" : " FROM run WHERE fate = 0 AND ");
-    if (!is_count) {
-        store_shape_quote(&sql, column->name);
-        text_append(&sql, " IS NOT NULL");
-    }
-    if (value != NULL) {
-        text_append(&sql, " AND ");
-        store_shape_quote(&sql, by->name);
-        text_append(&sql, " = ?");
-    }
-    text_append(&sql, is_count ? "" : " ORDER BY 1");
+    text_append(&sql, is_count ? " IS NOT NULL"
+                               : " AS value FROM run WHERE fate = 0) WHERE value IS NOT NULL "
+                                 "ORDER BY value");
     const bool is_ready = store_prepare(store, sql.data, statement, err);
     text_finish(&sql);
-    if (is_ready && value != NULL && by->kind == COLUMN_WORD) {
-        sqlite3_bind_text(*statement, 1, value->word, -1, SQLITE_STATIC);
-    } else if (is_ready && value != NULL) {
-        sqlite3_bind_double(*statement, 1, value->number);
-    }
     return is_ready;
 }
 
@@ -133,40 +120,25 @@ static uint64_t rank_of(double share, uint64_t count)
     return rank < 1.0 ? 1 : (uint64_t)rank;
 }
 
-static bool read_ranks(Store *store, sqlite3_stmt *statement, StoreSpread *spread, Err *err)
+bool store_spread(Store *store, size_t column, StoreSpread *spread, Err *err)
 {
     static const double SHARES[] = {0.0, 0.05, 0.5, 0.95, 1.0};
     double *const targets[] = {&spread->least, &spread->low, &spread->median, &spread->high,
                                &spread->most};
-    size_t next = 0;
-    for (uint64_t rank = 1; rank <= spread->count; rank++) {
-        if (sqlite3_step(statement) != SQLITE_ROW) {
-            return store_fail(store, "read", err);
-        }
-        for (; next < 5 && rank_of(SHARES[next], spread->count) == rank; next++) {
-            *targets[next] = sqlite3_column_double(statement, 0);
-        }
-    }
-    return true;
-}
-
-bool store_spread(Store *store, size_t column, size_t by, const Cell *value, StoreSpread *spread,
-                  Err *err)
-{
+    enum { SHARE_COUNT = sizeof SHARES / sizeof *SHARES };
     *spread = (StoreSpread){0, NAN, NAN, NAN, NAN, NAN};
     const Column *wanted = store_column_at(store->layout, column);
-    const Column *condition = value == NULL ? NULL : store_column_at(store->layout, by);
-    sqlite3_stmt *counting = NULL;
-    sqlite3_stmt *sorting = NULL;
-    bool is_read = verify(store, err) &&
-                   prepare_values(store, wanted, condition, value, true, &counting, err) &&
-                   (sqlite3_step(counting) == SQLITE_ROW || store_fail(store, "read", err));
-    if (is_read) {
-        spread->count = (uint64_t)sqlite3_column_int64(counting, 0);
-        is_read = prepare_values(store, wanted, condition, value, false, &sorting, err) &&
-                  read_ranks(store, sorting, spread, err);
+    sqlite3_stmt *row = NULL;
+    bool is_read = verify(store, err) && prepare_values(store, wanted, true, &row, err);
+    while (store_step(store, &row, &is_read, err)) {
+        spread->count = (uint64_t)sqlite3_column_int64(row, 0);
     }
-    sqlite3_finalize(counting);
-    sqlite3_finalize(sorting);
+    is_read = is_read && prepare_values(store, wanted, false, &row, err);
+    size_t next = 0;
+    for (uint64_t rank = 1; store_step(store, &row, &is_read, err); rank++) {
+        for (; next < SHARE_COUNT && rank_of(SHARES[next], spread->count) == rank; next++) {
+            *targets[next] = sqlite3_column_double(row, 0);
+        }
+    }
     return is_read;
 }

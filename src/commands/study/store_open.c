@@ -92,11 +92,6 @@ const Layout *store_layout(const Store *store)
     return store->layout;
 }
 
-const char *store_path(const Store *store)
-{
-    return store->path;
-}
-
 const char *store_key(const Store *store, const char *name)
 {
     for (size_t i = 0; i < store->key_count; i++) {

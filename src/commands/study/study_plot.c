@@ -4,7 +4,6 @@
 // line, and the band about it holds nine runs of ten. Else each run is a dot.
 #include "commands/study/study_plot.h"
 
-#include "commands/study/study_columns.h"
 #include "commands/study/study_histogram.h"
 #include "commands/study/study_points.h"
 #include "write/plot.h"
@@ -159,7 +158,7 @@ static void draw_legend(const PlotPanel *panel, const StudyPoints *points, const
     for (size_t group = 0; group < points->group_count; group++) {
         char words[RECORD_WORD_SIZE];
         y += group == 0 ? 26.0 : LEGEND_ROW;
-        study_columns_word(layout, points->by, &points->groups[group], words);
+        study_points_group_name(points, layout, group, words);
         plot_sample(panel->svg, LEGEND_LEFT, y - 4.0, style_of(group));
         draw_dot(panel, LEGEND_LEFT + 15.0, y - 4.0, 3.4, 1.0, style_of(group).colour);
         plot_text(panel->svg, LEGEND_LEFT + 38.0, y, "start", "", words);

@@ -1,10 +1,11 @@
 // Which points does a picture of a study have?
 #include "commands/study/study_points.h"
 
-#include "commands/study/study_columns.h"
+#include "base/text.h"
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -114,16 +115,56 @@ static void put_in_order(StudyPoints *points)
     points->x_count = count_x(points);
 }
 
+typedef enum Wanted {
+    NUMBER,  // a column of settings or results, not of words
+    SETTING, // a column of settings alone
+} Wanted;
+
+// Finds a column by name. Fails with ERR_USAGE, naming the one that may have been meant.
+static bool find_column(const Layout *layout, const char *name, Wanted wanted, size_t *column,
+                        Err *err)
+{
+    const char *names[RECORD_SETTING_MAX + RECORD_RESULT_MAX];
+    const size_t all = layout->setting_count + layout->result_count;
+    const size_t count = wanted == SETTING ? layout->setting_count : all;
+    for (size_t i = 0; i < count; i++) {
+        names[i] = store_column_at(layout, i)->name;
+    }
+    *column = store_column(layout, name);
+    if (*column >= count) {
+        const char *nearest = text_nearest(name, names, count);
+        return err_set(err, ERR_USAGE, "the study has no %s '%s'%s%s%s",
+                       wanted == SETTING ? "setting" : "column", name,
+                       nearest == NULL ? "" : "; did you mean '", nearest == NULL ? "" : nearest,
+                       nearest == NULL ? "" : "'?");
+    }
+    return wanted == SETTING || store_column_at(layout, *column)->kind != COLUMN_WORD ||
+           err_set(err, ERR_USAGE, "the column %s holds words, and numbers are wanted", name);
+}
+
+static bool find_groups(Store *store, const char *by, StudyPoints *points, Err *err)
+{
+    points->group_count = 1;
+    if (by == NULL) {
+        return true;
+    }
+    return find_column(store_layout(store), by, SETTING, &points->by, err) &&
+           store_values(store, points->by, STUDY_GROUP_MAX, points->groups, &points->group_count,
+                        err) &&
+           (points->group_count <= STUDY_GROUP_MAX ||
+            err_set(err, ERR_USAGE, "%s has more than %d values, too many to tell apart", by,
+                    STUDY_GROUP_MAX));
+}
+
 bool study_points_read(Store *store, const char *x, const char *y, const char *by,
                        StudyPoints *points, Err *err)
 {
     const Layout *layout = store_layout(store);
     *points = (StudyPoints){0};
     Gathering gathering = {.points = points, .has_y = y != NULL, .has_by = by != NULL};
-    bool is_read = study_columns_find(layout, x, STUDY_NUMBER, &gathering.x, err) &&
-                   (y == NULL || study_columns_find(layout, y, STUDY_NUMBER, &gathering.y, err)) &&
-                   study_columns_groups(store, by, STUDY_GROUP_MAX, &points->by, points->groups,
-                                        &points->group_count, err) &&
+    bool is_read = find_column(layout, x, NUMBER, &gathering.x, err) &&
+                   (y == NULL || find_column(layout, y, NUMBER, &gathering.y, err)) &&
+                   find_groups(store, by, points, err) &&
                    store_each(store, take_row, &gathering, err);
     if (is_read && points->count == 0) {
         is_read = err_set(err, ERR_USAGE, "no run of the study has a number in %s%s%s", x,
@@ -152,4 +193,14 @@ size_t study_points_pile(const StudyPoints *points, size_t first)
         end++;
     }
     return end;
+}
+
+void study_points_group_name(const StudyPoints *points, const Layout *layout, size_t group,
+                             char words[RECORD_WORD_SIZE])
+{
+    if (layout->settings[points->by].kind == COLUMN_WORD) {
+        text_copy(words, RECORD_WORD_SIZE, points->groups[group].word);
+    } else {
+        snprintf(words, RECORD_WORD_SIZE, "%.4g", points->groups[group].number);
+    }
 }

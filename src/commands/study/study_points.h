@@ -35,3 +35,7 @@ void study_points_finish(StudyPoints *points);
 // The points from a number on that share its x and its group: the number of the first that does
 // not.
 size_t study_points_pile(const StudyPoints *points, size_t first);
+
+// The value that a group has in its column, in words.
+void study_points_group_name(const StudyPoints *points, const Layout *layout, size_t group,
+                             char words[RECORD_WORD_SIZE]);

@@ -101,7 +101,7 @@ static bool print_text(const StudyReport *report, Store *store, bool is_wide, Er
     bool is_written = study_text_status(&part, 1, &style, &text, err);
     if (is_written) {
         append_effort(report, &text);
-        is_written = study_text_summary(store, NULL, &style, &text, err);
+        is_written = study_text_summary(store, &style, &text, err);
     }
     if (is_written) {
         output_text(&text, &style);

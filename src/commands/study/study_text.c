@@ -1,4 +1,4 @@
-// How far has a study come, and what went wrong?
+// How far has a study come, what went wrong, and how are the results distributed?
 #include "commands/study/study_text.h"
 
 #include "write/section.h"
@@ -205,5 +205,41 @@ bool study_text_status(const StudyPart *parts, size_t part_count, const Style *s
         write_times(&progress, text);
     }
     text_finish(&stores);
+    return is_read;
+}
+
+static bool spread_row(Store *store, Table *table, size_t result, Err *err)
+{
+    const Layout *layout = store_layout(store);
+    StoreSpread spread;
+    if (!store_spread(store, layout->setting_count + result, &spread, err)) {
+        return false;
+    }
+    table_cell(table, "%s", layout->results[result].name);
+    table_cell(table, "%" PRIu64, spread.count);
+    const double values[] = {spread.least, spread.low, spread.median, spread.high, spread.most};
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+        section_number_or_dash(table, spread.count > 0, values[i]);
+    }
+    return true;
+}
+
+bool study_text_summary(Store *store, const Style *style, Text *text, Err *err)
+{
+    static const SectionHead HEADS[] = {{"result", "", TABLE_LEFT},  {"runs", "", TABLE_RIGHT},
+                                        {"least", "", TABLE_RIGHT},  {"5 %", "", TABLE_RIGHT},
+                                        {"median", "", TABLE_RIGHT}, {"95 %", "", TABLE_RIGHT},
+                                        {"most", "", TABLE_RIGHT}};
+    Text section;
+    text_init(&section);
+    Table *table = section_begin("Results of the runs that went well", sizeof HEADS / sizeof *HEADS,
+                                 HEADS, style, &section);
+    bool is_read = true;
+    for (size_t i = 0; i < store_layout(store)->result_count && is_read; i++) {
+        is_read = spread_row(store, table, i, err);
+    }
+    section_end(table, &section);
+    text_append(text, "%s", is_read ? section.data : "");
+    text_finish(&section);
     return is_read;
 }

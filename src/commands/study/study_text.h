@@ -18,7 +18,6 @@ typedef struct StudyPart {
 bool study_text_status(const StudyPart *parts, size_t part_count, const Style *style, Text *text,
                        Err *err);
 
-// The distribution of each result over the runs that went well: least, 5 %, median, 95 %, most. By
-// a column of the settings (NULL: none), a row for each of its values. Fails with ERR_FILE, or with
-// ERR_USAGE where there is no such column or it has too many values to be told apart.
-bool study_text_summary(Store *store, const char *by, const Style *style, Text *text, Err *err);
+// The distribution of each result over the runs that went well: least, 5 %, median, 95 %, most.
+// Fails with ERR_FILE.
+bool study_text_summary(Store *store, const Style *style, Text *text, Err *err);
