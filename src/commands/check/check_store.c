@@ -22,12 +22,12 @@ typedef struct PlanLine {
 
 // clang-format off
 static const Field PLAN_FIELDS[] = {
-    {"has_truth",   .type = FIELD_FLAG,   PLAN(plan.has_truth),   FIELD_STORE},
-    {"uncertainty", .type = FIELD_NUMBER, PLAN(plan.uncertainty), FIELD_STORE},
-    {"is_limited",  .type = FIELD_FLAG,   PLAN(plan.is_limited),  FIELD_STORE},
-    {"horizon_s",   .type = FIELD_NUMBER, PLAN(plan.horizon_s),   FIELD_STORE},
-    {"is_full",     .type = FIELD_FLAG,   PLAN(plan.is_full),     FIELD_STORE},
-    {"no_truth",    .type = FIELD_TEXT,   PLAN(no_truth),         FIELD_STORE, .size = CHECK_NOTE_SIZE},
+    {"has_truth",   .type = FIELD_FLAG,   PLAN(plan.has_truth),   .where = FIELD_STORE},
+    {"uncertainty", .type = FIELD_NUMBER, PLAN(plan.uncertainty), .where = FIELD_STORE},
+    {"is_limited",  .type = FIELD_FLAG,   PLAN(plan.is_limited),  .where = FIELD_STORE},
+    {"horizon_s",   .type = FIELD_NUMBER, PLAN(plan.horizon_s),   .where = FIELD_STORE},
+    {"is_full",     .type = FIELD_FLAG,   PLAN(plan.is_full),     .where = FIELD_STORE},
+    {"no_truth",    .type = FIELD_TEXT,   PLAN(no_truth),         .where = FIELD_STORE, .size = CHECK_NOTE_SIZE},
     {0},
 };
 // clang-format on
