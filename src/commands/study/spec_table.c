@@ -23,20 +23,20 @@ static const char *const FLAGS[] = {"false", "true", NULL};
 #define IN(member) .offset = offsetof(Variable, member)
 
 const SpecKey SPEC_KEYS[] = {
-    {SPEC_TOP, "title", SPEC_KEY_LINE, AT(title), .doc = "What the study asks, for people"},
+    {SPEC_TOP, "title", SPEC_KEY_LINE, AT(title), .doc = "The question of the study, for people"},
     {SPEC_TOP, "case", SPEC_KEY_PART, true, .read = spec_read_case,
      .value = "the path of a case file, relative to the study file",
-     .doc = "The case, which must be one by itself with what is set"},
+     .doc = "The case; with the values of set it must be valid by itself"},
     {SPEC_TOP, "set", SPEC_KEY_PART, .read = spec_read_set, .value = "KEY: value, ...",
      .doc = "Values of keys of the case for every run, as --set gives them"},
     {SPEC_TOP, "vary", SPEC_KEY_PART, .read = spec_read_vary,
      .value = "KEY: value, KEY: [value, value], KEY: {from: value, to: value, count: 8}, ...",
      .doc = "A grid: every combination of all values is run. KEY is a key of the case, or scheme: "
             "the way to run it by the names of 'jointplay compare'"},
-    {SPEC_TOP, "draw", SPEC_KEY_MAP, .of = SPEC_DRAW, .doc = "Values at random"},
-    {SPEC_TOP, "limits", SPEC_KEY_MAP, .of = SPEC_LIMITS, .doc = "What one run may use"},
+    {SPEC_TOP, "draw", SPEC_KEY_MAP, .of = SPEC_DRAW, .doc = "Random values"},
+    {SPEC_TOP, "limits", SPEC_KEY_MAP, .of = SPEC_LIMITS, .doc = "Limits of one run"},
     {SPEC_TOP, "truth", SPEC_KEY_FLAG, AT(has_truth), .words = FLAGS, .what = "truth",
-     .doc = "Whether each run is compared with the certified reference of its own values"},
+     .doc = "Whether each run is compared with the certified reference for its values"},
 
     // a run of four months is a slip of the pen, and a process takes 1 ms to start
     {SPEC_LIMITS, "time", SPEC_KEY_LIMIT, AT(limits.time_s), .low = 1e-3, .high = 1e7,
@@ -64,19 +64,19 @@ const SpecKey SPEC_KEYS[] = {
 
     {SPEC_DISTRIBUTION, "uniform", SPEC_KEY_PART, .read = spec_read_uniform,
      .value = "[low, high], or tolerance",
-     .doc = "Evenly between the limits, or those of the tolerance that the case gives"},
+     .doc = "Uniform between the limits, or between those of the tolerance that the case gives"},
     {SPEC_DISTRIBUTION, "log-uniform", SPEC_KEY_PART, .read = spec_read_log_uniform,
      .value = "[low, high]", .doc = "The same in the logarithm"},
     {SPEC_DISTRIBUTION, "normal", SPEC_KEY_PART, .read = spec_read_normal,
      .value = "{mean, deviation, low, high}, or tolerance",
-     .doc = "Normal, cut off at the limits; the limits of a tolerance are 3 deviations from the "
-            "mean in their middle"},
+     .doc = "Normal, truncated at the limits; of a tolerance, the mean is in the middle and the "
+            "limits are 3 deviations away"},
     {SPEC_DISTRIBUTION, "triangular", SPEC_KEY_PART, .read = spec_read_triangular,
      .value = "{low, mode, high}", .doc = "Triangular, most often at the mode"},
 
-    {SPEC_NORMAL, "mean", SPEC_KEY_VALUE, true, IN(centre), .doc = "Before it is cut off"},
+    {SPEC_NORMAL, "mean", SPEC_KEY_VALUE, true, IN(centre), .doc = "Mean before the truncation"},
     {SPEC_NORMAL, "deviation", SPEC_KEY_DIFFERENCE, true, IN(deviation),
-     .doc = "Before it is cut off"},
+     .doc = "Standard deviation before the truncation"},
     {SPEC_NORMAL, "low", SPEC_KEY_VALUE, IN(low), .doc = "Lower limit"},
     {SPEC_NORMAL, "high", SPEC_KEY_VALUE, IN(high), .doc = "Upper limit"},
 
@@ -133,7 +133,7 @@ void spec_key_allowed(const SpecKey *key, Text *text)
         text_append(text, "a value of KEY");
         break;
     case SPEC_KEY_MAP:
-        text_append(text, "keys of its own, below");
+        text_append(text, "a mapping of the keys below");
         break;
     case SPEC_KEY_PART:
         text_append(text, "%s", key->value);
@@ -155,9 +155,10 @@ static const char EXAMPLE[] = "title: Which map and step for which speed?\n"
                               "limits: {time: 60 s, memory: 2 GB}\n";
 
 static const char RULES[] =
-    "A study file has the rules of a case file: quantities carry their unit, unknown and doubled "
-    "keys are errors. It has vary, draw, or both; a key of the case stands under one of set, vary "
-    "and draw, by its whole path, such as joints.crank-coupler.hole.";
+    "A study file has the rules of a case file: quantities have their unit, unknown and doubled "
+    "keys "
+    "are errors. It has vary, draw, or both; a key of the case may appear in only one of set, vary "
+    "and draw, with its whole path, such as joints.crank-coupler.hole.";
 
 static void describe_default(const SpecKey *key, Text *text)
 {
@@ -222,9 +223,9 @@ void spec_describe(bool is_markdown, Text *text)
 {
     text_append(text,
                 is_markdown ? "# The study file\n\nThis page is generated from the "
-                              "program's own table of keys; a test holds it against the "
-                              "program. What studies are for, and how they are run: "
-                              "[studies](studies.md).\n\n%s\n\n```yaml\n%s```\n\n"
+                              "program's own table of keys; a test compares it with the "
+                              "program. [Studies](studies.md) explains what they are for and "
+                              "how to run them.\n\n%s\n\n```yaml\n%s```\n\n"
                               "| key | value | default | meaning |\n|---|---|---|---|\n"
                             : "A study file\n\n%s\n\n%s\n",
                 RULES, EXAMPLE);
