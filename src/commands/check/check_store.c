@@ -18,19 +18,17 @@ typedef struct PlanLine {
     char no_truth[CHECK_NOTE_SIZE];
 } PlanLine;
 
-#define PLAN(member) offsetof(PlanLine, member)
+#define PLAN(member) .offset = offsetof(PlanLine, member)
 
-// clang-format off
 static const Field PLAN_FIELDS[] = {
-    {"has_truth",   .type = FIELD_FLAG,   PLAN(plan.has_truth),   .where = FIELD_STORE},
-    {"uncertainty", .type = FIELD_NUMBER, PLAN(plan.uncertainty), .where = FIELD_STORE},
-    {"is_limited",  .type = FIELD_FLAG,   PLAN(plan.is_limited),  .where = FIELD_STORE},
-    {"horizon_s",   .type = FIELD_NUMBER, PLAN(plan.horizon_s),   .where = FIELD_STORE},
-    {"is_full",     .type = FIELD_FLAG,   PLAN(plan.is_full),     .where = FIELD_STORE},
-    {"no_truth",    .type = FIELD_TEXT,   PLAN(no_truth),         .where = FIELD_STORE, .size = CHECK_NOTE_SIZE},
+    {"has_truth", FIELD_FLAG, FIELD_STORE, PLAN(plan.has_truth)},
+    {"uncertainty", FIELD_NUMBER, FIELD_STORE, PLAN(plan.uncertainty)},
+    {"is_limited", FIELD_FLAG, FIELD_STORE, PLAN(plan.is_limited)},
+    {"horizon_s", FIELD_NUMBER, FIELD_STORE, PLAN(plan.horizon_s)},
+    {"is_full", FIELD_FLAG, FIELD_STORE, PLAN(plan.is_full)},
+    {"no_truth", FIELD_TEXT, FIELD_STORE, PLAN(no_truth), .size = CHECK_NOTE_SIZE},
     {0},
 };
-// clang-format on
 
 static json_t *start_array(CheckStart start)
 {
