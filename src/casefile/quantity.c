@@ -32,7 +32,9 @@ __attribute__((format(printf, 2, 3))) static bool complain(Complaint *complaint,
     return false;
 }
 
-static void allow_dimension(Complaint *complaint, Dimension dimension)
+// The same, and a value of the dimension is allowed.
+__attribute__((format(printf, 3, 4))) static bool
+complain_of(Complaint *complaint, Dimension dimension, const char *format, ...)
 {
     Text units;
     text_init(&units);
@@ -41,22 +43,31 @@ static void allow_dimension(Complaint *complaint, Dimension dimension)
              units_dimension_name(dimension), units_example(dimension),
              units.length > 0 ? " (in " : "", units.data, units.length > 0 ? ")" : "");
     text_finish(&units);
+    va_list arguments;
+    va_start(arguments, format);
+    shorten_list(complaint->text, sizeof complaint->text, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+// Takes a result over if it is one.
+static bool take_finite(double value, const char *text, double *taken, Complaint *complaint)
+{
+    if (!isfinite(value)) {
+        return complain(complaint, "'%.*s' is too large for a number", SHOWN_MAX, text);
+    }
+    *taken = value;
+    return true;
 }
 
 static const char *skip_blanks(const char *text)
 {
-    while (*text == ' ' || *text == '\t') {
-        text++;
-    }
-    return text;
+    return text + strspn(text, " \t");
 }
 
 static const char *skip_digits(const char *text)
 {
-    while (isdigit((unsigned char)*text)) {
-        text++;
-    }
-    return text;
+    return text + strspn(text, "0123456789");
 }
 
 // The end of the number at the start of the text, or NULL where there is none.
@@ -93,21 +104,19 @@ static bool take_number(const char **text, Dimension dimension, double *value, C
     const char *start = skip_blanks(*text);
     const char *end = number_end(start);
     if (end == NULL) {
-        allow_dimension(complaint, dimension);
-        return complain(complaint, "'%.*s' is not a number", SHOWN_MAX, start);
+        return complain_of(complaint, dimension, "'%.*s' is not a number", SHOWN_MAX, start);
     }
     char *read_end;
     errno = 0;
     const double read = strtod(start, &read_end);
     // strtod also knows hexadecimal numbers; a case file does not
     if (read_end != end) {
-        allow_dimension(complaint, dimension);
-        return complain(complaint, "'%.*s' is not a decimal number", SHOWN_MAX, start);
+        return complain_of(complaint, dimension, "'%.*s' is not a decimal number", SHOWN_MAX,
+                           start);
     }
     if (errno == ERANGE || !isfinite(read)) {
-        allow_dimension(complaint, dimension);
-        return complain(complaint, "'%.*s' is too large or too small for a number", SHOWN_MAX,
-                        start);
+        return complain_of(complaint, dimension, "'%.*s' is too large or too small for a number",
+                           SHOWN_MAX, start);
     }
     *value = read;
     *text = skip_blanks(end);
@@ -122,9 +131,8 @@ bool quantity_number(const char *text, double *value, Complaint *complaint)
         return false;
     }
     if (*text != '\0') {
-        allow_dimension(complaint, DIMENSION_NONE);
-        return complain(complaint, "expected a plain number; '%.*s' stands behind it", SHOWN_MAX,
-                        text);
+        return complain_of(complaint, DIMENSION_NONE,
+                           "expected a plain number; '%.*s' stands behind it", SHOWN_MAX, text);
     }
     *value = read;
     return true;
@@ -153,20 +161,18 @@ static const Unit *read_unit(const char *text, Dimension dimension, Complaint *c
     if (unit != NULL && unit->dimension == dimension) {
         return unit;
     }
-    allow_dimension(complaint, dimension);
-    if (unit != NULL) {
-        complain(complaint, "expected %s such as %s; '%s' is %s", units_dimension_name(dimension),
-                 units_example(dimension), name, units_dimension_name(unit->dimension));
-        return NULL;
-    }
-    if (name[0] == ',') {
-        complain(complaint, "a number has a decimal point, not a comma");
-        return NULL;
-    }
     const char *nearest = units_nearest(dimension, name);
-    complain(complaint,
-             nearest != NULL ? "unknown unit '%s'; did you mean '%s'?" : "unknown unit '%s'", name,
-             nearest);
+    if (unit != NULL) {
+        complain_of(complaint, dimension, "expected %s such as %s; '%s' is %s",
+                    units_dimension_name(dimension), units_example(dimension), name,
+                    units_dimension_name(unit->dimension));
+    } else if (name[0] == ',') {
+        complain_of(complaint, dimension, "a number has a decimal point, not a comma");
+    } else {
+        complain_of(complaint, dimension, "unknown unit '%s'%s%s%s", name,
+                    nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+                    nearest != NULL ? "'?" : "");
+    }
     return NULL;
 }
 
@@ -190,20 +196,14 @@ bool quantity_parse_unit(const char *text, Dimension dimension, double *si, cons
         return false;
     }
     if (*rest == '\0') {
-        allow_dimension(complaint, dimension);
-        return complain(complaint, "'%.*s' has no unit", SHOWN_MAX, text);
+        return complain_of(complaint, dimension, "'%.*s' has no unit", SHOWN_MAX, text);
     }
     const Unit *read = read_unit(rest, dimension, complaint);
     if (read == NULL) {
         return false;
     }
-    const double converted = value * read->numerator / read->denominator;
-    if (!isfinite(converted)) {
-        return complain(complaint, "'%.*s' is too large for a number", SHOWN_MAX, text);
-    }
-    *si = converted;
     *unit = read;
-    return true;
+    return take_finite(value * read->numerator / read->denominator, text, si, complaint);
 }
 
 // The tolerance's sign in a text, or NULL; a plain + has two limits behind it.
@@ -301,8 +301,7 @@ bool quantity_stiffness(const char *text, double *stiffness, double *exponent, C
         return false;
     }
     if (*rest == '\0') {
-        allow_dimension(complaint, DIMENSION_STIFFNESS);
-        return complain(complaint, "'%.*s' has no unit", SHOWN_MAX, text);
+        return complain_of(complaint, DIMENSION_STIFFNESS, "'%.*s' has no unit", SHOWN_MAX, text);
     }
     char name[UNITS_NAME_SIZE];
     units_normalise(rest, name);
@@ -323,14 +322,9 @@ bool quantity_stiffness(const char *text, double *stiffness, double *exponent, C
     if (unit == NULL) {
         return false;
     }
-    const double si = value * pow(unit->numerator, read_exponent);
     assert(unit->denominator == 1.0);
-    if (!isfinite(si)) {
-        return complain(complaint, "'%.*s' is too large for a number", SHOWN_MAX, text);
-    }
-    *stiffness = si;
     *exponent = read_exponent;
-    return true;
+    return take_finite(value * pow(unit->numerator, read_exponent), text, stiffness, complaint);
 }
 
 static bool allow_span(Complaint *complaint)
