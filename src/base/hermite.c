@@ -19,7 +19,7 @@ Hermite hermite_fit(size_t node_count, const double *nodes, const double *values
         .origin = nodes[0],
         .width = (nodes[node_count - 1] - nodes[0]) / (double)(node_count - 1),
     };
-    double *z = hermite.places;
+    double *z = hermite.nodes;
     double *c = hermite.coefficients;
     for (size_t i = 0; i < hermite.term_count; i++) {
         z[i] = (nodes[i / 2] - hermite.origin) / hermite.width;
@@ -37,15 +37,15 @@ Hermite hermite_fit(size_t node_count, const double *nodes, const double *values
     return hermite;
 }
 
-HermitePoint hermite_at(const Hermite *hermite, double place)
+HermitePoint hermite_at(const Hermite *hermite, double at)
 {
-    const double x = (place - hermite->origin) / hermite->width;
+    const double x = (at - hermite->origin) / hermite->width;
     double value = 0.0;
     double slope = 0.0;
     double curvature = 0.0;
     // Horner's rule from the innermost bracket outwards, with its own two derivatives
     for (size_t i = hermite->term_count; i-- > 0;) {
-        const double away = x - hermite->places[i];
+        const double away = x - hermite->nodes[i];
         curvature = curvature * away + 2.0 * slope;
         slope = slope * away + value;
         value = value * away + hermite->coefficients[i];

@@ -9,11 +9,11 @@ typedef struct Hermite {
     size_t term_count;
     double origin;                         // the first node
     double width;                          // mean distance of two nodes, the unit of what follows
-    double places[HERMITE_TERM_MAX];       // of the nodes, each twice, from the origin
+    double nodes[HERMITE_TERM_MAX];        // of the nodes, each twice, from the origin
     double coefficients[HERMITE_TERM_MAX]; // of Newton's form
 } Hermite;
 
-// A polynomial at one place.
+// A polynomial at one point.
 typedef struct HermitePoint {
     double value;
     double slope;     // first derivative
@@ -25,4 +25,4 @@ typedef struct HermitePoint {
 Hermite hermite_fit(size_t node_count, const double *nodes, const double *values,
                     const double *slopes);
 
-HermitePoint hermite_at(const Hermite *hermite, double place);
+HermitePoint hermite_at(const Hermite *hermite, double at);

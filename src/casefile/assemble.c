@@ -6,7 +6,6 @@
 #include "casefile/build.h"
 #include "casefile/check.h"
 #include "casefile/closure.h"
-#include "casefile/place.h"
 #include "casefile/store.h"
 
 #include <string.h>
@@ -88,7 +87,7 @@ static bool build_short(const Entries *entries, Scenario *scenario, Err *err)
 
 static bool build_long(const Entries *entries, Scenario *scenario, Err *err)
 {
-    return place_linkage(entries, scenario, err) && closure_check_ideal(entries, scenario, err);
+    return build_linkage(entries, scenario, err) && closure_check_ideal(entries, scenario, err);
 }
 
 // What remains is wrong as a whole; it is shown at the drive, or at the top where there is none.
@@ -101,7 +100,7 @@ static bool build(const Entries *entries, Scenario *scenario, Err *err)
         return true;
     }
     if (!is_built && own.kind != ERR_SOLVER) {
-        *err = own; // it has its place already
+        *err = own; // it points at a line already
         return false;
     }
     static const char FORMAT[] = "the mechanism cannot be solved at its start: %s";

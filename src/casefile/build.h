@@ -1,11 +1,12 @@
-// From the sizes of a four-bar to a linkage that stands at its start.
+// From the sizes of a four-bar, or from bodies and joints placed in the world, to a linkage that
+// stands at its start.
 #pragma once
 
-#include "model/scenario.h"
+#include "casefile/entries.h"
 
 // Sets the bodies, joints' anchors, driver and traced points of a four-bar, and finds the motions
 // at time zero. Expects names, lengths, masses, clearances, joint kinds, drive (present) and points
-// in their places (points still measured along the link from its first joint). Fails with
+// in it (points still measured along the link from its first joint). Fails with
 // ERR_SOLVER where the linkage cannot be solved at the start.
 bool build_fourbar(Scenario *scenario, Err *err);
 
@@ -16,3 +17,9 @@ bool build_is_determined(const Linkage *linkage);
 // ideal joints, or where a pin starts off its hole's centre, those of a pin held there at rest in
 // its hole. Fails as kinematics_solve does.
 bool build_start(Linkage *linkage, Motion *motions, Err *err);
+
+// Turns the positions of the joints, which stand in anchor_a, into anchors of their bodies, puts
+// pins where they start, and finds or checks the speeds at time zero. Fails with ERR_CASE or
+// ERR_USAGE and a line of the case where joints are redundant or speeds do not agree, and with
+// ERR_SOLVER where the linkage cannot be solved at the start.
+bool build_linkage(const Entries *entries, Scenario *scenario, Err *err);

@@ -257,9 +257,9 @@ static bool add_entry(const Walk *walk, const SchemaRow *row, size_t index, cons
     }
     Entries *entries = walk->entries;
     const Entry *found = entries_find(entries, row->path, index);
-    const size_t place = found != NULL ? (size_t)(found - entries->entries) : entries->count++;
-    assert(place < ENTRIES_MAX);
-    entries->entries[place] = entry;
+    const size_t slot = found != NULL ? (size_t)(found - entries->entries) : entries->count++;
+    assert(slot < ENTRIES_MAX);
+    entries->entries[slot] = entry;
     return true;
 }
 

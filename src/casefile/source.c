@@ -20,13 +20,13 @@ enum {
     WINDOW_LEAD = 44,  // of these, so many in front of a caret that would stand outside
 };
 
-// One place: the line it is on, and where that line is in the text.
-typedef struct Place {
+// A line and column, and where that line is in the text.
+typedef struct Location {
     size_t line;       // from 1
     size_t column;     // from 1, in characters
     size_t line_start; // bytes
     size_t line_end;   // bytes, without the break
-} Place;
+} Location;
 
 static bool is_break(const Source *source, size_t byte)
 {
@@ -43,27 +43,27 @@ static bool starts_character(char byte)
     return ((unsigned char)byte & 0xc0u) != 0x80u;
 }
 
-static Place find_place(const Source *source, size_t character)
+static Location find_location(const Source *source, size_t character)
 {
-    Place place = {.line = 1, .column = 1};
+    Location location = {.line = 1, .column = 1};
     size_t byte = 0;
     for (size_t i = 0; i < character && byte < source->size; i++) {
-        place.column++;
+        location.column++;
         if (is_break(source, byte)) {
-            place.line++;
-            place.column = 1;
-            place.line_start = byte + 1;
+            location.line++;
+            location.column = 1;
+            location.line_start = byte + 1;
         }
         do {
             byte++;
         } while (byte < source->size && !starts_character(source->text[byte]));
     }
-    place.line_end = place.line_start;
-    while (place.line_end < source->size && source->text[place.line_end] != '\n' &&
-           source->text[place.line_end] != '\r') {
-        place.line_end++;
+    location.line_end = location.line_start;
+    while (location.line_end < source->size && source->text[location.line_end] != '\n' &&
+           source->text[location.line_end] != '\r') {
+        location.line_end++;
     }
-    return place;
+    return location;
 }
 
 // Appends a character as it is shown, a tab as one blank; its columns.
@@ -81,27 +81,27 @@ static size_t append_shown(const PrintableCharacter *character, const char *at, 
 }
 
 // Appends the part of the line around the caret and the caret below it.
-static void append_line(const Source *source, Place place, size_t length, Text *text)
+static void append_line(const Source *source, Location location, size_t length, Text *text)
 {
-    const size_t first = place.column > WINDOW_WIDTH - 16 ? place.column - WINDOW_LEAD : 1;
+    const size_t first = location.column > WINDOW_WIDTH - 16 ? location.column - WINDOW_LEAD : 1;
     text_append(text, "\n    %s", first > 1 ? "..." : "");
     size_t indent = first > 1 ? 3 : 0; // columns in front of the caret
     size_t tail = 0;                   // columns of what it points at
     size_t column = 0;
-    for (size_t byte = place.line_start; byte < place.line_end;) {
+    for (size_t byte = location.line_start; byte < location.line_end;) {
         const char *at = source->text + byte;
-        const PrintableCharacter character = printable_character(at, place.line_end - byte);
+        const PrintableCharacter character = printable_character(at, location.line_end - byte);
         byte += character.size;
         column++;
         if (column >= first && column < first + WINDOW_WIDTH) {
             const size_t width = append_shown(&character, at, text);
-            indent += column < place.column ? width : 0;
+            indent += column < location.column ? width : 0;
             // the tail ends where the line does
-            tail += column >= place.column && column < place.column + length ? width : 0;
+            tail += column >= location.column && column < location.column + length ? width : 0;
         }
     }
     // behind the end of the line
-    indent += place.column > column + 1 ? place.column - column - 1 : 0;
+    indent += location.column > column + 1 ? location.column - column - 1 : 0;
     text_append(text, "%s\n    %*s^", column >= first + WINDOW_WIDTH ? "..." : "", (int)indent, "");
     for (size_t i = 1; i < tail; i++) {
         text_append(text, "~");
@@ -112,18 +112,18 @@ static void append_line(const Source *source, Place place, size_t length, Text *
 static bool set_error(const Source *source, Span span, const char *allowed, Err *err,
                       const char *message)
 {
-    const Place place = find_place(source, span.start + source->shift);
+    const Location location = find_location(source, span.start + source->shift);
     char *name = printable_copy(source->name, false);
     Text text;
     text_init(&text);
     if (source->is_option) {
         text_append(&text, "%s: %s", name, message);
     } else {
-        text_append(&text, "%s:%zu:%zu: %s", name, place.line, place.column, message);
+        text_append(&text, "%s:%zu:%zu: %s", name, location.line, location.column, message);
     }
     free(name);
-    if (place.line_end > place.line_start) {
-        append_line(source, place, span.end > span.start ? span.end - span.start : 1, &text);
+    if (location.line_end > location.line_start) {
+        append_line(source, location, span.end > span.start ? span.end - span.start : 1, &text);
     }
     if (allowed != NULL && allowed[0] != '\0') {
         text_append(&text, "\nallowed: %s", allowed);
@@ -188,7 +188,7 @@ size_t source_count(const char *text, size_t size)
 
 size_t source_line(const Source *source, size_t character)
 {
-    return find_place(source, character + source->shift).line;
+    return find_location(source, character + source->shift).line;
 }
 
 bool source_is_one_line(const char *text, size_t size)

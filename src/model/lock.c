@@ -242,7 +242,7 @@ Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
     Linkage part;
     ClosedPath path;
     linkage_start(&ideal, motions);
-    if (!nearest_places(&ideal, motions) || !cut_out_part(&ideal, motions, &part, start) ||
+    if (!nearest_positions(&ideal, motions) || !cut_out_part(&ideal, motions, &part, start) ||
         !closed_path_start(&part, start, &path)) {
         return unknown;
     }

@@ -1,4 +1,4 @@
-// Which places and speeds of a linkage's bodies are nearest to given ones and keep its joints?
+// Which positions and speeds of a linkage's bodies are nearest to given ones and keep its joints?
 //
 // With J the rows of the joints and the drive, M the masses and inertias, r what is missing,
 //     min du' M du  with  J du = r    gives    du = M^-1 J' (J M^-1 J')^-1 r,
@@ -84,7 +84,7 @@ static bool least_change(const Linkage *linkage, const Motion *motions, const De
 }
 
 // What the pins still miss of where they are to start; false where they are there.
-static bool demand_places(const Linkage *linkage, const Motion *motions, Demand *demand)
+static bool demand_positions(const Linkage *linkage, const Motion *motions, Demand *demand)
 {
     *demand = (Demand){0};
     double size = 1.0; // m
@@ -105,10 +105,10 @@ static bool demand_places(const Linkage *linkage, const Motion *motions, Demand 
     return demand->distance > NEAREST_CLOSED * size;
 }
 
-bool nearest_places(const Linkage *linkage, Motion *motions)
+bool nearest_positions(const Linkage *linkage, Motion *motions)
 {
     Demand demand;
-    for (int step = 0; demand_places(linkage, motions, &demand); step++) {
+    for (int step = 0; demand_positions(linkage, motions, &demand); step++) {
         double change[KINEMATICS_COLUMN_MAX];
         if (step == STEP_MAX || !least_change(linkage, motions, &demand, change)) {
             return false;

@@ -1,12 +1,12 @@
-// The places and speeds of a linkage's bodies that are nearest to given ones, weighed by mass and
-// inertia, and keep its joints and its driver.
+// The positions and speeds of a linkage's bodies that are nearest to given ones, weighed by mass
+// and inertia, and keep its joints and its driver.
 #pragma once
 
 #include "model/linkage.h"
 
 // Moves the bodies as little as puts each pin where it is to start in its hole, closes the ideal
 // joints, and holds the driver at its start. False where that cannot all be.
-bool nearest_places(const Linkage *linkage, Motion *motions);
+bool nearest_positions(const Linkage *linkage, Motion *motions);
 
 // Changes the speeds as little as keeps the ideal joints closed, with_play the others too, and
 // follows the driver. Where it cannot be solved nothing changes.

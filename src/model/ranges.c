@@ -33,10 +33,10 @@ void ranges_finish(Ranges *ranges)
     *ranges = (Ranges){0};
 }
 
-// The stretch at a place counted in stretches.
-static size_t stretch_at(const Ranges *ranges, double place)
+// The stretch at a time, counted in stretches.
+static size_t stretch_at(const Ranges *ranges, double at)
 {
-    return place <= 0.0 ? 0 : place < (double)(ranges->count) ? (size_t)place : ranges->count - 1;
+    return at <= 0.0 ? 0 : at < (double)(ranges->count) ? (size_t)at : ranges->count - 1;
 }
 
 size_t ranges_find(const Ranges *ranges, double time_s)
@@ -46,9 +46,9 @@ size_t ranges_find(const Ranges *ranges, double time_s)
 
 void ranges_add(Ranges *ranges, size_t signal, double time_s, double value)
 {
-    const double place = time_s / ranges->width_s;
-    const size_t first = stretch_at(ranges, place - AT_BORDER);
-    const size_t last = stretch_at(ranges, place + AT_BORDER);
+    const double at = time_s / ranges->width_s;
+    const size_t first = stretch_at(ranges, at - AT_BORDER);
+    const size_t last = stretch_at(ranges, at + AT_BORDER);
     for (size_t i = first; i <= last; i++) {
         range_add(&ranges->values[i * ranges->signal_count + signal], value);
     }

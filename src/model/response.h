@@ -38,7 +38,7 @@ bool response_init(const Linkage *linkage, bool with_turns, Response *response, 
 // The number of rows of the joints with play, all together.
 size_t response_play_rows(const Response *response);
 
-// Takes the response at the places of the motions given. Returns false where ideal joints are
+// Takes the response at the positions of the motions given. Returns false where ideal joints are
 // redundant there.
 bool response_place(Response *response, const Motion *motions);
 
@@ -66,11 +66,12 @@ void response_apply(const Response *response, const double *impulses, double *ch
 void response_solve(const Response *response, double *rows);
 
 // Writes the changes, three a body, weighed by mass and inertia the least, that take from the rows
-// of the ideal joints what is given there: openings, m, of places or m/s of velocities.
+// of the ideal joints what is given there: openings, m, of positions or m/s of velocities.
 void response_close(const Response *response, const double *openings, double *changes);
 
-// The opening of the ideal joints at the places, and the rate at which they open, two rows a joint.
-void response_openings(const Response *response, const Motion *motions, double *places,
+// The opening of the ideal joints at the positions, and the rate at which they open, two rows a
+// joint.
+void response_openings(const Response *response, const Motion *motions, double *positions,
                        double *rates);
 
 // The number of the joint that a row of play belongs to.

@@ -268,7 +268,7 @@ static void book_energy(ContactRows *rows, size_t number, Vec2 force, double ste
     const PinHole pose = pair_pose(&rows->world->pairs[number], row->radial_clearance);
     const double pressing = vec2_dot(row->normal, force);
     // of a staggered world the step stands in the middle between its two speeds, and its end
-    // between two places
+    // between two positions
     const double closing =
         rows->is_staggered ? 0.5 * (row->closing + pose.approach_speed) : pose.approach_speed;
     const double depth =

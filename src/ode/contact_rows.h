@@ -37,13 +37,14 @@ typedef struct ContactRows {
     size_t most_rows;                   // at any step so far
     size_t row_count;                   // made so far
     size_t fallback_count;              // of those, where the map would not have been stable
-    bool is_staggered;                  // places stand half a step behind the speeds
+    bool is_staggered;                  // positions stand half a step behind the speeds
     Response response;                  // for effective masses
 } ContactRows;
 
 // Prepares the laws of all pairs. Fails with ERR_CASE where a law does not fit a joint. The rows
-// must not be copied: ODE writes into them. Of a staggered world the places are those of mid-step
-// and the speeds those of the step's start: the onset of a contact is then located between steps.
+// must not be copied: ODE writes into them. Of a staggered world the positions are those of
+// mid-step and the speeds those of the step's start: the onset of a contact is then located between
+// steps.
 bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world, bool is_staggered,
                        Err *err);
 void contact_rows_finish(ContactRows *rows);

@@ -1,8 +1,8 @@
 // How does the linkage move in ODE, with what several worlds of different steps say put together?
 //
-// The worlds give places and speeds at nodes H apart (ode/nodes.c). In between, each coordinate is
-// the polynomial of degree 11 through places and speeds at six nodes, three on each side; speeds
-// and accelerations are its derivatives. The nodes run ahead of what is handed out by two
+// The worlds give positions and speeds at nodes H apart (ode/nodes.c). In between, each coordinate
+// is the polynomial of degree 11 through positions and speeds at six nodes, three on each side;
+// speeds and accelerations are its derivatives. The nodes run ahead of what is handed out by two
 // intervals.
 //
 // Forces in the joints follow from the accelerations (ode/ideal_forces.c), those of the drive from
@@ -85,13 +85,13 @@ static bool enter_interval(Extrapolated *own, long interval, Err *err)
     }
     for (size_t i = 0; i < own->scenario->linkage.body_count; i++) {
         for (size_t c = 0; c < 3; c++) {
-            double places[NODES_KEPT];
+            double positions[NODES_KEPT];
             double speeds[NODES_KEPT];
             for (size_t k = 0; k < NODES_KEPT; k++) {
-                places[k] = nodes->states[k][i].place[c];
+                positions[k] = nodes->states[k][i].position[c];
                 speeds[k] = nodes->states[k][i].speed[c];
             }
-            own->paths[i][c] = hermite_fit(NODES_KEPT, times, places, speeds);
+            own->paths[i][c] = hermite_fit(NODES_KEPT, times, positions, speeds);
         }
     }
     own->interval = interval;

@@ -14,9 +14,9 @@ static void find_motions(const ImpulseStep *step, double since_s, const Encounte
                          Motion *motions)
 {
     double speeds[IMPULSE_CHANGE_MAX];
-    double places[IMPULSE_CHANGE_MAX];
+    double positions[IMPULSE_CHANGE_MAX];
     response_apply(&step->response, sums->impulse, speeds);
-    response_apply(&step->response, sums->moment, places);
+    response_apply(&step->response, sums->moment, positions);
     const double share = since_s / step->width_s;
     for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
         const Motion *first = &step->before[i];
@@ -27,8 +27,8 @@ static void find_motions(const ImpulseStep *step, double since_s, const Encounte
             const size_t n = 3 * i + k;
             const double mean = step->free[n];
             w[k] = v[k] + since_s * mean + speeds[n];
-            q[k] +=
-                since_s * (v[k] + 0.5 * since_s * mean) + places[n] + share * share * step->rest[n];
+            q[k] += since_s * (v[k] + 0.5 * since_s * mean) + positions[n] +
+                    share * share * step->rest[n];
         }
         motions[i] = (Motion){
             .position = {q[0], q[1]}, .angle = q[2], .velocity = {w[0], w[1]}, .omega = w[2]};

@@ -1,7 +1,7 @@
 // How does the linkage move in ODE if its contacts are integrated within the step?
 //
-// A step from t to t + h, places q and speeds v both known at t:
-//     q_m = q + (h/2) v                               places at mid-step
+// A step from t to t + h, positions q and speeds v both known at t:
+//     q_m = q + (h/2) v                               positions at mid-step
 //     W, g at q_m                                     the linkage as its joints with play feel it
 //     P, Q = impulse of the contacts and its integral over the step, by contact/encounter.c
 //     v' from dWorldStep at q_m under the mean force P / h, the driven body at its speed of t + h
@@ -182,17 +182,17 @@ static bool step_world(ImpulseStep *step, const Motion *middle, Err *err)
            world_check(&step->world, err);
 }
 
-// Adds changes, three a body, to the free bodies' places and speeds.
-static void change_motions(const ImpulseStep *step, const double *places, const double *speeds,
+// Adds changes, three a body, to the free bodies' positions and speeds.
+static void change_motions(const ImpulseStep *step, const double *positions, const double *speeds,
                            Motion *motions)
 {
     for (size_t i = 0; i < body_count(step); i++) {
         if (impulse_step_is_free(step, i)) {
             Motion *motion = &motions[i];
-            const double *place = places + 3 * i;
+            const double *moved = positions + 3 * i;
             const double *speed = speeds + 3 * i;
-            motion->position = vec2_add(motion->position, (Vec2){place[0], place[1]});
-            motion->angle += place[2];
+            motion->position = vec2_add(motion->position, (Vec2){moved[0], moved[1]});
+            motion->angle += moved[2];
             motion->velocity = vec2_add(motion->velocity, (Vec2){speed[0], speed[1]});
             motion->omega += speed[2];
         }
@@ -219,17 +219,17 @@ static void find_end(ImpulseStep *step, const Motion *middle)
     for (size_t i = 0; i < rows; i++) {
         late[i] = step->total.moment[i] - half_s * step->total.impulse[i];
     }
-    double places[IMPULSE_CHANGE_MAX];
+    double positions[IMPULSE_CHANGE_MAX];
     double speeds[IMPULSE_CHANGE_MAX] = {0.0};
-    response_apply(&step->response, late, places);
-    change_motions(step, places, speeds, step->after);
+    response_apply(&step->response, late, positions);
+    change_motions(step, positions, speeds, step->after);
     // back onto the ideal joints
     double openings[RESPONSE_ROW_MAX];
     double rates[RESPONSE_ROW_MAX];
     response_openings(&step->response, step->after, openings, rates);
-    response_close(&step->response, openings, places);
+    response_close(&step->response, openings, positions);
     response_close(&step->response, rates, speeds);
-    change_motions(step, places, speeds, step->after);
+    change_motions(step, positions, speeds, step->after);
 }
 
 // What the state inside the step is worked out from.
@@ -237,9 +237,9 @@ static void prepare_inside(ImpulseStep *step, double width_before_s)
 {
     const double width_s = step->width_s;
     double speeds[IMPULSE_CHANGE_MAX];
-    double places[IMPULSE_CHANGE_MAX];
+    double positions[IMPULSE_CHANGE_MAX];
     response_apply(&step->response, step->total.impulse, speeds);
-    response_apply(&step->response, step->total.moment, places);
+    response_apply(&step->response, step->total.moment, positions);
     for (size_t i = 0; i < body_count(step); i++) {
         const Motion *first = &step->before[i];
         const Motion *last = &step->after[i];
@@ -258,7 +258,7 @@ static void prepare_inside(ImpulseStep *step, double width_before_s)
                 step->free_rate[n] = width_before_s > 0.0 ? change / apart_s : 0.0;
             }
             step->free[n] = mean;
-            step->rest[n] = p[k] - q[k] - width_s * (v[k] + 0.5 * width_s * mean) - places[n];
+            step->rest[n] = p[k] - q[k] - width_s * (v[k] + 0.5 * width_s * mean) - positions[n];
         }
     }
 }

@@ -24,7 +24,7 @@ typedef struct ImpulseStep {
     Motion after[LINKAGE_BODY_MAX];       // at its end
     double free[IMPULSE_CHANGE_MAX];      // mean acceleration beside the contacts'
     double free_rate[IMPULSE_CHANGE_MAX]; // its rate of change
-    double rest[IMPULSE_CHANGE_MAX];      // of the end's places, beyond the formula for inside
+    double rest[IMPULSE_CHANGE_MAX];      // of the end's positions, beyond the formula for inside
     double drive_work;                    // J, in the whole step
     EncounterSums total;                  // of the contacts, in the whole step
     JointState mean[LINKAGE_JOINT_MAX];   // mean forces of the ideal joints

@@ -1,7 +1,7 @@
 // When in a step of its own does a contact show what is worth recording?
 //
 // Depth: greatest where its rate passes zero, which is nearly linear between two nodes. Force:
-// greatest on the parabola through three nodes. Both places are right to the second order of the
+// greatest on the parabola through three nodes. Both positions are right to the second order of the
 // local step, the values there to the fourth.
 #include "ode/marks.h"
 
@@ -16,12 +16,12 @@ static void add_mark(Marks *marks, double time_s, size_t node)
         assert(marks->marks != NULL);
     }
     // two in one interval may come in either order
-    size_t place = marks->count++;
-    while (place > 0 && marks->marks[place - 1].time_s > time_s) {
-        marks->marks[place] = marks->marks[place - 1];
-        place--;
+    size_t at = marks->count++;
+    while (at > 0 && marks->marks[at - 1].time_s > time_s) {
+        marks->marks[at] = marks->marks[at - 1];
+        at--;
     }
-    marks->marks[place] = (Mark){time_s, node};
+    marks->marks[at] = (Mark){time_s, node};
 }
 
 static double force_at(const Encounter *encounter, size_t joint, size_t node)

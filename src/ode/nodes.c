@@ -176,9 +176,9 @@ static void add_level(const NodesLevel *level, size_t body_count, NodeState *sta
     Motion motions[LINKAGE_BODY_MAX];
     read_level(level, body_count, motions);
     for (size_t i = 0; i < body_count; i++) {
-        states[i].place[0] += level->weight * motions[i].position.x;
-        states[i].place[1] += level->weight * motions[i].position.y;
-        states[i].place[2] += level->weight * motions[i].angle;
+        states[i].position[0] += level->weight * motions[i].position.x;
+        states[i].position[1] += level->weight * motions[i].position.y;
+        states[i].position[2] += level->weight * motions[i].angle;
         states[i].speed[0] += level->weight * motions[i].velocity.x;
         states[i].speed[1] += level->weight * motions[i].velocity.y;
         states[i].speed[2] += level->weight * motions[i].omega;

@@ -22,8 +22,8 @@ typedef struct NodesLevel {
 
 // One body at one node.
 typedef struct NodeState {
-    double place[3]; // x and y of the centre of mass, m; angle, rad, not wrapped
-    double speed[3]; // m/s, m/s, rad/s
+    double position[3]; // x and y of the centre of mass, m; angle, rad, not wrapped
+    double speed[3];    // m/s, m/s, rad/s
 } NodeState;
 
 typedef struct Nodes {

@@ -1,8 +1,8 @@
 // How does the linkage move in ODE, read as a leapfrog?
 //
-// ODE's places stand at mid-step when its speeds stand at the step's start. Step n, t = n h:
-//     places at t + h/2, speeds v_n at t: contacts are looked for there
-//     v_n+1 = v_n + h M^-1 (forces + J^T lambda),  places move on by h v_n+1       (dWorldStep)
+// ODE's positions stand at mid-step when its speeds stand at the step's start. Step n, t = n h:
+//     positions at t + h/2, speeds v_n at t: contacts are looked for there
+//     v_n+1 = v_n + h M^-1 (forces + J^T lambda),  positions move on by h v_n+1       (dWorldStep)
 // Everything in a contact row has its right time: depth and normal at t + h/2, the old speeds of
 // both bodies at t, the driven body's speed in the row at t + h. The joint rows' error is carried
 // off with ERP 1, which makes them a linearised SHAKE: second order.
@@ -13,7 +13,7 @@
 // own forces: speeds are then right from the first step. Where the drive determines the motion it
 // starts four steps early, and accelerations are, too.
 //
-// Read between: speeds linear in each step, places their integral, accelerations linear between
+// Read between: speeds linear in each step, positions their integral, accelerations linear between
 // mid-steps. That needs the step after: the run is one step ahead of what it hands on.
 // Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. 2006, VII.1.4 on SHAKE.
 #include "model/response.h"
@@ -31,7 +31,7 @@ enum { SETTLE_STEPS = 4 };
 // One step, as it is handed on.
 typedef struct Stride {
     double start_s;
-    Snapshot middle[LINKAGE_BODY_MAX]; // places at mid-step, speeds at its start
+    Snapshot middle[LINKAGE_BODY_MAX]; // positions at mid-step, speeds at its start
     Vec2 velocity[LINKAGE_BODY_MAX];   // at its end
     double omega[LINKAGE_BODY_MAX];
     double alpha[LINKAGE_BODY_MAX]; // mean
@@ -290,7 +290,7 @@ static Motion motion_at(const Staggered *staggered, size_t body, double since_s)
     const double share = fabs(off_s) / step_s; // of the way to the other step's middle
     const Vec2 mean = centre_acceleration(now, body, step_s);
     const Vec2 beside = centre_acceleration(other, body, step_s);
-    // places: v_n t + a t^2 / 2 from the start, where they are h/2 v_n behind mid-step
+    // positions: v_n t + a t^2 / 2 from the start, where they are h/2 v_n behind mid-step
     const Vec2 moved =
         vec2_add(vec2_scale(off_s, middle->velocity), vec2_scale(0.5 * since_s * since_s, mean));
     return (Motion){

@@ -49,5 +49,5 @@ typedef struct Snapshot {
 
 Snapshot world_snapshot(const World *world, size_t body);
 
-// The places and velocities of all bodies; angles in one turn.
+// The positions and velocities of all bodies; angles in one turn.
 void world_motions(const World *world, Motion *motions);

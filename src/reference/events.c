@@ -26,7 +26,7 @@ enum { HALVINGS = 24, LANDINGS = 4, MARGINS = 2 };
 // a thousandth of the depth that rounding of positions of 0.3 m leaves uncertain
 static const double LANDED = 1e-19;
 
-// roundings of a place or a speed that the sum of a handful of terms leaves uncertain
+// roundings of a position or a speed that the sum of a handful of terms leaves uncertain
 static const double ROUNDINGS = 4.0 * DBL_EPSILON;
 
 typedef struct Margin {
@@ -48,7 +48,8 @@ static double margin_of(const ContactForce *force, ContactMode mode, int which)
     }
 }
 
-// Sum of the lengths and of the speeds that the place and the velocity of a joint's end come from.
+// Sum of the lengths and of the speeds that the position and the velocity of a joint's end come
+// from.
 static void end_size(const Tree *tree, const TreeState *state, int end, double *length,
                      double *speed)
 {

@@ -22,9 +22,9 @@ static const double NEARLY = 0.99;
 static const double MOVING_SHARE = 1.2;
 static const double TURNING_SHARE = 0.6;
 
-// Places may err by so many times what rates times the step would allow: measured on the paper's
+// The error allowed in positions, over that in rates times the step: measured on the paper's
 // mechanism, an error of 1e-9 costs a fifth less than at 1, and no less from 8 to 32.
-static const double PLACE_SHARE = 16.0;
+static const double POSITION_SHARE = 16.0;
 
 // 1: eight times the rounding of a number, for an estimate of the error that sees as much as it
 // allows lets no step grow
@@ -44,13 +44,13 @@ static void set_tolerances(Stepper *stepper)
     Dop853 *integrator = &stepper->integrator;
     for (size_t i = 0; i < n; i++) {
         integrator->fixed[n + i] = moving;
-        integrator->grown[i] = PLACE_SHARE * moving;
+        integrator->grown[i] = POSITION_SHARE * moving;
     }
     for (size_t i = 0; i < tree->node_count; i++) {
         const size_t angle = tree->nodes[i].angle_column;
         const double turning = TURNING_SHARE * tolerance * scale->turning[tree->nodes[i].body];
         integrator->fixed[n + angle] = turning;
-        integrator->grown[angle] = PLACE_SHARE * turning;
+        integrator->grown[angle] = POSITION_SHARE * turning;
     }
     // the bodies' mean speed is some tenth of the largest scale, and work goes to and fro
     const double energy_share = 3e-2;

@@ -166,15 +166,15 @@ static void climb(const Aim *aim, Look three[3])
 // Puts a look between the others, in order of time; leaves it out where there is one already.
 static int insert(Look *looks, int count, const Look *look)
 {
-    int place = count;
-    while (place > 0 && looks[place - 1].time_s > look->time_s) {
-        place--;
+    int at = count;
+    while (at > 0 && looks[at - 1].time_s > look->time_s) {
+        at--;
     }
-    if (count == LOOK_MAX || (place > 0 && looks[place - 1].time_s == look->time_s)) {
+    if (count == LOOK_MAX || (at > 0 && looks[at - 1].time_s == look->time_s)) {
         return count;
     }
-    memmove(&looks[place + 1], &looks[place], (size_t)(count - place) * sizeof *looks);
-    looks[place] = *look;
+    memmove(&looks[at + 1], &looks[at], (size_t)(count - at) * sizeof *looks);
+    looks[at] = *look;
     return count + 1;
 }
 

@@ -8,8 +8,7 @@
 #include "run/recorder.h"
 
 #include "base/hash.h"
-
-#include <string.h>
+#include "base/sorted.h"
 
 // of a stretch: what ends so little behind its border ends there
 static const double BORDER_ROUNDING = 1e-9;
@@ -128,29 +127,18 @@ static bool is_after_start(const Recorder *recorder, double end_s)
     return end_s > from_s || from_s == 0.0;
 }
 
-// Puts a finished contact among the strongest, in order of force.
-static void keep_spike(JointExtremes *joint, const Spike *spike)
+static bool is_stronger(const void *a, const void *b)
 {
-    size_t place = joint->spike_count;
-    while (place > 0 && joint->spikes[place - 1].force_max < spike->force_max) {
-        place--;
-    }
-    if (place == TRAJECTORY_SPIKE_MAX) {
-        return;
-    }
-    if (joint->spike_count < TRAJECTORY_SPIKE_MAX) {
-        joint->spike_count++;
-    }
-    const size_t moved = joint->spike_count - 1 - place;
-    memmove(&joint->spikes[place + 1], &joint->spikes[place], moved * sizeof *spike);
-    joint->spikes[place] = *spike;
+    return ((const Spike *)a)->force_max > ((const Spike *)b)->force_max;
 }
 
 // One that began before the reported time is not a contact of it.
 static void end_contact(Recorder *recorder, size_t number)
 {
     if (recorder->open[number].onset_s >= recorder->trajectory->report_from_s) {
-        keep_spike(&recorder->trajectory->joints[number], &recorder->open[number]);
+        JointExtremes *joint = &recorder->trajectory->joints[number];
+        sorted_insert(joint->spikes, &joint->spike_count, TRAJECTORY_SPIKE_MAX,
+                      &recorder->open[number], sizeof(Spike), is_stronger);
     }
 }
 

@@ -9,6 +9,7 @@
 // middle, and n parts bring that down to 1 / n^2 of it.
 #include "run/tracer.h"
 
+#include "base/sorted.h"
 #include "run/look.h"
 #include "run/spike_scale.h"
 #include "run/spikes.h"
@@ -17,7 +18,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum {
     // of a trace: 400 kB each; some 600 impacts of full height
@@ -237,20 +237,9 @@ static int find_joint(const Tracer *tracer, const SignalSpike *spike)
     return found;
 }
 
-// Puts a spike among the strongest, in order of its value.
-static void keep_spike(SignalSpikes *spikes, const SignalSpike *spike)
+static bool is_stronger(const void *a, const void *b)
 {
-    size_t place = spikes->kept;
-    while (place > 0 && fabs(spikes->spikes[place - 1].value) < fabs(spike->value)) {
-        place--;
-    }
-    if (place == SIGNAL_SPIKE_MAX) {
-        return;
-    }
-    spikes->kept += spikes->kept < SIGNAL_SPIKE_MAX ? 1 : 0;
-    const size_t moved = spikes->kept - 1 - place;
-    memmove(&spikes->spikes[place + 1], &spikes->spikes[place], moved * sizeof *spike);
-    spikes->spikes[place] = *spike;
+    return fabs(((const SignalSpike *)a)->value) > fabs(((const SignalSpike *)b)->value);
 }
 
 static void count_sector(SignalSpikes *spikes, const SignalSpike *spike)
@@ -278,7 +267,8 @@ static void tell_signal(const Tracer *tracer, const Trace *trace, double thresho
         spikes->count++;
         found[i].crank_rad = linkage_crank_angle(linkage, found[i].time_s);
         found[i].joint = is_body ? find_joint(tracer, &found[i]) : -1;
-        keep_spike(spikes, &found[i]);
+        sorted_insert(spikes->spikes, &spikes->kept, SIGNAL_SPIKE_MAX, &found[i], sizeof found[i],
+                      is_stronger);
         if (linkage->driver.is_present) {
             count_sector(spikes, &found[i]);
         }
