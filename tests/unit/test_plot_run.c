@@ -1,5 +1,5 @@
 // Is the picture of a run well-formed, and is nothing lost in it?
-#include "commands/run/plot_run.h"
+#include "commands/run/run_report.h"
 
 #include "report_fixture.h"
 

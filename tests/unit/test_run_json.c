@@ -1,5 +1,5 @@
 // Does JSON hold what the trajectory holds, under the keys that others rely on?
-#include "commands/run/run_json.h"
+#include "commands/run/run_report.h"
 
 #include "truth_fixture.h"
 

@@ -1,5 +1,5 @@
 // Does the text say what was modelled and what came out?
-#include "commands/run/run_text.h"
+#include "commands/run/run_report.h"
 
 #include "truth_fixture.h"
 

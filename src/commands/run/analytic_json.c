@@ -1,6 +1,5 @@
 // What does the closed form say of the mechanism, for other programs?
-#include "commands/run/analytic_json.h"
-
+#include "commands/run/run_report.h"
 #include "write/json_value.h"
 #include "write/units.h"
 

@@ -1,6 +1,5 @@
 // What does the closed form say of the mechanism, before any solver has taken a step?
-#include "commands/run/analytic_text.h"
-
+#include "commands/run/run_report.h"
 #include "write/section.h"
 #include "write/units.h"
 

@@ -5,10 +5,7 @@
 #include "cli/warnings.h"
 #include "commands/commands.h"
 #include "commands/run/case_run.h"
-#include "commands/run/plot_run.h"
 #include "commands/run/run_files.h"
-#include "commands/run/run_json.h"
-#include "commands/run/run_text.h"
 #include "write/file.h"
 
 #include <assert.h>
@@ -103,23 +100,8 @@ static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
     return true;
 }
 
-static json_t *build_json(const void *report)
-{
-    return run_json_build(report);
-}
-
-static void write_text(const void *report, const Style *style, Text *text)
-{
-    run_text_write(report, style, text);
-}
-
-static void write_plot(const void *report, Text *svg)
-{
-    plot_run_write(report, svg);
-}
-
 static const ResultFile FILES[] = {
-    {"--plot", offsetof(RunCommand, plot), ".svg", FILE_PICTURE, .text = write_plot},
+    {"--plot", offsetof(RunCommand, plot), ".svg", FILE_PICTURE, .text = plot_run_write},
     {.ending = ".txt", .kind = FILE_REPORT},
     {.ending = ".json", .kind = FILE_RESULT},
 };
@@ -127,8 +109,8 @@ static const ResultFile FILES[] = {
 static const Results RESULTS = {
     .suffix = "",
     .is_followed = true,
-    .json = build_json,
-    .text = write_text,
+    .json = run_json_build,
+    .text = run_text_write,
     RESULT_FILES(FILES),
 };
 

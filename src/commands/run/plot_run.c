@@ -1,8 +1,5 @@
 // What does a run look like?
-#include "commands/run/plot_run.h"
-
 #include "commands/run/plot_joints.h"
-#include "commands/run/plot_look.h"
 
 #include <assert.h>
 #include <math.h>
@@ -291,8 +288,9 @@ static void draw_motions(const RunReport *report, Text *svg)
     draw_motion(report, panel, turns ? ALPHA : ACCELERATION, turns);
 }
 
-void plot_run_write(const RunReport *report, Text *svg)
+void plot_run_write(const void *of, Text *svg)
 {
+    const RunReport *report = of;
     const char *title = report->scenario->title;
     plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT, title);
     plot_text(svg, PANEL_LEFT[0], 34.0, "start", "title", title);

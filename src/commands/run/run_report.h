@@ -1,4 +1,5 @@
-// Everything there is to tell about the runs of one case: plain pointers, nothing owned.
+// Everything there is to say about the runs of one case, plain pointers, nothing owned; and the
+// forms in which it is said.
 #pragma once
 
 #include "analytic/stackup.h"
@@ -7,6 +8,8 @@
 #include "measure/error.h"
 #include "measure/spike_match.h"
 #include "measure/truth.h"
+#include "write/fields.h"
+#include "write/style.h"
 
 #include <string.h>
 
@@ -65,3 +68,84 @@ static inline bool run_report_includes_play(const RunReport *report, size_t run)
            (strcmp(report->errors[run].against, ideal) == 0 ||
             strcmp(report->runs[run]->backend, ideal) == 0);
 }
+
+// Whether spikes of a signal were looked for and it can have any.
+static inline bool run_report_has_body_spikes(const RunReport *report, const Trajectory *run,
+                                              size_t body)
+{
+    return run->is_complete && run->alpha_spikes[body].is_known &&
+           (int)body != linkage_driven_body(&report->scenario->linkage);
+}
+
+// Besides the places of write/fields.h: columns of mechanisms with a driven crank and of those
+// without, and keys of spikes by the unit of their signal.
+enum {
+    RUN_DRIVEN = FIELD_OWN,
+    RUN_FREE = FIELD_OWN << 1,
+    RUN_ALPHA = FIELD_OWN << 2,
+    RUN_FORCE = FIELD_OWN << 3,
+    RUN_NO_CRANK = FIELD_OWN << 4, // in JSON: there is no angle of a crank
+};
+
+// The columns of a table of this mechanism.
+static inline unsigned run_report_columns(const RunReport *report)
+{
+    return FIELD_TABLE | (report->scenario->linkage.driver.is_present ? RUN_DRIVEN : RUN_FREE);
+}
+
+// The fields of Trajectory, BodyExtremes, Spike, SignalSpike and Energy.
+extern const Field RUN_FIELDS[];
+extern const Field RUN_BODY_FIELDS[];
+extern const Field RUN_CONTACT_FIELDS[];
+extern const Field RUN_SPIKE_FIELDS[];
+extern const Field RUN_ENERGY_FIELDS[];
+
+enum { RUN_TEXT_SPIKES = 5 }; // contacts listed of each joint, spikes of each body
+
+// The forms, each of a RunReport: the whole text, the whole JSON object (a new reference; keys as
+// docs/output.md lists them), and the picture as SVG, 1000 pixels wide, without runs that failed.
+void run_text_write(const void *report, const Style *style, Text *text);
+json_t *run_json_build(const void *report);
+void plot_run_write(const void *report, Text *svg);
+
+// The parts of the text, each of which appends nothing where it has nothing to say. Extremes of
+// each body that is not driven; the contacts of each joint with play, and at most `limit` of the
+// strongest, of the last backend that has any; steps and time, and why runs failed.
+void run_tables_extremes(const RunReport *report, const Style *style, Text *text);
+void run_tables_contacts(const RunReport *report, const Style *style, Text *text);
+void run_tables_spikes(const RunReport *report, size_t limit, const Style *style, Text *text);
+void run_tables_cost(const RunReport *report, const Style *style, Text *text);
+
+// The spikes of accelerations and forces: how many, and at most `limit` of the strongest of each
+// body, of the last backend that has any.
+void spike_tables_write(const RunReport *report, size_t limit, const Style *style, Text *text);
+
+// How far off the runs are: errors against the run that is taken as the truth, with its own
+// uncertainty; contacts beside those of the reference; where the energy went; and, where the motion
+// cannot be predicted, distributions over many starts.
+void run_truth_errors(const RunReport *report, const Style *style, Text *text);
+void run_truth_matches(const RunReport *report, const Style *style, Text *text);
+void run_truth_ensembles(const RunReport *report, const Style *style, Text *text);
+void run_truth_energy(const RunReport *report, const Style *style, Text *text);
+
+// What the closed form says of a four-bar: kinematics, forces, tolerance stack-up.
+void analytic_text_kinematics(const RunReport *report, const Style *style, Text *text);
+void analytic_text_forces(const RunReport *report, const Style *style, Text *text);
+void analytic_text_stackup(const RunReport *report, const Style *style, Text *text);
+
+// The same in JSON, where the report has a summary or a stack-up; what was measured against the
+// truth, null where nothing was; and the bands of the crank angle with their spikes. New
+// references.
+json_t *analytic_json_kinematics(const RunReport *report);
+json_t *analytic_json_forces(const RunReport *report);
+json_t *analytic_json_stackup(const RunReport *report);
+json_t *run_truth_json_truth(const RunReport *report);
+json_t *run_truth_json_error(const RunReport *report, size_t run);
+json_t *run_truth_json_matches(const RunReport *report, size_t run);
+json_t *run_truth_json_ensemble(const RunReport *report, size_t run);
+json_t *spike_json_bands(const RunReport *report, const Trajectory *run);
+
+// Puts the spikes of a signal into an object: <name>_spikes, their count, threshold and resolution.
+// `where` is RUN_ALPHA or RUN_FORCE.
+void spike_json_set(json_t *object, unsigned where, const Linkage *linkage,
+                    const SignalSpikes *spikes);

@@ -1,7 +1,5 @@
 // What did the bodies do, what did the joints feel, how far off is it, and at what cost?
-#include "commands/run/run_tables.h"
-
-#include "write/section.h"
+#include "commands/run/run_report.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -28,61 +26,28 @@ static void when_cell(Table *table, const RunReport *report, Extreme extreme)
     }
 }
 
-static void extreme_cells(Table *table, const RunReport *report, Extreme extreme)
-{
-    table_cell(table, "%.6g", extreme.value);
-    when_cell(table, report, extreme);
-}
-
-static bool any_is_complete(const RunReport *report)
-{
-    for (size_t i = 0; i < report->run_count; i++) {
-        if (report->runs[i]->is_complete) {
-            return true;
-        }
-    }
-    return false;
-}
-
 void run_tables_extremes(const RunReport *report, const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"body", "", TABLE_LEFT},
-        {"backend", "", TABLE_LEFT},
-        {"omega max", "rad/s", TABLE_RIGHT},
-        {"", "", TABLE_RIGHT},
-        {"omega min", "rad/s", TABLE_RIGHT},
-        {"", "", TABLE_RIGHT},
-        {"alpha max", "rad/s^2", TABLE_RIGHT},
-        {"", "", TABLE_RIGHT},
-        {"alpha min", "rad/s^2", TABLE_RIGHT},
-        {"", "", TABLE_RIGHT},
-    };
-    if (!any_is_complete(report)) {
-        return;
-    }
     const Linkage *linkage = &report->scenario->linkage;
-    Table *table = section_begin("Extremes of the motion", 10, HEADS, style, text);
-    for (size_t column = 3; column < 10; column += 2) {
-        head_when(table, column, report);
-    }
+    const unsigned where = run_report_columns(report);
+    Table *table = NULL;
     for (size_t body = 0; body < linkage->body_count; body++) {
-        if ((int)body == linkage_driven_body(linkage)) {
-            continue;
-        }
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
-            if (run->is_complete) {
-                table_cell(table, "%s", linkage->bodies[body].name);
-                table_cell(table, "%s", run->backend);
-                extreme_cells(table, report, run->bodies[body].omega_max);
-                extreme_cells(table, report, run->bodies[body].omega_min);
-                extreme_cells(table, report, run->bodies[body].alpha_max);
-                extreme_cells(table, report, run->bodies[body].alpha_min);
+            if (!run->is_complete || (int)body == linkage_driven_body(linkage)) {
+                continue;
             }
+            if (table == NULL) {
+                table = fields_table("Extremes of the motion", RUN_BODY_FIELDS, where, style, text);
+            }
+            table_cell(table, "%s", linkage->bodies[body].name);
+            table_cell(table, "%s", run->backend);
+            fields_table_row(RUN_BODY_FIELDS, where, &run->bodies[body], table);
         }
     }
-    section_end(table, text);
+    if (table != NULL) {
+        section_end(table, text);
+    }
 }
 
 static void contact_row(Table *table, const RunReport *report, const Trajectory *run, size_t number)
@@ -174,35 +139,10 @@ static size_t count_spikes(const Linkage *linkage, const Trajectory *run)
     return count;
 }
 
-static void spike_row(Table *table, const Joint *joint, bool is_driven, const Spike *spike)
-{
-    table_cell(table, "%s", joint->name);
-    table_cell(table, "%.4f", spike->onset_s * UNITS_MS);
-    if (is_driven) {
-        table_cell(table, "%.1f", spike->crank_rad * UNITS_DEG);
-    }
-    section_number(table, spike->approach_speed * UNITS_MM);
-    section_number(table, spike->force_max);
-    section_number(table, spike->duration_s * UNITS_US);
-    section_number(table, spike->impulse);
-    section_number(table, spike->penetration_max * UNITS_UM);
-}
-
 void run_tables_spikes(const RunReport *report, size_t limit, const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"joint", "", TABLE_LEFT},         {"onset", "ms", TABLE_RIGHT},
-        {"approach", "mm/s", TABLE_RIGHT}, {"force max", "N", TABLE_RIGHT},
-        {"duration", "us", TABLE_RIGHT},   {"impulse", "N s", TABLE_RIGHT},
-        {"deepest", "um", TABLE_RIGHT},
-    };
-    static const SectionHead DRIVEN_HEADS[] = {
-        {"joint", "", TABLE_LEFT},       {"onset", "ms", TABLE_RIGHT},
-        {"crank", "deg", TABLE_RIGHT},   {"approach", "mm/s", TABLE_RIGHT},
-        {"force max", "N", TABLE_RIGHT}, {"duration", "us", TABLE_RIGHT},
-        {"impulse", "N s", TABLE_RIGHT}, {"deepest", "um", TABLE_RIGHT},
-    };
     const Linkage *linkage = &report->scenario->linkage;
+    const unsigned where = run_report_columns(report);
     for (size_t i = report->run_count; i-- > 0;) {
         const Trajectory *run = report->runs[i];
         if (count_spikes(linkage, run) == 0) {
@@ -210,41 +150,17 @@ void run_tables_spikes(const RunReport *report, size_t limit, const Style *style
         }
         char heading[128];
         snprintf(heading, sizeof heading, "Strongest contacts, %s", run->backend);
-        const bool is_driven = linkage->driver.is_present;
-        Table *table = section_begin(heading, is_driven ? 8 : 7, is_driven ? DRIVEN_HEADS : HEADS,
-                                     style, text);
+        Table *table = fields_table(heading, RUN_CONTACT_FIELDS, where, style, text);
         for (size_t joint = 0; joint < linkage->joint_count; joint++) {
             const JointExtremes *extremes = &run->joints[joint];
             const bool has_play = linkage->joints[joint].kind == JOINT_CLEARANCE;
             for (size_t k = 0; has_play && k < extremes->spike_count && k < limit; k++) {
-                spike_row(table, &linkage->joints[joint], is_driven, &extremes->spikes[k]);
+                table_cell(table, "%s", linkage->joints[joint].name);
+                fields_table_row(RUN_CONTACT_FIELDS, where, &extremes->spikes[k], table);
             }
         }
         section_end(table, text);
         return;
-    }
-}
-
-static void cost_row(Table *table, const Trajectory *run)
-{
-    table_cell(table, "%s", run->backend);
-    if (!run->is_complete) {
-        table_cell(table, "failed");
-        for (int i = 0; i < 5; i++) {
-            table_cell(table, "-");
-        }
-        return;
-    }
-    table_cell(table, "done");
-    table_cell(table, "%zu", run->steps);
-    section_number_or_dash(table, run->evaluations > 0, (double)run->evaluations);
-    section_number(table, run->wall_s * UNITS_MS);
-    if (run->steps > 0 && run->wall_s > 0.0) {
-        section_number(table, run->wall_s / (double)run->steps * UNITS_US);
-        section_number(table, run->duration_s / run->wall_s);
-    } else {
-        table_cell(table, "-");
-        table_cell(table, "-");
     }
 }
 
@@ -268,15 +184,9 @@ static void write_chosen(const RunReport *report, const Trajectory *run, Text *t
 
 void run_tables_cost(const RunReport *report, const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"backend", "", TABLE_LEFT},          {"status", "", TABLE_LEFT},
-        {"steps", "", TABLE_RIGHT},           {"evaluations", "", TABLE_RIGHT},
-        {"wall time", "ms", TABLE_RIGHT},     {"a step", "us", TABLE_RIGHT},
-        {"simulated/wall", "1", TABLE_RIGHT},
-    };
-    Table *table = section_begin("Cost", 7, HEADS, style, text);
+    Table *table = fields_table("Cost", RUN_FIELDS, FIELD_TABLE, style, text);
     for (size_t i = 0; i < report->run_count; i++) {
-        cost_row(table, report->runs[i]);
+        fields_table_row(RUN_FIELDS, FIELD_TABLE, report->runs[i], table);
     }
     section_end(table, text);
     for (size_t i = 0; i < report->run_count; i++) {

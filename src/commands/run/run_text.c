@@ -1,10 +1,5 @@
 // What was run, how was it modelled, and what came out?
-#include "commands/run/run_text.h"
-
-#include "commands/run/analytic_text.h"
-#include "commands/run/run_tables.h"
-#include "commands/run/run_truth.h"
-#include "commands/run/spike_tables.h"
+#include "commands/run/run_report.h"
 #include "contact/law.h"
 #include "contact/penalty.h"
 #include "model/kinematics.h"
@@ -145,8 +140,9 @@ static void write_models(const RunReport *report, const Style *style, Text *text
     }
 }
 
-void run_text_write(const RunReport *report, const Style *style, Text *text)
+void run_text_write(const void *of, const Style *style, Text *text)
 {
+    const RunReport *report = of;
     const Scenario *scenario = report->scenario;
     const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
     text_append(text, "%s%s%s\n\n", style->heading, title, style->end);

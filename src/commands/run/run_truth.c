@@ -1,8 +1,7 @@
 // How far are the runs from the truth, how sure is the truth, and where does it end?
-#include "commands/run/run_truth.h"
-
+#include "commands/run/run_report.h"
 #include "model/energy.h"
-#include "write/section.h"
+#include "write/measured_fields.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -141,12 +140,6 @@ static bool has_drive_work(const Linkage *linkage, const Trajectory *run)
 
 void run_truth_energy(const RunReport *report, const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"backend", "", TABLE_LEFT},           {"drive work", "J", TABLE_RIGHT},
-        {"change", "J", TABLE_RIGHT},          {"dissipated", "J", TABLE_RIGHT},
-        {"friction", "J", TABLE_RIGHT},        {"residual", "J", TABLE_RIGHT},
-        {"residual", "of drive", TABLE_RIGHT},
-    };
     Table *table = NULL;
     for (size_t i = 0; i < report->run_count; i++) {
         const Energy *energy = &report->runs[i]->energy;
@@ -154,14 +147,10 @@ void run_truth_energy(const RunReport *report, const Style *style, Text *text)
             continue;
         }
         if (table == NULL) {
-            table = section_begin("Energy", 7, HEADS, style, text);
+            table = fields_table("Energy", RUN_ENERGY_FIELDS, FIELD_TABLE, style, text);
         }
         table_cell(table, "%s", report->runs[i]->backend);
-        section_number(table, energy->drive_work);
-        section_number(table, energy->change);
-        section_number(table, energy->dissipated);
-        section_number(table, energy->friction);
-        section_number(table, energy->residual);
+        fields_table_row(RUN_ENERGY_FIELDS, FIELD_TABLE, energy, table);
         section_number_or_dash(table, has_drive_work(&report->scenario->linkage, report->runs[i]),
                                fabs(energy->residual / energy->drive_work));
     }
@@ -220,30 +209,13 @@ void run_truth_matches(const RunReport *report, const Style *style, Text *text)
     }
 }
 
-typedef struct MetricWords {
-    const char *name;
-    double scale; // from SI
-} MetricWords;
-
-static const MetricWords METRICS[ENSEMBLE_METRIC_COUNT] = {
-    [ENSEMBLE_FORCE_MAX] = {"force max, N", 1.0},
-    [ENSEMBLE_IMPULSE] = {"impulse, N s", 1.0},
-    [ENSEMBLE_IMPACTS] = {"impacts", 1.0},
-    [ENSEMBLE_PENETRATION_MAX] = {"deepest, um", 1e6},
-    [ENSEMBLE_CONTACT_SHARE] = {"in contact, %", 1e2},
-};
-
-static void distribution_row(Table *table, const Joint *joint, const MetricWords *words,
-                             const char *backend, const Distribution *distribution)
+static void distribution_cells(Table *table, const Distribution *distribution, double scale)
 {
-    table_cell(table, "%s", joint->name);
-    table_cell(table, "%s", words->name);
-    table_cell(table, "%s", backend);
-    section_number(table, distribution->low * words->scale);
-    section_number(table, distribution->median * words->scale);
-    section_number(table, distribution->high * words->scale);
-    section_number(table, distribution->mean * words->scale);
-    section_number(table, distribution->deviation * words->scale);
+    section_number(table, distribution->low * scale);
+    section_number(table, distribution->median * scale);
+    section_number(table, distribution->high * scale);
+    section_number(table, distribution->mean * scale);
+    section_number(table, distribution->deviation * scale);
 }
 
 static void ensemble_rows(Table *table, const RunReport *report, size_t joint, size_t metric)
@@ -251,8 +223,12 @@ static void ensemble_rows(Table *table, const RunReport *report, size_t joint, s
     for (size_t i = 0; i < report->run_count; i++) {
         const Ensemble *ensemble = &report->ensembles[i];
         if (ensemble->members > 0) {
-            distribution_row(table, &report->scenario->linkage.joints[joint], &METRICS[metric],
-                             report->runs[i]->backend, &ensemble->joints[joint][metric]);
+            const Field *field = &METRIC_FIELDS[metric];
+            table_cell(table, "%s", report->scenario->linkage.joints[joint].name);
+            table_cell(table, "%s%s%s", field->title, field->unit[0] != '\0' ? ", " : "",
+                       field->unit);
+            table_cell(table, "%s", report->runs[i]->backend);
+            distribution_cells(table, &ensemble->joints[joint][metric], units_per_si(field->unit));
         }
     }
 }

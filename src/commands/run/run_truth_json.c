@@ -1,6 +1,5 @@
 // What do other programs read of the truth and of what was measured against it?
-#include "commands/run/run_truth_json.h"
-
+#include "commands/run/run_report.h"
 #include "write/json_value.h"
 #include "write/measured_fields.h"
 
@@ -47,17 +46,6 @@ json_t *run_truth_json_error(const RunReport *report, size_t run)
     json_value_set(object, "reference_uncertainty", is_certified ? truth->uncertainty : NAN);
     json_object_set_new(object, "limited_by_reference",
                         json_boolean(run_report_is_limited_by_reference(report, error)));
-    return object;
-}
-
-json_t *run_truth_json_energy(const Energy *energy)
-{
-    json_t *object = json_object();
-    json_value_set(object, "drive_work_J", energy->drive_work);
-    json_value_set(object, "dissipated_J", energy->dissipated);
-    json_value_set(object, "friction_J", energy->friction);
-    json_value_set(object, "change_J", energy->change);
-    json_value_set(object, "residual_J", energy->residual);
     return object;
 }
 

@@ -1,9 +1,6 @@
 // What do other programs read of the spikes?
-#include "commands/run/spike_json.h"
-
 #include "commands/run/spike_bands.h"
 #include "write/json_value.h"
-#include "write/units.h"
 
 #include <stdio.h>
 
@@ -14,32 +11,22 @@ static void set_with_unit(json_t *object, const char *name, const char *unit, do
     json_value_set(object, key, value);
 }
 
-static json_t *spike_object(const SignalSpike *spike, const char *unit, const char *impulse_unit,
-                            const Linkage *linkage)
+void spike_json_set(json_t *object, unsigned where, const Linkage *linkage,
+                    const SignalSpikes *spikes)
 {
-    json_t *object = json_object();
-    json_value_set(object, "onset_s", spike->onset_s);
-    json_value_set(object, "peak_s", spike->time_s);
-    json_value_set(object, "end_s", spike->end_s);
-    json_value_set(object, "crank_deg",
-                   linkage->driver.is_present ? spike->crank_rad * UNITS_DEG : NAN);
-    set_with_unit(object, "value", unit, spike->value);
-    set_with_unit(object, "prominence", unit, spike->prominence);
-    json_value_set(object, "width_s", spike->width_s);
-    set_with_unit(object, "impulse", impulse_unit, spike->impulse);
-    json_object_set_new(object, "joint",
-                        spike->joint >= 0 ? json_string(linkage->joints[spike->joint].name)
-                                          : json_null());
-    return object;
-}
-
-void spike_json_set(json_t *object, const char *name, const char *unit, const char *impulse_unit,
-                    const Linkage *linkage, const SignalSpikes *spikes)
-{
+    const bool is_alpha = where == RUN_ALPHA;
+    const char *name = is_alpha ? "alpha" : "force";
+    const char *unit = is_alpha ? "rad_s2" : "N";
+    const unsigned columns =
+        where | FIELD_JSON | (linkage->driver.is_present ? RUN_DRIVEN : RUN_NO_CRANK);
     char key[64];
     json_t *array = spikes->is_known ? json_array() : json_null();
     for (size_t i = 0; spikes->is_known && i < spikes->kept; i++) {
-        json_array_append_new(array, spike_object(&spikes->spikes[i], unit, impulse_unit, linkage));
+        const int joint = spikes->spikes[i].joint;
+        json_t *spike = fields_json(RUN_SPIKE_FIELDS, columns, &spikes->spikes[i]);
+        json_object_set_new(spike, "joint",
+                            joint >= 0 ? json_string(linkage->joints[joint].name) : json_null());
+        json_array_append_new(array, spike);
     }
     snprintf(key, sizeof key, "%s_spikes", name);
     json_object_set_new(object, key, array);

@@ -1,18 +1,8 @@
 // Which spikes did the accelerations and the forces have?
-#include "commands/run/spike_tables.h"
-
 #include "commands/run/spike_bands.h"
-#include "write/section.h"
 #include "write/units.h"
 
 #include <stdio.h>
-
-// Whether spikes of a signal were looked for and it can have any.
-static bool has_body(const RunReport *report, const Trajectory *run, size_t body)
-{
-    return run->is_complete && run->alpha_spikes[body].is_known &&
-           (int)body != linkage_driven_body(&report->scenario->linkage);
-}
 
 static bool has_joint(const RunReport *report, const Trajectory *run, size_t joint)
 {
@@ -23,7 +13,7 @@ static bool has_joint(const RunReport *report, const Trajectory *run, size_t joi
 static bool looked_for_any(const RunReport *report, const Trajectory *run)
 {
     for (size_t i = 0; i < report->scenario->linkage.body_count; i++) {
-        if (has_body(report, run, i)) {
+        if (run_report_has_body_spikes(report, run, i)) {
             return true;
         }
     }
@@ -78,7 +68,7 @@ static void write_counts(const RunReport *report, const Style *style, Text *text
     for (size_t body = 0; body < linkage->body_count; body++) {
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
-            if (has_body(report, run, body)) {
+            if (run_report_has_body_spikes(report, run, body)) {
                 count_row(table, report, run, "alpha", linkage->bodies[body].name, "rad/s^2",
                           &run->alpha_spikes[body]);
             }
@@ -101,27 +91,11 @@ static void write_counts(const RunReport *report, const Style *style, Text *text
     }
 }
 
-static void spike_row(Table *table, const RunReport *report, size_t body, const SignalSpike *spike)
-{
-    const Linkage *linkage = &report->scenario->linkage;
-    table_cell(table, "%s", linkage->bodies[body].name);
-    if (linkage->driver.is_present) {
-        table_cell(table, "%.4f", spike->time_s * UNITS_MS);
-    }
-    when_cell(table, report, spike);
-    section_number(table, spike->value);
-    section_number(table, spike->prominence);
-    section_number(table, spike->width_s * UNITS_US);
-    section_number(table, (spike->end_s - spike->onset_s) * UNITS_US);
-    section_number(table, spike->impulse);
-    table_cell(table, "%s", spike->joint >= 0 ? linkage->joints[spike->joint].name : "-");
-}
-
 static size_t count_kept(const RunReport *report, const Trajectory *run)
 {
     size_t count = 0;
     for (size_t i = 0; i < report->scenario->linkage.body_count; i++) {
-        count += has_body(report, run, i) ? run->alpha_spikes[i].kept : 0;
+        count += run_report_has_body_spikes(report, run, i) ? run->alpha_spikes[i].kept : 0;
     }
     return count;
 }
@@ -129,33 +103,19 @@ static size_t count_kept(const RunReport *report, const Trajectory *run)
 static void write_strongest(const RunReport *report, const Trajectory *run, size_t limit,
                             const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"body", "", TABLE_LEFT},
-        {"peak", "ms", TABLE_RIGHT},
-        {"crank", "deg", TABLE_RIGHT},
-        {"alpha", "rad/s^2", TABLE_RIGHT},
-        {"height", "rad/s^2", TABLE_RIGHT | TABLE_DETAIL},
-        {"width", "us", TABLE_RIGHT},
-        {"duration", "us", TABLE_RIGHT},
-        {"impulse", "rad/s", TABLE_RIGHT},
-        {"joint", "", TABLE_LEFT},
-    };
-    static const SectionHead FREE_HEADS[] = {
-        {"body", "", TABLE_LEFT},          {"peak", "ms", TABLE_RIGHT},
-        {"alpha", "rad/s^2", TABLE_RIGHT}, {"height", "rad/s^2", TABLE_RIGHT | TABLE_DETAIL},
-        {"width", "us", TABLE_RIGHT},      {"duration", "us", TABLE_RIGHT},
-        {"impulse", "rad/s", TABLE_RIGHT}, {"joint", "", TABLE_LEFT},
-    };
     const Linkage *linkage = &report->scenario->linkage;
-    const bool is_driven = linkage->driver.is_present;
+    const unsigned where = run_report_columns(report);
     char heading[128];
     snprintf(heading, sizeof heading, "Strongest spikes of the accelerations, %s", run->backend);
-    Table *table =
-        section_begin(heading, is_driven ? 9 : 8, is_driven ? HEADS : FREE_HEADS, style, text);
+    Table *table = fields_table(heading, RUN_SPIKE_FIELDS, where, style, text);
     for (size_t body = 0; body < linkage->body_count; body++) {
         const SignalSpikes *spikes = &run->alpha_spikes[body];
-        for (size_t i = 0; has_body(report, run, body) && i < spikes->kept && i < limit; i++) {
-            spike_row(table, report, body, &spikes->spikes[i]);
+        for (size_t i = 0;
+             run_report_has_body_spikes(report, run, body) && i < spikes->kept && i < limit; i++) {
+            const int joint = spikes->spikes[i].joint;
+            table_cell(table, "%s", linkage->bodies[body].name);
+            fields_table_row(RUN_SPIKE_FIELDS, where, &spikes->spikes[i], table);
+            table_cell(table, "%s", joint >= 0 ? linkage->joints[joint].name : "-");
         }
     }
     section_end(table, text);
