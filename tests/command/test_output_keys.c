@@ -1,4 +1,5 @@
-// Does docs/output.md list every key of the JSON that each command prints?
+// Does docs/output.md list every key of the JSON that each command prints, and every column of the
+// tables that it writes?
 //
 // A key is listed if a code span in the command's section of the page has it as a whole word. Keys
 // that are names of the case (bodies, joints, settings) are not looked for. Each command has a
@@ -70,12 +71,12 @@ typedef struct Missing {
     char keys[MISSING_SIZE];
 } Missing;
 
-static void look_for_key(Missing *missing, const char *key)
+static void note_key(Missing *missing, const char *key, bool is_listed)
 {
     char word[KEY_SIZE + 2];
     snprintf(word, sizeof word, " %s ", key);
     missing->key_count++;
-    if (find_key(missing->section, key) == NULL && strstr(missing->keys, word) == NULL) {
+    if (!is_listed && strstr(missing->keys, word) == NULL) {
         const size_t length = strlen(missing->keys);
         snprintf(missing->keys + length, MISSING_SIZE - length, "%s%s ", length == 0 ? " " : "",
                  key);
@@ -96,7 +97,7 @@ static void look_for_keys(Missing *missing, json_t *value, const char *name)
     json_object_foreach(value, key, child)
     {
         if (!has_names) {
-            look_for_key(missing, key);
+            note_key(missing, key, find_key(missing->section, key) != NULL);
         }
         if (!is_among(FREE, sizeof FREE / sizeof *FREE, key)) {
             look_for_keys(missing, child, has_names ? NULL : key);
@@ -157,6 +158,58 @@ static void check_keys(void **state, const char *command, const char *words, con
     look_for_keys(&control, root, NULL);
     assert_string_equal(control.keys, only);
     json_decref(root);
+}
+
+// Whole, or behind the name of a body or joint (`<body>_omega_rad_s`), or in two parts (`asked_`
+// and `restitution`).
+static bool is_column_listed(Section section, const char *column)
+{
+    const char *rest = strchr(column, '_');
+    char first[KEY_SIZE];
+    if (find_key(section, column) != NULL || rest == NULL) {
+        return find_key(section, column) != NULL;
+    }
+    snprintf(first, sizeof first, "%.*s", (int)(rest + 1 - column), column);
+    return find_key(section, rest) != NULL ||
+           (find_key(section, first) != NULL && find_key(section, rest + 1) != NULL);
+}
+
+static void look_for_columns(Missing *missing, const char *head)
+{
+    while (*head != '\0' && *head != '\n') {
+        const size_t length = strcspn(head, ",\n");
+        char column[KEY_SIZE];
+        assert_in_range(length, 1, KEY_SIZE - 1);
+        snprintf(column, sizeof column, "%.*s", (int)length, head);
+        note_key(missing, column, is_column_listed(missing->section, column));
+        head += length;
+        head += *head == ',' ? 1 : 0;
+    }
+}
+
+// The same for the columns of the table that a command writes as table.csv.
+static void check_columns(void **state, const char *command, const char *words, const char *erased,
+                          const char *lost)
+{
+    static char page[PAGE_SIZE];
+    static char table[PROGRAM_OUTPUT_SIZE];
+    char path[PROGRAM_PATH_SIZE];
+    Program *program = *state;
+    read_page(page);
+    program_run(program, words);
+    assert_int_equal(program->status, 0);
+    program_path(program, "table.csv", path);
+    program_read(path, table);
+
+    Missing missing = {.section = find_section(page, command)};
+    look_for_columns(&missing, table);
+    assert_string_equal(missing.keys, "");
+    assert_true(missing.key_count > 10);
+
+    Missing control = {.section = missing.section};
+    erase_key(control.section, erased);
+    look_for_columns(&control, table);
+    assert_string_equal(control.keys, lost);
 }
 
 #define FIRST_CONTACTS "\"$cases\"/paper/impact-k66.yaml --set run.revolutions=0.02"
@@ -222,6 +275,20 @@ static void every_key_of_paper_is_listed(void **state)
     check_keys(state, "paper", "paper -q --json", "contact_half_angle_rad");
 }
 
+static void every_column_of_a_table_is_listed(void **state)
+{
+    check_columns(state, "run",
+                  "run -q --backend reference --series table.csv "
+                  "\"$cases\"/literature/pin-in-hole-drop.yaml --set 'run.duration=1 ms'",
+                  "_gap_max_m", " hole_gap_max_m ");
+    check_columns(state, "map", "map -q --csv table.csv --steps '1 us' " FIRST_CONTACTS,
+                  "longest_valid_step_s", " longest_valid_step_s ");
+    check_columns(state, "compare",
+                  "compare -q --csv table.csv --store kept --steps '20 us, 10 us' "
+                  "\"$cases\"/literature/pin-in-hole-drop.yaml --set 'run.duration=10 ms'",
+                  "wall_min_s", " wall_min_s ");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -238,6 +305,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(every_key_of_study_is_listed, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(every_key_of_paper_is_listed, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(every_column_of_a_table_is_listed, program_set_up,
                                         program_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
