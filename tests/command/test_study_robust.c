@@ -231,7 +231,7 @@ static void a_second_process_is_told_that_the_store_is_at_work(void **state)
     find_child(process);
     program_run(program, "study s.yaml");
     assert_int_equal(program->status, 5);
-    assert_says(program->errors, "s.sqlite is at work in another process");
+    assert_says(program->errors, "s.sqlite is in use by another process");
     // looking at it is no harm
     run_well(program, "study status s.yaml");
     // told to stop, it does so in good order
@@ -309,8 +309,8 @@ static void a_bit_that_turned_is_told_by_every_command(void **state)
         program_run(program, READERS[i]);
         assert_int_equal(program->status, 5);
         assert_says(program->errors,
-                    "the store s.sqlite is damaged: run 0 is not what was once "
-                    "written; 'jointplay study FILE --retry-failed' makes it again");
+                    "the store s.sqlite is damaged: run 0 does not match its "
+                    "checksum; 'jointplay study FILE --retry-failed' makes it again");
     }
     assert_false(is_there(program, "m.sqlite") || is_there(program, "p.svg"));
     run_well(program, "study s.yaml --retry-failed");

@@ -41,7 +41,7 @@ END
 prepare_study() { write_case 36 && write_study; }
 words_study=(study s.yaml --json -q --jobs 2)
 result_study() { rows s.sqlite; }
-held_study() { rows s.sqlite 2>error || grep -q 'is no store of a study\|No such file' error; }
+held_study() { rows s.sqlite 2>error || grep -q 'is not the store of a study\|No such file' error; }
 kept_study() {
     local made
     made=$(sed -n 's/.*"made": \([0-9]*\).*/\1/p' output)
@@ -55,7 +55,7 @@ prepare_merge() {
 }
 words_merge=(study merge m.sqlite a.sqlite b.sqlite c.sqlite)
 result_merge() { "$program" study export m.sqlite; }
-held_merge() { "$program" study export m.sqlite 2>error || grep -q 'is no store of a study\|No such file' error; }
+held_merge() { "$program" study export m.sqlite 2>error || grep -q 'is not the store of a study\|No such file' error; }
 # all of it or nothing
 kept_merge() { [ ! -s held ] || [ "$(wc -l <held)" = 1 ] || cmp -s held result; }
 

@@ -225,7 +225,7 @@ static void expect_at_work(void)
     for (int fresh = 0; fresh < 2; fresh++) {
         assert_null(open_study(&layout, fresh == 1, &err));
         assert_int_equal(err.kind, ERR_FILE);
-        assert_non_null(strstr(err.text, "is at work in another process"));
+        assert_non_null(strstr(err.text, "is in use by another process"));
     }
 }
 

@@ -147,7 +147,7 @@ static void every_reader_names_the_row_that_is_damaged(void **state)
                 assert_int_equal(read_by(reader, store, &err), damaged == 0);
                 if (damaged == 1) {
                     assert_int_equal(err.kind, ERR_FILE);
-                    assert_non_null(strstr(err.text, "run 3 is not what was once written"));
+                    assert_non_null(strstr(err.text, "run 3 does not match its checksum"));
                 }
                 err = (Err){0};
                 assert_true(store_close(store, &err));
@@ -238,7 +238,7 @@ static void expect_left_alone(size_t size)
         const StoreHead head = study_head(&layout, RUNS);
         assert_null(fresh < 2 ? store_open(path, &head, fresh == 1, &err) : store_view(path, &err));
         assert_int_equal(err.kind, ERR_FILE);
-        assert_non_null(strstr(err.text, "is no store of a study"));
+        assert_non_null(strstr(err.text, "is not the store of a study"));
     }
     unsigned char former[FILE_MAX];
     memcpy(former, content, size);
@@ -308,7 +308,7 @@ static void a_place_that_is_no_file_is_told(void **state)
     assert_int_equal(mkfifo(path, 0600), 0);
     err = (Err){0};
     assert_null(store_view(path, &err));
-    assert_non_null(strstr(err.text, "is no store of a study"));
+    assert_non_null(strstr(err.text, "is not the store of a study"));
 }
 
 // So that a full disk can be had anywhere: no file of the process can be longer than that.

@@ -266,7 +266,7 @@ static void a_source_that_is_missing_or_damaged_is_named(void **state)
     FILE *stream = fopen(shards[SHARDS], "w");
     fputs("my thesis", stream);
     fclose(stream);
-    expect_no_merge(SHARDS + 1, shards[SHARDS], "is no store of a study");
+    expect_no_merge(SHARDS + 1, shards[SHARDS], "is not the store of a study");
     // a page of rows in the middle of a shard
     stream = fopen(shards[1], "r+b");
     fseek(stream, 7 * 4096 + 2000, SEEK_SET);
@@ -307,7 +307,7 @@ static void a_source_at_work_is_waited_for_by_people(void **state)
     char word = 'n';
     assert_int_equal(read(pipes[0], &word, 1), 1);
     assert_int_equal(word, 'y');
-    expect_no_merge(SHARDS, shards[1], "is at work in another process");
+    expect_no_merge(SHARDS, shards[1], "is in use by another process");
     kill(worker, SIGKILL);
     waitpid(worker, NULL, 0);
     close(pipes[0]);

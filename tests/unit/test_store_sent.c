@@ -155,12 +155,12 @@ static void a_journal_that_is_no_file_of_its_own_is_refused(void **state)
     expect_refusal("is a link; move it away");
     unlink(journal);
     assert_int_equal(link(victim, journal), 0);
-    expect_refusal("is no file of its own; move it away");
+    expect_refusal("is not a file of a single name; move it away");
     unlink(journal);
     assert_int_equal(mkfifo(journal, 0600), 0);
     Err err = {0};
     assert_null(store_view(path, &err));
-    assert_non_null(strstr(err.text, "is no file of its own; move it away"));
+    assert_non_null(strstr(err.text, "is not a file of a single name; move it away"));
     // the control: what was begun and not used is no harm
     unlink(journal);
     write_file(journal, "", 0);
@@ -172,7 +172,7 @@ static void what_is_called_like_a_journal_and_is_none_is_not_deleted(void **stat
     (void)state;
     make_store(FEW);
     write_file(journal, "my diary, begun in May\n", 23);
-    expect_refusal("is no journal of it, and would be deleted for one");
+    expect_refusal("is not its journal, and would be deleted as one");
 }
 
 static void a_write_ahead_log_is_refused(void **state)
@@ -243,23 +243,23 @@ static void a_schema_that_is_not_word_for_word_a_store_s_is_refused(void **state
     } CHANGES[] = {
         {"DROP TABLE study; CREATE VIEW study AS " ENDLESS "SELECT i AS name, i AS value, "
          "i AS words FROM n",
-         "there is a view in it that no store has"},
+         "it contains a view that no store has"},
         {"ALTER TABLE effort RENAME TO e; CREATE VIEW effort AS " ENDLESS
          "SELECT i AS run, i AS wall_s, i AS checksum FROM n",
          "that no store has"},
         {"CREATE TRIGGER t AFTER INSERT ON run BEGIN DELETE FROM run; END",
-         "there is a trigger in it that no store has"},
-        {"CREATE TABLE other(x)", "there is a table in it that no store has"},
-        {"CREATE INDEX i ON run(fate)", "there is an index in it that no store has"},
+         "it contains a trigger that no store has"},
+        {"CREATE TABLE other(x)", "it contains a table that no store has"},
+        {"CREATE INDEX i ON run(fate)", "it contains an index that no store has"},
         {"DROP TABLE effort", "it has no table effort"},
         {"ALTER TABLE run ADD COLUMN more", "the columns of its runs are not those of a store"},
         {"ALTER TABLE run ADD COLUMN more GENERATED ALWAYS AS (zeroblob(1e9)) VIRTUAL",
          "the columns of its runs are not those of a store"},
-        {"ALTER TABLE effort ADD COLUMN more", "there is a table in it that no store has"},
+        {"ALTER TABLE effort ADD COLUMN more", "it contains a table that no store has"},
         {"PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = "
          "replace(sql, 'wall_s REAL', 'wall_s REAL CHECK(length(zeroblob(1e9)))') "
          "WHERE name = 'effort'",
-         "there is a table in it that no store has"},
+         "it contains a table that no store has"},
     };
     for (size_t i = 0; i < sizeof CHANGES / sizeof *CHANGES; i++) {
         expect_stranger(CHANGES[i].sql, CHANGES[i].words);

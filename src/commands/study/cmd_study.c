@@ -87,8 +87,8 @@ static const Arguments ARGUMENTS = {
              "merge OUT.sqlite IN.sqlite...\nplot FILE-or-STORE FILE.svg\nslurm FILE",
     .doc = "Makes the runs of a study that its store does not hold yet, each in a process of "
            "its own, and keeps them in the store."
-           "\vWhoever ends the program at any moment goes on where it stood with the same "
-           "command. 'jointplay study status --help' and so on tell more of the others.",
+           "\vA study that is stopped at any moment resumes with the same command. 'jointplay "
+           "study status --help' and so on explain the others.",
     .argument = COMMON_PATH("study takes one file"),
     OPTION_ROWS(OPTIONS),
     .check = check,

@@ -9,7 +9,7 @@
 // Parts that a study is ever divided into: each has a store, a file in one folder.
 enum { DESIGN_SHARD_MAX = 100000 };
 
-// A part of a study: every so many-th run or group of runs. {0, 1} is all of it.
+// A part of a study: every count-th run or group of runs. {0, 1} is all of it.
 typedef struct Shard {
     uint64_t index; // from 0
     uint64_t count; // at most DESIGN_SHARD_MAX

@@ -14,5 +14,5 @@ void last_words_clear(int file);
 // In the child: sends standard output and error there. Output beyond a limit is dropped.
 void last_words_listen(int file);
 
-// The last line that is not empty, cut to so many bytes; empty where there is none.
+// The last line that is not empty, shortened to `size`; empty where there is none.
 void last_words_read(int file, char *line, size_t size);

@@ -93,7 +93,7 @@ bool slurm_check(const SlurmJob *job, Err *err)
     }
     return job->time == NULL || seconds_of(job->time) >= 60 * SLURM_TIME_LEAST_MINUTES ||
            err_set(err, ERR_USAGE,
-                   "--time is %s; allowed: %d minutes and more, for a job is told to end a "
+                   "--time is %s; allowed: %d minutes and more, because a job is asked to end a "
                    "minute or two before",
                    job->time, SLURM_TIME_LEAST_MINUTES);
 }

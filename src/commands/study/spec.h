@@ -1,8 +1,8 @@
 // A study file: which case, which of its keys vary and how, within which limits.
 //
-// What varies over lists and ranges makes a grid, every combination of which is run. What is drawn
-// is drawn so many times, and each draw is run at every point of the grid: the same draws at each,
-// so that points differ in what they stand for and not in their luck.
+// What varies over lists and ranges makes a grid, every combination of which is run. Each draw is
+// run at every point of the grid: the same draws at each, so that points differ only in their own
+// values.
 #pragma once
 
 #include "casefile/casefile.h"
@@ -22,7 +22,7 @@ static const char SPEC_SCHEME_KEY[] = "scheme";
 
 typedef enum VariableKind {
     VARIABLE_LIST,        // of numbers or words
-    VARIABLE_LINEAR,      // so many numbers, evenly from first to last
+    VARIABLE_LINEAR,      // `count` numbers, evenly from first to last
     VARIABLE_LOGARITHMIC, // the same in the logarithm
     VARIABLE_UNIFORM,     // drawn between low and high
     VARIABLE_LOG_UNIFORM, // the same in the logarithm
@@ -54,7 +54,7 @@ typedef struct Spec {
     char *path; // owned, of the study file
     char title[SPEC_TEXT_SIZE];
     char *case_path; // owned: relative to the working folder, or absolute
-    char *case_text; // owned: what stood there when the study was read
+    char *case_text; // owned: its text when the study was read
     size_t case_size;
     size_t set_count;
     char *set[SPEC_SETTING_MAX]; // owned: KEY=VALUE for every run

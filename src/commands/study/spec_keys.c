@@ -78,7 +78,7 @@ static bool read_line(const Reading *reading, const SpecKey *key, const Node *va
                       const char *allowed, char *target)
 {
     if (value->kind != NODE_SCALAR || strlen(value->text) >= SPEC_TEXT_SIZE) {
-        return spec_read_refuse(reading, value, allowed, "this is no %s", key->name);
+        return spec_read_refuse(reading, value, allowed, "%s is not one line of text", key->name);
     }
     text_copy(target, SPEC_TEXT_SIZE, value->text);
     return true;

@@ -24,7 +24,7 @@ static bool check_new(const Reading *reading, const Node *value)
                         : spec_sets(reading->spec, key) ? "set"
                                                         : NULL;
     return where == NULL || source_error(&reading->source, keys_span(value), "one of the two",
-                                         reading->err, "%s stands under %s already", key, where);
+                                         reading->err, "%s is already given under %s", key, where);
 }
 
 // The case with what is set, as soon as all of that is known.
@@ -84,7 +84,7 @@ static bool set_key(Reading *reading, const Node *value)
     Spec *spec = reading->spec;
     if (strcmp(value->key->text, SPEC_SCHEME_KEY) == 0) {
         return source_error(&reading->source, keys_span(value), "scheme: NAME under vary",
-                            reading->err, "the scheme is no key of the case");
+                            reading->err, "scheme is not a key of the case");
     }
     if (spec->set_count == SPEC_SETTING_MAX) {
         return source_error(&reading->source, keys_span(value), "at most 64 keys", reading->err,

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-// Of a normal distribution within a tolerance: its limits are so many deviations from its mean.
+// Deviations from the mean to the limits of a normal distribution within a tolerance.
 static const double TOLERANCE_DEVIATIONS = 3.0;
 // Between limits with less of a normal distribution than this no value is right to 6 digits.
 static const double NORMAL_SHARE_MIN = 1e-10;
@@ -52,7 +52,7 @@ static bool check_limits(const Reading *reading, const Node *node)
     const Variable *variable = reading->variable;
     return variable->low < variable->high ||
            spec_read_refuse(reading, node, "low below high",
-                            "nothing lies between the limits of %s", variable->key);
+                            "the lower limit is not below the upper limit of %s", variable->key);
 }
 
 bool spec_read_uniform(Reading *reading, const Node *node)
@@ -75,7 +75,7 @@ bool spec_read_uniform(Reading *reading, const Node *node)
 bool spec_read_log_uniform(Reading *reading, const Node *node)
 {
     if (is_tolerance(node)) {
-        return spec_read_refuse(reading, node, "[low, high]", "a tolerance is no range of sizes");
+        return spec_read_refuse(reading, node, "[low, high]", "log-uniform takes no tolerance");
     }
     if (!spec_read_uniform(reading, node)) {
         return false;
@@ -98,7 +98,7 @@ static bool check_normal(const Reading *reading, const Node *node)
     return check_limits(reading, node) &&
            (normal_between(low, high) >= NORMAL_SHARE_MIN ||
             spec_read_refuse(reading, node, "limits within 6 deviations of the mean",
-                             "the limits of %s leave next to nothing of the distribution",
+                             "the limits of %s contain almost none of the distribution",
                              variable->key));
 }
 
@@ -143,7 +143,8 @@ static bool read_distribution(Reading *reading, const Node *node)
     return spec_keys_read(reading, SPEC_DISTRIBUTION, node) &&
            (!variable->is_whole || variable->kind == VARIABLE_UNIFORM ||
             spec_read_refuse(reading, node, "{uniform: [low, high]}",
-                             "whole numbers such as %s are drawn evenly", variable->key));
+                             "whole numbers such as %s are drawn from a uniform distribution",
+                             variable->key));
 }
 
 static bool read_key(Reading *reading, const Node *value)

@@ -87,8 +87,8 @@ bool spec_read_number(Reading *reading, const Node *node, bool is_checked, doubl
     const bool is_word = key->row->zero_word != NULL && node->kind == NODE_SCALAR &&
                          strcmp(node->text, key->row->zero_word) == 0;
     if (is_word) {
-        return spec_read_refuse(reading, node, "numbers; the word under set",
-                                "%s for %s is no number", node->text, variable->key);
+        return spec_read_refuse(reading, node, "numbers; the word stands under set",
+                                "%s for %s is not a number", node->text, variable->key);
     }
     if (!probe_number(&reading->source, key, node, &read, reading->err)) {
         return false;

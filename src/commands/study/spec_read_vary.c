@@ -87,7 +87,8 @@ static bool read_range(Reading *reading, const Node *range)
     Variable *variable = reading->variable;
     if (variable->is_word) {
         return spec_read_refuse(reading, range, "a list [..]",
-                                "the values of %s are no numbers and have no range", variable->key);
+                                "the values of %s are not numbers and have no range",
+                                variable->key);
     }
     variable->kind = VARIABLE_LINEAR;
     if (!spec_keys_read(reading, SPEC_RANGE, range)) {
@@ -133,8 +134,8 @@ static bool read_key(Reading *reading, const Node *value)
     // with other bodies the columns, which are those of the first run, would hold what is of others
     if (row != NULL && (row->type == SCHEMA_JOINT_NAME || row->type == SCHEMA_BETWEEN)) {
         return source_error(
-            &reading->source, keys_span(value), "a study of its own for each value", reading->err,
-            "%s cannot vary, for the columns of a study are those of one mechanism", key);
+            &reading->source, keys_span(value), "a separate study for each value", reading->err,
+            "%s cannot vary, because a study has the columns of one mechanism", key);
     }
     return value->kind == NODE_MAP ? read_range(reading, value) : read_list(reading, value);
 }

@@ -1,14 +1,14 @@
-// Which files beside a store would make SQLite write or delete what is not the store's?
+// Which files next to a store would make SQLite write or delete a file that is not the store's?
 //
-// SQLite finds its files by name and does what stands in them. A journal may end with the name of
+// SQLite finds its files by name and obeys their contents. A journal may end with the name of
 // a super-journal, that of a transaction over several databases, which SQLite deletes when nothing
 // refers to it any more, whatever file it is:
 //
 //     ... | name | length of the name: 4 | sum of its bytes: 4 | magic: 8
 //
-// A journal that is a link leads its writing elsewhere. A write-ahead log is taken into the
-// database whether that asked for one or not. Nothing of this is ever beside a store of ours: who
-// sent it may mean harm.
+// A journal that is a link redirects writes. A write-ahead log is merged into the database whether
+// the database uses one or not. A store of ours never has such a file next to it: whoever sent one
+// may mean harm.
 #include "commands/study/store_inside.h"
 
 #include <errno.h>
@@ -21,13 +21,13 @@ enum { MAGIC_SIZE = 8 };
 
 // The first bytes of a journal, and the last ones of the name of a super-journal.
 static const unsigned char MAGIC[MAGIC_SIZE] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
-// Those of a journal that is not yet, or no longer, to be taken back.
+// Those of a journal that is not in use.
 static const unsigned char NOTHING[MAGIC_SIZE] = {0};
 
 static bool refuse(const Store *store, const char *beside, const char *why, Err *err)
 {
     return err_set(err, ERR_FILE,
-                   "the store %s is not opened: the file %s beside it %s; move it away",
+                   "the store %s is not opened: the file %s next to it %s; move it away",
                    store->path, beside, why);
 }
 
@@ -41,7 +41,7 @@ static const char *find_fault(int journal, off_t size)
     }
     if (size < MAGIC_SIZE || pread(journal, first, MAGIC_SIZE, 0) != MAGIC_SIZE ||
         (memcmp(first, MAGIC, MAGIC_SIZE) != 0 && memcmp(first, NOTHING, MAGIC_SIZE) != 0)) {
-        return "is no journal of it, and would be deleted for one";
+        return "is not its journal, and would be deleted as one";
     }
     if (size > MAGIC_SIZE && (pread(journal, last, MAGIC_SIZE, size - MAGIC_SIZE) != MAGIC_SIZE ||
                               memcmp(last, MAGIC, MAGIC_SIZE) == 0)) {
@@ -55,15 +55,15 @@ static bool check_journal(const Store *store, const char *path, Err *err)
     struct stat status;
     const int journal = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (journal < 0) {
-        // one that ends while a store at work is looked at is none
+        // a journal may end while a store in use is read
         return errno == ENOENT ||
                refuse(store, path, errno == ELOOP ? "is a link" : "cannot be read", err);
     }
-    const char *fault = "is no file of its own";
+    const char *fault = "is not a file of a single name";
     if (fstat(journal, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink <= 1) {
         fault = status.st_nlink == 0 ? NULL : find_fault(journal, status.st_size);
     }
-    // nor is one that was longer a moment ago
+    // a journal that has been deleted since is none
     struct stat later;
     const bool is_wrong = fault != NULL && (fstat(journal, &later) != 0 || later.st_nlink != 0);
     close(journal);

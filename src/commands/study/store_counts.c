@@ -1,9 +1,9 @@
-// What can be told of all runs of a store together?
+// How are the runs of a store counted, and their results distributed?
 //
-// Every row is held against its checksum before SQL is asked about it: SQL knows of none.
+// Every row is checked against its checksum before any query, because SQL knows no checksums.
 //
-// Quantiles are values that occur, found by sorting in SQL: SQLite sorts in files where memory does
-// not do.
+// Quantiles are values that occur, found by sorting in SQL: SQLite sorts in files where memory is
+// short.
 #include "commands/study/store_inside.h"
 
 #include <math.h>
@@ -28,7 +28,7 @@ bool store_count(Store *store, StoreCount *count, Err *err)
     return store->is_verified;
 }
 
-// What SQL is asked for comes from rows that were held against their checksums once.
+// Checks all rows against their checksums, once.
 static bool verify(Store *store, Err *err)
 {
     StoreCount count;
@@ -113,7 +113,7 @@ static bool prepare_values(Store *store, const Column *column, bool is_count,
     return is_ready;
 }
 
-// The rank of a share of so many values, from 1.
+// The rank, from 1, of a share of `count` values.
 static uint64_t rank_of(double share, uint64_t count)
 {
     const double rank = ceil(share * (double)count);

@@ -1,13 +1,13 @@
-// How does a file come to be a store, and nobody else's?
+// How is the file of a store opened, by one writer at a time?
 //
-// SQLite answers for the transactions. The rollback journal, not the write-ahead log: that one
-// shares memory between processes, which network file systems do not have. synchronous = EXTRA: the
-// journal is gone from the disk's folder, too, before a commit counts; FULL could take back the
-// last one after a power cut. A commit a second makes its price not worth a question.
+// SQLite provides the transactions, with a rollback journal: a write-ahead log needs memory shared
+// between processes, which network file systems do not have. synchronous = EXTRA also removes the
+// journal from the folder on disk before a commit counts; FULL could undo the last commit after a
+// power cut. At one commit a second the cost does not matter.
 //
-// Who works on a store holds a lock of its own on one byte far behind SQLite's, from opening to
-// closing: those of SQLite last for a transaction only, and one that lasted would shut out who only
-// looks. It hangs on the open file and not on the process, for SQLite ends all of its process's
+// A writer holds a lock of its own, on one byte far behind SQLite's, from opening to closing:
+// SQLite's locks last for a transaction, and one that lasted longer would block readers. The lock
+// belongs to the open file and not to the process, because SQLite releases all of its process's
 // locks on the file after each transaction.
 #include "base/claims.h"
 #include "commands/study/store_inside.h"
@@ -29,8 +29,8 @@ enum {
     HEADER_VERSION = 60,
     HEADER_APPLICATION = 68,
     WORK_BYTE = 0x40001000, // SQLite's own locks lie on 0x40000000 to 0x400001ff
-    VIEW_WAIT_MS = 10000,   // for a commit to be over; it takes some 10
-    WORK_WAIT_MS = 60000,   // for those who look, with whatever tool, to be done
+    VIEW_WAIT_MS = 10000,   // for a commit to end, which takes some 10
+    WORK_WAIT_MS = 60000,   // for readers, with any tool, to be done
     VALUE_MAX = 1 << 20,    // bytes of a row or of SQL; a row of all columns has some 10 kB
 };
 
@@ -41,8 +41,8 @@ bool store_fail_damaged(const Store *store, const char *how, Err *err)
     return err_set(err, ERR_FILE, "the store %s is damaged: %s", store->path, how);
 }
 
-// The system's reason for an error of input or output; 0 where SQLite keeps none. A commit that
-// fails leaves it with the file alone.
+// The system's errno for an error of input or output; 0 where SQLite has none. After a failed
+// commit only the file control has it.
 static int system_reason(const Store *store, int code)
 {
     int reason = 0;
@@ -66,9 +66,9 @@ bool store_fail(const Store *store, const char *what, Err *err)
     switch (code & 0xff) {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-        return err_set(err, ERR_FILE, "the store %s is at work in another process", store->path);
+        return err_set(err, ERR_FILE, "the store %s is in use by another process", store->path);
     case SQLITE_NOTADB:
-        return err_set(err, ERR_FILE, "%s is no store of a study", store->path);
+        return err_set(err, ERR_FILE, "%s is not the store of a study", store->path);
     case SQLITE_CORRUPT:
     case SQLITE_FORMAT:
         return store_fail_damaged(store, sqlite3_errmsg(store->base), err);
@@ -120,7 +120,7 @@ static bool check_header(const Store *store, int file, bool is_empty_right, bool
     }
     if (count < HEADER_SIZE || memcmp(header, MAGIC, sizeof MAGIC) != 0 ||
         read_big_endian(header + HEADER_APPLICATION) != STORE_APPLICATION) {
-        return err_set(err, ERR_FILE, "%s is no store of a study", store->path);
+        return err_set(err, ERR_FILE, "%s is not the store of a study", store->path);
     }
     if (header[HEADER_WRITE] > 1 || header[HEADER_READ] > 1) {
         return err_set(err, ERR_FILE,
@@ -135,14 +135,14 @@ static bool check_header(const Store *store, int file, bool is_empty_right, bool
                    version, STORE_VERSION);
 }
 
-// A pipe would be waited for, and a folder is told apart from a file that is something else.
+// Opening a pipe would wait, and a folder gets a message of its own.
 static bool check_kind(const Store *store, Err *err)
 {
     struct stat status;
     if (stat(store->path, &status) != 0 || S_ISREG(status.st_mode)) {
         return true;
     }
-    return err_set(err, ERR_FILE, "%s is no store of a study%s", store->path,
+    return err_set(err, ERR_FILE, "%s is not the store of a study%s", store->path,
                    S_ISDIR(status.st_mode) ? ", but a folder" : "");
 }
 
@@ -150,7 +150,7 @@ static bool take_lock(const Store *store, Err *err)
 {
     const int reason = work_lock_take(store->lock, WORK_BYTE);
     if (reason == EAGAIN) {
-        return err_set(err, ERR_FILE, "the store %s is at work in another process", store->path);
+        return err_set(err, ERR_FILE, "the store %s is in use by another process", store->path);
     }
     return reason == 0 || fail_system(store, "lock", reason, err);
 }
@@ -165,8 +165,8 @@ bool store_file_is_at_work(const char *path)
     return is_at_work;
 }
 
-// A file may be any person's: nothing that stands in its schema is run, and no number in it is
-// asked for memory without end.
+// The file may come from anyone: no SQL in its schema is run, and no number in it decides how much
+// memory is allocated.
 static void harden(sqlite3 *base)
 {
     static const struct {
@@ -186,8 +186,8 @@ static void harden(sqlite3 *base)
     sqlite3_limit(base, SQLITE_LIMIT_TRIGGER_DEPTH, 1);
 }
 
-// By the path that all links lead to, as SQLite would follow them: the files beside it are asked
-// for by that one, too. It begins with a slash; SQLite takes names like ":memory:" for no file.
+// By the path with all links resolved, as SQLite resolves it: the files next to it are checked by
+// that path, too. It begins with a slash, so that it is not a special name such as ":memory:".
 static bool open_base(Store *store, int flags, int wait_ms, Err *err)
 {
     char *path = realpath(store->path, NULL);
@@ -209,8 +209,8 @@ static bool open_base(Store *store, int flags, int wait_ms, Err *err)
     return store_run_sql(store, "PRAGMA cell_size_check = ON", err);
 }
 
-// Empties the file, whatever damage there is in it, as one transaction. Nothing else may have been
-// asked of SQLite before, for it reads the tables first.
+// Empties the file, damaged or not, in one transaction. It must be the first use of SQLite on the
+// file, because any other reads the tables.
 static bool reset(Store *store, Err *err)
 {
     sqlite3_db_config(store->base, SQLITE_DBCONFIG_RESET_DATABASE, 1, NULL);
@@ -219,7 +219,7 @@ static bool reset(Store *store, Err *err)
     return is_done;
 }
 
-// Who makes a file is not yet who locks it first: whatever stands in it then is another's.
+// Another process may lock the file between its creation and our lock, and write to it.
 static bool claim(Store *store, bool is_made, Err *err)
 {
     struct stat status;
@@ -229,9 +229,9 @@ static bool claim(Store *store, bool is_made, Err *err)
     if (fstat(store->lock, &status) != 0) {
         return fail_system(store, "open", errno, err);
     }
-    // whoever had the lock may have taken the file away again
+    // the process that had the lock may have deleted the file
     if (status.st_nlink == 0) {
-        return err_set(err, ERR_FILE, "the store %s is at work in another process", store->path);
+        return err_set(err, ERR_FILE, "the store %s is in use by another process", store->path);
     }
     store->is_made = is_made && status.st_size == 0;
     return true;
@@ -273,7 +273,7 @@ bool store_file_view(Store *store, Err *err)
 
 void store_file_close(Store *store)
 {
-    // before the lock's file: its end is the end of all locks that SQLite may have on it
+    // before the file of the lock, because closing that ends all locks of SQLite on it
     sqlite3_close(store->base);
     store->base = NULL;
     if (store->lock >= 0) {

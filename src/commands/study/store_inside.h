@@ -1,4 +1,4 @@
-// What the files of the store share among themselves; nobody else includes this.
+// What the files of the store share; no other file includes this.
 #pragma once
 
 #include "base/text.h"
@@ -18,15 +18,15 @@ static const char STORE_ERROR_COLUMN[] = "error_omega_max";
 
 struct Store {
     struct sqlite3 *base;
-    struct sqlite3_stmt *add_run; // prepared when first needed, as all that follow
+    struct sqlite3_stmt *add_run; // prepared when first needed, as are the next three
     struct sqlite3_stmt *add_effort;
     struct sqlite3_stmt *find;
     struct sqlite3_stmt *rows;
     char *path;       // owned, as given
-    int lock;         // file that the lock of whoever works on the store hangs on; -1: none
-    bool is_made;     // its file is of this opening: nobody else has ever written to it
+    int lock;         // file that holds the lock of the process that writes; -1: none
+    bool is_made;     // this opening created the file: no other process has written to it
     bool is_changing; // a transaction is open
-    bool is_verified; // every row that was there when it was first asked is what was once written
+    bool is_verified; // every row that was there at the first question matches its checksum
     Layout *layout;   // owned
     uint64_t run_count;
     size_t key_count;
@@ -35,33 +35,33 @@ struct Store {
 
 // store.c: opening
 
-// Opens the store that others are merged into, the first of which is named; as store_open.
+// Opens the store that others are merged into, as store_open; `source` is the first of them.
 Store *store_open_target(const char *path, const StoreHead *head, const char *source, Err *err);
 
 // store_file.c: the file
 
-// Sets the error that SQLite has met with, in words of its own for what people can do something
-// about. `what` is what was tried: "read" or "write". Always false.
+// Sets the error of SQLite's last failure, in our own words for what a user can act on. `what` is
+// what was tried: "read" or "write". Always false.
 bool store_fail(const Store *store, const char *what, Err *err);
 bool store_fail_damaged(const Store *store, const char *how, Err *err);
 
-// Opens the file behind a store whose path is set. To work on it: alone, making it where there is
-// none, and never where something else stands there. To be made anew it may be of any version and
-// damaged, and is emptied.
+// Opens the file of a store whose path is set, for writing: locked against other writers, created
+// where there is none, refused where it is some other file. With `is_fresh` it may be of any
+// version or damaged, and is emptied.
 bool store_file_open(Store *store, bool is_fresh, Err *err);
 
-// Opens it to look at: no file is written or deleted, and what a write that was cut off has changed
-// is seen as it was before.
+// Opens it for reading: no file is written or deleted, and what an interrupted write has changed is
+// read as it was before.
 bool store_file_view(Store *store, Err *err);
 
-// Lets go of the file; whoever waits for it can have it at once.
+// Closes the file and releases its lock.
 void store_file_close(Store *store);
 
-// Reads the whole file for damage. What single rows hold is told by their checksums.
+// Checks the structure of the whole file. The contents of rows are checked by their checksums.
 bool store_file_check(Store *store, Err *err);
 
-// Whether another process works on the store of that path. Not to be asked of a store that this
-// process has open: SQLite's locks end when the process closes the file, whoever opened it.
+// Whether another process writes to the store of that path. Not for a store that this process has
+// open: closing the file would end SQLite's locks on it.
 bool store_file_is_at_work(const char *path);
 
 // Runs and prepares SQL.
@@ -74,13 +74,13 @@ bool store_step(Store *store, struct sqlite3_stmt **statement, bool *is_good, Er
 
 // store_beside.c: what stands beside the file
 
-// Refuses what would make SQLite write or delete another file than the store and its journal. To be
-// asked before SQLite opens the file of that resolved path.
+// Refuses files that would make SQLite write or delete another file than the store and its journal.
+// Call it before SQLite opens the file of that resolved path.
 bool store_beside_check(const Store *store, const char *resolved, Err *err);
 
-// store_look.c: looking at it
+// store_look.c: reading without writing
 
-// The name of the functions by which SQLite can read files and write none.
+// The name of the SQLite VFS that reads files and writes none.
 const char *store_look_vfs(void);
 
 // store_shape.c: the tables
@@ -91,8 +91,8 @@ bool store_shape_is_there(Store *store, bool *is_there, Err *err);
 // Appends the SQL that makes the tables.
 void store_shape_append(const Layout *layout, Text *sql);
 
-// Reads the columns, once it is sure that the file has the tables of a store and nothing else.
-// Nothing may be asked of its tables before.
+// Reads the columns, after checking that the file has the tables of a store and nothing else. No
+// other query may come before.
 bool store_shape_read(Store *store, Layout *layout, Err *err);
 
 // Appends the name of a column as SQL writes it.
@@ -122,14 +122,14 @@ void store_schema_finish(Store *store);
 // Binds all columns of a row to the statement that adds one.
 void store_row_bind(const Layout *layout, struct sqlite3_stmt *statement, const Record *record);
 
-// The checksum of what is never twice the same.
+// The checksum of what differs each time.
 int32_t store_row_effort_checksum(uint64_t run, double wall_s);
 
 // The statement that reads rows by rising number: parameter 1 is the number before the first, 2 the
 // most that are wanted (-1: all).
 bool store_row_prepare(Store *store, struct sqlite3_stmt **statement, Err *err);
 
-// Takes the row that the statement stands at. Fails with ERR_FILE where it is not what was written.
+// Reads the current row of the statement. Fails with ERR_FILE where it does not match its checksum.
 bool store_row_take(const Store *store, struct sqlite3_stmt *statement, Record *record, Err *err);
 
 // Whether two rows are the same in all but their effort.
@@ -137,5 +137,5 @@ bool store_row_is_same(const Layout *layout, const Record *a, const Record *b);
 
 // store_write.c: adding and deleting them
 
-// Puts a row in the place of the one of its run, in the transaction that store_commit ends.
+// Replaces the row of a run, in the transaction that store_commit ends.
 bool store_replace(Store *store, const Record *record, Err *err);

@@ -1,9 +1,9 @@
-// How does SQLite look at a store without being able to write anything at all?
+// How does SQLite read a store without being able to write anything at all?
 //
-// It reaches files through a table of functions of ours, which hands on to the system's what reads
-// and refuses what writes or deletes. No journal is there for it: what a write that was cut off has
-// changed is read as it was before, see store_undo.c. That is found anew whenever SQLite begins to
-// read: as long as it reads, its shared lock keeps everybody from changing the file.
+// It reaches files through our own VFS, which passes reads to the system's VFS and refuses writes
+// and deletions. The VFS hides the journal: what an interrupted write has changed is read as it was
+// before, see store_undo.c. The journal is read anew whenever SQLite begins to read; its shared
+// lock then keeps the file unchanged.
 #include "commands/study/store_inside.h"
 #include "commands/study/store_undo.h"
 
@@ -15,7 +15,7 @@
 
 static const char NAME[] = "jointplay-look";
 
-// The file of a store; the system's own stands behind it in the same memory.
+// The file of a store; the system's own follows in the same memory.
 typedef struct LookFile {
     sqlite3_file base;
     sqlite3_file *real;
@@ -37,40 +37,40 @@ static int look_close(sqlite3_file *base)
     return file->real->pMethods->xClose(file->real);
 }
 
-// A part of a page as it was. What lies beyond the former end is zero.
-static int read_former(LookFile *file, void *target, int amount, sqlite3_int64 place)
+// A part of a page as it was. Beyond the former end it is zero.
+static int read_former(LookFile *file, void *target, int amount, sqlite3_int64 offset)
 {
     const Undo *undo = &file->undo;
     const sqlite3_int64 size = undo->page_size;
-    if (place % size + amount > size) {
+    if (offset % size + amount > size) {
         return SQLITE_IOERR_READ;
     }
-    if (place / size >= undo->page_count) {
+    if (offset / size >= undo->page_count) {
         memset(target, 0, (size_t)amount);
         return SQLITE_IOERR_SHORT_READ;
     }
-    const off_t former = undo_find(undo, (uint32_t)(place / size + 1));
+    const off_t former = undo_find(undo, (uint32_t)(offset / size + 1));
     if (former < 0) {
-        return file->real->pMethods->xRead(file->real, target, amount, place);
+        return file->real->pMethods->xRead(file->real, target, amount, offset);
     }
-    return pread(undo->journal, target, (size_t)amount, former + place % size) == amount
+    return pread(undo->journal, target, (size_t)amount, former + offset % size) == amount
                ? SQLITE_OK
                : SQLITE_IOERR_READ;
 }
 
-static int look_read(sqlite3_file *base, void *target, int amount, sqlite3_int64 place)
+static int look_read(sqlite3_file *base, void *target, int amount, sqlite3_int64 offset)
 {
     LookFile *file = (LookFile *)base;
-    return file->undo.is_needed ? read_former(file, target, amount, place)
-                                : file->real->pMethods->xRead(file->real, target, amount, place);
+    return file->undo.is_needed ? read_former(file, target, amount, offset)
+                                : file->real->pMethods->xRead(file->real, target, amount, offset);
 }
 
-static int look_write(sqlite3_file *base, const void *source, int amount, sqlite3_int64 place)
+static int look_write(sqlite3_file *base, const void *source, int amount, sqlite3_int64 offset)
 {
     (void)base;
     (void)source;
     (void)amount;
-    (void)place;
+    (void)offset;
     return SQLITE_READONLY;
 }
 
@@ -98,7 +98,7 @@ static int look_size(sqlite3_file *base, sqlite3_int64 *size)
     return file->real->pMethods->xFileSize(file->real, size);
 }
 
-// With the shared lock: a journal that nobody is at work with is of a write that was cut off.
+// Under the shared lock: a journal that no process is using belongs to an interrupted write.
 static int find_former(LookFile *file)
 {
     int is_at_work = 0;
@@ -110,7 +110,7 @@ static int find_former(LookFile *file)
     if (!undo_read(&file->undo, file->journal)) {
         return SQLITE_CANTOPEN;
     }
-    // no page is lost: those that the file had and has no more are in the journal
+    // no page may be missing: those that the file has lost are in the journal
     const sqlite3_int64 former = (sqlite3_int64)file->undo.page_size * file->undo.page_count;
     const int is_sized = file->real->pMethods->xFileSize(file->real, &size);
     const bool is_right = !file->undo.is_needed || former <= size + file->undo.journal_size;
@@ -194,7 +194,7 @@ static int look_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *base, int
 {
     sqlite3_vfs *system = system_of(vfs);
     if ((flags & SQLITE_OPEN_MAIN_DB) == 0) {
-        // what is sorted in files has none of a name
+        // temporary files for sorting have no name
         return name == NULL ? system->xOpen(system, name, base, flags, flags_used)
                             : SQLITE_CANTOPEN;
     }

@@ -4,8 +4,8 @@
 // number is taken next: the target grows at its end alone. Its pages are full, nothing that is
 // written is written again, and of each source one row is in memory.
 //
-// The rows of a merge are one transaction, so what ends in mid-way leaves nothing behind. A target
-// that was not there before is taken away again.
+// A merge is one transaction, so that one that is interrupted leaves nothing behind. A target that
+// it created is deleted again.
 #include "commands/study/store_inside.h"
 
 #include <assert.h>
@@ -47,7 +47,7 @@ static bool is_same_file(const char *path, const char *other)
            a.st_ino == b.st_ino;
 }
 
-// A process may by default have some 1000 files open, and more when it asks.
+// By default a process may have some 1000 files open; it can ask for more.
 static void allow_files(size_t count)
 {
     struct rlimit limit;
@@ -60,7 +60,7 @@ static void allow_files(size_t count)
 
 static bool is_before(const Cursor *a, const Cursor *b)
 {
-    // of one run the source named first comes first, so that messages name them in that order
+    // for one run the source given first comes first, so that messages name them in that order
     return a->record.run != b->record.run ? a->record.run < b->record.run : a < b;
 }
 
@@ -93,7 +93,7 @@ static bool advance(Cursor *cursor, bool *has_row, Err *err)
     }
     return store_row_take(cursor->store, cursor->rows, &cursor->record, err) &&
            (former == UINT64_MAX || cursor->record.run > former ||
-            store_fail_damaged(cursor->store, "its runs do not stand in order", err));
+            store_fail_damaged(cursor->store, "its runs are out of order", err));
 }
 
 static bool open_source(Merge *merge, const char *path, Err *err)
@@ -101,7 +101,7 @@ static bool open_source(Merge *merge, const char *path, Err *err)
     Cursor *cursor = &merge->cursors[merge->count];
     cursor->record.run = UINT64_MAX;
     if (store_file_is_at_work(path)) {
-        return err_set(err, ERR_FILE, "the store %s is at work in another process", path);
+        return err_set(err, ERR_FILE, "the store %s is in use by another process", path);
     }
     cursor->store = store_view(path, err);
     if (cursor->store == NULL) {
@@ -145,7 +145,7 @@ static bool open_sources(Merge *merge, const char *target, const char *const *so
     return true;
 }
 
-// Whatever was left of a merge that was killed is taken back by opening it to work.
+// Opening it for writing undoes what a killed merge has left.
 static bool open_target(Merge *merge, const char *path, Err *err)
 {
     const Store *first = merge->cursors[0].store;
@@ -154,14 +154,14 @@ static bool open_target(Merge *merge, const char *path, Err *err)
     return merge->target != NULL;
 }
 
-// What cut a run off may be the machine's fault, and is no result.
+// A run that was cut off may be the machine's fault, and is no result.
 static bool is_cut_off(const Record *record)
 {
     return record->fate == FATE_ENDED || record->fate == FATE_TIMED_OUT ||
            record->fate == FATE_NO_MEMORY;
 }
 
-// Whether a row has no errors, as where its truth could not be had.
+// Whether a row lacks errors, because its truth could not be computed.
 static bool lacks_errors(const Layout *layout, const Record *record)
 {
     const size_t column = store_column(layout, STORE_ERROR_COLUMN);
@@ -169,8 +169,8 @@ static bool lacks_errors(const Layout *layout, const Record *record)
            isnan(record->results[column - layout->setting_count]);
 }
 
-// Holds a row against the one that is there of its run. Both must be the same, or one be cut off or
-// have missed its truth: the better one stays.
+// Compares a row with the other one of its run. Both must be the same, or one cut off or without a
+// truth: then the better one stays.
 static bool compare(const Merge *merge, const Record *record, const char *path, const Record *other,
                     const char *other_path, bool *is_better, Err *err)
 {
@@ -257,14 +257,14 @@ bool store_merge(const char *target, const char *const *sources, size_t source_c
 {
     Merge merge = {0};
     bool is_done = open_sources(&merge, target, sources, source_count, err);
-    // what is merged with nothing but itself stays as it is
+    // a store merged only with itself stays as it is
     if (is_done && merge.count > 0) {
         is_done = open_target(&merge, target, err) && take_all(&merge, err);
     }
     if (merge.target != NULL && !is_done) {
         sqlite3_exec(merge.target->base, "ROLLBACK", NULL, NULL, NULL);
         merge.target->is_changing = false;
-        // as long as it is locked: later it may be another's
+        // while it is locked: later it may belong to another process
         if (merge.target->is_made) {
             unlink(target);
         }

@@ -1,4 +1,4 @@
-// How is a store opened, and whose rows may go into it?
+// How is a store opened?
 #include "commands/study/store_inside.h"
 
 #include <assert.h>
@@ -29,7 +29,7 @@ static void destroy(Store *store)
     free(store);
 }
 
-// Makes the tables where there are none, and holds those that are there against what is asked for.
+// Creates the tables where there are none, and compares those that exist with what is expected.
 static bool settle(Store *store, const StoreHead *head, const char *source, Err *err)
 {
     bool is_there = false;
@@ -49,7 +49,7 @@ static Store *open_to_work(const char *path, const StoreHead *head, bool is_fres
     if (store_file_open(store, is_fresh, err) && settle(store, head, source, err)) {
         return store;
     }
-    // what was not there before and is not a store now is taken away
+    // a file that was not there before and did not become a store is deleted
     if (store->is_made) {
         unlink(path);
     }

@@ -4,8 +4,8 @@
 // carries one of its own over all that is written, 32 bits of it. NAN is NULL. The sign of a zero
 // is lost: a REAL without a fraction is kept as a whole number, which also makes it short.
 //
-// Rows are read in portions, and the file is let go of in between, so that whoever looks at a store
-// never holds up the process that works on it.
+// Rows are read in portions, and the file is unlocked in between, so that a reader never blocks the
+// process that writes.
 #include "base/hash.h"
 #include "commands/study/store_inside.h"
 
@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PORTION = 64 }; // rows of some 5 kB at a time
+enum { PORTION = 64 }; // rows at a time, of some 5 kB each
 
 // Whole numbers of this size and below have a double of their own.
 static const double WHOLE_MAX = 9007199254740992.0; // 2^53
@@ -167,7 +167,7 @@ bool store_row_take(const Store *store, sqlite3_stmt *statement, Record *record,
     }
     char words[STORE_WORDS_SIZE];
     snprintf(words, sizeof words,
-             "run %" PRIu64 " is not what was once written; 'jointplay study FILE --retry-failed' "
+             "run %" PRIu64 " does not match its checksum; 'jointplay study FILE --retry-failed' "
              "makes it again",
              record->run);
     return store_fail_damaged(store, words, err);
@@ -186,7 +186,7 @@ static bool read_portion(Store *store, sqlite3_int64 behind, Record *portion, si
         is_read = store_row_take(store, store->rows, &portion[*count], err);
         // a damaged tree may come back to where it was
         if (is_read && (sqlite3_int64)portion[*count].run <= behind) {
-            is_read = store_fail_damaged(store, "its runs do not stand in order", err);
+            is_read = store_fail_damaged(store, "its runs are out of order", err);
         }
         behind = (sqlite3_int64)portion[*count].run;
         (*count)++;

@@ -1,4 +1,4 @@
-// Whose rows are in a store?
+// Which study and program do the rows of a store belong to?
 //
 // The table `study` has the key, `runs`, and `checksum`: of this table and of the columns of `run`.
 #include "base/hash.h"
@@ -164,7 +164,7 @@ bool store_schema_read(Store *store, Err *err)
     const StoreHead head = store_schema_head(store);
     make_checksum(&head, checksum);
     return strcmp(stored, checksum) == 0 ||
-           store_fail_damaged(store, "its key and columns are not what was once written", err);
+           store_fail_damaged(store, "its key and columns do not match their checksum", err);
 }
 
 static bool keys_differ(const StoreKey *there, const StoreKey *here, Text *words)

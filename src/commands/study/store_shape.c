@@ -4,11 +4,11 @@
 //     run      run (the number), the settings, fate, reason, the results, hash, checksum
 //     effort   run, wall_s, checksum
 //
-// The columns of `run` are the layout: their names, their types, and the place of `fate`.
+// The columns of `run` are the layout: their names, their types, and the position of `fate`.
 //
-// A file may be any person's, and SQL in its schema is SQL that is run when it is read: a view in
-// place of a table may have rows without end. So nothing is asked of a file before its schema is
-// word for word the one that this program writes.
+// The file may come from anyone, and SQL in its schema is run when it is read: a view instead of a
+// table may have endless rows. So no query comes before its schema is known to be word for word the
+// one that this program writes.
 #include "commands/study/store_inside.h"
 
 #include <assert.h>
@@ -109,7 +109,7 @@ static size_t find_object(sqlite3_stmt *statement)
     return i;
 }
 
-// Its name is whoever's made it, and not printed.
+// Its name may be anything, and is not printed.
 static bool refuse_object(const Store *store, sqlite3_stmt *statement, Err *err)
 {
     static const struct {
@@ -121,8 +121,9 @@ static bool refuse_object(const Store *store, sqlite3_stmt *statement, Err *err)
     for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++) {
         found = is_word(statement, 0, KINDS[i].type) ? KINDS[i].words : found;
     }
-    return err_set(err, ERR_FILE, "%s is no store of a study: there is %s in it that no store has",
-                   store->path, found);
+    return err_set(err, ERR_FILE,
+                   "%s is not the store of a study: it contains %s that no store has", store->path,
+                   found);
 }
 
 // Every object once, and no other. `run` receives the words of that table.
@@ -145,7 +146,7 @@ static bool read_objects(Store *store, char **run, Err *err)
     }
     for (size_t i = 0; i < OBJECT_COUNT && is_right; i++) {
         is_right =
-            is_there[i] || err_set(err, ERR_FILE, "%s is no store of a study: it has no %s %s",
+            is_there[i] || err_set(err, ERR_FILE, "%s is not the store of a study: it has no %s %s",
                                    store->path, OBJECTS[i].type, OBJECTS[i].name);
     }
     return is_right;

@@ -1,14 +1,14 @@
-// What did a store hold before the write that was cut off?
+// What did a store hold before a write that was interrupted?
 //
-// SQLite keeps the former content of each page that it changes in a journal beside the file. Who
-// works on the store has SQLite write these pages back. Who only looks must not write, and reads
-// them from here instead. The format (sqlite.org/fileformat2.html, section 3) is, in sectors:
+// SQLite keeps the former content of each page that it changes in a journal next to the file. A
+// writer has SQLite write these pages back. A reader must not write, and reads them from here. The
+// format (sqlite.org/fileformat2.html, section 3) is, in sectors:
 //
 //     header   magic 8, records 4, nonce 4, pages of the file 4, sector size 4, page size 4
 //     record   page number 4, content, checksum 4: nonce + every 200th byte from the end
 //
-// and so on with a header at the next sector. Numbers are big-endian. What was not yet whole when
-// the write was cut off has no right checksum or no count, and the file was not yet changed there.
+// and so on with a header at the next sector. Numbers are big-endian. A record that was incomplete
+// at the interruption has a wrong checksum or is not counted, and its page was not yet changed.
 #include "commands/study/store_undo.h"
 
 #include <assert.h>
@@ -26,7 +26,7 @@ enum {
     SECTOR_MIN = 32,
     PAGE_MIN = 512,
     SIZE_MAX_ALLOWED = 65536, // of a page and of a sector
-    LOCK_PLACE = 0x40000000,  // where SQLite's locks are: that page is never written
+    LOCK_OFFSET = 0x40000000, // where SQLite's locks are: that page is never written
     FIRST_ROOM = 64,
 };
 
@@ -35,7 +35,7 @@ static const unsigned char MAGIC[8] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63,
 
 typedef struct Journal {
     off_t size;
-    off_t place;
+    off_t offset;
     uint32_t sector_size;
     uint32_t records; // of the header that was read last
     uint32_t nonce;
@@ -56,12 +56,12 @@ static bool is_size(uint32_t size, uint32_t least)
 static bool read_header(Undo *undo, Journal *journal)
 {
     unsigned char header[HEADER_SIZE];
-    const bool is_first = journal->place == 0;
+    const bool is_first = journal->offset == 0;
     if (!is_first) {
         const off_t sector = (off_t)journal->sector_size;
-        journal->place = ((journal->place - 1) / sector + 1) * sector;
+        journal->offset = ((journal->offset - 1) / sector + 1) * sector;
     }
-    if (pread(undo->journal, header, sizeof header, journal->place) != HEADER_SIZE ||
+    if (pread(undo->journal, header, sizeof header, journal->offset) != HEADER_SIZE ||
         memcmp(header, MAGIC, sizeof MAGIC) != 0) {
         return false;
     }
@@ -75,25 +75,25 @@ static bool read_header(Undo *undo, Journal *journal)
             return false;
         }
     }
-    if (journal->place + (off_t)journal->sector_size > journal->size) {
+    if (journal->offset + (off_t)journal->sector_size > journal->size) {
         return false;
     }
-    journal->place += (off_t)journal->sector_size;
+    journal->offset += (off_t)journal->sector_size;
     if (journal->records == ALL_RECORDS) {
         journal->records =
-            (uint32_t)((journal->size - journal->place) / (undo->page_size + RECORD_EXTRA));
+            (uint32_t)((journal->size - journal->offset) / (undo->page_size + RECORD_EXTRA));
     }
     return true;
 }
 
-static void add_page(Undo *undo, uint32_t number, off_t place)
+static void add_page(Undo *undo, uint32_t number, off_t offset)
 {
     if (undo->count == undo->room) {
         undo->room = undo->room == 0 ? FIRST_ROOM : 2 * undo->room;
         undo->pages = realloc(undo->pages, undo->room * sizeof *undo->pages);
         assert(undo->pages != NULL);
     }
-    undo->pages[undo->count++] = (UndoPage){number, place};
+    undo->pages[undo->count++] = (UndoPage){number, offset};
 }
 
 static uint32_t checksum(const unsigned char *page, uint32_t size, uint32_t nonce)
@@ -110,15 +110,15 @@ static bool read_record(Undo *undo, Journal *journal)
     unsigned char number[4];
     unsigned char sum[4];
     const ssize_t page_size = (ssize_t)undo->page_size;
-    const off_t content = journal->place + 4;
-    if (pread(undo->journal, number, 4, journal->place) != 4 ||
+    const off_t content = journal->offset + 4;
+    if (pread(undo->journal, number, 4, journal->offset) != 4 ||
         pread(undo->journal, journal->page, undo->page_size, content) != page_size ||
         pread(undo->journal, sum, 4, content + page_size) != 4) {
         return false;
     }
-    journal->place += page_size + RECORD_EXTRA;
+    journal->offset += page_size + RECORD_EXTRA;
     const uint32_t page = read_big_endian(number);
-    if (page == 0 || page == LOCK_PLACE / undo->page_size + 1) {
+    if (page == 0 || page == LOCK_OFFSET / undo->page_size + 1) {
         return false;
     }
     // what was put behind the former end is cut off and needs no content
@@ -140,7 +140,7 @@ static int compare_pages(const void *a, const void *b)
     if (left->number != right->number) {
         return left->number < right->number ? -1 : 1;
     }
-    return (left->place > right->place) - (left->place < right->place);
+    return (left->offset > right->offset) - (left->offset < right->offset);
 }
 
 static void read_all(Undo *undo, off_t size)
@@ -195,7 +195,7 @@ off_t undo_find(const Undo *undo, uint32_t number)
             high = middle;
         }
     }
-    return low > 0 && undo->pages[low - 1].number == number ? undo->pages[low - 1].place : -1;
+    return low > 0 && undo->pages[low - 1].number == number ? undo->pages[low - 1].offset : -1;
 }
 
 void undo_finish(Undo *undo)

@@ -1,4 +1,4 @@
-// What a store that was left in mid-write held before that write, found without writing to it.
+// What a store held before a write that was interrupted, found without writing to it.
 #pragma once
 
 #include <stdbool.h>
@@ -7,7 +7,7 @@
 
 typedef struct UndoPage {
     uint32_t number; // from 1
-    off_t place;     // of its former content in the journal
+    off_t offset;    // of its former content in the journal
 } UndoPage;
 
 // Zeroed: there is nothing to undo.
@@ -22,12 +22,12 @@ typedef struct Undo {
     UndoPage *pages; // owned; by rising number
 } Undo;
 
-// Reads the journal of that path. One that is not there, or was not begun, undoes nothing. False
-// where it cannot be read.
+// Reads the journal of that path. A missing or empty one undoes nothing. False where it cannot be
+// read.
 bool undo_read(Undo *undo, const char *path);
 
-// The place in the journal of a page as it was; -1 where the write has not changed it.
+// The offset in the journal of a page as it was; -1 where the write has not changed it.
 off_t undo_find(const Undo *undo, uint32_t number);
 
-// Forgets it all. Accepts a zeroed one.
+// Accepts a zeroed one.
 void undo_finish(Undo *undo);

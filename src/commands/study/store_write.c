@@ -1,7 +1,6 @@
-// How does a store get its rows, and lose those that are to be made again?
+// How are rows added to a store, and deleted so that they are made again?
 //
-// A row is only ever written whole, together with its effort, in a transaction that store_commit
-// ends.
+// A row is written whole, together with its effort, in a transaction that store_commit ends.
 #include "commands/study/store_inside.h"
 
 #include <assert.h>
@@ -105,7 +104,7 @@ static bool delete_run(Store *store, uint64_t run, Err *err)
     return is_gone;
 }
 
-// Deletes the rows that are not what was once written, in the transaction that is open.
+// Deletes the rows that do not match their checksums, in the open transaction.
 static bool forget_damaged(Store *store, uint64_t *forgotten, Err *err)
 {
     Record *record = malloc(sizeof *record);
@@ -137,7 +136,7 @@ bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err)
     if (!store_commit(store, err) || !begin(store, err)) {
         return false;
     }
-    // there are errors only where the study has a truth; a run without them has missed it
+    // there are errors only where the study has a truth; a run without them has none
     const size_t columns = store->layout->setting_count + store->layout->result_count;
     const bool has_errors = store_column(store->layout, STORE_ERROR_COLUMN) < columns;
     *forgotten = 0;

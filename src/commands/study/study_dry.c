@@ -14,11 +14,11 @@ enum {
     SHOWN_RUNS = 6,      // enough to see what changes fastest
     TRIED_RUNS = 200,    // over the whole study; a second's work
     STORE_BYTES = 30000, // of a store without rows
-    NUMBER_BYTES = 8,    // SQLite keeps a real number in so many, and a byte for its kind
+    NUMBER_BYTES = 8,    // of a real number in SQLite, besides a byte for its type
     ROW_BYTES = 70,      // of a row besides its cells: keys, hash, checksum, wall time, page ends
 };
 
-// Runs over the whole shard: the i-th of so many.
+// The i-th of `count` runs spread over the whole shard.
 static uint64_t spread(const StudyOptions *options, const Spec *spec, uint64_t i, uint64_t count)
 {
     const double end = (double)design_run_count(spec);

@@ -86,8 +86,8 @@ static void append_effort(const StudyReport *report, Text *text)
     text_append(text, ".\n");
     if (state->without_truth > 0) {
         text_append(text,
-                    "%" PRIu64 " of them have no error, for there is no truth to hold them "
-                    "against: %s.\n",
+                    "%" PRIu64 " of them have no error, because there is no reference to "
+                    "compare them with: %s.\n",
                     state->without_truth, state->no_truth);
     }
 }

@@ -99,7 +99,7 @@ static bool find_stem(const char *study, char stem[FILE_PATH_SIZE], Err *err)
 
 static const char *const ENDINGS[SLURM_SCRIPT_COUNT] = {"array.sh", "gather.sh", "submit.sh"};
 
-// A script may be run by whoever may read it, as far as the user's mask lets them.
+// Makes a script executable for all who may read it, as far as the user's umask allows.
 static bool let_run(const char *path, Err *err)
 {
     const mode_t mask = umask(0);

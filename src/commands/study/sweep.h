@@ -1,4 +1,4 @@
-// Makes the runs of a study that its store does not hold yet, each in a process of its own.
+// Makes the runs of a study that are missing in its store, each in a process of its own.
 #pragma once
 
 #include "commands/study/design.h"
@@ -13,7 +13,7 @@ typedef struct SweepState {
     uint64_t done;                     // of them in the store, those of earlier included
     uint64_t made;                     // by this process
     uint64_t failed;                   // of them, by this process
-    uint64_t without_truth;            // of them that are well, but for which no truth could be had
+    uint64_t without_truth;            // of them successful, but without a truth
     char no_truth[RECORD_REASON_SIZE]; // why not, of the first
     double wall_s;                     // since the start
     double inside_s; // wall time of all processes that made runs and truths, added up
@@ -37,6 +37,6 @@ typedef struct Sweep {
 } Sweep;
 
 // Fails with ERR_FILE where the store fails, with ERR_SOLVER where the system has no process left
-// for a single run. A run that fails, hangs or dies is a row. The state is that at the end. What is
-// at work when it ends early is ended, and made by whoever goes on.
+// for a single run. A run that fails, hangs or dies is a row. The state is that at the end. Runs in
+// progress at an early end are killed, and made when the study is resumed.
 bool sweep_execute(const Sweep *sweep, SweepEnd *end, SweepState *state, Err *err);

@@ -1,7 +1,6 @@
-// Which runs share a truth, and what if it cannot be had?
+// Which runs share a truth, and what if it cannot be computed?
 //
-// The number of the group never falls as that of the run rises, so that its end can be found by
-// halving, whatever lies in between.
+// The group number never decreases with the run number, so that its end is found by bisection.
 #include "commands/study/sweep_group.h"
 
 #include "base/shorten.h"
@@ -11,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Processes that may die over a truth of what may be no fault of its own, before it is given up.
+// Processes that may die over a truth before it is given up; the fault may be another's.
 enum { LOST_MAX = 3 };
 
 bool sweep_group_next(const Sweep *sweep, uint64_t from, uint64_t end, uint64_t *run, Err *err)

@@ -17,7 +17,7 @@ typedef struct SweepGroup {
     uint64_t end;       // number behind its last
     size_t busy;        // of its runs at work
     bool has_truth;     // of SWEEP_GROUP_READY
-    bool lacks_truth;   // there should be one, and it cannot be had
+    bool lacks_truth;   // there should be one, and it cannot be computed
     Truth truth;        // owned
     SweepTruth *wanted; // owned; while the truth is to be made
     void *packed;       // owned; the truth as it arrives
@@ -32,12 +32,11 @@ bool sweep_group_next(const Sweep *sweep, uint64_t from, uint64_t end, uint64_t 
 // Opens the group that a run is the first of to be made.
 void sweep_group_open(const Sweep *sweep, uint64_t run, SweepGroup *group);
 
-// Takes in the truth's process, which has ended. True where there is nothing to be made any more;
-// else it is wanted again. `reason`, of RECORD_REASON_SIZE, is filled where the truth cannot be
-// had.
+// Takes the result of the truth's process, which has ended. False where the truth is to be tried
+// again. `reason`, of RECORD_REASON_SIZE, is filled where it cannot be computed.
 bool sweep_group_take(SweepGroup *group, const Child *child, char *reason);
 
-// How long and with how much memory a truth may be made within the limits of a run.
+// The limits of the process that makes a truth.
 ChildLimits sweep_group_limits(const Sweep *sweep);
 
 // Drops the truth. Accepts zeroed groups, and leaves one.

@@ -1,10 +1,10 @@
 // Which process is to be started next, and what became of those that ended?
 //
-// There are as many slots as jobs; in each a process works and another one, made ready, stands
-// behind it. Runs start by rising number. A truth is a process like a run, and is started early
-// enough for runs to wait for none: as soon as fewer runs than jobs are ready to start. One group
-// more than there are jobs is open at a time, so that there is always something to start: of those
-// open, each has a process, or a run that is ready.
+// There are as many slots as jobs; in each a process works and another one, already started, waits.
+// Runs start by rising number. A truth is a process like a run, and is started early enough that no
+// run waits for it: as soon as fewer runs than jobs are ready to start. The number of open groups
+// is that of the jobs plus one, so that there is always something to start: each open group has a
+// process, or a run that is ready.
 #include "commands/study/sweep_pool.h"
 
 #include "base/clock.h"
@@ -107,8 +107,8 @@ static bool open_next(SweepPool *pool, SweepGroup **opened, Err *err)
     return true;
 }
 
-// Starts a process. Where the system has none left but others are there, one will be free when
-// they are done. The limit of its time is the slot's, for it may have to wait.
+// Starts a process. Where the system has none left but some are running, one becomes free when they
+// end. The slot applies the time limit, because the process may have to wait first.
 static bool start(SweepPool *pool, size_t number, SweepGroup *group, bool *is_started, Err *err)
 {
     SweepJob *job = &pool->jobs[number];
@@ -212,7 +212,7 @@ bool sweep_pool_fill(SweepPool *pool, Err *err)
     return true;
 }
 
-// How long a process was at work, as far as its parent can tell: it may have had to wait.
+// How long a process worked, as far as its parent knows: it may have had to wait.
 static double time_of(SweepPool *pool, const SweepJob *job, const Child *child)
 {
     double *ended_s = &pool->ended_s[job->slot.number];

@@ -40,10 +40,10 @@ void sweep_pool_close(SweepPool *pool);
 // Whether anything is left to be done.
 bool sweep_pool_has_more(const SweepPool *pool);
 
-// Gives all that are free something to do, as far as there is something. Fails with ERR_FILE where
-// the store does, with ERR_SOLVER where not a single process can be had.
+// Starts a process for every free job, as far as there is work. Fails with ERR_FILE where the store
+// does, with ERR_SOLVER where the system has no process at all.
 bool sweep_pool_fill(SweepPool *pool, Err *err);
 
-// Takes what has ended into the store and the state, and drops the groups that are through.
+// Takes the results of ended processes into the store and the state, and closes finished groups.
 // ERR_FILE.
 bool sweep_pool_take(SweepPool *pool, Err *err);
