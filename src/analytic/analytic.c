@@ -66,7 +66,7 @@ static void analytic_close(void *state)
 static bool analytic_open(const Scenario *scenario, void **state, Err *err)
 {
     if (!scenario->has_fourbar) {
-        return err_set(err, ERR_SOLVER, "the analytic solver knows four-bars only");
+        return err_set(err, ERR_SOLVER, "the analytic solver is for four-bars only");
     }
     Analytic *analytic = calloc(1, sizeof *analytic);
     assert(analytic != NULL);

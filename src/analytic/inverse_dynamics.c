@@ -36,7 +36,8 @@ bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, doubl
         right[3 * i + 2] = body->inertia * motions[i].alpha;
     }
     if (!dense_solve(n, transposed, right)) {
-        return err_set(err, ERR_SOLVER, "the joint reactions are not determined: dead centre");
+        return err_set(err, ERR_SOLVER,
+                       "the joint reactions are not determined: the mechanism is at a dead centre");
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         reactions->force_on_b[i] = (Vec2){right[2 * i], right[2 * i + 1]};

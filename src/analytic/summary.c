@@ -131,7 +131,7 @@ bool summary_compute(const Scenario *scenario, AnalyticSummary *summary, Err *er
     if (!scenario->has_fourbar || !fourbar_crank_turns(&scenario->fourbar)) {
         return err_set(err, ERR_SOLVER, "%s",
                        scenario->has_fourbar ? "the crank does not turn fully"
-                                             : "the closed form knows four-bars only");
+                                             : "the closed form is for four-bars only");
     }
     AnalyticSummary made = {
         .grashof = fourbar_grashof(&scenario->fourbar),

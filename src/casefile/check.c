@@ -254,7 +254,7 @@ static bool check_backends(const Entries *entries, const RunOptions *run, Err *e
     for (size_t i = 0; entries->form == SCHEMA_LONG && i < run->backend_count; i++) {
         if (run->backends[i] == BACKEND_ANALYTIC) {
             return entries_refuse(entries_find(entries, "run.backends", 0), err,
-                                  "the analytic backend knows four-bars only, in a case with "
+                                  "the analytic backend is for four-bars only, in a case with "
                                   "four-bar\nallowed: reference, ode");
         }
     }

@@ -175,7 +175,7 @@ bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motion
 {
     if (!linkage->driver.is_present || 2 * linkage->joint_count + 1 != 3 * linkage->body_count) {
         return err_set(err, ERR_SOLVER,
-                       "the motion of this linkage does not follow from its driver alone: %zu "
+                       "the driver alone does not determine the motion of this linkage: %zu "
                        "bodies, %zu joints%s",
                        linkage->body_count, linkage->joint_count,
                        linkage->driver.is_present ? "" : ", no driver");

@@ -53,8 +53,8 @@ bool response_init(const Linkage *linkage, bool with_turns, Response *response, 
                                 add_rows(response, i, with_turns ? 4 : 2));
     }
     return has_room || err_set(err, ERR_SOLVER,
-                               "the linkage has more than the %d joint rows that a contact's "
-                               "response is worked out for",
+                               "the linkage has more joint rows than the %d that contacts can be "
+                               "solved with",
                                RESPONSE_ROW_MAX);
 }
 

@@ -79,7 +79,8 @@ bool engine_step(dWorldID world, double step_s, bool is_quick, Err *err)
     if (thread.has_complained) {
         return err_set(err, ERR_SOLVER, "%s", thread.message);
     }
-    return status != 0 || err_set(err, ERR_SOLVER, "ODE had no memory for the step");
+    return status != 0 ||
+           err_set(err, ERR_SOLVER, "ODE could not allocate the memory for the step");
 }
 
 void engine_seed(size_t seed)

@@ -157,7 +157,9 @@ static bool make_part(Extrapolated *own, double end_s, Err *err)
     double middle_power = 0.0;
     if (!work_out(own, 0.5 * (start.time_s + end_s), &middle, &middle_power) ||
         !work_out(own, end_s, &own->end, &own->power)) {
-        err_set(err, ERR_SOLVER, "the forces in the ideal joints are not determined");
+        err_set(err, ERR_SOLVER,
+                "the ideal joints are redundant: give one joint of the loop some play, or "
+                "choose another stepping");
         return stepping_fail(own->scenario, start.time_s, own->nodes.steps, own->scenario->run.step,
                              err);
     }

@@ -146,14 +146,14 @@ static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
 {
     Encounter *encounter = &step->encounter;
     if (!response_place(&step->response, middle)) {
-        return err_set(err, ERR_SOLVER, "the ideal joints are redundant here");
+        return err_set(err, ERR_SOLVER,
+                       "the ideal joints are redundant here: give one joint of the loop some play");
     }
     response_mobility(&step->response, encounter->mobility);
     response_free(&step->response, middle, step->scenario->gravity, encounter->free);
     if (!encounter_run(encounter, step->width_s)) {
         return err_set(err, ERR_SOLVER,
-                       "the contacts take more than 100000 steps of their own in this one; "
-                       "allowed: a shorter step");
+                       "contact sub-stepping exceeded 100000 steps in one step; reduce run.step");
     }
     const size_t last = encounter->node_count - 1;
     encounter_at(encounter, last, step->width_s, &step->total);

@@ -100,7 +100,9 @@ static bool move_on(const Scenario *scenario, double start_s, Response *response
         motions[linkage_driven_body(linkage)] = stepping_driven(linkage, start_s + 0.5 * step_s);
     }
     if (!response_place(response, motions)) {
-        return err_set(err, ERR_SOLVER, "the ideal joints are redundant at the start");
+        return err_set(err, ERR_SOLVER,
+                       "the ideal joints are redundant at the start: give one joint of the "
+                       "loop some play");
     }
     double openings[RESPONSE_ROW_MAX];
     double rates[RESPONSE_ROW_MAX];

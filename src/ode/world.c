@@ -87,7 +87,8 @@ static void make_bodies(const Scenario *scenario, const Motion *motions, World *
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Body *body = &linkage->bodies[i];
         const dBodyID made = dBodyCreate(world->id);
-        // moments about x and y never enter; the one about z in all three entries is positive definite
+        // moments about x and y never enter; the one about z in all three entries is positive
+        // definite
         dMass mass;
         dMassSetParameters(&mass, body->mass, 0, 0, 0, body->inertia, body->inertia, body->inertia,
                            0, 0, 0);

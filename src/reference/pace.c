@@ -30,14 +30,15 @@ static bool refuse_steps(const Pace *pace, const Dynamics *dynamics, double time
     const double width_s = time_s - pace->since_s;
     for (size_t i = 0; i < dynamics->contact_count; i++) {
         if (dynamics->contacts[i].mode == CONTACT_PRESSING) {
-            return err_set(err, ERR_SOLVER,
-                           "%d steps took the motion on by %.3g s only: the contact of %s is too "
-                           "stiff or too strongly damped to be followed; a higher restitution, "
-                           "another damping or a lower stiffness takes longer steps",
-                           STEPS_COUNTED, width_s, joint_name(dynamics, i));
+            return err_set(
+                err, ERR_SOLVER,
+                "%d steps advanced the motion by only %.3g s: the contact of %s is too stiff "
+                "or too strongly damped; use a higher restitution, another damping or a "
+                "lower stiffness",
+                STEPS_COUNTED, width_s, joint_name(dynamics, i));
         }
     }
-    return err_set(err, ERR_SOLVER, "%d steps took the motion on by %.3g s only", STEPS_COUNTED,
+    return err_set(err, ERR_SOLVER, "%d steps advanced the motion by only %.3g s", STEPS_COUNTED,
                    width_s);
 }
 
@@ -52,7 +53,7 @@ bool pace_keep(Pace *pace, const Dynamics *dynamics, const EventList *events, do
     pace->events += events->count;
     if (pace->events > EVENTS_MOST * dynamics->contact_count) {
         return err_set(err, ERR_SOLVER,
-                       "the contact of %s begins and ends without end: %zu changes within %.3g s",
+                       "the contact of %s keeps beginning and ending: %zu changes within %.3g s",
                        joint_name(dynamics, events->events[0].contact), pace->events,
                        time_s - pace->instant_s);
     }
@@ -86,11 +87,11 @@ bool pace_undetermined(const Linkage *linkage, Err *err)
     if (heaviest != NULL && heaviest->mass > 0.1 * SEPARABLE * lightest->inertia) {
         return err_set(err, ERR_SOLVER,
                        "the accelerations are not determined: the mass of %s, %.3g kg, and the "
-                       "inertia of %s, %.3g kg m^2, are further apart than a double has digits "
-                       "for; allowed: a ratio below 1e13",
+                       "inertia of %s, %.3g kg m^2, differ by more than double precision can "
+                       "resolve; keep their ratio below 1e13",
                        heaviest->name, heaviest->mass, lightest->name, lightest->inertia);
     }
     return err_set(err, ERR_SOLVER,
                    "the accelerations are not determined: the ideal joints stand at a change "
-                   "point, or hold each other up; give one of them play, or start elsewhere");
+                   "point, or are redundant; give one of them play, or start elsewhere");
 }

@@ -244,8 +244,8 @@ static bool fail_to_step(const Stepper *stepper, Err *err)
         return false;
     }
     return err_set(err, ERR_SOLVER,
-                   "the step fell below the rounding of time: the motion cannot be followed at a "
-                   "tolerance of %g",
+                   "the step fell below the rounding of time: the motion cannot be integrated at a "
+                   "tolerance of %g; raise reference.tolerance",
                    stepper->scenario->reference.tolerance);
 }
 

@@ -119,7 +119,7 @@ static void masses_too_far_apart_are_named(void **state)
     run_case(program, &CASE_SEPARATING, 3, REFERENCE);
     assert_int_equal(program->status, 4);
     assert_says(program->errors, "the mass of link-0, 1e+05 kg, and the inertia of link-1");
-    assert_says(program->errors, "allowed: a ratio below 1e13");
+    assert_says(program->errors, "keep their ratio below 1e13");
 }
 
 #define COMMAND_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
