@@ -1,7 +1,6 @@
 // How far has a long run come?
 #include "cli/progress.h"
 
-#include "base/clock.h"
 #include "cli/long_work.h"
 #include "cli/output.h"
 
@@ -29,7 +28,7 @@ static void warn_of_run(Progress *progress, double share)
 // So long does the work go on, by the times that are told and by the clock between them.
 static double all_time(const Progress *progress)
 {
-    return fmax(progress->before_s + progress->run_wall_s, clock_now_s() - progress->started_s);
+    return fmax(progress->before_s + progress->run_wall_s, status_line_time(&progress->line));
 }
 
 // And once of work that goes on for long in a run without a pace, or in many short ones.
@@ -67,8 +66,7 @@ static void show(double share, double wall_s, void *context)
 
 void progress_begin(Progress *progress, bool is_quiet)
 {
-    *progress =
-        (Progress){.backend = "", .line = status_line_start(is_quiet), .started_s = clock_now_s()};
+    *progress = (Progress){.backend = "", .line = status_line_start(is_quiet)};
 }
 
 RunWatch progress_watch(Progress *progress, const char *backend)

@@ -10,7 +10,6 @@ typedef struct Progress {
     StatusLine line;
     bool is_warned;    // that the run takes long
     bool is_told;      // that the work as a whole takes long
-    double started_s;  // by the clock
     double before_s;   // wall time of the runs before this one
     double run_wall_s; // of this one so far
 } Progress;

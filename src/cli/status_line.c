@@ -1,6 +1,7 @@
 // When and how is a line of progress shown?
 #include "cli/status_line.h"
 
+#include "base/clock.h"
 #include "base/printable.h"
 #include "cli/output.h"
 
@@ -14,7 +15,14 @@ static const double QUIET_LINE = 15.0;    // s: who wants no lines is warned onc
 
 StatusLine status_line_start(bool is_quiet)
 {
-    return (StatusLine){.is_quiet = is_quiet, .is_terminal = output_is_terminal(stderr)};
+    return (StatusLine){.is_quiet = is_quiet,
+                        .is_terminal = output_is_terminal(stderr),
+                        .started_s = clock_now_s()};
+}
+
+double status_line_time(const StatusLine *line)
+{
+    return clock_now_s() - line->started_s;
 }
 
 bool status_line_is_due(StatusLine *line, double wall_s)

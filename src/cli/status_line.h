@@ -12,10 +12,14 @@ typedef struct StatusLine {
     bool is_terminal;
     bool is_shown;      // whether a line stands on the terminal
     bool is_warned;     // that it takes long, where it is quiet
+    double started_s;   // by the clock
     double last_line_s; // wall time of the last line, s
 } StatusLine;
 
 StatusLine status_line_start(bool is_quiet);
+
+// The time since the start, s.
+double status_line_time(const StatusLine *line);
 
 // Whether it is time for a line, so many seconds after the start; if so it counts as written.
 bool status_line_is_due(StatusLine *line, double wall_s);

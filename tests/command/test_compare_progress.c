@@ -52,7 +52,7 @@ static void a_log_gets_runs_and_the_time_left(void **state)
     listen();
     CompareProgress progress = compare_progress_start(ladder, false);
     compare_progress_show(&progress, "error runs");
-    progress.started_s -= 100.0;
+    progress.line.started_s -= 100.0;
     compare_progress_show(&progress, "error runs");
     compare_progress_show(&progress, "error runs");
     compare_progress_end(&progress);
@@ -70,7 +70,7 @@ static void a_terminal_sees_one_line_that_goes_away(void **state)
     listen();
     CompareProgress progress = compare_progress_start(ladder, false);
     progress.line.is_terminal = true;
-    progress.started_s -= 10.0;
+    progress.line.started_s -= 10.0;
     compare_progress_show(&progress, "timing runs");
     compare_progress_end(&progress);
     compare_progress_end(&progress);
@@ -86,9 +86,9 @@ static void who_wants_quiet_is_warned_of_long_work_once(void **state)
     Ladder *ladder = make_ladder();
     listen();
     CompareProgress progress = compare_progress_start(ladder, true);
-    progress.started_s -= 14.0;
+    progress.line.started_s -= 14.0;
     compare_progress_show(&progress, "short ones");
-    progress.started_s -= 86.0;
+    progress.line.started_s -= 86.0;
     compare_progress_show(&progress, "error runs");
     compare_progress_show(&progress, "error runs");
     // something to read, so that reading does not wait

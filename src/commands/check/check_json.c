@@ -83,8 +83,9 @@ static json_t *case_object(const CheckReport *report, const CheckCase *item)
     return object;
 }
 
-json_t *check_json_build(const CheckReport *report)
+json_t *check_json_build(const void *target)
 {
+    const CheckReport *report = target;
     json_t *cases = json_array();
     for (size_t i = 0; i < report->case_count; i++) {
         json_array_append_new(cases, case_object(report, &report->cases[i]));

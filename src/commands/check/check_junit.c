@@ -162,8 +162,9 @@ static void append_case(Text *text, const CheckCase *item)
     text_append(text, "  </testsuite>\n");
 }
 
-void check_junit_write(const CheckReport *report, Text *text)
+void check_junit_write(const void *target, Text *text)
 {
+    const CheckReport *report = target;
     size_t tests = 0;
     size_t failures = 0;
     double wall_s = 0.0;

@@ -190,8 +190,9 @@ static void append_all(const CheckReport *report, Text *text)
     text_append(text, "\n</details>\n");
 }
 
-void check_markdown_write(const CheckReport *report, Text *text)
+void check_markdown_write(const void *target, Text *text)
 {
+    const CheckReport *report = target;
     append_headline(report, text);
     for (size_t i = 0; i < report->case_count; i++) {
         const CheckCase *item = &report->cases[i];

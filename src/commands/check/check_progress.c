@@ -1,18 +1,16 @@
 // How far has a check come, and how long will the rest take?
 #include "commands/check/check_progress.h"
 
-#include "base/clock.h"
 #include "base/text.h"
 
 CheckProgress check_progress_start(const char *doing, bool is_quiet)
 {
-    return (CheckProgress){
-        .doing = doing, .line = status_line_start(is_quiet), .started_s = clock_now_s()};
+    return (CheckProgress){.doing = doing, .line = status_line_start(is_quiet)};
 }
 
 void check_progress_show(CheckProgress *progress, const CheckWorkState *state)
 {
-    const double wall_s = clock_now_s() - progress->started_s;
+    const double wall_s = status_line_time(&progress->line);
     if (!status_line_is_due(&progress->line, wall_s)) {
         return;
     }

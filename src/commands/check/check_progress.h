@@ -9,7 +9,6 @@ typedef struct CheckProgress {
     size_t case_number; // of the one at work, from 1; 0: all at once
     size_t case_count;
     StatusLine line;
-    double started_s; // by the clock
 } CheckProgress;
 
 CheckProgress check_progress_start(const char *doing, bool is_quiet);

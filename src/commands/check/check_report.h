@@ -95,9 +95,9 @@ typedef struct CheckLimitCells {
 void check_report_limit(const CheckLimit *limit, char words[CHECK_WORDS_SIZE]);
 CheckLimitCells check_report_limit_cells(const CheckLimit *limit);
 
-// The report for other programs, a new reference; for CI systems, as JUnit XML; for a comment on a
-// change, as Markdown; and for people.
-json_t *check_json_build(const CheckReport *report);
-void check_junit_write(const CheckReport *report, Text *text);
-void check_markdown_write(const CheckReport *report, Text *text);
-void check_text_write(const CheckReport *report, const Style *style, Text *text);
+// Each is of a CheckReport: for other programs, a new reference; for CI systems, as JUnit XML; for
+// a comment on a change, as Markdown; and for people.
+json_t *check_json_build(const void *report);
+void check_junit_write(const void *report, Text *text);
+void check_markdown_write(const void *report, Text *text);
+void check_text_write(const void *report, const Style *style, Text *text);

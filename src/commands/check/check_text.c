@@ -128,8 +128,9 @@ static void write_case(const CheckReport *report, const CheckCase *item, bool is
     text_append(text, "%s%s\n", item->note[0] != '\0' ? "\n  " : "", item->note);
 }
 
-void check_text_write(const CheckReport *report, const Style *style, Text *text)
+void check_text_write(const void *target, const Style *style, Text *text)
 {
+    const CheckReport *report = target;
     for (size_t i = 0; i < report->case_count; i++) {
         write_case(report, &report->cases[i], report->is_all, style, text);
     }

@@ -11,32 +11,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static json_t *build_json(const void *report)
-{
-    return check_json_build(report);
-}
-
-static void write_text(const void *report, const Style *style, Text *text)
-{
-    check_text_write(report, style, text);
-}
-
-static void write_junit(const void *report, Text *text)
-{
-    check_junit_write(report, text);
-}
-
-static void write_markdown(const void *report, Text *text)
-{
-    check_markdown_write(report, text);
-}
-
 static const ResultFile FILES[] = {
-    {"--junit", offsetof(CheckOptions, junit), .kind = FILE_JUNIT, .text = write_junit},
-    {"--markdown", offsetof(CheckOptions, markdown), .kind = FILE_COMMENT, .text = write_markdown},
+    {"--junit", offsetof(CheckOptions, junit), .kind = FILE_JUNIT, .text = check_junit_write},
+    {"--markdown", offsetof(CheckOptions, markdown), .kind = FILE_COMMENT,
+     .text = check_markdown_write},
 };
 
-static const Results RESULTS = {.json = build_json, .text = write_text, RESULT_FILES(FILES)};
+static const Results RESULTS = {
+    .json = check_json_build, .text = check_text_write, RESULT_FILES(FILES)};
 
 // A limit of the case itself comes before what its baseline says.
 static bool refuse_case(const CheckReport *report, const CheckCase *item, Err *err)

@@ -1,18 +1,16 @@
 // How far has a comparison come, and how long will the rest take?
 #include "commands/compare/compare_progress.h"
 
-#include "base/clock.h"
 #include "base/text.h"
 
 CompareProgress compare_progress_start(const Ladder *ladder, bool is_quiet)
 {
-    return (CompareProgress){
-        .ladder = ladder, .line = status_line_start(is_quiet), .started_s = clock_now_s()};
+    return (CompareProgress){.ladder = ladder, .line = status_line_start(is_quiet)};
 }
 
 void compare_progress_show(CompareProgress *progress, const char *doing)
 {
-    const double wall_s = clock_now_s() - progress->started_s;
+    const double wall_s = status_line_time(&progress->line);
     if (!status_line_is_due(&progress->line, wall_s)) {
         return;
     }

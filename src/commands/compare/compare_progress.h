@@ -7,7 +7,6 @@
 typedef struct CompareProgress {
     const Ladder *ladder;
     StatusLine line;
-    double started_s; // by the clock
 } CompareProgress;
 
 CompareProgress compare_progress_start(const Ladder *ladder, bool is_quiet);

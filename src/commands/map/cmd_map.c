@@ -1,5 +1,4 @@
 // Which ERP, CFM and step for a joint with play, and what do they deliver?
-#include "base/clock.h"
 #include "cli/long_work.h"
 #include "cli/option_values.h"
 #include "cli/output.h"
@@ -18,13 +17,12 @@
 // What is told while it works.
 typedef struct Telling {
     StatusLine line;
-    double started_s;
     const char *doing; // of a run or of many
 } Telling;
 
 static void tell(Telling *telling, const char *words)
 {
-    if (status_line_is_due(&telling->line, clock_now_s() - telling->started_s)) {
+    if (status_line_is_due(&telling->line, status_line_time(&telling->line))) {
         status_line_show(&telling->line, words);
     }
 }
@@ -107,8 +105,7 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario,
     if (!results_claim(&RESULTS, &options->common, path, err)) {
         return false;
     }
-    Telling telling = {status_line_start(options->common.is_quiet), clock_now_s(),
-                       "the reference's run"};
+    Telling telling = {status_line_start(options->common.is_quiet), "the reference's run"};
     const MappingWatch watch = {tell_plan, tell_row, {tell_run, &telling}, &telling};
     Mapping mapping = {0};
     PenaltyMap *penalty = NULL;

@@ -10,17 +10,7 @@
 
 static const OptionRow OPTIONS[] = {COMMON_JSON(0), COMMON_WIDE(0), COMMON_QUIET(0)};
 
-static json_t *build_json(const void *result)
-{
-    return paper_json_make(result);
-}
-
-static void write_text(const void *result, const Style *style, Text *text)
-{
-    paper_text_write(result, style, text);
-}
-
-static const Results RESULTS = {.json = build_json, .text = write_text};
+static const Results RESULTS = {.json = paper_json_make, .text = paper_text_write};
 
 static bool compute(void *target, Err *err)
 {

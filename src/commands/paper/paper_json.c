@@ -130,8 +130,9 @@ static json_t *typos_array(void)
     return typos;
 }
 
-json_t *paper_json_make(const PaperResult *result)
+json_t *paper_json_make(const void *target)
 {
+    const PaperResult *result = target;
     json_t *tables = json_array();
     for (int i = 0; i < PRINTED_TABLE_COUNT; i++) {
         json_array_append_new(tables, table_object(result, i));

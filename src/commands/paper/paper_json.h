@@ -6,4 +6,4 @@
 #include <jansson.h>
 
 // One object; the caller owns it and gives it up with json_decref. Units stand in the keys.
-json_t *paper_json_make(const PaperResult *result);
+json_t *paper_json_make(const void *result);

@@ -221,8 +221,9 @@ static void write_origins(const PaperResult *result, const Style *style, Text *t
     }
 }
 
-void paper_text_write(const PaperResult *result, const Style *style, Text *text)
+void paper_text_write(const void *target, const Style *style, Text *text)
 {
+    const PaperResult *result = target;
     text_append(text,
                 "%sA New Approach for Estimation of Penalty Parameter with Tolerance "
                 "Stack-Up: its numbers%s\n\n",

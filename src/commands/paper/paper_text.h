@@ -7,4 +7,4 @@
 
 // The five tables, each printed, recomputed and with what physics gives, and the typos of the
 // paper below the table where they matter.
-void paper_text_write(const PaperResult *result, const Style *style, Text *text);
+void paper_text_write(const void *result, const Style *style, Text *text);

@@ -1,5 +1,4 @@
 // Which setting of ODE is the cheapest that is accurate enough?
-#include "base/clock.h"
 #include "cli/long_work.h"
 #include "cli/output.h"
 #include "cli/results.h"
@@ -22,29 +21,18 @@
 typedef struct Watching {
     const Tune *tune;
     StatusLine line;
-    double started_s; // by the clock
 } Watching;
 
 static void wait(const char *doing, void *context)
 {
     Watching *watching = context;
-    const double wall_s = clock_now_s() - watching->started_s;
+    const double wall_s = status_line_time(&watching->line);
     if (status_line_is_due(&watching->line, wall_s)) {
         char words[128];
         snprintf(words, sizeof words, "%s: %zu settings run, %.0f s", doing,
                  watching->tune->trial_count, wall_s);
         status_line_show(&watching->line, words);
     }
-}
-
-static json_t *build_json(const void *report)
-{
-    return tune_json_build(report);
-}
-
-static void write_text(const void *report, const Style *style, Text *text)
-{
-    tune_text_write(report, style, text);
 }
 
 // Whether there is a contact to write; where there is none, why.
@@ -96,8 +84,8 @@ static const ResultFile FILES[] = {
 
 static const Results RESULTS = {
     .suffix = "-tune",
-    .json = build_json,
-    .text = write_text,
+    .json = tune_json_build,
+    .text = tune_text_write,
     RESULT_FILES(FILES),
 };
 
@@ -125,9 +113,7 @@ static bool check_met(const TuneReport *report, Err *err)
 
 static bool search(const TuneOptions *options, const Scenario *scenario, Tune *tune, Err *err)
 {
-    Watching watching = {.tune = tune,
-                         .line = status_line_start(options->common.is_quiet),
-                         .started_s = clock_now_s()};
+    Watching watching = {tune, status_line_start(options->common.is_quiet)};
     const TuneSearch work = {
         .tune = tune,
         .scenario = scenario,

@@ -1,8 +1,8 @@
 // The cheapest setting of ODE whose error, found by running it, meets a target.
 //
 // Steps and tolerances come from a grid of preferred numbers, ten to a decade. A setting counts
-// only where the next finer one of its scheme meets the target as well: an error that is small by luck
-// at one step is no basis for a recommendation.
+// only where the next finer one of its scheme meets the target as well: an error that is small by
+// luck at one step is no basis for a recommendation.
 //
 // Of a user who is held to one step the question is another: which scheme has the least error at
 // that step, and where it does not meet the target, which is the longest step that does.
@@ -122,8 +122,8 @@ typedef struct Tune {
     int row;    // the ERP and CFM, at a step that is held
 } Tune;
 
-// The value of an index of the grid: 1, 0.8, 0.63, 0.5, 0.4, 0.315, 0.25, 0.2, 0.16, 0.125, 0.1, ... the R10
-// series of ISO 3 downwards. Indices may be negative.
+// The value of an index of the grid: 1, 0.8, 0.63, 0.5, 0.4, 0.315, 0.25, 0.2, 0.16, 0.125, 0.1,
+// ... the R10 series of ISO 3 downwards. Indices may be negative.
 double tune_value(int index);
 
 // A search with nothing run yet: the schemes of ODE among those given, the several tolerances of

@@ -193,8 +193,9 @@ static void set_asked(json_t *object, const Tune *tune)
                                               : json_null());
 }
 
-json_t *tune_json_build(const TuneReport *report)
+json_t *tune_json_build(const void *target)
 {
+    const TuneReport *report = target;
     const Tune *tune = report->tune;
     json_t *object = json_object();
     settings_json_begin(object, report->scenario);

@@ -33,9 +33,9 @@ static inline bool tune_report_has_limit(const TuneReport *report)
     return report->tune->limit.steps > 0 || report->tune->limit.time_s > 0.0;
 }
 
-// The search for other programs: a new reference; and for people.
-json_t *tune_json_build(const TuneReport *report);
-void tune_text_write(const TuneReport *report, const Style *style, Text *text);
+// Each is of a TuneReport: for other programs, a new reference; and for people.
+json_t *tune_json_build(const void *report);
+void tune_text_write(const void *report, const Style *style, Text *text);
 
 // What can be had at a step that is held, for people.
 

@@ -254,8 +254,9 @@ static void write_trials(const TuneReport *report, const Style *style, Text *tex
     }
 }
 
-void tune_text_write(const TuneReport *report, const Style *style, Text *text)
+void tune_text_write(const void *target, const Style *style, Text *text)
 {
+    const TuneReport *report = target;
     const bool is_held = report->tune->held_s > 0.0;
     write_head(report, style, text);
     if (is_held) {
