@@ -1,0 +1,95 @@
+#!/bin/sh
+# Do the tests see small faults in the sources? Puts seeded random faults into src/, one at a time,
+# builds, and runs the tests until one fails: a comparison turned round or made strict, a sign, a
+# factor, a condition that always holds, a result 'true' for 'false', a statement left out.
+#
+# tests/measure/faults.sh [COUNT [FIRST]]
+#   COUNT   faults (default 100)
+#   FIRST   the first seed (default 1)
+# Prints each fault with its seed, place and what saw it, and at the end the share that was seen.
+# A fault that nothing sees either does not matter (say why) or needs a test. A minute a fault.
+set -u
+root=$(cd "$(dirname "$0")/../.." && pwd)
+count=${1:-100}
+first=${2:-1}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+tree=$work/tree
+mkdir "$tree"
+git -C "$root" archive HEAD | tar -x -C "$tree"
+meson setup "$work/build" "$tree" -Dtests=enabled -Dbuildtype=debugoptimized >/dev/null || exit 2
+ninja -C "$work/build" --quiet >/dev/null || exit 2
+cd "$tree" || exit 2
+find src -name '*.c' | sort | xargs grep -nE '[;{)]' |
+    grep -vE ':[0-9]+: *(//|assert|#|static const|enum|const [A-Za-z]+ [A-Z_]+ =)' >"$work/lines"
+
+# Writes the changed line of the fault of a seed, after its file and number; nothing where the line
+# has nothing to change.
+draw() {
+    awk -v seed="$1" '
+        function next_number() { # Lehmer, modulus 2^31 - 1
+            state = state * 48271 % 2147483647
+            return state
+        }
+        { lines[NR] = $0 }
+        END {
+            state = seed * 7919 % 2147483647
+            for (i = 0; i < 5; i++) next_number()
+            split(lines[next_number() % NR + 1], parts, ":")
+            text = lines[state % NR + 1]
+            sub(/^[^:]*:[0-9]*:/, "", text)
+            count = split("return false;|return true;~return true;|return false;~ < | <= ~ <= | < ~ > | < ~ >= | > ~ == | != ~ != | == ~ [+] | - ~ - | + ~ [*] | / ~ && | || ~ [|][|] | \\&\\& ~0[.]5|0.6~fmin[(]|fmax(~fmax[(]|fmin(~[+][+]|--~if [(]!|if (~if [(]|if (!~^ +[a-z_>.-]+([[][a-z]+[]])? [+-]?= .*;$|;~^ +[a-z_]+[(].*[)];$|;", kinds, "~")
+            start = next_number() % count
+            for (i = 0; i < count; i++) {
+                kind = kinds[(start + i) % count + 1]
+                at = match(kind, /[^[][|][^]]/)
+                pattern = substr(kind, 1, at)
+                changed = text
+                if (sub(pattern, substr(kind, at + 2), changed) && changed != text) {
+                    print parts[1]
+                    print parts[2]
+                    print changed
+                    exit
+                }
+            }
+        }' "$work/lines"
+}
+
+# The first test that fails, or nothing.
+find_witness() {
+    for suite in unit physics command numbers style; do
+        if ! meson test -C "$work/build" --no-rebuild --suite "$suite" --maxfail 1 \
+            >"$work/log" 2>&1; then
+            sed -n 's/^ *[0-9]*\/[0-9]* [^ ]* *[^ ]* *\/ *\([a-z_0-9]*\) *\(FAIL\|ERROR\|TIMEOUT\).*/\1/p' \
+                "$work/log" | head -n 1
+            return
+        fi
+    done
+}
+
+tried=0
+seen=0
+seed=$first
+while [ "$tried" -lt "$count" ]; do
+    draw "$seed" >"$work/fault"
+    file=$(sed -n 1p "$work/fault")
+    number=$(sed -n 2p "$work/fault")
+    sed -n 3p "$work/fault" >"$work/line"
+    if [ -n "$file" ]; then
+        cp "$file" "$work/kept"
+        sed "${number}{r $work/line
+            d}" "$work/kept" >"$file"
+        # what does not compile is no fault
+        if ninja -C "$work/build" --quiet >/dev/null 2>&1; then
+            tried=$((tried + 1))
+            witness=$(find_witness)
+            [ -z "$witness" ] || seen=$((seen + 1))
+            printf '%d %s:%d: %s -> %s: %s\n' "$seed" "$file" "$number" \
+                "$(sed -n "${number}s/^ *//p" "$work/kept")" "$(sed 's/^ *//' "$work/line")" \
+                "${witness:-NOT SEEN}"
+        fi
+        cp "$work/kept" "$file"
+    fi
+    seed=$((seed + 1))
+done
+echo "$seen of $tried faults seen"
