@@ -21,13 +21,7 @@ static double force_of(const RunReport *report, const Trajectory *run, size_t sa
     return trajectory_state(run, sample, joint)->force;
 }
 
-static size_t force_signal(const Trajectory *run, size_t joint)
-{
-    return ranges_of_joint(&run->ranges, joint, RANGES_FORCE);
-}
-
-static const PlotQuantity FORCE = {"force", plot_look_joint_colour, plot_look_joint_name,
-                                   force_signal, force_of};
+static const PlotQuantity FORCE = {"force", true, RANGES_FORCE, force_of};
 
 // Whether the run has forces of this joint at all: none act in a drive that is prescribed.
 static bool knows_force(const RunReport *report, const Trajectory *run, size_t joint)
@@ -65,7 +59,7 @@ static void choose_force_range(const RunReport *report, Axis *axis)
     for (size_t run = 0; run < report->run_count; run++) {
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
-            if (trajectory->is_complete && plot_look_shows_joint(report, joint)) {
+            if (trajectory->is_complete && plot_look_shows(report, true, joint)) {
                 widen_force_range(report, trajectory, joint, &forces);
             }
         }
@@ -83,7 +77,7 @@ static void draw_spikes(const RunReport *report, const PlotPanel *panel, size_t 
     for (size_t i = 0; is_shown && i < extremes->spike_count; i++) {
         const Spike *spike = &extremes->spikes[i];
         plot_dot(panel, plot_look_x(report, spike->crank_rad, spike->onset_s), spike->force_max,
-                 plot_style(1, plot_look_joint_colour(report, joint)));
+                 plot_style(1, plot_look_colour(report, true, joint)));
     }
 }
 
@@ -98,7 +92,7 @@ void plot_joints_forces(const RunReport *report, PlotPanel panel)
     plot_look_shade(report, &panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-            if (plot_look_shows_joint(report, joint) &&
+            if (plot_look_shows(report, true, joint) &&
                 knows_force(report, report->runs[run], joint)) {
                 plot_look_draw(report, &panel, run, FORCE, joint);
                 draw_spikes(report, &panel, run, joint);
@@ -107,7 +101,7 @@ void plot_joints_forces(const RunReport *report, PlotPanel panel)
     }
     const Trajectory *spiky = plot_look_spike_run(report);
     for (size_t joint = 0; spiky != NULL && joint < spiky->joint_count; joint++) {
-        if (plot_look_shows_joint(report, joint)) {
+        if (plot_look_shows(report, true, joint)) {
             plot_look_marks(report, &panel, &spiky->force_spikes[joint], FORCE, joint, "N");
         }
     }
@@ -126,7 +120,7 @@ static void draw_path(const RunReport *report, const PlotPanel *panel, size_t ru
         x[i] = eccentricity.x * per_metre;
         y[i] = eccentricity.y * per_metre;
     }
-    PlotStyle style = plot_style(1, plot_look_joint_colour(report, joint));
+    PlotStyle style = plot_style(1, plot_look_colour(report, true, joint));
     style.width = 1.0;
     style.opacity = 0.8;
     plot_line(panel, trajectory->sample_count, x, y, style);
@@ -231,8 +225,7 @@ static void choose_error_range(const RunReport *report, const Trajectory *truth,
 
 void plot_joints_errors(const RunReport *report, PlotPanel panel)
 {
-    static const PlotQuantity ERROR = {"difference of omega", plot_look_body_colour,
-                                       plot_look_body_name, NULL, omega_error};
+    static const PlotQuantity ERROR = {"difference of omega", false, -1, omega_error};
     const Trajectory *truth = find_truth(report);
     char title[128];
     snprintf(title, sizeof title, "%s%s",
@@ -247,7 +240,7 @@ void plot_joints_errors(const RunReport *report, PlotPanel panel)
     plot_enter(&panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t body = 0; report->errors[run].is_known && body < truth->body_count; body++) {
-            if (plot_look_shows_body(report, body)) {
+            if (plot_look_shows(report, false, body)) {
                 plot_look_draw(report, &panel, run, ERROR, body);
             }
         }

@@ -10,34 +10,24 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-bool plot_look_shows_body(const RunReport *report, size_t body)
+bool plot_look_shows(const RunReport *report, bool is_joint, size_t index)
 {
-    return (int)body != linkage_driven_body(&report->scenario->linkage);
+    const Linkage *linkage = &report->scenario->linkage;
+    return is_joint ? !scenario_has_clearance(report->scenario) ||
+                          linkage->joints[index].kind == JOINT_CLEARANCE
+                    : (int)index != linkage_driven_body(linkage);
 }
 
-bool plot_look_shows_joint(const RunReport *report, size_t joint)
+// The colours of the bodies that are shown come first.
+size_t plot_look_colour(const RunReport *report, bool is_joint, size_t index)
 {
-    return !scenario_has_clearance(report->scenario) ||
-           report->scenario->linkage.joints[joint].kind == JOINT_CLEARANCE;
-}
-
-size_t plot_look_joint_colour(const RunReport *report, size_t joint)
-{
+    const size_t bodies = is_joint ? report->scenario->linkage.body_count : index;
     size_t colour = 0;
-    for (size_t body = 0; body < report->scenario->linkage.body_count; body++) {
-        colour += plot_look_shows_body(report, body) ? 1 : 0;
+    for (size_t body = 0; body < bodies; body++) {
+        colour += plot_look_shows(report, false, body) ? 1 : 0;
     }
-    for (size_t i = 0; i < joint; i++) {
-        colour += plot_look_shows_joint(report, i) ? 1 : 0;
-    }
-    return colour;
-}
-
-size_t plot_look_body_colour(const RunReport *report, size_t body)
-{
-    size_t colour = 0;
-    for (size_t i = 0; i < body; i++) {
-        colour += plot_look_shows_body(report, i) ? 1 : 0;
+    for (size_t joint = 0; is_joint && joint < index; joint++) {
+        colour += plot_look_shows(report, true, joint) ? 1 : 0;
     }
     return colour;
 }
@@ -64,19 +54,15 @@ double plot_look_x(const RunReport *report, double crank_rad, double time_s)
     return driver->is_present ? fabs(crank_rad - driver->start) * UNITS_DEG : time_s * UNITS_MS;
 }
 
-const char *plot_look_body_name(const RunReport *report, size_t body)
+static const char *name_of(const RunReport *report, PlotQuantity quantity, size_t index)
 {
-    return report->scenario->linkage.bodies[body].name;
-}
-
-const char *plot_look_joint_name(const RunReport *report, size_t joint)
-{
-    return report->scenario->linkage.joints[joint].name;
+    const Linkage *linkage = &report->scenario->linkage;
+    return quantity.is_joint ? linkage->joints[index].name : linkage->bodies[index].name;
 }
 
 static bool has_ranges(const Trajectory *run, PlotQuantity quantity)
 {
-    return quantity.signal != NULL && run->ranges.count > 0;
+    return quantity.signal >= 0 && run->ranges.count > 0;
 }
 
 size_t plot_look_stretch_count(const Trajectory *run, PlotQuantity quantity)
@@ -92,7 +78,8 @@ PlotStretch plot_look_stretch(const RunReport *report, const Trajectory *run, Pl
         return (PlotStretch){run->times[stretch], {value, value}};
     }
     const Ranges *ranges = &run->ranges;
-    const size_t signal = quantity.signal(run, index);
+    const size_t signal = quantity.is_joint ? ranges_of_joint(ranges, index, quantity.signal)
+                                            : ranges_of_body(index, quantity.signal);
     // the last stretches may reach beyond the end
     return (PlotStretch){fmin(((double)stretch + 0.5) * ranges->width_s, run->duration_s),
                          ranges_over(ranges, signal, stretch, stretch + 1)};
@@ -129,9 +116,10 @@ void plot_look_marks(const RunReport *report, const PlotPanel *panel, const Sign
         const SignalSpike *spike = &spikes->spikes[i];
         char title[2 * LINKAGE_NAME_SIZE + 96];
         snprintf(title, sizeof title, "%s %s: %.6g %s at %.7g ms", quantity.name,
-                 quantity.owner(report, index), spike->value, unit, spike->time_s * UNITS_MS);
+                 name_of(report, quantity, index), spike->value, unit, spike->time_s * UNITS_MS);
         plot_mark(panel, plot_look_x(report, spike->crank_rad, spike->time_s), spike->value,
-                  spike->value < 0.0, title, plot_style(1, quantity.colour(report, index)));
+                  spike->value < 0.0, title,
+                  plot_style(1, plot_look_colour(report, quantity.is_joint, index)));
     }
 }
 
@@ -156,7 +144,8 @@ void plot_look_draw(const RunReport *report, const PlotPanel *panel, size_t run,
     }
     char title[TRAJECTORY_LABEL_SIZE + 2 * LINKAGE_NAME_SIZE];
     snprintf(title, sizeof title, "%s: %s %s", trajectory->backend, quantity.name,
-             quantity.owner(report, index));
-    plot_band(panel, count, x, low, high, title, plot_style(run, quantity.colour(report, index)));
+             name_of(report, quantity, index));
+    plot_band(panel, count, x, low, high, title,
+              plot_style(run, plot_look_colour(report, quantity.is_joint, index)));
     free(x);
 }

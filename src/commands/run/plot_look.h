@@ -4,13 +4,12 @@
 #include "commands/run/run_report.h"
 #include "write/plot.h"
 
-// Something drawn over the crank angle: its name, the colour of its body or joint, and either its
-// number in the ranges of a run or, where these do not hold it, its value at a sample.
+// Something drawn over the crank angle: of a body or a joint, its number in the ranges of a run or,
+// where these do not hold it, its value at a sample.
 typedef struct PlotQuantity {
     const char *name;
-    size_t (*colour)(const RunReport *report, size_t index);
-    const char *(*owner)(const RunReport *report, size_t index);
-    size_t (*signal)(const Trajectory *run, size_t index); // NULL: samples are all there is
+    bool is_joint;
+    int signal; // RANGES_OMEGA and its like; -1: samples are all there is
     double (*at)(const RunReport *report, const Trajectory *run, size_t sample, size_t index);
 } PlotQuantity;
 
@@ -25,17 +24,11 @@ size_t plot_look_stretch_count(const Trajectory *run, PlotQuantity quantity);
 PlotStretch plot_look_stretch(const RunReport *report, const Trajectory *run, PlotQuantity quantity,
                               size_t stretch, size_t index);
 
-// The names of a body and of a joint.
-const char *plot_look_body_name(const RunReport *report, size_t body);
-const char *plot_look_joint_name(const RunReport *report, size_t joint);
-
 // Driven bodies are not shown; ideal joints only where no joint has play.
-bool plot_look_shows_body(const RunReport *report, size_t body);
-bool plot_look_shows_joint(const RunReport *report, size_t joint);
+bool plot_look_shows(const RunReport *report, bool is_joint, size_t index);
 
 // The number of the colour of a body or joint.
-size_t plot_look_body_colour(const RunReport *report, size_t body);
-size_t plot_look_joint_colour(const RunReport *report, size_t joint);
+size_t plot_look_colour(const RunReport *report, bool is_joint, size_t index);
 
 // The axis of the crank angle from the start, or of time where there is no driver.
 Axis plot_look_x_axis(const RunReport *report);

@@ -49,24 +49,6 @@ static double acceleration_of(const RunReport *report, const Trajectory *run, si
     return hypot(acceleration.x, acceleration.y);
 }
 
-static size_t omega_signal(const Trajectory *run, size_t body)
-{
-    (void)run;
-    return ranges_of_body(body, RANGES_OMEGA);
-}
-
-static size_t alpha_signal(const Trajectory *run, size_t body)
-{
-    (void)run;
-    return ranges_of_body(body, RANGES_ALPHA);
-}
-
-static size_t acceleration_signal(const Trajectory *run, size_t body)
-{
-    (void)run;
-    return ranges_of_body(body, RANGES_ACCELERATION);
-}
-
 // Does any body turn by more than rounding? A body without friction in a round hole does not, and
 // its angular velocity would be a picture of noise. Its energy of rotation is held against its
 // energy of translation: speeds that differ by 1e-10 are rounding over many steps.
@@ -128,7 +110,7 @@ static Reach find_reach(const RunReport *report, const Trajectory *run, PlotQuan
     double *sizes = calloc(count, sizeof *sizes);
     assert(sizes != NULL);
     for (size_t body = 0; body < run->body_count; body++) {
-        for (size_t i = 0; plot_look_shows_body(report, body) && i < count; i++) {
+        for (size_t i = 0; plot_look_shows(report, false, body) && i < count; i++) {
             const Range range = plot_look_stretch(report, run, quantity, i, body).range;
             if (range.least <= range.most) {
                 reach.low = fmin(reach.low, range.least);
@@ -177,14 +159,14 @@ static void draw_motion(const RunReport *report, PlotPanel panel, PlotQuantity q
     plot_look_shade(report, &panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t body = 0; body < report->scenario->linkage.body_count; body++) {
-            if (plot_look_shows_body(report, body) && report->runs[run]->is_complete) {
+            if (plot_look_shows(report, false, body) && report->runs[run]->is_complete) {
                 plot_look_draw(report, &panel, run, quantity, body);
             }
         }
     }
     const Trajectory *spiky = has_spikes ? plot_look_spike_run(report) : NULL;
     for (size_t body = 0; spiky != NULL && body < spiky->body_count; body++) {
-        if (plot_look_shows_body(report, body)) {
+        if (plot_look_shows(report, false, body)) {
             plot_look_marks(report, &panel, &spiky->alpha_spikes[body], quantity, body, "rad/s^2");
         }
     }
@@ -229,6 +211,19 @@ static void add_marks(Legend *legend, const Trajectory *run)
                      (PlotStyle){"#333333", 1.0, 1.0, NULL});
 }
 
+// The colour of a body or joint that is shown.
+static void add_colour(Legend *legend, const RunReport *report, bool is_joint, size_t index,
+                       const char *what, const char *name)
+{
+    if (plot_look_shows(report, is_joint, index)) {
+        PlotStyle style = plot_style(1, plot_look_colour(report, is_joint, index));
+        style.width = 3.0;
+        char words[LINKAGE_NAME_SIZE + 16];
+        snprintf(words, sizeof words, "%s%s", what, name);
+        add_entry(legend, style, words);
+    }
+}
+
 static void draw_legend(const RunReport *report, Text *svg)
 {
     Legend legend = {svg, PANEL_LEFT[0], LEGEND_TOP};
@@ -244,20 +239,10 @@ static void draw_legend(const RunReport *report, Text *svg)
     legend.y += LEGEND_ROW;
     const Linkage *linkage = &report->scenario->linkage;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        if (plot_look_shows_body(report, i)) {
-            PlotStyle style = plot_style(1, plot_look_body_colour(report, i));
-            style.width = 3.0;
-            add_entry(&legend, style, linkage->bodies[i].name);
-        }
+        add_colour(&legend, report, false, i, "", linkage->bodies[i].name);
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (plot_look_shows_joint(report, i)) {
-            PlotStyle style = plot_style(1, plot_look_joint_colour(report, i));
-            style.width = 3.0;
-            char words[LINKAGE_NAME_SIZE + 16];
-            snprintf(words, sizeof words, "joint %s", linkage->joints[i].name);
-            add_entry(&legend, style, words);
-        }
+        add_colour(&legend, report, true, i, "joint ", linkage->joints[i].name);
     }
     const Trajectory *spiky = plot_look_spike_run(report);
     if (spiky != NULL) {
@@ -268,14 +253,10 @@ static void draw_legend(const RunReport *report, Text *svg)
 // The rotation of the bodies, or the motion of their centres where nothing turns.
 static void draw_motions(const RunReport *report, Text *svg)
 {
-    static const PlotQuantity OMEGA = {"omega", plot_look_body_colour, plot_look_body_name,
-                                       omega_signal, omega_of};
-    static const PlotQuantity ALPHA = {"alpha", plot_look_body_colour, plot_look_body_name,
-                                       alpha_signal, alpha_of};
-    static const PlotQuantity SPEED = {"speed", plot_look_body_colour, plot_look_body_name, NULL,
-                                       speed_of};
-    static const PlotQuantity ACCELERATION = {"acceleration", plot_look_body_colour,
-                                              plot_look_body_name, acceleration_signal,
+    static const PlotQuantity OMEGA = {"omega", false, RANGES_OMEGA, omega_of};
+    static const PlotQuantity ALPHA = {"alpha", false, RANGES_ALPHA, alpha_of};
+    static const PlotQuantity SPEED = {"speed", false, -1, speed_of};
+    static const PlotQuantity ACCELERATION = {"acceleration", false, RANGES_ACCELERATION,
                                               acceleration_of};
     const bool turns = report->scenario->linkage.driver.is_present || any_turns(report);
     PlotPanel panel =
