@@ -277,24 +277,24 @@ bool fields_csv_write(const Field *fields, unsigned where, const void *records, 
     return file_end(&file, err);
 }
 
-static size_t count_columns(const Field *fields, unsigned where)
+size_t fields_table_width(const Field *fields, unsigned where)
 {
     size_t count = 0;
     for (const Field *field = fields; field->type != FIELD_END; field++) {
         const bool is_shown = (field->where & where) != 0;
-        count += !is_shown ? 0 : has_inner(field) ? count_columns(field->of, where) : 1;
+        count += !is_shown ? 0 : has_inner(field) ? fields_table_width(field->of, where) : 1;
     }
     return count;
 }
 
-static size_t table_heads(const Field *fields, unsigned where, size_t column, Table *table)
+size_t fields_table_heads(const Field *fields, unsigned where, size_t column, Table *table)
 {
     for (const Field *field = fields; field->type != FIELD_END; field++) {
         if ((field->where & where) == 0) {
             continue;
         }
         if (has_inner(field)) {
-            column = table_heads(field->of, where, column, table);
+            column = fields_table_heads(field->of, where, column, table);
             continue;
         }
         const bool is_right = is_number(field) || field->type == FIELD_COUNT;
@@ -311,9 +311,9 @@ Table *fields_table(const char *heading, const Field *fields, unsigned where, co
         section_heading(heading, style, text);
         text_append(text, "\n");
     }
-    Table *table = table_create(count_columns(fields, where));
+    Table *table = table_create(fields_table_width(fields, where));
     table_fit(table, style->width);
-    table_heads(fields, where, 0, table);
+    fields_table_heads(fields, where, 0, table);
     return table;
 }
 

@@ -90,5 +90,10 @@ bool fields_csv_write(const Field *fields, unsigned where, const void *records, 
 Table *fields_table(const char *heading, const Field *fields, unsigned where, const Style *style,
                     Text *text);
 
+// The same columns in a table of the caller's: how many there are, and their heads from a column
+// on; returns the next column.
+size_t fields_table_width(const Field *fields, unsigned where);
+size_t fields_table_heads(const Field *fields, unsigned where, size_t column, Table *table);
+
 // Fills one row of it.
 void fields_table_row(const Field *fields, unsigned where, const void *record, Table *table);

@@ -3,8 +3,6 @@
 
 #include "commands/paper/embedded.h"
 #include "commands/paper/paper.h"
-#include "commands/paper/paper_json.h"
-#include "commands/paper/paper_text.h"
 #include "contact/law.h"
 
 #include <stdio.h>

@@ -2,8 +2,7 @@
 #include "cli/progress.h"
 #include "cli/results.h"
 #include "commands/commands.h"
-#include "commands/paper/paper_json.h"
-#include "commands/paper/paper_text.h"
+#include "commands/paper/paper.h"
 
 #include <assert.h>
 #include <stdlib.h>

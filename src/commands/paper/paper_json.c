@@ -6,7 +6,7 @@
 //  "physics": {"pins": [...], "laws": [...]},
 //  "extremes": [{"row", "status", "target", "printed": {...}, "recomputed": {...}, ...}...],
 //  "ideal": {"difference_max", "cells_as_printed", "cell_count"}, "typos": [...]}
-#include "commands/paper/paper_json.h"
+#include "commands/paper/paper.h"
 
 #include <assert.h>
 #include <math.h>
@@ -55,21 +55,31 @@ static json_t *table_object(const PaperResult *result, int index)
                             "difference_max", table->difference_max));
 }
 
-static json_t *pin_object(const PhysicalPin *made, int row, int pin)
-{
-    return packed(json_pack("{s:f, s:s, s:f, s:f, s:f, s:f, s:f}", "rpm", printed_speed_rpm(row),
-                            "pin", PRINTED_PIN_NAMES[pin], "force_N", made->force,
-                            "hertz_approach_m", made->hertz_approach, "johnson_approach_m",
-                            made->johnson_approach, "johnson_tangent_N_m", made->johnson_tangent,
-                            "contact_half_angle_rad", made->half_angle));
-}
+#define AT(member) .offset = offsetof(PhysicalPin, member)
+
+// clang-format off
+const Field PAPER_PIN_FIELDS[] = {
+    {"rpm", FIELD_NUMBER, FIELD_JSON, AT(rpm)},
+    {"pin", FIELD_NAME, FIELD_JSON, AT(name)},
+    {"force_N", FIELD_NUMBER, FIELD_JSON | PAPER_TABLE, "real", "N", "%.4g", AT(force)},
+    {"hertz_approach_m", FIELD_NUMBER, FIELD_JSON | PAPER_TABLE << 2, "Hertz", "um", "%.4g",
+     AT(hertz_approach)},
+    {"johnson_approach_m", FIELD_NUMBER, FIELD_JSON | PAPER_TABLE << 2, "Johnson", "um", "%.4g",
+     AT(johnson_approach)},
+    {"johnson_tangent_N_m", FIELD_NUMBER, FIELD_JSON | PAPER_TABLE << 1, "Johnson k", "N/m", "%.4g",
+     AT(johnson_tangent)},
+    {"contact_half_angle_rad", FIELD_NUMBER, FIELD_JSON, AT(half_angle)},
+    {0},
+};
+// clang-format on
 
 static json_t *physics_object(const Physical *physical)
 {
     json_t *pins = json_array();
     for (int row = 0; row < PRINTED_SPEED_COUNT; row++) {
         for (int pin = 0; pin < PRINTED_PIN_COUNT; pin++) {
-            json_array_append_new(pins, pin_object(&physical->pins[row][pin], row, pin));
+            json_array_append_new(
+                pins, fields_json(PAPER_PIN_FIELDS, FIELD_JSON, &physical->pins[row][pin]));
         }
     }
     json_t *laws = json_array();
@@ -130,9 +140,9 @@ static json_t *typos_array(void)
     return typos;
 }
 
-json_t *paper_json_make(const void *target)
+json_t *paper_json_make(const void *of)
 {
-    const PaperResult *result = target;
+    const PaperResult *result = of;
     json_t *tables = json_array();
     for (int i = 0; i < PRINTED_TABLE_COUNT; i++) {
         json_array_append_new(tables, table_object(result, i));

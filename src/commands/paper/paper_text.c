@@ -1,46 +1,9 @@
 // What does the paper print, does it come out again, and what does physics give instead?
-#include "commands/paper/paper_text.h"
-
-#include "write/table.h"
+#include "commands/paper/paper.h"
 #include "write/units.h"
 
-#include <math.h>
+#include <stdio.h>
 #include <string.h>
-
-// the columns of physics beside one of Tables I to III
-typedef struct PhysicsColumn {
-    const char *title;
-    const char *unit;
-    double (*value)(const PhysicalPin *pin);
-} PhysicsColumn;
-
-static double force(const PhysicalPin *pin)
-{
-    return pin->force;
-}
-
-static double johnson_tangent(const PhysicalPin *pin)
-{
-    return pin->johnson_tangent;
-}
-
-static double hertz_approach(const PhysicalPin *pin)
-{
-    return pin->hertz_approach * UNITS_UM;
-}
-
-static double johnson_approach(const PhysicalPin *pin)
-{
-    return pin->johnson_approach * UNITS_UM;
-}
-
-enum { PHYSICS_COLUMN_MAX = 2 };
-
-static const PhysicsColumn PHYSICS[PRINTED_TABLE_COUNT][PHYSICS_COLUMN_MAX] = {
-    {{"real", "N", force}},
-    {{"Johnson k", "N/m", johnson_tangent}},
-    {{"Hertz", "um", hertz_approach}, {"Johnson", "um", johnson_approach}},
-};
 
 static const char *const PHYSICS_NOTES[PRINTED_TABLE_COUNT] = {
     "real: the largest pin force over a turn by inverse dynamics, ideal joints, gravity included",
@@ -78,11 +41,6 @@ static void write_typos(TypoPlace place, Text *text)
     }
 }
 
-static size_t physics_count(int index)
-{
-    return PHYSICS[index][1].title != NULL ? 2 : 1;
-}
-
 static void head_estimate(Table *table, int index)
 {
     size_t column = 0;
@@ -92,10 +50,7 @@ static void head_estimate(Table *table, int index)
         table_head(table, column++, PIN_TITLES[pin], unit, TABLE_RIGHT);
         table_head(table, column++, "recomputed", unit, TABLE_RIGHT);
         table_head(table, column++, "difference", unit, TABLE_RIGHT);
-        for (size_t i = 0; i < physics_count(index); i++) {
-            const PhysicsColumn *physics = &PHYSICS[index][i];
-            table_head(table, column++, physics->title, physics->unit, TABLE_RIGHT);
-        }
+        column = fields_table_heads(PAPER_PIN_FIELDS, PAPER_TABLE << index, column, table);
     }
 }
 
@@ -112,10 +67,8 @@ static void estimate_row(Table *table, const PaperResult *result, int index, int
         } else {
             table_cell(table, "%+.*f", decimals, cell->rounded - cell->printed);
         }
-        for (size_t i = 0; i < physics_count(index); i++) {
-            const double value = PHYSICS[index][i].value(&result->physical.pins[row][pin]);
-            table_cell(table, "%.4g", value);
-        }
+        fields_table_row(PAPER_PIN_FIELDS, PAPER_TABLE << index, &result->physical.pins[row][pin],
+                         table);
     }
 }
 
@@ -124,14 +77,14 @@ static void write_estimate(const PaperResult *result, int index, const Style *st
     const PrintedTable *printed = &PRINTED_TABLES[index];
     const EstimateTable *ours = &result->tables[index];
     begin_section(printed->name, printed->title, style, text);
-    Table *table = table_create(1 + PRINTED_PIN_COUNT * (3 + physics_count(index)));
+    Table *table = table_create(
+        1 + PRINTED_PIN_COUNT * (3 + fields_table_width(PAPER_PIN_FIELDS, PAPER_TABLE << index)));
     table_fit(table, style->width);
     head_estimate(table, index);
     for (int row = 0; row < PRINTED_SPEED_COUNT; row++) {
         estimate_row(table, result, index, row);
     }
-    table_write(table, text);
-    table_destroy(table);
+    section_end(table, text);
     text_append(text, "  %d of %d cells as printed. A: %s pin, B: %s pin.\n  %s.\n  %s.\n",
                 ours->as_printed, ours->cell_count, PRINTED_PIN_NAMES[PRINTED_CRANK_COUPLER],
                 PRINTED_PIN_NAMES[PRINTED_COUPLER_FOLLOWER], FORMULAS[index], PHYSICS_NOTES[index]);
@@ -140,15 +93,15 @@ static void write_estimate(const PaperResult *result, int index, const Style *st
 static void write_laws(const PaperResult *result, const Style *style, Text *text)
 {
     const Physical *physical = &result->physical;
-    text_append(text, "\n%sWhat physics gives: %s pin at 1000 rpm%s\n\n", style->heading,
-                PRINTED_PIN_NAMES[PRINTED_CRANK_COUPLER], style->end);
-    Table *table = table_create(5);
-    table_fit(table, style->width);
-    table_head(table, 0, "law", "", TABLE_LEFT);
-    table_head(table, 1, "paper's force", "um", TABLE_RIGHT);
-    table_head(table, 2, "tangent", "N/m", TABLE_RIGHT);
-    table_head(table, 3, "real force", "um", TABLE_RIGHT);
-    table_head(table, 4, "tangent", "N/m", TABLE_RIGHT);
+    static const SectionHead HEADS[] = {
+        {"law", "", TABLE_LEFT},         {"paper's force", "um", TABLE_RIGHT},
+        {"tangent", "N/m", TABLE_RIGHT}, {"real force", "um", TABLE_RIGHT},
+        {"tangent", "N/m", TABLE_RIGHT},
+    };
+    char heading[64];
+    snprintf(heading, sizeof heading, "What physics gives: %s pin at 1000 rpm",
+             PRINTED_PIN_NAMES[PRINTED_CRANK_COUPLER]);
+    Table *table = section_begin(heading, 5, HEADS, style, text);
     for (int i = 0; i < PHYSICAL_LAW_COUNT; i++) {
         table_cell(table, "%s", physical->estimated[i].name);
         table_cell(table, "%.3g", physical->estimated[i].approach * UNITS_UM);
@@ -156,8 +109,7 @@ static void write_laws(const PaperResult *result, const Style *style, Text *text
         table_cell(table, "%.3g", physical->real[i].approach * UNITS_UM);
         table_cell(table, "%.3g", physical->real[i].tangent);
     }
-    table_write(table, text);
-    table_destroy(table);
+    section_end(table, text);
     const double half_angle =
         physical->pins[PHYSICAL_BASE_ROW][PRINTED_CRANK_COUPLER].half_angle * UNITS_DEG;
     text_append(text,
@@ -199,8 +151,7 @@ static void write_extremes(const PaperResult *result, int first, size_t width, T
             }
         }
     }
-    table_write(table, text);
-    table_destroy(table);
+    section_end(table, text);
 }
 
 // How each row of ours was made.
@@ -221,9 +172,9 @@ static void write_origins(const PaperResult *result, const Style *style, Text *t
     }
 }
 
-void paper_text_write(const void *target, const Style *style, Text *text)
+void paper_text_write(const void *of, const Style *style, Text *text)
 {
-    const PaperResult *result = target;
+    const PaperResult *result = of;
     text_append(text,
                 "%sA New Approach for Estimation of Penalty Parameter with Tolerance "
                 "Stack-Up: its numbers%s\n\n",

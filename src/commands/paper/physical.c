@@ -159,6 +159,7 @@ bool physical_compute(const Scenario *fourbar, Physical *physical, Err *err)
     const ContactPair pair = paper_pair(&fourbar->material);
     for (int row = 0; row < PRINTED_SPEED_COUNT; row++) {
         for (int pin = 0; pin < PRINTED_PIN_COUNT; pin++) {
+            made.pins[row][pin] = (PhysicalPin){.name = PRINTED_PIN_NAMES[pin], .rpm = rpm[row]};
             if (!fill_pin(&pair, forces[row][pin], &made.pins[row][pin], err)) {
                 return false;
             }

@@ -6,6 +6,8 @@
 
 // A pin at one speed, under the largest force that inverse dynamics finds over a turn.
 typedef struct PhysicalPin {
+    const char *name;
+    double rpm;
     double force;            // N, largest over a turn, ideal joints, gravity included
     double hertz_approach;   // m, sphere in socket, the paper's own Eq. (3)
     double johnson_approach; // m, cylinder in hole

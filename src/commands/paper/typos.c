@@ -1,7 +1,7 @@
 // Where does the paper not mean what it prints?
 //
 // Each reading was found by recomputing the paper's own numbers; what stayed a guess says so.
-#include "commands/paper/typos.h"
+#include "commands/paper/paper.h"
 
 const Typo TYPOS[] = {
     {TYPO_TABLES_7_8, "Table V", "input speed 1000 rad/sec",
