@@ -25,6 +25,7 @@ typedef struct EncounterJoint {
     double impact_speed; // m/s, closing speed where the contact under way began
     double touching_s;   // s, since then
     double frequency;    // rad/s, of its oscillation at the depth to be expected
+    bool is_overdamped;  // its damping stops the pin long before its spring would
 } EncounterJoint;
 
 typedef struct Encounter {
@@ -33,7 +34,11 @@ typedef struct Encounter {
     size_t rows_a_joint; // 2, or 4 with friction
     double friction;     // 1, Coulomb's coefficient
     double friction_speed;
-    double phase; // rad of a contact's oscillation in one local step
+    double phase;  // rad of a contact's oscillation in one local step
+    double stable; // time constants of a contact's damping in an explicit local step, at most
+    bool is_stiff; // whether the local step under way is implicit
+    struct EncounterStages *stages; // of implicit steps; owned, NULL before the first
+    double stiff_width_s;           // of the next implicit step; 0 where a contact has just begun
 
     // of the step under way, to be filled in before encounter_run
     double mobility[RESPONSE_ROW_MAX * RESPONSE_ROW_MAX]; // row by row, without gaps

@@ -22,8 +22,8 @@ static double row_place(const Encounter *encounter, size_t row, double time_s, c
     return place;
 }
 
-static double row_speed(const Encounter *encounter, size_t row, double time_s,
-                        const double *impulse)
+double encounter_force_row_speed(const Encounter *encounter, size_t row, double time_s,
+                                 const double *impulse)
 {
     const size_t width = encounter_rows(encounter);
     const double *mobility = encounter->mobility + row * width;
@@ -40,8 +40,8 @@ PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double ti
     const size_t row = joint * encounter->rows_a_joint;
     const Vec2 place = {row_place(encounter, row, time_s, moment),
                         row_place(encounter, row + 1, time_s, moment)};
-    const Vec2 speed = {row_speed(encounter, row, time_s, impulse),
-                        row_speed(encounter, row + 1, time_s, impulse)};
+    const Vec2 speed = {encounter_force_row_speed(encounter, row, time_s, impulse),
+                        encounter_force_row_speed(encounter, row + 1, time_s, impulse)};
     return pin_hole_pose((Vec2){0.0, 0.0}, place, speed, encounter->joints[joint].radial_clearance);
 }
 
@@ -53,10 +53,11 @@ static double add_friction(const Encounter *encounter, size_t joint, double time
     const double hole_arm = encounter->joints[joint].hole_radius;
     const double pin_arm = hole_arm - pose->eccentricity_size;
     const Vec2 tangent = vec2_perp(pose->normal);
-    const double sliding = tangent.x * row_speed(encounter, row, time_s, impulse) +
-                           tangent.y * row_speed(encounter, row + 1, time_s, impulse) +
-                           hole_arm * row_speed(encounter, row + 2, time_s, impulse) -
-                           pin_arm * row_speed(encounter, row + 3, time_s, impulse);
+    const double sliding =
+        tangent.x * encounter_force_row_speed(encounter, row, time_s, impulse) +
+        tangent.y * encounter_force_row_speed(encounter, row + 1, time_s, impulse) +
+        hole_arm * encounter_force_row_speed(encounter, row + 2, time_s, impulse) -
+        pin_arm * encounter_force_row_speed(encounter, row + 3, time_s, impulse);
     const double held = encounter->friction * normal * tanh(sliding / encounter->friction_speed);
     force[row] -= held * tangent.x;
     force[row + 1] -= held * tangent.y;
@@ -105,6 +106,13 @@ double encounter_force_frequency(const Encounter *encounter, size_t joint, Vec2 
 {
     const double stiffness = force_law_tangent(&encounter->joints[joint].law, depth);
     return sqrt(normal_mobility(encounter, joint, normal) * stiffness);
+}
+
+double encounter_force_decay(const Encounter *encounter, size_t joint, Vec2 normal, double depth)
+{
+    const EncounterJoint *of = &encounter->joints[joint];
+    return normal_mobility(encounter, joint, normal) *
+           force_law_damping(&of->law, depth, of->impact_speed);
 }
 
 double encounter_force_friction_time(const Encounter *encounter, size_t joint, const double *force)

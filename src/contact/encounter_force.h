@@ -1,5 +1,5 @@
 // The forces between pins and holes in an encounter, and the nodes that it leaves behind: what
-// contact/encounter.c is made of.
+// contact/encounter_run.c is made of.
 #pragma once
 
 #include "contact/encounter.h"
@@ -22,6 +22,13 @@ void encounter_force_find(Encounter *encounter, double time_s, const double *imp
 PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double time_s,
                              const double *impulse, const double *moment);
 
+// The rate of a row, m/s or rad/s, after impulses.
+double encounter_force_row_speed(const Encounter *encounter, size_t row, double time_s,
+                                 const double *impulse);
+
+// How fast the damping of a contact at a depth takes up its closing speed, 1/s.
+double encounter_force_decay(const Encounter *encounter, size_t joint, Vec2 normal, double depth);
+
 // The frequency of a contact at a depth, rad/s.
 double encounter_force_frequency(const Encounter *encounter, size_t joint, Vec2 normal,
                                  double depth);
@@ -31,3 +38,6 @@ double encounter_force_friction_time(const Encounter *encounter, size_t joint, c
 
 // Adds a node.
 void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point);
+
+// Gives the first node the forces at the start that the first step, an implicit one, has found.
+void encounter_nodes_settle(Encounter *encounter);

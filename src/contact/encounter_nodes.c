@@ -4,6 +4,7 @@
 // Q'' at both; its derivatives are impulse and force, right to the orders 4 and 3 of the local
 // step.
 #include "contact/encounter_force.h"
+#include "contact/encounter_stiff.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -15,6 +16,7 @@ void encounter_finish(Encounter *encounter)
     free(encounter->values);
     free(encounter->losses);
     free(encounter->touching);
+    encounter_stiff_finish(encounter);
     *encounter = (Encounter){.joint_count = 0};
 }
 
@@ -49,6 +51,11 @@ void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point)
     memcpy(values + 2 * rows, point->force, rows * sizeof *values);
     memcpy(encounter->losses + 2 * node, point->losses, sizeof point->losses);
     encounter->touching[node] = touching_bits(encounter);
+}
+
+void encounter_nodes_settle(Encounter *encounter)
+{
+    encounter_stiff_settled(encounter, encounter->values + 2 * encounter_rows(encounter));
 }
 
 size_t encounter_node(const Encounter *encounter, double time_s)

@@ -3,7 +3,7 @@
 // A step from t to t + h, positions q and speeds v both known at t:
 //     q_m = q + (h/2) v                               positions at mid-step
 //     W, g at q_m                                     the linkage as its joints with play feel it
-//     P, Q = impulse of the contacts and its integral over the step, by contact/encounter.c
+//     P, Q = impulse of the contacts and its integral over the step, by contact/encounter_run.c
 //     v' from dWorldStep at q_m under the mean force P / h, the driven body at its speed of t + h
 //     q' = q_m + (h/2) v' + A (Q - (h/2) P)           A P = what P does to the speeds
 //     q', v' put back on the ideal joints along the rows at mid-step

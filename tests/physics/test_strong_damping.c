@@ -5,6 +5,7 @@
 #include "contact/damping.h"
 #include "measure/truth.h"
 #include "mechanism.h"
+#include "sinking.h"
 
 static const RunWatch NOBODY = {NULL, NULL};
 
@@ -36,18 +37,6 @@ static void next_to_no_restitution_is_delivered(void **state)
         assert_true(trajectory->evaluations < EVALUATIONS_MOST);
         trajectory_destroy(trajectory);
     }
-}
-
-// How long a weight takes from the wall to a depth d against K d^1.5 (1 + d' / u):
-// u t = d_s (x^2.5 / 2.5 + x^4 / 4 + x^5.5 / 5.5 + ...), x = d / d_s, d_s the static depth.
-static double sinking_time(double depth, double at_rest, double rate)
-{
-    double sum = 0.0;
-    for (int i = 1; i < 40; i++) {
-        const double order = 1.5 * i + 1.0;
-        sum += pow(depth / at_rest, order) / order;
-    }
-    return at_rest * sum / rate;
 }
 
 // 0.1 kg that rest on the wall of a hole with 0.1 mm of play, for 0.1 s.

@@ -5,12 +5,12 @@
 //     u'' = g + W f
 // With the impulse P' = f and its integral Q' = P that is
 //     u' = u0' + g t + W P,   u = u0 + u0' t + g t^2 / 2 + W Q
-// so that only P and Q are integrated, by the classical Runge-Kutta method of order 4. A local step
-// is a share of the radian of the contact's oscillation, shorter next to the ends of a contact,
-// where d^1.5 is not smooth; ends are found to rounding and the steps end there.
+// so that only P and Q are integrated, in local steps (contact/encounter_step.c). Ends of a contact
+// are found to rounding, and steps end there.
 #include "contact/encounter.h"
 
 #include "contact/encounter_force.h"
+#include "contact/encounter_step.h"
 
 #include <assert.h>
 #include <math.h>
@@ -22,16 +22,12 @@ enum { NODE_MAX = 100000 };
 
 enum { ROOT_STEPS = 60 };
 
-// local steps next to the ends of a contact are down to this share of the others: the error of
-// order 2.5 that d^1.5 makes there falls to 1e-6 of what it would be
-static const double GRADED = 1.0 / 256.0;
-static const double GROWTH = 0.25; // of the time since the onset, or left to the end
+// restitutions below a tenth or so
+static const double OVERDAMPED = 8.0;
 
 // of a local step: contacts that begin or end nearer to each other than this do so together, for
 // rounding of places keeps the contacts of equal mechanisms apart by no less
 static const double AT_ONCE = 1e-7;
-
-static const double FRICTION_PHASE = 0.5; // of the time in which friction takes hold
 
 Encounter encounter_start(double friction, double friction_speed, double phase)
 {
@@ -40,6 +36,7 @@ Encounter encounter_start(double friction, double friction_speed, double phase)
         .friction = friction,
         .friction_speed = friction_speed,
         .phase = phase,
+        .stable = 2.0, // the method is stable up to 2.78
     };
 }
 
@@ -54,64 +51,13 @@ static void complete_point(Encounter *encounter, EncounterPoint *point)
                          point->powers);
 }
 
-// Writes a + width b for all rows.
-static inline void advance_rows(size_t rows, const double *a, double width_s, const double *b,
-                                double *sum)
-{
-    for (size_t i = 0; i < rows; i++) {
-        sum[i] = a[i] + width_s * b[i];
-    }
-}
-
-// Writes a + width (b + 2 c + 2 d + e) / 6 for all rows.
-static inline void weigh_rows(size_t rows, const double *a, double width_s,
-                              const double *const stages[4], double *sum)
-{
-    for (size_t i = 0; i < rows; i++) {
-        sum[i] = a[i] + width_s / 6.0 *
-                            (stages[0][i] + 2.0 * (stages[1][i] + stages[2][i]) + stages[3][i]);
-    }
-}
-
-// One step of the classical method from a completed point; the forces at its end are left open.
-static void try_step(Encounter *encounter, const EncounterPoint *from, double width_s,
-                     EncounterPoint *to)
-{
-    const size_t rows = encounter_rows(encounter);
-    assert(rows > 0);
-    const double half_s = 0.5 * width_s;
-    double forces[3][RESPONSE_ROW_MAX];
-    double impulses[3][RESPONSE_ROW_MAX];
-    double moment[RESPONSE_ROW_MAX];
-    double powers[3][2];
-    advance_rows(rows, from->impulse, half_s, from->force, impulses[0]);
-    advance_rows(rows, from->moment, half_s, from->impulse, moment);
-    encounter_force_find(encounter, from->time_s + half_s, impulses[0], moment, forces[0],
-                         powers[0]);
-    advance_rows(rows, from->impulse, half_s, forces[0], impulses[1]);
-    advance_rows(rows, from->moment, half_s, impulses[0], moment);
-    encounter_force_find(encounter, from->time_s + half_s, impulses[1], moment, forces[1],
-                         powers[1]);
-    advance_rows(rows, from->impulse, width_s, forces[1], impulses[2]);
-    advance_rows(rows, from->moment, width_s, impulses[1], moment);
-    encounter_force_find(encounter, from->time_s + width_s, impulses[2], moment, forces[2],
-                         powers[2]);
-    to->time_s = from->time_s + width_s;
-    weigh_rows(rows, from->impulse, width_s,
-               (const double *const[4]){from->force, forces[0], forces[1], forces[2]}, to->impulse);
-    weigh_rows(rows, from->moment, width_s,
-               (const double *const[4]){from->impulse, impulses[0], impulses[1], impulses[2]},
-               to->moment);
-    weigh_rows(2, from->losses, width_s,
-               (const double *const[4]){from->powers, powers[0], powers[1], powers[2]}, to->losses);
-}
-
 static void begin_contact(Encounter *encounter, size_t number, const PinHole *pose)
 {
     EncounterJoint *joint = &encounter->joints[number];
     joint->is_touching = true;
     joint->impact_speed = pose->approach_speed;
     joint->touching_s = 0.0;
+    encounter->stiff_width_s = 0.0;
     // the depth at which a spring of that frequency would have taken up the speed
     double depth = 1e-6;
     for (int i = 0; i < 8; i++) {
@@ -120,6 +66,8 @@ static void begin_contact(Encounter *encounter, size_t number, const PinHole *po
                      0.5 * force_law_depth_limit(&joint->law));
     }
     joint->frequency = encounter_force_frequency(encounter, number, pose->normal, depth);
+    joint->is_overdamped = encounter_force_decay(encounter, number, pose->normal, depth) >
+                           OVERDAMPED * joint->frequency;
 }
 
 // Contacts that a step of the world finds begun or over already: by rounding, as the places of the
@@ -138,39 +86,11 @@ static void settle_contacts(Encounter *encounter, const EncounterPoint *point)
     }
 }
 
-// How long the next local step is to be.
-static double choose_width(const Encounter *encounter, const EncounterPoint *point, double left_s)
-{
-    double width_s = left_s;
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        const EncounterJoint *joint = &encounter->joints[i];
-        if (!joint->is_touching) {
-            continue;
-        }
-        const PinHole pose =
-            encounter_force_pose(encounter, i, point->time_s, point->impulse, point->moment);
-        const double depth = fmax(pose.penetration, 0.0);
-        const double frequency =
-            fmax(joint->frequency, encounter_force_frequency(encounter, i, pose.normal, depth));
-        const double share_s = encounter->phase / frequency;
-        const double least_s = GRADED * share_s;
-        width_s = fmin(width_s, fmin(share_s, fmax(GROWTH * joint->touching_s, least_s)));
-        if (pose.approach_speed < 0.0) {
-            width_s = fmin(width_s, fmax(GROWTH * depth / -pose.approach_speed, least_s));
-        }
-        if (encounter->friction > 0.0) {
-            width_s = fmin(width_s, FRICTION_PHASE *
-                                        encounter_force_friction_time(encounter, i, point->force));
-        }
-    }
-    return width_s;
-}
-
 static double depth_after(Encounter *encounter, size_t joint, const EncounterPoint *from,
                           double width_s)
 {
     EncounterPoint to;
-    try_step(encounter, from, width_s, &to);
+    encounter_step_try(encounter, from, width_s, &to);
     return encounter_force_pose(encounter, joint, to.time_s, to.impulse, to.moment).penetration;
 }
 
@@ -286,6 +206,31 @@ static void change_contacts(Encounter *encounter, uint32_t events, const Encount
     }
 }
 
+// A local step of at most `left_s` up to the first event in it; `events` are the joints it is of.
+// Returns false where the step is to be tried again. An event at its very start leaves no length.
+static bool advance_step(Encounter *encounter, const EncounterPoint *from, double left_s,
+                         EncounterPoint *to, uint32_t *events)
+{
+    double width_s = encounter_step_take(encounter, from, left_s, to);
+    const double whole_s = width_s;
+    bool is_solved = true;
+    if (shorten_flight(encounter, from, to, &width_s)) {
+        is_solved = encounter_step_try(encounter, from, width_s, to);
+    }
+    *events = is_solved ? find_events(encounter, from, to, &width_s) : 0;
+    if (*events != 0) {
+        is_solved = encounter_step_try(encounter, from, width_s, to);
+    }
+    if (!is_solved) {
+        encounter->stiff_width_s = 0.5 * whole_s;
+        return false;
+    }
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        encounter->joints[i].touching_s += width_s;
+    }
+    return true;
+}
+
 bool encounter_run(Encounter *encounter, double duration)
 {
     EncounterPoint points[2];
@@ -301,17 +246,12 @@ bool encounter_run(Encounter *encounter, double duration)
         if (encounter->node_count > NODE_MAX) {
             return false;
         }
-        double width_s = choose_width(encounter, from, duration - from->time_s);
-        try_step(encounter, from, width_s, to);
-        if (shorten_flight(encounter, from, to, &width_s)) {
-            try_step(encounter, from, width_s, to);
+        uint32_t events;
+        if (!advance_step(encounter, from, duration - from->time_s, to, &events)) {
+            continue;
         }
-        const uint32_t events = find_events(encounter, from, to, &width_s);
-        if (events != 0) {
-            try_step(encounter, from, width_s, to);
-        }
-        for (size_t i = 0; i < encounter->joint_count; i++) {
-            encounter->joints[i].touching_s += width_s;
+        if (encounter->is_stiff && encounter->node_count == 1) {
+            encounter_nodes_settle(encounter);
         }
         complete_point(encounter, to);
         encounter_nodes_add(encounter, to);

@@ -1,0 +1,273 @@
+// How are the equations of an implicit step solved?
+//
+// Radau IIA of order 5 with three stages for P' = f(t, P, Q), Q' = P:
+//     Z_i = h sum a_ij f_j,   P_i = P + Z_i,   Q_i = Q + c_i h P + h sum a_ij Z_j
+// by Newton's method on the Z of the rows that touch, with the derivatives at all stages:
+//     dZ_i - h sum_k [a_ik f_P,k + h sum_j a_ij a_jk f_Q,j] dZ_k = h sum a_ij f_j - Z_i
+// A force that ends at the wall, and never pulls, has no slope beyond either, from which Newton's
+// method would come back far too deep. So the equations are solved first with a force that goes on
+// smoothly, and again with the true one where that is left.
+//
+// Source: Hairer and Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), IV.5 and
+// IV.8.
+#include "contact/encounter_stages.h"
+
+#include "base/dense.h"
+#include "contact/encounter_error.h"
+#include "contact/encounter_slopes.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NEWTON_MOST = 12 };
+
+// clang-format off
+#define ROOT_6 2.449489742783178098
+const double ENCOUNTER_NODE[ENCOUNTER_STAGES] = {(4.0 - ROOT_6) / 10.0, (4.0 + ROOT_6) / 10.0, 1.0};
+const double ENCOUNTER_COUPLING[ENCOUNTER_STAGES][ENCOUNTER_STAGES] = {
+    {(88.0 - 7.0 * ROOT_6) / 360.0, (296.0 - 169.0 * ROOT_6) / 1800.0, (-2.0 + 3.0 * ROOT_6) / 225.0},
+    {(296.0 + 169.0 * ROOT_6) / 1800.0, (88.0 + 7.0 * ROOT_6) / 360.0, (-2.0 - 3.0 * ROOT_6) / 225.0},
+    {(16.0 - ROOT_6) / 36.0, (16.0 + ROOT_6) / 36.0, 1.0 / 9.0},
+};
+// clang-format on
+
+// of the error that is allowed: what is left after that change is about its square
+static const double SOLVED = 1e-2;
+
+static const double FROM_DEPTH = 0.5; // of the depth at the start, a smooth force goes on linearly
+
+static void list_rows(const Encounter *encounter, EncounterStages *stages,
+                      const EncounterPoint *from)
+{
+    stages->count = 0;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        const PinHole pose =
+            encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment);
+        stages->from_depth[i] = FROM_DEPTH * fmax(pose.penetration, 0.0);
+    }
+    for (size_t i = 0; i < encounter_rows(encounter); i++) {
+        if (encounter->joints[i / encounter->rows_a_joint].is_touching) {
+            stages->row_of[stages->count++] = i;
+        }
+    }
+}
+
+// Forces and their derivatives by impulses and moments at a stage, or at the start of the step.
+static void differentiate(const Encounter *encounter, EncounterStages *stages, size_t which,
+                          double time_s, const double *impulse, const double *moment,
+                          bool is_smooth)
+{
+    const size_t all = encounter_rows(encounter);
+    const size_t own = encounter->rows_a_joint;
+    const size_t n = stages->count;
+    for (size_t first = 0; first < n; first += own) {
+        const size_t joint = stages->row_of[first] / own;
+        const double *mobility = encounter->mobility + joint * own * all;
+        EncounterSlopes slopes;
+        encounter_slopes_find(encounter, joint, time_s, impulse, moment,
+                              is_smooth ? stages->from_depth[joint] : 0.0, &slopes);
+        memcpy(stages->forces[which] + joint * own, slopes.force, own * sizeof *slopes.force);
+        for (size_t i = 0; i < own; i++) {
+            for (size_t k = 0; k < n; k++) {
+                const double *column = mobility + stages->row_of[k];
+                double by_moment = 0.0;
+                double by_impulse = 0.0;
+                for (size_t m = 0; m < own; m++) {
+                    by_moment += m < 2 ? slopes.by_place[i][m] * column[m * all] : 0.0;
+                    by_impulse += slopes.by_speed[i][m] * column[m * all];
+                }
+                stages->by_moment[which][(first + i) * n + k] = by_moment;
+                stages->by_impulse[which][(first + i) * n + k] = by_impulse;
+            }
+        }
+    }
+}
+
+// Impulses and moments at a stage, from what all stages have moved.
+static void find_stage(const Encounter *encounter, EncounterStages *stages,
+                       const EncounterPoint *from, double width_s, size_t stage)
+{
+    for (size_t i = 0; i < encounter_rows(encounter); i++) {
+        double sum = ENCOUNTER_NODE[stage] * from->impulse[i];
+        for (size_t j = 0; j < ENCOUNTER_STAGES; j++) {
+            sum += ENCOUNTER_COUPLING[stage][j] * stages->moved[j][i];
+        }
+        stages->impulse[stage][i] = from->impulse[i] + stages->moved[stage][i];
+        stages->moment[stage][i] = from->moment[i] + width_s * sum;
+    }
+}
+
+static void evaluate_stages(Encounter *encounter, EncounterStages *stages,
+                            const EncounterPoint *from, double width_s, bool is_smooth)
+{
+    for (size_t i = 0; i < ENCOUNTER_STAGES; i++) {
+        find_stage(encounter, stages, from, width_s, i);
+        differentiate(encounter, stages, i, from->time_s + ENCOUNTER_NODE[i] * width_s,
+                      stages->impulse[i], stages->moment[i], is_smooth);
+        encounter->evaluations++;
+    }
+}
+
+// Factors Newton's matrix with the derivatives at the stages, or for all of them those at the
+// start.
+static bool factor_stages(EncounterStages *stages, double width_s, bool from_start)
+{
+    const size_t n = stages->count;
+    const size_t width = ENCOUNTER_STAGES * n;
+    for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
+        for (size_t q = 0; q < ENCOUNTER_STAGES; q++) {
+            const double *by_impulse = stages->by_impulse[from_start ? ENCOUNTER_STAGES : q];
+            for (size_t at = 0; at < n * n; at++) {
+                const double own = s == q && at / n == at % n ? 1.0 : 0.0;
+                double twice = 0.0;
+                for (size_t j = 0; j < ENCOUNTER_STAGES; j++) {
+                    twice += ENCOUNTER_COUPLING[s][j] * ENCOUNTER_COUPLING[j][q] *
+                             stages->by_moment[from_start ? ENCOUNTER_STAGES : j][at];
+                }
+                stages->matrix[(s * n + at / n) * width + q * n + at % n] =
+                    own - width_s * (ENCOUNTER_COUPLING[s][q] * by_impulse[at] + width_s * twice);
+            }
+        }
+    }
+    return dense_factor(width, stages->matrix, stages->pivots);
+}
+
+// Newton's next change of what the stages have moved. Returns the largest over what is allowed.
+static double correct_stages(const Encounter *encounter, EncounterStages *stages,
+                             const EncounterPoint *from, double width_s)
+{
+    const size_t n = stages->count;
+    double change[ENCOUNTER_STAGES * RESPONSE_ROW_MAX];
+    for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
+        for (size_t i = 0; i < n; i++) {
+            const size_t row = stages->row_of[i];
+            double sum = 0.0;
+            for (size_t j = 0; j < ENCOUNTER_STAGES; j++) {
+                sum += ENCOUNTER_COUPLING[s][j] * stages->forces[j][row];
+            }
+            change[s * n + i] = width_s * sum - stages->moved[s][row];
+        }
+    }
+    dense_substitute(ENCOUNTER_STAGES * n, stages->matrix, stages->pivots, change);
+    double largest = 0.0;
+    for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
+        double impulse[RESPONSE_ROW_MAX] = {0.0};
+        double moment[RESPONSE_ROW_MAX] = {0.0};
+        for (size_t i = 0; i < n; i++) {
+            const size_t row = stages->row_of[i];
+            stages->moved[s][row] += change[s * n + i];
+            impulse[row] = change[s * n + i];
+            moment[row] = width_s * change[s * n + i];
+        }
+        const double size = encounter_error_share(
+            encounter, from, width_s, stages->moved[ENCOUNTER_STAGES - 1], impulse, moment);
+        largest = size <= largest ? largest : size;
+    }
+    return largest;
+}
+
+// The forces of a joint at a stage by the derivatives at the start, where nothing but the free
+// motion goes on.
+static void extend_forces(const Encounter *encounter, EncounterStages *stages,
+                          const EncounterPoint *from, double after_s, size_t stage, size_t joint)
+{
+    const size_t own = encounter->rows_a_joint;
+    const double *free = encounter->free + joint * own;
+    EncounterSlopes slopes;
+    encounter_slopes_find(encounter, joint, from->time_s, from->impulse, from->moment,
+                          stages->from_depth[joint], &slopes);
+    const PinHole before =
+        encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
+    const PinHole after = encounter_force_pose(encounter, joint, from->time_s + after_s,
+                                               stages->impulse[stage], stages->moment[stage]);
+    const Vec2 moved = vec2_sub(after.eccentricity, before.eccentricity);
+    for (size_t i = 0; i < own; i++) {
+        double force =
+            slopes.force[i] + slopes.by_place[i][0] * moved.x + slopes.by_place[i][1] * moved.y;
+        for (size_t k = 0; k < own; k++) {
+            force += slopes.by_speed[i][k] * after_s * free[k];
+        }
+        stages->forces[stage][joint * own + i] = force;
+    }
+}
+
+// The stages to begin with: of the motion made linear at the start, so that what is about to die
+// away there has done so.
+static bool guess_stages(const Encounter *encounter, EncounterStages *stages,
+                         const EncounterPoint *from, double width_s)
+{
+    const size_t own = encounter->rows_a_joint;
+    memset(stages->moved, 0, sizeof stages->moved);
+    differentiate(encounter, stages, ENCOUNTER_STAGES, from->time_s, from->impulse, from->moment,
+                  true);
+    for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
+        find_stage(encounter, stages, from, width_s, s);
+        for (size_t first = 0; first < stages->count; first += own) {
+            extend_forces(encounter, stages, from, ENCOUNTER_NODE[s] * width_s, s,
+                          stages->row_of[first] / own);
+        }
+    }
+    if (!factor_stages(stages, width_s, true)) {
+        return false;
+    }
+    correct_stages(encounter, stages, from, width_s);
+    return true;
+}
+
+// Newton's method with smooth forces or with those that never pull.
+static bool iterate_stages(Encounter *encounter, EncounterStages *stages,
+                           const EncounterPoint *from, double width_s, bool is_smooth)
+{
+    for (int i = 0; i < NEWTON_MOST; i++) {
+        evaluate_stages(encounter, stages, from, width_s, is_smooth);
+        if (!factor_stages(stages, width_s, false)) {
+            return false;
+        }
+        const double size = correct_stages(encounter, stages, from, width_s);
+        if (size <= SOLVED) {
+            return true;
+        }
+        if (!(size < INFINITY)) {
+            return false;
+        }
+    }
+    return false;
+}
+
+// Whether the forces at the stages are where the smooth ones are right.
+static bool is_pressing(const Encounter *encounter, const EncounterStages *stages,
+                        const EncounterPoint *from, double width_s)
+{
+    const size_t own = encounter->rows_a_joint;
+    for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
+        for (size_t first = 0; first < stages->count; first += own) {
+            const size_t row = stages->row_of[first];
+            const PinHole pose = encounter_force_pose(encounter, row / own,
+                                                      from->time_s + ENCOUNTER_NODE[s] * width_s,
+                                                      stages->impulse[s], stages->moment[s]);
+            const double along =
+                pose.normal.x * stages->forces[s][row] + pose.normal.y * stages->forces[s][row + 1];
+            if (!(along >= 0.0 && pose.penetration >= stages->from_depth[row / own])) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+bool encounter_stages_solve(Encounter *encounter, EncounterStages *stages,
+                            const EncounterPoint *from, double width_s)
+{
+    list_rows(encounter, stages, from);
+    const bool is_solved = guess_stages(encounter, stages, from, width_s) &&
+                           ((iterate_stages(encounter, stages, from, width_s, true) &&
+                             is_pressing(encounter, stages, from, width_s)) ||
+                            iterate_stages(encounter, stages, from, width_s, false));
+    for (size_t i = 0; is_solved && i < ENCOUNTER_STAGES; i++) {
+        find_stage(encounter, stages, from, width_s, i);
+        encounter_force_find(encounter, from->time_s + ENCOUNTER_NODE[i] * width_s,
+                             stages->impulse[i], stages->moment[i], stages->forces[i],
+                             stages->powers[i]);
+    }
+    return is_solved;
+}

@@ -1,0 +1,178 @@
+// How is a contact integrated whose damping takes up the closing speed in no time?
+//
+// A damper c on a mass m has the time constant m / c; explicit steps longer than some 2.8 of it are
+// unstable, however smooth the motion is once the pin has all but stopped. Radau IIA of order 5
+// (contact/encounter_stages.c) is stable at any length and leaves nothing of what has died away:
+// its steps are as long as the error allows, which the embedded formula of order 3 estimates:
+//     (1 - h g f_P - h^2 g^2 f_Q) e_P = r_P + h g f_Q r_Q,   e_Q = r_Q + h g e_P
+//     r_y = g (h y' + ((-13 - 7 s) Z_1 + (-13 + 7 s) Z_2 - Z_3) / 3),   s = sqrt 6
+// with y' and the derivatives at the start of the step, Z_i the change of y = P, Q up to stage i,
+// and g the real eigenvalue of the coefficients.
+//
+// Source: Hairer and Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), IV.8.
+#include "contact/encounter_stiff.h"
+
+#include "base/dense.h"
+#include "contact/encounter_error.h"
+#include "contact/encounter_stages.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// clang-format off
+#define ROOT_6 2.449489742783178098
+static const double EMBEDDED[ENCOUNTER_STAGES] = {(-13.0 - 7.0 * ROOT_6) / 3.0, (-13.0 + 7.0 * ROOT_6) / 3.0, -1.0 / 3.0};
+static const double EIGENVALUE = 0.27488882959568;
+// clang-format on
+
+// of what is stable: where the damping stops the pin, explicit steps have to follow that
+static const double SETTLES = 0.01;
+
+static const double SAFETY = 0.9; // of the step that would have just the error allowed
+static const double SHRINK_MOST = 0.1;
+static const double GROW_MOST = 6.0;
+
+void encounter_stiff_finish(Encounter *encounter)
+{
+    free(encounter->stages);
+    encounter->stages = NULL;
+}
+
+bool encounter_stiff_is_needed(const Encounter *encounter, const EncounterPoint *point,
+                               double explicit_s, double frictionless_s)
+{
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        const EncounterJoint *joint = &encounter->joints[i];
+        if (!joint->is_touching || (joint->law.hysteresis == 0.0 && joint->law.viscous == 0.0)) {
+            continue;
+        }
+        const PinHole pose =
+            encounter_force_pose(encounter, i, point->time_s, point->impulse, point->moment);
+        const double width_s = joint->is_overdamped ? frictionless_s : explicit_s;
+        // as deep as the step leads
+        const double depth = fmax(pose.penetration, 0.0) + width_s * fmax(pose.approach_speed, 0.0);
+        const double decays = encounter_force_decay(encounter, i, pose.normal, depth) * width_s;
+        if (decays > (joint->is_overdamped ? SETTLES : 1.0) * encounter->stable) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Factors the matrix of the estimate, in the place of Newton's.
+static bool factor_estimate(EncounterStages *stages, double hg)
+{
+    const size_t n = stages->count;
+    for (size_t at = 0; at < n * n; at++) {
+        stages->matrix[at] = (at / n == at % n ? 1.0 : 0.0) -
+                             hg * stages->by_impulse[ENCOUNTER_STAGES][at] -
+                             hg * hg * stages->by_moment[ENCOUNTER_STAGES][at];
+    }
+    return dense_factor(n, stages->matrix, stages->pivots);
+}
+
+// Writes the errors of impulses and moments, with the rates of both at the start of the step:
+// forces and impulses.
+static void find_errors(const EncounterStages *stages, const EncounterPoint *from, double hg,
+                        const double *force, const double *rate, double *impulse, double *moment)
+{
+    const size_t n = stages->count;
+    double place[RESPONSE_ROW_MAX];
+    double sum[RESPONSE_ROW_MAX];
+    for (size_t i = 0; i < n; i++) {
+        const size_t row = stages->row_of[i];
+        sum[i] = hg * force[row];
+        place[i] = hg * rate[row];
+        for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
+            sum[i] += EIGENVALUE * EMBEDDED[s] * stages->moved[s][row];
+            place[i] += EIGENVALUE * EMBEDDED[s] * (stages->moment[s][row] - from->moment[row]);
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < n; k++) {
+            sum[i] += hg * stages->by_moment[ENCOUNTER_STAGES][i * n + k] * place[k];
+        }
+    }
+    dense_substitute(n, stages->matrix, stages->pivots, sum);
+    for (size_t i = 0; i < n; i++) {
+        impulse[stages->row_of[i]] = sum[i];
+        moment[stages->row_of[i]] = place[i] + hg * sum[i];
+    }
+}
+
+// The error over what is allowed. What is beside the motion at the start, and dies away in the
+// step, is in the first estimate; with the rates where it has died away, in the second, it is not.
+static double estimate_error(Encounter *encounter, EncounterStages *stages,
+                             const EncounterPoint *from, double width_s)
+{
+    const double hg = EIGENVALUE * width_s;
+    const double *moved = stages->moved[ENCOUNTER_STAGES - 1];
+    double impulse[RESPONSE_ROW_MAX] = {0.0};
+    double moment[RESPONSE_ROW_MAX] = {0.0};
+    if (!factor_estimate(stages, hg)) {
+        return INFINITY;
+    }
+    find_errors(stages, from, hg, from->force, from->impulse, impulse, moment);
+    const double first = encounter_error_share(encounter, from, width_s, moved, impulse, moment);
+    if (first <= 1.0) {
+        return first;
+    }
+    double force[RESPONSE_ROW_MAX];
+    double powers[2];
+    double rate[RESPONSE_ROW_MAX];
+    double sum[RESPONSE_ROW_MAX];
+    for (size_t i = 0; i < encounter_rows(encounter); i++) {
+        rate[i] = from->impulse[i] + impulse[i];
+        sum[i] = from->moment[i] + moment[i];
+    }
+    encounter_force_find(encounter, from->time_s, rate, sum, force, powers);
+    find_errors(stages, from, hg, force, rate, impulse, moment);
+    return encounter_error_share(encounter, from, width_s, moved, impulse, moment);
+}
+
+double encounter_stiff_step(Encounter *encounter, const EncounterPoint *from, double width_s,
+                            EncounterPoint *to)
+{
+    if (encounter->stages == NULL) {
+        encounter->stages = calloc(1, sizeof *encounter->stages);
+        assert(encounter->stages != NULL);
+    }
+    EncounterStages *stages = encounter->stages;
+    const bool is_solved = encounter_stages_solve(encounter, stages, from, width_s);
+    to->time_s = from->time_s + width_s;
+    memcpy(to->impulse, stages->impulse[ENCOUNTER_STAGES - 1], sizeof to->impulse);
+    memcpy(to->moment, stages->moment[ENCOUNTER_STAGES - 1], sizeof to->moment);
+    for (size_t i = 0; i < 2; i++) {
+        double sum = 0.0;
+        for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
+            sum += ENCOUNTER_COUPLING[ENCOUNTER_STAGES - 1][s] * stages->powers[s][i];
+        }
+        to->losses[i] = from->losses[i] + width_s * sum;
+    }
+    return is_solved ? estimate_error(encounter, stages, from, width_s) : INFINITY;
+}
+
+double encounter_stiff_next(double width_s, double error)
+{
+    return width_s * fmin(GROW_MOST, fmax(SHRINK_MOST, SAFETY * pow(error, -0.25)));
+}
+
+void encounter_stiff_settled(const Encounter *encounter, double *force)
+{
+    // the parabola through the stages' forces
+    const EncounterStages *stages = encounter->stages;
+    for (size_t i = 0; i < stages->count; i++) {
+        const size_t row = stages->row_of[i];
+        force[row] = 0.0;
+        for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
+            double weight = 1.0;
+            for (size_t k = 0; k < ENCOUNTER_STAGES; k++) {
+                weight *=
+                    k == s ? 1.0 : ENCOUNTER_NODE[k] / (ENCOUNTER_NODE[k] - ENCOUNTER_NODE[s]);
+            }
+            force[row] += weight * stages->forces[s][row];
+        }
+    }
+}

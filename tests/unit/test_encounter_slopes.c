@@ -1,0 +1,147 @@
+// Are the derivatives of a contact's force those of the force?
+#include "close.h"
+
+#include "base/lcg.h"
+#include "contact/encounter_slopes.h"
+
+enum { ROWS = RESPONSE_ROWS_A_JOINT };
+
+static const double CLEARANCE = 1e-4; // m
+static const double DEPTH = 1e-7;     // m
+static const double NOTHING[ROWS] = {0.0};
+
+// A pin in its wall, somewhere round the hole, sliding and turning and on its way in.
+static Encounter pressed(uint64_t *seed, double friction)
+{
+    Encounter pin = encounter_start(friction, 5e-3, 0.05);
+    pin.joint_count = 1;
+    EncounterJoint *joint = &pin.joints[0];
+    joint->law = force_law_power(6.6e10, 1.5);
+    joint->law.hysteresis = 0.7;
+    joint->law.viscous = 30.0;
+    joint->radial_clearance = CLEARANCE;
+    joint->hole_radius = 5e-3;
+    joint->is_touching = true;
+    joint->impact_speed = 0.1;
+    const double angle = 3.0 * lcg_draw(seed);
+    pin.place[0] = (CLEARANCE + DEPTH) * cos(angle);
+    pin.place[1] = (CLEARANCE + DEPTH) * sin(angle);
+    pin.speed[0] = 0.02 * cos(angle) + 5e-3 * lcg_draw(seed);
+    pin.speed[1] = 0.02 * sin(angle) + 5e-3 * lcg_draw(seed);
+    for (size_t i = 2; i < pin.rows_a_joint; i++) {
+        pin.speed[i] = lcg_draw(seed);
+    }
+    return pin;
+}
+
+// By central differences: where `at` points into the encounter.
+static void differences(Encounter *pin, double *at, double nudge, double *slopes)
+{
+    double forces[2][ROWS];
+    double powers[2];
+    const double kept = *at;
+    for (int i = 0; i < 2; i++) {
+        *at = kept + (i == 0 ? nudge : -nudge);
+        encounter_force_find(pin, 0.0, NOTHING, NOTHING, forces[i], powers);
+    }
+    *at = kept;
+    for (size_t i = 0; i < pin->rows_a_joint; i++) {
+        slopes[i] = (forces[0][i] - forces[1][i]) / (2.0 * nudge);
+    }
+}
+
+// How far the derivatives by one of the rows are from differences, over the largest.
+static double mismatch(Encounter *pin, size_t row, bool of_place)
+{
+    EncounterSlopes slopes;
+    encounter_slopes_find(pin, 0, 0.0, NOTHING, NOTHING, 0.0, &slopes);
+    double expected[ROWS];
+    differences(pin, of_place ? &pin->place[row] : &pin->speed[row], of_place ? 1e-3 * DEPTH : 1e-7,
+                expected);
+    double largest = 0.0;
+    double apart = 0.0;
+    for (size_t i = 0; i < pin->rows_a_joint; i++) {
+        const double found = of_place ? slopes.by_place[i][row] : slopes.by_speed[i][row];
+        largest = fmax(largest, fabs(expected[i]));
+        apart = fmax(apart, fabs(found - expected[i]));
+    }
+    return apart / largest;
+}
+
+static void slopes_are_those_of_the_force(void **state)
+{
+    (void)state;
+    for (unsigned number = 0; number < 20; number++) {
+        uint64_t seed = lcg_stirred(number);
+        Encounter pin = pressed(&seed, number % 2 == 0 ? 0.3 : 0.0);
+        EncounterSlopes slopes;
+        double force[ROWS];
+        double powers[2];
+        encounter_force_find(&pin, 0.0, NOTHING, NOTHING, force, powers);
+        encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, 0.0, &slopes);
+        for (size_t i = 0; i < pin.rows_a_joint; i++) {
+            assert_near(slopes.force[i], force[i], 1e-13 * hypot(force[0], force[1]));
+        }
+        for (size_t row = 0; row < pin.rows_a_joint; row++) {
+            assert_true(mismatch(&pin, row, false) < 1e-7);
+            // the depth is a thousandth of the play, and its rounding that much larger
+            assert_true(row >= 2 || mismatch(&pin, row, true) < 1e-6);
+        }
+        encounter_finish(&pin);
+    }
+}
+
+// Going out so fast that the damper would pull.
+static void a_force_that_would_pull_is_none_unless_it_is_smooth(void **state)
+{
+    (void)state;
+    uint64_t seed = lcg_stirred(1);
+    Encounter pin = pressed(&seed, 0.3);
+    for (size_t i = 0; i < 2; i++) {
+        pin.speed[i] = -1e4 * pin.place[i];
+    }
+    EncounterSlopes slopes;
+    encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, 0.0, &slopes);
+    for (size_t i = 0; i < ROWS; i++) {
+        assert_near(slopes.force[i], 0.0, 0.0);
+        assert_near(slopes.by_speed[i][0], 0.0, 0.0);
+    }
+    // outwards is the way of the place: a force along it pulls the pin into the wall
+    encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, 0.5 * DEPTH, &slopes);
+    assert_true(slopes.force[0] * pin.place[0] + slopes.force[1] * pin.place[1] > 0.0);
+    assert_true(slopes.by_speed[0][0] < 0.0);
+    encounter_finish(&pin);
+}
+
+// Smooth forces go on below a depth without a jump, and even outside the wall.
+static void a_smooth_force_goes_on_below_a_depth(void **state)
+{
+    (void)state;
+    uint64_t seed = lcg_stirred(2);
+    Encounter pin = pressed(&seed, 0.0);
+    const double outward[2] = {pin.place[0] / (CLEARANCE + DEPTH),
+                               pin.place[1] / (CLEARANCE + DEPTH)};
+    double along[3];
+    const double depths[3] = {DEPTH * (1.0 + 1e-9), DEPTH * (1.0 - 1e-9), -DEPTH};
+    for (int i = 0; i < 3; i++) {
+        pin.place[0] = (CLEARANCE + depths[i]) * outward[0];
+        pin.place[1] = (CLEARANCE + depths[i]) * outward[1];
+        EncounterSlopes slopes;
+        encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, DEPTH, &slopes);
+        along[i] = -(slopes.force[0] * outward[0] + slopes.force[1] * outward[1]);
+    }
+    assert_close(along[0], along[1], 1e-8);
+    const double tangent = force_law_tangent(&pin.joints[0].law, DEPTH);
+    assert_close(along[1] - along[2], 2.0 * DEPTH * tangent, 1e-6);
+    encounter_finish(&pin);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slopes_are_those_of_the_force),
+        cmocka_unit_test(a_force_that_would_pull_is_none_unless_it_is_smooth),
+        cmocka_unit_test(a_smooth_force_goes_on_below_a_depth),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
