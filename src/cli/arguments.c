@@ -1,7 +1,6 @@
 // What was asked for on the command line?
 //
-// argp reads it, but prints nothing and ends nothing: what it would say it says through Err, so
-// that one place prints errors and one place ends the program.
+// argp only parses here: it neither prints nor exits, so that main alone does.
 #include "cli/arguments.h"
 
 #include "base/claims.h"
@@ -26,8 +25,8 @@ typedef struct Reading {
     Err *err;
 } Reading;
 
-// The option of a word from the command line ("--step=1us", "-q"), or NULL. Of several letters
-// behind one dash ("-qx") the first that is no option makes it none.
+// The option of a word from the command line ("--step=1us", "-q"), or NULL. All
+// letters behind one dash ("-qx") must be options.
 static const struct argp_option *find_option(const struct argp_option *options, const char *word)
 {
     const bool is_long = strncmp(word, "--", 2) == 0;
@@ -67,7 +66,7 @@ static bool fail_unknown(const Reading *reading, const char *word)
     return false;
 }
 
-// argp says only that something was wrong, and how far it came: the word stands there or next.
+// argp reports only where parsing stopped: the wrong word is that one or the next.
 static void explain(const Reading *reading, const struct argp_state *state)
 {
     for (int i = state->next - 1; i <= state->next; i++) {
@@ -87,7 +86,7 @@ static void explain(const Reading *reading, const struct argp_state *state)
     }
 }
 
-// Whatever writes a file shows it by what it calls its value. No two options write the same one.
+// An option whose value is called FILE writes that file; no two may write the same one.
 static bool claim_file(const OptionRow *row, const char *value, Err *err)
 {
     if (row->value == NULL || strncmp(row->value, "FILE", 4) != 0) {
@@ -191,7 +190,7 @@ static error_t parse_key(int key, char *value, struct argp_state *state)
         return 0;
     }
     if (key == ARGP_KEY_ERROR) {
-        // whatever is set already says it better
+        // an error that is set already is more precise
         if (reading->err->kind == ERR_NONE) {
             explain(reading, state);
         }

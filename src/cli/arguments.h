@@ -1,5 +1,5 @@
-// Reads the command line of one command by a table with a row an option: argp does the work, and
-// Err the talking.
+// Reads the command line of one command by a table with one row per option. argp parses; errors are
+// reported through Err.
 #pragma once
 
 #include "base/err.h"

@@ -1,4 +1,4 @@
-// Has someone had enough?
+// Was the program asked to stop?
 #include "cli/interrupt.h"
 
 #include <signal.h>
@@ -7,7 +7,7 @@
 static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP};
 enum { SIGNAL_COUNT = sizeof SIGNALS / sizeof *SIGNALS };
 
-// a handler is handed nothing but the signal
+// a signal handler receives nothing but the number
 static volatile sig_atomic_t noted = 0;
 
 static void note(int number)
@@ -21,7 +21,7 @@ void interrupt_watch(void)
     sigemptyset(&action.sa_mask);
     for (int i = 0; i < SIGNAL_COUNT; i++) {
         struct sigaction known;
-        // who was started with a signal turned off, as by nohup, is to live with it
+        // a signal that was ignored from the start, as by nohup, stays ignored
         if (sigaction(SIGNALS[i], NULL, &known) == 0 && known.sa_handler != SIG_IGN) {
             sigaction(SIGNALS[i], &action, NULL);
         }

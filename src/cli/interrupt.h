@@ -1,4 +1,4 @@
-// Being told to stop, by Ctrl-C or whoever ends processes, and doing so in good order.
+// Stopping in good order on Ctrl-C and on signals that end processes.
 #pragma once
 
 // From now on SIGINT, SIGTERM and SIGHUP are noted; a second one ends the program at once.
@@ -7,6 +7,6 @@ void interrupt_watch(void);
 // The number of the signal that was noted; 0 where there was none.
 int interrupt_number(void);
 
-// Ends the program by the signal that was noted, once all is in order, so that whoever started it
-// sees that it was stopped. Returns where there was none.
+// Ends the program by the signal that was noted, so that its parent sees how it ended. Returns
+// where there was none.
 void interrupt_obey(void);

@@ -12,10 +12,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double LEAST_STEPS = 2e6; // below it hardly a run of ODE takes long
+static const double LEAST_STEPS = 2e6; // shorter runs of ODE are not timed
 static const double TIMED_STEPS = 3e4; // some 50 ms of work
-static const double LONG = 60.0;       // s: who sees progress and waits longer wants to know
-static const double LONG_QUIET = 20.0; // s: likewise, who sees none
+static const double LONG = 60.0;       // s: longer work is announced where progress is shown
+static const double LONG_QUIET = 20.0; // s: likewise, where none is shown
 static const RunWatch NOBODY = {NULL, NULL};
 
 void long_work_words(double time_s, char *words, size_t size)

@@ -1,11 +1,11 @@
-// Says how long work will take that takes long, before it begins or once its pace is known.
+// Warns of long work, before it begins or once its pace is known.
 #pragma once
 
 #include "model/scenario.h"
 
 #include <stdbool.h>
 
-// From how many seconds on work is long: less where nothing is seen of its progress.
+// The time, s, from which on work is long: less where no progress is shown.
 double long_work_limit(bool is_quiet);
 
 // Warns on standard error of work that takes long; returns whether it did.
@@ -16,5 +16,5 @@ bool long_work_warn(const char *what, double time_s, bool is_quiet);
 // is chosen as the run goes, and of the reference, progress_watch says it while they run.
 bool long_work_announce(const Scenario *scenario, bool is_quiet);
 
-// A time as people say it, such as "3.2 h".
+// A time in words, such as "3.2 h".
 void long_work_words(double time_s, char *words, size_t size);

@@ -67,7 +67,7 @@ static bool run_program(int argc, char **argv, Err *err)
     return command != NULL && command->run(argc - 1, argv + 1, err);
 }
 
-// One line, as compilers have it, but on a terminal, which would break it in mid-word.
+// One line, as compilers print it, but folded on a terminal, which would break it within a word.
 static void print_error(const Err *err)
 {
     const Style style = output_style(stderr, false);
@@ -83,8 +83,7 @@ int main(int argc, char **argv)
 {
     Err err = {0};
     const bool is_ready = descriptors_reserve(&err);
-    // a reader that goes away, and a file that may not become any longer, show as a failed write,
-    // and a failed write has an exit status
+    // a closed pipe and a file that is too large are then failed writes, which have an exit status
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     output_begin();

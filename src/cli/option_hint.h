@@ -1,4 +1,4 @@
-// What was an option that there is not meant to be?
+// Which option was meant by one that does not exist?
 #pragma once
 
 #include "base/text.h"

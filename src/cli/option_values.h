@@ -20,7 +20,7 @@ bool option_values_read_quantity(const char *name, const char *text, Dimension d
 bool option_values_read_time(const char *name, const char *text, double *seconds, Err *err);
 
 // Reads --name, times between commas such as '10 us, 3 us', s, and puts the longest first. Fails
-// with ERR_USAGE where there are none, more than there is room for, or one stands there twice.
+// with ERR_USAGE where there are none, more than there is room for, or one is given twice.
 bool option_values_read_times(const char *name, const char *list, size_t room, double *seconds,
                               size_t *count, Err *err);
 

@@ -1,4 +1,4 @@
-// Who is reading, and did all of it arrive?
+// How is output laid out, and was all of it written?
 #include "cli/output.h"
 
 #include "base/printable.h"
@@ -13,7 +13,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-// Characters: what a terminal says of itself beyond these is no width for a table.
+// Characters: a terminal's width is ignored outside this range.
 enum { WIDTH_MIN = 40, WIDTH_MAX = 1000 };
 
 // why standard output could not be written

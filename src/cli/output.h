@@ -1,4 +1,4 @@
-// Where data and words go, and how they look there.
+// Data on standard output, messages on standard error, and how they are laid out.
 #pragma once
 
 #include "base/err.h"
@@ -10,8 +10,8 @@
 #include <stdio.h>
 
 // Marked for a terminal, plain for anything else and where NO_COLOR is set. Lines are as wide as
-// the terminal is, by COLUMNS or by its own word, and STYLE_WIDTH elsewhere; of any width for who
-// asks for wide tables.
+// the terminal is, by COLUMNS or as it reports, and STYLE_WIDTH elsewhere; of any width for wide
+// tables.
 Style output_style(FILE *stream, bool is_wide);
 
 bool output_is_terminal(FILE *stream);
@@ -35,5 +35,5 @@ void output_fold(Text *text, const Style *style);
 void output_text(Text *text, const Style *style);
 
 // Sees that all of standard output has been written. Fails with ERR_FILE; the text is empty where
-// the reader has gone away, which needs no words.
+// the pipe was closed, which needs no message.
 bool output_end(Err *err);

@@ -7,15 +7,16 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double WARN_AFTER = 5.0;  // s: by then a run has shown its pace
-static const double WARN_QUIET = 15.0; // s: who sees no progress waits no longer without a word
+static const double WARN_AFTER = 5.0; // s: by then the pace of a run is known
+static const double WARN_QUIET =
+    15.0; // s: the longest wait without a message where no progress is shown
 
-// Who sees no line of progress is told once of a run that takes long at its pace.
+// Where no progress is shown, warns once of a run that takes long at its pace.
 static void warn_of_run(Progress *progress, double share)
 {
     const bool is_quiet = progress->line.is_quiet;
     const double wall_s = progress->run_wall_s;
-    // a share of 0 is no pace yet
+    // at a share of 0 the pace is unknown
     if (progress->is_warned || wall_s < WARN_AFTER || !(share > 0.0) ||
         !(wall_s > long_work_limit(is_quiet) * share)) {
         return;
@@ -25,13 +26,13 @@ static void warn_of_run(Progress *progress, double share)
     progress->is_warned = long_work_warn(what, wall_s / share, is_quiet);
 }
 
-// So long does the work go on, by the times that are told and by the clock between them.
+// How long the work has gone on, by the reported times and by the clock between them.
 static double all_time(const Progress *progress)
 {
     return fmax(progress->before_s + progress->run_wall_s, status_line_time(&progress->line));
 }
 
-// And once of work that goes on for long in a run without a pace, or in many short ones.
+// Likewise of work that goes on for long in a run without a pace, or in many short ones.
 static void warn_of_all(Progress *progress)
 {
     const double all_s = all_time(progress);
@@ -47,7 +48,7 @@ static void warn_of_all(Progress *progress)
 static void show(double share, double wall_s, void *context)
 {
     Progress *progress = context;
-    // time that goes back is that of another run
+    // a time that decreases is that of another run
     progress->before_s += wall_s < progress->run_wall_s ? progress->run_wall_s : 0.0;
     progress->run_wall_s = wall_s;
     StatusLine *line = &progress->line;

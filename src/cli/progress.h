@@ -17,9 +17,8 @@ typedef struct Progress {
 // Starts to watch work that is made of one run after another. It must outlive them all.
 void progress_begin(Progress *progress, bool is_quiet);
 
-// Watches the runs that come now, a quiet one too: that one takes long (long_work.h) is said once
-// even then, and in a log. Time goes on from run to run: what is made of many short ones is not
-// silent.
+// Watches the runs that follow. Long work (long_work.h) is warned of once even where quiet, and in
+// a log. Times of several runs add up.
 RunWatch progress_watch(Progress *progress, const char *backend);
 
 // Watches one run whose step may be chosen by trials.

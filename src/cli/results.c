@@ -1,6 +1,6 @@
-// How does a command give away its results?
+// How does a command print and write its results?
 //
-// Every file is claimed before the work: what cannot be written is said before anything runs.
+// Every file is claimed before the work, so that one that cannot be written fails at once.
 #include "cli/results.h"
 
 #include "cli/output.h"

@@ -17,8 +17,8 @@ typedef struct ResultFile {
     void (*text)(const void *report, Text *text);
     // Writes all of the file itself. ERR_FILE.
     bool (*write)(const void *report, const char *path, Err *err);
-    // As `text`, but false where nothing can be written: with the error set, or else with what is
-    // to be said about it in its place.
+    // As `text`, but false where there is nothing to write, with the reason in `nothing`, or where
+    // the error is set.
     bool (*may)(const void *report, Text *text, const char **nothing, Err *err);
 } ResultFile;
 

@@ -8,10 +8,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double FIRST_LINE = 2.0;     // s: who waits shorter than that needs no line
+static const double FIRST_LINE = 2.0;     // s: no line before that
 static const double TERMINAL_PAUSE = 0.2; // s, between two lines on a terminal
 static const double LOG_PAUSE = 10.0;     // s, between two lines of a log
-static const double QUIET_LINE = 15.0;    // s: who wants no lines is warned once of long work
+static const double QUIET_LINE = 15.0;    // s: one warning of long work where quiet
 
 StatusLine status_line_start(bool is_quiet)
 {
@@ -44,7 +44,7 @@ void status_line_append_left(Text *words, double left_s)
 {
     const double minute = 60.0;
     const double hour = 3600.0;
-    // two digits, as many as a guess has
+    // two digits: it is an estimate
     if (left_s < 2.0 * minute) {
         text_append(words, ", some %.0f s left", left_s);
     } else if (left_s < 2.0 * hour) {

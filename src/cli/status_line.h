@@ -1,5 +1,5 @@
 // A line on standard error that says how far something long has come, and is gone at its end: one
-// line on a terminal, a plain line now and then elsewhere. Who wants quiet gets one line, a
+// line on a terminal, a plain line now and then elsewhere. Where quiet there is one
 // warning, once the work takes long.
 #pragma once
 
@@ -21,7 +21,7 @@ StatusLine status_line_start(bool is_quiet);
 // The time since the start, s.
 double status_line_time(const StatusLine *line);
 
-// Whether it is time for a line, so many seconds after the start; if so it counts as written.
+// Whether a line is due at this time after the start, s; if so it counts as written.
 bool status_line_is_due(StatusLine *line, double wall_s);
 
 // Appends ", some 40 s left", in seconds, minutes or hours.

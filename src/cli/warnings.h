@@ -1,4 +1,4 @@
-// What somebody who runs a case should know before it runs.
+// Warnings before a case runs.
 #pragma once
 
 #include "cli/common_options.h"

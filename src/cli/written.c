@@ -1,4 +1,4 @@
-// How does a file come to be there, and who is told?
+// How are files written, and reported?
 #include "cli/written.h"
 
 #include "base/text.h"

@@ -1,4 +1,4 @@
-// Files that the program leaves behind, each with a word on standard error unless quiet.
+// Files that the program writes, each with a message on standard error unless quiet.
 #pragma once
 
 #include "base/err.h"

@@ -1,4 +1,4 @@
-// Who runs a scenario?
+// Runs a scenario on a backend, at its own step or a chosen one.
 #include "measure/backend_run.h"
 
 #include "run/registry.h"

@@ -1,7 +1,7 @@
-// How can a piece of work fail, hang or ask for all memory without hurting anyone else?
+// Runs a piece of work in a child process, so that it may crash, hang or run out of memory.
 //
-// fork -> limits -> work -> the result through a pipe -> _exit. The pipe's end is the child's end:
-// the parent reads until then and asks how it came about.
+// fork -> limits -> work -> the result through a pipe -> _exit. The parent reads until the
+// pipe is closed and then asks how the child ended.
 #define _GNU_SOURCE // pipe2
 
 #include "measure/child.h"
@@ -30,7 +30,7 @@ enum {
     LEAVING_MS = 500,  // for a process whose pipe is closed to be gone; it takes some 0.1
 };
 
-// some libraries go on without what they were refused, until there is nothing left at all
+// some libraries go on after a refused allocation until nothing is left at all
 static const size_t LITTLE_MEMORY = (size_t)16 << 20;
 
 // the sanitizer's shadow lies in terabytes of address space, which no limit would let it have
@@ -66,7 +66,7 @@ bool child_lacks_memory(void)
     return false;
 }
 
-// Who cannot go on without memory aborts, or writes to where it thought there was some.
+// Without memory a process aborts, or writes to an address that it was not given.
 static void die(int number)
 {
     if (child_lacks_memory()) {
@@ -84,7 +84,7 @@ static void limit_memory(size_t most)
     signal(SIGBUS, die);
 }
 
-// Signals mean what they mean to any program, and the parent's death is one of them.
+// Restores the default signals, and ends the child with its parent.
 static void settle_in(pid_t parent, ChildLimits limits)
 {
     static const int SIGNALS[] = {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS};
@@ -116,7 +116,7 @@ static _Noreturn void live(ChildWork work, const void *context, size_t result_si
         }
         sent += count > 0 ? (size_t)count : 0;
     }
-    // no one's buffers are written a second time, and no one's files are closed
+    // _exit: the parent's buffers are not written a second time
     _exit(0);
 }
 
@@ -169,7 +169,7 @@ static bool is_leaving(pid_t process)
     return ready != 0;
 }
 
-// The process is gone, or is about to be: how?
+// Collects how a process ended that is gone or about to be.
 static void bury(Child *child)
 {
     int status = 0;
@@ -188,7 +188,7 @@ static void bury(Child *child)
     child->end = is_whole ? CHILD_DONE : without;
 }
 
-// The pipe has no other end any more: so the process leaves, or something in it went wrong.
+// The pipe is closed: the process is ending, or something in it went wrong.
 static void see_off(Child *child)
 {
     if (is_leaving(child->process)) {

@@ -1,4 +1,4 @@
-// A piece of work in a process of its own: whatever happens to it, the caller goes on.
+// A piece of work in a child process, whose failure does not harm the caller.
 #pragma once
 
 #include "base/err.h"
@@ -21,11 +21,11 @@ typedef struct ChildLimits {
 typedef enum ChildEnd {
     CHILD_RUNNING,
     CHILD_DONE,      // the whole result has arrived
-    CHILD_EXITED,    // it left by itself, without a result
+    CHILD_EXITED,    // it exited without a result
     CHILD_SIGNALLED, // a signal ended it
-    CHILD_TIMED_OUT, // it was ended, for its time was over
+    CHILD_TIMED_OUT, // it exceeded its time limit and was ended
     CHILD_NO_MEMORY, // it died of its limit of memory
-    CHILD_CLOSED,    // it was ended, for it went on where nothing could come from it any more
+    CHILD_CLOSED,    // it closed its pipe without a result, went on and was ended
 } ChildEnd;
 
 // Fills the result, which begins as all zeroes, from the context. It runs in the child: nothing
@@ -35,7 +35,7 @@ typedef void (*ChildWork)(const void *context, void *result);
 typedef struct Child {
     ChildEnd end;
     int code;      // exit status of CHILD_EXITED, number of the signal of CHILD_SIGNALLED
-    pid_t process; // the rest is the child's own business
+    pid_t process; // from here on internal
     int pipe;
     char *result;
     size_t result_size;

@@ -12,17 +12,16 @@
 #include "base/clock.h"
 #include "measure/step_choice.h"
 #include "measure/trial.h"
-#include "measure/truth_window.h"
 #include "model/lock.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-// an error below so many times the uncertainty of the truth is not one to be told
+// errors below this multiple of the reference's uncertainty are dominated by it
 static const double TRUTH_SHARE = 0.1;
 
-// world steps to a step, before a trial has told: a gear of 2
+// world steps per step, before a trial has shown it: a gear of 2
 static const double COST_AT_FIRST = 2.0;
 
 // trials that fail at one place, within a share of the run
@@ -39,7 +38,7 @@ typedef struct Chosen {
     ChosenWatch watch;
     StepChoice choice;
     double started_s; // by the clock
-    TruthWindow window;
+    TrialWindow window;
     double cost; // world steps to a step
     size_t trials;
     size_t steps; // of all trials so far
@@ -57,7 +56,7 @@ Scenario chosen_run_scenario(const Scenario *scenario, double step_s)
     return step_choice_scenario(&choice, step_s);
 }
 
-// A run that could not be had.
+// A failed run.
 static Trajectory *fail(const Chosen *chosen, const char *message)
 {
     Trajectory *none = trajectory_create(chosen->scenario, OPTIONS_BACKENDS[BACKEND_ODE]);
@@ -82,7 +81,7 @@ static RunWatch watch_of(Chosen *chosen)
     return (RunWatch){chosen->watch.run.progress != NULL ? pass_progress : NULL, chosen};
 }
 
-// Tells what begins.
+// Reports what begins.
 static RunWatch begin(Chosen *chosen, size_t trial, double step_s)
 {
     if (chosen->watch.begin != NULL) {
@@ -91,7 +90,7 @@ static RunWatch begin(Chosen *chosen, size_t trial, double step_s)
     return watch_of(chosen);
 }
 
-// Why no error can be told from this truth; false where it can.
+// Why no error can be measured against this truth; false where it can.
 static bool lacks_truth(const Chosen *chosen, char *message, size_t size)
 {
     const Truth *truth = chosen->truth;
@@ -204,7 +203,7 @@ static double last_step(const Chosen *chosen, double wanted_s)
     return is_near ? chosen->best_step_s : step_s;
 }
 
-// Where no trial is worth any more: the last one, or why there is none.
+// The result where no further trial is worth it, or why there is none.
 static Trajectory *end_trials(const Chosen *chosen, Trial *trial)
 {
     char message[ERR_TEXT_SIZE];
@@ -264,8 +263,8 @@ Trajectory *chosen_run_make(const Scenario *scenario, const Truth *truth, Chosen
         chosen.truth = &own;
     }
     if (chosen.truth->trajectory->is_complete) {
-        chosen.window = truth_window_find(scenario, chosen.truth,
-                                          TRUTH_SHARE * scenario->run.tolerance, watch_of(&chosen));
+        chosen.window = trial_window(scenario, chosen.truth, TRUTH_SHARE * scenario->run.tolerance,
+                                     watch_of(&chosen));
     }
     char message[ERR_TEXT_SIZE];
     Trajectory *run =

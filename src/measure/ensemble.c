@@ -1,4 +1,4 @@
-// What can be said of a motion that cannot be predicted? Its distributions.
+// Measures the distributions of a motion that cannot be predicted.
 #include "measure/ensemble.h"
 
 #include "base/sorted.h"

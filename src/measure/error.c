@@ -69,7 +69,7 @@ TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *re
             add_body(trajectory, reference, i, &scales[i], horizon_s, &error, &sums);
         }
     }
-    // a horizon that holds no sample but the start says nothing
+    // a horizon without a sample beyond the start gives no error
     if (reference->sample_count > 1 && !(reference->times[1] <= horizon_s)) {
         error.omega_max_in_horizon = NAN;
     }

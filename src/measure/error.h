@@ -6,8 +6,7 @@
 
 #include "model/trajectory.h"
 
-// An error below so many times the uncertainty of its truth, which then shows in its first digit,
-// is no number of its own.
+// Errors below this multiple of the reference's uncertainty are dominated by it.
 static const double ERROR_CLEAR_OF_TRUTH = 10.0;
 
 typedef struct TrajectoryError {

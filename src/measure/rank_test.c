@@ -88,7 +88,7 @@ double rank_test_p(const double *first, size_t first_count, const double *second
     return tail(ranks, count, first_count, fabs((double)sum - mean));
 }
 
-// Whether a shift makes the test speak. W grows with the shift alone, so that this is found once.
+// Whether the test detects a shift. W grows with the shift alone, so that this is found once.
 static bool is_seen(const double *sorted, size_t count, double shift, double rate)
 {
     double moved[RANK_TEST_MAX];

@@ -146,8 +146,7 @@ static bool make_truth(const Runner *runner, Truth *truth, Err *err)
     return runner->listener.keep_truth(known, runner->listener.context, err);
 }
 
-// Errors are taken against the truth, and steps that are chosen are chosen by it, whatever is then
-// measured of them.
+// Errors are taken against the truth, and steps are chosen by it.
 static bool needs_truth(const Runner *runner)
 {
     const Ladder *ladder = runner->ladder;

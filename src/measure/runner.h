@@ -3,7 +3,7 @@
 
 #include "measure/ladder.h"
 
-// Who is told what. A keeper that fails ends everything with its error.
+// Called as results come. A keeper that fails ends everything with its error.
 typedef struct RunnerListener {
     bool (*keep_truth)(const LadderTruth *truth, void *context, Err *err);
     bool (*keep_run)(const LadderRun *run, void *context, Err *err);

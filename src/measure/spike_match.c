@@ -5,7 +5,7 @@
 // makes t_i and s_k each other's nearest, so that the pairs are the same in whatever order.
 #include "measure/spike_match.h"
 
-// contacts a twentieth of a turn apart are two contacts, however lonely
+// contacts a twentieth of a turn apart are different contacts
 static const double REACH = 0.05;
 
 // Whether there is a contact to speak of: what has no force or impulse cannot be divided by.

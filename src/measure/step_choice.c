@@ -16,7 +16,7 @@
 static const double FINER_EARLY = 0.8;
 static const double FINER_LATE = 0.7;
 
-// a trial that failed says nothing of the step that will not
+// a failed trial gives no hint of the step that succeeds
 static const double AFTER_FAILURE = 0.5;
 
 // The first step is coarser than most that will do: a trial of it costs next to nothing.

@@ -31,7 +31,7 @@ void task_measure(const void *context, void *result)
     const Task *task = context;
     LadderRun *run = result;
     *run = task->run;
-    // what a step is chosen against is made once, whatever it is used for: no part of the time
+    // the reference that a step is chosen against is no part of the time
     Truth own = {.trajectory = NULL};
     const Truth *truth = task->truth;
     if (truth == NULL && backend_run_is_chosen(&task->scenario, task->backend)) {

@@ -5,8 +5,8 @@
 #include "measure/ladder.h"
 #include "measure/truth_pack.h"
 
-// Bytes of one child: a run keeps its samples, some tens of megabytes; whoever wants more than this
-// has lost count.
+// Bytes of one child: a run keeps its samples, some tens of megabytes; a run that needs more than
+// this is out of control.
 static const size_t TASK_MEMORY_LIMIT = (size_t)4 << 30;
 
 // Runs that a truth consists of: the trajectory, once more on finer samples, a second one, and a

@@ -1,7 +1,11 @@
 // Does a run of this step hold the tolerance, and up to when?
 //
 // The error at a sample is that of model/distance.c against the truth's, and with it the truth's
-// own uncertainty, widely meant: what is held is an upper bound.
+// own uncertainty with a margin, so that what is held is an upper bound.
+//
+// The truth's uncertainty U belongs to its horizon T and was less before. How it grew shows in the
+// distance to a run of the reference at another tolerance, d(t), the largest so far:
+//     U(t) = U d(t) / d(T)
 #include "measure/trial.h"
 
 #include "model/distance.h"
@@ -11,6 +15,9 @@
 
 // a reference is rarely off by more than it says, and by three times that hardly ever
 static const double TRUTH_MARGIN = 3.0;
+
+// of the other run's tolerance to the truth's
+static const double OTHER = 1e2;
 
 typedef struct Watcher {
     const TrialRule *rule;
@@ -58,4 +65,48 @@ void trial_finish(Trial *trial)
 {
     trajectory_destroy(trial->run);
     trial->run = NULL;
+}
+
+static TrialWindow shorten(const Trajectory *truth, const Trajectory *other, TrialWindow whole,
+                           double most)
+{
+    DistanceScale scales[LINKAGE_BODY_MAX];
+    distance_scales(truth, scales);
+    double largest = 0.0;
+    for (size_t k = 0; k < truth->sample_count && truth->times[k] <= whole.until_s; k++) {
+        largest = fmax(largest, distance_at(other, truth, k, scales));
+    }
+    TrialWindow window = {0.0, 0.0};
+    double so_far = 0.0;
+    for (size_t k = 0; largest > 0.0 && k < truth->sample_count; k++) {
+        so_far = fmax(so_far, distance_at(other, truth, k, scales));
+        const double uncertainty = whole.uncertainty * so_far / largest;
+        if (truth->times[k] > whole.until_s || !(uncertainty <= most)) {
+            break;
+        }
+        window = (TrialWindow){truth->times[k], uncertainty};
+    }
+    return window;
+}
+
+TrialWindow trial_window(const Scenario *scenario, const Truth *truth, double most, RunWatch watch)
+{
+    const double duration_s = scenario_duration(scenario);
+    const TrialWindow whole = {
+        .until_s = truth->is_limited ? fmin(truth->horizon_s, duration_s) : duration_s,
+        .uncertainty = truth->uncertainty,
+    };
+    if (truth->uncertainty <= most) {
+        return whole;
+    }
+    if (!isfinite(truth->uncertainty)) {
+        return (TrialWindow){0.0, 0.0};
+    }
+    Scenario other = *scenario;
+    other.reference.tolerance *= OTHER;
+    Trajectory *run = run_scenario(&other, registry_solver(BACKEND_REFERENCE), watch);
+    const TrialWindow window =
+        run->is_complete ? shorten(truth->trajectory, run, whole, most) : (TrialWindow){0.0, 0.0};
+    trajectory_destroy(run);
+    return window;
 }

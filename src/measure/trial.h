@@ -1,12 +1,18 @@
 // One run of ODE held against the truth as it goes, for a step that is to be chosen.
 #pragma once
 
-#include "measure/truth_window.h"
+#include "measure/truth.h"
+
+// The part of a run in which a truth is sure enough.
+typedef struct TrialWindow {
+    double until_s;     // the end of the run, the truth's horizon, or before it
+    double uncertainty; // 1, of the truth up to there
+} TrialWindow;
 
 // What a trial is held against, and when it is not worth running on.
 typedef struct TrialRule {
     const Truth *truth;
-    TruthWindow window; // in which errors count
+    TrialWindow window; // in which errors count
     double tolerance;   // 1, of omega
     bool is_last;       // it is run to its end, though it misses the tolerance
 } TrialRule;
@@ -25,3 +31,8 @@ typedef struct Trial {
 Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatch watch,
                  const RunProbe *probe);
 void trial_finish(Trial *trial);
+
+// The longest window from the start in which the uncertainty of the truth is at most `most`. It is
+// empty, until_s being 0, where the truth is nowhere that sure. Another run of the reference is
+// made only where the truth is not that sure up to its horizon.
+TrialWindow trial_window(const Scenario *scenario, const Truth *truth, double most, RunWatch watch);

@@ -1,4 +1,5 @@
-// The truth of a scenario, made by a child process, so that nothing it does can hurt its parent.
+// The truth of a scenario, computed in a child process, so that a crash cannot take the program
+// down.
 #pragma once
 
 #include "measure/truth.h"

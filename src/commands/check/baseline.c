@@ -73,7 +73,7 @@ static void set_setting(BaselineSetting *target, const CasefileSetting *setting)
     text_finish(&text);
 }
 
-// Those that the scenario makes use of; its title is none that a number could depend on.
+// Those that the scenario uses, but for its title.
 static void set_settings(Baseline *baseline, const Scenario *scenario)
 {
     baseline->settings = calloc(casefile_setting_count(), sizeof *baseline->settings);
@@ -282,7 +282,7 @@ bool baseline_set_sample(Baseline *baseline, const CheckMeasure *members, size_t
         }
         const double shift = rank_test_shift(metric->sample, member_count, rate);
         if (!isfinite(shift) && metric->band > 0.0) {
-            // the run's other numbers cast doubt on it, and it did not move: its band holds
+            // it is doubted for the run's other numbers alone, and did not move: its band holds
             metric->band_kind = BAND_ROUNDING;
             continue;
         }

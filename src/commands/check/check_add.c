@@ -1,4 +1,4 @@
-// Which numbers of a run must not move unseen?
+// Which numbers of a run does a check compare?
 //
 // Extremes of omega and alpha of each moving body; of each joint the force, of those with play the
 // impulse, the contacts, the penetration, the time in contact; the spikes of accelerations and
@@ -170,7 +170,7 @@ static void add_signal(CheckAdd *work, const Trajectory *run, const char *part, 
 static void add_spikes(CheckAdd *work, const Trajectory *run, BackendKind backend)
 {
     const Linkage *linkage = &work->scenario->linkage;
-    // steps of the reference's own choosing see the top of a spike now here, now there
+    // the reference's chosen steps meet the peak of a spike at varying distances
     for (size_t i = 0; !is_by_samples(backend) && i < run->body_count; i++) {
         if ((int)i != run->driven_body) {
             add_signal(work, run, linkage->bodies[i].name, "alpha_spikes",

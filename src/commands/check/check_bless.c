@@ -2,8 +2,7 @@
 //
 // truth, for the horizon -> the case's own start and 8 beside it, in full -> bands -> where one is
 // statistical a sample of 32 starts -> the file. What the new one says of the old one is a check.
-// Each start is kept in a file of its own until then, so that nothing is measured twice by whoever
-// was stopped.
+// Until then each measured start is kept in a file, so that an interrupted run can be resumed.
 #include "base/clock.h"
 #include "base/text.h"
 #include "cli/interrupt.h"
@@ -58,8 +57,8 @@ static bool keep(const CheckWork *work, void *context, Err *err)
 }
 
 // The plan that the truth gives. A mechanism that the reference cannot take has numbers all the
-// same, and no errors. But where the old baseline has errors, their loss is no baseline's affair: a
-// reference that was killed or timed out would take the most sensitive numbers with it.
+// same, and no errors. But where the old baseline has errors a missing reference is a failure: it
+// would remove the most sensitive numbers.
 static bool make_plan(Making *making, Err *err)
 {
     Truth truth;
@@ -179,7 +178,7 @@ static void hold_against_old(const Making *making, const Baseline *made, const C
     text_copy(result->note, sizeof result->note, making->no_truth);
     result->made_count = made->count;
     if (making->item->baseline_err.kind != ERR_NONE) {
-        // one that was there and cannot be read is no reason to keep it, but one to say so
+        // one that cannot be read is replaced and reported
         result->change = making->item->is_there ? CHECK_CHANGE_UNREADABLE : CHECK_CHANGE_NEW;
         return;
     }
@@ -190,7 +189,7 @@ static void hold_against_old(const Making *making, const Baseline *made, const C
     result->change = check_report_count(result).out > 0 ? CHECK_CHANGE_REPLACED : CHECK_CHANGE_NONE;
 }
 
-// What was measured before and need not be again.
+// Reports what was measured before.
 static void say_taken(Making *making)
 {
     const size_t kept = check_store_count(&making->store);
@@ -240,7 +239,7 @@ static void bless_item(Making *making, CheckCase *result)
     const bool is_made = make_item(making, result);
     result->wall_s = clock_now_s() - started_s;
     check_progress_end(&making->progress);
-    // a file in which nothing stands but a plan is of no use to anybody
+    // a file with nothing but a plan is not kept
     check_store_close(&making->store, !is_made && check_store_count(&making->store) > 0);
 }
 
@@ -249,7 +248,7 @@ void check_run_bless(const CheckOptions *options, CheckItem *items, size_t count
     *run = (CheckRun){.cases = calloc(count + 1, sizeof *run->cases)};
     assert(run->cases != NULL);
     interrupt_watch();
-    // of all together: that it takes long is said once
+    // one for all cases, so that long work is warned of once
     CheckProgress progress = check_progress_start("", options->common.is_quiet);
     progress.case_count = count;
     for (size_t i = 0; i < count; i++) {

@@ -89,8 +89,8 @@ static double largest_number(const char *value)
     return largest;
 }
 
-// Whether two values say the same: words as they are, numbers to rounding, for a place may have
-// been worked out from others.
+// Whether two values say the same: words as they are, numbers to rounding, since a position may
+// have been computed from others.
 static bool settings_agree(const char *was, const char *now)
 {
     const double near = SETTING_AGREES * largest_number(was);
@@ -215,7 +215,7 @@ static void judge_metric(const Baseline *baseline, const BaselineMetric *metric,
         row->verdict = CHECK_GONE;
         row->severity = INFINITY;
     } else if ((metric->kind == CHECK_HASH) != (evidence->run->metrics[place].kind == CHECK_HASH)) {
-        // one is a fingerprint and the other a number: not of one measurement
+        // one is a hash and the other a number: not the same measurement
         row->verdict = CHECK_GONE;
         row->severity = INFINITY;
     } else if (metric->kind == CHECK_HASH) {

@@ -11,7 +11,7 @@ typedef struct CheckLimit {
     const Expectation *expectation;                       // of the scenario: lives as long as it
     CheckVerdict verdict; // CHECK_WITHIN, CHECK_OUT, or CHECK_GONE where nothing was measured
     double value;         // SI; NAN where nothing was measured
-    double off;           // SI, by how much it is outside; see compare/expect_value.h
+    double off;           // SI, by how much it is outside; see expect_value.h
 } CheckLimit;
 
 // Judges the limits of a scenario by its own start: writes at most CHECK_LIMIT_MAX, in the order of

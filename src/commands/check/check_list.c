@@ -56,7 +56,7 @@ static void show_path(const char *whole, char target[FILE_PATH_SIZE])
         return;
     }
     relative_path(here, whole, target);
-    // far away the whole path is easier to read
+    // a path with ../ is harder to read than the whole one
     if (strncmp(target, "../", 3) == 0) {
         text_copy(target, FILE_PATH_SIZE, whole);
     }
@@ -204,7 +204,7 @@ static bool name_all(const CheckOptions *options, CheckItem **items, size_t *cou
     return true;
 }
 
-// A new baseline takes the place of an old one and of nothing else.
+// A new baseline may replace an old one alone.
 static bool claim_baselines(const CheckItem *items, size_t count, Err *err)
 {
     for (size_t i = 0; i < count; i++) {
@@ -224,7 +224,7 @@ bool check_list_make(const CheckOptions *options, CheckItem **items, size_t *cou
                                            : find_all(options, items, count, err);
     is_made = is_made && (!options->is_blessing || claim_baselines(*items, *count, err));
     for (size_t i = 0; is_made && i < *count; i++) {
-        // a wrong command line is wrong for all
+        // a usage error concerns all cases
         if ((*items)[i].err.kind == ERR_USAGE) {
             is_made = err_set_lines(err, ERR_USAGE, (*items)[i].err.text);
         }

@@ -1,4 +1,4 @@
-// What should who reads a change see of a regression check?
+// How is a regression check shown as a comment on a change?
 #include "commands/check/check_report.h"
 
 #include "base/printable.h"
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORST_ROWS = 10 }; // of a case: a comment is no log
+enum { WORST_ROWS = 10 }; // of a case: a comment is to be short
 
 // The backquotes that code of these words stands between: more than they have in a row.
 static size_t fence_length(const char *words, size_t least)
@@ -27,13 +27,13 @@ static void append_fence(Text *text, size_t length)
     }
 }
 
-// Words that may hold anything, such as a path: as code, in which nothing means anything. In the
-// cell of a table a bar would end it.
+// Any text, such as a path, as code, where no character is special. In the cell of a table a bar is
+// escaped.
 static void append_code(Text *text, const char *words, bool is_cell)
 {
     char *shown = printable_copy(words, false);
     const size_t fence = fence_length(shown, 1);
-    // a backquote at an end is kept off the fence by a blank, which a reader does not see
+    // a blank separates a backquote at an end from the fence; it is not shown
     const char *blank = strchr(shown, '`') != NULL || shown[0] == '\0' ? " " : "";
     append_fence(text, fence);
     text_append(text, "%s", blank);
@@ -130,7 +130,7 @@ static void append_out(const CheckCase *item, Text *text)
         const CheckRow *row = &item->rows[i];
         const CheckCells cells = check_report_cells(row);
         append_name(text, row->name);
-        // what a setting was and is, a baseline and a case say in words of their own
+        // values of settings are text from a baseline and a case
         (row->verdict == CHECK_SETTING ? append_name : append_cell)(text, cells.was);
         (row->verdict == CHECK_SETTING ? append_name : append_cell)(text, cells.now);
         append_cell(text, cells.difference);

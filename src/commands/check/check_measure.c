@@ -1,8 +1,7 @@
 // How is a scenario measured?
 //
-// On each of its backends, as check_add.c lists. Where the motion cannot be predicted to
-// its end it is measured twice: to its end, and up to the horizon, where every number still is one.
-// The error is then measured in the latter alone.
+// On each of its backends, as check_add.c lists. A motion that cannot be predicted to its end is
+// measured twice, to its end and up to the horizon; errors are then measured up to the horizon.
 #include "commands/check/check_measure.h"
 
 #include "base/shorten.h"
@@ -204,7 +203,7 @@ void check_measure(const Scenario *scenario, const CheckPlan *plan, CheckMeasure
     measure_group(scenario, "", plan->has_truth && !plan->is_limited, plan, measure);
     if (measure->is_complete && plan->is_limited && plan->horizon_s > 0.0) {
         const Scenario cut = cut_short(scenario, plan->horizon_s);
-        // a horizon that holds no sample but the start says nothing
+        // a horizon without a sample beyond the start measures nothing
         if (scenario_sample_count(&cut) > 1) {
             measure_group(&cut, "-to-horizon", plan->has_truth, plan, measure);
         }

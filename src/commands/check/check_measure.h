@@ -4,8 +4,8 @@
 #include "commands/check/check_add.h"
 #include "measure/truth.h"
 
-// What to hold the runs against, and how much to measure. It is settled when a baseline is made:
-// a horizon found anew each time would move by a sample for no reason.
+// What to hold the runs against, and how much to measure. It is fixed when a baseline is made:
+// a horizon found anew each time would differ by a sample.
 typedef struct CheckPlan {
     bool has_truth;     // errors are measured
     double uncertainty; // 1, of the truth

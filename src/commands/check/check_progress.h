@@ -13,8 +13,8 @@ typedef struct CheckProgress {
 
 CheckProgress check_progress_start(const char *doing, bool is_quiet);
 
-// Says how much is done and how long the rest will take, if it is time for a line. A state of which
-// nothing is known yet says what it waits for.
+// Says how much is done and how long the rest will take, if it is time for a line. Without a
+// total it says that the reference is computed.
 void check_progress_show(CheckProgress *progress, const CheckWorkState *state);
 
 void check_progress_end(CheckProgress *progress);

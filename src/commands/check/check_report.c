@@ -1,4 +1,4 @@
-// How is a number that moved put into words?
+// How is a number that moved described?
 #include "commands/check/check_report.h"
 
 #include <inttypes.h>

@@ -62,7 +62,7 @@ static bool conclude(const CheckReport *report, Err *err)
     return true;
 }
 
-// Who was stopped while making baselines has been told what is kept, and ends by the same signal.
+// Ends by the signal that interrupted the work; what is kept was reported.
 static void end_if_stopped(void)
 {
     fflush(stdout);

@@ -56,7 +56,7 @@ double tune_value(int index)
     const int within = ((index % STEPS_A_DECADE) + STEPS_A_DECADE) % STEPS_A_DECADE;
     const int decade = (index - within) / STEPS_A_DECADE + (within > 0 ? 1 : 0);
     char digits[64];
-    // by way of its digits: the very number that a reader of them gets
+    // from its decimal digits, so that a reader of them gets the same number
     snprintf(digits, sizeof digits, "%.4ge%d", PREFERRED[within], -decade);
     return strtod(digits, NULL);
 }
@@ -200,7 +200,7 @@ static bool has_stalled(const Tune *tune, const TuneTrial *last)
     }
     sorted_make(before, before_count);
     sorted_make(since, since_count);
-    // one that came near may only have missed by luck
+    // one that came near may have missed by chance
     return since[0] > SLACK * tune->target &&
            !(sorted_median(since, since_count) < STALL_GAIN * sorted_median(before, before_count));
 }
@@ -265,7 +265,7 @@ void tune_hold(Tune *tune, double step_s)
 
 void tune_take_held(Tune *tune, size_t scheme, const LadderRun *run)
 {
-    // it stands before all that may be searched after it
+    // it comes before all indices of a later search
     add_trial(tune, scheme, tune->schemes[scheme].first - 1, tune->held_s, run);
 }
 
@@ -310,7 +310,7 @@ static double median_of(const double *values, size_t count)
 }
 
 // The trial of the least error at the step that is held, of all schemes or of plain rows alone; of
-// those that differ by less than anybody could see the first in the list.
+// equal ones the first in the list.
 static int choose_held(const Tune *tune, const Scenario *scenario, bool is_plain)
 {
     double least = INFINITY;

@@ -4,8 +4,8 @@
 // only where the next finer one of its scheme meets the target as well: an error that is small by
 // luck at one step is no basis for a recommendation.
 //
-// Of a user who is held to one step the question is another: which scheme has the least error at
-// that step, and where it does not meet the target, which is the longest step that does.
+// With a step that is fixed the question is which scheme has the least error at that step, and
+// where it does not meet the target, which is the longest step that does.
 #pragma once
 
 #include "measure/held.h"

@@ -1,8 +1,8 @@
-// How does a setting leave the program without it?
+// How is a setting written as a C program that needs ODE alone?
 //
 // One file: the sources that this way of stepping is made of, the laws of the joints and the
-// scenario as data, and a main that runs it. Laws are worked out here, so that no root finder has
-// to go along. Numbers are written so that they read back to the last bit.
+// scenario as data, and a main that runs it. Laws are worked out here, so that no root finder
+// is needed. Numbers are written so that they read back to the last bit.
 #include "commands/tune/tune_code.h"
 
 #include "base/shell.h"
@@ -320,7 +320,7 @@ bool tune_code_write(const TuneCode *code, Text *text, Err *err)
     write_head(code, text);
     const bool is_whole = tune_sources_write(files, sizeof files / sizeof files[0], text);
     assert(is_whole);
-    // where nothing touches there is no law to ask for
+    // without contacts no law is needed
     const bool has_laws = strstr(text->data, "---- contact/law.h ----") != NULL;
     if (has_laws && !write_laws(code->scenario, text, err)) {
         return false;

@@ -12,7 +12,7 @@
 static const double WORK_OF_EVALUATION = 0.05;
 static const double WORK_OF_SAMPLE = 0.25;
 
-// a run with so many times the work of its samples is mostly steps
+// with more than this multiple of its samples' work a run is mostly steps
 static const double TELLING_WORK = 3.0;
 
 // no scheme takes longer for its work than this times what the fastest takes for its own
@@ -24,8 +24,8 @@ static double work_of(const Tune *tune, double steps, double evaluations)
 }
 
 // The least time per unit of work among the runs of a scheme, or of all (TUNE_NONE), s: whatever
-// else the machine does only adds to it. Of a scheme's own, runs that mostly set up and sample do
-// not tell it.
+// else the machine does only adds to it. Of a scheme's own, runs that mostly set up and sample are
+// left out.
 static double least_rate(const Tune *tune, int scheme)
 {
     double least = INFINITY;
@@ -88,7 +88,7 @@ static const TuneTrial *find_finest(const Tune *tune, size_t scheme)
     return finest;
 }
 
-// World steps of a setting, at the least: tolerances say nothing of steps.
+// World steps of a setting, at the least: from a tolerance they cannot be known.
 static double steps_at(const Tune *tune, const TuneTrial *finest, int index)
 {
     const bool has_step = scheme_has_step(&tune->schemes[finest->scheme].scheme);

@@ -1,4 +1,4 @@
-// What becomes of a setting outside this program?
+// How can a setting be used outside this program?
 #include "commands/tune/tune_export.h"
 
 #include "commands/tune/tune_code.h"
@@ -29,7 +29,7 @@ const TuneTrial *tune_export_trial(const TuneReport *report)
     return best != NULL || tune->within == TUNE_NONE ? best : &tune->trials[tune->within];
 }
 
-// The code has no trials of its own: its step is the one that they choose.
+// The code makes no trials: it gets the step that they choose.
 static bool choose_step(Scenario *scenario, Err *err)
 {
     Trajectory *run = chosen_run_make(scenario, NULL, (ChosenWatch){.begin = NULL}, NULL);
@@ -96,7 +96,7 @@ const TuneTrial *tune_export_plain(const Tune *tune)
     return tune_best(tune, tune->plain);
 }
 
-// What a loop that is not to be changed has to pay.
+// The best setting for a loop that cannot be changed, and what it costs.
 static void write_loop(const TuneReport *report, const Style *style, Text *text)
 {
     const Tune *tune = report->tune;

@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-// s: what takes longer is no cheap setting, and a search makes many runs
+// s: a slower setting is not cheap, and a search makes many runs
 static const double DEFAULT_TIME_LIMIT = 60.0;
 
-// an error of the speeds' own size is none worth asking for
+// errors of the speeds' own size are of no use
 static const double ERROR_MOST = 0.5;
 static const double COST_STEPS_MOST = 1e9;
 
@@ -82,7 +82,7 @@ static const OptionRow OPTIONS[] = {
     COMMON_QUIET(3),
 };
 
-// What is to be least must be what is limited: nothing else could be said of it.
+// The cost that is minimized must be the one that is limited.
 static bool settle_cost(TuneOptions *options, Err *err)
 {
     const char *cost = options->asked_cost;

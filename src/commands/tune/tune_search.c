@@ -1,4 +1,4 @@
-// In which order are settings run, and when is enough known?
+// In which order are settings run, and when does the search end?
 //
 // Uniform-cost search: of all schemes' next settings always the cheapest is run. A scheme ends
 // where two neighbours meet the target, or where its next setting costs more than the best one
@@ -18,7 +18,7 @@ static const double STEPS_MOST = 1e8;
 // rates are not exact: what costs less than this over the best is still run
 static const double PRUNE_MARGIN = 1.3;
 
-// whoever keeps an unchanged loop pays for it, but a search for that answer has to end: s, a run
+// s, of one run of a plain row: these may be slow, and the search must end
 static const double PLAIN_LIMIT_S = 5.0;
 
 // schemes dearer than this over the best by their trials are not timed
@@ -193,7 +193,7 @@ static void take_look(void *owner, size_t number, const LadderRun *run)
     TuneScheme *scheme = &look->tune->schemes[look->schemes[number]];
     const TuneScheme kept = *scheme;
     tune_take(look->tune, look->schemes[number], look->indices[number], run);
-    // a look aside: the search itself stays where it was
+    // the search itself goes on as before
     scheme->outcome = kept.outcome;
     scheme->next = kept.next;
     scheme->pending = kept.pending;
@@ -264,7 +264,7 @@ static bool time_finalists(const TuneSearch *search, Err *err)
     return tune_runs_make(search, &runs, err);
 }
 
-// Whether errors can be told from the truth's own at all.
+// Whether the target can be told from the reference's uncertainty.
 static bool check_target(const Tune *tune, Err *err)
 {
     const LadderTruth *truth = &tune->truth;

@@ -1,4 +1,4 @@
-// How is a setting given on?
+// How is a setting written down?
 #include "commands/tune/tune_setting.h"
 
 #include "base/shell.h"
@@ -54,7 +54,7 @@ void tune_setting_command(const TuneReport *report, const TuneTrial *trial, cons
             shell_append_word(text, report->overrides[i]);
         }
     }
-    // the reference goes along, for the error is against it
+    // with the reference, which the error is against
     const bool is_ideal = !scenario_has_clearance(report->scenario);
     text_append(text, "%s--set run.backends=%s", separator,
                 is_ideal && report->scenario->has_fourbar ? "'[analytic, reference, ode]'"

@@ -1,9 +1,8 @@
 // How do many source files become one that needs nothing but ODE?
 //
-// As SQLite's amalgamation: an #include of our own gives way to the file itself where it comes
-// first, and to nothing later. A header calls for the files that implement it, which are those
-// whose first include it is. Every name of file scope is one name then: style demands that anyway,
-// and tests/command/test_tune.c compiles what comes of it.
+// As SQLite's amalgamation: the first #include of a file of ours is replaced by the file, and later
+// ones are removed. A header also brings the files that implement it, those that include it first.
+// Names at file scope must then be unique; tests/command/test_tune_command.c compiles the result.
 #include "commands/tune/tune_sources.h"
 
 #include <assert.h>
@@ -94,7 +93,7 @@ static bool is_stepping(const char *name)
     return false;
 }
 
-// The files that implement a header are wanted with it.
+// Marks the files that implement a header.
 static void want_parts(Sources *sources, const char *header)
 {
     for (size_t i = 0; i < sources->count; i++) {
@@ -143,7 +142,7 @@ bool tune_sources_write(const char *const *files, size_t file_count, Text *text)
     for (size_t i = 0; i < file_count && is_whole; i++) {
         is_whole = write_source(&sources, files[i], text);
     }
-    // what is written may call for more
+    // what was written may need more
     for (size_t i = 0; i < sources.count && is_whole; i++) {
         if (sources.files[i].is_wanted && !sources.files[i].is_written) {
             is_whole = write_source(&sources, sources.files[i].name, text);

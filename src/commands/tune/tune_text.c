@@ -1,4 +1,4 @@
-// What is the cheapest setting, how is it given on, and what was tried?
+// What is the cheapest setting, how is it used, and what was tried?
 #include "commands/tune/tune_report.h"
 #include "commands/tune/tune_setting.h"
 
