@@ -103,7 +103,7 @@ static void check_same(const char *what, int variant)
     read_content(journal, &left_journal);
     write_content(copy_journal, &left_journal);
     unsigned char *image = read_image(copy, SQLITE_OPEN_READWRITE, NULL, &size);
-    unsigned char *seen = read_image(path, SQLITE_OPEN_READONLY, store_look_vfs(), &seen_size);
+    unsigned char *seen = read_image(path, SQLITE_OPEN_READONLY, store_readonly_vfs(), &seen_size);
     const bool is_same = (image == NULL) == (seen == NULL) && size == seen_size &&
                          (image == NULL || memcmp(image, seen, (size_t)size) == 0);
     if (!is_same) {

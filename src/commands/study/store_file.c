@@ -194,11 +194,11 @@ static bool open_base(Store *store, int flags, int wait_ms, Err *err)
     if (path == NULL) {
         return fail_system(store, "open", errno, err);
     }
-    const bool is_open =
-        store_beside_check(store, path, err) &&
-        (sqlite3_open_v2(path, &store->base, flags | SQLITE_OPEN_NOMUTEX,
-                         flags == SQLITE_OPEN_READONLY ? store_look_vfs() : NULL) == SQLITE_OK ||
-         store_fail(store, "open", err));
+    const bool is_open = store_beside_check(store, path, err) &&
+                         (sqlite3_open_v2(path, &store->base, flags | SQLITE_OPEN_NOMUTEX,
+                                          flags == SQLITE_OPEN_READONLY ? store_readonly_vfs()
+                                                                        : NULL) == SQLITE_OK ||
+                          store_fail(store, "open", err));
     free(path);
     if (!is_open) {
         return false;

@@ -78,10 +78,10 @@ bool store_step(Store *store, struct sqlite3_stmt **statement, bool *is_good, Er
 // Call it before SQLite opens the file of that resolved path.
 bool store_beside_check(const Store *store, const char *resolved, Err *err);
 
-// store_look.c: reading without writing
+// store_readonly.c: reading without writing
 
 // The name of the SQLite VFS that reads files and writes none.
-const char *store_look_vfs(void);
+const char *store_readonly_vfs(void);
 
 // store_shape.c: the tables
 

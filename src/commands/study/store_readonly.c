@@ -13,32 +13,32 @@
 #include <string.h>
 #include <unistd.h>
 
-static const char NAME[] = "jointplay-look";
+static const char NAME[] = "jointplay-readonly";
 
 // The file of a store; the system's own follows in the same memory.
-typedef struct LookFile {
+typedef struct ReadonlyFile {
     sqlite3_file base;
     sqlite3_file *real;
     char *journal; // path; owned
     int level;     // of the lock
     Undo undo;
-} LookFile;
+} ReadonlyFile;
 
 static sqlite3_vfs *system_of(sqlite3_vfs *vfs)
 {
     return vfs->pAppData;
 }
 
-static int look_close(sqlite3_file *base)
+static int readonly_close(sqlite3_file *base)
 {
-    LookFile *file = (LookFile *)base;
+    ReadonlyFile *file = (ReadonlyFile *)base;
     undo_finish(&file->undo);
     free(file->journal);
     return file->real->pMethods->xClose(file->real);
 }
 
 // A part of a page as it was. Beyond the former end it is zero.
-static int read_former(LookFile *file, void *target, int amount, sqlite3_int64 offset)
+static int read_former(ReadonlyFile *file, void *target, int amount, sqlite3_int64 offset)
 {
     const Undo *undo = &file->undo;
     const sqlite3_int64 size = undo->page_size;
@@ -58,14 +58,14 @@ static int read_former(LookFile *file, void *target, int amount, sqlite3_int64 o
                : SQLITE_IOERR_READ;
 }
 
-static int look_read(sqlite3_file *base, void *target, int amount, sqlite3_int64 offset)
+static int readonly_read(sqlite3_file *base, void *target, int amount, sqlite3_int64 offset)
 {
-    LookFile *file = (LookFile *)base;
+    ReadonlyFile *file = (ReadonlyFile *)base;
     return file->undo.is_needed ? read_former(file, target, amount, offset)
                                 : file->real->pMethods->xRead(file->real, target, amount, offset);
 }
 
-static int look_write(sqlite3_file *base, const void *source, int amount, sqlite3_int64 offset)
+static int readonly_write(sqlite3_file *base, const void *source, int amount, sqlite3_int64 offset)
 {
     (void)base;
     (void)source;
@@ -74,23 +74,23 @@ static int look_write(sqlite3_file *base, const void *source, int amount, sqlite
     return SQLITE_READONLY;
 }
 
-static int look_truncate(sqlite3_file *base, sqlite3_int64 size)
+static int readonly_truncate(sqlite3_file *base, sqlite3_int64 size)
 {
     (void)base;
     (void)size;
     return SQLITE_READONLY;
 }
 
-static int look_sync(sqlite3_file *base, int flags)
+static int readonly_sync(sqlite3_file *base, int flags)
 {
     (void)base;
     (void)flags;
     return SQLITE_OK;
 }
 
-static int look_size(sqlite3_file *base, sqlite3_int64 *size)
+static int readonly_size(sqlite3_file *base, sqlite3_int64 *size)
 {
-    LookFile *file = (LookFile *)base;
+    ReadonlyFile *file = (ReadonlyFile *)base;
     if (file->undo.is_needed) {
         *size = (sqlite3_int64)file->undo.page_size * file->undo.page_count;
         return SQLITE_OK;
@@ -99,7 +99,7 @@ static int look_size(sqlite3_file *base, sqlite3_int64 *size)
 }
 
 // Under the shared lock: a journal that no process is using belongs to an interrupted write.
-static int find_former(LookFile *file)
+static int find_former(ReadonlyFile *file)
 {
     int is_at_work = 0;
     const int status = file->real->pMethods->xCheckReservedLock(file->real, &is_at_work);
@@ -117,9 +117,9 @@ static int find_former(LookFile *file)
     return is_sized == SQLITE_OK && !is_right ? SQLITE_CORRUPT : is_sized;
 }
 
-static int look_lock(sqlite3_file *base, int level)
+static int readonly_lock(sqlite3_file *base, int level)
 {
-    LookFile *file = (LookFile *)base;
+    ReadonlyFile *file = (ReadonlyFile *)base;
     if (level > SQLITE_LOCK_SHARED) {
         return SQLITE_READONLY;
     }
@@ -136,9 +136,9 @@ static int look_lock(sqlite3_file *base, int level)
     return status;
 }
 
-static int look_unlock(sqlite3_file *base, int level)
+static int readonly_unlock(sqlite3_file *base, int level)
 {
-    LookFile *file = (LookFile *)base;
+    ReadonlyFile *file = (ReadonlyFile *)base;
     if (level < SQLITE_LOCK_SHARED) {
         undo_finish(&file->undo);
     }
@@ -146,13 +146,13 @@ static int look_unlock(sqlite3_file *base, int level)
     return file->real->pMethods->xUnlock(file->real, level);
 }
 
-static int look_check_lock(sqlite3_file *base, int *is_taken)
+static int readonly_check_lock(sqlite3_file *base, int *is_taken)
 {
-    const LookFile *file = (LookFile *)base;
+    const ReadonlyFile *file = (ReadonlyFile *)base;
     return file->real->pMethods->xCheckReservedLock(file->real, is_taken);
 }
 
-static int look_control(sqlite3_file *base, int operation, void *argument)
+static int readonly_control(sqlite3_file *base, int operation, void *argument)
 {
     (void)base;
     (void)operation;
@@ -160,37 +160,37 @@ static int look_control(sqlite3_file *base, int operation, void *argument)
     return SQLITE_NOTFOUND;
 }
 
-static int look_sector(sqlite3_file *base)
+static int readonly_sector(sqlite3_file *base)
 {
-    const LookFile *file = (LookFile *)base;
+    const ReadonlyFile *file = (ReadonlyFile *)base;
     return file->real->pMethods->xSectorSize(file->real);
 }
 
-static int look_characteristics(sqlite3_file *base)
+static int readonly_characteristics(sqlite3_file *base)
 {
-    const LookFile *file = (LookFile *)base;
+    const ReadonlyFile *file = (ReadonlyFile *)base;
     return file->real->pMethods->xDeviceCharacteristics(file->real);
 }
 
 // of version 1: no memory that processes share, and so no write-ahead log
 static const sqlite3_io_methods METHODS = {
     .iVersion = 1,
-    .xClose = look_close,
-    .xRead = look_read,
-    .xWrite = look_write,
-    .xTruncate = look_truncate,
-    .xSync = look_sync,
-    .xFileSize = look_size,
-    .xLock = look_lock,
-    .xUnlock = look_unlock,
-    .xCheckReservedLock = look_check_lock,
-    .xFileControl = look_control,
-    .xSectorSize = look_sector,
-    .xDeviceCharacteristics = look_characteristics,
+    .xClose = readonly_close,
+    .xRead = readonly_read,
+    .xWrite = readonly_write,
+    .xTruncate = readonly_truncate,
+    .xSync = readonly_sync,
+    .xFileSize = readonly_size,
+    .xLock = readonly_lock,
+    .xUnlock = readonly_unlock,
+    .xCheckReservedLock = readonly_check_lock,
+    .xFileControl = readonly_control,
+    .xSectorSize = readonly_sector,
+    .xDeviceCharacteristics = readonly_characteristics,
 };
 
-static int look_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *base, int flags,
-                     int *flags_used)
+static int readonly_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *base, int flags,
+                         int *flags_used)
 {
     sqlite3_vfs *system = system_of(vfs);
     if ((flags & SQLITE_OPEN_MAIN_DB) == 0) {
@@ -198,8 +198,8 @@ static int look_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *base, int
         return name == NULL ? system->xOpen(system, name, base, flags, flags_used)
                             : SQLITE_CANTOPEN;
     }
-    LookFile *file = (LookFile *)base;
-    *file = (LookFile){.real = (sqlite3_file *)(file + 1)};
+    ReadonlyFile *file = (ReadonlyFile *)base;
+    *file = (ReadonlyFile){.real = (sqlite3_file *)(file + 1)};
     const int status = system->xOpen(system, name, file->real, flags, flags_used);
     if (status != SQLITE_OK) {
         return status;
@@ -214,7 +214,7 @@ static int look_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *base, int
     return SQLITE_OK;
 }
 
-static int look_delete(sqlite3_vfs *vfs, const char *name, int is_synced)
+static int readonly_delete(sqlite3_vfs *vfs, const char *name, int is_synced)
 {
     (void)vfs;
     (void)name;
@@ -222,7 +222,7 @@ static int look_delete(sqlite3_vfs *vfs, const char *name, int is_synced)
     return SQLITE_READONLY;
 }
 
-static int look_access(sqlite3_vfs *vfs, const char *name, int flags, int *is_there)
+static int readonly_access(sqlite3_vfs *vfs, const char *name, int flags, int *is_there)
 {
     (void)vfs;
     (void)name;
@@ -231,7 +231,7 @@ static int look_access(sqlite3_vfs *vfs, const char *name, int flags, int *is_th
     return SQLITE_OK;
 }
 
-const char *store_look_vfs(void)
+const char *store_readonly_vfs(void)
 {
     static sqlite3_vfs vfs;
     if (sqlite3_vfs_find(NAME) == NULL) {
@@ -241,10 +241,10 @@ const char *store_look_vfs(void)
         vfs.zName = NAME;
         vfs.pNext = NULL;
         vfs.pAppData = system;
-        vfs.szOsFile = (int)sizeof(LookFile) + system->szOsFile;
-        vfs.xOpen = look_open;
-        vfs.xDelete = look_delete;
-        vfs.xAccess = look_access;
+        vfs.szOsFile = (int)sizeof(ReadonlyFile) + system->szOsFile;
+        vfs.xOpen = readonly_open;
+        vfs.xDelete = readonly_delete;
+        vfs.xAccess = readonly_access;
         sqlite3_vfs_register(&vfs, 0);
     }
     return NAME;
