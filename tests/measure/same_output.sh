@@ -24,14 +24,19 @@ keep() {
     echo "$kept $?" >>status
 }
 
-# The lone rows of a small study: every kind of parameter, two seeds of noise.
+# A small study: numbers and words that vary, a draw, and truths.
 write_study() {
     cat >small.yaml <<END
 title: small
 case: $cases/paper/impact-k66.yaml
+set: {run.revolutions: 0.1}
 vary:
-  - run.step: [20 us, 10 us]
-  - contact.restitution: [0.8, 0.9]
+  run.step: [20 us, 10 us]
+  contact.damping: [lankarani-nikravesh, flores]
+draw:
+  count: 2
+  keys:
+    contact.restitution: {uniform: [0.8, 0.9]}
 END
 }
 
@@ -74,7 +79,7 @@ run_all() {
 strip() {
     for file in *.json *.jsonl; do
         sed -i -E '/"wall[a-z_]*": \[$/,/\]/d
-            /"(wall[a-z_]*|processor[a-z_]*|us_per_step|real_time_factor|on_frontier|version)": ?[^[]*$/d
+            /"(wall[a-z_]*|processor[a-z_]*|inside[a-z_]*|[a-z_]*cpu_s|us_per_step|real_time_factor|on_frontier|version)": ?[^[]*$/d
             s/"(wall[a-z_]*|processor[a-z_]*|us_per_step|real_time_factor)": ?[^,}]*,?//g' "$file"
     done
     for file in compare.csv study.csv; do
