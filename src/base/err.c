@@ -2,7 +2,6 @@
 #include "base/err.h"
 
 #include "base/printable.h"
-#include "base/shorten.h"
 
 #include <assert.h>
 #include <stdarg.h>

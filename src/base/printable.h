@@ -31,3 +31,12 @@ char *printable_copy(const char *text, bool keeps_lines);
 // Puts a text together as vsnprintf does, with escapes for all that its arguments bring in: only
 // the line breaks of the format itself stay. The caller frees it.
 char *printable_format(const char *format, va_list arguments) __attribute__((format(printf, 1, 0)));
+
+// Copies a sentence into a fixed buffer. One that is too long ends behind a whole word, with "
+// ...", and within a word only where that word takes up most of the buffer.
+void shorten_copy(char *target, size_t size, const char *source);
+
+// The same of a sentence that is still to be put together. What cannot be shown of its arguments is
+// escaped, see above; line breaks of the format stay.
+void shorten_list(char *target, size_t size, const char *format, va_list arguments)
+    __attribute__((format(printf, 3, 0)));

@@ -3,7 +3,7 @@
 
 #include "casefile/build.h"
 #include "casefile/keys.h"
-#include "casefile/wanted.h"
+#include "casefile/store.h"
 #include "contact/damping.h"
 #include "contact/law.h"
 
@@ -53,7 +53,7 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
     if (row->rivalry == SCHEMA_SIZES) {
         text_append(&allowed, "hole and pin, or radial-clearance");
     } else {
-        wanted_describe(entries, row, &allowed);
+        store_describe(entries, row, &allowed);
     }
     entries_refuse_group(group, err, "%s is missing\nallowed: %s", path, allowed.data);
     text_finish(&allowed);

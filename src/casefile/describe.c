@@ -58,51 +58,6 @@ static bool is_in_group(const SchemaRow *row, const char *group)
     return strlen(group) == length && strncmp(row->path, group, length) == 0;
 }
 
-// How the value is written.
-static void describe_value(const SchemaRow *row, Text *text)
-{
-    switch (row->type) {
-    case SCHEMA_TEXT:
-        text_append(text, "text");
-        break;
-    case SCHEMA_INTEGER:
-        text_append(text, "a whole number");
-        break;
-    case SCHEMA_CHOICE:
-    case SCHEMA_BACKENDS:
-        text_append(text, row->type == SCHEMA_BACKENDS ? "a list of " : "");
-        schema_list_words(row, text);
-        break;
-    case SCHEMA_EXPECT:
-        text_append(text, "a mapping of paths to limits");
-        break;
-    case SCHEMA_VECTOR:
-    case SCHEMA_ANCHOR:
-        text_append(text, "%s%s in [x, y]", row->default_words != NULL ? "centred, or " : "",
-                    units_dimension_name(row->dimension));
-        break;
-    case SCHEMA_BETWEEN:
-        text_append(text, "[body, body]");
-        break;
-    case SCHEMA_SPAN:
-        text_append(text, "a time in ");
-        units_list(row->dimension, text);
-        text_append(text, ", or in revolutions");
-        break;
-    case SCHEMA_BODY_NAME:
-    case SCHEMA_JOINT_NAME:
-        text_append(text, row->type == SCHEMA_BODY_NAME ? "a body" : "a joint");
-        break;
-    default:
-        text_append(text, "%s%s%s", row->zero_word != NULL ? row->zero_word : "",
-                    row->zero_word != NULL ? ", or " : "", units_dimension_name(row->dimension));
-        if (row->dimension != DIMENSION_NONE) {
-            text_append(text, " in ");
-            units_list(row->dimension, text);
-        }
-    }
-}
-
 // The range in SI; nothing where the value is no number.
 static void describe_range(const SchemaRow *row, Text *text)
 {
@@ -180,7 +135,7 @@ static void describe_row(size_t row_number, bool is_page, Text *text)
     schema_path(row, name, path);
     if (is_page) {
         text_append(text, "| `%s` | ", path);
-        describe_value(row, text);
+        schema_describe(row, false, text);
         text_append(text, " | ");
         describe_range(row, text);
         text_append(text, " | ");
@@ -191,7 +146,7 @@ static void describe_row(size_t row_number, bool is_page, Text *text)
     Text words;
     text_init(&words);
     text_append(&words, "%s. ", row->doc);
-    describe_value(row, &words);
+    schema_describe(row, false, &words);
     text_append(&words, "; ");
     const size_t before = words.length;
     describe_range(row, &words);

@@ -5,7 +5,7 @@
 //     tolerated  = number [unit] [ (+- | +/- | PLUS-MINUS) number unit | +number/-number unit ]
 #include "casefile/quantity.h"
 
-#include "base/shorten.h"
+#include "base/printable.h"
 
 #include <assert.h>
 #include <ctype.h>

@@ -47,6 +47,74 @@ void schema_list_words(const SchemaRow *row, Text *text)
     }
 }
 
+// A quantity in its units, or with an example of one; or the word that stands for 0.
+static void describe_quantity(const SchemaRow *row, bool with_example, Text *text)
+{
+    text_append(text, "%s%s%s", row->zero_word != NULL ? row->zero_word : "",
+                row->zero_word != NULL ? ", or " : "", units_dimension_name(row->dimension));
+    if (with_example) {
+        text_append(text, " such as %s", units_example(row->dimension));
+    } else if (row->dimension != DIMENSION_NONE) {
+        text_append(text, " in ");
+        units_list(row->dimension, text);
+    }
+}
+
+static void describe_vector(const SchemaRow *row, bool with_example, Text *text)
+{
+    const bool has_word = row->default_words != NULL;
+    text_append(text, "%s", has_word ? "centred, or " : "");
+    if (with_example) {
+        text_append(text, "[x, y] such as %s",
+                    has_word                            ? "[5 um, 0 um]"
+                    : row->dimension == DIMENSION_SPEED ? "[0.5 m/s, 0 m/s]"
+                                                        : "[25 mm, 0 mm]");
+    } else {
+        text_append(text, "%s in [x, y]", units_dimension_name(row->dimension));
+    }
+}
+
+void schema_describe(const SchemaRow *row, bool with_example, Text *text)
+{
+    // what a page says of a type, and what a message says
+    static const char *const WORDS[][2] = {
+        [SCHEMA_TEXT] = {"text", "text on one line"},
+        [SCHEMA_INTEGER] = {"a whole number", "a whole number such as 100"},
+        [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},
+        [SCHEMA_BODY_NAME] = {"a body", "a body"},
+        [SCHEMA_JOINT_NAME] = {"a joint", "a joint"},
+        [SCHEMA_EXPECT] = {"a mapping of paths to limits", "a mapping of paths to limits"},
+    };
+    switch (row->type) {
+    case SCHEMA_CHOICE:
+    case SCHEMA_BACKENDS:
+        text_append(text, row->type == SCHEMA_BACKENDS && !with_example ? "a list of " : "");
+        schema_list_words(row, text);
+        break;
+    case SCHEMA_VECTOR:
+    case SCHEMA_ANCHOR:
+        describe_vector(row, with_example, text);
+        break;
+    case SCHEMA_SPAN:
+        text_append(text, with_example ? "a time such as 60 ms, or 1 revolution" : "a time in ");
+        if (!with_example) {
+            units_list(row->dimension, text);
+            text_append(text, ", or in revolutions");
+        }
+        break;
+    case SCHEMA_TEXT:
+    case SCHEMA_INTEGER:
+    case SCHEMA_BETWEEN:
+    case SCHEMA_BODY_NAME:
+    case SCHEMA_JOINT_NAME:
+    case SCHEMA_EXPECT:
+        text_append(text, "%s", WORDS[row->type][with_example]);
+        break;
+    default:
+        describe_quantity(row, with_example, text);
+    }
+}
+
 bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other)
 {
     return row->rivalry != SCHEMA_NO_RIVAL && other->rivalry == row->rivalry &&

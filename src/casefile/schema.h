@@ -104,6 +104,10 @@ const char *schema_unit(const SchemaRow *row);
 // Adds the words that a row allows, with commas between them; the row must have some.
 void schema_list_words(const SchemaRow *row, Text *text);
 
+// Appends how a row's value is written: for a page with all its units, for a message with an
+// example of one.
+void schema_describe(const SchemaRow *row, bool with_example, Text *text);
+
 // Whether two rows are the two ways to say one thing, so that a member may have only one of them.
 bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other);
 

@@ -7,7 +7,6 @@
 #include "casefile/source.h"
 
 #include "base/printable.h"
-#include "base/shorten.h"
 #include "base/text.h"
 
 #include <stdarg.h>

@@ -1,9 +1,8 @@
 // What does a value mean, and is it in its range?
 #include "casefile/store.h"
 
-#include "base/shorten.h"
+#include "base/printable.h"
 #include "casefile/expect.h"
-#include "casefile/wanted.h"
 
 #include <float.h>
 #include <stdarg.h>
@@ -23,6 +22,19 @@ typedef struct Target {
     Err *err;
 } Target;
 
+void store_describe(const Entries *entries, const SchemaRow *row, Text *text)
+{
+    if (row->type != SCHEMA_BODY_NAME && row->type != SCHEMA_JOINT_NAME) {
+        schema_describe(row, true, text);
+        return;
+    }
+    const EntryNames *names =
+        &entries->names[row->type == SCHEMA_JOINT_NAME ? SCHEMA_JOINT : SCHEMA_BODY];
+    for (size_t i = 0; i < names->count; i++) {
+        text_append(text, "%s%s", i > 0 ? ", " : "", names->names[i]);
+    }
+}
+
 // Refuses a node with what its row takes.
 __attribute__((format(printf, 3, 4))) static bool refuse(const Target *target, Span span,
                                                          const char *format, ...)
@@ -34,7 +46,7 @@ __attribute__((format(printf, 3, 4))) static bool refuse(const Target *target, S
     va_end(arguments);
     Text allowed;
     text_init(&allowed);
-    wanted_describe(target->entries, target->entry->row, &allowed);
+    store_describe(target->entries, target->entry->row, &allowed);
     source_error(target->entry->source, span, allowed.data, target->err, "%s", message);
     text_finish(&allowed);
     return false;

@@ -19,3 +19,6 @@ typedef struct StoredNumber {
 // Reads the number of a row whose value is one, whatever its range. On failure the complaint says
 // why.
 bool store_read(const SchemaRow *row, const char *text, StoredNumber *number, Complaint *complaint);
+
+// Appends what a row takes, for messages: its choices, the names of the case, or an example.
+void store_describe(const Entries *entries, const SchemaRow *row, Text *text);

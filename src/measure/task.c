@@ -2,7 +2,7 @@
 #include "measure/task.h"
 
 #include "base/clock.h"
-#include "base/shorten.h"
+#include "base/printable.h"
 #include "measure/backend_run.h"
 #include "run/registry.h"
 

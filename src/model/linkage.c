@@ -204,3 +204,23 @@ bool linkage_check(const Linkage *linkage, Err *err)
     }
     return check_driver(linkage, err);
 }
+
+double linkage_kinetic_energy(const Linkage *linkage, const Motion *motions)
+{
+    double energy = 0.0;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Motion *motion = &motions[i];
+        energy += 0.5 * linkage->bodies[i].mass * vec2_dot(motion->velocity, motion->velocity) +
+                  0.5 * linkage->bodies[i].inertia * motion->omega * motion->omega;
+    }
+    return energy;
+}
+
+double linkage_potential_energy(const Linkage *linkage, const Motion *motions, double gravity)
+{
+    double energy = 0.0;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        energy += linkage->bodies[i].mass * gravity * motions[i].position.y;
+    }
+    return energy;
+}

@@ -130,3 +130,8 @@ JointGap linkage_joint_gap(const Linkage *linkage, const Motion *motions, int jo
 // joints between two different existing bodies, pin smaller than hole, driver at an ideal joint
 // with the ground. Fails with ERR_CASE and the name of the offender.
 bool linkage_check(const Linkage *linkage, Err *err);
+
+// Kinetic energy of all bodies, J, sum (m v^2 + I w^2) / 2; and potential energy in gravity along
+// -y, m/s^2, zero at the ground frame's origin, sum m g y.
+double linkage_kinetic_energy(const Linkage *linkage, const Motion *motions);
+double linkage_potential_energy(const Linkage *linkage, const Motion *motions, double gravity);

@@ -5,7 +5,6 @@
 #include "run/run.h"
 
 #include "base/clock.h"
-#include "model/energy.h"
 #include "model/lock.h"
 
 #include <stdio.h>
@@ -81,8 +80,8 @@ static void unwrap_angles(const Loop *loop, Sample *sample)
 
 static double mechanical_energy(const Scenario *scenario, const Sample *sample)
 {
-    return energy_kinetic(&scenario->linkage, sample->bodies) +
-           energy_potential(&scenario->linkage, sample->bodies, scenario->gravity);
+    return linkage_kinetic_energy(&scenario->linkage, sample->bodies) +
+           linkage_potential_energy(&scenario->linkage, sample->bodies, scenario->gravity);
 }
 
 // Steps until a time is reached. A step that ends short of it by rounding has reached it.

@@ -4,7 +4,7 @@
 // measured twice, to its end and up to the horizon; errors are then measured up to the horizon.
 #include "commands/check/check_measure.h"
 
-#include "base/shorten.h"
+#include "base/printable.h"
 #include "base/text.h"
 #include "commands/check/expect_value.h"
 #include "measure/backend_run.h"

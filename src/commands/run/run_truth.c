@@ -1,6 +1,6 @@
 // How far are the runs from the truth, how sure is the truth, and where does it end?
 #include "commands/run/run_report.h"
-#include "model/energy.h"
+#include "model/linkage.h"
 #include "write/measured_fields.h"
 #include "write/units.h"
 
@@ -133,7 +133,7 @@ static bool has_drive_work(const Linkage *linkage, const Trajectory *run)
 {
     double kinetic = 0.0;
     for (size_t i = 0; i < run->sample_count; i++) {
-        kinetic = fmax(kinetic, energy_kinetic(linkage, trajectory_motion(run, i, 0)));
+        kinetic = fmax(kinetic, linkage_kinetic_energy(linkage, trajectory_motion(run, i, 0)));
     }
     return fabs(run->energy.drive_work) > WORK_ROUNDING * kinetic;
 }

@@ -5,7 +5,7 @@
 
 #include "commands/study/last_words.h"
 
-#include "base/shorten.h"
+#include "base/printable.h"
 
 #include <ctype.h>
 #include <fcntl.h>

@@ -1,5 +1,5 @@
 // What does a value of a study file say, by itself?
-#include "base/shorten.h"
+#include "base/printable.h"
 #include "base/text.h"
 #include "commands/study/spec_read.h"
 

@@ -3,7 +3,7 @@
 // The group number never decreases with the run number, so that its end is found by bisection.
 #include "commands/study/sweep_group.h"
 
-#include "base/shorten.h"
+#include "base/printable.h"
 
 #include <assert.h>
 #include <stdio.h>

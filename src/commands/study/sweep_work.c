@@ -4,7 +4,7 @@
 #include "commands/study/sweep_work.h"
 
 #include "base/clock.h"
-#include "base/shorten.h"
+#include "base/printable.h"
 #include "commands/study/design.h"
 #include "commands/study/last_words.h"
 #include "commands/study/slot.h"
