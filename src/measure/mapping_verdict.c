@@ -15,11 +15,10 @@
 // and the step have a least and not a largest value.
 #include "measure/mapping_verdict.h"
 
+#include "base/text.h"
 #include "contact/law.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 
 // well below what the laws of contact differ by among each other: for one impact of the paper's pin
 // the four laws of a cylinder in a hole give peaks from 972 to 1276 N
@@ -167,24 +166,6 @@ double verdict_least_penalty(const MappingContact *contact, double step_s)
     return rounded(contact->impact.mass / (ratio * step_s), ceil);
 }
 
-typedef struct Words {
-    char *text;
-    size_t length;
-} Words;
-
-__attribute__((format(printf, 2, 3))) static void add(Words *words, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    const int length = vsnprintf(words->text + words->length, VERDICT_TEXT_SIZE - words->length,
-                                 format, arguments);
-    va_end(arguments);
-    if (length > 0) {
-        words->length += (size_t)length;
-        words->length = words->length < VERDICT_TEXT_SIZE ? words->length : VERDICT_TEXT_SIZE - 1;
-    }
-}
-
 static double law_end(const MappingContact *contact)
 {
     const int joint = contact->joint.joint;
@@ -192,49 +173,51 @@ static double law_end(const MappingContact *contact)
                          contact->scenario.linkage.joints[joint].clearance.pin_radius);
 }
 
-static void say_fault(const MappingContact *contact, const MappingRow *row, Words *words)
+static void say_fault(const MappingContact *contact, const MappingRow *row, Text *words)
 {
     const ImpactFigures *figures = &row->predicted;
     const MapImpact *asked = &contact->asked;
     switch (row->verdict) {
     case VERDICT_UNSTABLE:
-        add(words,
+        text_append(
+            words,
             "unstable: omega h reaches %.3g where the limit is %.3g, at a depth of %.3g um; the "
             "textbook's rows stand in",
             figures->omega_h_max, map_get(row->map)->stability_limit, 1e6 * figures->omega_h_depth);
         return;
     case VERDICT_TOO_FINE:
-        add(words, "too fine to try: the contact takes %.2g steps", row->steps_a_contact);
+        text_append(words, "too fine to try: the contact takes %.2g steps", row->steps_a_contact);
         return;
     case VERDICT_PAST_END:
-        add(words, "the pin goes past the end of the law: %.3g um, and it holds to %.3g um",
-            1e6 * figures->past_end_depth, 1e6 * law_end(contact));
+        text_append(words, "the pin goes past the end of the law: %.3g um, and it holds to %.3g um",
+                    1e6 * figures->past_end_depth, 1e6 * law_end(contact));
         return;
     case VERDICT_STICKS:
-        add(words, "sticks: the contact does not end");
+        text_append(words, "sticks: the contact does not end");
         return;
     case VERDICT_TOO_COARSE:
-        add(words, "too coarse: the contact takes %.2g steps", row->steps_a_contact);
+        text_append(words, "too coarse: the contact takes %.2g steps", row->steps_a_contact);
         return;
     case VERDICT_GAINS:
-        add(words, "gains speed: asked %.3g, delivers up to %.3g", asked->restitution,
-            figures->restitution.most);
+        text_append(words, "gains speed: asked %.3g, delivers up to %.3g", asked->restitution,
+                    figures->restitution.most);
         return;
     case VERDICT_OVER_DAMPED:
     case VERDICT_UNDER_DAMPED:
-        add(words, "%s: asked %.3g, delivers %.3g", VERDICT_NAMES[row->verdict], asked->restitution,
-            figures->restitution.mean);
+        text_append(words, "%s: asked %.3g, delivers %.3g", VERDICT_NAMES[row->verdict],
+                    asked->restitution, figures->restitution.mean);
         return;
     case VERDICT_PEAK:
-        add(words, "sees the peak only to %.0f %%",
-            100.0 * figures->force_max.mean / asked->force_max);
+        text_append(words, "sees the peak only to %.0f %%",
+                    100.0 * figures->force_max.mean / asked->force_max);
         return;
     case VERDICT_DEPTH:
-        add(words, "sees the depth only to %.0f %%",
-            100.0 * figures->penetration_max.mean / asked->penetration_max);
+        text_append(words, "sees the depth only to %.0f %%",
+                    100.0 * figures->penetration_max.mean / asked->penetration_max);
         return;
     default:
-        add(words,
+        text_append(
+            words,
             "right in the mean, but scatters: restitution %.3g to %.3g, peak %.0f to %.0f %%",
             figures->restitution.least, figures->restitution.most,
             100.0 * figures->force_max.least / asked->force_max,
@@ -256,37 +239,41 @@ static OdeMap other_map(const MappingContact *contact, const MappingRow *row)
     return row->map;
 }
 
-static void say_advice(const MappingContact *contact, const MappingRow *row, Words *words)
+static void say_advice(const MappingContact *contact, const MappingRow *row, Text *words)
 {
     if (mapping_contact_is_poisson(contact)) {
         const double least = verdict_least_penalty(contact, row->step_s);
-        add(words, "; use a penalty >= %.3g N s/mm, or h >= %.3g us", 1e-3 * least,
-            1e6 * row->step_s * least / contact->scenario.contact.penalty);
+        text_append(words, "; use a penalty >= %.3g N s/mm, or h >= %.3g us", 1e-3 * least,
+                    1e6 * row->step_s * least / contact->scenario.contact.penalty);
         return;
     }
     const OdeMap other = other_map(contact, row);
     const double largest_s = contact->largest_s[row->map];
     if (row->verdict == VERDICT_TOO_FINE) {
         if (largest_s > 0.0) {
-            add(words, "; h = %.3g us is enough", 1e6 * largest_s);
+            text_append(words, "; h = %.3g us is enough", 1e6 * largest_s);
         }
         return;
     }
     if (other != row->map) {
-        add(words, "; use %s", OPTIONS_ODE_MAPS[other]);
+        text_append(words, "; use %s", OPTIONS_ODE_MAPS[other]);
     }
     if (largest_s > 0.0 && largest_s < row->step_s) {
-        add(words, "%s h <= %.3g us", other != row->map ? ", or" : "; use", 1e6 * largest_s);
+        text_append(words, "%s h <= %.3g us", other != row->map ? ", or" : "; use",
+                    1e6 * largest_s);
     }
 }
 
 void verdict_describe(const MappingContact *contact, MappingRow *row)
 {
-    Words words = {row->words, 0};
     if (row->verdict == VERDICT_VALID) {
-        add(&words, "valid");
+        text_copy(row->words, sizeof row->words, "valid");
         return;
     }
+    Text words;
+    text_init(&words);
     say_fault(contact, row, &words);
     say_advice(contact, row, &words);
+    text_copy(row->words, sizeof row->words, words.data);
+    text_finish(&words);
 }

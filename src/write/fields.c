@@ -36,7 +36,7 @@ static bool is_number(const Field *field)
 
 static bool has_inner(const Field *field)
 {
-    return field->type == FIELD_GROUP || field->type == FIELD_PART;
+    return field->type >= FIELD_GROUP && field->type <= FIELD_PART;
 }
 
 static double file_number(const Field *field, double value)
@@ -52,7 +52,9 @@ static const void *inner_record(const Field *field, const void *record)
     if (record == NULL || field->type == FIELD_PART) {
         return record == NULL ? NULL : field->part(record);
     }
-    return (const char *)record + field->offset;
+    const char *bytes = record;
+    const bool is_known = field->type != FIELD_IF || *(const bool *)(bytes + field->known);
+    return is_known ? bytes + field->offset : NULL;
 }
 
 static const char *find_word(const Field *field, const void *record, const void *at)

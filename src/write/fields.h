@@ -24,10 +24,11 @@ typedef enum FieldType {
     FIELD_CHOICE,  // enum, by the words of `of`
     FIELD_HASH,    // uint64_t, 16 hexadecimal digits
     FIELD_GROUP,   // a struct with the fields `of`
-    FIELD_PART,    // the same, of a record that `part` finds; NULL: nothing of it is known, and
-                   // without a key of its own there are none of its keys in JSON
-    FIELD_VALUE,   // what `json` makes. Of JSON alone
-    FIELD_LABEL,   // of tables alone: a cell that the caller fills, before the row
+    FIELD_IF,      // the same, where the bool at `known` says that it is known
+    FIELD_PART, // the same, of a record that `part` finds; NULL: it is not known. What is not known
+                // has none of its keys in JSON, or null under its own
+    FIELD_VALUE, // what `json` makes. Of JSON alone
+    FIELD_LABEL, // of tables alone: a cell that the caller fills, before the row
 } FieldType;
 
 // Where a field is shown: any of these bits, and bits of a caller's own from FIELD_OWN on.
@@ -57,6 +58,7 @@ typedef struct Field {
     const char *absent; // for people, in place of what is not known; NULL: a dash
     const void *of;     // the fields of a group or part, or the words of a choice
     size_t size;        // of FIELD_TEXT, where it is read
+    size_t known;       // of FIELD_IF: where in the record
     bool has_nulls;     // of FIELD_PART without a key: where it is not known its keys are null
     // how a value is found that does not stand in the record as it is; then the offset is not used
     union {

@@ -84,13 +84,19 @@ static void read_by(const Inverse *inverse, double mass, OdeMap kind, InverseRea
 {
     const Map *map = map_get(kind);
     MapContact contact = {.step = inverse->step_s, .mass = mass};
-    *reading = (InverseReading){.ratio = NAN, .restitution = NAN};
+    *reading = (InverseReading){.map = kind,
+                                .stiffness = NAN,
+                                .damping = NAN,
+                                .omega_h = NAN,
+                                .ratio = NAN,
+                                .restitution = NAN};
     if ((map->needs_mass && !(mass > 0.0)) || !map->invert(inverse->row, &contact)) {
         return;
     }
     reading->is_there = true;
     reading->stiffness = contact.stiffness;
     reading->damping = contact.damping;
+    reading->omega_h = mass > 0.0 ? sqrt(contact.stiffness / mass) * inverse->step_s : NAN;
     if (mass > 0.0 && contact.stiffness > 0.0) {
         reading->ratio = 0.5 * contact.damping / sqrt(contact.stiffness * mass);
         reading->restitution = damping_linear_restitution(reading->ratio);

@@ -14,9 +14,11 @@ extern const OdeMap INVERSE_READINGS[INVERSE_READING_COUNT];
 
 // A row read by one map.
 typedef struct InverseReading {
-    bool is_there;      // some spring and damper make that row by this map
+    OdeMap map;
+    bool is_there;      // some spring and damper make that row by this map; else all are NAN
     double stiffness;   // N/m
     double damping;     // N s/m
+    double omega_h;     // 1, of that spring at the step; NaN without a mass
     double ratio;       // 1, of damping; NaN without a mass or a spring
     double restitution; // 1, of that spring and damper themselves; NaN likewise
 } InverseReading;

@@ -1,8 +1,8 @@
 // What spring, damper and restitution are an ERP and a CFM?
 #include "commands/map/mapping_inverse.h"
+#include "write/fields.h"
 #include "write/json_value.h"
 #include "write/number.h"
-#include "write/section.h"
 #include "write/settings_json.h"
 #include "write/units.h"
 
@@ -28,18 +28,25 @@ static const char *remark_of(const InverseReading *reading)
                                      : "";
 }
 
+#define AT(member) .offset = offsetof(InverseReading, member)
+
+// clang-format off
+static const Field READING_FIELDS[] = {
+    {NULL, FIELD_LABEL, FIELD_TABLE, .title = "read by the map"},
+    {"map", FIELD_CHOICE, FIELD_JSON, AT(map), .of = OPTIONS_ODE_MAPS},
+    {"stiffness_N_m", FIELD_NUMBER, FIELD_ALL, "spring k", "N/m", "%.4g", AT(stiffness)},
+    {"damping_N_s_m", FIELD_NUMBER, FIELD_ALL, "damper c", "N s/m", "%.4g", AT(damping)},
+    {"damping_ratio", FIELD_NUMBER, FIELD_ALL, "zeta", "1", "%.4g", AT(ratio)},
+    {NULL, FIELD_NUMBER, FIELD_TABLE, "omega h", "1", "%.4g", AT(omega_h)},
+    {"restitution", FIELD_NUMBER, FIELD_ALL, "restitution", "of k and c", "%.4g", AT(restitution)},
+    {NULL, FIELD_LABEL, FIELD_TABLE, .title = "", .align = TABLE_WRAP},
+    {0},
+};
+// clang-format on
+
 static void write_mass(const Inverse *inverse, const InverseMass *mass, const Style *style,
                        Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"read by the map", "", TABLE_LEFT},
-        {"spring k", "N/m", TABLE_RIGHT},
-        {"damper c", "N s/m", TABLE_RIGHT},
-        {"zeta", "1", TABLE_RIGHT},
-        {"omega h", "1", TABLE_RIGHT},
-        {"restitution", "of k and c", TABLE_RIGHT},
-        {"", "", TABLE_WRAP},
-    };
     char heading[LINKAGE_NAME_SIZE + 64];
     if (mass->mass > 0.0) {
         snprintf(heading, sizeof heading, "On %.4g kg%s%s", mass->mass,
@@ -47,20 +54,14 @@ static void write_mass(const Inverse *inverse, const InverseMass *mass, const St
     } else {
         snprintf(heading, sizeof heading, "On a mass that is not known");
     }
-    Table *table = section_begin(heading, 7, HEADS, style, text);
+    Table *table = fields_table(heading, READING_FIELDS, FIELD_TABLE, style, text);
     for (int i = 0; i < INVERSE_READING_COUNT; i++) {
         const InverseReading *reading = &mass->readings[i];
-        const double omega = sqrt(reading->stiffness / mass->mass);
-        table_cell(table, "%s", OPTIONS_ODE_MAPS[INVERSE_READINGS[i]]);
-        section_finite(table, "%.4g", reading->is_there ? reading->stiffness : NAN);
-        section_finite(table, "%.4g", reading->is_there ? reading->damping : NAN);
-        section_finite(table, "%.4g", reading->is_there ? reading->ratio : NAN);
-        section_finite(table, "%.4g",
-                       reading->is_there && mass->mass > 0.0 ? omega * inverse->step_s : NAN);
-        section_finite(table, "%.4g", reading->is_there ? reading->restitution : NAN);
+        table_cell(table, "%s", OPTIONS_ODE_MAPS[reading->map]);
+        fields_table_row(READING_FIELDS, FIELD_TABLE, reading, table);
         table_cell(table, "%s",
                    reading->is_there ? remark_of(reading)
-                                     : lack_of(inverse, INVERSE_READINGS[i], mass->mass));
+                                     : lack_of(inverse, reading->map, mass->mass));
     }
     section_end(table, text);
     if (mass->predicted.is_ended && mass->mass > 0.0) {
@@ -100,17 +101,6 @@ void mapping_inverse_text(const void *of, const Style *style, Text *text)
     }
 }
 
-static json_t *reading_object(const InverseReading *reading, OdeMap map)
-{
-    json_t *object = json_object();
-    json_object_set_new(object, "map", json_string(OPTIONS_ODE_MAPS[map]));
-    json_value_set(object, "stiffness_N_m", reading->is_there ? reading->stiffness : NAN);
-    json_value_set(object, "damping_N_s_m", reading->is_there ? reading->damping : NAN);
-    json_value_set(object, "damping_ratio", reading->ratio);
-    json_value_set(object, "restitution", reading->restitution);
-    return object;
-}
-
 static json_t *mass_object(const InverseMass *mass)
 {
     json_t *object = json_object();
@@ -119,7 +109,8 @@ static json_t *mass_object(const InverseMass *mass)
     json_value_set(object, "mass_kg", is_known ? mass->mass : NAN);
     json_t *readings = json_array();
     for (int i = 0; i < INVERSE_READING_COUNT; i++) {
-        json_array_append_new(readings, reading_object(&mass->readings[i], INVERSE_READINGS[i]));
+        json_array_append_new(readings,
+                              fields_json(READING_FIELDS, FIELD_JSON, &mass->readings[i]));
     }
     json_object_set_new(object, "readings", readings);
     json_value_set(object, "predicted_restitution",

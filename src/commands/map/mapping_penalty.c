@@ -14,12 +14,6 @@ static const void *asked_of(const void *record)
     return &((const PenaltyMapRow *)record)->stiffness.asked;
 }
 
-static const void *if_measured(const void *record)
-{
-    const ImpactDelivered *delivered = record;
-    return delivered->is_measured ? &delivered->figures : NULL;
-}
-
 #define ROW(member)    .offset = offsetof(PenaltyMapRow, member)
 #define FIGURE(member) .offset = offsetof(ImpactFigures, member)
 
@@ -27,10 +21,6 @@ static const void *if_measured(const void *record)
 static const Field SHOWN_FIELDS[] = {
     {NULL, FIELD_NUMBER, TABLES, "delivered", "um", "%.4g", FIGURE(penetration_max.mean)},
     {NULL, FIELD_NUMBER, TABLES, "restitution", "delivered", "%.4g", FIGURE(restitution.mean)},
-    {0},
-};
-static const Field MEASURED_FIELDS[] = {
-    {NULL, FIELD_PART, TABLES, .of = SHOWN_FIELDS, .part = if_measured},
     {0},
 };
 static const Field ROW_FIELDS[] = {
@@ -55,8 +45,10 @@ static const Field ROW_FIELDS[] = {
     {"delivered_as_stiffness", FIELD_GROUP, FIELD_JSON, ROW(by_spring), .of = DELIVERED_FIELDS},
     {"penalty_cfm_m_N_s", FIELD_NUMBER, FIELD_JSON, ROW(cfm)},
     {"delivered_as_penalty", FIELD_GROUP, FIELD_JSON, ROW(by_penalty), .of = DELIVERED_FIELDS},
-    {NULL, FIELD_GROUP, STIFFNESS, ROW(by_spring), .of = MEASURED_FIELDS},
-    {NULL, FIELD_GROUP, PENALTY, ROW(by_penalty), .of = MEASURED_FIELDS},
+    {NULL, FIELD_IF, STIFFNESS, ROW(by_spring.figures),
+     .known = offsetof(PenaltyMapRow, by_spring.is_measured), .of = SHOWN_FIELDS},
+    {NULL, FIELD_IF, PENALTY, ROW(by_penalty.figures),
+     .known = offsetof(PenaltyMapRow, by_penalty.is_measured), .of = SHOWN_FIELDS},
     {0},
 };
 // clang-format on

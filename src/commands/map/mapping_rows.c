@@ -12,17 +12,6 @@ static const char *const SOURCES[] = {
     [MAPPING_USUAL] = "usual",   [MAPPING_FLOOR] = "floor",
 };
 
-static const void *if_ended(const void *figures)
-{
-    return ((const ImpactFigures *)figures)->is_ended ? figures : NULL;
-}
-
-static const void *if_measured(const void *record)
-{
-    const ImpactDelivered *delivered = record;
-    return delivered->is_measured ? &delivered->figures : NULL;
-}
-
 static const char *predicted_status(const void *record)
 {
     const ImpactFigures *figures = record;
@@ -35,16 +24,6 @@ static const char *predicted_status(const void *record)
 static const char *delivered_status(const void *record)
 {
     return ((const ImpactDelivered *)record)->is_measured ? "ok" : "not run";
-}
-
-static const void *held_predicted(const void *record)
-{
-    return if_ended(&((const HeldSetting *)record)->predicted);
-}
-
-static const void *held_delivered(const void *record)
-{
-    return if_measured(&((const HeldSetting *)record)->delivered);
 }
 
 static const void *contact_of(const void *record)
@@ -164,13 +143,14 @@ static const Field FIGURE_FIELDS[] = {
 };
 static const Field PREDICTED_FIELDS[] = {
     {"status", FIELD_NAME, FIELD_JSON, .word = predicted_status},
-    {NULL, FIELD_PART, FIELD_FILES, .of = FIGURE_FIELDS, .part = if_ended},
+    {NULL, FIELD_IF, FIELD_FILES, .known = offsetof(ImpactFigures, is_ended), .of = FIGURE_FIELDS},
     {0},
 };
 const Field DELIVERED_FIELDS[] = {
     {"status", FIELD_NAME, FIELD_JSON, .word = delivered_status},
     {"message", FIELD_TEXT, FIELD_JSON, DELIVERED(message)},
-    {NULL, FIELD_PART, FIELD_FILES, .of = FIGURE_FIELDS, .part = if_measured},
+    {NULL, FIELD_IF, FIELD_FILES, DELIVERED(figures),
+     .known = offsetof(ImpactDelivered, is_measured), .of = FIGURE_FIELDS},
     {0},
 };
 const Field ASKED_FIELDS[] = {
@@ -279,8 +259,10 @@ static const Field SETTING_FIELDS[] = {
     {"verdict", FIELD_CHOICE, HELD, SETTING(verdict), .of = VERDICT_NAMES},
     {"restitution_met", FIELD_FLAG, HELD, SETTING(is_restitution_met)},
     {"misfit", FIELD_NUMBER, HELD, SETTING(misfit)},
-    {"predicted", FIELD_PART, HELD, .of = FIGURE_FIELDS, .part = held_predicted},
-    {"delivered", FIELD_PART, HELD, .of = FIGURE_FIELDS, .part = held_delivered},
+    {"predicted", FIELD_IF, HELD, SETTING(predicted),
+     .known = offsetof(HeldSetting, predicted.is_ended), .of = FIGURE_FIELDS},
+    {"delivered", FIELD_IF, HELD, SETTING(delivered.figures),
+     .known = offsetof(HeldSetting, delivered.is_measured), .of = FIGURE_FIELDS},
     {"message", FIELD_TEXT, HELD, SETTING(delivered.message)},
     {0},
 };

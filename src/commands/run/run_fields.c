@@ -14,11 +14,6 @@ static const char *status_shown(const void *record)
     return ((const Trajectory *)record)->is_complete ? "done" : "failed";
 }
 
-static const void *if_complete(const void *record)
-{
-    return ((const Trajectory *)record)->is_complete ? record : NULL;
-}
-
 static const void *if_estimated(const void *record)
 {
     return ((const Trajectory *)record)->trials > 0 ? record : NULL;
@@ -123,7 +118,8 @@ const Field RUN_FIELDS[] = {
     {NULL, FIELD_NAME, FIELD_TABLE, "status", "", .word = status_shown},
     {"status", FIELD_NAME, FIELD_JSON, .word = status_of},
     {"message", FIELD_TEXT, FIELD_JSON, RUN(message)},
-    {NULL, FIELD_PART, FIELD_JSON | FIELD_TABLE, .of = COMPLETE_FIELDS, .part = if_complete},
+    {NULL, FIELD_IF, FIELD_JSON | FIELD_TABLE, .known = offsetof(Trajectory, is_complete),
+     .of = COMPLETE_FIELDS},
     {0},
 };
 
