@@ -71,8 +71,7 @@ bool option_values_read_times(const char *name, const char *list, size_t room, d
     qsort(seconds, *count, sizeof *seconds, compare_falling);
     for (size_t i = 1; i < *count; i++) {
         if (seconds[i] == seconds[i - 1]) {
-            return err_set(err, ERR_USAGE, "--%s: %.6g us stands there twice", name,
-                           1e6 * seconds[i]);
+            return err_set(err, ERR_USAGE, "--%s: %.6g us is given twice", name, 1e6 * seconds[i]);
         }
     }
     return *count > 0 || err_set(err, ERR_USAGE, "--%s: the list is empty", name);

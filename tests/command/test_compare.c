@@ -351,7 +351,7 @@ static void a_wrong_command_line_is_answered(void **state)
     program_fails_usage(program, "compare a.yaml --stepps 1us", "did you mean '--steps'?");
     program_fails_usage(program, "compare $cases/paper/ideal-nominal.yaml --steps ''", "is empty");
     program_fails_usage(program, "compare $cases/paper/ideal-nominal.yaml --steps '1us, 1 us'",
-                        "1 us stands there twice");
+                        "1 us is given twice");
     program_fails_usage(program, "compare $cases/paper/ideal-nominal.yaml --steps '1us, 2'",
                         "--steps");
     program_fails_usage(program, "compare $cases/paper/ideal-nominal.yaml --steps '1 s'", "step");

@@ -342,10 +342,10 @@ static void wrong_command_lines_end_with_status_2(void **state)
         const char *message;
     } WRONG[] = {
         {"--steps ''", "the list is empty"},
-        {"--steps '1 us, 1 us'", "stands there twice"},
+        {"--steps '1 us, 1 us'", "is given twice"},
         {"--steps '1 kg'", "--steps:"},
         {"--maps texbook", "'texbook' is none of them; allowed: textbook"},
-        {"--maps 'exact, exact'", "stands there twice"},
+        {"--maps 'exact, exact'", "is given twice"},
         {"--laws hooke", "'hooke' is none of them"},
         {"--mass heavy", "--mass:"},
         {"--mass '-1 kg'", "--mass:"},

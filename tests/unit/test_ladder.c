@@ -300,7 +300,7 @@ static void without_a_truth_there_is_no_comparison(void **state)
     Err err = {0};
     assert_false(runner_execute(&runner, &err));
     assert_int_equal(err.kind, ERR_SOLVER);
-    assert_non_null(strstr(err.text, "there is no truth to compare with"));
+    assert_non_null(strstr(err.text, "there is no reference to compare with"));
     ladder_destroy(ladder);
 }
 

@@ -120,9 +120,10 @@ static bool check_same(const CheckMeasure *run, const CheckMeasure *members, siz
             const bool is_there = k < members[i].count &&
                                   strcmp(members[i].metrics[k].name, run->metrics[k].name) == 0;
             if (!is_there || members[i].count != run->count) {
-                return err_set(err, ERR_SOLVER,
-                               "a start beside the case's own does not measure the same as it: %s",
-                               run->metrics[k].name);
+                return err_set(
+                    err, ERR_SOLVER,
+                    "a perturbed start does not measure the same numbers as the case's own: %s",
+                    run->metrics[k].name);
             }
         }
     }
@@ -255,8 +256,7 @@ static bool fill_sample(BaselineMetric *metric, const CheckMeasure *members, siz
     for (size_t k = 0; k < member_count; k++) {
         const size_t place = baseline_find(&members[k], metric->name);
         if (place == members[k].count) {
-            return err_set(err, ERR_SOLVER, "a start beside the case's own does not measure %s",
-                           metric->name);
+            return err_set(err, ERR_SOLVER, "a perturbed start does not measure %s", metric->name);
         }
         metric->sample[k] = members[k].metrics[place].value;
     }

@@ -82,7 +82,7 @@ static bool make_plan(Making *making, Err *err)
     const bool had_truth = item->baseline_err.kind == ERR_NONE && item->baseline.plan.has_truth;
     if (!making->plan.has_truth && had_truth) {
         return err_set(err, ERR_SOLVER,
-                       "the old baseline has errors, and now there is no truth: %s",
+                       "the old baseline has errors, and now there is no reference: %s",
                        making->no_truth);
     }
     return check_store_keep_plan(&making->store, &making->plan, making->no_truth, err);

@@ -251,7 +251,7 @@ static void judge_new(const Baseline *baseline, const CheckMeasure *run, CheckRo
                           .hash_now = metric->hash,
                           .severity = INFINITY};
         text_copy(row->name, sizeof row->name, metric->name);
-        snprintf(row->why, sizeof row->why, "the baseline does not have it; --bless takes it in");
+        snprintf(row->why, sizeof row->why, "the baseline does not have it; --bless adds it");
     }
 }
 

@@ -41,7 +41,7 @@ static bool read_words(const char *name, const char *list, const char *const *ch
                 text_append(&allowed, "%s%s", i == 0 ? "" : ", ", choices[i]);
             }
             err_set(err, ERR_USAGE, "--%s: '%s' %s; allowed: %s", name, part,
-                    is_twice ? "stands there twice" : "is none of them", allowed.data);
+                    is_twice ? "is given twice" : "is none of them", allowed.data);
             text_finish(&allowed);
             return false;
         }

@@ -47,7 +47,7 @@ static bool write_code(const void *target, Text *text, const char **nothing, Err
 {
     const TuneReport *report = target;
     const TuneTrial *trial = tune_export_trial(report);
-    if (!has_contact(report, trial != NULL, "no run has an error that means anything", nothing)) {
+    if (!has_contact(report, trial != NULL, "no run has a meaningful error", nothing)) {
         return false;
     }
     if (!scheme_has_step(&report->tune->schemes[trial->scheme].scheme)) {

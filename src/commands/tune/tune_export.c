@@ -112,8 +112,8 @@ static void write_loop(const TuneReport *report, const Style *style, Text *text)
     }
     if (plain == NULL) {
         if (tune->held_s > 0.0) {
-            text_append(text, "  No plain step with ERP and CFM alone has an error that means "
-                              "anything at this step.\n");
+            text_append(text, "  No plain step with ERP and CFM alone has a meaningful error at "
+                              "this step.\n");
             return;
         }
         text_append(text, "  No plain step with ERP and CFM alone that was tried meets the error; "

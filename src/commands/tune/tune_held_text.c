@@ -23,7 +23,7 @@ static void append_lack(const Tune *tune, Text *text)
 {
     text_append(text, "nothing at %.4g us ", tune->held_s * UNITS_US);
     if (tune->held == TUNE_NONE) {
-        text_append(text, "has an error that means anything");
+        text_append(text, "has a meaningful error");
         return;
     }
     const TuneTrial *held = &tune->trials[tune->held];

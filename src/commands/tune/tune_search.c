@@ -269,7 +269,8 @@ static bool check_target(const Tune *tune, Err *err)
 {
     const LadderTruth *truth = &tune->truth;
     if (truth->message[0] != '\0') {
-        return err_set(err, ERR_SOLVER, "errors cannot be told: the reference is not certified: %s",
+        return err_set(err, ERR_SOLVER,
+                       "errors cannot be measured: the reference is not certified: %s",
                        truth->message);
     }
     const double least = ERROR_CLEAR_OF_TRUTH * truth->uncertainty;

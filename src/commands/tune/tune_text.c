@@ -66,7 +66,7 @@ static void write_unmet(const TuneReport *report, Text *text)
     if (tune->within == TUNE_NONE) {
         text_append(text, tune_report_has_limit(report)
                               ? "\n  Nothing at all runs within the cost.\n"
-                              : "\n  No run has an error that means anything.\n");
+                              : "\n  No run has a meaningful error.\n");
         return;
     }
     text_append(text, "\n  The least error%s:\n",
