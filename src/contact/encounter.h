@@ -43,7 +43,7 @@ typedef struct Encounter {
     // of the step under way, to be filled in before encounter_run
     double mobility[RESPONSE_ROW_MAX * RESPONSE_ROW_MAX]; // row by row, without gaps
     double free[RESPONSE_ROW_MAX];                        // acceleration while nothing acts
-    double place[RESPONSE_ROW_MAX];                       // at the start, m; not of turns
+    double position[RESPONSE_ROW_MAX];                    // at the start, m; not of turns
     double speed[RESPONSE_ROW_MAX];                       // at the start, m/s, rad/s
 
     // what came of it: nodes, the first at the start, two where a contact begins or ends

@@ -10,16 +10,17 @@
 #include <string.h>
 
 // Where a row is and how fast it goes, from the impulses so far.
-static double row_place(const Encounter *encounter, size_t row, double time_s, const double *moment)
+static double row_position(const Encounter *encounter, size_t row, double time_s,
+                           const double *moment)
 {
     const size_t width = encounter_rows(encounter);
     const double *mobility = encounter->mobility + row * width;
-    double place = encounter->place[row] +
-                   time_s * (encounter->speed[row] + 0.5 * time_s * encounter->free[row]);
+    double position = encounter->position[row] +
+                      time_s * (encounter->speed[row] + 0.5 * time_s * encounter->free[row]);
     for (size_t k = 0; k < width; k++) {
-        place += mobility[k] * moment[k];
+        position += mobility[k] * moment[k];
     }
-    return place;
+    return position;
 }
 
 double encounter_force_row_speed(const Encounter *encounter, size_t row, double time_s,
@@ -38,11 +39,12 @@ PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double ti
                              const double *impulse, const double *moment)
 {
     const size_t row = joint * encounter->rows_a_joint;
-    const Vec2 place = {row_place(encounter, row, time_s, moment),
-                        row_place(encounter, row + 1, time_s, moment)};
+    const Vec2 position = {row_position(encounter, row, time_s, moment),
+                           row_position(encounter, row + 1, time_s, moment)};
     const Vec2 speed = {encounter_force_row_speed(encounter, row, time_s, impulse),
                         encounter_force_row_speed(encounter, row + 1, time_s, impulse)};
-    return pin_hole_pose((Vec2){0.0, 0.0}, place, speed, encounter->joints[joint].radial_clearance);
+    return pin_hole_pose((Vec2){0.0, 0.0}, position, speed,
+                         encounter->joints[joint].radial_clearance);
 }
 
 // Adds friction to a joint's rows that press with a normal force; returns the power it takes, W.

@@ -26,7 +26,7 @@ enum { ROOT_STEPS = 60 };
 static const double OVERDAMPED = 8.0;
 
 // of a local step: contacts that begin or end nearer to each other than this do so together, for
-// rounding of places keeps the contacts of equal mechanisms apart by no less
+// rounding of positions keeps the contacts of equal mechanisms apart by no less
 static const double AT_ONCE = 1e-7;
 
 Encounter encounter_start(double friction, double friction_speed, double phase)
@@ -70,8 +70,8 @@ static void begin_contact(Encounter *encounter, size_t number, const PinHole *po
                            OVERDAMPED * joint->frequency;
 }
 
-// Contacts that a step of the world finds begun or over already: by rounding, as the places of the
-// bodies and those of the step before differ in the last bits.
+// Contacts that a step of the world finds begun or over already: by rounding, as the positions of
+// the bodies and those of the step before differ in the last bits.
 static void settle_contacts(Encounter *encounter, const EncounterPoint *point)
 {
     for (size_t i = 0; i < encounter->joint_count; i++) {

@@ -61,7 +61,7 @@ bool encounter_stiff_is_needed(const Encounter *encounter, const EncounterPoint 
     return false;
 }
 
-// Factors the matrix of the estimate, in the place of Newton's.
+// Factors the matrix of the estimate, in place of Newton's.
 static bool factor_estimate(EncounterStages *stages, double hg)
 {
     const size_t n = stages->count;
@@ -79,26 +79,26 @@ static void find_errors(const EncounterStages *stages, const EncounterPoint *fro
                         const double *force, const double *rate, double *impulse, double *moment)
 {
     const size_t n = stages->count;
-    double place[RESPONSE_ROW_MAX];
+    double position[RESPONSE_ROW_MAX];
     double sum[RESPONSE_ROW_MAX];
     for (size_t i = 0; i < n; i++) {
         const size_t row = stages->row_of[i];
         sum[i] = hg * force[row];
-        place[i] = hg * rate[row];
+        position[i] = hg * rate[row];
         for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
             sum[i] += EIGENVALUE * EMBEDDED[s] * stages->moved[s][row];
-            place[i] += EIGENVALUE * EMBEDDED[s] * (stages->moment[s][row] - from->moment[row]);
+            position[i] += EIGENVALUE * EMBEDDED[s] * (stages->moment[s][row] - from->moment[row]);
         }
     }
     for (size_t i = 0; i < n; i++) {
         for (size_t k = 0; k < n; k++) {
-            sum[i] += hg * stages->by_moment[ENCOUNTER_STAGES][i * n + k] * place[k];
+            sum[i] += hg * stages->by_moment[ENCOUNTER_STAGES][i * n + k] * position[k];
         }
     }
     dense_substitute(n, stages->matrix, stages->pivots, sum);
     for (size_t i = 0; i < n; i++) {
         impulse[stages->row_of[i]] = sum[i];
-        moment[stages->row_of[i]] = place[i] + hg * sum[i];
+        moment[stages->row_of[i]] = position[i] + hg * sum[i];
     }
 }
 

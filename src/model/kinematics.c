@@ -132,14 +132,12 @@ static bool solve_velocities(const Linkage *linkage, Motion *motions)
 {
     double rates[KINEMATICS_ROW_MAX] = {0.0};
     rates[2 * linkage->joint_count] = linkage->driver.speed;
-    if (!solve_rows(linkage, motions, rates)) {
-        return false;
-    }
-    for (size_t i = 0; i < linkage->body_count; i++) {
+    const bool is_solved = solve_rows(linkage, motions, rates);
+    for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
         motions[i].velocity = (Vec2){rates[3 * i], rates[3 * i + 1]};
         motions[i].omega = rates[3 * i + 2];
     }
-    return true;
+    return is_solved;
 }
 
 static Vec2 centripetal(const Motion *motions, int body, Vec2 local)
@@ -161,14 +159,12 @@ static bool solve_accelerations(const Linkage *linkage, Motion *motions)
         rates[2 * i] = gamma.x;
         rates[2 * i + 1] = gamma.y;
     }
-    if (!solve_rows(linkage, motions, rates)) {
-        return false;
-    }
-    for (size_t i = 0; i < linkage->body_count; i++) {
+    const bool is_solved = solve_rows(linkage, motions, rates);
+    for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
         motions[i].acceleration = (Vec2){rates[3 * i], rates[3 * i + 1]};
         motions[i].alpha = rates[3 * i + 2];
     }
-    return true;
+    return is_solved;
 }
 
 bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err)

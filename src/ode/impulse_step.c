@@ -90,8 +90,8 @@ static void fill_rows(ImpulseStep *step)
         const size_t row = i * encounter->rows_a_joint;
         const Joint *joint = &linkage->joints[encounter->joints[i].joint];
         const JointGap gap = linkage_joint_gap(linkage, step->before, encounter->joints[i].joint);
-        encounter->place[row] = gap.position.x;
-        encounter->place[row + 1] = gap.position.y;
+        encounter->position[row] = gap.position.x;
+        encounter->position[row + 1] = gap.position.y;
         encounter->speed[row] = gap.velocity.x;
         encounter->speed[row + 1] = gap.velocity.y;
         if (encounter->rows_a_joint == 4) {
@@ -112,7 +112,7 @@ static bool is_near_wall(const ImpulseStep *step, double width_s)
         const size_t row = i * encounter->rows_a_joint;
         const double clearance = encounter->joints[i].radial_clearance;
         // the free acceleration of the step before will do
-        const Vec2 now = {encounter->place[row], encounter->place[row + 1]};
+        const Vec2 now = {encounter->position[row], encounter->position[row + 1]};
         const Vec2 moved = {
             width_s * (encounter->speed[row] + 0.5 * width_s * encounter->free[row]),
             width_s * (encounter->speed[row + 1] + 0.5 * width_s * encounter->free[row + 1]),

@@ -51,19 +51,19 @@ void radau_destroy(Radau *radau)
 // Derivatives of the accelerations at a state whose rates are known, by the coordinates too where
 // they are asked for. Returns the sum of all rates of decay.
 static double differentiate(const Radau *radau, Dop853 *integrator, double time, double *y,
-                            const double *rates, double *by_place, double *by_rate)
+                            const double *rates, double *by_position, double *by_rate)
 {
     const size_t n = freedoms_of(integrator);
     double changed[DOP853_SIZE_MAX];
     double decay = 0.0;
-    for (size_t k = by_place != NULL ? 0 : n; k < 2 * n; k++) {
+    for (size_t k = by_position != NULL ? 0 : n; k < 2 * n; k++) {
         const double kept = y[k];
         y[k] += radau->nudge[k];
         const double moved = y[k] - kept;
         integrator->rates(time, y, changed, integrator->context);
         integrator->evaluations++;
         y[k] = kept;
-        double *column = k < n ? by_place + k : by_rate + (k - n);
+        double *column = k < n ? by_position + k : by_rate + (k - n);
         for (size_t i = 0; i < n; i++) {
             column[i * n] = (changed[n + i] - rates[n + i]) / moved;
         }
@@ -110,7 +110,7 @@ static void evaluate_stages(Radau *radau, Dop853 *integrator, double step, bool 
         integrator->evaluations++;
         if (with_derivatives) {
             radau->decay = differentiate(radau, integrator, time, y, radau->rates[i],
-                                         radau->by_place[i], radau->by_rate[i]);
+                                         radau->by_position[i], radau->by_rate[i]);
         }
     }
 }
@@ -126,7 +126,7 @@ static void fill_block(const Radau *radau, size_t n, double step, size_t stage, 
             double twice = 0.0;
             for (size_t k = 0; k < RADAU_STAGES; k++) {
                 twice +=
-                    RADAU_COUPLING[stage][k] * RADAU_COUPLING[k][other] * radau->by_place[k][at];
+                    RADAU_COUPLING[stage][k] * RADAU_COUPLING[k][other] * radau->by_position[k][at];
             }
             const double own = stage == other && row == column ? 1.0 : 0.0;
             matrix[(stage * n + row) * width + other * n + column] =

@@ -25,7 +25,7 @@ typedef struct Radau {
     // against what they depend on, large against rounding.
     double nudge[DOP853_SIZE_MAX];
     // derivatives of the accelerations at the stages, 1/s^2 and 1/s
-    double by_place[RADAU_STAGES][RADAU_FREEDOM_MAX * RADAU_FREEDOM_MAX];
+    double by_position[RADAU_STAGES][RADAU_FREEDOM_MAX * RADAU_FREEDOM_MAX];
     double by_rate[RADAU_STAGES][RADAU_FREEDOM_MAX * RADAU_FREEDOM_MAX];
     double decay;   // 1/s, the sum of all rates of decay, where it was last looked at
     double *matrix; // of Newton's method for all stages, factored; NULL before the first

@@ -21,7 +21,7 @@ static const double BESIDE = 1e-13; // m, next to nothing
 static Encounter resting(double restitution)
 {
     Encounter pin = lone_pin(sticking(restitution), LONE_PIN_PHASE);
-    pin.place[0] = ONE_IMPACT_CLEARANCE - BESIDE;
+    pin.position[0] = ONE_IMPACT_CLEARANCE - BESIDE;
     pin.speed[0] = 0.0;
     pin.free[0] = WEIGHT;
     return pin;
@@ -114,7 +114,7 @@ static void what_dies_away_at_once_is_not_in_the_forces(void **state)
         Encounter pin = resting(1e-9);
         assert_true(encounter_run(&pin, 1e-3));
         const double settled = depth_at_end(&pin);
-        pin.place[0] = ONE_IMPACT_CLEARANCE + settled;
+        pin.position[0] = ONE_IMPACT_CLEARANCE + settled;
         pin.speed[0] = way * 1e-8; // 1e-2 N s/m and more: 1e5 times that speed in N
         assert_true(encounter_run(&pin, 1e-3));
         assert_true(pin.joints[0].is_touching);
@@ -151,7 +151,7 @@ static void a_pressed_disc_is_braked_by_friction(void **state)
     };
     pin.mobility[0] = pin.mobility[5] = 1.0 / ONE_IMPACT_MASS;
     pin.mobility[15] = 2.0 / (ONE_IMPACT_MASS * radius * radius);
-    pin.place[0] = clearance - BESIDE;
+    pin.position[0] = clearance - BESIDE;
     pin.free[0] = load;
     pin.speed[1] = sideways;
     assert_true(encounter_run(&pin, duration_s));

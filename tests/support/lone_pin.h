@@ -28,7 +28,7 @@ static inline Encounter lone_pin(ForceLaw law, double phase)
         .hole_radius = ONE_IMPACT_CLEARANCE + 5e-3,
     };
     encounter.mobility[0] = encounter.mobility[3] = 1.0 / ONE_IMPACT_MASS;
-    encounter.place[0] = ONE_IMPACT_CLEARANCE - LONE_PIN_GAP;
+    encounter.position[0] = ONE_IMPACT_CLEARANCE - LONE_PIN_GAP;
     encounter.speed[0] = ONE_IMPACT_SPEED;
     return encounter;
 }

@@ -112,7 +112,7 @@ static void an_onset_stands_where_the_flight_meets_the_wall(void **state)
         assert_near(pin.times[1], pin.times[2], 0.0);
         assert_int_equal(pin.touching[1], 0);
         assert_int_equal(pin.touching[2], 1);
-        // places are known to 1e-19 m, and the gap is 1e-5 m
+        // positions are known to 1e-19 m, and the gap is 1e-5 m
         assert_close(pin.times[1], 2.0 * LONE_PIN_GAP / (v + arrival), 1e-13);
         assert_close(pin.joints[0].impact_speed, arrival, 1e-12);
         // control: the wall a nanometre further away
@@ -191,11 +191,11 @@ static void impulses_are_integrals_of_forces_and_move_the_pin(void **state)
         const double scale = fabs(end.impulse[0]);
         assert_near(end.impulse[row], impulses[row], 1e-7 * scale);
         assert_near(end.moment[row], moments[row], 1e-7 * scale * DURATION_S);
-        const double place = pin.place[row] +
-                             DURATION_S * (pin.speed[row] + 0.5 * DURATION_S * pin.free[row]) +
-                             moments[row] / ONE_IMPACT_MASS;
+        const double position = pin.position[row] +
+                                DURATION_S * (pin.speed[row] + 0.5 * DURATION_S * pin.free[row]) +
+                                moments[row] / ONE_IMPACT_MASS;
         const Vec2 e = pose.pose.eccentricity;
-        assert_near(row == 0 ? e.x : e.y, place, 1e-7 * ONE_IMPACT_SPEED * DURATION_S);
+        assert_near(row == 0 ? e.x : e.y, position, 1e-7 * ONE_IMPACT_SPEED * DURATION_S);
     }
     // control: the impulse is no small part of the motion
     assert_true(fabs(end.impulse[0]) > ONE_IMPACT_MASS * ONE_IMPACT_SPEED);
@@ -237,7 +237,7 @@ static Encounter disc(double friction, double sideways)
     };
     pin.mobility[0] = pin.mobility[5] = 1.0 / ONE_IMPACT_MASS;
     pin.mobility[15] = 2.0 / (ONE_IMPACT_MASS * DISC_RADIUS * DISC_RADIUS);
-    pin.place[0] = DISC_CLEARANCE - LONE_PIN_GAP;
+    pin.position[0] = DISC_CLEARANCE - LONE_PIN_GAP;
     pin.speed[0] = ONE_IMPACT_SPEED;
     pin.speed[1] = sideways;
     return pin;
@@ -316,7 +316,7 @@ static void many_short_runs_are_one_long_one(void **state)
         const EncounterSums now = lone_pin_end(&parts);
         dissipated += now.dissipated;
         for (int row = 0; row < 2; row++) {
-            parts.place[row] += width_s * parts.speed[row] + now.moment[row] / ONE_IMPACT_MASS;
+            parts.position[row] += width_s * parts.speed[row] + now.moment[row] / ONE_IMPACT_MASS;
             parts.speed[row] += now.impulse[row] / ONE_IMPACT_MASS;
         }
     }

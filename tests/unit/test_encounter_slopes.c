@@ -24,8 +24,8 @@ static Encounter pressed(uint64_t *seed, double friction)
     joint->is_touching = true;
     joint->impact_speed = 0.1;
     const double angle = 3.0 * lcg_draw(seed);
-    pin.place[0] = (CLEARANCE + DEPTH) * cos(angle);
-    pin.place[1] = (CLEARANCE + DEPTH) * sin(angle);
+    pin.position[0] = (CLEARANCE + DEPTH) * cos(angle);
+    pin.position[1] = (CLEARANCE + DEPTH) * sin(angle);
     pin.speed[0] = 0.02 * cos(angle) + 5e-3 * lcg_draw(seed);
     pin.speed[1] = 0.02 * sin(angle) + 5e-3 * lcg_draw(seed);
     for (size_t i = 2; i < pin.rows_a_joint; i++) {
@@ -51,17 +51,17 @@ static void differences(Encounter *pin, double *at, double nudge, double *slopes
 }
 
 // How far the derivatives by one of the rows are from differences, over the largest.
-static double mismatch(Encounter *pin, size_t row, bool of_place)
+static double mismatch(Encounter *pin, size_t row, bool of_position)
 {
     EncounterSlopes slopes;
     encounter_slopes_find(pin, 0, 0.0, NOTHING, NOTHING, 0.0, &slopes);
     double expected[ROWS];
-    differences(pin, of_place ? &pin->place[row] : &pin->speed[row], of_place ? 1e-3 * DEPTH : 1e-7,
-                expected);
+    differences(pin, of_position ? &pin->position[row] : &pin->speed[row],
+                of_position ? 1e-3 * DEPTH : 1e-7, expected);
     double largest = 0.0;
     double apart = 0.0;
     for (size_t i = 0; i < pin->rows_a_joint; i++) {
-        const double found = of_place ? slopes.by_place[i][row] : slopes.by_speed[i][row];
+        const double found = of_position ? slopes.by_place[i][row] : slopes.by_speed[i][row];
         largest = fmax(largest, fabs(expected[i]));
         apart = fmax(apart, fabs(found - expected[i]));
     }
@@ -98,7 +98,7 @@ static void a_force_that_would_pull_is_none_unless_it_is_smooth(void **state)
     uint64_t seed = lcg_stirred(1);
     Encounter pin = pressed(&seed, 0.3);
     for (size_t i = 0; i < 2; i++) {
-        pin.speed[i] = -1e4 * pin.place[i];
+        pin.speed[i] = -1e4 * pin.position[i];
     }
     EncounterSlopes slopes;
     encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, 0.0, &slopes);
@@ -106,9 +106,9 @@ static void a_force_that_would_pull_is_none_unless_it_is_smooth(void **state)
         assert_near(slopes.force[i], 0.0, 0.0);
         assert_near(slopes.by_speed[i][0], 0.0, 0.0);
     }
-    // outwards is the way of the place: a force along it pulls the pin into the wall
+    // outwards is the way of the position: a force along it pulls the pin into the wall
     encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, 0.5 * DEPTH, &slopes);
-    assert_true(slopes.force[0] * pin.place[0] + slopes.force[1] * pin.place[1] > 0.0);
+    assert_true(slopes.force[0] * pin.position[0] + slopes.force[1] * pin.position[1] > 0.0);
     assert_true(slopes.by_speed[0][0] < 0.0);
     encounter_finish(&pin);
 }
@@ -119,13 +119,13 @@ static void a_smooth_force_goes_on_below_a_depth(void **state)
     (void)state;
     uint64_t seed = lcg_stirred(2);
     Encounter pin = pressed(&seed, 0.0);
-    const double outward[2] = {pin.place[0] / (CLEARANCE + DEPTH),
-                               pin.place[1] / (CLEARANCE + DEPTH)};
+    const double outward[2] = {pin.position[0] / (CLEARANCE + DEPTH),
+                               pin.position[1] / (CLEARANCE + DEPTH)};
     double along[3];
     const double depths[3] = {DEPTH * (1.0 + 1e-9), DEPTH * (1.0 - 1e-9), -DEPTH};
     for (int i = 0; i < 3; i++) {
-        pin.place[0] = (CLEARANCE + depths[i]) * outward[0];
-        pin.place[1] = (CLEARANCE + depths[i]) * outward[1];
+        pin.position[0] = (CLEARANCE + depths[i]) * outward[0];
+        pin.position[1] = (CLEARANCE + depths[i]) * outward[1];
         EncounterSlopes slopes;
         encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, DEPTH, &slopes);
         along[i] = -(slopes.force[0] * outward[0] + slopes.force[1] * outward[1]);

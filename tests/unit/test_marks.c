@@ -85,7 +85,7 @@ static void a_contact_that_begins_at_the_very_end_is_touching_there(void **state
         Encounter pin = lone_pin(lone_pin_hertz(0.0), LONE_PIN_PHASE);
         Marks marks = {.count = 0};
         pin.joints[0].radial_clearance = 0x1p-10;
-        pin.place[0] = 0x1p-10 - 0x1p-14;
+        pin.position[0] = 0x1p-10 - 0x1p-14;
         assert_true(encounter_run(&pin, 0x1p-13 + bits * 0x1p-63));
         marks_find(&marks, &pin);
         const size_t last = pin.node_count - 1;
