@@ -5,8 +5,8 @@
 #include <stddef.h>
 
 // Marks the points that are more accurate than every faster one, by more than a hundredth of its
-// error: less tells no scheme from another. A point whose time, s, or error is not finite is no
-// point.
+// error: a smaller difference distinguishes no schemes. A point whose time, s, or error is not
+// finite is no point.
 void frontier_mark(size_t count, const double *times, const double *errors, bool *is_on_frontier);
 
 // The fastest point whose error, the uncertainty of that error included, meets the target; of two

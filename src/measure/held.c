@@ -34,15 +34,15 @@ static const double NO_BOUNCE = 1e100;
 static const double WIDE = 30.0;
 
 // with more steps than this in a contact the corrected map adds nothing of its own to spring and
-// damper: what is found with so many is right to (omega h)^2 / 24, 3e-4, with any more
+// damper: what is found with that many is right to (omega h)^2 / 24, 3e-4, with more
 static const double STEPS_ENOUGH = 40.0;
 
-// how long a contact may last in the search: so many times the law's, and so many steps
+// how long a contact may last in the search: this multiple of the law's, plus this many steps
 static const double LONGEST_SHARE = 20.0;
 static const double LONGEST_STEPS = 400.0;
 
-// the hole of the pin that is run, as map_lone.c's: play for so many of the longer of a step and a
-// contact, and a pin for which no depth is too deep
+// the hole of the pin that is run, as map_lone.c's: play for this many of the longer of a step and
+// a contact, and a pin for which no depth is too deep
 static const double ROOM = 20.0;
 static const double PIN_PLAYS = 10.0;
 
@@ -147,16 +147,16 @@ static Point look(const Search *search, double log_stiffness, double log_damping
 // Keeps a point among the best, the best first.
 static void keep(Point best[STARTS], size_t *count, const Point *point)
 {
-    size_t place = *count;
-    while (place > 0 && held_is_better(&point->setting, &best[place - 1].setting)) {
-        place--;
+    size_t index = *count;
+    while (index > 0 && held_is_better(&point->setting, &best[index - 1].setting)) {
+        index--;
     }
-    if (place == STARTS) {
+    if (index == STARTS) {
         return;
     }
-    const size_t moved = *count - place - (*count == STARTS ? 1 : 0);
-    memmove(&best[place + 1], &best[place], moved * sizeof *best);
-    best[place] = *point;
+    const size_t moved = *count - index - (*count == STARTS ? 1 : 0);
+    memmove(&best[index + 1], &best[index], moved * sizeof *best);
+    best[index] = *point;
     *count += *count < STARTS ? 1 : 0;
 }
 

@@ -1,6 +1,6 @@
 // What does one impact of a lone pin give in ODE, and what was to be expected of it?
 //
-// The pin starts so far from the wall that it overlaps it for the first time at a place that the
+// The pin starts so far from the wall that it overlaps it for the first time at a depth that the
 // phase chooses: whole steps of flight, and a share of one more. The shares are the middles of
 // equal parts, (i + 1/2) / 16. Plain stepping finds the first overlap at (1 - share) of a step's
 // way, staggered stepping, half a step aside, at (1/2 - share) or (3/2 - share): over all i these

@@ -106,7 +106,7 @@ void ladder_destroy(Ladder *ladder);
 // The point of a scheme at a step, or point_count.
 size_t ladder_find(const Ladder *ladder, const char *scheme, double step_s);
 
-// Puts a run that is over into its place. False where it has none, or something stands there.
+// Adds a run that is over. False where the ladder has no such point, or has that run already.
 bool ladder_add(Ladder *ladder, const LadderRun *run);
 
 // The next run from a number on that has not been made, or ladder_run_total: first the error runs

@@ -36,8 +36,8 @@ typedef struct Mapping {
 // Who watches: of the world steps that all rows make, before the first of them, and before each row
 // of what has been done and what there is to do.
 typedef struct MappingWatch {
-    void (*plan)(double steps, void *context);             // NULL: nobody watches
-    void (*row)(size_t done, size_t total, void *context); // NULL: nobody watches
+    void (*plan)(double steps, void *context);             // may be NULL
+    void (*row)(size_t done, size_t total, void *context); // may be NULL
     RunWatch run;                                          // of the reference
     void *context;
 } MappingWatch;

@@ -60,7 +60,7 @@ static Gathering *gathering_start(const Scenario *scenario)
 
 static void add_masses(Gathering *gathering, const Motion *motions)
 {
-    // at a place where the ideal joints lock, no mass is defined
+    // in a position where the ideal joints lock, no mass is defined
     if (!response_place(&gathering->response, motions)) {
         return;
     }

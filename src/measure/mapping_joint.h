@@ -18,6 +18,6 @@ typedef struct MappingJoint {
 } MappingJoint;
 
 // Fills in the joints with play of a scenario, in their order, and their count, from a run of the
-// reference. The watch is told of it. Fails with ERR_SOLVER where the reference does.
+// reference, which the watch follows. Fails with ERR_SOLVER where the reference does.
 bool mapping_joint_measure(const Scenario *scenario, RunWatch watch,
                            MappingJoint joints[LINKAGE_JOINT_MAX], size_t *count, Err *err);

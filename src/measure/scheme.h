@@ -11,7 +11,7 @@ typedef struct Scheme {
     BackendKind backend;
     bool is_usual;    // taken where no schemes are asked for
     double tolerance; // 1, of BACKEND_ODE with a step that it chooses; else 0
-    OdeSolver solver; // of BACKEND_ODE with a step that it is told, as the three below
+    OdeSolver solver; // of BACKEND_ODE with a given step, as the three below
     OdeStepping stepping;
     OdeMap map;
     OdeCollider collider;
@@ -31,7 +31,7 @@ size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX]);
 // Whether the scheme is ODE with a step chosen for a tolerance.
 bool scheme_is_chosen(const Scheme *scheme);
 
-// Whether the scheme takes steps of a length that it is told.
+// Whether the scheme takes steps of a given length.
 bool scheme_has_step(const Scheme *scheme);
 
 // The scenario run by that scheme at that step, s.

@@ -28,7 +28,7 @@ double axis_share(const Axis *axis, double value)
     return (scaled(axis, value) - low) / (scaled(axis, axis->high) - low);
 }
 
-// The distance of about so many ticks over a span: 1, 2 or 5 times a power of ten.
+// The spacing of about that many ticks over a span: 1, 2 or 5 times a power of ten.
 static double choose_tick(double span, int wanted)
 {
     const double raw = span / wanted;

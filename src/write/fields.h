@@ -69,7 +69,7 @@ typedef struct Field {
     };
 } Field;
 
-// Puts the fields that are shown in any place of `where` into an object, or makes one: a new
+// Adds the fields that are shown in any place of `where` to an object, or makes one: a new
 // reference.
 void fields_json_set(const Field *fields, unsigned where, const void *record, json_t *object);
 json_t *fields_json(const Field *fields, unsigned where, const void *record);

@@ -1,8 +1,8 @@
 // How does a file come to be there whole or not at all?
 //
-// It is written beside its place and renamed when complete. A run that is interrupted meanwhile
-// takes what it had begun away with it. What it takes the place of must be of its own kind, and no
-// file that the command reads: asked before the work, and once more before the file is begun.
+// It is written under a temporary name beside its target and renamed when complete. A run that is
+// interrupted meanwhile removes the temporary file. What it replaces must be of its own kind, and
+// not a file that the command reads: checked before the work, and again before the file is begun.
 #include "write/file.h"
 
 #include "base/claims.h"
@@ -27,7 +27,7 @@ static bool fail_to_write(const char *path, int reason, Err *err)
     return err_set(err, ERR_FILE, "cannot write %s: %s", path, strerror(reason));
 }
 
-// What a signal has to take away: the one file that is being written.
+// What a signal handler has to remove: the one file that is being written.
 static char pending[FILE_PATH_SIZE];
 
 static void take_away(int signal_number)
@@ -178,7 +178,7 @@ static bool probe(const char *path, Err *err)
     struct stat status;
     const int descriptor = descriptor_of(path);
     if (descriptor >= 0) {
-        // a closed standard output is told of where it is written to
+        // a closed standard output is reported where it is written to
         return descriptor == STDOUT_FILENO || is_callers(descriptor) ||
                fail_to_write(path, errno, err);
     }

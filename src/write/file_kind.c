@@ -1,4 +1,4 @@
-// Is what stands in a file's place one of its own kind?
+// Is the file that would be replaced of the same kind?
 //
 // A user's own table, drawing or script is none of ours, whatever its name ends in: only what
 // begins as this program begins such a file is replaced. A new beginning needs a mark here; the old

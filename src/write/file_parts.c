@@ -1,4 +1,4 @@
-// Which half-written files were left by a process that was killed, and are nobody's?
+// Which half-written files were left by a process that was killed, and belong to no process?
 //
 // A part has its process in its name and is locked by it. The lock alone is not enough, for it ends
 // just before the part takes its target's name; the process alone is not, for on a shared disk it
@@ -79,7 +79,7 @@ int file_parts_make(const char *target, const char *part)
     struct stat former;
     const bool is_there = stat(target, &former) == 0;
     clear(target);
-    // nobody reads the part of a private file while it is written
+    // no one else reads the part of a private file while it is written
     const int file = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, is_there ? 0600 : 0666);
     if (file < 0) {
         return -1;

@@ -69,7 +69,7 @@ static char *next_line(char **rest, const char *end)
     return line;
 }
 
-// The last member of a line, behind so many bytes of it.
+// The last member of a line, behind that many bytes of it.
 static void make_seal(const char *line, size_t length, char seal[SEAL_SIZE + 1])
 {
     snprintf(seal, SEAL_SIZE + 1, ",\"%s\":\"%016" PRIx64 "\"}", CHECKSUM,

@@ -32,10 +32,10 @@ typedef struct Journal {
     size_t damaged_line; // number of the first that is
 } Journal;
 
-// Opens the store, or makes it where there is none, or makes it anew where `is_fresh`. Fails with
-// ERR_FILE where it cannot be read or written, is at work in another process, is no store, has a
-// damaged first line, or holds another key: it then says what differs. Only a store is ever made
-// anew.
+// Opens the store, or creates it where there is none, or creates it again where `is_fresh`. Fails
+// with ERR_FILE where it cannot be read or written, is at work in another process, is no store, has
+// a damaged first line, or holds another key: it then says what differs. Only a store is ever made
+// created again.
 bool journal_open(Journal *journal, const JournalKind *kind, const char *path, json_t *key,
                   bool is_fresh, Err *err);
 
@@ -45,7 +45,7 @@ void journal_describe_damage(const Journal *journal, Text *text);
 // Writes one line and sees it to the disk; takes the reference. ERR_FILE.
 bool journal_add(Journal *journal, json_t *entry, Err *err);
 
-// Takes the file away, for nobody needs it any more, and closes. Accepts a zeroed journal.
+// Deletes the file, which is no longer needed, and closes it. Accepts a zeroed journal.
 void journal_discard(Journal *journal);
 
 // Accepts a zeroed journal.

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 
-// Numbers are written with 17 significant digits; compact lines are for nobody.
+// Numbers have 17 significant digits; objects are indented, for people read them too.
 enum { JSON_VALUE_FLAGS = JSON_REAL_PRECISION(17) | JSON_INDENT(2) };
 
 // JSON knows no infinity and no NaN: they become null.
@@ -23,7 +23,7 @@ json_t *json_value_text(const char *text);
 json_t *json_value_not_certified(const char *message);
 
 // Appends a value as JSON, by jansson's flags. What a terminal would obey or hide, see
-// base/printable.h, stands there as \u202e, which whoever reads the JSON has as it was.
+// base/printable.h, stands there as \u202e, which a reader of the JSON decodes to what it was.
 void json_value_write(const json_t *value, size_t flags, Text *text);
 
 static inline void json_value_set(json_t *object, const char *key, double value)

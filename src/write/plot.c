@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 static const double TICK_LENGTH = 5.0; // pixels, as everything about the look of the picture
-static const double COLUMN = 0.5;      // what is nearer than this cannot be told apart
+static const double COLUMN = 0.5;      // what is nearer than this cannot be distinguished
 
 static const double LEAST_STROKE = 0.1; // a shorter one is a point
 static const double MARK_SIZE = 7.0;
@@ -160,7 +160,7 @@ void plot_enter(const PlotPanel *panel)
     draw_x_axis(panel);
     draw_y_axis(panel);
     plot_text(svg, panel->left, panel->top - 10.0, "start", "panel", panel->title);
-    // the cut is named after its place, which no two panels share
+    // the clip path is named after its position, which no two panels share
     text_append(svg,
                 "<clipPath id=\"cut-%.0f-%.0f\"><rect x=\"%g\" y=\"%g\" width=\"%g\" "
                 "height=\"%g\"/></clipPath>\n<g clip-path=\"url(#cut-%.0f-%.0f)\">\n",

@@ -26,14 +26,14 @@ typedef struct PlotStyle {
 } PlotStyle;
 
 // The line of a kind (0: wide and pale, 1: thin, 2: thin and broken) in the colour of that number;
-// both begin anew after the last.
+// both repeat after the last.
 PlotStyle plot_style(size_t kind, size_t colour);
 
-// Begins and ends a picture of so many pixels.
+// Begins and ends a picture of that size in pixels.
 void plot_begin(Text *svg, double width, double height, const char *title);
 void plot_end(Text *svg);
 
-// Text at a place of the picture; the anchor is "start", "middle" or "end".
+// Text at a position of the picture; the anchor is "start", "middle" or "end".
 void plot_text(Text *svg, double x, double y, const char *anchor, const char *css_class,
                const char *text);
 
@@ -69,7 +69,7 @@ void plot_dot(const PlotPanel *panel, double x, double y, PlotStyle style);
 void plot_mark(const PlotPanel *panel, double x, double y, bool is_below, const char *title,
                PlotStyle style);
 
-// The same for a legend, with its tip at a place of the picture.
+// The same for a legend, with its tip at a position of the picture.
 void plot_mark_sample(Text *svg, double x, double y, PlotStyle style);
 
 // A grey ground from one x to another.

@@ -3,7 +3,8 @@
 
 enum { PALETTE_SIZE = 6, LINE_KINDS = 3 };
 
-// Okabe and Ito's palette, told apart by the colour-blind too (its yellow is too pale for lines)
+// Okabe and Ito's palette, distinguishable for the colour-blind too (its yellow is too pale for
+// lines)
 static const char *const PALETTE[PALETTE_SIZE] = {"#0072b2", "#d55e00", "#009e73",
                                                   "#cc79a7", "#56b4e9", "#e69f00"};
 

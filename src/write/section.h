@@ -23,7 +23,7 @@ void section_end(Table *table, Text *text);
 // Four digits; a number that would need an exponent for them gets all of its own instead.
 void section_number(Table *table, double value);
 
-// The same, or a dash where there is nothing to tell.
+// The same, or a dash where it is not known.
 void section_number_or_dash(Table *table, bool is_known, double value);
 
 // A number in a format of its own, or a dash where it is not finite.

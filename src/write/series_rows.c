@@ -86,8 +86,8 @@ static void write_row(const Scenario *scenario, const Trajectory *trajectory, si
     const Motion *motions = trajectory_motion(trajectory, sample, 0);
     for (size_t i = 0; i < scenario->point_count; i++) {
         const TracedPoint *point = &scenario->points[i];
-        const Vec2 place = linkage_point(motions, point->body, point->local);
-        write_cells((const double[]){place.x, place.y}, 2, stream);
+        const Vec2 position = linkage_point(motions, point->body, point->local);
+        write_cells((const double[]){position.x, position.y}, 2, stream);
     }
     if (trajectory->ranges.count > 0) {
         write_ranges(trajectory, sample, stream);

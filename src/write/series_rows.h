@@ -1,4 +1,4 @@
-// The rows of a series, whoever opens the file.
+// The rows of a series, on any open stream.
 #pragma once
 
 #include "model/trajectory.h"

@@ -21,7 +21,7 @@ static ssize_t sink_write(void *context, const char *bytes, size_t size)
     return (ssize_t)sent;
 }
 
-// A network file system may tell only now that there was no space.
+// A network file system may report only now that there was no space.
 static int sink_close(void *context)
 {
     Sink *sink = context;

@@ -40,7 +40,7 @@ typedef struct Table {
     size_t fit;    // the most characters of a line; 0: any number
 } Table;
 
-// A table of so many columns; table_destroy frees it and accepts NULL.
+// A table of that many columns; table_destroy frees it and accepts NULL.
 Table *table_create(size_t columns);
 void table_destroy(Table *table);
 

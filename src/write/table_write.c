@@ -63,10 +63,10 @@ static bool fits(const Table *table, const Part *part)
     return table->fit == 0 || least_line(table, part) <= table->fit;
 }
 
-static void part_remove(Part *part, size_t place)
+static void part_remove(Part *part, size_t index)
 {
     part->count--;
-    for (size_t i = place; i < part->count; i++) {
+    for (size_t i = index; i < part->count; i++) {
         part->columns[i] = part->columns[i + 1];
     }
 }
@@ -82,10 +82,10 @@ static void take_all(const Table *table, Part *part)
 // Takes out columns of an importance from the right until the rest fits, and says whether it does.
 static bool drop_columns(const Table *table, TableAlign importance, Part *part, bool *is_dropped)
 {
-    for (size_t place = part->count; place-- > 0 && !fits(table, part);) {
-        const size_t column = part->columns[place];
+    for (size_t i = part->count; i-- > 0 && !fits(table, part);) {
+        const size_t column = part->columns[i];
         if (is_aligned(&table->columns[column], importance)) {
-            part_remove(part, place);
+            part_remove(part, i);
             is_dropped[column] = true;
         }
     }
@@ -216,7 +216,7 @@ static void write_part(const Table *table, Part *part, Text *text)
     }
 }
 
-// The first column always tells what a row is of.
+// The first column always says what a row is of.
 static bool is_key(const Table *table, size_t number)
 {
     size_t words = 0;

@@ -1,6 +1,6 @@
 // A lock that says "somebody works on this file", from opening to closing.
 //
-// It hangs on the open file and not on the process: whoever else in the process opens and closes
+// It hangs on the open file and not on the process: other code of the process that opens and closes
 // the file does not end it. Children inherit it, and die with their parent, but only just after it:
 // so it is waited for, for a moment, and given up explicitly.
 #pragma once

@@ -41,8 +41,8 @@ const Arguments COMPARE_ARGUMENTS = {
     .usage = "CASE",
     .doc = "Runs every scheme of ODE over a ladder of steps and prints speed against error, "
            "the frontier, the order observed and the cheapest setting."
-           "\vFinished runs are kept in a store under $XDG_CACHE_HOME or ~/.cache: whoever "
-           "ends the program at any moment goes on where it stood.",
+           "\vFinished runs are kept in a store under $XDG_CACHE_HOME or ~/.cache; a "
+           "comparison that was ended at any moment goes on from there.",
     .argument = COMMON_PATH("compare takes one case"),
     OPTION_ROWS(OPTIONS),
     .check = check,

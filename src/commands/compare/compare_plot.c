@@ -1,6 +1,6 @@
 // What does speed against error look like?
 //
-// Both axes are logarithmic. Colour tells stepping and map, whole or broken line the solver, full
+// Both axes are logarithmic. Colour shows stepping and map, solid or dashed line the solver, full
 // or hollow dots the collider. What is faster and more accurate than all else lies on the wide
 // pale line. The axes are ODE's: a solver far below their edge is an arrow there.
 #include "commands/compare/compare_report.h"

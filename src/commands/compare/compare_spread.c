@@ -1,4 +1,4 @@
-// What can be said of a run where no trajectory can be told any more?
+// What can be said of a run beyond the time up to which its trajectory can be predicted?
 //
 // Beyond the horizon two starts that differ by nothing measurable part. What stays are
 // distributions over many starts, and whether a scheme's agree with the reference's.

@@ -35,7 +35,7 @@ static void find_machine(char machine[COMPARE_MACHINE_SIZE])
     }
 }
 
-// The usual place: a name of its own for every key.
+// The usual path: a name of its own for every key.
 static bool find_path(const json_t *key, char path[FILE_PATH_SIZE], Err *err)
 {
     const char *cache = getenv("XDG_CACHE_HOME");
@@ -121,7 +121,7 @@ bool compare_store_keep_truth(const LadderTruth *truth, void *context, Err *err)
 bool compare_store_keep_run(const LadderRun *run, void *context, Err *err)
 {
     CompareStore *store = context;
-    // what died or hung is tried again by whoever goes on
+    // what died or hung is tried again when the comparison goes on
     return run->is_lost ||
            journal_add(&store->journal, ladder_json_run(store->ladder, run, store->machine), err);
 }

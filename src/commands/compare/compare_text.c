@@ -24,12 +24,12 @@ static void write_head(const CompareReport *report, const Style *style, Text *te
                     truth->backend, truth->uncertainty, truth->wall_s);
     }
     if (truth->is_limited && truth->message[0] == '\0') {
-        text_append(text,
-                    "  horizon     %.4g ms of %.4g ms: beyond it no trajectory can be told, and "
-                    "errors are those up to it (a start 1e-10 beside has grown "
-                    "%.2g times by then)\n",
-                    truth->horizon_s * UNITS_MS, scenario_duration(scenario) * UNITS_MS,
-                    truth->growth);
+        text_append(
+            text,
+            "  horizon     %.4g ms of %.4g ms: beyond it no trajectory can be predicted, and "
+            "errors are those up to it (a start 1e-10 beside has grown "
+            "%.2g times by then)\n",
+            truth->horizon_s * UNITS_MS, scenario_duration(scenario) * UNITS_MS, truth->growth);
     }
     if (compare_report_mixes_models(report)) {
         text_append(text, "  contact     the reference has the elastic law, ODE the POISSON model: "
@@ -55,7 +55,7 @@ static void write_without_error(const Ladder *ladder, Text *text)
     }
 }
 
-// Why points failed; neighbours of one scheme that failed alike are told together.
+// Why points failed.
 static void write_failures(const CompareReport *report, const Style *style, Text *text)
 {
     const Ladder *ladder = report->ladder;

@@ -14,43 +14,43 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// What is told while it works.
-typedef struct Telling {
+// What is reported during the work.
+typedef struct Watching {
     StatusLine line;
     const char *doing; // of a run or of many
-} Telling;
+} Watching;
 
-static void tell(Telling *telling, const char *words)
+static void show(Watching *watching, const char *words)
 {
-    if (status_line_is_due(&telling->line, status_line_time(&telling->line))) {
-        status_line_show(&telling->line, words);
+    if (status_line_is_due(&watching->line, status_line_time(&watching->line))) {
+        status_line_show(&watching->line, words);
     }
 }
 
 // Says it of long work, before it begins.
-static void tell_plan(double steps, void *context)
+static void show_plan(double steps, void *context)
 {
     // s of a lone pin's step, within a factor of two
     const double step_s = 1.2e-6;
-    Telling *telling = context;
+    Watching *watching = context;
     const bool is_warned = long_work_warn("running the settings in ODE", steps * step_s, true);
-    telling->line.is_warned = telling->line.is_warned || is_warned;
+    watching->line.is_warned = watching->line.is_warned || is_warned;
 }
 
-static void tell_row(size_t done, size_t total, void *context)
+static void show_row(size_t done, size_t total, void *context)
 {
     char words[64];
     snprintf(words, sizeof words, "%zu of %zu settings run in ODE", done, total);
-    tell(context, words);
+    show(context, words);
 }
 
-static void tell_run(double share, double wall_s, void *context)
+static void show_run(double share, double wall_s, void *context)
 {
     (void)wall_s;
-    Telling *telling = context;
+    Watching *watching = context;
     char words[96];
-    snprintf(words, sizeof words, "%s: %.0f %%", telling->doing, 100.0 * share);
-    tell(telling, words);
+    snprintf(words, sizeof words, "%s: %.0f %%", watching->doing, 100.0 * share);
+    show(watching, words);
 }
 
 static const ResultFile FILES[] = {
@@ -75,7 +75,7 @@ static const Results INVERSE_RESULTS = {
 };
 
 // The paper's estimate where it was asked for; a word about it where it could be.
-static bool make_penalty(const MapOptions *options, const Scenario *scenario, Telling *telling,
+static bool make_penalty(const MapOptions *options, const Scenario *scenario, Watching *watching,
                          PenaltyMap **penalty, Err *err)
 {
     // where the step is chosen by trials, at the longest of the paper's own order
@@ -83,12 +83,12 @@ static bool make_penalty(const MapOptions *options, const Scenario *scenario, Te
     const double step_s = options->step_s > 0.0      ? options->step_s
                           : scenario->run.step > 0.0 ? scenario->run.step
                                                      : usual_s;
-    telling->doing = "the paper's penalty over its speeds";
+    watching->doing = "the paper's penalty over its speeds";
     return !options->with_penalty ||
-           penalty_map_make(scenario, step_s, (RunWatch){tell_run, telling}, penalty, err);
+           penalty_map_make(scenario, step_s, (RunWatch){show_run, watching}, penalty, err);
 }
 
-// A four-bar with the paper's pin is told of --penalty.
+// Of a four-bar with the paper's pin, --penalty is mentioned.
 static void say_hint(const MapOptions *options, const Scenario *scenario)
 {
     PrintedPin pin;
@@ -105,13 +105,13 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario,
     if (!results_claim(&RESULTS, &options->common, path, err)) {
         return false;
     }
-    Telling telling = {status_line_start(options->common.is_quiet), "the reference's run"};
-    const MappingWatch watch = {tell_plan, tell_row, {tell_run, &telling}, &telling};
+    Watching watching = {status_line_start(options->common.is_quiet), "the reference's run"};
+    const MappingWatch watch = {show_plan, show_row, {show_run, &watching}, &watching};
     Mapping mapping = {0};
     PenaltyMap *penalty = NULL;
     bool is_done = mapping_make(scenario, settings, watch, &mapping, err) &&
-                   make_penalty(options, scenario, &telling, &penalty, err);
-    status_line_end(&telling.line);
+                   make_penalty(options, scenario, &watching, &penalty, err);
+    status_line_end(&watching.line);
     if (is_done) {
         const MappingReport report = {scenario, &mapping, penalty};
         results_print(&RESULTS, &options->common, &report);

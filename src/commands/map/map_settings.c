@@ -82,7 +82,7 @@ static bool read_steps(const MapOptions *options, const Scenario *scenario,
         settings->is_held = true;
         return true;
     }
-    // the usual ones, coarse to fine, and the case's own in its place
+    // the usual ones, coarse to fine, with the case's own in order
     double own = scenario->run.step;
     for (size_t i = 0; i < sizeof DEFAULT_STEPS / sizeof *DEFAULT_STEPS; i++) {
         const double usual = DEFAULT_STEPS[i];

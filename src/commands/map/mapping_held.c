@@ -108,7 +108,7 @@ static void write_beside(const MappingContact *contact, Text *text)
         }
     }
     if (maps.length > 0) {
-        text_append(text, "  With numbers made anew at each depth it is right by: %s.\n",
+        text_append(text, "  With constants recomputed at each depth it is right by: %s.\n",
                     maps.data);
     }
     text_finish(&maps);

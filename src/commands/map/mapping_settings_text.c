@@ -18,7 +18,7 @@ static void write_settings(const MappingContact *contact, const MappingRow *rows
                     law->family == FORCE_LAW_POWER && law->exponent == 1.0 && law->hysteresis == 0.0
                         ? "; of a linear spring and damper they hold at any depth, but for the "
                           "midpoint's ERP."
-                        : "; the engine is given them anew at the depth of each step.");
+                        : "; the engine gets them recomputed at the depth of each step.");
     }
 }
 
@@ -89,7 +89,7 @@ static void write_figures(const MappingContact *contact, const MappingRow *rows,
     section_end(table, text);
 }
 
-// Why rows could not be run; neighbours alike are told once.
+// Why rows could not be run; the same reason of neighbours is given once.
 static void write_unmeasured(const MappingContact *contact, const MappingRow *rows, Text *text)
 {
     const char *last = "";

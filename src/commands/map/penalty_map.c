@@ -152,9 +152,9 @@ bool penalty_map_make(const Scenario *scenario, double step_s, RunWatch watch, P
             watch.progress((double)i / PRINTED_SPEED_COUNT, 0.0, watch.context);
         }
         if (!fill_row(scenario, made, row, err)) {
-            char place[48];
-            snprintf(place, sizeof place, "at %.4g rpm", row->rpm);
-            err_prefix(err, place);
+            char where[48];
+            snprintf(where, sizeof where, "at %.4g rpm", row->rpm);
+            err_prefix(err, where);
             free(made);
             return false;
         }

@@ -24,7 +24,7 @@ static const char *const PLACE_WORDS[] = {
     [TYPO_MODEL] = "model",
 };
 
-// jansson fails where memory runs out or a number is not finite; neither can be told in the object
+// jansson fails where memory runs out or a number is not finite; neither can be said in the object
 static json_t *packed(json_t *value)
 {
     assert(value != NULL);

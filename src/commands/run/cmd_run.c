@@ -75,7 +75,7 @@ static const OptionRow OPTIONS[] = {
     COMMON_QUIET(2),
 };
 
-// Loads every case before any runs, so that a mistake in the last is told at once.
+// Loads every case before any runs, so that a mistake in the last is reported at once.
 static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
 {
     for (size_t i = 0; i < command->case_count; i++) {
@@ -153,7 +153,7 @@ static bool count_failures(const RunCommand *command, const CaseRun *runs, Err *
                                   all, first_case->scenario.path, first->backend, first->message);
 }
 
-// What cannot be written is told before anything runs.
+// What cannot be written is reported before anything runs.
 static bool claim_files(const RunCommand *command, const CaseRun *runs, Err *err)
 {
     const CommonOptions *common = &command->common;

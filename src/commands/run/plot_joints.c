@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// the force axis ends so many times below the largest force: a contact begins and ends at nothing
+// the force axis ends at this share of the largest force: a contact begins and ends at zero
 static const double FORCE_DEPTH = 1e-5;
 // errors below this share of the largest omega are rounding
 static const double ERROR_FLOOR = 1e-12;
@@ -128,8 +128,8 @@ static void draw_path(const RunReport *report, const PlotPanel *panel, size_t ru
     free(y);
 }
 
-// How far from the hole's centre a pin comes in x or y: in a unit of so many a metre, or where
-// that is 0 as a share of the joint's radial clearance.
+// How far from the hole's centre a pin comes in x or y: in a unit given as its number per metre, or
+// where that is 0 as a share of the joint's radial clearance.
 static double farthest(const RunReport *report, double per_metre)
 {
     double most = 0.0;

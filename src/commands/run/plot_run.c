@@ -17,8 +17,8 @@ static const double PANEL_TOP[2] = {146.0, 530.0};
 static const double LEGEND_TOP = 62.0;
 static const double LEGEND_ROW = 22.0;
 
-// a symmetric logarithmic scale is used where one backend goes so many times beyond another, or
-// beyond what the greater part of its run stays below
+// a symmetric logarithmic scale is used where one backend exceeds another by this factor, or
+// exceeds what it stays below for most of its run
 static const double SPIKY = 8.0;
 static const double USUAL = 0.9;
 
@@ -75,13 +75,13 @@ static bool any_turns(const RunReport *report)
     return false;
 }
 
-static PlotPanel place_panel(const RunReport *report, Text *svg, int row, int place,
+static PlotPanel place_panel(const RunReport *report, Text *svg, int row, int column,
                              const char *title)
 {
     return (PlotPanel){
         .svg = svg,
         .title = title,
-        .left = PANEL_LEFT[place],
+        .left = PANEL_LEFT[column],
         .top = PANEL_TOP[row],
         .width = PANEL_WIDTH,
         .height = PANEL_HEIGHT,

@@ -76,7 +76,7 @@ static json_t *run_object(const RunReport *report, size_t index)
     return object;
 }
 
-// In place of what could not be had: why.
+// Why something is missing.
 static json_t *message_object(const char *message)
 {
     json_t *object = json_object();

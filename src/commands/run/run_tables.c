@@ -74,7 +74,7 @@ static double farthest(const Trajectory *run, size_t joint)
     return distance;
 }
 
-// A run without a single contact has no spikes to tell of, and is hardly what was wanted.
+// A run without a single contact has no spikes, and is hardly what was wanted.
 static void write_untouched(const RunReport *report, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
@@ -179,7 +179,7 @@ static void write_chosen(const RunReport *report, const Trajectory *run, Text *t
     }
     const bool is_whole = run->is_short || run->estimate_s >= run->duration_s;
     text_append(text, "  Its error is at most %.2g up to %.4g ms%s.\n", run->error_estimate,
-                run->estimate_s * UNITS_MS, is_whole ? "" : "; later the reference cannot tell");
+                run->estimate_s * UNITS_MS, is_whole ? "" : "; later the reference does not say");
 }
 
 void run_tables_cost(const RunReport *report, const Style *style, Text *text)

@@ -71,7 +71,7 @@ static void write_other_model(const RunReport *report, Text *text)
     }
 }
 
-// What must be told of the truth though nothing was held against it.
+// What has to be said about the truth though nothing was compared with it.
 static void write_truth_alone(const RunReport *report, const Style *style, Text *text)
 {
     const bool is_doubtful = run_report_has_truth(report) && report->truth->message[0] != '\0';
@@ -127,8 +127,8 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
     }
 }
 
-// Whether the drive's work is more than rounding beside the energy it moved to and fro: over whole
-// turns of ideal joints it is none, and nothing can be held against it.
+// Whether the drive's work is more than the rounding of the energy it exchanges: over whole turns
+// of ideal joints it is zero, and nothing can be related to it.
 static bool has_drive_work(const Linkage *linkage, const Trajectory *run)
 {
     double kinetic = 0.0;
