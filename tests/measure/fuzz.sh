@@ -58,9 +58,9 @@ used_by_child() {
     awk -v ticks="$ticks" '{ used = $14 + $15 } END { print int(used / ticks) }' <<<"$fields"
 } 2>/dev/null
 
-# What a command is given and must leave as it was.
+# What a command is given and must leave as it was: what is there before it.
 inputs() {
-    cat -- ./*.yaml victim 2>/dev/null | cksum
+    cat -- "${given[@]}" 2>/dev/null | cksum
 }
 
 # The program in place of this shell, with descriptors closed and a limit for files as it is asked.
@@ -75,7 +75,8 @@ run_oddly() {
 
 # Runs the program with the arguments, and looks at what it left behind.
 run_step() {
-    local status=0 before
+    local status=0 before given
+    given=(./*.yaml victim)
     before=$(inputs)
     commands=$((commands + 1))
     run_oddly >printed 2>error </dev/null &
