@@ -5,7 +5,9 @@
 #include "commands/study/study_path.h"
 #include "commands/study/sweep.h"
 
+#include <assert.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -93,6 +95,25 @@ static const Arguments ARGUMENTS = {
     OPTION_ROWS(OPTIONS),
     .check = check,
 };
+
+bool study_words_read(const char *word, void *target, Err *err)
+{
+    (void)err;
+    StudyWords *words = target;
+    words->words[words->count++] = word;
+    return true;
+}
+
+bool study_words_run(const Arguments *arguments, int argc, char **argv,
+                     bool (*work)(void *words, Err *err), Err *err)
+{
+    // no command line has more words than it has arguments
+    StudyWords words = {.words = calloc((size_t)argc, sizeof *words.words)};
+    assert(words.words != NULL);
+    const bool is_done = arguments_run(arguments, argc, argv, &words, work, err);
+    free(words.words);
+    return is_done;
+}
 
 static const Command *const PARTS[] = {&study_command_status, &study_command_export,
                                        &study_command_merge, &study_command_plot,

@@ -13,7 +13,7 @@ enum {
     STORE_WORDS_SIZE = 256,
 };
 
-// The first of the columns that hold a run against its truth, see study/metrics.c.
+// The first of the columns of a run's error, see metrics.c.
 static const char STORE_ERROR_COLUMN[] = "error_omega_max";
 
 struct Store {

@@ -27,3 +27,19 @@ extern const Command study_command_export;
 extern const Command study_command_merge;
 extern const Command study_command_plot;
 extern const Command study_command_slurm;
+
+// The options of a command that takes any number of words.
+typedef struct StudyWords {
+    size_t count;
+    const char **words; // the words themselves are the command line's
+    bool is_wide;
+    bool is_quiet;
+} StudyWords;
+
+// The argument of such a command.
+bool study_words_read(const char *word, void *words, Err *err);
+
+// Reads the command line and does the work with its words, unless help was all that was asked for.
+// Fails as arguments_run does, or the work.
+bool study_words_run(const Arguments *arguments, int argc, char **argv,
+                     bool (*work)(void *words, Err *err), Err *err);

@@ -5,7 +5,6 @@
 #include "commands/study/store.h"
 #include "commands/study/study_commands.h"
 #include "commands/study/study_path.h"
-#include "commands/study/study_words.h"
 
 #include <assert.h>
 #include <inttypes.h>

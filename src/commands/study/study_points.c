@@ -1,6 +1,7 @@
 // Which points does a picture of a study have?
 #include "commands/study/study_points.h"
 
+#include "base/sorted.h"
 #include "base/text.h"
 
 #include <assert.h>
@@ -64,11 +65,6 @@ static bool take_row(const Layout *layout, const Record *record, void *context, 
     return true;
 }
 
-static int compare(double a, double b)
-{
-    return (a > b) - (a < b);
-}
-
 static int compare_points(const void *a, const void *b)
 {
     const StudyPoint *left = a;
@@ -76,13 +72,8 @@ static int compare_points(const void *a, const void *b)
     if (left->group != right->group) {
         return left->group < right->group ? -1 : 1;
     }
-    const int by_x = compare(left->x, right->x);
-    return by_x != 0 ? by_x : compare(left->y, right->y);
-}
-
-static int compare_x(const void *a, const void *b)
-{
-    return compare(*(const double *)a, *(const double *)b);
+    const int by_x = sorted_compare(&left->x, &right->x);
+    return by_x != 0 ? by_x : sorted_compare(&left->y, &right->y);
 }
 
 static size_t count_x(const StudyPoints *points)
@@ -92,7 +83,7 @@ static size_t count_x(const StudyPoints *points)
     for (size_t i = 0; i < points->count; i++) {
         x[i] = points->points[i].x;
     }
-    qsort(x, points->count, sizeof *x, compare_x);
+    sorted_make(x, points->count);
     size_t count = 0;
     for (size_t i = 0; i < points->count; i++) {
         count += i == 0 || x[i] != x[i - 1] ? 1 : 0;

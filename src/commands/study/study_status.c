@@ -4,7 +4,6 @@
 #include "commands/study/study_commands.h"
 #include "commands/study/study_path.h"
 #include "commands/study/study_text.h"
-#include "commands/study/study_words.h"
 
 #include <assert.h>
 #include <stdio.h>
