@@ -51,6 +51,21 @@ static void the_case_format_is_described(void **state)
     assert_int_equal(strncmp(program->output, "# ", 2), 0);
 }
 
+static void the_study_format_is_described_behind_the_options(void **state)
+{
+    Program *program = *state;
+    program_run(program, "help study");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "Usage: jointplay study [OPTION...] FILE");
+    assert_says(program->output, "draw.method");
+    program_run(program, "help study --markdown");
+    assert_int_equal(program->status, 0);
+    assert_int_equal(strncmp(program->output, "# The study file", 16), 0);
+    // a command of it has options alone
+    program_run(program, "help study status");
+    assert_null(strstr(program->output, "draw.method"));
+}
+
 static void a_wrong_command_line_is_answered_with_what_may_be_meant(void **state)
 {
     Program *program = *state;
@@ -116,6 +131,7 @@ int main(void)
         COMMAND_TEST(the_versions_at_work_are_printed),
         COMMAND_TEST(each_command_tells_how_it_is_used),
         COMMAND_TEST(the_case_format_is_described),
+        COMMAND_TEST(the_study_format_is_described_behind_the_options),
         COMMAND_TEST(a_wrong_command_line_is_answered_with_what_may_be_meant),
         COMMAND_TEST(a_wrong_setting_is_a_wrong_command_line),
         COMMAND_TEST(the_paper_is_recomputed),

@@ -51,6 +51,7 @@ static void every_line_fits_a_terminal(void **state)
         "paper",
         "help",
         "help case",
+        "help study",
         "run --help",
         "compare --help",
         "map --help",
