@@ -26,57 +26,29 @@ typedef struct CommonOptions {
 } CommonOptions;
 
 // Rows of a list of options, in a group of its help.
-#define COMMON_PATH(allowed)                                                                       \
-    {                                                                                              \
-        .type = OPTION_TEXT, .offset = offsetof(CommonOptions, path), .what = allowed              \
-    }
-#define COMMON_SET(help_group)                                                                     \
-    {                                                                                              \
-        .name = "set", .value = "KEY=VALUE", .group = help_group, .type = OPTION_LIST,             \
-        .doc = "Replace a value of the case, such as contact.restitution=0.8; may be given often", \
-        .offset = offsetof(CommonOptions, overrides),                                              \
-        .count_offset = offsetof(CommonOptions, override_count), .high = OPTION_SETTING_MAX,       \
-        .what = "settings"                                                                         \
-    }
-#define COMMON_SCHEMES(help_group)                                                                 \
-    {                                                                                              \
-        .name = "schemes", .value = "LIST", .group = help_group, .type = OPTION_TEXT,              \
-        .doc = "Only these schemes of ODE: 'direct/corrected' is every one with both words, "      \
-               "'all' every one",                                                                  \
-        .offset = offsetof(CommonOptions, schemes)                                                 \
-    }
-#define COMMON_JOBS(help_group, words)                                                             \
-    {                                                                                              \
-        .name = "jobs", .value = "N", .group = help_group, .type = OPTION_COUNT, .doc = words,     \
-        .offset = offsetof(CommonOptions, jobs), .low = 1, .high = OPTION_JOB_MAX                  \
-    }
-#define COMMON_TIME_LIMIT(help_group, words)                                                       \
-    {                                                                                              \
-        .name = "time-limit", .value = "TIME", .group = help_group, .type = OPTION_QUANTITY,       \
-        .doc = words, .offset = offsetof(CommonOptions, time_limit_s), .dimension = DIMENSION_TIME \
-    }
-#define COMMON_OUT(help_group, words)                                                              \
-    {                                                                                              \
-        .name = "out", .value = "DIR", .group = help_group, .type = OPTION_TEXT, .doc = words,     \
-        .offset = offsetof(CommonOptions, folder)                                                  \
-    }
-#define COMMON_JSON(help_group)                                                                    \
-    {                                                                                              \
-        .name = "json", .group = help_group, .doc = "Print one JSON object instead of tables",     \
-        .type = OPTION_FLAG, .offset = offsetof(CommonOptions, is_json)                            \
-    }
-#define COMMON_WIDE(help_group)                                                                    \
-    {                                                                                              \
-        .name = "wide", .group = help_group,                                                       \
-        .doc = "All columns of the tables, however wide the terminal is", .type = OPTION_FLAG,     \
-        .offset = offsetof(CommonOptions, is_wide)                                                 \
-    }
-#define COMMON_QUIET(help_group)                                                                   \
-    {                                                                                              \
-        .name = "quiet", .letter = 'q', .group = help_group,                                       \
-        .doc = "Nothing on standard error but errors and a warning of long work",                  \
-        .type = OPTION_FLAG, .offset = offsetof(CommonOptions, is_quiet)                           \
-    }
+// clang-format off
+#define COMMON_AT(field) .offset = offsetof(CommonOptions, field)
+#define COMMON_PATH(words) {.type = OPTION_TEXT, COMMON_AT(path), .what = (words)}
+#define COMMON_SET(help_group) \
+    {"set", "KEY=VALUE", "Replace a value of the case, such as contact.restitution=0.8; may be given often", \
+     help_group, OPTION_LIST, COMMON_AT(overrides), .what = "settings", \
+     .count_offset = offsetof(CommonOptions, override_count), .high = OPTION_SETTING_MAX}
+#define COMMON_SCHEMES(help_group) \
+    {"schemes", "LIST", "Only these schemes of ODE: 'direct/corrected' is every one with both words, 'all' every one", \
+     help_group, OPTION_TEXT, COMMON_AT(schemes)}
+#define COMMON_JOBS(help_group, words) \
+    {"jobs", "N", words, help_group, OPTION_COUNT, COMMON_AT(jobs), .low = 1, .high = OPTION_JOB_MAX}
+#define COMMON_TIME_LIMIT(help_group, words) \
+    {"time-limit", "TIME", words, help_group, OPTION_QUANTITY, COMMON_AT(time_limit_s), .dimension = DIMENSION_TIME}
+#define COMMON_OUT(help_group, words) {"out", "DIR", words, help_group, OPTION_TEXT, COMMON_AT(folder)}
+#define COMMON_JSON(help_group) \
+    {"json", NULL, "Print one JSON object instead of tables", help_group, OPTION_FLAG, COMMON_AT(is_json)}
+#define COMMON_WIDE(help_group) \
+    {"wide", NULL, "All columns of the tables, however wide the terminal is", help_group, OPTION_FLAG, COMMON_AT(is_wide)}
+#define COMMON_QUIET(help_group) \
+    {"quiet", NULL, "Nothing on standard error but errors and a warning of long work", help_group, OPTION_FLAG, \
+     COMMON_AT(is_quiet), .letter = 'q'}
+// clang-format on
 
 // Processes at a time where --jobs is not given: one a processor, at most OPTION_JOB_MAX.
 size_t common_options_count_jobs(void);

@@ -18,7 +18,8 @@ static const double LONG = 60.0;       // s: longer work is announced where prog
 static const double LONG_QUIET = 20.0; // s: likewise, where none is shown
 static const RunWatch NOBODY = {NULL, NULL};
 
-void long_work_words(double time_s, char *words, size_t size)
+// A time in words, such as "3.2 h".
+static void write_time(double time_s, char *words, size_t size)
 {
     if (time_s < 120.0) {
         snprintf(words, size, "%.0f s", time_s);
@@ -65,7 +66,7 @@ bool long_work_warn(const char *what, double time_s, bool is_quiet)
         return false;
     }
     char words[32];
-    long_work_words(time_s, words, sizeof words);
+    write_time(time_s, words, sizeof words);
     output_say("jointplay: warning: %s takes about %s\n", what, words);
     return true;
 }

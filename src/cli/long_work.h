@@ -15,6 +15,3 @@ bool long_work_warn(const char *what, double time_s, bool is_quiet);
 // is written to standard error; nothing where it is short. Returns whether it was. Of a step that
 // is chosen as the run goes, and of the reference, progress_watch says it while they run.
 bool long_work_announce(const Scenario *scenario, bool is_quiet);
-
-// A time in words, such as "3.2 h".
-void long_work_words(double time_s, char *words, size_t size);

@@ -39,11 +39,6 @@ bool option_values_read_quantity(const char *name, const char *text, Dimension d
     return true;
 }
 
-bool option_values_read_time(const char *name, const char *text, double *seconds, Err *err)
-{
-    return option_values_read_quantity(name, text, DIMENSION_TIME, seconds, err);
-}
-
 static int compare_falling(const void *a, const void *b)
 {
     const double left = *(const double *)a;
@@ -63,7 +58,8 @@ bool option_values_read_times(const char *name, const char *list, size_t room, d
         if (*count == room) {
             return err_set(err, ERR_USAGE, "--%s: more than %zu", name, room);
         }
-        if (!option_values_read_time(name, part + strspn(part, " "), &seconds[*count], err)) {
+        if (!option_values_read_quantity(name, part + strspn(part, " "), DIMENSION_TIME,
+                                         &seconds[*count], err)) {
             return false;
         }
         (*count)++;

@@ -16,9 +16,6 @@ bool option_values_read_count(const char *name, const char *text, size_t least, 
 bool option_values_read_quantity(const char *name, const char *text, Dimension dimension,
                                  double *value, Err *err);
 
-// Reads --name, a time above 0, s. Fails with ERR_USAGE.
-bool option_values_read_time(const char *name, const char *text, double *seconds, Err *err);
-
 // Reads --name, times between commas such as '10 us, 3 us', s, and puts the longest first. Fails
 // with ERR_USAGE where there are none, more than there is room for, or one is given twice.
 bool option_values_read_times(const char *name, const char *list, size_t room, double *seconds,

@@ -217,16 +217,6 @@ bool baseline_set_metrics(Baseline *baseline, const CheckMeasure *run, const Che
     return true;
 }
 
-bool baseline_needs_sample(const Baseline *baseline)
-{
-    for (size_t i = 0; i < baseline->count; i++) {
-        if (baseline->metrics[i].band_kind == BAND_STATISTICAL) {
-            return true;
-        }
-    }
-    return false;
-}
-
 // Rounds a sorted sample to nine digits, or as many as tell apart a thousandth of its range: a
 // check compares these with numbers that are not rounded, and a coarser sample would lie beside
 // them.

@@ -82,9 +82,6 @@ CheckStart baseline_sample_start(unsigned member);
 bool baseline_set_metrics(Baseline *baseline, const CheckMeasure *run, const CheckMeasure *members,
                           size_t member_count, Err *err);
 
-// Whether any metric needs a sample.
-bool baseline_needs_sample(const Baseline *baseline);
-
 // Puts the sample's values into the metrics that are statistical. `rate` is the false-alarm rate of
 // one test that the band is for.
 bool baseline_set_sample(Baseline *baseline, const CheckMeasure *members, size_t member_count,

@@ -28,11 +28,6 @@ enum {
 // a step that comes as close to the least error as this is as good as the finest
 static const double AS_GOOD = 1.2;
 
-double tune_linear_stiffness(const ForceLaw *law, double depth)
-{
-    return force_law_secant(law, depth);
-}
-
 double tune_linear_damping(double stiffness, double mass, double restitution)
 {
     return 2.0 * damping_linear_ratio(restitution) * sqrt(stiffness * mass);
@@ -135,7 +130,7 @@ static void list_linears(const TuneSearch *search, const ForceLaw *law, Tune *tu
     contact->restitution = is_viscous ? NAN : damping_delivered(law->hysteresis);
     for (size_t i = 0; i < (is_linear ? 1 : SHARE_COUNT); i++) {
         const double depth = SHARES[i] * contact->depth;
-        const double stiffness = tune_linear_stiffness(law, depth);
+        const double stiffness = force_law_secant(law, depth);
         const double damping =
             is_viscous ? law->viscous
                        : tune_linear_damping(stiffness, contact->mass, contact->restitution);

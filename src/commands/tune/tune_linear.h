@@ -4,9 +4,6 @@
 #include "commands/tune/tune_runs.h"
 #include "contact/force_law.h"
 
-// The spring, N/m, that gives the law's force at a depth, m.
-double tune_linear_stiffness(const ForceLaw *law, double depth);
-
 // The damper, N s/m, beside a spring, N/m, that gives an effective mass, kg, the restitution asked
 // for in a free impact.
 double tune_linear_damping(double stiffness, double mass, double restitution);

@@ -150,12 +150,27 @@ static bool search_plain(const TuneSearch *search, Err *err)
     return run_pass(&pass, "searching plain rows", err);
 }
 
-// A look at what can be had within the limit: a setting for each of some schemes.
-typedef struct Look {
+// Settings that are run one after another.
+typedef struct Settings {
     Tune *tune;
+    size_t count;
     size_t schemes[SCHEME_MAX];
-    int indices[SCHEME_MAX];
-} Look;
+    int indices[SCHEME_MAX]; // on the grid
+} Settings;
+
+static void add_setting(Settings *settings, size_t scheme, int index)
+{
+    settings->schemes[settings->count] = scheme;
+    settings->indices[settings->count++] = index;
+}
+
+static void apply_setting(void *owner, size_t number, Scenario *scenario)
+{
+    const Settings *settings = owner;
+    const size_t i = number % settings->count;
+    tune_apply(&settings->tune->schemes[settings->schemes[i]], tune_value(settings->indices[i]),
+               scenario);
+}
 
 // The index of the finest setting of a scheme that is within the limit.
 static int find_within(const Tune *tune, size_t scheme)
@@ -180,19 +195,12 @@ static bool is_run(const Tune *tune, size_t scheme, int index)
     return false;
 }
 
-static void apply_look(void *owner, size_t number, Scenario *scenario)
+static void take_within(void *owner, size_t number, const LadderRun *run)
 {
-    const Look *look = owner;
-    const TuneScheme *scheme = &look->tune->schemes[look->schemes[number]];
-    tune_apply(scheme, tune_value(look->indices[number]), scenario);
-}
-
-static void take_look(void *owner, size_t number, const LadderRun *run)
-{
-    const Look *look = owner;
-    TuneScheme *scheme = &look->tune->schemes[look->schemes[number]];
+    const Settings *settings = owner;
+    TuneScheme *scheme = &settings->tune->schemes[settings->schemes[number]];
     const TuneScheme kept = *scheme;
-    tune_take(look->tune, look->schemes[number], look->indices[number], run);
+    tune_take(settings->tune, settings->schemes[number], settings->indices[number], run);
     // the search itself goes on as before
     scheme->outcome = kept.outcome;
     scheme->next = kept.next;
@@ -205,39 +213,22 @@ static void take_look(void *owner, size_t number, const LadderRun *run)
 static bool search_within(const TuneSearch *search, Err *err)
 {
     const Tune *tune = search->tune;
-    Look look = {.tune = search->tune};
-    size_t count = 0;
+    Settings settings = {.tune = search->tune};
     for (size_t i = 0; i < tune->scheme_count; i++) {
         const int index = find_within(tune, i);
         if (tune->schemes[i].trials > 0 && !is_run(tune, i, index)) {
-            look.schemes[count] = i;
-            look.indices[count++] = index;
+            add_setting(&settings, i, index);
         }
     }
-    const TuneRuns runs = {"looking at what the cost allows", count, apply_look, take_look,
-                           .owner = &look};
+    const TuneRuns runs = {"looking at what the cost allows", settings.count, apply_setting,
+                           take_within, .owner = &settings};
     return tune_runs_make(search, &runs, err);
 }
 
-// The schemes that are timed.
-typedef struct Finalists {
-    Tune *tune;
-    size_t count;
-    size_t schemes[SCHEME_MAX];
-} Finalists;
-
-static void apply_finalist(void *owner, size_t number, Scenario *scenario)
+static void take_timing(void *owner, size_t number, const LadderRun *run)
 {
-    const Finalists *finalists = owner;
-    const Tune *tune = finalists->tune;
-    const size_t scheme = finalists->schemes[number % finalists->count];
-    tune_apply(&tune->schemes[scheme], tune_best(tune, (int)scheme)->value, scenario);
-}
-
-static void take_finalist(void *owner, size_t number, const LadderRun *run)
-{
-    const Finalists *finalists = owner;
-    TuneScheme *scheme = &finalists->tune->schemes[finalists->schemes[number % finalists->count]];
+    const Settings *settings = owner;
+    TuneScheme *scheme = &settings->tune->schemes[settings->schemes[number % settings->count]];
     if (run->is_complete) {
         scheme->processor_s[scheme->timed] = run->processor_s;
         scheme->wall_s[scheme->timed++] = run->wall_s;
@@ -251,15 +242,15 @@ static bool time_finalists(const TuneSearch *search, Err *err)
     Tune *tune = search->tune;
     const TuneTrial *winner = tune_best(tune, tune->winner);
     const double best = winner != NULL ? tune_trial_cost(tune, winner) : INFINITY;
-    Finalists finalists = {.tune = tune};
+    Settings finalists = {.tune = tune};
     for (size_t i = 0; i < tune->scheme_count; i++) {
         const TuneTrial *trial = tune_best(tune, (int)i);
         if (trial != NULL && tune_trial_cost(tune, trial) <= FINALIST * best) {
-            finalists.schemes[finalists.count++] = i;
+            add_setting(&finalists, i, trial->index);
         }
     }
     const TuneRuns runs = {"timing the finalists", TUNE_REPEATS * finalists.count,
-                           apply_finalist,         take_finalist,
+                           apply_setting,          take_timing,
                            .owner = &finalists,    .is_timing = true};
     return tune_runs_make(search, &runs, err);
 }
