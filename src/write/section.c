@@ -11,6 +11,17 @@ void section_heading(const char *heading, const Style *style, Text *text)
     text_append(text, "%s\n", style->end);
 }
 
+void section_title(const char *title, const char *path, const Style *style, Text *text)
+{
+    text_append(text, "%s%s%s\n\n", style->heading,
+                title[0] != '\0' ? title : "A case without a title", style->end);
+    if (path[0] != '\0') {
+        text_append(text, "  case        ");
+        text_append_shown(text, path);
+        text_append(text, "\n");
+    }
+}
+
 Table *section_begin(const char *heading, size_t columns, const SectionHead *heads,
                      const Style *style, Text *text)
 {

@@ -15,6 +15,9 @@ typedef struct SectionHead {
 // Appends a heading on a line of its own, behind an empty one. It may be a path.
 void section_heading(const char *heading, const Style *style, Text *text);
 
+// Begins a report: the title of a case and its path, where it has them.
+void section_title(const char *title, const char *path, const Style *style, Text *text);
+
 // Begins a section; the caller fills the table and hands it to section_end, which frees it.
 Table *section_begin(const char *heading, size_t columns, const SectionHead *heads,
                      const Style *style, Text *text);

@@ -6,7 +6,7 @@
 #include "base/hash.h"
 #include "commands/compare/compare_report.h"
 #include "write/journal.h"
-#include "write/ladder_json.h"
+#include "commands/compare/ladder_json.h"
 
 #include "fuzz_check.h"
 #include "fuzz_file.h"

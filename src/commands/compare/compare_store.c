@@ -4,9 +4,9 @@
 #include "base/hash.h"
 #include "cli/output.h"
 #include "cli/written.h"
+#include "commands/compare/ladder_json.h"
 #include "write/build_print.h"
 #include "write/file.h"
-#include "write/ladder_json.h"
 
 #include <assert.h>
 #include <inttypes.h>

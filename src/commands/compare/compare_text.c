@@ -11,11 +11,7 @@ static void write_head(const CompareReport *report, const Style *style, Text *te
     const Scenario *scenario = report->scenario;
     const Ladder *ladder = report->ladder;
     const LadderTruth *truth = &ladder->truth;
-    const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
-    text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
-    text_append(text, "  case        ");
-    text_append_shown(text, scenario->path);
-    text_append(text, "\n");
+    section_title(scenario->title, scenario->path, style, text);
     if (truth->message[0] != '\0') {
         text_append(text, "  truth       %s, made in %.3g s; could not be certified: %s\n",
                     truth->backend, truth->wall_s, truth->message);

@@ -22,13 +22,7 @@ void mapping_report_law(const MappingContact *contact, char law[MAPPING_REPORT_L
 static void write_head(const MappingReport *report, const Style *style, Text *text)
 {
     const Scenario *scenario = report->scenario;
-    const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
-    text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
-    if (scenario->path[0] != '\0') {
-        text_append(text, "  case        ");
-        text_append_shown(text, scenario->path);
-        text_append(text, "\n");
-    }
+    section_title(scenario->title, scenario->path, style, text);
     text_append(
         text,
         "  valid       restitution%s within %.0f %% of what is asked, wherever the steps fall\n",

@@ -1,5 +1,5 @@
 // What did the joints feel, and where was the pin in its hole?
-#include "commands/run/plot_joints.h"
+#include "commands/run/plot_look.h"
 
 #include "write/units.h"
 

@@ -49,3 +49,14 @@ void plot_look_marks(const RunReport *report, const PlotPanel *panel, const Sign
 // Draws one quantity of one body or joint of one run.
 void plot_look_draw(const RunReport *report, const PlotPanel *panel, size_t run,
                     PlotQuantity quantity, size_t index);
+
+// Joint forces over the crank angle, every step of them, with a dot for the strongest contacts and
+// marks for the spikes of the table.
+void plot_joints_forces(const RunReport *report, PlotPanel panel);
+
+// The path of each pin in its hole, as the eccentricity over the radial clearance where several
+// joints have play.
+void plot_joints_paths(const RunReport *report, PlotPanel panel);
+
+// Where no joint has play: how far omega is from the run that is taken as the truth.
+void plot_joints_errors(const RunReport *report, PlotPanel panel);

@@ -1,5 +1,5 @@
 // What does a run look like?
-#include "commands/run/plot_joints.h"
+#include "commands/run/plot_look.h"
 
 #include <assert.h>
 #include <math.h>

@@ -144,13 +144,7 @@ void run_text_write(const void *of, const Style *style, Text *text)
 {
     const RunReport *report = of;
     const Scenario *scenario = report->scenario;
-    const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
-    text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
-    if (scenario->path[0] != '\0') {
-        text_append(text, "  case        ");
-        text_append_shown(text, scenario->path);
-        text_append(text, "\n");
-    }
+    section_title(scenario->title, scenario->path, style, text);
     write_mechanism(report, text);
     write_drive(scenario, text);
     write_contact(scenario, text);

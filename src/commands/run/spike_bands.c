@@ -1,5 +1,5 @@
 // How many spikes stand where the paper saw its own?
-#include "commands/run/spike_bands.h"
+#include "commands/run/run_report.h"
 
 #include <math.h>
 

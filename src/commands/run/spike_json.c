@@ -1,5 +1,5 @@
 // What do other programs read of the spikes?
-#include "commands/run/spike_bands.h"
+#include "commands/run/run_report.h"
 #include "write/json_value.h"
 
 #include <stdio.h>

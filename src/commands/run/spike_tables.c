@@ -1,5 +1,5 @@
 // Which spikes did the accelerations and the forces have?
-#include "commands/run/spike_bands.h"
+#include "commands/run/run_report.h"
 #include "write/units.h"
 
 #include <stdio.h>

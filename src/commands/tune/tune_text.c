@@ -33,11 +33,7 @@ static void write_head(const TuneReport *report, const Style *style, Text *text)
 {
     const Scenario *scenario = report->scenario;
     const Tune *tune = report->tune;
-    const char *title = scenario->title[0] != '\0' ? scenario->title : "A case without a title";
-    text_append(text, "%s%s%s\n\n", style->heading, title, style->end);
-    text_append(text, "  case        ");
-    text_append_shown(text, scenario->path);
-    text_append(text, "\n");
+    section_title(scenario->title, scenario->path, style, text);
     write_asked(tune, text);
     text_append(text, "  truth       %s, to %.2g of omega\n", tune->truth.backend,
                 tune->truth.uncertainty);

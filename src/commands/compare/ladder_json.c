@@ -1,7 +1,7 @@
 // How is a finished run written down so that it can be taken up again?
 //
 // A line is an object of one key, its kind, with the fields of that kind below.
-#include "write/ladder_json.h"
+#include "commands/compare/ladder_json.h"
 
 #include "base/text.h"
 #include "write/json_value.h"
