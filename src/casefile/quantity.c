@@ -202,8 +202,11 @@ bool quantity_parse_unit(const char *text, Dimension dimension, double *si, cons
     if (read == NULL) {
         return false;
     }
+    if (!take_finite(value * read->numerator / read->denominator, text, si, complaint)) {
+        return false;
+    }
     *unit = read;
-    return take_finite(value * read->numerator / read->denominator, text, si, complaint);
+    return true;
 }
 
 // The tolerance's sign in a text, or NULL; a plain + has two limits behind it.
@@ -323,8 +326,11 @@ bool quantity_stiffness(const char *text, double *stiffness, double *exponent, C
         return false;
     }
     assert(unit->denominator == 1.0);
+    if (!take_finite(value * pow(unit->numerator, read_exponent), text, stiffness, complaint)) {
+        return false;
+    }
     *exponent = read_exponent;
-    return take_finite(value * pow(unit->numerator, read_exponent), text, stiffness, complaint);
+    return true;
 }
 
 static bool allow_span(Complaint *complaint)
