@@ -26,7 +26,7 @@
 
 enum {
     WATCHED_MAX = 512, // children at a time: two for each core of large machines
-    NO_MEMORY = 113,   // exit status of a child that died of its limit; no one else's
+    NO_MEMORY = 113,   // exit status of a child that exceeded its limit of memory
     LEAVING_MS = 500,  // for a process whose pipe is closed to be gone; it takes some 0.1
 };
 
@@ -125,7 +125,7 @@ bool child_start(Child *child, ChildWork work, const void *context, void *result
 {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) {
-        return err_set(err, ERR_SOLVER, "cannot start a run of its own: %s", strerror(errno));
+        return err_set(err, ERR_SOLVER, "cannot start a child process: %s", strerror(errno));
     }
     const pid_t parent = getpid();
     const pid_t process = fork();
@@ -133,7 +133,7 @@ bool child_start(Child *child, ChildWork work, const void *context, void *result
         const int reason = errno;
         close(ends[0]);
         close(ends[1]);
-        return err_set(err, ERR_SOLVER, "cannot start a run of its own: %s", strerror(reason));
+        return err_set(err, ERR_SOLVER, "cannot start a child process: %s", strerror(reason));
     }
     if (process == 0) {
         close(ends[0]);

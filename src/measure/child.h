@@ -44,7 +44,7 @@ typedef struct Child {
     ChildLimits limits;
 } Child;
 
-// Starts the work. The result, of so many bytes, belongs to the caller, must outlive the child and
+// Starts the work. The result, of that size, belongs to the caller, must outlive the child and
 // holds something only once the child is CHILD_DONE. Should the caller die, the child dies as
 // well; what the caller does on SIGINT and SIGTERM it does, too. Fails with ERR_SOLVER where the
 // system has no process or pipe left; there is then nothing to end.

@@ -24,11 +24,11 @@ static const double TRUTH_SHARE = 0.1;
 // world steps per step, before a trial has shown it: a gear of 2
 static const double COST_AT_FIRST = 2.0;
 
-// trials that fail at one place, within a share of the run
+// trials that fail at the same time, within a share of the run
 enum { FAILURES_ALIKE = 9 };
 static const double ONE_PLACE = 0.01;
 
-// a step so near that of a trial known to be good is not tried in its place
+// a step this near to that of a good trial is not tried instead
 static const double NEAR_STEP = 1.2;
 
 typedef struct Chosen {
@@ -46,7 +46,7 @@ typedef struct Chosen {
     double wall_s;
     double best_step_s; // of the trial that held longest; 0: none did at all
     double best_held_s;
-    size_t failures; // one after the other, at one place
+    size_t failures; // one after the other, at the same time
     double failed_s; // where
 } Chosen;
 

@@ -3,11 +3,11 @@
 
 #include "measure/truth.h"
 
-// Who is told what goes on. A trial begins: its number, from 1, and its step, s; number 0 stands
+// A listener. A trial begins: its number, from 1, and its step, s; number 0 stands
 // for the truth.
 typedef struct ChosenWatch {
     RunWatch run;
-    void (*begin)(size_t trial, double step_s, void *context); // NULL: nobody is told
+    void (*begin)(size_t trial, double step_s, void *context); // may be NULL
 } ChosenWatch;
 
 // Runs the scenario at falling steps, each trial held against the truth as it goes, until one holds

@@ -1,6 +1,6 @@
 // How do several pieces of work go on at a time?
 //
-// fill the free places -> wait -> take in what has ended.
+// fill the free slots -> wait -> take in what has ended.
 #include "measure/pool.h"
 
 #include <assert.h>
@@ -8,72 +8,72 @@
 
 static const double PAUSE_S = 0.2; // between two calls of `wait`
 
-// A process at work, by place.
-typedef struct Place {
+// A process at work, by slot.
+typedef struct Slot {
     bool is_busy;
     size_t number; // of its piece
     void *result;  // owned
-} Place;
+} Slot;
 
-typedef struct Places {
-    Place *places;
+typedef struct Slots {
+    Slot *slots;
     Child *children;
     size_t busy;
-} Places;
+} Slots;
 
-static void open_places(const Pool *pool, Places *places)
+static void open_slots(const Pool *pool, Slots *slots)
 {
-    *places = (Places){.places = calloc(pool->jobs, sizeof *places->places),
-                       .children = calloc(pool->jobs, sizeof *places->children)};
-    assert(places->places != NULL && places->children != NULL);
+    *slots = (Slots){.slots = calloc(pool->jobs, sizeof *slots->slots),
+                     .children = calloc(pool->jobs, sizeof *slots->children)};
+    assert(slots->slots != NULL && slots->children != NULL);
     for (size_t i = 0; i < pool->jobs; i++) {
-        places->places[i].result = malloc(pool->result_size);
-        assert(places->places[i].result != NULL);
+        slots->slots[i].result = malloc(pool->result_size);
+        assert(slots->slots[i].result != NULL);
     }
 }
 
-static void close_places(const Pool *pool, Places *places)
+static void close_slots(const Pool *pool, Slots *slots)
 {
     for (size_t i = 0; i < pool->jobs; i++) {
-        child_kill(&places->children[i]);
-        free(places->places[i].result);
+        child_kill(&slots->children[i]);
+        free(slots->slots[i].result);
     }
-    free(places->places);
-    free(places->children);
+    free(slots->slots);
+    free(slots->children);
 }
 
-static bool fill(const Pool *pool, Places *places, Err *err)
+static bool fill(const Pool *pool, Slots *slots, Err *err)
 {
     for (size_t i = 0; i < pool->jobs; i++) {
-        Place *place = &places->places[i];
+        Slot *slot = &slots->slots[i];
         const void *context;
-        if (place->is_busy) {
+        if (slot->is_busy) {
             continue;
         }
-        if (!pool->next(pool->owner, &place->number, &context)) {
+        if (!pool->next(pool->owner, &slot->number, &context)) {
             return true;
         }
-        if (!child_start(&places->children[i], pool->work, context, place->result,
-                         pool->result_size, pool->limits, err)) {
+        if (!child_start(&slots->children[i], pool->work, context, slot->result, pool->result_size,
+                         pool->limits, err)) {
             return false;
         }
-        place->is_busy = true;
-        places->busy++;
+        slot->is_busy = true;
+        slots->busy++;
     }
     return true;
 }
 
-static bool take(const Pool *pool, Places *places, Err *err)
+static bool take(const Pool *pool, Slots *slots, Err *err)
 {
     for (size_t i = 0; i < pool->jobs; i++) {
-        Place *place = &places->places[i];
-        const Child *child = &places->children[i];
-        if (!place->is_busy || child->end == CHILD_RUNNING) {
+        Slot *slot = &slots->slots[i];
+        const Child *child = &slots->children[i];
+        if (!slot->is_busy || child->end == CHILD_RUNNING) {
             continue;
         }
-        place->is_busy = false;
-        places->busy--;
-        if (!pool->take(pool->owner, place->number, place->result, child, err)) {
+        slot->is_busy = false;
+        slots->busy--;
+        if (!pool->take(pool->owner, slot->number, slot->result, child, err)) {
             return false;
         }
     }
@@ -83,13 +83,13 @@ static bool take(const Pool *pool, Places *places, Err *err)
 bool pool_run(const Pool *pool, Err *err)
 {
     assert(pool->jobs >= 1);
-    Places places;
-    open_places(pool, &places);
-    bool is_going = fill(pool, &places, err);
-    while (is_going && places.busy > 0 && pool->wait(pool->owner)) {
-        child_wait(places.children, pool->jobs, PAUSE_S);
-        is_going = take(pool, &places, err) && fill(pool, &places, err);
+    Slots slots;
+    open_slots(pool, &slots);
+    bool is_going = fill(pool, &slots, err);
+    while (is_going && slots.busy > 0 && pool->wait(pool->owner)) {
+        child_wait(slots.children, pool->jobs, PAUSE_S);
+        is_going = take(pool, &slots, err) && fill(pool, &slots, err);
     }
-    close_places(pool, &places);
+    close_slots(pool, &slots);
     return is_going;
 }

@@ -1,4 +1,4 @@
-// Makes the runs of a ladder, each in a process of its own.
+// Makes the runs of a ladder, each in a child process.
 #pragma once
 
 #include "measure/ladder.h"

@@ -33,12 +33,14 @@ static bool take(void *owner, size_t number, const void *packed, const Child *ch
     if (child->end != CHILD_DONE) {
         char words[CHILD_TEXT_SIZE];
         child_describe(child, words);
-        return err_set(err, ERR_SOLVER, "there is no reference to compare with: its process %s", words);
+        return err_set(err, ERR_SOLVER, "there is no reference to compare with: its process %s",
+                       words);
     }
     *making->truth = truth_pack_read(making->work->scenario, packed);
     const Trajectory *trajectory = making->truth->trajectory;
     return trajectory->is_complete ||
-           err_set(err, ERR_SOLVER, "there is no reference to compare with: %s", trajectory->message);
+           err_set(err, ERR_SOLVER, "there is no reference to compare with: %s",
+                   trajectory->message);
 }
 
 static bool wait(void *owner)

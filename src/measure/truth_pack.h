@@ -6,7 +6,7 @@
 // Bytes that the truth of a scenario takes, whatever becomes of it.
 size_t truth_pack_size(const Scenario *scenario);
 
-// Copies the truth into so many bytes.
+// Copies the truth into that many bytes.
 void truth_pack_write(const Truth *truth, void *packed);
 
 // The truth that was packed, of the same scenario. The caller finishes it.

@@ -244,11 +244,11 @@ static bool fill_sample(BaselineMetric *metric, const CheckMeasure *members, siz
     metric->sample_count = member_count;
     metric->mean = 0.0;
     for (size_t k = 0; k < member_count; k++) {
-        const size_t place = baseline_find(&members[k], metric->name);
-        if (place == members[k].count) {
+        const size_t index = baseline_find(&members[k], metric->name);
+        if (index == members[k].count) {
             return err_set(err, ERR_SOLVER, "a perturbed start does not measure %s", metric->name);
         }
-        metric->sample[k] = members[k].metrics[place].value;
+        metric->sample[k] = members[k].metrics[index].value;
     }
     sorted_make(metric->sample, member_count);
     round_sample(metric->sample, member_count);

@@ -121,7 +121,7 @@ bool baseline_json_write(const char *path, const Baseline *baseline, Err *err)
     return is_written;
 }
 
-// What is wrong, with the place.
+// Fails with what is wrong, and where.
 static bool fail(const char *where, const char *what, Err *err)
 {
     return err_set(err, ERR_FILE, "%s: %s", where, what);

@@ -113,7 +113,7 @@ static bool check_measures(const Making *making, const CheckWork *works, size_t 
     return true;
 }
 
-// Measures so many starts that are not kept yet; the first of a list of works is the number of the
+// Measures those starts that are not kept yet; the first of a list of works is the number of the
 // member given.
 static bool measure(Making *making, CheckStart (*start_of)(unsigned member), unsigned first,
                     size_t count, CheckMeasure *measures, Err *err)

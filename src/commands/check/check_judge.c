@@ -18,7 +18,7 @@
 
 const double CHECK_FALSE_ALARM_RATE = 1e-3;
 
-static const double SETTING_AGREES = 1e-12; // of the largest number: rounding of a place in it
+static const double SETTING_AGREES = 1e-12; // of the largest number: rounding of positions
 
 const char *const CHECK_VERDICT_WORDS[CHECK_VERDICT_COUNT] = {
     [CHECK_WITHIN] = "within", [CHECK_OUT] = "out",   [CHECK_SETTING] = "setting",
@@ -177,13 +177,13 @@ static void judge_sample(const BaselineMetric *metric, const CheckEvidence *evid
     const size_t count = evidence->sample_count;
     assert(count > 0 && count <= RANK_TEST_MAX);
     for (size_t i = 0; i < count; i++) {
-        const size_t place = baseline_find(&evidence->sample[i], metric->name);
-        if (place == evidence->sample[i].count) {
+        const size_t index = baseline_find(&evidence->sample[i], metric->name);
+        if (index == evidence->sample[i].count) {
             row->verdict = CHECK_GONE;
             row->severity = INFINITY;
             return;
         }
-        values[i] = evidence->sample[i].metrics[place].value;
+        values[i] = evidence->sample[i].metrics[index].value;
     }
     sorted_make(values, count);
     row->now = sorted_median(values, count);
@@ -210,20 +210,20 @@ static void judge_metric(const Baseline *baseline, const BaselineMetric *metric,
         leave_out(row, is_statistical ? "statistical: for a full check" : "for a full check");
         return;
     }
-    const size_t place = baseline_find(evidence->run, metric->name);
-    if (place == evidence->run->count) {
+    const size_t index = baseline_find(evidence->run, metric->name);
+    if (index == evidence->run->count) {
         row->verdict = CHECK_GONE;
         row->severity = INFINITY;
-    } else if ((metric->kind == CHECK_HASH) != (evidence->run->metrics[place].kind == CHECK_HASH)) {
+    } else if ((metric->kind == CHECK_HASH) != (evidence->run->metrics[index].kind == CHECK_HASH)) {
         // one is a hash and the other a number: not the same measurement
         row->verdict = CHECK_GONE;
         row->severity = INFINITY;
     } else if (metric->kind == CHECK_HASH) {
-        judge_hash(baseline, metric, evidence, evidence->run->metrics[place].hash, row);
+        judge_hash(baseline, metric, evidence, evidence->run->metrics[index].hash, row);
     } else if (is_statistical) {
         judge_sample(metric, evidence, row);
     } else {
-        judge_number(metric, evidence->run->metrics[place].value, row);
+        judge_number(metric, evidence->run->metrics[index].value, row);
     }
 }
 

@@ -27,5 +27,5 @@ bool check_store_keep(CheckStore *store, const CheckWork *work, Err *err);
 // The number of starts that the file holds now.
 size_t check_store_count(const CheckStore *store);
 
-// Closes the file, and takes it away where nobody needs it any more. Accepts a zeroed store.
+// Closes the file, and removes it where it is not needed any more. Accepts a zeroed store.
 void check_store_close(CheckStore *store, bool is_needed);

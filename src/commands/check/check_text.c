@@ -8,7 +8,7 @@
 
 enum {
     WORST_WITHIN = 5, // rows of a case in which nothing is out
-    WORST_OUT = 20,   // rows that are out: who sees twenty sees what happened
+    WORST_OUT = 20,   // rows that are out: twenty show what happened
 };
 
 // Rows that are out, and of those within the worst that moved at all.

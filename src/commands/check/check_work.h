@@ -1,4 +1,4 @@
-// The runs of a check, each start in a process of its own.
+// The runs of a check, each start in a child process.
 #pragma once
 
 #include "commands/check/check_measure.h"
@@ -24,7 +24,7 @@ typedef struct CheckWorkers {
     double time_limit_s; // of one work
     // a few times a second; false: stop
     bool (*wait)(const CheckWorkState *state, void *context);
-    // as soon as a work is measured; NULL: nobody keeps it
+    // as soon as a work is measured; may be NULL
     bool (*keep)(const CheckWork *work, void *context, Err *err);
     void *context;
 } CheckWorkers;

@@ -154,11 +154,7 @@ static void write_linears(const Tune *tune, const Style *style, Text *text)
         table_cell(table, "%.4g", linear->stiffness);
         table_cell(table, "%.4g", linear->damping);
         table_cell(table, "%.4g", linear->step_s * UNITS_US);
-        if (isfinite(linear->error)) {
-            table_cell(table, "%.2e", linear->error);
-        } else {
-            table_cell(table, "-");
-        }
+        section_finite(table, "%.2e", linear->error);
         table_cell(table, "%s",
                    (int)i == tune->linear                                    ? "taken"
                    : linear->error + tune->truth.uncertainty <= tune->target ? "met in this run"

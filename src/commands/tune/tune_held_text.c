@@ -155,13 +155,8 @@ static void constants_row(const Tune *tune, int number, Table *table)
     tune_held_text_source(linear, &source);
     table_cell(table, "%s", source.data);
     text_finish(&source);
-    if (linear->is_row) {
-        table_cell(table, "-");
-        table_cell(table, "-");
-    } else {
-        table_cell(table, "%.4g", linear->stiffness);
-        table_cell(table, "%.4g", linear->damping);
-    }
+    section_finite(table, "%.4g", linear->is_row ? NAN : linear->stiffness);
+    section_finite(table, "%.4g", linear->is_row ? NAN : linear->damping);
     table_cell(table, "%.4g", linear->row.erp);
     table_cell(table, "%.4g", linear->row.cfm);
     section_finite(table, "%.2e", linear->error);

@@ -77,11 +77,11 @@ static double find_mass(const Linkage *linkage, const Trajectory *trajectory, si
     if (!response_init(linkage, false, &response, &unused) || !response_place(&response, motions)) {
         return NAN;
     }
-    const Vec2 place = trajectory_state(trajectory, sample, joint)->eccentricity;
-    const double length = vec2_length(place);
+    const Vec2 offset = trajectory_state(trajectory, sample, joint)->eccentricity;
+    const double length = vec2_length(offset);
     for (size_t row = 0; row < response_play_rows(&response); row += 2) {
         if (response_joint(&response, row) == (int)joint && length > 0.0) {
-            return response_mass(&response, row, vec2_scale(-1.0 / length, place));
+            return response_mass(&response, row, vec2_scale(-1.0 / length, offset));
         }
     }
     return NAN;

@@ -1,10 +1,10 @@
-// The runs of a search, made side by side, each in a process of its own.
+// The runs of a search, made side by side in child processes.
 #pragma once
 
 #include "commands/tune/tune.h"
 #include "measure/task.h"
 
-// What the search may use, and who is told of it.
+// What the search may use, and a listener.
 typedef struct TuneSearch {
     Tune *tune;
     const Scenario *scenario;
@@ -17,7 +17,7 @@ typedef struct TuneSearch {
 
 // Runs of one kind.
 typedef struct TuneRuns {
-    const char *doing; // as the listener is told
+    const char *doing; // for the listener
     size_t count;      // their numbers are those below
     // Makes the scenario of the search that of a run.
     void (*apply)(void *owner, size_t number, Scenario *scenario);
