@@ -79,6 +79,7 @@ run_all() {
 strip() {
     for file in *.json *.jsonl; do
         sed -i -E '/"wall[a-z_]*": \[$/,/\]/d
+            /"cheapest": \[$/,/^  \]/d
             /"(wall[a-z_]*|processor[a-z_]*|inside[a-z_]*|[a-z_]*cpu_s|us_per_step|real_time_factor|on_frontier|version)": ?[^[]*$/d
             s/"(wall[a-z_]*|processor[a-z_]*|us_per_step|real_time_factor)": ?[^,}]*,?//g' "$file"
     done

@@ -23,7 +23,7 @@ static void write_head(const CompareReport *report, const Style *style, Text *te
         text_append(
             text,
             "  horizon     %.4g ms of %.4g ms: beyond it no trajectory can be predicted, and "
-            "errors are those up to it (a start 1e-10 beside has grown "
+            "errors are those up to it (a perturbation of 1e-10 has grown "
             "%.2g times by then)\n",
             truth->horizon_s * UNITS_MS, scenario_duration(scenario) * UNITS_MS, truth->growth);
     }

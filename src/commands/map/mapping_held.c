@@ -97,7 +97,7 @@ static void write_beside(const MappingContact *contact, Text *text)
     if (held->flight > held->play) {
         text_append(text,
                     "  In a step of %.4g us the pin flies %.3g um and has %.3g um from wall to "
-                    "wall: whatever the constants, it can pass through the wall unseen.\n",
+                    "wall: whatever the constants, it can pass through the wall undetected.\n",
                     step_us, held->flight * UNITS_UM, held->play * UNITS_UM);
     }
     Text maps;

@@ -103,8 +103,8 @@ static void write_law(const MappingReport *report, const MappingContact *contact
                 "without damping\n",
                 contact->secant, contact->tangent, contact->half_period_s * UNITS_US);
     text_append(text,
-                "  damping     c = %.4g N s/m at that depth; as much is lost to a viscous one of "
-                "%.4g beside that k\n",
+                "  damping     c = %.4g N s/m at that depth; a viscous damper of %.4g beside "
+                "that k loses as much\n",
                 contact->damping, contact->equivalent);
 }
 
@@ -122,8 +122,8 @@ static void write_run(const MappingContact *contact, Text *text)
                  2.0 * sqrt(joint->mass_least / tangent) * UNITS_US);
     }
     text_append(text,
-                "  the run     %.4g N and %.4g um at most: the linkage's load is in these and not "
-                "in the impact%s\n",
+                "  the run     %.4g N and %.4g um at most: these include the linkage's load, which "
+                "the impact does not%s\n",
                 joint->force_max, joint->penetration_max * UNITS_UM, stable);
 }
 

@@ -40,21 +40,19 @@ static void write_horizon(const RunReport *report, Text *text)
     if (truth->message[0] != '\0') {
         text_append(text, "  The reference could not be certified: %s\n", truth->message);
     } else if (truth->is_limited) {
-        text_append(
-            text,
-            "  The motion cannot be predicted beyond %.4g of %.4g ms: by then a start 1e-10 "
-            "beside this one is %.3g times as far away. Errors after it mean nothing; "
-            "distributions over many starts can be compared.\n",
-            truth->horizon_s * UNITS_MS, end_ms, truth->growth);
+        text_append(text,
+                    "  The motion cannot be predicted beyond %.4g of %.4g ms: by then a "
+                    "perturbation of 1e-10 has grown %.3g times. Errors after it mean nothing; "
+                    "distributions over many starts can be compared.\n",
+                    truth->horizon_s * UNITS_MS, end_ms, truth->growth);
     } else if (!(truth->uncertainty <= HOLDS)) {
         text_append(text,
-                    "  The reference itself is sure to no more than %.2g of omega over the run of "
-                    "%.4g ms.\n",
+                    "  The reference's own uncertainty is %.2g of omega over the run of %.4g ms.\n",
                     truth->uncertainty, end_ms);
     } else {
         text_append(text,
-                    "  The reference holds through the whole run, %.4g ms: a start 1e-10 beside "
-                    "this one ends %.3g times as far away.\n",
+                    "  The reference holds through the whole run, %.4g ms: a perturbation of 1e-10 "
+                    "grows %.3g times.\n",
                     end_ms, truth->growth);
     }
 }
@@ -203,7 +201,7 @@ void run_truth_matches(const RunReport *report, const Style *style, Text *text)
             section_end(table, text);
             text_append(text,
                         "  Of the strongest contacts kept, %zu of the reference and %zu of %s have "
-                        "no partner.\n",
+                        "no match.\n",
                         missed, extra, report->runs[i]->backend);
         }
     }
