@@ -281,6 +281,23 @@ void plot_band(const PlotPanel *panel, size_t count, const double *x, const doub
     append_title(svg, title);
 }
 
+void plot_below(const PlotPanel *panel, double top, const char *colour)
+{
+    text_append(panel->svg,
+                "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"%s\" "
+                "fill-opacity=\"0.18\"/>\n",
+                panel->left, top, panel->width, panel->top + panel->height - top, colour);
+}
+
+void plot_spot(Text *svg, double x, double y, double radius, const char *colour, const char *rim,
+               double rim_width)
+{
+    text_append(svg,
+                "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\" stroke=\"%s\" "
+                "stroke-width=\"%g\"/>\n",
+                x, y, radius, colour, rim, rim_width);
+}
+
 void plot_dot(const PlotPanel *panel, double x, double y, PlotStyle style)
 {
     text_append(panel->svg, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"2.5\" fill=\"%s\"/>\n",

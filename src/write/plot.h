@@ -62,6 +62,13 @@ void plot_line(const PlotPanel *panel, size_t count, const double *x, const doub
 void plot_band(const PlotPanel *panel, size_t count, const double *x, const double *least,
                const double *most, const char *title, PlotStyle style);
 
+// The part of the panel below a height of the picture in a pale colour.
+void plot_below(const PlotPanel *panel, double top, const char *colour);
+
+// A dot with a rim at a position of the picture, pixels.
+void plot_spot(Text *svg, double x, double y, double radius, const char *colour, const char *rim,
+               double rim_width);
+
 // A dot at a point.
 void plot_dot(const PlotPanel *panel, double x, double y, PlotStyle style);
 

@@ -53,10 +53,8 @@ static void draw_dot(Text *svg, double x, double y, double radius, const Scheme 
 {
     const PlotStyle style = style_of(scheme);
     const bool is_hollow = scheme->collider != ODE_COLLIDER_PIN_HOLE;
-    text_append(svg,
-                "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\" stroke=\"%s\" "
-                "stroke-width=\"1.4\"/>\n",
-                x, y, radius, is_hollow ? "#fff" : style.colour, is_hollow ? style.colour : "#fff");
+    plot_spot(svg, x, y, radius, is_hollow ? "#fff" : style.colour,
+              is_hollow ? style.colour : "#fff", 1.4);
 }
 
 // The axes hold every point of ODE, and the time of all others.
@@ -98,11 +96,7 @@ static void draw_band(const PlotPanel *panel, const LadderTruth *truth)
     if (!(limit > panel->y.low)) {
         return;
     }
-    const double top = fmax(plot_y(panel, limit), panel->top);
-    text_append(panel->svg,
-                "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#999\" "
-                "fill-opacity=\"0.18\"/>\n",
-                panel->left, top, panel->width, panel->top + panel->height - top);
+    plot_below(panel, fmax(plot_y(panel, limit), panel->top), "#999");
     plot_text(panel->svg, panel->left + 8.0, panel->top + panel->height - 8.0, "start", "note",
               "limited by the truth: below ten times its own uncertainty");
 }

@@ -68,10 +68,7 @@ static Axis step_axis(const MappingSettings *settings)
 static void draw_band(const PlotPanel *panel)
 {
     const double top = plot_y(panel, MAPPING_VALID_SHARE);
-    text_append(panel->svg,
-                "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#f0c419\" "
-                "fill-opacity=\"0.18\"/>\n",
-                panel->left, top, panel->width, panel->top + panel->height - top);
+    plot_below(panel, top, "#f0c419");
     plot_text(panel->svg, panel->left + 8.0, top + 16.0, "start", "note", "valid");
 }
 
@@ -101,12 +98,9 @@ static void draw_dots(const MappingReport *report, const PlotPanel *panel,
         const MappingRow *row = &report->mapping->rows[contact->first_row + i];
         if (row->delivered.is_measured) {
             const double error = shown->of(&row->delivered.figures, &contact->asked);
-            text_append(panel->svg,
-                        "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3.6\" fill=\"%s\" stroke=\"#fff\" "
-                        "stroke-width=\"1\"/>\n",
-                        plot_x(panel, row->step_s * UNITS_US),
-                        plot_y(panel, fmin(fmax(error, ERROR_LEAST), ERROR_MOST)),
-                        style_of(row->map).colour);
+            plot_spot(panel->svg, plot_x(panel, row->step_s * UNITS_US),
+                      plot_y(panel, fmin(fmax(error, ERROR_LEAST), ERROR_MOST)), 3.6,
+                      style_of(row->map).colour, "#fff", 1.0);
         }
     }
 }
