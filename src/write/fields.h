@@ -28,7 +28,7 @@ typedef enum FieldType {
     FIELD_PART, // the same, of a record that `part` finds; NULL: it is not known. What is not known
                 // has none of its keys in JSON, or null under its own
     FIELD_VALUE, // what `json` makes. Of JSON alone
-    FIELD_LABEL, // of tables alone: a cell that the caller fills, before the row
+    FIELD_LABEL, // of tables alone: a cell that the caller fills, before or behind the row
 } FieldType;
 
 // Where a field is shown: any of these bits, and bits of a caller's own from FIELD_OWN on.

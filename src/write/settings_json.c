@@ -50,7 +50,8 @@ static json_t *setting_value(const CasefileSetting *setting)
                      json_value_real(numbers[1]), "upper", json_value_real(numbers[2]));
 }
 
-void settings_json_set(json_t *object, const Scenario *scenario)
+// The settings that the scenario makes use of, by the key they have in a case file.
+static void set_settings(json_t *object, const Scenario *scenario)
 {
     json_t *settings = json_object();
     json_t *units = json_object();
@@ -72,7 +73,7 @@ void settings_json_begin(json_t *object, const Scenario *scenario)
     json_object_set_new(object, "tool", settings_json_tool());
     json_object_set_new(object, "case", json_value_text(scenario->path));
     json_object_set_new(object, "title", json_value_text(scenario->title));
-    settings_json_set(object, scenario);
+    set_settings(object, scenario);
 }
 
 json_t *settings_json_all(const Scenario *scenario)

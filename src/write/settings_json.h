@@ -8,12 +8,9 @@
 // New references: version, ode, ccd, gsl; a setting's value in SI.
 json_t *settings_json_tool(void);
 
-// Puts "tool", "case", "title", "settings" and "setting_units" into the object of a result.
+// Puts "tool", "case", "title", "settings" and "setting_units" into the object of a result: the
+// settings that the scenario makes use of, by the key they have in a case file, in SI.
 void settings_json_begin(json_t *object, const Scenario *scenario);
-
-// Puts "settings" and "setting_units" into the object: those that the scenario makes use of, by
-// the key they have in a case file.
-void settings_json_set(json_t *object, const Scenario *scenario);
 
 // New reference: every setting, used or not, without units.
 json_t *settings_json_all(const Scenario *scenario);

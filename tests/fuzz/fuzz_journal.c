@@ -5,8 +5,8 @@
 // Lines that end like a whole one are given their checksum, or hardly any would be looked into.
 #include "base/hash.h"
 #include "commands/compare/compare_report.h"
-#include "write/journal.h"
 #include "commands/compare/ladder_json.h"
+#include "write/journal.h"
 
 #include "fuzz_check.h"
 #include "fuzz_file.h"
