@@ -1,4 +1,4 @@
-// One error, told once: what went wrong, in one sentence, and the exit status it leads to.
+// One error, reported once: what went wrong, in one sentence, and the exit status it leads to.
 //
 // What the user, the data or a solver can cause is reported through an Err; what only the program
 // itself can cause is an assert. The first error wins: a later err_set on the same Err is ignored.

@@ -102,7 +102,7 @@ bool printable_is_shown(const char *text)
     return true;
 }
 
-// Whether a character begins at a byte that is none: what follows was cut off.
+// Whether a character begins at an invalid byte: what follows was cut off.
 static bool is_cut(const PrintableCharacter *character)
 {
     return !character->is_text && character->code >= 0xc2 && character->code <= 0xf4;

@@ -1,4 +1,4 @@
-// Where do the lines of a text break on a page of so many columns?
+// Where do the lines of a text break on a page of given width?
 #include "base/text.h"
 
 #include <stdbool.h>
@@ -81,7 +81,7 @@ static void fold_line(const char *line, size_t length, size_t width, Text *targe
     text_append(target, "%*s%.*s\n", (int)moved, "", (int)length, line);
 }
 
-// Whether a line is a row of a table, or code: more than one gap between its words tells.
+// Whether a line is a row of a table, or code: it has more than one gap between its words.
 static bool is_set_out(const char *line, size_t length)
 {
     const size_t indent = strspn(line, " ");

@@ -61,8 +61,8 @@ static void store_partners(const Entries *entries, Scenario *scenario)
     }
 }
 
-// Stores every value in the order of the schema, so that the same mistake is told first wherever
-// the keys stand.
+// Stores every value in the order of the schema, so that the same mistake is reported first
+// wherever the keys stand.
 static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
 {
     store_presence(entries, scenario);

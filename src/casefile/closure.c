@@ -53,7 +53,7 @@ static const Entry *longest_link(const Entries *entries, const FourBar *fourbar,
 {
     const double lengths[] = {fourbar->crank.nominal, fourbar->ground.nominal,
                               fourbar->coupler.nominal, fourbar->follower.nominal};
-    // of equal ones the ground is told first
+    // of equal ones the ground comes first
     size_t longest = 1;
     for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
         longest = lengths[i] > lengths[longest] ? i : longest;
@@ -100,7 +100,7 @@ static bool check_start(const Entries *entries, const Scenario *scenario, const 
         return true;
     }
     const Entry *blamed = entries_blame(entries, "drive.start " BLAMED, 0);
-    // a start that nobody gave is not to blame: the longest link is
+    // a start that is a default is not to blame: the longest link is
     const bool is_at_home =
         strcmp(blamed->row->path, "drive.start") != 0 && !blamed->source->is_override;
     char starts[STARTS_SIZE];

@@ -50,7 +50,7 @@ static const char *const RULES[] = {
 
 enum { RULE_COUNT = sizeof RULES / sizeof RULES[0] };
 
-// The group a row is told in: what stands before the first dot, empty where there is none.
+// The group a row belongs to: what stands before the first dot, empty where there is none.
 static bool is_in_group(const SchemaRow *row, const char *group)
 {
     const char *dot = strchr(row->path, '.');

@@ -69,7 +69,7 @@ bool entries_refuse(const Entry *entry, Err *err, const char *format, ...)
 bool entries_refuse_group(const EntryGroup *group, Err *err, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-// The first velocity or spin that the case gives of so many bodies; NULL where it gives none.
+// The first velocity or spin that the case gives of its bodies; NULL where it gives none.
 const Entry *entries_speed(const Entries *entries, size_t body_count);
 
 // The group of that path (with `*`), or NULL where nothing in it was given.

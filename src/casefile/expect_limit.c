@@ -61,7 +61,7 @@ static bool take_part(Reading *reading, const char *start, const char *end, char
     return true;
 }
 
-// One quantity of the number's dimension; the last one gives the unit in which people are told.
+// One quantity of the number's dimension; the last one gives the unit of reports.
 static bool read_value(Reading *reading, const char *start, const char *end,
                        Expectation *expectation, double *value)
 {

@@ -9,7 +9,7 @@ Span keys_span(const Node *node);
 // Where the text of a node's key begins: behind the quote of one that has quotes.
 size_t keys_text_start(const Node *node);
 
-// Refuses a word that is none of the choices: says what it is no name of, which choice is nearest,
+// Refuses a word that is not one of the choices: says what it should have named, the nearest choice
 // and all of them. False always.
 bool keys_refuse(const Source *source, Span span, const char *what, const char *name,
                  const char *const *choices, size_t count, Err *err);

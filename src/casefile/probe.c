@@ -1,7 +1,7 @@
 // What would a case make of a key or a value that another file has for it?
 //
-// The key is taken as an override of the case, and the value is stored into a scenario that nobody
-// sees: so the words of a mistake are those of a mistake in the case itself.
+// The key is taken as an override of the case, and the value is stored into a scratch
+// scenario: so the words of a mistake are those of a mistake in the case itself.
 #include "casefile/probe.h"
 
 #include "casefile/assemble.h"

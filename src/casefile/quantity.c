@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SHOWN_MAX = 40 }; // so many bytes of a wrong value are quoted
+enum { SHOWN_MAX = 40 }; // bytes of a wrong value that are quoted
 
 static const double INTEGER_MAX = 9007199254740992.0; // 2^53: every whole number up to it is exact
 static const double EXPONENT_MIN = 1.0;               // of a stiffness: a spring that softens
@@ -258,7 +258,7 @@ static bool take_tolerance(const char *text, bool is_symmetric, ToleratedLength 
 
 bool quantity_tolerated(const char *text, ToleratedLength *length, Complaint *complaint)
 {
-    // the sign of a tolerance stands behind the first number, whose own sign is none
+    // the sign of a tolerance stands behind the first number; that number's own sign does not count
     const char *behind = text;
     ToleratedLength read = {0};
     complaint->allowed[0] = '\0';

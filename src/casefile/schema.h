@@ -114,7 +114,7 @@ bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other);
 // Whether a scenario makes use of a row, of that member of its family.
 bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index);
 
-// Whether a row's value is one that a run depends on or is named by. Expectations are none.
+// Whether a row's value is one that a run depends on or is named by: all but expectations.
 bool schema_is_setting(const SchemaRow *row);
 
 // The row of a path with `*` for names; NULL where it is none.

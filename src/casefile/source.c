@@ -16,7 +16,7 @@
 enum {
     MESSAGE_SIZE = 512,
     WINDOW_WIDTH = 70, // characters of a line that are shown
-    WINDOW_LEAD = 44,  // of these, so many in front of a caret that would stand outside
+    WINDOW_LEAD = 44,  // of these, in front of a caret that would stand outside
 };
 
 // A line and column, and where that line is in the text.

@@ -36,10 +36,10 @@ bool source_refuse(const Source *source, Span span, Err *err, const char *format
 // and line breaks; equal to size where all of it is text.
 size_t source_text_length(const char *text, size_t size);
 
-// Whether all of a text, ended by 0 after so many bytes, is text without tabs and line breaks.
+// Whether all of a text of `size` bytes, ended by 0, is text without tabs and line breaks.
 bool source_is_one_line(const char *text, size_t size);
 
-// The characters in so many bytes of text.
+// The number of characters in `size` bytes of text.
 size_t source_count(const char *text, size_t size);
 
 // The line, counted from 1, that a character stands on.

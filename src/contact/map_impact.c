@@ -31,7 +31,7 @@ static const double LAW_STEPS = 1500.0;
 // of the deepest point: no force shows there
 static const double FIRST_DEPTH = 1e-12;
 
-// the shortest time constant of the damper, m / c, is taken in so many steps: RK4 is stable from
+// the shortest time constant of the damper, m / c, is taken in this many steps: RK4 is stable from
 // 0.4
 static const double DAMPER_STEPS = 50.0;
 

@@ -6,7 +6,7 @@
 
 // A sign of life from work that takes long.
 typedef struct GrowthPulse {
-    void (*beat)(void *context); // NULL: nobody waits for it
+    void (*beat)(void *context); // NULL: none is wanted
     void *context;
 } GrowthPulse;
 

@@ -131,7 +131,7 @@ typedef struct OdeOptions {
     size_t seed;            // of the order in which ODE_QUICK visits rows
     size_t settle_steps;    // of ODE_PLAIN: run before time zero where every joint is ideal
     size_t levels;          // of ODE_EXTRAPOLATED: worlds side by side
-    size_t gear;            // of ODE_MAP_IMPULSE: steps so many times finer near a wall
+    size_t gear;            // of ODE_MAP_IMPULSE: by how much steps are finer near a wall
     double contact_phase;   // rad, of ODE_MAP_IMPULSE: a contact's own oscillation in a local step
 } OdeOptions;
 

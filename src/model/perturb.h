@@ -30,5 +30,5 @@ typedef struct PerturbBasis {
 void perturb_basis(const Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_MAX],
                    PerturbBasis *basis);
 
-// Adds so many times a change to the speeds of the start.
+// Adds a multiple of a change to the speeds of the start.
 void perturb_along(Scenario *scenario, const SpeedChange changes[LINKAGE_BODY_MAX], double factor);

@@ -30,7 +30,7 @@ typedef struct Scenario {
     ReferenceOptions reference;
     OdeOptions ode;
     size_t expectation_count;
-    Expectation expectations[EXPECTATION_MAX]; // for whoever checks the runs; no solver reads them
+    Expectation expectations[EXPECTATION_MAX]; // for the checks of runs; no solver reads them
 } Scenario;
 
 // A scenario with every option at its default and an empty linkage.

@@ -10,7 +10,7 @@
 void engine_start(void);
 
 // One step of a world by the direct or the quick solver. ODE reports an internal error by ending
-// the process; here it is caught and becomes ERR_SOLVER with ODE's own words, as does a message.
+// the process; here it is caught and becomes ERR_SOLVER with ODE's own message, as does a message.
 // The world is then fit for nothing but to be destroyed.
 bool engine_step(dWorldID world, double step_s, bool is_quick, Err *err);
 

@@ -120,7 +120,7 @@ static bool step_level(Nodes *nodes, NodesLevel *level, long direction, Err *err
     return true;
 }
 
-// Lets the world itself go back by so many steps, and turns it round there.
+// Lets the world itself go back by a number of steps, and reverses it there.
 static bool run_back(Nodes *nodes, NodesLevel *level, long steps, Motion *motions, Err *err)
 {
     const size_t body_count = nodes->scenario->linkage.body_count;

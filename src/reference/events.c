@@ -13,7 +13,7 @@
 // margin counts as negative only beyond its rounding: so a pin that has just come to the wall is
 // not off it again, a contact that begins and one that ends differ by more than rounding, and no
 // contact can begin and end for ever at one instant. Contacts whose events lie nearer to each other
-// than rounding can tell change together.
+// than rounding can resolve change together.
 #include "reference/events.h"
 
 #include "base/root.h"

@@ -116,7 +116,7 @@ void loops_start(Tree *tree, double *q, double *u)
     if (!linkage->driver.is_present) {
         return;
     }
-    // pins are brought to their starts as loops are closed, with speeds that nobody asks for
+    // pins are brought to their starts as loops are closed, with speeds that are not used
     Tree pinned = *tree;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         if (linkage->joints[i].kind == JOINT_CLEARANCE) {

@@ -26,7 +26,7 @@ static const double SOLVED = 0.01;
 static const double STALLED = 0.3;
 // from one iteration to the next; from one to the one after that it may well fall
 static const double DIVERGED = 4.0;
-// a step so many times longer than the one before starts from no polynomial
+// a step longer than the one before by more than this factor starts from no polynomial
 static const double FURTHEST = 3.0;
 
 // evaluations of the stages for which the next step may be as long

@@ -33,7 +33,7 @@ typedef struct Radau {
     double moved[RADAU_STAGES][DOP853_SIZE_MAX]; // of the stages since the start of the step
     double rates[RADAU_STAGES][DOP853_SIZE_MAX];
     double before_s; // length of the step whose polynomial the integrator has; 0 for none
-    size_t filled;   // after so many accepted steps that one began
+    size_t filled;   // accepted steps before that one began
 } Radau;
 
 // For a system of coordinates and their rates, as many of each, with sums behind them. Never NULL;

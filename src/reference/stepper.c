@@ -30,7 +30,7 @@ static const double POSITION_SHARE = 16.0;
 // allows lets no step grow
 static const double ROUNDING = 0x1p-50;
 
-// of the time: a step that rounding of the time would show in is none
+// of the time: below this, rounding of the time would show in a step
 static const double SHORTEST = 16.0 * DBL_EPSILON;
 
 // Lets the sizes of errors follow the largest speeds so far.

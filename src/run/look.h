@@ -1,4 +1,4 @@
-// What a solver's state is at instants inside its last step, where it can tell.
+// A solver's state at instants inside its last step, where it provides them.
 #pragma once
 
 #include "run/recorder.h"

@@ -20,7 +20,7 @@ typedef struct Loop {
     const RunProbe *probe;
     void *probe_own; // of the probe; NULL: it has nothing to look at
     RunWatch watch;
-    const RunGuard *guard; // NULL: nobody ends it early
+    const RunGuard *guard; // NULL: none
     bool is_stopped;       // by the guard
     double started_s;      // by the clock
     size_t steps;

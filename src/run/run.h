@@ -7,7 +7,7 @@
 typedef void (*RunProgress)(double share, double wall_s, void *context);
 
 typedef struct RunWatch {
-    RunProgress progress; // NULL: nobody watches
+    RunProgress progress; // NULL: not wanted
     void *context;
 } RunWatch;
 

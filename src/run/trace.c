@@ -122,7 +122,7 @@ static void jump(Trace *trace, const TracePoint *point)
 
 void trace_turn(Trace *trace, const TracePoint *point)
 {
-    // a run with such a value fails, and nobody asks for its spikes
+    // a run with such a value fails, and has no spikes
     if (!isfinite(point->value)) {
         return;
     }

@@ -31,7 +31,7 @@ typedef struct Trace {
     TracePoint *points; // owned; times never fall
 } Trace;
 
-// An empty trace of at most so many points, 8 or more, with a tolerance of at least `floor`.
+// An empty trace of at most `limit` points, 8 or more, with a tolerance of at least `floor`.
 Trace trace_start(double floor, size_t limit);
 void trace_finish(Trace *trace);
 
