@@ -7,7 +7,7 @@
 // The crank turns clockwise, which flips the signs of omega and leaves those of alpha. The paper
 // gives no step, damping, restitution, friction or sampling for its stack-up rows, and a peak of
 // acceleration depends on all of them: those rows are orders of magnitude.
-#include "commands/paper/extremes.h"
+#include "commands/paper/paper.h"
 
 #include "analytic/fourbar_motion.h"
 #include "base/text.h"

@@ -1,10 +1,76 @@
 // The paper's numbers: printed, recomputed, and what physics gives.
 #pragma once
 
-#include "commands/paper/extremes.h"
-#include "commands/paper/physical.h"
 #include "measure/estimate.h"
+#include "model/trajectory.h"
+#include "run/run.h"
 #include "write/fields.h"
+
+// Tables VII and VIII: a row of the paper beside ours (extremes.c).
+typedef struct ExtremesRow {
+    const char *name;
+    double printed[PRINTED_QUANTITY_COUNT];
+    bool is_target;                      // the ideal rows; the others are orders of magnitude
+    bool is_known;                       // false: the run failed, see the message
+    char message[ERR_TEXT_SIZE];         // why it failed
+    double ours[PRINTED_QUANTITY_COUNT]; // rad/s and rad/s^2, in the order of the table
+    int as_printed;                      // cells that round to the printed number
+    double difference_max;               // 1, largest |ours - printed| / |printed|
+    char label[TRAJECTORY_LABEL_SIZE];   // how ours was made
+    // of the rows with play
+    double step_s;    // 0 for a closed form
+    size_t impacts;   // contacts begun in the joint with play
+    double force_max; // N, largest in it
+} ExtremesRow;
+
+// Fills the five rows. A run that fails is a row that says so; the function fails only where a
+// case cannot be loaded.
+bool extremes_compute(RunWatch watch, ExtremesRow rows[PRINTED_ROW_COUNT], Err *err);
+
+// Over the target rows: the largest relative difference, and how many of their cells are as
+// printed (and how many cells there are).
+double extremes_difference_max(const ExtremesRow rows[PRINTED_ROW_COUNT]);
+int extremes_as_printed(const ExtremesRow rows[PRINTED_ROW_COUNT], int *cell_count);
+
+// What physics gives where the paper estimates (physical.c): a pin at one speed, under the largest
+// force that inverse dynamics finds over a turn.
+typedef struct PhysicalPin {
+    const char *name;
+    double rpm;
+    double force;            // N, largest over a turn, ideal joints, gravity included
+    double hertz_approach;   // m, sphere in socket, the paper's own Eq. (3)
+    double johnson_approach; // m, cylinder in hole
+    double johnson_tangent;  // N/m, stiffness at that force
+    double half_angle;       // rad, of the contact seen from the pin's axis, by Hertz's half width
+} PhysicalPin;
+
+// The laws at one force beside each other.
+typedef struct PhysicalLaw {
+    const char *name;
+    double approach; // m
+    double tangent;  // N/m
+} PhysicalLaw;
+
+enum {
+    PHYSICAL_LAW_COUNT = LAW_COUNT,
+    PHYSICAL_BASE_ROW = 9, // of 1000 rpm
+};
+
+typedef struct Physical {
+    PhysicalPin pins[PRINTED_SPEED_COUNT][PRINTED_PIN_COUNT];
+    double estimated_force;                    // N: the paper's, crank-coupler pin at 1000 rpm
+    PhysicalLaw estimated[PHYSICAL_LAW_COUNT]; // every law at that force
+    double real_force;                         // N: of inverse dynamics, same pin and speed
+    PhysicalLaw real[PHYSICAL_LAW_COUNT];      // every law at that force
+} Physical;
+
+// The four-bar must have joints named as in PRINTED_PIN_NAMES; its own speed does not matter.
+// Fails with ERR_SOLVER where its crank does not turn fully.
+bool physical_compute(const Scenario *fourbar, Physical *physical, Err *err);
+
+// The largest forces on the two pins over a turn, N, at a speed, rpm.
+bool physical_force(const Scenario *fourbar, double rpm, double forces[PRINTED_PIN_COUNT],
+                    Err *err);
 
 // Where in the output a slip is named.
 typedef enum TypoPlace {

@@ -11,7 +11,7 @@
 // law here is an approximation there, good to some ten per cent.
 //
 // Source: Johnson, Contact Mechanics (1985), ch. 4.
-#include "commands/paper/physical.h"
+#include "commands/paper/paper.h"
 
 #include "analytic/fourbar_motion.h"
 #include "analytic/inverse_dynamics.h"
