@@ -9,6 +9,12 @@ double linkage_radial_clearance(const Joint *joint)
     return joint->clearance.hole_radius - joint->clearance.pin_radius;
 }
 
+bool linkage_is_ideal(const Linkage *linkage, size_t joint)
+{
+    return linkage->joints[joint].kind == JOINT_REVOLUTE &&
+           !(linkage->driver.is_present && linkage->driver.joint == (int)joint);
+}
+
 int linkage_driven_body(const Linkage *linkage)
 {
     return linkage->driver.is_present ? linkage->joints[linkage->driver.joint].body_b

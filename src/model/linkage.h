@@ -88,6 +88,9 @@ static inline JointEnd linkage_end(const Joint *joint, int side)
 // The centre distance at which pin and hole touch: hole radius minus pin radius, m.
 double linkage_radial_clearance(const Joint *joint);
 
+// Whether a joint is ideal and not the drive's: one that constrains how bodies move.
+bool linkage_is_ideal(const Linkage *linkage, size_t joint);
+
 // The number of the driven body, or LINKAGE_GROUND where there is no driver.
 int linkage_driven_body(const Linkage *linkage);
 

@@ -21,12 +21,6 @@
 // 1e-15, of either sign, of one that they make redundant
 static const double INDEPENDENT = 1e-12;
 
-static bool is_ideal(const Linkage *linkage, size_t joint)
-{
-    return linkage->joints[joint].kind == JOINT_REVOLUTE &&
-           !(linkage->driver.is_present && linkage->driver.joint == (int)joint);
-}
-
 static bool add_rows(Response *response, size_t joint, size_t count)
 {
     if (response->row_count + count > RESPONSE_ROW_MAX) {
@@ -45,7 +39,7 @@ bool response_init(const Linkage *linkage, bool with_turns, Response *response, 
     response->with_turns = with_turns;
     bool has_room = true;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        has_room = has_room && (!is_ideal(linkage, i) || add_rows(response, i, 2));
+        has_room = has_room && (!linkage_is_ideal(linkage, i) || add_rows(response, i, 2));
     }
     response->ideal_rows = response->row_count;
     for (size_t i = 0; i < linkage->joint_count; i++) {

@@ -24,9 +24,6 @@ static const double WORLD_INDEPENDENT = 1e-9;
 
 static void fill_block(double *row, size_t columns, int body, Vec2 arm, double sign)
 {
-    if (body < 0) {
-        return;
-    }
     double *x = row + BODY_FREEDOMS * (size_t)body;
     double *y = x + columns;
     double *z = y + columns;
@@ -39,13 +36,6 @@ static void fill_block(double *row, size_t columns, int body, Vec2 arm, double s
     z[4] = -sign * arm.x;
 }
 
-static bool is_ball(const Scenario *scenario, size_t joint)
-{
-    const Driver *driver = &scenario->linkage.driver;
-    return scenario->linkage.joints[joint].kind == JOINT_REVOLUTE &&
-           !(driver->is_present && driver->joint == (int)joint);
-}
-
 // Counts the balls' rows and makes sure that none follows from the others.
 static bool check_rows(const Scenario *scenario, const Motion *motions, size_t *row_count, Err *err)
 {
@@ -55,17 +45,16 @@ static bool check_rows(const Scenario *scenario, const Motion *motions, size_t *
     double *matrix = calloc(BALL_ROWS * linkage->joint_count * columns + 1, sizeof *matrix);
     size_t rows = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (!is_ball(scenario, i)) {
+        if (!linkage_is_ideal(linkage, i)) {
             continue;
         }
-        const int ends[2] = {joint->body_a, joint->body_b};
-        const Vec2 anchors[2] = {joint->anchor_a, joint->anchor_b};
-        for (int k = 0; k < 2; k++) {
-            // a kinematic body gives way to nothing: it has no columns
-            const int body = ends[k] == driven ? LINKAGE_GROUND : ends[k];
-            const Vec2 arm = body < 0 ? anchors[k] : vec2_rotate(motions[body].angle, anchors[k]);
-            fill_block(matrix + rows * columns, columns, body, arm, k == 0 ? -1.0 : 1.0);
+        for (int side = 0; side < 2; side++) {
+            const JointEnd end = linkage_end(&linkage->joints[i], side);
+            // the motion of a kinematic body is given: it has no columns
+            if (end.body != LINKAGE_GROUND && end.body != driven) {
+                const Vec2 arm = vec2_rotate(motions[end.body].angle, end.anchor);
+                fill_block(matrix + rows * columns, columns, end.body, arm, side == 0 ? -1.0 : 1.0);
+            }
         }
         rows += BALL_ROWS;
     }
@@ -185,7 +174,7 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
     make_bodies(scenario, motions, world);
     const Linkage *linkage = &scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (is_ball(scenario, i)) {
+        if (linkage_is_ideal(linkage, i)) {
             make_ball(linkage, motions, i, &scenario->ode, world);
         } else if (linkage->joints[i].kind == JOINT_CLEARANCE) {
             make_pair(&linkage->joints[i], (int)i, world);
