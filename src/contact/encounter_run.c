@@ -137,9 +137,11 @@ static bool find_bracket(Encounter *encounter, size_t joint, const EncounterPoin
         *first = fmax(*first, 1e-30); // at the wall, where the contact began
         return *last < 0.0;
     }
-    if (*first >= 0.0 && start.approach_speed <= 0.0) {
+    if (*first >= 0.0 && start.approach_speed < 0.0) {
         return false; // at the wall or inside, and on its way out
     }
+    // a pin that rounding has put inside meets the wall at the very start, not before it
+    *first = fmin(*first, 0.0);
     if (!(*last > 0.0) && start.approach_speed > 0.0 && end.approach_speed < 0.0) {
         *width_s *= start.approach_speed / (start.approach_speed - end.approach_speed);
         *last = depth_after(encounter, joint, from, *width_s);

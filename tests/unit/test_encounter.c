@@ -159,6 +159,37 @@ static void a_pin_that_falls_back_touches_again(void **state)
     encounter_finish(&pin);
 }
 
+// Half the period of a weight let go at the wall, in which it goes down to twice and a half m g / K
+// to the power of two thirds. Rounding may put the pin to either side of the wall.
+static void a_weight_let_go_on_the_wall_sinks_at_once(void **state)
+{
+    (void)state;
+    const double gravity = 9.80665;
+    const double depth = pow(2.5 * ONE_IMPACT_MASS * gravity / ONE_IMPACT_HERTZ, 2.0 / 3.0);
+    const double rounding[] = {-0x1p-52, 0.0, 0x1p-52};
+    for (size_t i = 0; i < sizeof rounding / sizeof *rounding; i++) {
+        Encounter pin = lone_pin(lone_pin_hertz(0.0), LONE_PIN_PHASE);
+        pin.position[0] = ONE_IMPACT_CLEARANCE;
+        pin.position[1] = 0.0;
+        pin.speed[0] = 0.0;
+        pin.free[0] = gravity;
+        // the gap of a wall nearer by its rounding
+        pin.joints[0].radial_clearance = ONE_IMPACT_CLEARANCE * (1.0 + rounding[i]);
+        run(&pin, 0.05);
+        double deepest = 0.0;
+        for (size_t node = 0; node < pin.node_count; node++) {
+            EncounterSums sums;
+            assert_true(node == 0 || pin.times[node] >= pin.times[node - 1]);
+            encounter_at(&pin, node, pin.times[node], &sums);
+            const EncounterPose pose = encounter_pose(&pin, 0, node, pin.times[node], &sums);
+            deepest = fmax(deepest, pose.pose.penetration);
+        }
+        // nodes see the lowest point to the square of half a phase
+        assert_close(deepest, depth, 2e-3);
+        encounter_finish(&pin);
+    }
+}
+
 // Force, impulse and moment are each the integral of the one before, by Simpson's rule between
 // nodes, and move the pin as Newton says.
 static void impulses_are_integrals_of_forces_and_move_the_pin(void **state)
@@ -376,6 +407,7 @@ int main(void)
         cmocka_unit_test(the_error_falls_with_the_fourth_power_of_the_phase),
         cmocka_unit_test(an_onset_stands_where_the_flight_meets_the_wall),
         cmocka_unit_test(a_slow_pin_turns_back_before_the_wall),
+        cmocka_unit_test(a_weight_let_go_on_the_wall_sinks_at_once),
         cmocka_unit_test(a_pin_that_falls_back_touches_again),
         cmocka_unit_test(impulses_are_integrals_of_forces_and_move_the_pin),
         cmocka_unit_test(the_kinetic_energy_that_is_lost_is_what_the_damping_took),
