@@ -3,6 +3,13 @@
 // Rates die away in a contact of damping c with the time constant m / c. The explicit method is
 // held to steps of some three of them, however smooth the motion is; that is what is looked for.
 // The sum of all rates of decay is minus the trace of dA/du.
+//
+// At a small tolerance steps are shorter still: the accelerations at the stages, which are of low
+// order, err by c / m of the stages' speeds. Of a contact whose damping outweighs its spring by
+// far,
+//     (c / 2 sqrt(k m))^2 = (c / m) (c / k) / 4  >>  1
+// that costs many times the steps that the motion needs. No rate tells by how many: the implicit
+// method is put on trial, and stays where its steps are longer by more than they cost.
 #include "reference/stiffness.h"
 
 #include <math.h>
@@ -13,6 +20,14 @@ enum { LOOK_EVERY = 32 }; // explicit steps
 // below the second it takes the same steps for a fifth of the work.
 static const double STIFF = 1.5;
 static const double EASY = 0.5;
+
+// A trial costs the work of some steps. It is worth while from these on, of a contact by itself:
+// steps times its rate of decay, and that rate times c / k.
+static const double DOUBTFUL = 0.1;
+static const double OVERDAMPED = 100.0;
+
+// an implicit step takes the work of some eight explicit ones
+static const double WORTH = 8.0;
 
 // What accelerations are differentiated by: of the fastest speed, and of a depth
 static const double SPEED_SHARE = 1e-7;
@@ -52,16 +67,81 @@ static void set_nudges(const Tree *tree, const SpeedScale *scale, double depth, 
     }
 }
 
+// Whether the damping of the contacts outweighs their springs by so much that explicit steps may be
+// far shorter than need be.
+static bool is_doubtful(const Dynamics *dynamics, const DynamicsState *state, double step,
+                        double decay)
+{
+    double relaxation_s = 0.0; // the longest time in which a spring moves its damper
+    size_t count = 0;
+    for (size_t i = 0; i < dynamics->contact_count; i++) {
+        const DynamicsContact *contact = &dynamics->contacts[i];
+        const double depth = fabs(state->contacts[i].pose.penetration);
+        const double stiffness = force_law_tangent(&contact->law, depth);
+        if (contact->mode == CONTACT_PRESSING) {
+            const double damping = stiffness_damping(contact, &state->contacts[i]);
+            relaxation_s = stiffness > 0.0 ? fmax(relaxation_s, damping / stiffness) : relaxation_s;
+            count++;
+        }
+    }
+    const double own = decay / (double)count;
+    return step * own > DOUBTFUL && own * relaxation_s > OVERDAMPED;
+}
+
+// Whether the implicit method takes over from the explicit one, or is put on trial.
+static bool takes_over(Stiffness *stiffness, const Dynamics *dynamics, const DynamicsState *state,
+                       Dop853 *integrator)
+{
+    const double decay = stiffness->radau->decay;
+    if (integrator->step * decay > STIFF) {
+        return true;
+    }
+    if (!is_doubtful(dynamics, state, integrator->step, decay)) {
+        return false;
+    }
+    if (stiffness->wait > 0) {
+        stiffness->wait--;
+        return false;
+    }
+    stiffness->beaten_s = integrator->step;
+    integrator->step *= 2.0 * WORTH;
+    return true;
+}
+
+// Whether the implicit method stays: after a trial where its step was worth it.
+static bool stays(Stiffness *stiffness, Dop853 *integrator)
+{
+    const double beaten_s = stiffness->beaten_s;
+    stiffness->beaten_s = 0.0;
+    if (beaten_s == 0.0) {
+        return integrator->step * stiffness->radau->decay > EASY;
+    }
+    if (integrator->tried > WORTH * beaten_s) {
+        stiffness->pause = 0;
+        return true;
+    }
+    integrator->step = beaten_s;
+    // the next trials come at ever longer intervals
+    stiffness->pause = 2 * stiffness->pause + 1;
+    stiffness->wait = stiffness->pause;
+    return false;
+}
+
 void stiffness_follow(Stiffness *stiffness, const Dynamics *dynamics, const DynamicsState *state,
                       const SpeedScale *scale, bool is_event, Dop853 *integrator)
 {
     const double depth = smallest_depth(dynamics, state, integrator->step);
+    const bool is_implicit = integrator->method != NULL;
     stiffness->steps = is_event ? 0 : stiffness->steps + 1;
+    if (is_event || !(depth > 0.0)) {
+        stiffness->beaten_s = 0.0;
+        stiffness->wait = stiffness->pause = 0;
+    }
     if (!(depth > 0.0)) {
         integrator->method = NULL;
         return;
     }
-    if (integrator->method == NULL && stiffness->steps < LOOK_EVERY) {
+    if (!is_implicit && stiffness->steps < LOOK_EVERY) {
         return;
     }
     stiffness->steps = 0;
@@ -70,11 +150,12 @@ void stiffness_follow(Stiffness *stiffness, const Dynamics *dynamics, const Dyna
     }
     Radau *radau = stiffness->radau;
     set_nudges(&dynamics->tree, scale, depth, radau->nudge);
-    if (integrator->method == NULL || is_event) {
+    if (!is_implicit || is_event) {
         radau_look(radau, integrator);
     }
-    const double most = integrator->method == NULL ? STIFF : EASY;
-    integrator->method = integrator->step * radau->decay > most ? &radau->method : NULL;
+    const bool is_next = is_implicit ? stays(stiffness, integrator)
+                                     : takes_over(stiffness, dynamics, state, integrator);
+    integrator->method = is_next ? &radau->method : NULL;
 }
 
 void stiffness_finish(Stiffness *stiffness)

@@ -9,6 +9,10 @@
 typedef struct Stiffness {
     Radau *radau; // owned; NULL before the first look
     size_t steps; // explicit ones since the last event or look
+    // While the implicit method is on trial: the explicit step that it has to beat, s; else 0.
+    double beaten_s;
+    size_t wait;  // looks until another trial may follow the last one
+    size_t pause; // as many were waited for after the last trial that was lost
 } Stiffness;
 
 // To be asked before each step, whether an event has come at its start or not; the integrator

@@ -134,6 +134,41 @@ static void a_touch_within_rounding_takes_no_more_steps_than_others(void **state
     trajectory_destroy(trajectory);
 }
 
+// A pin let go along the wall sinks in until the force turns it, F = m v^2 / r, and keeps its
+// angular momentum, v r = v_0 c. The damping outweighs the spring by far and has nothing to do with
+// it: steps are a share of a turn, at a small tolerance too.
+static void a_pin_that_whirls_takes_steps_as_long_as_its_motion_is_smooth(void **state)
+{
+    (void)state;
+    const double play = 8e-6;
+    const double speed = 0.17;
+    Scenario scenario = mechanism_pin(0.1, play);
+    scenario.contact.stiffness = 1.7e11;
+    scenario.contact.damping = DAMPING_LANKARANI_NIKRAVESH;
+    scenario.contact.restitution = 0.7;
+    scenario.linkage.bodies[0].start.position = (Vec2){0.0, (1.0 - 1e-15) * play};
+    scenario.linkage.bodies[0].start.velocity.x = speed;
+    scenario.reference.tolerance = 1e-14;
+    // 40 times the time in which it sinks in, 70 turns
+    scenario.run.duration = 0.02;
+    scenario.run.samples = 2;
+    Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
+    double depth = 0.0;
+    for (int i = 0; i < 100; i++) {
+        const double radius = play + depth;
+        const double turned = 0.1 * pow(speed * play / radius, 2.0) / radius;
+        depth = pow(turned / 1.7e11, 1.0 / 1.5);
+    }
+    const Vec2 velocity = trajectory_motion(trajectory, 2, 0)->velocity;
+    assert_close(trajectory->joints[0].penetration_max.value, depth, 1e-6);
+    assert_close(vec2_length(velocity), speed * play / (play + depth), 1e-9);
+    // control: that it has sunk in shows
+    assert_true(vec2_length(velocity) < 0.95 * speed);
+    // explicit steps, shorter the smaller the tolerance, take 1.6 million
+    assert_true(trajectory->evaluations < EVALUATIONS_MOST / 4);
+    trajectory_destroy(trajectory);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -141,6 +176,7 @@ int main(void)
         cmocka_unit_test(a_weight_sinks_into_its_damper),
         cmocka_unit_test(a_weight_sinks_into_a_viscous_damper),
         cmocka_unit_test(a_fourbar_has_a_truth_at_any_restitution),
+        cmocka_unit_test(a_pin_that_whirls_takes_steps_as_long_as_its_motion_is_smooth),
         cmocka_unit_test(a_touch_within_rounding_takes_no_more_steps_than_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
