@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+enum { LANES = 4 }; // of a maximum, none of which waits for another
+
 static const double SINGULAR = 1e-14; // a hundred roundings below the largest entry
 
 static void swap_rows(double *a, size_t columns, size_t first, size_t second)
@@ -16,12 +18,17 @@ static void swap_rows(double *a, size_t columns, size_t first, size_t second)
 
 static double largest_entry(size_t count, const double *a)
 {
-    double largest = 0.0;
+    double largest[LANES] = {0.0};
     for (size_t i = 0; i < count; i++) {
         const double size = fabs(a[i]);
-        largest = size > largest ? size : largest;
+        double *lane = &largest[i % LANES];
+        *lane = size > *lane ? size : *lane;
     }
-    return largest;
+    double all = 0.0;
+    for (size_t i = 0; i < LANES; i++) {
+        all = largest[i] > all ? largest[i] : all;
+    }
+    return all;
 }
 
 bool dense_solve(size_t n, double *a, double *b)
@@ -53,10 +60,13 @@ bool dense_solve(size_t n, double *a, double *b)
         }
     }
     for (size_t k = n; k-- > 0;) {
+        double left = b[k];
         for (size_t j = k + 1; j < n; j++) {
-            b[k] -= a[k * n + j] * b[j];
+            if (a[k * n + j] != 0.0) {
+                left -= a[k * n + j] * b[j];
+            }
         }
-        b[k] /= a[k * n + k];
+        b[k] = left / a[k * n + k];
     }
     return true;
 }
@@ -90,13 +100,22 @@ void dense_substitute(size_t n, const double *factored, const size_t *pivots, do
     for (size_t k = 0; k < n; k++) {
         swap_rows(b, 1, k, pivots[k]);
     }
-    for (size_t k = 0; k < n; k++) {
-        for (size_t j = 0; j < k; j++) {
+    // a right side of few bodies is zero before and behind them, and so is what comes of it
+    size_t first = 0;
+    while (first < n && b[first] == 0.0) {
+        first++;
+    }
+    for (size_t j = first; j < n; j++) {
+        for (size_t k = j + 1; k < n && b[j] != 0.0; k++) {
             b[k] -= factored[k * n + j] * b[j];
         }
     }
-    for (size_t k = n; k-- > 0;) {
-        for (size_t j = k + 1; j < n; j++) {
+    size_t end = n;
+    while (end > first && b[end - 1] == 0.0) {
+        end--;
+    }
+    for (size_t k = end; k-- > 0;) {
+        for (size_t j = k + 1; j < end; j++) {
             b[k] -= factored[k * n + j] * b[j];
         }
         b[k] /= factored[k * n + k];

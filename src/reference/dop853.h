@@ -21,6 +21,11 @@ enum { DOP853_SIZE_MAX = 128, DOP853_POLYNOMIAL = 8 };
 // Writes dy/dt at a time and state.
 typedef void (*Dop853Rates)(double time, const double *y, double *rates, void *context);
 
+// Writes how the second rates of n coordinates change with these and their rates, n by n each in
+// rows; see radau.h.
+typedef void (*Dop853Slopes)(double time, const double *y, double *by_position, double *by_rate,
+                             void *context);
+
 typedef struct Dop853 Dop853;
 
 // Another method that takes the steps, as dop853_try and dop853_fill do.
@@ -35,6 +40,7 @@ struct Dop853 {
     size_t size;          // number of equations
     size_t motion_size;   // of those, the first: the errors of the others are judged by themselves
     Dop853Rates rates;
+    Dop853Slopes slopes; // for a method that needs them; NULL: from differences of the rates
     void *context;
     // Error allowed in each component of one step: fixed[i] + grown[i] times the step. A component
     // with both 0 is not controlled.

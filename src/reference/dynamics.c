@@ -9,8 +9,6 @@
 #include "contact/law.h"
 #include "reference/loops.h"
 
-enum { EQUATION_MAX = TREE_COORDINATE_MAX + 2 * TREE_LOOP_MAX };
-
 // Forces on the bodies, by body: at the centre, and the moment about it.
 typedef struct Loads {
     Vec2 force[LINKAGE_BODY_MAX];
@@ -215,10 +213,9 @@ static bool find_rates(const Dynamics *dynamics, double since_s, const double *y
                        DynamicsState *state, Loads *loads, double *solved)
 {
     const Tree *tree = &dynamics->tree;
-    const size_t n = tree->coordinate_count;
-    const size_t width = n + 2 * tree->loop_count;
-    double matrix[EQUATION_MAX * EQUATION_MAX];
-    tree_evaluate(tree, since_s, y, y + n, &state->tree);
+    const size_t width = dynamics_equations(dynamics);
+    double matrix[DYNAMICS_EQUATION_MAX * DYNAMICS_EQUATION_MAX];
+    tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state->tree);
     start_loads(dynamics, loads);
     for (size_t i = 0; i < dynamics->contact_count; i++) {
         state->contacts[i] = dynamics_contact_find(
@@ -232,6 +229,17 @@ static bool find_rates(const Dynamics *dynamics, double since_s, const double *y
     return solve(width, matrix, solved);
 }
 
+bool dynamics_factor(const Dynamics *dynamics, const TreeState *state, double *matrix,
+                     size_t *pivots)
+{
+    const size_t width = dynamics_equations(dynamics);
+    const Loads none = {.driven_power = 0.0};
+    double unused[DYNAMICS_EQUATION_MAX];
+    assemble(&dynamics->tree, state, &none, width, matrix, unused);
+    append_loops(&dynamics->tree, state, width, matrix, unused);
+    return dense_factor(width, matrix, pivots);
+}
+
 // Accelerations of the bodies, then reactions of the ideal joints.
 static void find_motion(const Tree *tree, const double *solved, Loads *loads, DynamicsState *state)
 {
@@ -243,7 +251,7 @@ static void find_motion(const Tree *tree, const double *solved, Loads *loads, Dy
 bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
                        DynamicsState *state)
 {
-    double solved[EQUATION_MAX];
+    double solved[DYNAMICS_EQUATION_MAX];
     Loads loads;
     if (!find_rates(dynamics, since_s, y, state, &loads, solved)) {
         return false;
@@ -283,7 +291,7 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
     const size_t n = tree->coordinate_count;
     DynamicsState state;
     Loads loads;
-    double solved[EQUATION_MAX];
+    double solved[DYNAMICS_EQUATION_MAX];
     if (!find_rates(dynamics, since_s, y, &state, &loads, solved)) {
         for (size_t i = 0; i < dynamics_size(dynamics); i++) {
             rates[i] = NAN;

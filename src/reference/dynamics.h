@@ -33,6 +33,20 @@ size_t dynamics_sum_index(const Dynamics *dynamics, size_t sum);
 // Fails with ERR_CASE where a contact law does not fit a joint.
 bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err);
 
+// Unknowns of the equations for the accelerations: the coordinates' second rates, and behind them
+// two multipliers for each joint that closes a loop.
+enum { DYNAMICS_EQUATION_MAX = TREE_COORDINATE_MAX + 2 * TREE_LOOP_MAX };
+
+static inline size_t dynamics_equations(const Dynamics *dynamics)
+{
+    return dynamics->tree.coordinate_count + 2 * dynamics->tree.loop_count;
+}
+
+// Factors the matrix of these equations at a state of the tree, for dense_substitute. Returns false
+// where the accelerations are not determined.
+bool dynamics_factor(const Dynamics *dynamics, const TreeState *state, double *matrix,
+                     size_t *pivots);
+
 // Times, s, and coordinates are those since the base of the tree.
 //
 // The state at a time from the integrator's vector. Returns false where the accelerations are not

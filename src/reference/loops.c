@@ -32,14 +32,19 @@ static void add_end(const Tree *tree, const TreeState *state, int end, double si
     *angle = vec2_add(*angle, vec2_scale(sign, vec2_perp(state->arms[end])));
 }
 
-void loops_row(const Tree *tree, const TreeState *state, size_t loop, Vec2 *row)
+void loops_joint_row(const Tree *tree, const TreeState *state, int joint, Vec2 *row)
 {
-    const int end = 2 * tree->loops[loop];
+    const int end = 2 * joint;
     for (size_t j = 0; j < tree->coordinate_count; j++) {
         row[j] = (Vec2){0.0, 0.0};
     }
     add_end(tree, state, end, -1.0, row);
     add_end(tree, state, end + 1, 1.0, row);
+}
+
+void loops_row(const Tree *tree, const TreeState *state, size_t loop, Vec2 *row)
+{
+    loops_joint_row(tree, state, tree->loops[loop], row);
 }
 
 // Gap (or its rate) of one loop.

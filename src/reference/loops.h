@@ -3,7 +3,10 @@
 
 #include "reference/tree.h"
 
-// Velocity of the joint's anchor on body b less that on body a, by each coordinate (a vector each).
+// Velocity of a joint's anchor on body b less that on body a, by each coordinate (a vector each).
+void loops_joint_row(const Tree *tree, const TreeState *state, int joint, Vec2 *row);
+
+// Likewise, of the joint that closes a loop.
 void loops_row(const Tree *tree, const TreeState *state, size_t loop, Vec2 *row);
 
 // Moves coordinates and rates by the least that closes every loop, at a time since the base.

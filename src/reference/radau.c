@@ -99,6 +99,24 @@ static void find_stage(Radau *radau, const Dop853 *integrator, double step, size
     }
 }
 
+// The derivatives at a stage whose rates are known. Returns the sum of all rates of decay.
+static double find_slopes(Radau *radau, Dop853 *integrator, double time, double *y, size_t stage)
+{
+    const size_t n = freedoms_of(integrator);
+    double *by_position = radau->by_position[stage];
+    double *by_rate = radau->by_rate[stage];
+    if (integrator->slopes == NULL) {
+        return differentiate(radau, integrator, time, y, radau->rates[stage], by_position, by_rate);
+    }
+    integrator->slopes(time, y, by_position, by_rate, integrator->context);
+    integrator->evaluations++;
+    double decay = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        decay -= by_rate[i * n + i];
+    }
+    return decay;
+}
+
 // The rates at all stages, with their derivatives where they are asked for.
 static void evaluate_stages(Radau *radau, Dop853 *integrator, double step, bool with_derivatives)
 {
@@ -109,27 +127,69 @@ static void evaluate_stages(Radau *radau, Dop853 *integrator, double step, bool 
         integrator->rates(time, y, radau->rates[i], integrator->context);
         integrator->evaluations++;
         if (with_derivatives) {
-            radau->decay = differentiate(radau, integrator, time, y, radau->rates[i],
-                                         radau->by_position[i], radau->by_rate[i]);
+            radau->decay = find_slopes(radau, integrator, time, y, i);
         }
     }
 }
 
-// One block of Newton's matrix: how the equation of a stage depends on the rates of another.
-static void fill_block(const Radau *radau, size_t n, double step, size_t stage, size_t other,
-                       double *matrix)
+// Whether one of two coordinates feels the other at any stage.
+static bool are_coupled(const Radau *radau, size_t n, size_t a, size_t b)
 {
-    const size_t width = RADAU_STAGES * n;
-    for (size_t row = 0; row < n; row++) {
-        for (size_t column = 0; column < n; column++) {
-            const size_t at = row * n + column;
+    for (size_t i = 0; i < RADAU_STAGES; i++) {
+        const double *place = radau->by_position[i];
+        const double *rate = radau->by_rate[i];
+        if (place[a * n + b] != 0.0 || place[b * n + a] != 0.0 || rate[a * n + b] != 0.0 ||
+            rate[b * n + a] != 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Sorts the coordinates into blocks: each takes in, one after the other, all that its members feel.
+static void find_blocks(Radau *radau, size_t n)
+{
+    bool is_taken[RADAU_FREEDOM_MAX] = {false};
+    size_t count = 0;
+    radau->block_count = 0;
+    for (size_t first = 0; first < n; first++) {
+        if (is_taken[first]) {
+            continue;
+        }
+        const size_t start = count;
+        is_taken[first] = true;
+        radau->members[count++] = first;
+        for (size_t at = start; at < count; at++) {
+            for (size_t k = 0; k < n; k++) {
+                if (!is_taken[k] && are_coupled(radau, n, radau->members[at], k)) {
+                    is_taken[k] = true;
+                    radau->members[count++] = k;
+                }
+            }
+        }
+        radau->sizes[radau->block_count++] = count - start;
+    }
+}
+
+// One part of Newton's matrix of a block of m coordinates: how the equation of a stage depends on
+// the rates of another.
+static void fill_part(const Radau *radau, size_t n, const size_t *members, size_t m, double step,
+                      size_t stage, size_t other, double *matrix)
+{
+    const size_t width = RADAU_STAGES * m;
+    double weights[RADAU_STAGES];
+    for (size_t k = 0; k < RADAU_STAGES; k++) {
+        weights[k] = RADAU_COUPLING[stage][k] * RADAU_COUPLING[k][other];
+    }
+    for (size_t row = 0; row < m; row++) {
+        for (size_t column = 0; column < m; column++) {
+            const size_t at = members[row] * n + members[column];
             double twice = 0.0;
             for (size_t k = 0; k < RADAU_STAGES; k++) {
-                twice +=
-                    RADAU_COUPLING[stage][k] * RADAU_COUPLING[k][other] * radau->by_position[k][at];
+                twice += weights[k] * radau->by_position[k][at];
             }
             const double own = stage == other && row == column ? 1.0 : 0.0;
-            matrix[(stage * n + row) * width + other * n + column] =
+            matrix[(stage * m + row) * width + other * m + column] =
                 own - step * RADAU_COUPLING[stage][other] * radau->by_rate[other][at] -
                 step * step * twice;
         }
@@ -139,18 +199,55 @@ static void fill_block(const Radau *radau, size_t n, double step, size_t stage, 
 static bool factor(Radau *radau, const Dop853 *integrator, double step)
 {
     const size_t n = freedoms_of(integrator);
-    const size_t width = RADAU_STAGES * n;
     if (radau->matrix == NULL) {
+        const size_t width = RADAU_STAGES * n;
         radau->matrix = malloc(width * width * sizeof *radau->matrix);
         radau->pivots = malloc(width * sizeof *radau->pivots);
         assert(radau->matrix != NULL && radau->pivots != NULL);
     }
-    for (size_t i = 0; i < RADAU_STAGES; i++) {
-        for (size_t j = 0; j < RADAU_STAGES; j++) {
-            fill_block(radau, n, step, i, j, radau->matrix);
+    find_blocks(radau, n);
+    const size_t *members = radau->members;
+    double *matrix = radau->matrix;
+    size_t *pivots = radau->pivots;
+    for (size_t block = 0; block < radau->block_count; block++) {
+        const size_t m = radau->sizes[block];
+        const size_t width = RADAU_STAGES * m;
+        for (size_t i = 0; i < RADAU_STAGES; i++) {
+            for (size_t j = 0; j < RADAU_STAGES; j++) {
+                fill_part(radau, n, members, m, step, i, j, matrix);
+            }
         }
+        if (!dense_factor(width, matrix, pivots)) {
+            return false;
+        }
+        members += m;
+        matrix += width * width;
+        pivots += width;
     }
-    return dense_factor(width, radau->matrix, radau->pivots);
+    return true;
+}
+
+// Solves Newton's equations in place, by stages and coordinates.
+static void substitute(const Radau *radau, size_t n, double *change)
+{
+    const size_t *members = radau->members;
+    const double *matrix = radau->matrix;
+    const size_t *pivots = radau->pivots;
+    double own[RADAU_STAGES * RADAU_FREEDOM_MAX];
+    for (size_t block = 0; block < radau->block_count; block++) {
+        const size_t m = radau->sizes[block];
+        const size_t width = RADAU_STAGES * m;
+        for (size_t i = 0; i < width; i++) {
+            own[i] = change[i / m * n + members[i % m]];
+        }
+        dense_substitute(width, matrix, pivots, own);
+        for (size_t i = 0; i < width; i++) {
+            change[i / m * n + members[i % m]] = own[i];
+        }
+        members += m;
+        matrix += width * width;
+        pivots += width;
+    }
 }
 
 // The rates at the stages to begin with: from the polynomial of the step before, which goes on, or
@@ -186,7 +283,7 @@ static double correct(const Radau *radau, const Dop853 *integrator, double step,
             change[i * n + k] = step * sum - radau->moved[i][n + k];
         }
     }
-    dense_substitute(RADAU_STAGES * n, radau->matrix, radau->pivots, change);
+    substitute(radau, n, change);
     double largest = 0.0;
     for (size_t i = 0; i < RADAU_STAGES * n; i++) {
         const double share = fabs(change[i]) / integrator->fixed[n + i % n];

@@ -27,8 +27,13 @@ typedef struct Radau {
     // derivatives of the accelerations at the stages, 1/s^2 and 1/s
     double by_position[RADAU_STAGES][RADAU_FREEDOM_MAX * RADAU_FREEDOM_MAX];
     double by_rate[RADAU_STAGES][RADAU_FREEDOM_MAX * RADAU_FREEDOM_MAX];
-    double decay;   // 1/s, the sum of all rates of decay, where it was last looked at
-    double *matrix; // of Newton's method for all stages, factored; NULL before the first
+    double decay; // 1/s, the sum of all rates of decay, where it was last looked at
+    // Newton's method for all stages: coordinates that have nothing to do with one another are in
+    // separate blocks, each factored by itself, one behind the other
+    size_t block_count;
+    size_t sizes[RADAU_FREEDOM_MAX];   // coordinates, by block
+    size_t members[RADAU_FREEDOM_MAX]; // which they are, block by block
+    double *matrix;                    // NULL before the first
     size_t *pivots;
     double moved[RADAU_STAGES][DOP853_SIZE_MAX]; // of the stages since the start of the step
     double rates[RADAU_STAGES][DOP853_SIZE_MAX];

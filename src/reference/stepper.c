@@ -6,6 +6,7 @@
 // is from the pivot that it turns about. Work and losses are allowed the tolerance times m v^2.
 #include "reference/stepper.h"
 
+#include "reference/dynamics_slopes.h"
 #include "reference/loops.h"
 
 #include <float.h>
@@ -153,6 +154,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     integrator->size = dynamics_size(&stepper->dynamics);
     integrator->motion_size = dynamics_sum_index(&stepper->dynamics, 0);
     integrator->rates = dynamics_rates;
+    integrator->slopes = dynamics_slopes;
     integrator->context = &stepper->dynamics;
     stepper->scale = scale_speeds(scenario);
     set_tolerances(stepper);

@@ -171,6 +171,58 @@ static void steps_do_not_see_what_has_died_away(void **state)
     assert_true(follow_sine(1e6, false) == 20000);
 }
 
+// Three coordinates, of which the first and the last are one system: y'' = -4 (y - other), and the
+// one between them a pendulum.
+static void pendulum_between_two(double time, const double *y, double *rates, void *context)
+{
+    (void)time;
+    (void)context;
+    for (int i = 0; i < 3; i++) {
+        rates[i] = y[3 + i];
+    }
+    rates[3] = -4.0 * (y[0] - y[2]);
+    rates[4] = -sin(y[1]);
+    rates[5] = -4.0 * (y[2] - y[0]);
+    rates[6] = y[4] * y[4];
+}
+
+// The two swing against each other with the square of the frequency 8 s^-2.
+static void systems_side_by_side_move_as_each_alone(void **state)
+{
+    (void)state;
+    Dop853 integrator;
+    Radau *radau = radau_create();
+    memset(&integrator, 0, sizeof integrator);
+    integrator.size = 7;
+    integrator.motion_size = 6;
+    integrator.rates = pendulum_between_two;
+    integrator.method = &radau->method;
+    for (int i = 0; i < 7; i++) {
+        integrator.fixed[i] = 1e-13;
+    }
+    for (int i = 0; i < 6; i++) {
+        radau->nudge[i] = 1e-7;
+    }
+    const double y[DOP853_SIZE_MAX] = {1.0, 2.0, -1.0};
+    dop853_start(&integrator, 0.0, y);
+    radau_look(radau, &integrator);
+    for (int i = 0; i < 64; i++) {
+        assert_true(dop853_try(&integrator, 2.0 / 64.0) < INFINITY);
+        dop853_fill(&integrator);
+        dop853_accept(&integrator);
+    }
+    double between;
+    assert_near(integrator.y[1], swing(64, &between), 1e-14);
+    assert_near(integrator.y[0], cos(2.0 * sqrt(8.0)), 1e-12);
+    assert_near(integrator.y[2], -integrator.y[0], 1e-12);
+    // control: they are solved for in two blocks, the larger one of coordinates that are not
+    // neighbours
+    assert_int_equal(radau->block_count, 2);
+    assert_int_equal(radau->sizes[0], 2);
+    assert_int_equal(radau->members[1], 2);
+    radau_destroy(radau);
+}
+
 static void decay_is_measured(void **state)
 {
     (void)state;
@@ -204,6 +256,7 @@ int main(void)
         cmocka_unit_test(halving_the_step_divides_the_error_by_two_to_the_thirteenth),
         cmocka_unit_test(the_polynomial_is_of_order_seven),
         cmocka_unit_test(steps_do_not_see_what_has_died_away),
+        cmocka_unit_test(systems_side_by_side_move_as_each_alone),
         cmocka_unit_test(decay_is_measured),
         cmocka_unit_test(what_cannot_be_solved_for_fails),
     };

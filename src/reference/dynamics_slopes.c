@@ -1,0 +1,167 @@
+// How do the accelerations change with coordinates and rates where pins press on their walls?
+//
+//     dA = M^-1 (G^T df + s dg),   de = G dq,  dv = G du
+// G: how the pin's centre moves in the hole by each coordinate; s: the arms of friction about the
+// bodies' centres, r - |e| of the pin, -r of the hole; e eccentricity, v velocity of the centre, r
+// the hole's radius, M the mass matrix with the loops' rows. Of the force on the pin
+//     f = N n - g t,   N = F_el(d) (1 + chi d'/v0) + c d',   g = mu N tanh((t v - s u) / v_s)
+// with d = |e| - play, d' = -n v, n = -e / |e|, and t at right angles to n:
+//     dn = -t (t de) / |e|,   dN = (1 + chi d'/v0) k dd + (chi F_el / v0 + c) dd'
+#include "reference/dynamics_slopes.h"
+
+#include "base/dense.h"
+#include "reference/loops.h"
+#include "reference/stiffness.h"
+
+#include <math.h>
+
+// A pressing contact and what its force changes with.
+typedef struct Pressing {
+    const DynamicsContact *contact;
+    const ContactOptions *options;
+    ContactForce force;
+    Vec2 velocity;                    // m/s, v
+    double stiffness;                 // N/m, dN by depth
+    double damping;                   // N s/m, dN by closing speed
+    double grip;                      // 1, g / (mu N)
+    Vec2 centre[TREE_COORDINATE_MAX]; // G
+    double arms[TREE_COORDINATE_MAX]; // m, s; 0 without friction
+} Pressing;
+
+// What small changes make of it.
+typedef struct Change {
+    Vec2 force;      // N
+    double friction; // N, g
+} Change;
+
+// Arms of friction, and how it grips at a state of the tree.
+static void find_friction(const Dynamics *dynamics, const TreeState *state, Pressing *pressing)
+{
+    const Tree *tree = &dynamics->tree;
+    const double radius = pressing->contact->hole_radius;
+    const PinHole *pose = &pressing->force.pose;
+    const Vec2 tangent = vec2_perp(pose->normal);
+    double sliding = vec2_dot(tangent, pressing->velocity);
+    for (int end = 0; end < 2; end++) {
+        const int body = tree->end_bodies[2 * pressing->contact->joint + end];
+        const double arm = end == 0 ? -radius : radius - vec2_length(pose->eccentricity);
+        if (body != LINKAGE_GROUND) {
+            sliding -= arm * state->motions[body].omega;
+        }
+        if (body != LINKAGE_GROUND && body != tree->driven) {
+            pressing->arms[tree->angle_column[body]] = arm;
+        }
+    }
+    pressing->grip = tanh(sliding / pressing->options->friction_speed);
+}
+
+static Pressing look_at(const Dynamics *dynamics, const TreeState *state, size_t number)
+{
+    const DynamicsContact *contact = &dynamics->contacts[number];
+    const ContactOptions *options = &dynamics->scenario->contact;
+    Pressing pressing = {
+        .contact = contact,
+        .options = options,
+        .force = dynamics_contact_find(contact, options, &dynamics->tree, state),
+        .velocity = tree_joint_velocity(&dynamics->tree, state, contact->joint),
+    };
+    const PinHole *pose = &pressing.force.pose;
+    pressing.stiffness = (1.0 + contact->damping_rate * pose->approach_speed) *
+                         force_law_tangent(&contact->law, fabs(pose->penetration));
+    pressing.damping = stiffness_damping(contact, &pressing.force);
+    loops_joint_row(&dynamics->tree, state, contact->joint, pressing.centre);
+    if (options->friction > 0.0) {
+        find_friction(dynamics, state, &pressing);
+    }
+    return pressing;
+}
+
+// With small changes of e and v, and of the sliding speed by what bodies turn, s du.
+static Change change_force(const Pressing *pressing, Vec2 moved, Vec2 faster, double rolled)
+{
+    const Vec2 normal = pressing->force.pose.normal;
+    const Vec2 tangent = vec2_perp(normal);
+    const Vec2 velocity = pressing->velocity;
+    const double turned =
+        -vec2_dot(tangent, moved) / vec2_length(pressing->force.pose.eccentricity);
+    const double deeper = -vec2_dot(normal, moved);
+    const double closing = -vec2_dot(normal, faster) - turned * vec2_dot(tangent, velocity);
+    const double pressed = pressing->stiffness * deeper + pressing->damping * closing;
+    double held = 0.0;
+    double friction = 0.0;
+    if (pressing->options->friction > 0.0) {
+        const double grip = pressing->grip;
+        const double slid =
+            vec2_dot(tangent, faster) - turned * vec2_dot(normal, velocity) - rolled;
+        const double gripped = (1.0 - grip * grip) * slid / pressing->options->friction_speed;
+        held = pressing->options->friction * pressing->force.normal * grip;
+        friction =
+            pressing->options->friction * (pressed * grip + pressing->force.normal * gripped);
+    }
+    // n turns towards t, and t away from n
+    const double across = pressed + held * turned;
+    const double along = pressing->force.normal * turned - friction;
+    return (Change){vec2_add(vec2_scale(across, normal), vec2_scale(along, tangent)), friction};
+}
+
+// The accelerations that a force causes: on the centre along x and along y, and by friction's arms.
+typedef struct Pushed {
+    double by[3][DYNAMICS_EQUATION_MAX];
+} Pushed;
+
+static void add_column(size_t n, const Pushed *pushed, Change change, double *column)
+{
+    for (size_t i = 0; i < n; i++) {
+        column[i * n] += pushed->by[0][i] * change.force.x + pushed->by[1][i] * change.force.y +
+                         pushed->by[2][i] * change.friction;
+    }
+}
+
+static void add_slopes(const Dynamics *dynamics, const Pressing *pressing, const double *factored,
+                       const size_t *pivots, double *by_position, double *by_rate)
+{
+    static const Vec2 NONE = {0.0, 0.0};
+    const size_t n = dynamics->tree.coordinate_count;
+    Pushed pushed = {{{0.0}}};
+    for (size_t i = 0; i < n; i++) {
+        pushed.by[0][i] = pressing->centre[i].x;
+        pushed.by[1][i] = pressing->centre[i].y;
+        pushed.by[2][i] = pressing->arms[i];
+    }
+    for (int i = 0; i < (pressing->options->friction > 0.0 ? 3 : 2); i++) {
+        dense_substitute(dynamics_equations(dynamics), factored, pivots, pushed.by[i]);
+    }
+    for (size_t k = 0; k < n; k++) {
+        const Vec2 centre = pressing->centre[k];
+        const bool moves = centre.x != 0.0 || centre.y != 0.0;
+        if (moves) {
+            add_column(n, &pushed, change_force(pressing, centre, NONE, 0.0), by_position + k);
+        }
+        if (moves || pressing->arms[k] != 0.0) {
+            add_column(n, &pushed, change_force(pressing, NONE, centre, pressing->arms[k]),
+                       by_rate + k);
+        }
+    }
+}
+
+void dynamics_slopes(double since_s, const double *y, double *by_position, double *by_rate,
+                     void *context)
+{
+    const Dynamics *dynamics = context;
+    const Tree *tree = &dynamics->tree;
+    const size_t n = tree->coordinate_count;
+    TreeState state;
+    double factored[DYNAMICS_EQUATION_MAX * DYNAMICS_EQUATION_MAX];
+    size_t pivots[DYNAMICS_EQUATION_MAX];
+    tree_evaluate(tree, since_s, y, y + n, &state);
+    const double start = dynamics_factor(dynamics, &state, factored, pivots) ? 0.0 : NAN;
+    for (size_t i = 0; i < n * n; i++) {
+        by_position[i] = by_rate[i] = start;
+    }
+    for (size_t i = 0; i < dynamics->contact_count; i++) {
+        if (dynamics->contacts[i].mode == CONTACT_PRESSING) {
+            const Pressing pressing = look_at(dynamics, &state, i);
+            add_slopes(dynamics, &pressing, factored, pivots, by_position, by_rate);
+        }
+    }
+}

@@ -1,0 +1,128 @@
+// Are the derivatives that the implicit integrator works with those of the accelerations?
+#include "close.h"
+#include "mechanism.h"
+
+#include "base/lcg.h"
+#include "reference/dynamics_slopes.h"
+
+enum { SIZE = 2 * TREE_COORDINATE_MAX + DYNAMICS_IMPULSES + LINKAGE_JOINT_MAX };
+
+static const double DEPTH = 1e-6; // m
+static const double PLACE = 1e-5; // m or rad, that coordinates are away from the start
+static const double RATE = 1e-4;  // m/s or rad/s
+
+// The paper's crank-rocker with play and friction, its drive at a stand. Every pin presses on its
+// wall, moves against it and slides along it.
+typedef struct Pressed {
+    Scenario scenario;
+    Dynamics dynamics;
+    double y[SIZE];
+} Pressed;
+
+static void press(Pressed *pressed, size_t joints)
+{
+    *pressed = (Pressed){.scenario = mechanism_loose(joints)};
+    Scenario *scenario = &pressed->scenario;
+    scenario->gravity = 0.0;
+    scenario->contact.friction = 0.2;
+    scenario->linkage.driver.speed = 1e-9;
+    Dynamics *dynamics = &pressed->dynamics;
+    Err err = {ERR_NONE, ""};
+    assert_true(dynamics_init(scenario, dynamics, &err));
+    const size_t n = dynamics->tree.coordinate_count;
+    Motion motions[LINKAGE_BODY_MAX];
+    linkage_start(&scenario->linkage, motions);
+    tree_start(&dynamics->tree, motions, pressed->y + n);
+    uint64_t seed = 1;
+    for (size_t k = 0; k < n; k++) {
+        pressed->y[k] = PLACE * lcg_draw(&seed);
+        pressed->y[n + k] = RATE * lcg_draw(&seed);
+    }
+    for (size_t i = 0; i < dynamics->contact_count; i++) {
+        DynamicsContact *contact = &dynamics->contacts[i];
+        contact->mode = CONTACT_PRESSING;
+        contact->damping_rate = 1e3;
+        const PinHole pose = dynamics_contact(dynamics, i, 0.0, pressed->y).pose;
+        contact->radial_clearance = vec2_length(pose.eccentricity) - DEPTH;
+    }
+}
+
+// The difference of an acceleration, over the nudge of a coordinate or rate on both sides.
+static void differences(Pressed *pressed, size_t k, double nudge, double *column)
+{
+    const size_t n = pressed->dynamics.tree.coordinate_count;
+    double rates[2][SIZE];
+    const double kept = pressed->y[k];
+    for (int side = 0; side < 2; side++) {
+        pressed->y[k] = kept + (side == 0 ? -nudge : nudge);
+        dynamics_rates(0.0, pressed->y, rates[side], &pressed->dynamics);
+    }
+    pressed->y[k] = kept;
+    for (size_t i = 0; i < n; i++) {
+        column[i] = (rates[1][n + i] - rates[0][n + i]) / (2.0 * nudge);
+    }
+}
+
+// The largest error of any derivative, over the largest in its column.
+static double worst(Pressed *pressed)
+{
+    const size_t n = pressed->dynamics.tree.coordinate_count;
+    double slopes[2][TREE_COORDINATE_MAX * TREE_COORDINATE_MAX];
+    double worst = 0.0;
+    dynamics_slopes(0.0, pressed->y, slopes[0], slopes[1], &pressed->dynamics);
+    for (size_t k = 0; k < 2 * n; k++) {
+        double column[TREE_COORDINATE_MAX];
+        double error = 0.0;
+        double largest = 0.0;
+        differences(pressed, k, k < n ? 1e-4 * DEPTH : 1e-4 * RATE, column);
+        for (size_t i = 0; i < n; i++) {
+            const double slope = slopes[k < n ? 0 : 1][i * n + k % n];
+            error = fmax(error, fabs(slope - column[i]));
+            largest = fmax(largest, fabs(column[i]));
+        }
+        worst = fmax(worst, error / largest);
+    }
+    return worst;
+}
+
+static void derivatives_are_those_of_the_contacts_forces(void **state)
+{
+    (void)state;
+    for (size_t joints = 1; joints <= 3; joints++) {
+        Pressed pressed;
+        press(&pressed, joints);
+        // the frozen geometry leaves out some depths over lengths, and the differences their
+        // squares
+        assert_true(worst(&pressed) < 1e-4);
+    }
+}
+
+// Control: derivatives of another motion, of the same place.
+static void another_sliding_speed_has_other_derivatives(void **state)
+{
+    (void)state;
+    Pressed pressed;
+    press(&pressed, 2);
+    const size_t n = pressed.dynamics.tree.coordinate_count;
+    double slopes[2][2][TREE_COORDINATE_MAX * TREE_COORDINATE_MAX];
+    for (int i = 0; i < 2; i++) {
+        dynamics_slopes(0.0, pressed.y, slopes[i][0], slopes[i][1], &pressed.dynamics);
+        pressed.scenario.contact.friction_speed *= 1.1;
+    }
+    double apart = 0.0;
+    double largest = 0.0;
+    for (size_t i = 0; i < n * n; i++) {
+        apart = fmax(apart, fabs(slopes[0][1][i] - slopes[1][1][i]));
+        largest = fmax(largest, fabs(slopes[0][1][i]));
+    }
+    assert_true(apart > 1e-3 * largest);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(derivatives_are_those_of_the_contacts_forces),
+        cmocka_unit_test(another_sliding_speed_has_other_derivatives),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
