@@ -1,16 +1,17 @@
 // What does the program do when nothing is said? Every default, and why it is that number.
 #include "model/options.h"
 
-#define WORD(id, word, ...) word,
+#define WORD(id, word)                word,
+#define MEMBER_WORD(id, word, member) word,
 
 const char *const OPTIONS_CONTACT_MODELS[] = {"impact", "poisson", NULL};
-const char *const OPTIONS_LAWS[] = {OPTIONS_LAW_LIST(WORD) NULL};
+const char *const OPTIONS_LAWS[] = {OPTIONS_LAW_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_DAMPINGS[] = {OPTIONS_DAMPING_LIST(WORD) NULL};
 const char *const OPTIONS_ODE_SOLVERS[] = {"direct", "quick", NULL};
 const char *const OPTIONS_ODE_STEPPINGS[] = {"plain", "staggered", "extrapolated", NULL};
 const char *const OPTIONS_ODE_MAPS[] = {OPTIONS_ODE_MAP_LIST(WORD) NULL};
 const char *const OPTIONS_ODE_COLLIDERS[] = {"pin-hole", NULL};
-const char *const OPTIONS_BACKENDS[] = {OPTIONS_BACKEND_LIST(WORD) NULL};
+const char *const OPTIONS_BACKENDS[] = {OPTIONS_BACKEND_LIST(MEMBER_WORD) NULL};
 
 MaterialOptions material_options_default(void)
 {

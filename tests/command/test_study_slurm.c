@@ -103,7 +103,8 @@ static void what_slurm_would_not_take_is_refused(void **state)
     program_fails_usage(program, "study slurm six.yaml --shards 2 --requeues 1001", "0 to 1000");
     program_fails_usage(program, "study slurm six.yaml --shrads 2", "did you mean '--shards'?");
     program_fails_usage(program, "study slurm --shards 2", "no study given");
-    program_fails_usage(program, "study slurm six.yaml six.yaml --shards 2", "slurm takes one study");
+    program_fails_usage(program, "study slurm six.yaml six.yaml --shards 2",
+                        "slurm takes one study");
 }
 
 static void a_study_that_cannot_be_read_leaves_no_scripts(void **state)

@@ -123,8 +123,7 @@ static ErpCfm explicit_spring(const MapContact *contact)
     return map_get(ODE_MAP_CORRECTED)->convert(contact);
 }
 
-static const Map WITHOUT_LIMIT = {
-    .stability_limit = INFINITY, .convert = explicit_spring};
+static const Map WITHOUT_LIMIT = {.stability_limit = INFINITY, .convert = explicit_spring};
 
 static void the_predicted_restitution_is_the_known_one(void **state)
 {

@@ -136,7 +136,7 @@ static bool write_scripts(const SlurmJob *job, const SlurmOptions *options, Err 
         }
         Text text;
         text_init(&text);
-        slurm_write(job, i, &text);
+        slurm_write(job, (SlurmScript)i, &text);
         const bool is_written = written_text(FILE_SCRIPT, path, text.data, options->is_quiet, err);
         text_finish(&text);
         if (!is_written || !let_run(path, err)) {
@@ -154,7 +154,7 @@ static void print_scripts(const SlurmJob *job)
         text_append(&text, "%s==> ", i == 0 ? "" : "\n");
         text_append_shown(&text, job->stem);
         text_append(&text, ".%s <==\n", ENDINGS[i]);
-        slurm_write(job, i, &text);
+        slurm_write(job, (SlurmScript)i, &text);
     }
     fputs(text.data, stdout);
     text_finish(&text);
