@@ -15,14 +15,14 @@ static const double WARN_QUIET =
 static void warn_of_run(Progress *progress, double share)
 {
     const bool is_quiet = progress->line.is_quiet;
-    const double wall_s = progress->run_wall_s;
+    const double wall_s = progress->run_wall_s - progress->part_from_s;
     // at a share of 0 the pace is unknown
     if (progress->is_warned || wall_s < WARN_AFTER || !(share > 0.0) ||
         !(wall_s > long_work_limit(is_quiet) * share)) {
         return;
     }
-    char what[LINKAGE_NAME_SIZE + 32];
-    snprintf(what, sizeof what, "%s, at its present pace,", progress->backend);
+    char what[LINKAGE_NAME_SIZE + sizeof progress->doing + 32];
+    snprintf(what, sizeof what, "%s%s, at its present pace,", progress->backend, progress->doing);
     progress->is_warned = long_work_warn(what, wall_s / share, is_quiet);
 }
 
@@ -49,7 +49,14 @@ static void show(double share, double wall_s, void *context)
 {
     Progress *progress = context;
     // a time that decreases is that of another run
-    progress->before_s += wall_s < progress->run_wall_s ? progress->run_wall_s : 0.0;
+    if (wall_s < progress->run_wall_s) {
+        progress->before_s += progress->run_wall_s;
+        progress->part_from_s = 0.0;
+    } else if (share < progress->share) {
+        // the pace is that of the trial that begins, not of all
+        progress->part_from_s = progress->run_wall_s;
+    }
+    progress->share = share;
     progress->run_wall_s = wall_s;
     StatusLine *line = &progress->line;
     if (line->is_quiet || !line->is_terminal) {
@@ -78,12 +85,15 @@ RunWatch progress_watch(Progress *progress, const char *backend)
     progress->is_warned = false;
     progress->before_s += progress->run_wall_s;
     progress->run_wall_s = 0.0;
+    progress->part_from_s = 0.0;
+    progress->share = 0.0;
     return (RunWatch){.progress = show, .context = progress};
 }
 
 static void begin_trial(size_t trial, double step_s, void *context)
 {
     Progress *progress = context;
+    progress->share = 1.0; // whatever comes next begins anew
     if (trial == 0) {
         snprintf(progress->doing, sizeof progress->doing, ", the reference first");
     } else {

@@ -12,6 +12,9 @@ typedef struct Progress {
     bool is_told;      // that the work as a whole takes long
     double before_s;   // wall time of the runs before this one
     double run_wall_s; // of this one so far
+    // A run with a chosen step is made of trials, each with shares from 0 on.
+    double share;       // of the trial under way
+    double part_from_s; // of the run, where that trial began
 } Progress;
 
 // Starts to watch work that is made of one run after another. It must outlive them all.

@@ -169,6 +169,37 @@ static void who_wants_quiet_is_told_of_long_work_alone(void **state)
     assert_null(strstr(warning + 1, "warning"));
 }
 
+// After 20 s of trials one begins that takes 10 s: what it has done by then is no pace of all.
+static void a_trial_is_judged_by_its_own_pace(void **state)
+{
+    (void)state;
+    for (int is_slow = 0; is_slow < 2; is_slow++) {
+        Listener listener;
+        Progress progress;
+        listen_on_pipe(&listener);
+        progress_begin(&progress, true);
+        const ChosenWatch watch = progress_watch_trials(&progress, "ode");
+        for (size_t trial = 1; trial <= 3; trial++) {
+            watch.begin(trial, 1e-6, watch.run.context);
+            for (int i = 1; i <= 20; i++) {
+                const double share = i / (is_slow == 1 && trial == 3 ? 200.0 : 20.0);
+                watch.run.progress(share, 10.0 * (double)(trial - 1) + 0.5 * i, watch.run.context);
+            }
+        }
+        progress_end(&progress);
+        stop_listening(&listener);
+        const char *warning =
+            strstr(listener.output, "ode, trial 3, step 1 us, at its present pace, takes about");
+        // control: a trial that is slow itself
+        if (is_slow == 1) {
+            assert_non_null(warning);
+            assert_non_null(strstr(warning, "takes about 100 s"));
+        } else {
+            assert_null(strstr(listener.output, "pace"));
+        }
+    }
+}
+
 // The line of every command whose work is done in processes of its own.
 static void who_wants_quiet_gets_one_line_of_long_work(void **state)
 {
@@ -242,6 +273,7 @@ int main(void)
         cmocka_unit_test(a_log_gets_a_line_every_ten_seconds),
         cmocka_unit_test(time_goes_on_from_run_to_run),
         cmocka_unit_test(who_wants_quiet_is_told_of_long_work_alone),
+        cmocka_unit_test(a_trial_is_judged_by_its_own_pace),
         cmocka_unit_test(who_wants_quiet_gets_one_line_of_long_work),
         cmocka_unit_test(a_run_that_was_announced_is_not_warned_of_again),
         cmocka_unit_test(colours_are_for_terminals_that_want_them),
