@@ -147,7 +147,8 @@ static bool take_item(const OptionRow *row, const char *value, const char **list
 static bool take_value(const Reading *reading, const OptionRow *row, const char *value)
 {
     Err *err = reading->err;
-    void *field = (char *)reading->target + row->offset;
+    // a command without options of its own has nothing to fill
+    void *field = reading->target == NULL ? NULL : (char *)reading->target + row->offset;
     switch (row->type) {
     case OPTION_NONE:
         return err_set(err, ERR_USAGE, "'%s' takes no argument, and '%s' is one",
