@@ -215,13 +215,19 @@ static size_t count_cells(const char *line)
     return cells;
 }
 
+// Makes an empty file by a pattern that ends in XXXXXX, and puts its name there.
+static void make_file(char *path)
+{
+    const int file = mkstemp(path);
+    assert_true(file >= 0);
+    close(file);
+}
+
 static void a_spreadsheet_has_as_many_cells_in_every_row(void **state)
 {
     Fixture *fixture = *state;
     char path[] = "/tmp/compare-XXXXXX";
-    const int file = mkstemp(path);
-    assert_true(file >= 0);
-    close(file);
+    make_file(path);
     Err err = {0};
     // a point without an error has an empty cell and its reason
     fixture->ladder->points[0].run.error.omega_max_in_horizon = NAN;
@@ -268,9 +274,7 @@ static void a_number_that_does_not_exist_is_an_empty_cell_and_null(void **state)
 {
     Fixture *fixture = *state;
     char path[] = "/tmp/compare-XXXXXX";
-    const int file = mkstemp(path);
-    assert_true(file >= 0);
-    close(file);
+    make_file(path);
     Err err = {0};
     fixture->ladder->points[1].run.error.alpha_max = NAN;
     fixture->ladder->points[2].run.error.alpha_max = 0.25;

@@ -97,10 +97,15 @@ static json_t *scheme_object(const Tune *tune, size_t number)
     return object;
 }
 
-static json_t *text_value(bool is_there, Text *text)
+// What a writer of text makes of the report.
+static json_t *written_value(void (*write)(const TuneReport *report, Text *text),
+                             const TuneReport *report)
 {
-    json_t *value = is_there ? json_value_text(text->data) : json_null();
-    text_finish(text);
+    Text text;
+    text_init(&text);
+    write(report, &text);
+    json_t *value = json_value_text(text.data);
+    text_finish(&text);
     return value;
 }
 
@@ -138,10 +143,7 @@ static json_t *gazebo_object(const TuneReport *report)
     json_value_set(object, "max_vel", gazebo.max_vel);
     json_value_set(object, "max_step_size", gazebo.step_s);
     json_value_set(object, "error_omega", gazebo.error);
-    Text text;
-    text_init(&text);
-    tune_gazebo_write(report, &text);
-    json_object_set_new(object, "sdf", text_value(true, &text));
+    json_object_set_new(object, "sdf", written_value(tune_gazebo_write, report));
     return object;
 }
 
@@ -160,10 +162,7 @@ static json_t *mujoco_object(const TuneReport *report)
     json_value_set(object, "stiffness_N_m", mujoco.stiffness);
     json_value_set(object, "damping_N_s_m", mujoco.damping);
     json_value_set(object, "step_s", mujoco.step_s);
-    Text text;
-    text_init(&text);
-    tune_mujoco_write(report, &text);
-    json_object_set_new(object, "mjcf", text_value(true, &text));
+    json_object_set_new(object, "mjcf", written_value(tune_mujoco_write, report));
     return object;
 }
 
@@ -175,7 +174,8 @@ static json_t *loop_object(const TuneReport *report)
         Text text;
         text_init(&text);
         const bool is_there = tune_snippet_write(report, plain, &text);
-        json_object_set_new(object, "lines", text_value(is_there, &text));
+        json_object_set_new(object, "lines", is_there ? json_value_text(text.data) : json_null());
+        text_finish(&text);
     }
     return object;
 }
