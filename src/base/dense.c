@@ -3,9 +3,7 @@
 
 #include <math.h>
 
-enum { LANES = 4 }; // of a maximum, none of which waits for another
-
-static const double SINGULAR = 1e-14; // a hundred roundings below the largest entry
+static const double SINGULAR = 1e-14; // a hundred roundings below the largest entry of the column
 
 static void swap_rows(double *a, size_t columns, size_t first, size_t second)
 {
@@ -16,24 +14,20 @@ static void swap_rows(double *a, size_t columns, size_t first, size_t second)
     }
 }
 
-static double largest_entry(size_t count, const double *a)
+// Cancellation in a column leaves a large entry in the rows above, for no factor exceeds 1: what is
+// left is judged by its own column, so that the units of the unknowns may differ.
+static double largest_of_column(size_t n, const double *a, size_t column)
 {
-    double largest[LANES] = {0.0};
-    for (size_t i = 0; i < count; i++) {
-        const double size = fabs(a[i]);
-        double *lane = &largest[i % LANES];
-        *lane = size > *lane ? size : *lane;
+    double largest = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        const double size = fabs(a[i * n + column]);
+        largest = size > largest ? size : largest;
     }
-    double all = 0.0;
-    for (size_t i = 0; i < LANES; i++) {
-        all = largest[i] > all ? largest[i] : all;
-    }
-    return all;
+    return largest;
 }
 
 bool dense_solve(size_t n, double *a, double *b)
 {
-    const double threshold = SINGULAR * largest_entry(n * n, a);
     for (size_t k = 0; k < n; k++) {
         // the largest entry left in the column becomes the pivot
         size_t pivot = k;
@@ -42,7 +36,7 @@ bool dense_solve(size_t n, double *a, double *b)
                 pivot = i;
             }
         }
-        if (!(fabs(a[pivot * n + k]) > threshold)) {
+        if (!(fabs(a[pivot * n + k]) > SINGULAR * largest_of_column(n, a, k))) {
             return false;
         }
         swap_rows(a, n, k, pivot);

@@ -5,8 +5,8 @@
 #include <stddef.h>
 
 // Solves A x = b by Gaussian elimination with row pivoting. A is n by n, row by row; A and b are
-// overwritten, b by x. Returns false where a pivot falls below 1e-14 times the largest entry of
-// A: the matrix is then singular to working precision, and b is not to be used.
+// overwritten, b by x. Returns false where a pivot falls below 1e-14 times what elimination took
+// from its column: the matrix is then singular to working precision, and b is not to be used.
 bool dense_solve(size_t n, double *a, double *b);
 
 // The number of independent rows of A (rows by columns, overwritten): elimination with complete

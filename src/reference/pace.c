@@ -68,29 +68,8 @@ bool pace_keep(Pace *pace, const Dynamics *dynamics, const EventList *events, do
     return true;
 }
 
-// Masses, kg, and inertias, kg m^2, stand in one matrix. Where one of them is less than 1e-14 of
-// another, elimination takes it for rounding (base/dense.h).
-static const double SEPARABLE = 1e14;
-
-bool pace_undetermined(const Linkage *linkage, Err *err)
+bool pace_undetermined(Err *err)
 {
-    const Body *heaviest = NULL;
-    const Body *lightest = NULL;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        const Body *body = &linkage->bodies[i];
-        if ((int)i == linkage_driven_body(linkage)) {
-            continue;
-        }
-        heaviest = heaviest == NULL || body->mass > heaviest->mass ? body : heaviest;
-        lightest = lightest == NULL || body->inertia < lightest->inertia ? body : lightest;
-    }
-    if (heaviest != NULL && heaviest->mass > 0.1 * SEPARABLE * lightest->inertia) {
-        return err_set(err, ERR_SOLVER,
-                       "the accelerations are not determined: the mass of %s, %.3g kg, and the "
-                       "inertia of %s, %.3g kg m^2, differ by more than double precision can "
-                       "resolve; keep their ratio below 1e13",
-                       heaviest->name, heaviest->mass, lightest->name, lightest->inertia);
-    }
     return err_set(err, ERR_SOLVER,
                    "the accelerations are not determined: the ideal joints stand at a change "
                    "point, or are redundant; give one of them play, or start elsewhere");

@@ -15,6 +15,6 @@ typedef struct Pace {
 bool pace_keep(Pace *pace, const Dynamics *dynamics, const EventList *events, double time_s,
                Err *err);
 
-// The equations for the accelerations have no solution: masses and inertias too far apart for the
-// digits of a double, or joints that hold each other up. Returns false, with ERR_SOLVER.
-bool pace_undetermined(const Linkage *linkage, Err *err);
+// The equations for the accelerations have no solution: joints hold each other up. Returns false,
+// with ERR_SOLVER.
+bool pace_undetermined(Err *err);

@@ -110,7 +110,7 @@ static bool show_onset(Reference *reference, Err *err)
     memcpy(reference->y, stepper->integrator.y, stepper->integrator.size * sizeof *reference->y);
     memcpy(reference->before, reference->y, stepper->integrator.size * sizeof *reference->y);
     if (!dynamics_evaluate(&stepper->dynamics, 0.0, reference->y, &state)) {
-        return pace_undetermined(&stepper->scenario->linkage, err);
+        return pace_undetermined(err);
     }
     reference->start_s = reference->end_s;
     fill_record(reference, &state);

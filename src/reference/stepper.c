@@ -164,7 +164,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     dop853_start(integrator, 0.0, y);
     stepper->points.count = 1;
     if (!dynamics_evaluate(&stepper->dynamics, 0.0, y, &stepper->points.states[0])) {
-        return pace_undetermined(&scenario->linkage, err);
+        return pace_undetermined(err);
     }
     return true;
 }
@@ -265,7 +265,7 @@ static bool step_to_event(Stepper *stepper, Err *err)
     stepper->events.count = 0;
     for (size_t i = 0; i <= dynamics->contact_count; i++) {
         if (!events_look(dynamics, integrator, &stepper->points)) {
-            return pace_undetermined(&stepper->scenario->linkage, err);
+            return pace_undetermined(err);
         }
         // a shorter step sees better: it may show an event before the one it was cut to
         EventList found;

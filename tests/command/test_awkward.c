@@ -113,13 +113,14 @@ static void a_pin_through_its_wall_is_told_with_joint_and_time(void **state)
     assert_says(program->errors, "give run.step");
 }
 
-static void masses_too_far_apart_are_named(void **state)
+static void masses_far_apart_are_followed(void **state)
 {
     Program *program = *state;
+    // 1e5 kg beside .1 mg; ODE with a step of 1 us ends after 163147 steps, with the same words
     run_case(program, &CASE_SEPARATING, 3, REFERENCE);
     assert_int_equal(program->status, 4);
-    assert_says(program->errors, "the mass of link-0, 1e+05 kg, and the inertia of link-1");
-    assert_says(program->errors, "keep their ratio below 1e13");
+    assert_says(program->errors, "at 163.147");
+    assert_says(program->errors, "the pin of pin-0 is 0.5 mm inside the wall of its hole");
 }
 
 #define COMMAND_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
@@ -132,7 +133,7 @@ int main(void)
         COMMAND_TEST(change_points_are_passed),
         COMMAND_TEST(a_lock_is_called_a_lock_on_every_solver),
         COMMAND_TEST(a_pin_through_its_wall_is_told_with_joint_and_time),
-        COMMAND_TEST(masses_too_far_apart_are_named),
+        COMMAND_TEST(masses_far_apart_are_followed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

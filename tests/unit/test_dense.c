@@ -57,6 +57,21 @@ static void a_singular_system_is_refused(void **state)
     assert_false(dense_solve(2, zero, b));
 }
 
+// Masses, kg, and inertias, kg m^2, stand in one matrix: what is small for its units is not singular.
+static void unknowns_of_other_units_are_judged_by_themselves(void **state)
+{
+    (void)state;
+    double a[9] = {1e5, 0.0, 1e-3, 0.0, 1e-11, 0.0, 1e-3, 0.0, 2e-11};
+    double b[3] = {1e5 + 1e-3, 3e-11, 1e-3 + 2e-11};
+    assert_true(dense_solve(3, a, b));
+    assert_true(fabs(b[0] - 1.0) <= 1e-14);
+    assert_true(fabs(b[1] - 3.0) <= 1e-14);
+    // 1e-11 is left of 2e-11 in the last column: one bit of b's third number is 1e-8 of the answer
+    assert_true(fabs(b[2] - 1.0) <= 1e-7);
+    double dependent[4] = {1.0, 1e-20, 1.0, 1e-20};
+    assert_false(dense_solve(2, dependent, b));
+}
+
 static void a_matrix_that_is_not_finite_is_refused(void **state)
 {
     (void)state;
@@ -128,6 +143,7 @@ int main(void)
         cmocka_unit_test(a_factored_matrix_serves_many_right_hand_sides),
         cmocka_unit_test(a_column_of_zeros_is_not_factored),
         cmocka_unit_test(a_singular_system_is_refused),
+        cmocka_unit_test(unknowns_of_other_units_are_judged_by_themselves),
         cmocka_unit_test(a_matrix_that_is_not_finite_is_refused),
         cmocka_unit_test(the_rank_counts_independent_rows),
         cmocka_unit_test(a_row_that_differs_by_less_than_the_tolerance_does_not_count),
