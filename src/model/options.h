@@ -40,6 +40,14 @@
     member(ODE_MAP_EXACT, "exact") \
     member(ODE_MAP_IMPULSE, "impulse")
 
+// When ODE's positions and speeds are taken to be; see ode/stepping.h. Plain: both at the end of the
+// step, as ODE's manual has it. Staggered: positions half a step behind, a leapfrog. Extrapolated:
+// several staggered worlds of different steps, for ideal joints.
+#define OPTIONS_ODE_STEPPING_LIST(member) \
+    member(ODE_PLAIN, "plain", STEPPING_PLAIN) \
+    member(ODE_STAGGERED, "staggered", STEPPING_STAGGERED) \
+    member(ODE_EXTRAPOLATED, "extrapolated", STEPPING_EXTRAPOLATED)
+
 // The solvers; see model/solver.h.
 #define OPTIONS_BACKEND_LIST(member) \
     member(BACKEND_ANALYTIC, "analytic", ANALYTIC_SOLVER) \
@@ -52,6 +60,9 @@
 typedef enum LawKind { OPTIONS_LAW_LIST(OPTIONS_ENUMERATOR) LAW_COUNT } LawKind;
 typedef enum DampingKind { OPTIONS_DAMPING_LIST(OPTIONS_ENUMERATOR) DAMPING_COUNT } DampingKind;
 typedef enum OdeMap { OPTIONS_ODE_MAP_LIST(OPTIONS_ENUMERATOR) ODE_MAP_COUNT } OdeMap;
+typedef enum OdeStepping {
+    OPTIONS_ODE_STEPPING_LIST(OPTIONS_ENUMERATOR) ODE_STEPPING_COUNT
+} OdeStepping;
 typedef enum BackendKind { OPTIONS_BACKEND_LIST(OPTIONS_ENUMERATOR) BACKEND_COUNT } BackendKind;
 
 // The model of what happens where pin and hole overlap.
@@ -62,13 +73,6 @@ typedef enum ContactModel {
 
 typedef enum OdeSolver { ODE_DIRECT, ODE_QUICK } OdeSolver;
 typedef enum OdeCollider { ODE_COLLIDER_PIN_HOLE } OdeCollider;
-
-// When ODE's positions and speeds are taken to be.
-typedef enum OdeStepping {
-    ODE_PLAIN,        // both at the end of the step, as ODE's manual has it
-    ODE_STAGGERED,    // positions half a step behind: a leapfrog
-    ODE_EXTRAPOLATED, // several staggered worlds of different steps, for ideal joints
-} OdeStepping;
 
 // The words that stand for the choices above, in their order; each list ends in NULL.
 extern const char *const OPTIONS_CONTACT_MODELS[];

@@ -66,6 +66,12 @@ bool scenario_has_clearance(const Scenario *scenario)
     return false;
 }
 
+bool scenario_integrates_contacts(const Scenario *scenario)
+{
+    return scenario->ode.stepping == ODE_STAGGERED && scenario->ode.map == ODE_MAP_IMPULSE &&
+           scenario->contact.model == CONTACT_IMPACT && scenario_has_clearance(scenario);
+}
+
 Scenario scenario_with_step(const Scenario *scenario, double step_s)
 {
     Scenario given = *scenario;

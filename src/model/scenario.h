@@ -52,6 +52,9 @@ double scenario_sample_time(const Scenario *scenario, size_t sample);
 // Whether any joint has play.
 bool scenario_has_clearance(const Scenario *scenario);
 
+// Whether ODE integrates the contacts within its steps, by the map that makes no rows.
+bool scenario_integrates_contacts(const Scenario *scenario);
+
 // The scenario with the step given and the way of stepping that a step chosen for a tolerance is
 // for: staggered with the contacts integrated in the step, or extrapolated where every joint is
 // ideal.

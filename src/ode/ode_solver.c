@@ -12,24 +12,18 @@ typedef struct Ode {
     void *state; // of it
 } Ode;
 
+#define MEMBER(id, word, solver) &solver,
+
 static const Solver *choose(const Scenario *scenario)
 {
-    const bool is_impact =
-        scenario_has_clearance(scenario) && scenario->contact.model == CONTACT_IMPACT;
-    switch (scenario->ode.stepping) {
-    case ODE_EXTRAPOLATED:
-        return &STEPPING_EXTRAPOLATED;
-    case ODE_STAGGERED:
-        return is_impact && scenario->ode.map == ODE_MAP_IMPULSE ? &STEPPING_IMPULSE
-                                                                 : &STEPPING_STAGGERED;
-    default:
-        return &STEPPING_PLAIN;
-    }
+    static const Solver *const STEPPINGS[] = {OPTIONS_ODE_STEPPING_LIST(MEMBER)};
+    return scenario_integrates_contacts(scenario) ? &STEPPING_IMPULSE
+                                                  : STEPPINGS[scenario->ode.stepping];
 }
 
 static bool ode_open(const Scenario *scenario, void **state, Err *err)
 {
-    // compare/chosen_run.c finds one
+    // measure/chosen_run.c finds one
     assert(scenario->run.step > 0.0);
     Ode *ode = calloc(1, sizeof *ode);
     assert(ode != NULL);

@@ -5,11 +5,10 @@
 #include "model/solver.h"
 #include "ode/world.h"
 
-// Number of the constant member of each way of stepping, each a solver behind ODE_SOLVER.
-extern const Solver STEPPING_PLAIN;
-extern const Solver STEPPING_STAGGERED;
-extern const Solver STEPPING_IMPULSE;
-extern const Solver STEPPING_EXTRAPOLATED;
+// The ways of stepping, each a solver behind ODE_SOLVER, in ode/NAME.c under its own name.
+#define STEPPING_DECLARE(id, word, solver) extern const Solver solver;
+OPTIONS_ODE_STEPPING_LIST(STEPPING_DECLARE)
+extern const Solver STEPPING_IMPULSE; // where contacts are integrated within the step
 
 // How the driven body moves at a time: it turns about its joint with the ground, exactly. Zero
 // where there is no driver.

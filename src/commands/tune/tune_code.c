@@ -14,34 +14,28 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+enum { FILE_NAME_SIZE = 64 };
 
 #define IDENTIFIER(id, ...) #id,
 
-// A way of stepping: the file it is in and the name of its table of functions.
+#define TABLE(id, word, solver) #solver,
+
+// A way of stepping: the file it is in, without its ending, and its table of functions.
 typedef struct Stepping {
     const char *file;
     const char *table;
 } Stepping;
 
-static const Stepping PLAIN = {"ode/plain.c", "STEPPING_PLAIN"};
-static const Stepping STAGGERED = {"ode/staggered.c", "STEPPING_STAGGERED"};
-static const Stepping IMPULSE = {"ode/impulse.c", "STEPPING_IMPULSE"};
-static const Stepping EXTRAPOLATED = {"ode/extrapolated.c", "STEPPING_EXTRAPOLATED"};
-
-// As ode/ode_solver.c chooses.
 static Stepping stepping_of(const Scenario *scenario)
 {
-    const bool is_impact =
-        scenario_has_clearance(scenario) && scenario->contact.model == CONTACT_IMPACT;
-    switch (scenario->ode.stepping) {
-    case ODE_EXTRAPOLATED:
-        return EXTRAPOLATED;
-    case ODE_STAGGERED:
-        return is_impact && scenario->ode.map == ODE_MAP_IMPULSE ? IMPULSE : STAGGERED;
-    default:
-        return PLAIN;
-    }
+    static const char *const TABLES[] = {OPTIONS_ODE_STEPPING_LIST(TABLE)};
+    const OdeStepping stepping = scenario->ode.stepping;
+    return scenario_integrates_contacts(scenario)
+               ? (Stepping){"impulse", "STEPPING_IMPULSE"}
+               : (Stepping){OPTIONS_ODE_STEPPINGS[stepping], TABLES[stepping]};
 }
 
 // A string constant; what is not plain ASCII is written by its octal number.
@@ -174,7 +168,7 @@ static void write_run(const Scenario *scenario, Text *text)
     const RunOptions *run = &scenario->run;
     const OdeOptions *ode = &scenario->ode;
     static const char *const SOLVERS[] = {"ODE_DIRECT", "ODE_QUICK"};
-    static const char *const STEPPINGS[] = {"ODE_PLAIN", "ODE_STAGGERED", "ODE_EXTRAPOLATED"};
+    static const char *const STEPPINGS[] = {OPTIONS_ODE_STEPPING_LIST(IDENTIFIER)};
     static const char *const MAPS[] = {OPTIONS_ODE_MAP_LIST(IDENTIFIER)};
     text_append(text,
                 "    .run = {.revolutions = %s,\n"
@@ -316,7 +310,9 @@ static void write_main(const Stepping *stepping, Text *text)
 bool tune_code_write(const TuneCode *code, Text *text, Err *err)
 {
     const Stepping stepping = stepping_of(code->scenario);
-    const char *files[] = {"run/run.c", "write/series_rows.c", stepping.file};
+    char file[FILE_NAME_SIZE];
+    snprintf(file, sizeof file, "ode/%s.c", stepping.file);
+    const char *files[] = {"run/run.c", "write/series_rows.c", file};
     write_head(code, text);
     const bool is_whole = tune_sources_write(files, sizeof files / sizeof files[0], text);
     assert(is_whole);
