@@ -229,7 +229,8 @@ const SchemaRow SCHEMA_ROWS[] = {
      .needs = PLAY, .doc = "Coulomb's friction coefficient; 0 for none"},
     {.path = "contact.friction-speed", .dimension = DIMENSION_SPEED, AT(contact.friction_speed),
      .low = 0.0, .high = 1e3, .low_is_open = true, .needs = FRICTION,
-     .doc = "sliding speed over which friction sets in, in the reference and with map impulse"},
+     .doc = "sliding speed over which friction sets in; ODE's quick solver and the poisson model "
+            "do without"},
     {.path = "contact.penalty", .dimension = DIMENSION_DAMPING, AT(contact.penalty),
      .low = 0.0, .high = 1e12, .low_is_open = true,
      .default_words = "the paper's Eq. (9) at the drive's speed", .needs = POISSON,

@@ -299,6 +299,23 @@ int response_joint(const Response *response, size_t play_row)
     return response->joint_of[response->ideal_rows + play_row];
 }
 
+double response_between(const Response *response, size_t first_from, const double *from,
+                        size_t first_to, const double *to)
+{
+    const size_t count = response->with_turns ? RESPONSE_ROWS_A_JOINT : 2;
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = 0; k < count; k++) {
+            const size_t row = response->ideal_rows + first_from + i;
+            const size_t column = response->ideal_rows + first_to + k;
+            const double mobility =
+                row < column ? response->matrix[column][row] : response->matrix[row][column];
+            sum += from[i] * mobility * to[k];
+        }
+    }
+    return sum;
+}
+
 double response_mass(const Response *response, size_t first_row, Vec2 normal)
 {
     const size_t row = response->ideal_rows + first_row;

@@ -77,6 +77,12 @@ void response_openings(const Response *response, const Motion *motions, double *
 // The number of the joint that a row of play belongs to.
 int response_joint(const Response *response, size_t play_row);
 
+// By how much an impulse of 1 along a combination of one joint's rows changes the velocity along a
+// combination of another's, or of its own: from W to. As many numbers each as a joint has rows; the
+// first of them among the rows of play is given.
+double response_between(const Response *response, size_t first_from, const double *from,
+                        size_t first_to, const double *to);
+
 // The mass, kg, with which the linkage meets a push along a unit vector in a joint with play:
 // 1 / (n W n). `first_row` is the joint's first among the rows of play.
 double response_mass(const Response *response, size_t first_row, Vec2 normal);

@@ -11,6 +11,7 @@
 #include "contact/law.h"
 #include "contact/penalty.h"
 #include "contact/pin_hole.h"
+#include "ode/contact_friction.h"
 
 #include <string.h>
 
@@ -24,7 +25,8 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
     if (scenario->contact.model == CONTACT_IMPACT && world->pair_count > 0) {
         rows->map = map_get(scenario->ode.map);
     }
-    if (!response_init(&scenario->linkage, false, &rows->response, err)) {
+    if (!response_init(&scenario->linkage, scenario->contact.friction > 0.0, &rows->response,
+                       err)) {
         return false;
     }
     rows->penalty = scenario->contact.penalty > 0.0
@@ -49,43 +51,33 @@ void contact_rows_finish(ContactRows *rows)
     memset(rows, 0, sizeof *rows);
 }
 
-// Centre of a geom and the velocity of its body there.
-static void geom_centre(dGeomID geom, Vec2 *centre, Vec2 *velocity)
-{
-    const dReal *position = dGeomGetPosition(geom);
-    const dBodyID body = dGeomGetBody(geom);
-    *centre = (Vec2){position[0], position[1]};
-    *velocity = (Vec2){0.0, 0.0};
-    if (body != NULL) {
-        const dReal *at = dBodyGetPosition(body);
-        const dReal *speed = dBodyGetLinearVel(body);
-        const double omega = dBodyGetAngularVel(body)[2];
-        *velocity = (Vec2){speed[0] - omega * (position[1] - at[1]),
-                           speed[1] + omega * (position[0] - at[0])};
-    }
-}
-
 static PinHole pair_pose(const WorldPair *pair, double radial_clearance)
 {
-    Vec2 hole;
-    Vec2 pin;
-    Vec2 hole_velocity;
-    Vec2 pin_velocity;
-    geom_centre(pair->hole, &hole, &hole_velocity);
-    geom_centre(pair->pin, &pin, &pin_velocity);
-    return pin_hole_pose(hole, pin, vec2_sub(pin_velocity, hole_velocity), radial_clearance);
+    const Vec2 hole = geom_position(pair->hole);
+    const Vec2 pin = geom_position(pair->pin);
+    const Vec2 moving = vec2_sub(geom_velocity(pair->pin, pin), geom_velocity(pair->hole, hole));
+    return pin_hole_pose(hole, pin, moving, radial_clearance);
+}
+
+// Brings the response to where the bodies are.
+static bool place_response(ContactRows *rows)
+{
+    Motion motions[LINKAGE_BODY_MAX];
+    world_motions(rows->world, motions);
+    return response_place(&rows->response, motions);
+}
+
+// The first of a pair's rows in the response.
+static size_t response_row(const ContactRows *rows, size_t number)
+{
+    return (rows->response.with_turns ? RESPONSE_ROWS_A_JOINT : 2) * number;
 }
 
 static dSurfaceParameters surface_of(const ContactRows *rows, ContactRow *row, double step_s)
 {
     const ContactOptions *options = &rows->scenario->contact;
-    // without friction mu 0 makes one row, along the normal; with it a second one, along the wall
+    // mu 0 makes one row, along the normal
     dSurfaceParameters surface = {.mode = dContactSoftERP | dContactSoftCFM, .mu = 0.0};
-    if (options->friction > 0.0) {
-        surface.mode |= dContactMu2 | dContactFDir1 | dContactApprox1;
-        surface.mu = options->friction;
-        surface.mu2 = 0.0;
-    }
     if (options->model == CONTACT_POISSON) {
         surface.mode |= dContactBounce;
         surface.bounce = options->restitution;
@@ -111,18 +103,92 @@ static dSurfaceParameters surface_of(const ContactRows *rows, ContactRow *row, d
     return surface;
 }
 
-static void make_row(ContactRows *rows, size_t number, const dContactGeom *geom, double step_s)
+// What friction takes from a row along the normal.
+static FrictionRow friction_row(const ContactRows *rows, size_t number)
+{
+    const ContactRow *row = &rows->rows[number];
+    const WorldPair *pair = &rows->world->pairs[number];
+    return (FrictionRow){
+        .pair = pair,
+        .first_row = response_row(rows, number),
+        .normal = row->normal,
+        .hole_radius = rows->scenario->linkage.joints[pair->joint].clearance.hole_radius,
+        .cfm = row->contact.surface.soft_cfm,
+        .bound = rows->scenario->contact.friction,
+        .slip = INFINITY,
+    };
+}
+
+// Gives a surface the row along the wall that it lacks without friction.
+static void add_friction(ContactRow *row, const FrictionRow *friction)
+{
+    dSurfaceParameters *surface = &row->contact.surface;
+    surface->mode |= dContactMu2 | dContactFDir1 | dContactApprox1;
+    surface->mu = friction->bound;
+    surface->mu2 = 0.0;
+    row->sliding = friction->sliding;
+    if (isfinite(friction->slip)) {
+        // ODE's row is the speed of the first body attached: the hole's, if it is no ground
+        const double sign = dGeomGetBody(friction->pair->hole) != NULL ? -1.0 : 1.0;
+        surface->mode |= dContactSlip1 | dContactMotion1;
+        surface->slip1 = friction->slip;
+        surface->motion1 = sign * friction->surface;
+    }
+}
+
+// Friction of all rows of the step. What the velocity-level model presses with has no law of
+// motion to be solved for, and the quick solver bounds friction by what presses after all.
+static void find_friction(ContactRows *rows, double step_s)
+{
+    const ContactOptions *options = &rows->scenario->contact;
+    FrictionRow found[LINKAGE_JOINT_MAX];
+    size_t numbers[LINKAGE_JOINT_MAX];
+    size_t count = 0;
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        if (rows->rows[i].is_touching) {
+            found[count] = friction_row(rows, i);
+            found[count].target =
+                rows->rows[i].contact.surface.soft_erp / step_s * rows->rows[i].depth;
+            numbers[count++] = i;
+        }
+    }
+    Motion motions[LINKAGE_BODY_MAX];
+    world_motions(rows->world, motions);
+    if (options->model == CONTACT_IMPACT && rows->scenario->ode.solver == ODE_DIRECT && count > 0 &&
+        response_place(&rows->response, motions)) {
+        contact_friction_find(options, &rows->response, motions, rows->scenario->gravity, step_s,
+                              found, count);
+    }
+    for (size_t i = 0; i < count; i++) {
+        add_friction(&rows->rows[numbers[i]], &found[i]);
+    }
+}
+
+static void make_row(ContactRows *rows, size_t number)
 {
     ContactRow *row = &rows->rows[number];
-    const dContact contact = {
-        .surface = surface_of(rows, row, step_s),
-        .geom = *geom,
-        .fdir1 = {-row->normal.y, row->normal.x, 0.0, 0.0},
-    };
-    const dJointID joint = dJointCreateContact(rows->world->id, rows->group, &contact);
+    const dJointID joint = dJointCreateContact(rows->world->id, rows->group, &row->contact);
     const WorldPair *pair = &rows->world->pairs[number];
     dJointAttach(joint, dGeomGetBody(pair->hole), dGeomGetBody(pair->pin));
     dJointSetFeedback(joint, &row->feedback);
+}
+
+// Makes the rows of all pins that touch.
+static void make_contact_rows(ContactRows *rows, double step_s)
+{
+    const bool has_friction = rows->scenario->contact.friction > 0.0;
+    size_t row_count = 0;
+    if (has_friction) {
+        find_friction(rows, step_s);
+    }
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        if (rows->rows[i].is_touching) {
+            make_row(rows, i);
+            rows->row_count++;
+            row_count += has_friction ? 2 : 1;
+        }
+    }
+    rows->most_rows = row_count > rows->most_rows ? row_count : rows->most_rows;
 }
 
 static bool check_depth(const ContactRows *rows, size_t number, Err *err)
@@ -142,10 +208,8 @@ static void find_mass(ContactRows *rows, size_t number)
     if (is_known && !rows->map->needs_mass) {
         return;
     }
-    Motion motions[LINKAGE_BODY_MAX];
-    world_motions(rows->world, motions);
-    if (response_place(&rows->response, motions)) {
-        row->mass = response_mass(&rows->response, 2 * number, row->normal);
+    if (place_response(rows)) {
+        row->mass = response_mass(&rows->response, response_row(rows, number), row->normal);
         row->mass_normal = row->normal;
     }
 }
@@ -193,7 +257,6 @@ static void note_gap(ContactRow *row, double gap)
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err)
 {
-    size_t row_count = 0;
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         const WorldPair *pair = &rows->world->pairs[i];
         ContactRow *row = &rows->rows[i];
@@ -223,34 +286,25 @@ bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, dou
             return false;
         }
         check_stability(rows, i, step_s);
-        make_row(rows, i, &geom, step_s);
-        rows->row_count++;
-        row_count += rows->scenario->contact.friction > 0.0 ? 2 : 1;
+        row->contact = (dContact){
+            .surface = surface_of(rows, row, step_s),
+            .geom = geom,
+            .fdir1 = {-row->normal.y, row->normal.x, 0.0, 0.0},
+        };
     }
-    rows->most_rows = row_count > rows->most_rows ? row_count : rows->most_rows;
+    make_contact_rows(rows, step_s);
     return true;
 }
 
-// Work of the friction on the two bodies in the step, at the wall's point that the pin touched.
+// Work lost to friction in the step: the force on the pin along the wall, against how far the pin
+// slid. Of a staggered world that is the mean of the speeds before and after the step.
 static double friction_work(const ContactRows *rows, size_t number, Vec2 force, double step_s)
 {
     const ContactRow *row = &rows->rows[number];
-    const WorldPair *pair = &rows->world->pairs[number];
-    const Joint *joint = &rows->scenario->linkage.joints[pair->joint];
-    const Vec2 tangent = vec2_perp(row->normal);
-    const Vec2 outward = vec2_scale(-joint->clearance.hole_radius, row->normal);
-    double sliding = 0.0;
-    const dGeomID geoms[2] = {pair->hole, pair->pin};
-    for (int i = 0; i < 2; i++) {
-        Vec2 centre;
-        Vec2 velocity;
-        geom_centre(geoms[i], &centre, &velocity);
-        const dBodyID body = dGeomGetBody(geoms[i]);
-        const double omega = body != NULL ? dBodyGetAngularVel(body)[2] : 0.0;
-        const Vec2 there = vec2_add(velocity, vec2_scale(omega, vec2_perp(outward)));
-        sliding += (i == 0 ? -1.0 : 1.0) * vec2_dot(tangent, there);
-    }
-    return vec2_dot(tangent, force) * sliding * step_s;
+    const FrictionRow friction = friction_row(rows, number);
+    const double after = contact_friction_sliding(&friction);
+    const double sliding = rows->is_staggered ? 0.5 * (row->sliding + after) : after;
+    return -vec2_dot(vec2_perp(row->normal), force) * sliding * step_s;
 }
 
 // What a contact lost and stored in the step, by its law: the damper at the speed after the step,
@@ -280,7 +334,7 @@ static void book_energy(ContactRows *rows, size_t number, Vec2 force, double ste
         row->elastic = force_law_energy(&row->law, fmax(0.0, depth));
     }
     if (rows->scenario->contact.friction > 0.0) {
-        row->friction = -friction_work(rows, number, force, step_s);
+        row->friction = friction_work(rows, number, force, step_s);
     }
 }
 

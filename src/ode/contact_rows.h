@@ -21,9 +21,11 @@ typedef struct ContactRow {
     Vec2 normal;       // of the row: unit, direction of the force on the pin
     double damping;    // N s/m, of the row; not of CONTACT_POISSON
     double closing;    // m/s, before the step
+    double sliding;    // m/s, along the wall before the step, where there is friction
     double elastic;    // J, stored in the contact after the step
     double dissipated; // J, lost along the normal in the step
     double friction;   // J, lost in sliding in the step
+    dContact contact;  // as ODE is given it
     dJointFeedback feedback;
 } ContactRow;
 

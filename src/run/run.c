@@ -5,6 +5,7 @@
 #include "run/run.h"
 
 #include "base/clock.h"
+#include "contact/law.h"
 #include "model/lock.h"
 
 #include <stdio.h>
@@ -29,7 +30,7 @@ typedef struct Loop {
     double angle[LINKAGE_BODY_MAX]; // rad, of each body there, by adding up omega
     double omega[LINKAGE_BODY_MAX]; // rad/s, there
     double elastic;                 // J, stored in the contacts there
-    double start_energy;            // J, kinetic and potential, at time zero
+    double start_energy;            // J, kinetic, potential and elastic, at time zero
 } Loop;
 
 // Adds what each body has turned in a step: enough to know which turn an angle is in.
@@ -84,6 +85,23 @@ static double mechanical_energy(const Scenario *scenario, const Sample *sample)
            linkage_potential_energy(&scenario->linkage, sample->bodies, scenario->gravity);
 }
 
+// What the contacts of pins that start inside their walls have stored, J.
+static double stored_energy(const Scenario *scenario, const Sample *sample)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        ForceLaw law;
+        Err unused;
+        // what the contacts of the velocity-level model press with, they never store
+        if (joint->kind == JOINT_CLEARANCE && scenario->contact.model == CONTACT_IMPACT &&
+            sample->joints[i].gap < 0.0 && law_of_joint(scenario, joint, &law, &unused)) {
+            sum += force_law_energy(&law, -sample->joints[i].gap);
+        }
+    }
+    return sum;
+}
+
 // Steps until a time is reached. A step that ends short of it by rounding has reached it.
 static bool reach(Loop *loop, double time_s, Err *err)
 {
@@ -118,7 +136,8 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
         Sample sample;
         loop->solver->observe(loop->state, time_s, &sample);
         if (k == 0) {
-            loop->start_energy = mechanical_energy(loop->scenario, &sample);
+            loop->start_energy =
+                mechanical_energy(loop->scenario, &sample) + stored_energy(loop->scenario, &sample);
         }
         unwrap_angles(loop, &sample);
         recorder_see(&loop->recorder, &sample);

@@ -57,7 +57,8 @@ static void a_singular_system_is_refused(void **state)
     assert_false(dense_solve(2, zero, b));
 }
 
-// Masses, kg, and inertias, kg m^2, stand in one matrix: what is small for its units is not singular.
+// Masses, kg, and inertias, kg m^2, stand in one matrix: what is small for its units is not
+// singular.
 static void unknowns_of_other_units_are_judged_by_themselves(void **state)
 {
     (void)state;

@@ -1,0 +1,240 @@
+// How does a row of ODE follow the friction law mu N tanh(v / v_s)?
+//
+// ODE knows a force along the wall that is bounded by a share of what presses (dContactApprox1),
+// and one that is proportional to a speed (dContactSlip1, dContactMotion1). Two things are in the
+// way.
+//
+// Its direct solver sets the bounds once, by what would press without friction, N0, but friction
+// changes what presses. With N and F along and across the walls, W the linkage's mobility, u and v
+// the speeds along and across, a their accelerations while nothing acts, e = (ERP / h) d:
+//     u' + CFM N = e,     u' = u + h (a + W_nn N + W_nt F),     N >= 0
+//     v' = v + h (a + W_tn N + W_tt F),     F = -mu N tanh(w / v_s),     w = theta v' + (1 - theta)
+//     v
+// is what the step is to solve. It is solved here first, row by row in turns, once without F, which
+// gives N0, and once with it. ODE's bound is then mu N / N0.
+//
+// The force of the row is linear in the speed: the tangent of the law at the w that was found, so
+// that ODE comes to the same force. theta is 1/2, the midpoint rule, but where friction stops the
+// pin within the step it is as large as keeps the speed from changing sign.
+#include "ode/contact_friction.h"
+
+#include <math.h>
+
+enum { SWEEPS_MAX = 50, ROOT_STEPS_MAX = 50 };
+
+static const double CONVERGED = 1e-7; // of the largest force: the step's own error is larger
+static const double FLAT = 1e-9;      // slope of tanh, below which the row is at its bound
+static const double SATURATED = 12.0; // tanh of it is 1 less 1e-10
+
+enum { UNKNOWN_MAX = 2 * LINKAGE_JOINT_MAX };
+
+// One row's part in a step.
+typedef struct Share {
+    double along[RESPONSE_ROWS_A_JOINT];  // a unit of speed along the normal, by the joint's rows
+    double across[RESPONSE_ROWS_A_JOINT]; // likewise along the wall
+    double asked;                         // m/s: what the forces must change along the normal
+    double drift;                         // m/s: v' if no contact pressed
+    double theta;
+    double mean; // m/s: w
+} Share;
+
+// The equations of a step: of each row what presses, then what acts along the wall.
+typedef struct System {
+    const ContactOptions *contact;
+    const FrictionRow *rows;
+    Share *shares;
+    size_t count;                            // of rows
+    double change[UNKNOWN_MAX][UNKNOWN_MAX]; // s/kg: h W
+    double forces[UNKNOWN_MAX];              // N: N and F of each row in turn
+} System;
+
+Vec2 geom_position(dGeomID geom)
+{
+    const dReal *position = dGeomGetPosition(geom);
+    return (Vec2){position[0], position[1]};
+}
+
+Vec2 geom_velocity(dGeomID geom, Vec2 point)
+{
+    const dBodyID body = dGeomGetBody(geom);
+    if (body == NULL) {
+        return (Vec2){0.0, 0.0};
+    }
+    const dReal *at = dBodyGetPosition(body);
+    const dReal *speed = dBodyGetLinearVel(body);
+    const double omega = dBodyGetAngularVel(body)[2];
+    return (Vec2){speed[0] - omega * (point.y - at[1]), speed[1] + omega * (point.x - at[0])};
+}
+
+static Vec2 wall_point(const FrictionRow *row)
+{
+    return vec2_sub(geom_position(row->pair->hole), vec2_scale(row->hole_radius, row->normal));
+}
+
+double contact_friction_sliding(const FrictionRow *row)
+{
+    const Vec2 point = wall_point(row);
+    const Vec2 velocity =
+        vec2_sub(geom_velocity(row->pair->pin, point), geom_velocity(row->pair->hole, point));
+    return vec2_dot(vec2_perp(row->normal), velocity);
+}
+
+static double dot_rows(const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < RESPONSE_ROWS_A_JOINT; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+static Share start_share(const FrictionRow *row, const double *free, double step_s)
+{
+    const Vec2 tangent = vec2_perp(row->normal);
+    const Vec2 pin_arm = vec2_sub(wall_point(row), geom_position(row->pair->pin));
+    Share share = {
+        .along = {row->normal.x, row->normal.y, 0.0, 0.0},
+        .across = {tangent.x, tangent.y, row->hole_radius, vec2_dot(row->normal, pin_arm)},
+        .theta = 0.5,
+    };
+    const Vec2 hole = geom_position(row->pair->hole);
+    const Vec2 pin = geom_position(row->pair->pin);
+    const Vec2 moving =
+        vec2_sub(geom_velocity(row->pair->pin, pin), geom_velocity(row->pair->hole, hole));
+    const double *rates = free + row->first_row;
+    share.asked =
+        row->target - vec2_dot(row->normal, moving) - step_s * dot_rows(share.along, rates);
+    share.drift = row->sliding + step_s * dot_rows(share.across, rates);
+    return share;
+}
+
+// Solves for the friction of a row, given what presses. `drift` is v' without it. The law asks for
+// more than the force at one end of the bracket and for less at the other.
+static double find_force(const System *system, size_t row, double drift)
+{
+    Share *share = &system->shares[row];
+    const double speed = system->contact->friction_speed;
+    const double mobility = system->change[2 * row + 1][2 * row + 1];
+    const double most = system->contact->friction * system->forces[2 * row];
+    const double stiffness = mobility * most / speed;
+    share->theta = stiffness > 2.0 ? 1.0 - 1.0 / stiffness : 0.5;
+    const double before = (1.0 - share->theta) * system->rows[row].sliding;
+    double low = -most;
+    double high = most;
+    share->mean = share->theta * drift + before;
+    if (fabs(share->mean) - share->theta * mobility * most > SATURATED * speed) {
+        return copysign(most, -share->mean);
+    }
+    double force = fmax(low, fmin(system->forces[2 * row + 1], high));
+    for (int i = 0; i < ROOT_STEPS_MAX; i++) {
+        share->mean = share->theta * (drift + mobility * force) + before;
+        const double held = tanh(share->mean / speed);
+        const double missing = force + most * held;
+        *(missing > 0.0 ? &high : &low) = force;
+        double next = force - missing / (1.0 + share->theta * stiffness * (1.0 - held * held));
+        if (!(next > low && next < high)) {
+            next = 0.5 * (low + high);
+        }
+        if (fabs(next - force) <= CONVERGED * most) {
+            return next;
+        }
+        force = next;
+    }
+    return force;
+}
+
+// What the forces of all unknowns but one change that one's speed by, m/s.
+static double changed_by_others(const System *system, size_t unknown)
+{
+    double sum = 0.0;
+    for (size_t j = 0; j < 2 * system->count; j++) {
+        sum += j == unknown ? 0.0 : system->change[unknown][j] * system->forces[j];
+    }
+    return sum;
+}
+
+// Solves for what presses and, with friction, for what holds, in turns until nothing changes.
+static void solve_forces(System *system, bool has_friction)
+{
+    double change = INFINITY;
+    double largest = 0.0;
+    for (int sweep = 0; sweep < SWEEPS_MAX && change > CONVERGED * largest; sweep++) {
+        change = 0.0;
+        for (size_t i = 0; i < system->count; i++) {
+            const Share *share = &system->shares[i];
+            double *forces = &system->forces[2 * i];
+            const double before[] = {forces[0], forces[1]};
+            const double own = system->change[2 * i][2 * i] + system->rows[i].cfm;
+            forces[0] = fmax(0.0, (share->asked - changed_by_others(system, 2 * i)) / own);
+            if (has_friction) {
+                forces[1] =
+                    find_force(system, i, share->drift + changed_by_others(system, 2 * i + 1));
+            }
+            change = fmax(change, fmax(fabs(forces[0] - before[0]), fabs(forces[1] - before[1])));
+            largest = fmax(largest, forces[0]);
+        }
+    }
+}
+
+static void fill_changes(System *system, const Response *response, double step_s)
+{
+    for (size_t i = 0; i < 2 * system->count; i++) {
+        const Share *to = &system->shares[i / 2];
+        for (size_t j = 0; j <= i; j++) {
+            const Share *from = &system->shares[j / 2];
+            const double mobility = response_between(
+                response, system->rows[j / 2].first_row, j % 2 == 0 ? from->along : from->across,
+                system->rows[i / 2].first_row, i % 2 == 0 ? to->along : to->across);
+            system->change[i][j] = system->change[j][i] = step_s * mobility;
+        }
+    }
+}
+
+// The tangent of the law at the speed that was found.
+static void linearise_force(const System *system, size_t number, FrictionRow *row)
+{
+    const Share *share = &system->shares[number];
+    const double speed = system->contact->friction_speed;
+    const double most = system->contact->friction * system->forces[2 * number];
+    const double held = tanh(share->mean / speed);
+    const double slope = 1.0 - held * held;
+    if (slope > FLAT && most > 0.0) {
+        const double reach = speed / (share->theta * slope);
+        const double before = (1.0 - share->theta) * row->sliding;
+        row->slip = reach / most;
+        row->surface = (share->mean - before) / share->theta - held * reach;
+    }
+}
+
+void contact_friction_find(const ContactOptions *contact, const Response *response,
+                           const Motion *motions, double gravity, double step_s, FrictionRow *rows,
+                           size_t count)
+{
+    double free[RESPONSE_ROW_MAX];
+    Share shares[LINKAGE_JOINT_MAX];
+    double alone[LINKAGE_JOINT_MAX];
+    System system; // large, and filled in as far as it is used
+    system.contact = contact;
+    system.rows = rows;
+    system.shares = shares;
+    system.count = count;
+    response_free(response, motions, gravity, free);
+    for (size_t i = 0; i < count; i++) {
+        rows[i].sliding = contact_friction_sliding(&rows[i]);
+        shares[i] = start_share(&rows[i], free, step_s);
+        system.forces[2 * i] = system.forces[2 * i + 1] = 0.0;
+    }
+    fill_changes(&system, response, step_s);
+    solve_forces(&system, false);
+    for (size_t i = 0; i < count; i++) {
+        alone[i] = system.forces[2 * i];
+    }
+    solve_forces(&system, true);
+    for (size_t i = 0; i < count; i++) {
+        const double pressing = system.forces[2 * i];
+        rows[i].bound =
+            alone[i] > 0.0 ? contact->friction * pressing / alone[i] : contact->friction;
+        rows[i].slip = INFINITY;
+        linearise_force(&system, i, &rows[i]);
+    }
+}
