@@ -34,7 +34,7 @@ typedef struct CommonOptions {
      help_group, OPTION_LIST, COMMON_AT(overrides), .what = "settings", \
      .count_offset = offsetof(CommonOptions, override_count), .high = OPTION_SETTING_MAX}
 #define COMMON_SCHEMES(help_group) \
-    {"schemes", "LIST", "Only these schemes of ODE: 'direct/corrected' is every one with both words, 'all' every one", \
+    {"schemes", "LIST", "Only these schemes of ODE: 'direct/corrected' selects those with both words, 'all' every scheme", \
      help_group, OPTION_TEXT, COMMON_AT(schemes)}
 #define COMMON_JOBS(help_group, words) \
     {"jobs", "N", words, help_group, OPTION_COUNT, COMMON_AT(jobs), .low = 1, .high = OPTION_JOB_MAX}

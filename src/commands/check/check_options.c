@@ -12,20 +12,21 @@ enum { SHAKE_MAX = 1000000 };
 static const OptionRow OPTIONS[] = {
     {"baselines", "DIR", "Where the baselines are (default: results/baseline)", 1, OPTION_TEXT,
      AT(folder)},
-    {"bless", NULL, "Make the baselines of what is measured now, and say what moved", 1,
+    {"bless", NULL, "Write new baselines from what is measured now, and list what moved", 1,
      OPTION_FLAG, AT(is_blessing)},
-    {"quick", NULL, "One run a case: no ensembles, no orders", 1, OPTION_FLAG, AT(is_quick)},
-    {"expect-only", NULL, "Judge cases by their own limits (expect:) and not by baselines", 1,
+    {"quick", NULL, "One run per case: no ensembles, no orders", 1, OPTION_FLAG, AT(is_quick)},
+    {"expect-only", NULL, "Judge cases by their own limits (expect:), not by baselines", 1,
      OPTION_FLAG, AT(is_expect_only)},
     COMMON_SET(1),
-    {"shake", "SEED", "Round every input anew first, as another machine might: a way to test bands",
-     1, OPTION_COUNT, AT(shake), .low = 1, .high = SHAKE_MAX},
-    COMMON_JOBS(2, "Starts at a time (default: one a core)"),
+    {"shake", "SEED",
+     "Change every input by rounding first, as another machine might: a way to test the bands", 1,
+     OPTION_COUNT, AT(shake), .low = 1, .high = SHAKE_MAX},
+    COMMON_JOBS(2, "Starts at a time (default: one per core)"),
     COMMON_TIME_LIMIT(2, "A start that takes longer has failed (default: 600 s)"),
-    {"all", NULL, "Every number in the tables, not the worst alone", 3, OPTION_FLAG, AT(is_all)},
+    {"all", NULL, "Every number in the tables, not only the worst", 3, OPTION_FLAG, AT(is_all)},
     COMMON_JSON(3),
     COMMON_WIDE(3),
-    {"junit", "FILE", "Write JUnit XML, a test a number", 3, OPTION_TEXT, AT(junit)},
+    {"junit", "FILE", "Write JUnit XML, one test per number", 3, OPTION_TEXT, AT(junit)},
     {"markdown", "FILE", "Write a comment for a change; '-' prints it instead of tables", 3,
      OPTION_TEXT, AT(markdown)},
     COMMON_QUIET(3),
@@ -62,9 +63,9 @@ static bool check_together(void *target, Err *err)
 const Arguments CHECK_ARGUMENTS = {
     .program = "jointplay check",
     .usage = "[CASE...]",
-    .doc = "Holds the numbers of cases against their baselines and against the limits that the "
-           "cases set themselves (expect:): every number in its band, or exit status 1 and its "
-           "name. Without a case, all that have a baseline."
+    .doc = "Compares the numbers of cases with their baselines and with the limits that the cases "
+           "set themselves (expect:). Numbers outside their band are named, and the exit status is "
+           "1. Without a case, all cases that have a baseline are checked."
            "\vA baseline that is missing, damaged or of another case is an error; a case that "
            "sets limits needs none.",
     .argument = {.type = OPTION_LIST,

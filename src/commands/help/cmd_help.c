@@ -99,7 +99,7 @@ static bool run_help(int argc, char **argv, Err *err)
     static const Arguments ARGUMENTS = {
         .program = "jointplay help",
         .usage = "[case|COMMAND]\nstudy COMMAND",
-        .doc = "Tells how a command is used, or how a case or study file is written.",
+        .doc = "Shows how a command is used, or how a case or study file is written.",
         .argument = {.type = OPTION_READ, .read = read_word},
         OPTION_ROWS(OPTIONS),
     };

@@ -102,7 +102,7 @@ static const OptionRow OPTIONS[] = {
      3, OPTION_TEXT, AT(clearance)},
     COMMON_JSON(4),
     COMMON_WIDE(4),
-    {"csv", "FILE.csv", "Write a row a joint, law, map and step", 4, OPTION_TEXT, AT(csv)},
+    {"csv", "FILE.csv", "Write one row per joint, law, map and step", 4, OPTION_TEXT, AT(csv)},
     {"plot", "FILE.svg", "Draw the errors of restitution and peak force", 4, OPTION_PICTURE,
      AT(plot)},
     COMMON_OUT(4, "Write <case>-map.txt, .csv, .svg and .json there"),
@@ -211,9 +211,9 @@ const Arguments MAP_ARGUMENTS = {
     .usage = "CASE\n--stiffness K --mass MASS [--step TIME]\n--erp X --cfm Y --step TIME "
              "[--mass MASS] [CASE]\n"
              "--kp K --kd C --step TIME [--mass MASS] [CASE]",
-    .doc = "Tells which ERP, CFM and step to use for each joint with play, and what they "
-           "deliver, predicted and measured in ODE; or which spring, damper and restitution "
-           "an ERP and a CFM are.",
+    .doc = "Finds the ERP, CFM and step to use for each joint with play, and what they deliver, "
+           "predicted and measured in ODE; or the spring, damper and restitution that an ERP and a "
+           "CFM stand for.",
     .argument = COMMON_PATH("map takes one case"),
     OPTION_ROWS(OPTIONS),
     .check = check,

@@ -33,8 +33,8 @@ static bool run_paper(int argc, char **argv, Err *err)
 {
     static const Arguments ARGUMENTS = {
         .program = "jointplay paper",
-        .doc = "Recomputes the tables of the paper the program grew from: printed, recomputed, "
-               "difference, and what physics gives.",
+        .doc = "Recomputes the tables of the paper that this program began with: printed, "
+               "recomputed, difference, and what physics gives.",
         OPTION_ROWS(OPTIONS),
     };
     CommonOptions options = {0};

@@ -49,7 +49,7 @@ static bool read_store(const char *path, void *target, Err *err)
 #define AT(field) .offset = offsetof(StudyOptions, field)
 
 static const OptionRow OPTIONS[] = {
-    {"jobs", "N", "Runs at a time (default: one a core)", 1, OPTION_COUNT, AT(common.jobs),
+    {"jobs", "N", "Runs at a time (default: one per core)", 1, OPTION_COUNT, AT(common.jobs),
      .low = 1, .high = SWEEP_JOB_MAX},
     {"shard", "I/N", "Only the I-th of N parts, into a store of its own", 1, OPTION_READ,
      .read = read_shard},
@@ -87,10 +87,10 @@ static const Arguments ARGUMENTS = {
     .program = "jointplay study",
     .usage = "FILE\nstatus FILE-or-STORE...\nexport FILE-or-STORE\nmerge FILE\n"
              "merge OUT.sqlite IN.sqlite...\nplot FILE-or-STORE FILE.svg\nslurm FILE",
-    .doc = "Makes the runs of a study that its store does not hold yet, each in a process of "
-           "its own, and keeps them in the store."
+    .doc = "Makes the runs of a study that its store does not hold yet, each in its own process, "
+           "and keeps them in the store."
            "\vA study that is stopped at any moment resumes with the same command. 'jointplay "
-           "study status --help' and so on explain the others.",
+           "study status --help' and so on explain the other words.",
     .argument = COMMON_PATH("study takes one file"),
     OPTION_ROWS(OPTIONS),
     .check = check,

@@ -80,8 +80,8 @@ static bool run(int argc, char **argv, Err *err)
     static const Arguments ARGUMENTS = {
         .program = "jointplay study plot",
         .usage = "FILE-or-STORE FILE.svg",
-        .doc = "Draws one column of a study over another, as SVG: a dot a run, or where many runs "
-               "share each x their median and a band from 5 to 95 %."
+        .doc = "Draws one column of a study over another, as SVG: one dot per run, or, if many "
+               "runs share each x, their median and a band from 5 to 95 %."
                "\vThe first line of 'jointplay study export' names the columns.",
         .argument = {.type = OPTION_READ, .read = read_word},
         OPTION_ROWS(OPTIONS),

@@ -17,9 +17,9 @@ typedef struct ExportOptions {
 #define AT(field) .offset = offsetof(ExportOptions, field)
 
 static const OptionRow OPTIONS[] = {
-    {"csv", "FILE.csv", "Write a row a run there (default: to standard output)", 1, OPTION_TEXT,
+    {"csv", "FILE.csv", "Write one row per run there (default: to standard output)", 1, OPTION_TEXT,
      AT(csv)},
-    {"jsonl", "FILE.jsonl", "Write an object a run, each on a line of its own", 1, OPTION_TEXT,
+    {"jsonl", "FILE.jsonl", "Write one object per run, each on its own line", 1, OPTION_TEXT,
      AT(jsonl)},
     {"quiet", NULL, "Nothing on standard error but errors", 2, OPTION_FLAG, AT(is_quiet),
      .letter = 'q'},
@@ -58,7 +58,7 @@ static bool run(int argc, char **argv, Err *err)
     static const Arguments ARGUMENTS = {
         .program = "jointplay study export",
         .usage = "FILE-or-STORE",
-        .doc = "Writes the rows of a store, a run each, by rising number of run."
+        .doc = "Writes the rows of a store, one per run, in the order of their numbers."
                "\vA study file stands for its usual store in the working folder; - for standard "
                "output.",
         .argument = {.type = OPTION_TEXT, AT(store), .what = "export takes one store"},

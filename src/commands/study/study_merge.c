@@ -125,7 +125,7 @@ static bool run(int argc, char **argv, Err *err)
     static const Arguments ARGUMENTS = {
         .program = "jointplay study merge",
         .usage = "FILE\nOUT.sqlite IN.sqlite...",
-        .doc = "Gathers the shards of a study into one store: those of a study file by their usual "
+        .doc = "Merges the shards of a study into one store: those of a study file by their usual "
                "names in the working folder, or those that are named."
                "\vRuns that are there already are left alone. Stores of different studies or "
                "programs are refused, and nothing is written then.",

@@ -212,9 +212,9 @@ static bool run(int argc, char **argv, Err *err)
         .program = "jointplay study slurm",
         .usage = "FILE --shards N",
         .doc = "Writes the scripts that make a study on a cluster: a job array of shards, a job "
-               "that gathers their stores, and what submits the two."
+               "that merges their stores, and a script that submits both."
                "\vA task that is killed, preempted or runs out of time goes back in the queue and "
-               "on where it stood.",
+               "resumes where it was.",
         .argument = {.type = OPTION_TEXT, AT(path), .what = "slurm takes one study"},
         OPTION_ROWS(OPTIONS),
         .check = check,

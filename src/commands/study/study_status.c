@@ -123,8 +123,8 @@ static bool run(int argc, char **argv, Err *err)
     static const Arguments ARGUMENTS = {
         .program = "jointplay study status",
         .usage = "FILE-or-STORE...",
-        .doc = "Says how far a study has come: of a study file, by the usual names of its stores "
-               "in the working folder. It may be at work at the time.",
+        .doc = "Shows how far a study has come. For a study file, the stores of the usual names in "
+               "the working folder are read. The study may be running meanwhile.",
         .argument = {.type = OPTION_READ, .read = study_words_read},
         OPTION_ROWS(OPTIONS),
     };

@@ -61,7 +61,7 @@ static const OptionRow OPTIONS[] = {
     {"max-cost", "COST",
      "What one run may cost: a time such as '50 ms', or world steps such as 2000", 1, OPTION_READ,
      .read = read_limit},
-    {"cost", "time|steps", "What is to be least (default: time, or the unit of --max-cost)", 1,
+    {"cost", "time|steps", "What to minimise (default: time, or the unit of --max-cost)", 1,
      OPTION_CHOICE, AT(asked_cost), .words = COSTS},
     {"at-step", "TIME",
      "The only step that can be taken, such as '1 ms': the least error there, of every scheme and "
@@ -69,10 +69,10 @@ static const OptionRow OPTIONS[] = {
      1, OPTION_QUANTITY, AT(at_step_s), .dimension = DIMENSION_TIME},
     COMMON_SCHEMES(1),
     COMMON_SET(1),
-    COMMON_JOBS(2, "Runs at a time while searching (default: one a core); timing runs always go "
+    COMMON_JOBS(2, "Runs at a time while searching (default: one per core); timing runs always go "
                    "one by one"),
     COMMON_TIME_LIMIT(2, "A run that takes longer is not tried (default: 60 s)"),
-    {"code", "FILE.c", "Write the setting as a C program that needs ODE alone", 3, OPTION_TEXT,
+    {"code", "FILE.c", "Write the setting as a C program that needs only ODE", 3, OPTION_TEXT,
      AT(code)},
     {"sdf", "FILE.sdf", "Write the contact as Gazebo can have it", 3, OPTION_TEXT, AT(sdf)},
     {"mjcf", "FILE.xml", "Write the contact as MuJoCo can have it", 3, OPTION_TEXT, AT(mjcf)},
@@ -131,7 +131,7 @@ const Arguments TUNE_ARGUMENTS = {
     .usage = "CASE",
     .doc = "Searches for the cheapest setting of ODE whose error, found by running it against "
            "the certified reference, meets --error, and prints it as numbers, as ODE C code, "
-           "and as far as they go for Gazebo and MuJoCo, with all that was tried."
+           "and, as far as they can express it, for Gazebo and MuJoCo, with all that was tried."
            "\vExit status 1 says that no setting meets the error, or none within --max-cost.",
     .argument = COMMON_PATH("tune takes one case"),
     OPTION_ROWS(OPTIONS),
