@@ -1,15 +1,13 @@
 // How does a row of ODE follow the friction law mu N tanh(v / v_s)?
 //
 // ODE knows a force along the wall that is bounded by a share of what presses (dContactApprox1),
-// and one that is proportional to a speed (dContactSlip1, dContactMotion1). Two things are in the
-// way.
-//
-// Its direct solver sets the bounds once, by what would press without friction, N0, but friction
-// changes what presses. With N and F along and across the walls, W the linkage's mobility, u and v
-// the speeds along and across, a their accelerations while nothing acts, e = (ERP / h) d:
-//     u' + CFM N = e,     u' = u + h (a + W_nn N + W_nt F),     N >= 0
-//     v' = v + h (a + W_tn N + W_tt F),     F = -mu N tanh(w / v_s),     w = theta v' + (1 - theta)
-//     v
+// and one that is proportional to a speed (dContactSlip1, dContactMotion1). Its direct solver sets
+// the bounds once, by what would press without friction, N0; but friction changes what presses.
+// With N and F along and across the walls, W the linkage's mobility, u and v the speeds along and
+// across, a their accelerations while nothing acts, e = (ERP / h) d:
+//     u' = u + h (a + W_nn N + W_nt F),     u' + CFM N = e,     N >= 0
+//     v' = v + h (a + W_tn N + W_tt F),     F = -mu N tanh(w / v_s)
+//     w = theta v' + (1 - theta) v
 // is what the step is to solve. It is solved here first, row by row in turns, once without F, which
 // gives N0, and once with it. ODE's bound is then mu N / N0.
 //
