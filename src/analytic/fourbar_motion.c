@@ -142,11 +142,6 @@ static double loop_quantity(const Loop *loop, FourBarQuantity quantity)
     }
 }
 
-double fourbar_motion_transmission(const FourBarLengths *lengths, double crank_angle)
-{
-    return fourbar_motion_quantity(lengths, 1.0, FOURBAR_TRANSMISSION, crank_angle);
-}
-
 double fourbar_motion_quantity(const FourBarLengths *lengths, double speed,
                                FourBarQuantity quantity, double crank_angle)
 {

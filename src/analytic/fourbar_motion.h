@@ -36,9 +36,6 @@ void fourbar_motion_grid(const FourBarLengths *lengths, double speed, size_t cou
 bool fourbar_motion_bodies(const FourBarLengths *lengths, double speed, double crank_angle,
                            Motion motions[3]);
 
-// The acute angle between coupler and follower, rad, at a crank angle.
-double fourbar_motion_transmission(const FourBarLengths *lengths, double crank_angle);
-
 // What can be extreme over a turn.
 typedef enum FourBarQuantity {
     FOURBAR_COUPLER_OMEGA,
