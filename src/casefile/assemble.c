@@ -40,8 +40,9 @@ static void store_presence(const Entries *entries, Scenario *scenario)
 }
 
 // Stepping and map where a case names neither, or only one of them: the other is its natural
-// partner, so that `map: textbook` is ODE as its manual has it. A case that names a way of
-// stepping, or whose contact model has no order to choose a step by, has a given step.
+// partner, so that `map: textbook` is ODE as its manual has it. A collider other than the exact one
+// needs a contact row, and map impulse has none. A case that names a way of stepping or such a
+// collider, or whose contact model has no order to choose a step by, has a given step.
 static void store_partners(const Entries *entries, Scenario *scenario)
 {
     OdeOptions *ode = &scenario->ode;
@@ -49,14 +50,18 @@ static void store_partners(const Entries *entries, Scenario *scenario)
     const bool has_step = entries_find(entries, "run.step", 0) != NULL;
     const bool has_stepping = entries_find(entries, "ode.stepping", 0) != NULL;
     const bool has_map = entries_find(entries, "ode.map", 0) != NULL;
+    const bool is_faceted =
+        scenario_has_clearance(scenario) && ode->collider != ODE_COLLIDER_PIN_HOLE;
     if (!has_map && (is_poisson || ode->stepping == ODE_PLAIN)) {
         ode->map = ODE_MAP_TEXTBOOK;
+    } else if (!has_map && is_faceted) {
+        ode->map = ODE_MAP_MIDPOINT;
     }
     const bool is_of_staggered = ode->map == ODE_MAP_IMPULSE || ode->map == ODE_MAP_MIDPOINT;
     if (!has_stepping && !is_of_staggered) {
         ode->stepping = ODE_PLAIN;
     }
-    if (!has_step && (has_stepping || has_map || is_poisson)) {
+    if (!has_step && (has_stepping || has_map || is_poisson || is_faceted)) {
         scenario->run.step = OPTIONS_GIVEN_STEP;
     }
 }

@@ -5,6 +5,7 @@
 #include "casefile/keys.h"
 #include "casefile/store.h"
 #include "contact/damping.h"
+#include "contact/facets.h"
 #include "contact/law.h"
 
 #include <math.h>
@@ -261,6 +262,35 @@ static bool check_backends(const Entries *entries, const RunOptions *run, Err *e
     return true;
 }
 
+// Whether the collider can see contacts as small as those of each joint with play.
+static bool check_collider(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    const OdeOptions *ode = &scenario->ode;
+    const Entry *entry = entries_find(entries, "ode.collider", 0);
+    if (entry == NULL || ode->collider == ODE_COLLIDER_PIN_HOLE) {
+        return true;
+    }
+    const bool is_impulse = scenario->contact.model == CONTACT_IMPACT &&
+                            (ode->map == ODE_MAP_IMPULSE || scenario->run.step == 0.0);
+    if (scenario_has_clearance(scenario) && is_impulse) {
+        return entries_refuse(
+            entries_blame(entries, "ode.map run.step ode.collider", 0), err,
+            "%s follows the exact circle and does not ask collider %s\n"
+            "allowed: collider: pin-hole, or a step and another map, such as map: midpoint",
+            scenario->run.step == 0.0 ? "step auto" : "map impulse",
+            OPTIONS_ODE_COLLIDERS[ode->collider]);
+    }
+    for (int i = 0; i < (int)scenario->linkage.joint_count; i++) {
+        Err own = {0};
+        if (scenario->linkage.joints[i].kind == JOINT_CLEARANCE &&
+            !facets_check(scenario, i, &own)) {
+            return entries_refuse(entries_blame(entries, "ode.facets ode.collider", 0), err,
+                                  "%s\nallowed: pin-hole, which is exact, or staves", own.text);
+        }
+    }
+    return true;
+}
+
 // Steppings and maps that not every case can have.
 static bool check_stepping(const Entries *entries, const Scenario *scenario, Err *err)
 {
@@ -345,5 +375,6 @@ bool check_values(const Entries *entries, const Scenario *scenario, Err *err)
         }
     }
     return check_drive(entries, linkage, err) && check_speeds(entries, linkage, err) &&
-           check_contact(entries, scenario, err) && check_run(entries, scenario, err);
+           check_contact(entries, scenario, err) && check_run(entries, scenario, err) &&
+           check_collider(entries, scenario, err);
 }

@@ -102,8 +102,11 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
             text_append(text, ", or in revolutions");
         }
         break;
-    case SCHEMA_TEXT:
     case SCHEMA_INTEGER:
+        text_append(text, "%s%s%s", row->zero_word != NULL ? row->zero_word : "",
+                    row->zero_word != NULL ? ", or " : "", WORDS[row->type][with_example ? 1 : 0]);
+        break;
+    case SCHEMA_TEXT:
     case SCHEMA_BETWEEN:
     case SCHEMA_BODY_NAME:
     case SCHEMA_JOINT_NAME:

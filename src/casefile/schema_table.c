@@ -2,6 +2,7 @@
 // model/options.c and model/scenario.c; here only what a number cannot say about them.
 #include "casefile/build.h"
 #include "casefile/schema.h"
+#include "contact/facets.h"
 
 #include <stddef.h>
 
@@ -43,8 +44,9 @@ enum {
     CHOSEN_STEP = 1 << 18,
     PLAIN = 1 << 19, // the stepping of a given step
     EXTRAPOLATED = 1 << 20,
-    LOCAL = 1 << 21, // the contact is integrated within the step
-    LATER = 1 << 22, // what is reported begins after the start
+    LOCAL = 1 << 21,   // the contact is integrated within the step
+    LATER = 1 << 22,   // what is reported begins after the start
+    FACETED = 1 << 23, // the collider takes holes for polygons
 };
 
 static unsigned bit(unsigned need, bool is_met)
@@ -87,6 +89,7 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
                    bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
                    bit(FRICTION, has_play && contact->friction > 0.0) |
                    bit(QUICK, scenario->ode.solver == ODE_QUICK) |
+                   bit(FACETED, scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) |
                    bit(LATER, scenario->run.report_from > 0.0) | step_bits(scenario, is_impact);
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
         met |= bit(REFERENCE, scenario->run.backends[i] == BACKEND_REFERENCE);
@@ -252,7 +255,8 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "samples written per revolution of the drive, or in the whole run without one"},
     {.path = "run.step", .dimension = DIMENSION_TIME, AT(run.step), .low = 0.0, .high = 1.0,
      .low_is_open = true, .zero_word = "auto", .needs = ODE,
-     .default_words = "auto; 1 us where ode.stepping or ode.map is given, or the model is poisson",
+     .default_words = "auto; 1 us where ode.stepping, ode.map or a collider but pin-hole is given, "
+                      "or the model is poisson",
      .doc = "step of ode; auto: chosen so that the error is within the tolerance, with stepping "
             "staggered and map impulse, or stepping extrapolated if all joints are ideal"},
     {.path = "run.tolerance", AT(run.tolerance), .low = 1e-9, .high = 0.1,
@@ -291,12 +295,25 @@ const SchemaRow SCHEMA_ROWS[] = {
             "joints only"},
     {.path = "ode.map", .type = SCHEMA_CHOICE, AT(ode.map), .words = OPTIONS_ODE_MAPS,
      .needs = ODE | IMPACT | GIVEN_STEP,
-     .default_words = "impulse; textbook with stepping plain or model poisson",
+     .default_words = "impulse; textbook with stepping plain or model poisson; midpoint with any "
+                      "collider but pin-hole",
      .doc = "how stiffness and damping become ERP and CFM; impulse: neither, the contact is "
             "integrated within the step, with staggered stepping only"},
     {.path = "ode.collider", .type = SCHEMA_CHOICE, AT(ode.collider),
      .words = OPTIONS_ODE_COLLIDERS, .needs = ODE | PLAY,
-     .doc = "how the contact of pin and hole is found"},
+     .doc = "how the contact of pin and hole is found: pin-hole: exactly; staves: a ring of convex "
+            "staves, by libccd's portal refinement; staves-gjk: the same by its GJK and EPA; "
+            "ode-convex: the same through ODE; trimesh: a mesh of triangles. Only pin-hole goes "
+            "with map impulse"},
+    {.path = "ode.facets", .type = SCHEMA_INTEGER, AT(ode.facets), .low = FACETS_LEAST,
+     .high = FACETS_MOST, .zero_word = "auto", .needs = ODE | PLAY | FACETED,
+     .default_words = "auto",
+     .doc = "with any collider but pin-hole: the sides of the polygon that stands for a hole; auto: "
+            "so many that the sagitta is a hundredth of the play or of the depth to be expected"},
+    {.path = "ode.polygon", .type = SCHEMA_CHOICE, AT(ode.polygon), .words = OPTIONS_ODE_POLYGONS,
+     .needs = ODE | PLAY | FACETED,
+     .doc = "circumscribed: sides touch the wall at their middles; inscribed: corners lie on the "
+            "wall, as those of a CAD mesh do, and the sagitta is taken from the play"},
     {.path = "ode.erp", AT(ode.erp), .low = 0.0, .high = 1.0, .needs = ODE | PLAIN,
      .doc = "error reduction of the ideal joints per step, with plain stepping; otherwise it is 1"},
     {.path = "ode.cfm", .plain_unit = "s/kg", AT(ode.cfm), .low = 0.0, .high = 1e6, .needs = ODE,

@@ -133,8 +133,8 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         set_tolerated(setting, field);
         break;
     case SCHEMA_INTEGER:
-        set_number(setting, (double)*(const size_t *)field);
-        setting->kind = CASEFILE_INTEGER;
+        set_quantity(setting, row, (double)*(const size_t *)field);
+        setting->kind = setting->kind == CASEFILE_NUMBER ? CASEFILE_INTEGER : setting->kind;
         break;
     case SCHEMA_CHOICE:
         memcpy(&number, field, sizeof number);

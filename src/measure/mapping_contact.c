@@ -23,6 +23,9 @@ Scenario mapping_scenario(const MappingContact *contact, OdeMap map, double step
     Scenario scenario = contact->scenario;
     scenario.run.step = step_s;
     scenario.ode.map = map;
+    if (map == ODE_MAP_IMPULSE) {
+        scenario.ode.collider = ODE_COLLIDER_PIN_HOLE;
+    }
     // maps of the mid-step belong to staggered stepping, and a contact needs one world
     if (map >= ODE_MAP_MIDPOINT || scenario.ode.stepping == ODE_EXTRAPOLATED) {
         scenario.ode.stepping = ODE_STAGGERED;

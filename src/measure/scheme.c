@@ -30,8 +30,10 @@ static Choice choose(const char *const *words, bool matters, int as_it_is)
     return matters ? (Choice){0, word_count(words) - 1} : (Choice){as_it_is, as_it_is};
 }
 
-static void name_scheme(Scheme *scheme, bool has_map, bool has_collider)
+// The exact collider goes without saying.
+static void name_scheme(Scheme *scheme, bool has_map)
 {
+    const bool has_collider = scheme->collider != ODE_COLLIDER_PIN_HOLE;
     snprintf(scheme->name, sizeof scheme->name, "%s/%s%s%s%s%s",
              OPTIONS_ODE_SOLVERS[scheme->solver], OPTIONS_ODE_STEPPINGS[scheme->stepping],
              has_map ? "/" : "", has_map ? OPTIONS_ODE_MAPS[scheme->map] : "",
@@ -39,10 +41,12 @@ static void name_scheme(Scheme *scheme, bool has_map, bool has_collider)
 }
 
 // Whether two choices go together in a scenario.
-static bool go_together(OdeStepping stepping, OdeMap map, bool has_play, bool has_map)
+static bool go_together(const Scheme *scheme, bool has_play, bool has_map)
 {
-    return !(has_play && stepping == ODE_EXTRAPOLATED) &&
-           !(has_map && map == ODE_MAP_IMPULSE && stepping != ODE_STAGGERED);
+    const bool is_impulse = has_map && scheme->map == ODE_MAP_IMPULSE;
+    return !(has_play && scheme->stepping == ODE_EXTRAPOLATED) &&
+           !(is_impulse && scheme->stepping != ODE_STAGGERED) &&
+           !(is_impulse && scheme->collider != ODE_COLLIDER_PIN_HOLE);
 }
 
 // Those that stand for their kind: the textbook's use of ODE, the best of plain and of staggered
@@ -60,14 +64,15 @@ static bool is_usual(const Scheme *scheme, bool has_map)
            (is_direct && !is_plain && scheme->map == ODE_MAP_MIDPOINT);
 }
 
-static void add_ode(const Scheme *scheme, bool has_map, bool has_collider, Scheme *schemes,
+static void add_ode(const Scheme *scheme, OdeCollider of_case, bool has_map, Scheme *schemes,
                     size_t *count)
 {
     assert(*count + LATER_MAX < SCHEME_MAX);
     Scheme *added = &schemes[(*count)++];
     *added = *scheme;
-    added->is_usual = is_usual(scheme, has_map);
-    name_scheme(added, has_map, has_collider);
+    added->is_asked = scheme->collider == ODE_COLLIDER_PIN_HOLE || scheme->collider == of_case;
+    added->is_usual = added->is_asked && is_usual(scheme, has_map);
+    name_scheme(added, has_map);
 }
 
 // Steps that ODE chooses for these errors.
@@ -89,7 +94,8 @@ static size_t list_ode(const Scenario *scenario, Scheme *schemes)
     const bool has_play = scenario_has_clearance(scenario);
     const bool has_map = has_play && scenario->contact.model != CONTACT_POISSON;
     const Choice maps = choose(OPTIONS_ODE_MAPS, has_map, (int)ode->map);
-    const Choice colliders = choose(OPTIONS_ODE_COLLIDERS, has_play, (int)ode->collider);
+    // without play every collider is the exact one, which has nothing to do
+    const Choice colliders = choose(OPTIONS_ODE_COLLIDERS, has_play, ODE_COLLIDER_PIN_HOLE);
     const int solvers = word_count(OPTIONS_ODE_SOLVERS);
     const int steppings = word_count(OPTIONS_ODE_STEPPINGS);
     size_t count = 0;
@@ -97,14 +103,13 @@ static size_t list_ode(const Scenario *scenario, Scheme *schemes)
         for (int stepping = 0; stepping < steppings; stepping++) {
             for (int map = maps.first; map <= maps.last; map++) {
                 for (int collider = colliders.first; collider <= colliders.last; collider++) {
-                    if (go_together((OdeStepping)stepping, (OdeMap)map, has_play, has_map)) {
-                        const Scheme scheme = {.backend = BACKEND_ODE,
-                                               .solver = (OdeSolver)solver,
-                                               .stepping = (OdeStepping)stepping,
-                                               .map = (OdeMap)map,
-                                               .collider = (OdeCollider)collider};
-                        add_ode(&scheme, has_map, colliders.last > colliders.first, schemes,
-                                &count);
+                    const Scheme scheme = {.backend = BACKEND_ODE,
+                                           .solver = (OdeSolver)solver,
+                                           .stepping = (OdeStepping)stepping,
+                                           .map = (OdeMap)map,
+                                           .collider = (OdeCollider)collider};
+                    if (go_together(&scheme, has_play, has_map)) {
+                        add_ode(&scheme, ode->collider, has_map, schemes, &count);
                     }
                 }
             }
@@ -184,6 +189,9 @@ static bool next_part(const char **text, const char *separators, char part[ENTRY
 
 static bool has_word(const Scheme *scheme, const char *word)
 {
+    if (strcmp(OPTIONS_ODE_COLLIDERS[scheme->collider], word) == 0) {
+        return true;
+    }
     const char *rest = scheme->name;
     char part[ENTRY_SIZE];
     while (next_part(&rest, "/", part)) {
@@ -194,17 +202,29 @@ static bool has_word(const Scheme *scheme, const char *word)
     return false;
 }
 
+static bool is_collider(const char *word)
+{
+    for (size_t i = 0; OPTIONS_ODE_COLLIDERS[i] != NULL; i++) {
+        if (strcmp(OPTIONS_ODE_COLLIDERS[i], word) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool matches(const Scheme *scheme, const char *entry)
 {
     char word[ENTRY_SIZE];
     bool is_match = true;
+    bool is_asked = scheme->is_asked || !scheme_has_step(scheme);
     if (strcmp(entry, "all") == 0) {
         return true;
     }
     while (next_part(&entry, "/", word)) {
         is_match = is_match && has_word(scheme, word);
+        is_asked = is_asked || is_collider(word);
     }
-    return is_match;
+    return is_match && is_asked;
 }
 
 static bool mark_entry(const char *entry, const Scheme *schemes, size_t count, bool *is_kept,

@@ -10,6 +10,7 @@ typedef struct Scheme {
     char name[SCHEME_NAME_SIZE]; // "direct/plain/textbook", "auto/1e-4", or the name of the backend
     BackendKind backend;
     bool is_usual;    // taken where no schemes are asked for
+    bool is_asked;    // its collider is the exact one or the case's: taken where none is named
     double tolerance; // 1, of BACKEND_ODE with a step that it chooses; else 0
     OdeSolver solver; // of BACKEND_ODE with a given step, as the three below
     OdeStepping stepping;
@@ -22,10 +23,10 @@ bool scheme_check(const Scenario *scenario, Err *err);
 
 // Lists the schemes of a scenario, ODE's first, and returns their count. They come from the lists
 // of words in model/options.h, less what does not go together: map impulse with another stepping
-// than staggered, extrapolated stepping with play. A choice that makes no difference stays as the
-// case has it: the map where no joint has play or the contact is CONTACT_POISSON, the collider
-// where no joint has play. Then come steps chosen for a tolerance, the reference and, for a
-// four-bar without play, the closed form.
+// than staggered or another collider than the exact one, extrapolated stepping with play. A choice
+// that makes no difference stays as the case has it: the map where no joint has play or the contact
+// is CONTACT_POISSON; without play the collider is the exact one. Then come steps chosen for a
+// tolerance, the reference and, for a four-bar without play, the closed form.
 size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX]);
 
 // Whether the scheme is ODE with a step chosen for a tolerance.
@@ -41,7 +42,7 @@ void scheme_apply(const Scheme *scheme, double step_s, Scenario *scenario);
 void scheme_keep_usual(Scheme *schemes, size_t *count);
 
 // Keeps those of ODE that the list names, separated by commas, and all other backends. An entry
-// names every scheme that has all of its words: "direct/corrected" is any such stepping and
-// collider, "all" is every one. Fails with ERR_USAGE for an entry that no scheme matches; the
-// schemes are then untouched.
+// names every scheme that has all of its words: "direct/corrected" is any such stepping, with the
+// exact collider and the case's, unless it names a collider; "all" is every one. Fails with
+// ERR_USAGE for an entry that no scheme matches; the schemes are then untouched.
 bool scheme_filter(const char *list, Scheme *schemes, size_t *count, Err *err);

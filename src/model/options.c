@@ -10,7 +10,8 @@ const char *const OPTIONS_DAMPINGS[] = {OPTIONS_DAMPING_LIST(WORD) NULL};
 const char *const OPTIONS_ODE_SOLVERS[] = {"direct", "quick", NULL};
 const char *const OPTIONS_ODE_STEPPINGS[] = {OPTIONS_ODE_STEPPING_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_ODE_MAPS[] = {OPTIONS_ODE_MAP_LIST(WORD) NULL};
-const char *const OPTIONS_ODE_COLLIDERS[] = {"pin-hole", NULL};
+const char *const OPTIONS_ODE_COLLIDERS[] = {OPTIONS_ODE_COLLIDER_LIST(MEMBER_WORD) NULL};
+const char *const OPTIONS_ODE_POLYGONS[] = {"circumscribed", "inscribed", NULL};
 const char *const OPTIONS_BACKENDS[] = {OPTIONS_BACKEND_LIST(MEMBER_WORD) NULL};
 
 MaterialOptions material_options_default(void)
@@ -76,6 +77,8 @@ OdeOptions ode_options_default(void)
         .stepping = ODE_STAGGERED, // second order at the cost of plain stepping
         .map = ODE_MAP_IMPULSE,    // right at any step; see docs/stepping.md
         .collider = ODE_COLLIDER_PIN_HOLE,
+        .polygon = ODE_CIRCUMSCRIBED, // smaller errors; see contact/facets.h
+        .facets = 0,
         .erp = 0.2, // ODE's own default, set and not inherited
         .cfm = 0.0, // no joint row is redundant, so none needs softening
         // the paper's Eq. (2) has no term in the penetration, and at 0 the pin creeps into the

@@ -48,6 +48,15 @@
     member(ODE_STAGGERED, "staggered", STEPPING_STAGGERED) \
     member(ODE_EXTRAPOLATED, "extrapolated", STEPPING_EXTRAPOLATED)
 
+// How ODE learns that a pin touches the wall of its hole; see ode/collider.h. First the exact one;
+// all others take the hole for a polygon.
+#define OPTIONS_ODE_COLLIDER_LIST(member) \
+    member(ODE_COLLIDER_PIN_HOLE, "pin-hole", collider_pin_hole) \
+    member(ODE_COLLIDER_STAVES, "staves", collider_staves) \
+    member(ODE_COLLIDER_STAVES_GJK, "staves-gjk", collider_staves_gjk) \
+    member(ODE_COLLIDER_CONVEX, "ode-convex", collider_convex) \
+    member(ODE_COLLIDER_TRIMESH, "trimesh", collider_trimesh)
+
 // The solvers; see model/solver.h.
 #define OPTIONS_BACKEND_LIST(member) \
     member(BACKEND_ANALYTIC, "analytic", ANALYTIC_SOLVER) \
@@ -63,6 +72,9 @@ typedef enum OdeMap { OPTIONS_ODE_MAP_LIST(OPTIONS_ENUMERATOR) ODE_MAP_COUNT } O
 typedef enum OdeStepping {
     OPTIONS_ODE_STEPPING_LIST(OPTIONS_ENUMERATOR) ODE_STEPPING_COUNT
 } OdeStepping;
+typedef enum OdeCollider {
+    OPTIONS_ODE_COLLIDER_LIST(OPTIONS_ENUMERATOR) ODE_COLLIDER_COUNT
+} OdeCollider;
 typedef enum BackendKind { OPTIONS_BACKEND_LIST(OPTIONS_ENUMERATOR) BACKEND_COUNT } BackendKind;
 
 // The model of what happens where pin and hole overlap.
@@ -72,7 +84,12 @@ typedef enum ContactModel {
 } ContactModel;
 
 typedef enum OdeSolver { ODE_DIRECT, ODE_QUICK } OdeSolver;
-typedef enum OdeCollider { ODE_COLLIDER_PIN_HOLE } OdeCollider;
+
+// The polygon that a collider takes a round hole for.
+typedef enum OdePolygon {
+    ODE_CIRCUMSCRIBED, // its sides touch the circle at their middles
+    ODE_INSCRIBED,     // its corners lie on the circle, as those of meshes from CAD do
+} OdePolygon;
 
 // The words that stand for the choices above, in their order; each list ends in NULL.
 extern const char *const OPTIONS_CONTACT_MODELS[];
@@ -82,6 +99,7 @@ extern const char *const OPTIONS_ODE_SOLVERS[];
 extern const char *const OPTIONS_ODE_STEPPINGS[];
 extern const char *const OPTIONS_ODE_MAPS[];
 extern const char *const OPTIONS_ODE_COLLIDERS[];
+extern const char *const OPTIONS_ODE_POLYGONS[];
 extern const char *const OPTIONS_BACKENDS[];
 
 typedef struct MaterialOptions {
@@ -127,6 +145,8 @@ typedef struct OdeOptions {
     OdeStepping stepping;
     OdeMap map;
     OdeCollider collider;
+    OdePolygon polygon;     // of every collider but ODE_COLLIDER_PIN_HOLE
+    size_t facets;          // likewise: sides of the polygon; 0: from play and depth
     double erp;             // 1, of the ideal joints' rows, per step
     double cfm;             // s/kg = m/(N s), of the ideal joints' rows
     double push_out;        // 1, ERP of CONTACT_POISSON rows

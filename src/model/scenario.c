@@ -78,6 +78,8 @@ Scenario scenario_with_step(const Scenario *scenario, double step_s)
     given.run.step = step_s;
     given.ode.stepping = scenario_has_clearance(scenario) ? ODE_STAGGERED : ODE_EXTRAPOLATED;
     given.ode.map = ODE_MAP_IMPULSE;
+    // which follows the exact circle and asks no collider
+    given.ode.collider = ODE_COLLIDER_PIN_HOLE;
     // contacts need fine steps and flight does not
     given.ode.gear = 2;
     return given;

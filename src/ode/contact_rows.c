@@ -10,7 +10,6 @@
 
 #include "contact/law.h"
 #include "contact/penalty.h"
-#include "contact/pin_hole.h"
 #include "ode/contact_friction.h"
 
 #include <string.h>
@@ -49,14 +48,6 @@ void contact_rows_finish(ContactRows *rows)
         dJointGroupDestroy(rows->group);
     }
     memset(rows, 0, sizeof *rows);
-}
-
-static PinHole pair_pose(const WorldPair *pair, double radial_clearance)
-{
-    const Vec2 hole = geom_position(pair->hole);
-    const Vec2 pin = geom_position(pair->pin);
-    const Vec2 moving = vec2_sub(geom_velocity(pair->pin, pin), geom_velocity(pair->hole, hole));
-    return pin_hole_pose(hole, pin, moving, radial_clearance);
 }
 
 // Brings the response to where the bodies are.
@@ -228,69 +219,42 @@ static void check_stability(ContactRows *rows, size_t number, double step_s)
     rows->fallback_count += row->falls_back ? 1 : 0;
 }
 
-// The speed at which a pin that overlaps its wall for the first time came to it, m/s: as found now,
-// or, where the steps before show it, its mean over the last step, taken on to the crossing by its
-// change from step to step.
-static double onset_speed(const ContactRows *rows, const ContactRow *row, const PinHole *pose,
-                          double step_s)
+// A contact as ODE wants it: its normal is that of the force on the hole.
+static dContact contact_of(ContactRows *rows, size_t number, double step_s)
 {
-    if (!rows->is_staggered || row->gaps_known == 0) {
-        return pose->approach_speed;
-    }
-    const double mean = (row->gaps[0] - pose->gap) / step_s;
-    if (row->gaps_known == 1 || !(mean > 0.0)) {
-        return mean;
-    }
-    const double change = mean - (row->gaps[1] - row->gaps[0]) / step_s;
-    // the mean stands in the middle of the last step
-    return mean + change * (0.5 - pose->penetration / (mean * step_s));
-}
-
-// Keeps the gaps that a pin had while nothing acted on it.
-static void note_gap(ContactRow *row, double gap)
-{
-    row->gaps_known = row->is_touching ? 0 : row->gaps_known + (row->gaps_known < 2 ? 1 : 0);
-    row->gaps[1] = row->gaps[0];
-    row->gaps[0] = gap;
+    ContactRow *row = &rows->rows[number];
+    const WorldPair *pair = &rows->world->pairs[number];
+    const Vec2 point = vec2_add(geom_position(pair->hole), row->arm_hole);
+    return (dContact){
+        .surface = surface_of(rows, row, step_s),
+        .geom = {.pos = {point.x, point.y, 0.0},
+                 .normal = {-row->normal.x, -row->normal.y, 0.0},
+                 .depth = row->depth,
+                 .g1 = pair->hole,
+                 .g2 = pair->pin,
+                 .side1 = -1,
+                 .side2 = -1},
+        .fdir1 = {-row->normal.y, row->normal.x, 0.0, 0.0},
+    };
 }
 
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err)
 {
     for (size_t i = 0; i < rows->world->pair_count; i++) {
-        const WorldPair *pair = &rows->world->pairs[i];
+        const int joint = rows->world->pairs[i].joint;
         ContactRow *row = &rows->rows[i];
-        dContactGeom geom;
-        const bool was_touching = row->is_touching;
-        row->is_touching = dCollide(pair->hole, pair->pin, 1, &geom, sizeof geom) > 0;
-        const PinHole pose = pair_pose(pair, row->radial_clearance);
-        states[pair->joint] = (JointState){
-            .eccentricity = pose.eccentricity,
-            .gap = pose.gap,
-            .is_touching = row->is_touching,
-        };
-        if (!row->is_touching) {
-            row->impact_speed = pose.approach_speed;
-        } else if (!was_touching) {
-            row->impact_speed = onset_speed(rows, row, &pose, step_s);
-        }
-        approach[pair->joint] = row->impact_speed;
-        note_gap(row, pose.gap);
+        contact_row_find(row, rows->world, &rows->world->pairs[i], rows->is_staggered, step_s,
+                         &states[joint]);
+        approach[joint] = row->impact_speed;
         if (!row->is_touching) {
             continue;
         }
-        row->depth = geom.depth;
-        row->normal = pose.normal;
-        row->closing = pose.approach_speed;
         if (!check_depth(rows, i, err)) {
             return false;
         }
         check_stability(rows, i, step_s);
-        row->contact = (dContact){
-            .surface = surface_of(rows, row, step_s),
-            .geom = geom,
-            .fdir1 = {-row->normal.y, row->normal.x, 0.0, 0.0},
-        };
+        row->contact = contact_of(rows, i, step_s);
     }
     make_contact_rows(rows, step_s);
     return true;
@@ -319,16 +283,18 @@ static void book_energy(ContactRows *rows, size_t number, Vec2 force, double ste
     if (!row->is_touching) {
         return;
     }
-    const PinHole pose = pair_pose(&rows->world->pairs[number], row->radial_clearance);
+    Vec2 velocity;
+    const PinHole pose = contact_row_pose(row, &rows->world->pairs[number], &velocity);
+    // a polygon's side stays what it is within a step
+    const double penetration = pose.penetration + row->excess;
+    const double speed = pose.approach_speed + row->faster;
     const double pressing = vec2_dot(row->normal, force);
     // of a staggered world the step stands in the middle between its two speeds, and its end
     // between two positions
-    const double closing =
-        rows->is_staggered ? 0.5 * (row->closing + pose.approach_speed) : pose.approach_speed;
-    const double depth =
-        rows->is_staggered ? 0.5 * (row->depth + pose.penetration) : pose.penetration;
+    const double closing = rows->is_staggered ? 0.5 * (row->closing + speed) : speed;
+    const double depth = rows->is_staggered ? 0.5 * (row->depth + penetration) : penetration;
     if (rows->scenario->contact.model == CONTACT_POISSON) {
-        row->dissipated = pressing * 0.5 * (row->closing + pose.approach_speed) * step_s;
+        row->dissipated = pressing * 0.5 * (row->closing + speed) * step_s;
     } else {
         row->dissipated = pressing > 0.0 ? row->damping * closing * closing * step_s : 0.0;
         row->elastic = force_law_energy(&row->law, fmax(0.0, depth));
@@ -366,9 +332,7 @@ void contact_rows_offsets(const ContactRows *rows, int body, Vec2 offsets[LINKAG
         const int number = rows->world->pairs[i].joint;
         const Joint *joint = &rows->scenario->linkage.joints[number];
         if (row->is_touching) {
-            const double radius =
-                joint->body_a == body ? joint->clearance.hole_radius : joint->clearance.pin_radius;
-            offsets[number] = vec2_scale(-radius, row->normal);
+            offsets[number] = joint->body_a == body ? row->arm_hole : row->arm_pin;
         }
     }
 }

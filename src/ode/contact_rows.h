@@ -1,33 +1,10 @@
 // The contacts of the joints with play: looked for before each step, one row each while they last.
 #pragma once
 
-#include "contact/force_law.h"
 #include "contact/map.h"
 #include "model/response.h"
 #include "model/trajectory.h"
-#include "ode/world.h"
-
-typedef struct ContactRow {
-    ForceLaw law;
-    double radial_clearance; // m
-    double impact_speed;     // m/s, closing speed when the present contact began
-    double mass;             // kg, effective along the normal that it was worked out for
-    Vec2 mass_normal;
-    bool falls_back;   // the map is not stable at this step: the row is the textbook's
-    double gaps[2];    // m, of the last step and of the one before it
-    size_t gaps_known; // how many of them the pin was free in
-    bool is_touching;  // whether the present step has a row
-    double depth;      // m, of the row
-    Vec2 normal;       // of the row: unit, direction of the force on the pin
-    double damping;    // N s/m, of the row; not of CONTACT_POISSON
-    double closing;    // m/s, before the step
-    double sliding;    // m/s, along the wall before the step, where there is friction
-    double elastic;    // J, stored in the contact after the step
-    double dissipated; // J, lost along the normal in the step
-    double friction;   // J, lost in sliding in the step
-    dContact contact;  // as ODE is given it
-    dJointFeedback feedback;
-} ContactRow;
+#include "ode/contact_row.h"
 
 typedef struct ContactRows {
     const Scenario *scenario;

@@ -44,6 +44,12 @@ dGeomID hole_geom_create(double radius_m)
     return hole;
 }
 
+double hole_geom_radius(dGeomID hole)
+{
+    const HoleData *data = dGeomGetClassData(hole);
+    return data->radius;
+}
+
 int hole_geom_collide(dGeomID hole, dGeomID pin, int flags, dContactGeom *contact, int skip)
 {
     (void)skip; // only one contact is ever written

@@ -90,11 +90,14 @@ void stepping_label(const Scenario *scenario, const char *stepping, const char *
 {
     const bool has_play = scenario_has_clearance(scenario);
     const bool is_poisson = has_play && scenario->contact.model == CONTACT_POISSON;
-    snprintf(label, TRAJECTORY_LABEL_SIZE, "ode %s/%s/%s",
+    const bool has_collider = has_play && scenario->ode.collider != ODE_COLLIDER_PIN_HOLE;
+    snprintf(label, TRAJECTORY_LABEL_SIZE, "ode %s/%s/%s%s%s",
              OPTIONS_ODE_SOLVERS[scenario->ode.solver], stepping,
              is_poisson ? "poisson"
              : has_play ? map
-                        : "ideal");
+                        : "ideal",
+             has_collider ? "/" : "",
+             has_collider ? OPTIONS_ODE_COLLIDERS[scenario->ode.collider] : "");
 }
 
 void stepping_observe_joint(const Linkage *linkage, size_t joint, Sample *sample)

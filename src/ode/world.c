@@ -128,17 +128,22 @@ static void attach_geom(const World *world, dGeomID geom, int body, Vec2 anchor)
     dGeomSetOffsetPosition(geom, anchor.x, anchor.y, 0.0);
 }
 
-static void make_pair(const Joint *joint, int number, World *world)
+static bool make_pair(const Scenario *scenario, int number, World *world, Err *err)
 {
+    const Joint *joint = &scenario->linkage.joints[number];
     const Clearance *clearance = &joint->clearance;
     WorldPair *pair = &world->pairs[world->pair_count++];
     pair->joint = number;
     pair->hole = hole_geom_create(clearance->hole_radius);
-    // the collider needs no width; ODE's cylinder wants one above zero
-    const double width = clearance->width > 0.0 ? clearance->width : clearance->pin_radius;
-    pair->pin = dCreateCylinder(0, clearance->pin_radius, width);
+    pair->pin = dCreateCylinder(0, clearance->pin_radius, hole_geom_width(clearance));
     attach_geom(world, pair->hole, joint->body_a, joint->anchor_a);
     attach_geom(world, pair->pin, joint->body_b, joint->anchor_b);
+    Err own = {0};
+    if (world->collider->check != NULL && !world->collider->check(scenario, number, &own)) {
+        return err_set(err, ERR_SOLVER, "%s; use collider pin-hole or staves", own.text);
+    }
+    pair->collision = world->collider->open(scenario, number);
+    return true;
 }
 
 // Everything that ODE would otherwise take from its own defaults.
@@ -170,14 +175,16 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
     world->linkage = &scenario->linkage;
     world->id = dWorldCreate();
     world->constraint_rows = rows;
+    world->collider = collider_get(scenario->ode.collider);
     set_world(scenario, world->id);
     make_bodies(scenario, motions, world);
     const Linkage *linkage = &scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (linkage_is_ideal(linkage, i)) {
             make_ball(linkage, motions, i, &scenario->ode, world);
-        } else if (linkage->joints[i].kind == JOINT_CLEARANCE) {
-            make_pair(&linkage->joints[i], (int)i, world);
+        } else if (linkage->joints[i].kind == JOINT_CLEARANCE &&
+                   !make_pair(scenario, (int)i, world, err)) {
+            return false;
         }
     }
     return true;
@@ -186,6 +193,7 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
 void world_finish(World *world)
 {
     for (size_t i = 0; i < world->pair_count; i++) {
+        world->collider->close(world->pairs[i].collision);
         dGeomDestroy(world->pairs[i].hole);
         dGeomDestroy(world->pairs[i].pin);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "model/trajectory.h"
+#include "ode/collider.h"
 
 #include <ode/ode.h>
 
@@ -10,6 +11,7 @@ typedef struct WorldPair {
     int joint; // number in the linkage
     dGeomID hole;
     dGeomID pin;
+    void *collision; // what the world's collider keeps of the joint; owned
 } WorldPair;
 
 typedef struct World {
@@ -17,13 +19,16 @@ typedef struct World {
     dWorldID id;
     dBodyID bodies[LINKAGE_BODY_MAX];
     dJointFeedback feedback[LINKAGE_JOINT_MAX]; // of the ideal joints
+    const Collider *collider;                   // of all pairs
     size_t pair_count;
     WorldPair pairs[LINKAGE_JOINT_MAX];
     size_t constraint_rows; // scalar rows of the ideal joints, all independent
 } World;
 
 // Builds the world of a scenario with its bodies in the motions given. Fails with ERR_SOLVER where
-// joint rows would be redundant. The world must not be copied: ODE keeps pointers into it.
+// joint rows would be redundant, or the collider cannot resolve a joint's play.
+// The world must not be copied: ODE keeps pointers into it. It is to be finished after a failure
+// too.
 bool world_build(const Scenario *scenario, const Motion *motions, World *world, Err *err);
 
 // Destroys what was built; accepts a zeroed world.

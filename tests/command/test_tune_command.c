@@ -75,7 +75,8 @@ static void the_error_is_met_on_running_again(void **state)
     }
 }
 
-// Compiles the code with ODE alone and not a warning, runs it, and holds it against the program.
+// Compiles the code by the command in it, with ODE (and libccd) alone and not a warning, runs it,
+// and holds it against the program.
 static void check_code(Program *program, const char *options)
 {
     char line[3 * PROGRAM_PATH_SIZE];
@@ -84,7 +85,8 @@ static void check_code(Program *program, const char *options)
     json_t *root = tune(program, with_code, 0);
     const char *command = words(json_object_get(root, "cheapest"), "command");
     snprintf(line, sizeof line,
-             "cd '%s' && $JOINTPLAY_CC -Wall -Werror -o setting setting.c -lode -lm && "
+             "cd '%s' && libraries=$(grep -o -m 1 -e '-lode[^&]*' setting.c) && "
+             "$JOINTPLAY_CC -Wall -Werror -o setting setting.c $libraries && "
              "./setting >setting.csv 2>words",
              program->folder);
     assert_int_equal(system(line), 0);
@@ -124,6 +126,19 @@ static void the_code_of_ideal_joints_and_other_mechanisms_too(void **state)
     check_code(program, "$cases/paper/ideal-nominal.yaml --error 1e-3 --schemes extrapolated");
     check_code(program, "$cases/literature/pin-in-hole-drop.yaml --error 1e-2 "
                         "--schemes direct/plain/corrected");
+}
+
+static void the_code_of_every_collider_too(void **state)
+{
+    Program *program = *state;
+    static const char *const COLLIDERS[] = {"staves", "staves-gjk", "ode-convex", "trimesh"};
+    for (int i = 0; i < 4; i++) {
+        char options[PROGRAM_PATH_SIZE];
+        snprintf(options, sizeof options,
+                 "%s --error 3e-2 --set ode.facets=64 --schemes direct/staggered/midpoint/%s", K66,
+                 COLLIDERS[i]);
+        check_code(program, options);
+    }
 }
 
 // The cheapest point of a comparison that meets an error, by world steps.
@@ -344,6 +359,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(the_error_is_met_on_running_again, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(the_code_gives_the_same_run_bit_for_bit, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(the_code_of_every_collider_too, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(the_code_of_ideal_joints_and_other_mechanisms_too,
                                         program_set_up, program_tear_down),

@@ -31,10 +31,11 @@ static void with_play_every_choice_counts(void **state)
     mechanism_loosen(&scenario, "crank-coupler");
     Scheme schemes[SCHEME_MAX];
     const size_t count = scheme_list(&scenario, schemes);
-    // every map with staggered stepping, all but impulse with plain, none with extrapolated
-    assert_int_equal(steppers(schemes, count), words(OPTIONS_ODE_SOLVERS) *
-                                                   (2 * words(OPTIONS_ODE_MAPS) - 1) *
-                                                   words(OPTIONS_ODE_COLLIDERS));
+    // every map and collider with plain and staggered stepping, none with extrapolated; impulse
+    // with staggered stepping and the exact collider alone
+    assert_int_equal(steppers(schemes, count),
+                     words(OPTIONS_ODE_SOLVERS) *
+                         (2 * (words(OPTIONS_ODE_MAPS) - 1) * words(OPTIONS_ODE_COLLIDERS) + 1));
     assert_string_equal(schemes[count - 2].name, "auto/1e-6");
     assert_string_equal(schemes[count - 1].name, "reference");
     for (size_t i = 0; i < count; i++) {
@@ -128,11 +129,56 @@ static void a_list_keeps_those_with_all_of_its_words(void **state)
     size_t count = scheme_list(&scenario, schemes);
     const size_t all = steppers(schemes, count);
     assert_true(scheme_filter("direct", schemes, &count, &err));
-    assert_int_equal(steppers(schemes, count), all / words(OPTIONS_ODE_SOLVERS));
+    assert_int_equal(steppers(schemes, count), 2 * words(OPTIONS_ODE_MAPS) - 1);
+    assert_true(steppers(schemes, count) < all / words(OPTIONS_ODE_SOLVERS));
     assert_true(scheme_filter("textbook/plain, direct/plain/corrected", schemes, &count, &err));
-    assert_int_equal(steppers(schemes, count), 2 * words(OPTIONS_ODE_COLLIDERS));
+    assert_int_equal(steppers(schemes, count), 2);
     // what has no step stays
     assert_string_equal(schemes[count - 1].name, "reference");
+}
+
+static void a_collider_is_taken_where_it_is_named(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    Scheme schemes[SCHEME_MAX];
+    Err err = {0};
+    size_t count = scheme_list(&scenario, schemes);
+    assert_true(scheme_filter("direct/plain/textbook, direct/plain/textbook/trimesh", schemes,
+                              &count, &err));
+    assert_int_equal(steppers(schemes, count), 2);
+    assert_string_equal(schemes[0].name, "direct/plain/textbook");
+    assert_string_equal(schemes[1].name, "direct/plain/textbook/trimesh");
+    count = scheme_list(&scenario, schemes);
+    assert_true(scheme_filter("staves", schemes, &count, &err));
+    assert_int_equal(steppers(schemes, count),
+                     2 * words(OPTIONS_ODE_SOLVERS) * (words(OPTIONS_ODE_MAPS) - 1));
+    count = scheme_list(&scenario, schemes);
+    assert_true(scheme_filter("pin-hole", schemes, &count, &err));
+    for (size_t i = 0; i < count; i++) {
+        assert_int_equal(schemes[i].collider, ODE_COLLIDER_PIN_HOLE);
+    }
+    // map impulse asks no collider
+    count = scheme_list(&scenario, schemes);
+    assert_false(scheme_filter("impulse/staves", schemes, &count, &err));
+}
+
+static void the_collider_of_the_case_is_usual_too(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    scenario.ode.collider = ODE_COLLIDER_STAVES;
+    Scheme schemes[SCHEME_MAX];
+    size_t count = scheme_list(&scenario, schemes);
+    scheme_keep_usual(schemes, &count);
+    // the six of the exact collider, and those of them that have rows
+    assert_int_equal(steppers(schemes, count), 6 + 4);
+    for (size_t i = 0; i < count; i++) {
+        assert_true(schemes[i].collider == ODE_COLLIDER_PIN_HOLE ||
+                    schemes[i].collider == ODE_COLLIDER_STAVES);
+    }
 }
 
 static void a_word_that_no_scheme_has_is_told(void **state)
@@ -208,6 +254,8 @@ int main(void)
         cmocka_unit_test(what_is_driven_alone_cannot_be_in_error),
         cmocka_unit_test(a_scheme_sets_what_it_stands_for),
         cmocka_unit_test(a_list_keeps_those_with_all_of_its_words),
+        cmocka_unit_test(a_collider_is_taken_where_it_is_named),
+        cmocka_unit_test(the_collider_of_the_case_is_usual_too),
         cmocka_unit_test(a_word_that_no_scheme_has_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

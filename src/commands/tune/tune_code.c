@@ -38,6 +38,30 @@ static Stepping stepping_of(const Scenario *scenario)
                : (Stepping){OPTIONS_ODE_STEPPINGS[stepping], TABLES[stepping]};
 }
 
+// A collider: the file it is in, the name of its table of functions, and whether it asks libccd.
+typedef struct ColliderSource {
+    const char *file;
+    const char *table;
+    bool is_libccd;
+} ColliderSource;
+
+// Contacts that are integrated within the step ask none, yet the world has one.
+static ColliderSource collider_of(const Scenario *scenario)
+{
+    switch (scenario->ode.collider) {
+    case ODE_COLLIDER_STAVES:
+        return (ColliderSource){"ode/collider_staves.c", "collider_staves", true};
+    case ODE_COLLIDER_STAVES_GJK:
+        return (ColliderSource){"ode/collider_staves_gjk.c", "collider_staves_gjk", true};
+    case ODE_COLLIDER_CONVEX:
+        return (ColliderSource){"ode/collider_convex.c", "collider_convex", false};
+    case ODE_COLLIDER_TRIMESH:
+        return (ColliderSource){"ode/collider_trimesh.c", "collider_trimesh", false};
+    default:
+        return (ColliderSource){"ode/collider_pin_hole.c", "collider_pin_hole", false};
+    }
+}
+
 // A string constant; what is not plain ASCII is written by its octal number.
 static void write_string(const char *string, Text *text)
 {
@@ -170,6 +194,8 @@ static void write_run(const Scenario *scenario, Text *text)
     static const char *const SOLVERS[] = {"ODE_DIRECT", "ODE_QUICK"};
     static const char *const STEPPINGS[] = {OPTIONS_ODE_STEPPING_LIST(IDENTIFIER)};
     static const char *const MAPS[] = {OPTIONS_ODE_MAP_LIST(IDENTIFIER)};
+    static const char *const COLLIDERS[] = {OPTIONS_ODE_COLLIDER_LIST(IDENTIFIER)};
+    static const char *const POLYGONS[] = {"ODE_CIRCUMSCRIBED", "ODE_INSCRIBED"};
     text_append(text,
                 "    .run = {.revolutions = %s,\n"
                 "            .duration = %s, // s, without a drive\n"
@@ -185,7 +211,8 @@ static void write_run(const Scenario *scenario, Text *text)
                 "    .ode = {.solver = %s,\n"
                 "            .stepping = %s,\n"
                 "            .map = %s,\n"
-                "            .collider = ODE_COLLIDER_PIN_HOLE,\n"
+                "            .collider = %s,\n"
+                "            .polygon = %s,\n            .facets = %zu,\n"
                 "            .erp = %s,\n            .cfm = %s,\n"
                 "            .push_out = %s,\n"
                 "            .iterations = %zu,\n            .over_relaxation = %s,\n"
@@ -193,6 +220,7 @@ static void write_run(const Scenario *scenario, Text *text)
                 "            .levels = %zu,\n            .gear = %zu,\n"
                 "            .contact_phase = %s},\n",
                 SOLVERS[ode->solver], STEPPINGS[ode->stepping], MAPS[ode->map],
+                COLLIDERS[ode->collider], POLYGONS[ode->polygon], ode->facets,
                 number_shortest(ode->erp).text, number_shortest(ode->cfm).text,
                 number_shortest(ode->push_out).text, ode->iterations,
                 number_shortest(ode->over_relaxation).text, ode->seed, ode->settle_steps,
@@ -258,8 +286,9 @@ static void write_head(const TuneCode *code, Text *text)
     text_append(text,
                 "// A mechanism with play in its joints in the Open Dynamics Engine, with the "
                 "setting that\n// `jointplay tune` found. Written by jointplay %s (ODE %s).\n//\n//"
-                "   cc THIS_FILE.c -o run -lode -lm && ./run > series.csv\n//\n// case     ",
-                JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION);
+                "   cc THIS_FILE.c -o run -lode%s -lm && ./run > series.csv\n//\n// case     ",
+                JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION,
+                collider_of(code->scenario).is_libccd ? " -lccd" : "");
     // as in the command below: a name never ends the comment, nor joins the next line to it
     shell_append_word(text, code->scenario->path);
     text_append(text, "\n// setting  %s\n// error    %.3g measured", code->words, code->error);
@@ -283,6 +312,16 @@ static void write_head(const TuneCode *code, Text *text)
               "#if defined(__GNUC__)\n#pragma GCC diagnostic ignored \"-Wunused-const-variable\"\n"
               "#pragma GCC diagnostic ignored \"-Wunused-function\"\n"
               "#endif\n");
+}
+
+// What stands for the list of all colliders.
+static void write_collider(const ColliderSource *collider, Text *text)
+{
+    text_append(text,
+                "\n// ---- the collider ----\n\n"
+                "const Collider *collider_get(OdeCollider kind)\n{\n    (void)kind;\n"
+                "    return &%s;\n}\n",
+                collider->table);
 }
 
 static void write_main(const Stepping *stepping, Text *text)
@@ -310,9 +349,10 @@ static void write_main(const Stepping *stepping, Text *text)
 bool tune_code_write(const TuneCode *code, Text *text, Err *err)
 {
     const Stepping stepping = stepping_of(code->scenario);
+    const ColliderSource collider = collider_of(code->scenario);
     char file[FILE_NAME_SIZE];
     snprintf(file, sizeof file, "ode/%s.c", stepping.file);
-    const char *files[] = {"run/run.c", "write/series_rows.c", file};
+    const char *files[] = {"run/run.c", "write/series_rows.c", file, collider.file};
     write_head(code, text);
     const bool is_whole = tune_sources_write(files, sizeof files / sizeof files[0], text);
     assert(is_whole);
@@ -321,6 +361,7 @@ bool tune_code_write(const TuneCode *code, Text *text, Err *err)
     if (has_laws && !write_laws(code->scenario, text, err)) {
         return false;
     }
+    write_collider(&collider, text);
     write_scenario(code->scenario, text);
     write_main(&stepping, text);
     return true;

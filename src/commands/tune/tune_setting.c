@@ -10,6 +10,15 @@
 #include <stdio.h>
 #include <string.h>
 
+// The collider, where it is another than the case's.
+static void write_collider(const TuneReport *report, const Scheme *scheme, const char *separator,
+                           Text *text)
+{
+    if (scheme->collider != report->scenario->ode.collider) {
+        text_append(text, "%sode.collider=%s", separator, OPTIONS_ODE_COLLIDERS[scheme->collider]);
+    }
+}
+
 void tune_setting_keys(const TuneReport *report, const TuneTrial *trial, const char *separator,
                        Text *text)
 {
@@ -17,6 +26,7 @@ void tune_setting_keys(const TuneReport *report, const TuneTrial *trial, const c
     if (!scheme_has_step(scheme)) {
         text_append(text, "run.step=auto%srun.tolerance=", separator);
         text_append(text, "%s", number_shortest(trial->value).text);
+        write_collider(report, scheme, separator, text);
         return;
     }
     text_append(text, "run.step=");
@@ -27,6 +37,7 @@ void tune_setting_keys(const TuneReport *report, const TuneTrial *trial, const c
     if (scenario_has_clearance(report->scenario)) {
         text_append(text, "%sode.map=%s", separator, OPTIONS_ODE_MAPS[scheme->map]);
     }
+    write_collider(report, scheme, separator, text);
 }
 
 bool tune_setting_replaces(const char *override)

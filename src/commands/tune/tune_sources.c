@@ -18,8 +18,11 @@ static const char MARK[] = "//// ";
 static const char INCLUDE[] = "#include \"";
 
 // each ends in a table of functions that stands for all of it, whatever header it includes first
-static const char *const STEPPINGS[] = {"ode/plain.c", "ode/staggered.c", "ode/impulse.c",
-                                        "ode/extrapolated.c"};
+static const char *const MEMBERS[] = {
+    "ode/plain.c",           "ode/staggered.c",           "ode/impulse.c",
+    "ode/extrapolated.c",    "ode/collider_convex.c",     "ode/collider_pin_hole.c",
+    "ode/collider_staves.c", "ode/collider_staves_gjk.c", "ode/collider_trimesh.c",
+};
 
 typedef struct Source {
     char name[NAME_SIZE];
@@ -83,10 +86,10 @@ static Source *find_source(Sources *sources, const char *name)
     return NULL;
 }
 
-static bool is_stepping(const char *name)
+static bool is_member(const char *name)
 {
-    for (size_t i = 0; i < sizeof STEPPINGS / sizeof STEPPINGS[0]; i++) {
-        if (strcmp(name, STEPPINGS[i]) == 0) {
+    for (size_t i = 0; i < sizeof MEMBERS / sizeof MEMBERS[0]; i++) {
+        if (strcmp(name, MEMBERS[i]) == 0) {
             return true;
         }
     }
@@ -100,7 +103,7 @@ static void want_parts(Sources *sources, const char *header)
         Source *source = &sources->files[i];
         const size_t length = strlen(source->name);
         if (strcmp(source->header, header) == 0 && source->name[length - 1] == 'c' &&
-            !is_stepping(source->name)) {
+            !is_member(source->name)) {
             source->is_wanted = true;
         }
     }
