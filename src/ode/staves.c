@@ -1,20 +1,19 @@
 // How must libccd be asked so that it finds a contact a micron deep?
 //
-// A stave is a prism, its inner face one side of the polygon. Three things make the difference:
-//   - libccd compares lengths with absolute tolerances and with 2.2e-16: lengths are given in units
-//     of R / 5000 (1 um for a hole of 5 mm), tolerances in the same;
-//   - differences of large coordinates lose digits: the origin is the pin's centre, the axes are
-//   the
-//     stave's, and the stave moves by the pin's small coordinates;
-//   - portal refinement starts along the line between the two bodies' centres and measures the
-//   depth
-//     along what it finds there: the stave's centre is put on the normal of its face through the
-//     pin's centre.
+// A stave is a prism, its inner face one side of the polygon. Three things make the difference.
+// Units: libccd compares lengths with absolute tolerances and with 2.2e-16; lengths are given in
+// units of R / 5000 (1 um for a hole of 5 mm), tolerances in the same. Origin: differences of large
+// coordinates lose digits; the origin is the pin's centre, the axes are the stave's, and the stave
+// moves by the pin's small coordinates. Centres: portal refinement starts along the line between
+// the two bodies' centres and measures the depth along what it finds there; the stave's centre is
+// put on the normal of its face through the pin's centre.
+//
 // GJK and EPA need two things more. Where bodies hardly touch their answer is arbitrary: the stave
-// is moved nearer by a margin, which is taken off the depth. And some once in 10,000 queries they
+// is moved nearer by a margin, which is taken off the depth. And about once in 6,000 queries they
 // send the pin out through the stave or along its axis, by millimetres: such an answer is known by
-// its direction, and asked for again with twice the margin. Source: G. Snethen, XenoCollide, Game
-// Programming Gems 7 (2008); libccd 2.1, mpr.c and ccd.c.
+// its direction, and asked for again with twice the margin.
+//
+// Source: G. Snethen, XenoCollide, Game Programming Gems 7 (2008); libccd 2.1, mpr.c and ccd.c.
 #include "ode/staves.h"
 
 #include "ode/polygon_hole.h"

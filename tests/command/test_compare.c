@@ -338,6 +338,37 @@ static void when_every_run_of_ode_fails_the_status_is_4(void **state)
     assert_int_equal(program->status, 0);
 }
 
+static void a_collider_is_a_part_of_the_scheme(void **state)
+{
+    Program *program = *state;
+    static const char CASE[] = "compare $cases/paper/impact-k66.yaml --set run.revolutions=0.02 "
+                               "--steps 10us -q --json --fresh --store colliders.jsonl ";
+    char words[PROGRAM_PATH_SIZE];
+    snprintf(words, sizeof words, "%s%s", CASE,
+             "--schemes direct/plain/textbook,direct/plain/textbook/staves");
+    program_run(program, words);
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const char *const NAMES[] = {"direct/plain/textbook", "direct/plain/textbook/staves"};
+    const char *const COLLIDERS[] = {"pin-hole", "staves"};
+    double errors[2];
+    for (int i = 0; i < 2; i++) {
+        const json_t *scheme = find_scheme(root, NAMES[i]);
+        assert_string_equal(json_string_value(json_object_get(scheme, "collider")), COLLIDERS[i]);
+        const json_t *points = json_object_get(scheme, "points");
+        errors[i] = number(json_array_get(points, 0), "error_omega");
+    }
+    assert_true(errors[0] > 0.0 && errors[1] > 0.0 && errors[0] != errors[1]);
+    json_decref(root);
+    // what cannot be resolved fails with the reason
+    snprintf(words, sizeof words, "%s%s", CASE,
+             "--schemes direct/plain/textbook/ode-convex "
+             "--set 'joints.crank-coupler.radial-clearance=2.5 um'");
+    program_run(program, words);
+    assert_int_equal(program->status, 4);
+    assert_says(program->errors, "collider ode-convex resolves 1 um");
+}
+
 static void a_wrong_command_line_is_answered(void **state)
 {
     Program *program = *state;
@@ -367,7 +398,7 @@ static void a_wrong_command_line_is_answered(void **state)
     program_run(program, "compare --help");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "Usage: jointplay compare [OPTION...] CASE");
-    assert_says(program->output, "(default: one a core)");
+    assert_says(program->output, "(default: one per core)");
 }
 
 #define COMPARE_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
@@ -385,6 +416,7 @@ int main(void)
         COMPARE_TEST(the_usual_store_is_found_by_its_key),
         STORE_TEST(files_are_written),
         COMPARE_TEST(when_every_run_of_ode_fails_the_status_is_4),
+        COMPARE_TEST(a_collider_is_a_part_of_the_scheme),
         COMPARE_TEST(a_wrong_command_line_is_answered),
     };
     return cmocka_run_group_tests(tests, make_store, program_tear_down);

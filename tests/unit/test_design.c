@@ -279,6 +279,32 @@ static void schemes_set_what_compare_sets(void **state)
     spec_finish(&spec);
 }
 
+static void schemes_and_keys_set_the_collider(void **state)
+{
+    (void)state;
+    Spec spec =
+        study_read("paper/impact-k66.yaml",
+                   "vary:\n"
+                   "  scheme: [direct/staggered/midpoint, direct/staggered/midpoint/trimesh]\n"
+                   "  run.step: 3 us\n");
+    BackendKind backend;
+    Scenario scenario = make_run(&spec, 0, &backend);
+    assert_int_equal(scenario.ode.collider, ODE_COLLIDER_PIN_HOLE);
+    scenario = make_run(&spec, 1, &backend);
+    assert_int_equal(scenario.ode.collider, ODE_COLLIDER_TRIMESH);
+    assert_int_equal(scenario.ode.map, ODE_MAP_MIDPOINT);
+    spec_finish(&spec);
+    spec = study_read("paper/impact-k66.yaml", "vary:\n"
+                                               "  ode.collider: [pin-hole, staves]\n"
+                                               "  ode.facets: [64, 128]\n");
+    scenario = make_run(&spec, 2, &backend);
+    assert_int_equal(scenario.ode.collider, ODE_COLLIDER_STAVES);
+    assert_int_equal(scenario.ode.facets, 64);
+    scenario = make_run(&spec, 3, &backend);
+    assert_int_equal(scenario.ode.facets, 128);
+    spec_finish(&spec);
+}
+
 static void refuse(const Spec *spec, uint64_t run, const char *reason)
 {
     Cell values[RECORD_SETTING_MAX];
@@ -327,6 +353,7 @@ int main(void)
         cmocka_unit_test(values_arrive_as_if_written_in_the_case),
         cmocka_unit_test(a_drawn_value_arrives_with_all_its_digits),
         cmocka_unit_test(schemes_set_what_compare_sets),
+        cmocka_unit_test(schemes_and_keys_set_the_collider),
         cmocka_unit_test(values_that_make_no_case_are_refused_in_one_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
