@@ -24,21 +24,45 @@ static size_t list_schemes(const Spec *spec, Scheme schemes[2 * SCHEME_MAX])
     return count;
 }
 
+// Lists those with the exact collider or the case's, and how the others are called.
+static bool refuse_unknown(const Reading *reading, const Node *node, const Scheme *schemes,
+                           size_t count)
+{
+    const char *names[2 * SCHEME_MAX];
+    const Scheme *other = NULL;
+    Text allowed;
+    text_init(&allowed);
+    for (size_t i = 0; i < count; i++) {
+        names[i] = schemes[i].name;
+        if (schemes[i].is_asked || !scheme_has_step(&schemes[i])) {
+            text_append(&allowed, "%s%s", i > 0 ? ", " : "", schemes[i].name);
+        } else if (other == NULL) {
+            other = &schemes[i];
+        }
+    }
+    if (other != NULL) {
+        text_append(&allowed, "; those with rows also with a collider, such as %s", other->name);
+    }
+    const char *nearest = text_nearest(node->text, names, count);
+    spec_read_refuse(reading, node, allowed.data, "unknown scheme of this case '%.40s'%s%s%s",
+                     node->text, nearest != NULL ? "; did you mean '" : "",
+                     nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+    text_finish(&allowed);
+    return false;
+}
+
 static bool check_scheme(const Reading *reading, const Node *node, const Scheme *schemes,
                          size_t count)
 {
     if (!spec_read_single(reading, node, "a scheme", "its name, such as direct/plain/corrected")) {
         return false;
     }
-    const char *names[2 * SCHEME_MAX];
     const Scheme *found = NULL;
     for (size_t i = 0; i < count; i++) {
-        names[i] = schemes[i].name;
         found = strcmp(schemes[i].name, node->text) == 0 ? &schemes[i] : found;
     }
     if (found == NULL) {
-        return keys_refuse(&reading->source, node->span, "scheme of this case", node->text, names,
-                           count, reading->err);
+        return refuse_unknown(reading, node, schemes, count);
     }
     const Spec *spec = reading->spec;
     if (scheme_has_step(found) && spec->base->run.step == 0.0 &&
