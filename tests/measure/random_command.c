@@ -206,10 +206,16 @@ static void print_options(Plan *plan, const char *command, size_t most)
 static void print_case_command(Plan *plan, const char *command, const char *case_name)
 {
     static const char *const LENGTHS[] = {"0.01", "0.05", "0.2", "1"};
+    static const char *const ROWS[] = {"ode.map=midpoint",        "ode.map=textbook",
+                                       "ode.collider=staves",     "ode.collider=trimesh",
+                                       "ode.collider=staves-gjk", "ode.collider=ode-convex"};
     print_do(plan);
     printf("%s\n%s\n", command, case_name);
     if (draw_chance(&plan->draw, 0.9)) {
         printf("--set=run.revolutions=%s\n", PICK(&plan->draw, LENGTHS));
+    }
+    if (draw_chance(&plan->draw, 0.2)) {
+        printf("--set=%s\n--set=contact.friction=0.2\n", PICK(&plan->draw, ROWS));
     }
     if (strcmp(command, "tune") == 0 && draw_chance(&plan->draw, 0.9)) {
         printf("--error=1e-%zu\n", 1 + draw_below(&plan->draw, 4));
