@@ -139,7 +139,8 @@ static void draw_frontier(const PlotPanel *panel, const LadderPoint *const *list
     text_append(panel->svg, count > 0 ? "H%.1f\"/>\n" : "\"/>\n", panel->left + panel->width);
 }
 
-// The step beside each point of the frontier, unless it would lie on the one before.
+// The step beside each point of the frontier that has a given one, unless it would lie on the one
+// before.
 static void label_frontier(const PlotPanel *panel, const LadderPoint *const *list, size_t count)
 {
     double last_x = -INFINITY;
@@ -147,7 +148,8 @@ static void label_frontier(const PlotPanel *panel, const LadderPoint *const *lis
     for (size_t i = 0; i < count; i++) {
         const double x = at_x(panel, list[i]->wall_median_s) - 9.0;
         const double y = plot_y(panel, list[i]->error) + 15.0;
-        if (fabs(x - last_x) < 40.0 && fabs(y - last_y) < 14.0) {
+        const bool is_on_last = fabs(x - last_x) < 40.0 && fabs(y - last_y) < 14.0;
+        if (is_on_last || !(list[i]->step_s > 0.0)) {
             continue;
         }
         char words[32];
