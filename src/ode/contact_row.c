@@ -52,7 +52,9 @@ void contact_row_find(ContactRow *row, const World *world, const WorldPair *pair
         .gap = pose.gap,
         .is_touching = row->is_touching,
     };
-    if (row->is_touching) {
+    if (!row->is_touching) {
+        row->impact_speed = pose.approach_speed;
+    } else {
         row->depth = collision.depth;
         row->excess = collision.depth - pose.penetration;
         row->normal = collision.normal;
@@ -60,11 +62,9 @@ void contact_row_find(ContactRow *row, const World *world, const WorldPair *pair
         row->arm_pin = collision.arm_pin;
         row->closing = -vec2_dot(row->normal, velocity);
         row->faster = row->closing - pose.approach_speed;
-    }
-    if (!row->is_touching) {
-        row->impact_speed = pose.approach_speed;
-    } else if (!was_touching) {
-        row->impact_speed = onset_speed(row, is_staggered, pose.gap, step_s);
+        if (!was_touching) {
+            row->impact_speed = onset_speed(row, is_staggered, pose.gap, step_s);
+        }
     }
     note_gap(row, pose.gap);
 }

@@ -50,10 +50,9 @@ void contact_rows_finish(ContactRows *rows)
     memset(rows, 0, sizeof *rows);
 }
 
-// Brings the response to where the bodies are.
-static bool place_response(ContactRows *rows)
+// Brings the response to where the bodies are, and writes how they move.
+static bool place_response(ContactRows *rows, Motion motions[LINKAGE_BODY_MAX])
 {
-    Motion motions[LINKAGE_BODY_MAX];
     world_motions(rows->world, motions);
     return response_place(&rows->response, motions);
 }
@@ -144,9 +143,8 @@ static void find_friction(ContactRows *rows, double step_s)
         }
     }
     Motion motions[LINKAGE_BODY_MAX];
-    world_motions(rows->world, motions);
     if (options->model == CONTACT_IMPACT && rows->scenario->ode.solver == ODE_DIRECT && count > 0 &&
-        response_place(&rows->response, motions)) {
+        place_response(rows, motions)) {
         contact_friction_find(options, &rows->response, motions, rows->scenario->gravity, step_s,
                               found, count);
     }
@@ -199,7 +197,8 @@ static void find_mass(ContactRows *rows, size_t number)
     if (is_known && !rows->map->needs_mass) {
         return;
     }
-    if (place_response(rows)) {
+    Motion motions[LINKAGE_BODY_MAX];
+    if (place_response(rows, motions)) {
         row->mass = response_mass(&rows->response, response_row(rows, number), row->normal);
         row->mass_normal = row->normal;
     }

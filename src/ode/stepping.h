@@ -28,8 +28,7 @@ double stepping_drive(const Scenario *scenario, const Motion *driven, const Vec2
 bool stepping_fail(const Scenario *scenario, double time_s, size_t step, double step_s, Err *err);
 
 // The label of a way of stepping, such as "ode direct/plain/textbook", with the collider behind it
-// unless it is the exact one; a map that does not matter
-// is NULL.
+// unless it is the exact one; a map that does not matter is NULL.
 void stepping_label(const Scenario *scenario, const char *stepping, const char *map,
                     char label[TRAJECTORY_LABEL_SIZE]);
 

@@ -38,28 +38,18 @@ static Stepping stepping_of(const Scenario *scenario)
                : (Stepping){OPTIONS_ODE_STEPPINGS[stepping], TABLES[stepping]};
 }
 
-// A collider: the file it is in, the name of its table of functions, and whether it asks libccd.
-typedef struct ColliderSource {
-    const char *file;
-    const char *table;
-    bool is_libccd;
-} ColliderSource;
-
-// Contacts that are integrated within the step ask none, yet the world has one.
-static ColliderSource collider_of(const Scenario *scenario)
+// The collider's table of functions, which has the name of its file. Contacts that are integrated
+// within the step ask none, yet the world has one.
+static const char *collider_of(const Scenario *scenario)
 {
-    switch (scenario->ode.collider) {
-    case ODE_COLLIDER_STAVES:
-        return (ColliderSource){"ode/collider_staves.c", "collider_staves", true};
-    case ODE_COLLIDER_STAVES_GJK:
-        return (ColliderSource){"ode/collider_staves_gjk.c", "collider_staves_gjk", true};
-    case ODE_COLLIDER_CONVEX:
-        return (ColliderSource){"ode/collider_convex.c", "collider_convex", false};
-    case ODE_COLLIDER_TRIMESH:
-        return (ColliderSource){"ode/collider_trimesh.c", "collider_trimesh", false};
-    default:
-        return (ColliderSource){"ode/collider_pin_hole.c", "collider_pin_hole", false};
-    }
+    static const char *const TABLES[] = {OPTIONS_ODE_COLLIDER_LIST(TABLE)};
+    return TABLES[scenario->ode.collider];
+}
+
+static bool asks_libccd(const Scenario *scenario)
+{
+    return scenario->ode.collider == ODE_COLLIDER_STAVES ||
+           scenario->ode.collider == ODE_COLLIDER_STAVES_GJK;
 }
 
 // A string constant; what is not plain ASCII is written by its octal number.
@@ -288,7 +278,7 @@ static void write_head(const TuneCode *code, Text *text)
                 "setting that\n// `jointplay tune` found. Written by jointplay %s (ODE %s).\n//\n//"
                 "   cc THIS_FILE.c -o run -lode%s -lm && ./run > series.csv\n//\n// case     ",
                 JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION,
-                collider_of(code->scenario).is_libccd ? " -lccd" : "");
+                asks_libccd(code->scenario) ? " -lccd" : "");
     // as in the command below: a name never ends the comment, nor joins the next line to it
     shell_append_word(text, code->scenario->path);
     text_append(text, "\n// setting  %s\n// error    %.3g measured", code->words, code->error);
@@ -315,13 +305,13 @@ static void write_head(const TuneCode *code, Text *text)
 }
 
 // What stands for the list of all colliders.
-static void write_collider(const ColliderSource *collider, Text *text)
+static void write_collider(const char *table, Text *text)
 {
     text_append(text,
                 "\n// ---- the collider ----\n\n"
                 "const Collider *collider_get(OdeCollider kind)\n{\n    (void)kind;\n"
                 "    return &%s;\n}\n",
-                collider->table);
+                table);
 }
 
 static void write_main(const Stepping *stepping, Text *text)
@@ -349,10 +339,12 @@ static void write_main(const Stepping *stepping, Text *text)
 bool tune_code_write(const TuneCode *code, Text *text, Err *err)
 {
     const Stepping stepping = stepping_of(code->scenario);
-    const ColliderSource collider = collider_of(code->scenario);
-    char file[FILE_NAME_SIZE];
-    snprintf(file, sizeof file, "ode/%s.c", stepping.file);
-    const char *files[] = {"run/run.c", "write/series_rows.c", file, collider.file};
+    const char *collider = collider_of(code->scenario);
+    char taking_steps[FILE_NAME_SIZE];
+    char finding_contacts[FILE_NAME_SIZE];
+    snprintf(taking_steps, sizeof taking_steps, "ode/%s.c", stepping.file);
+    snprintf(finding_contacts, sizeof finding_contacts, "ode/%s.c", collider);
+    const char *files[] = {"run/run.c", "write/series_rows.c", taking_steps, finding_contacts};
     write_head(code, text);
     const bool is_whole = tune_sources_write(files, sizeof files / sizeof files[0], text);
     assert(is_whole);
@@ -361,7 +353,7 @@ bool tune_code_write(const TuneCode *code, Text *text, Err *err)
     if (has_laws && !write_laws(code->scenario, text, err)) {
         return false;
     }
-    write_collider(&collider, text);
+    write_collider(collider, text);
     write_scenario(code->scenario, text);
     write_main(&stepping, text);
     return true;
