@@ -54,6 +54,20 @@ ForceLaw force_law_logarithmic(double compliance, double offset)
     };
 }
 
+ForceLaw force_law_share(const ForceLaw *law, double share)
+{
+    assert(share > 0.0);
+    ForceLaw part = *law;
+    part.stiffness *= share;
+    part.viscous *= share;
+    if (law->family == FORCE_LAW_LOGARITHMIC) {
+        // d = A F (B - ln F) with F of the whole = F of the part / share
+        part.compliance /= share;
+        part.offset += log(share);
+    }
+    return part;
+}
+
 // The root y >= 1 of y - ln y = L; NaN where L < 1.
 static double solve_branch(double level)
 {

@@ -29,6 +29,10 @@ typedef struct ForceLaw {
 ForceLaw force_law_power(double stiffness, double exponent);
 ForceLaw force_law_logarithmic(double compliance, double offset);
 
+// The law of one of several places that share a contact's load, > 0: that share of its force,
+// elastic and damping, at every penetration.
+ForceLaw force_law_share(const ForceLaw *law, double share);
+
 // The deepest penetration the law can describe, m: A e^(B-1) of the logarithmic family, where
 // the force has no finite slope any more; infinite for the power family.
 double force_law_depth_limit(const ForceLaw *law);

@@ -1,4 +1,5 @@
-// A planar linkage as data: rigid bodies with mass properties, the joints between them, one driver.
+// A linkage as data: rigid bodies with mass properties, the joints between them, one driver. It
+// moves in the plane, or in space where the case asks for it.
 //
 // Coordinates: a body's frame has its origin at the centre of mass; its x axis runs along the link.
 // The ground is no body; it has the number LINKAGE_GROUND and the fixed frame of the world, y up.
@@ -6,6 +7,7 @@
 
 #include "base/err.h"
 #include "base/vec2.h"
+#include "base/vec3.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,11 +29,26 @@ typedef struct Motion {
     double alpha;      // rad/s^2
 } Motion;
 
+// What a body has only in space; see model/space.h. Inertias are about the centre of mass, kg m^2,
+// in the body's frame.
+typedef struct BodySpace {
+    double inertia_x; // moments of inertia about the body's x and y axes
+    double inertia_y;
+    double product_xy; // products of inertia: sum of m x y, m x z, m y z over its points
+    double product_xz;
+    double product_yz;
+    double height;     // m, z of the centre of mass at time zero
+    double velocity_z; // m/s, at time zero
+    double omega_x;    // rad/s, at time zero, along the world's axes
+    double omega_y;
+} BodySpace;
+
 typedef struct Body {
     char name[LINKAGE_NAME_SIZE];
     double mass;    // kg
     double inertia; // kg m^2, about the centre of mass, about the axis normal to the plane
     Motion start;   // at time zero, with every joint ideal unless the case says otherwise
+    BodySpace space;
 } Body;
 
 typedef enum JointKind {
@@ -47,6 +64,14 @@ typedef struct Clearance {
     Vec2 start;         // eccentricity at time zero: pin centre minus hole centre, m, world frame
 } Clearance;
 
+// What a joint has only in space.
+typedef struct JointSpace {
+    double height;          // m, z of its middle at time zero
+    Vec3 axis;              // unit, at time zero
+    double axial_clearance; // m, by which a pin with play can slide along the hole to either side
+                            // before a collar stops it; 0: no collars
+} JointSpace;
+
 typedef struct Joint {
     char name[LINKAGE_NAME_SIZE];
     JointKind kind;
@@ -55,6 +80,7 @@ typedef struct Joint {
     Vec2 anchor_a;       // hole centre in body a's frame, m
     Vec2 anchor_b;       // pin centre in body b's frame, m
     Clearance clearance; // of a JOINT_CLEARANCE
+    JointSpace space;
 } Joint;
 
 // Turns one body at constant speed about its joint with the ground.
@@ -66,6 +92,7 @@ typedef struct Driver {
 } Driver;
 
 typedef struct Linkage {
+    bool is_spatial; // whether bodies leave the plane: model/space.h
     size_t body_count;
     Body bodies[LINKAGE_BODY_MAX];
     size_t joint_count;

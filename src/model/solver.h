@@ -18,12 +18,13 @@ typedef struct StepRecord {
     bool is_mean;             // alpha and forces are means over the step, not those at its end
     const double *alpha;      // rad/s^2, of each body
     const JointState *joints; // force and gap as the force arose
-    const double *impulse;    // N s, of each joint in the step
-    const double *approach;   // m/s, closing speed at which each joint's contact began
-    double drive_work;        // J, done by the drive in the step
-    double dissipated;        // J, in the contacts' damping in the step
-    double friction;          // J, in the contacts' friction in the step
-    double elastic;           // J, stored in the contacts at end_s
+    const SpaceJointState *space_joints; // likewise, of a linkage in space; else NULL
+    const double *impulse;               // N s, of each joint in the step
+    const double *approach;              // m/s, closing speed at which each joint's contact began
+    double drive_work;                   // J, done by the drive in the step
+    double dissipated;                   // J, in the contacts' damping in the step
+    double friction;                     // J, in the contacts' friction in the step
+    double elastic;                      // J, stored in the contacts at end_s
 } StepRecord;
 
 // What a solver built from the scenario, for people and for the record.

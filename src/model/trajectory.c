@@ -32,10 +32,19 @@ Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
     trajectory->crank_angles = calloc(samples, sizeof *trajectory->crank_angles);
     trajectory->motions = calloc(samples * trajectory->body_count + 1, sizeof *trajectory->motions);
     trajectory->states = calloc(samples * trajectory->joint_count + 1, sizeof *trajectory->states);
+    bool has_memory = trajectory->times != NULL && trajectory->crank_angles != NULL &&
+                      trajectory->motions != NULL && trajectory->states != NULL;
+    if (scenario->linkage.is_spatial) {
+        trajectory->space_motions =
+            calloc(samples * trajectory->body_count + 1, sizeof *trajectory->space_motions);
+        trajectory->space_states =
+            calloc(samples * trajectory->joint_count + 1, sizeof *trajectory->space_states);
+        has_memory =
+            has_memory && trajectory->space_motions != NULL && trajectory->space_states != NULL;
+    }
     snprintf(trajectory->backend, sizeof trajectory->backend, "%s", backend);
     snprintf(trajectory->label, sizeof trajectory->label, "%s", backend);
-    if (trajectory->times == NULL || trajectory->crank_angles == NULL ||
-        trajectory->motions == NULL || trajectory->states == NULL) {
+    if (!has_memory) {
         refuse_memory(trajectory, samples);
     }
     trajectory->report_from_s = scenario_report_from(scenario);
@@ -67,6 +76,8 @@ void trajectory_destroy(Trajectory *trajectory)
     free(trajectory->crank_angles);
     free(trajectory->motions);
     free(trajectory->states);
+    free(trajectory->space_motions);
+    free(trajectory->space_states);
     ranges_finish(&trajectory->ranges);
     free(trajectory);
 }
@@ -82,6 +93,12 @@ void trajectory_store(Trajectory *trajectory, size_t sample_index, const Sample 
     for (size_t i = 0; i < trajectory->joint_count; i++) {
         trajectory->states[sample_index * trajectory->joint_count + i] = sample->joints[i];
     }
+    if (trajectory->space_motions != NULL) {
+        memcpy(trajectory->space_motions + sample_index * trajectory->body_count,
+               sample->space_bodies, trajectory->body_count * sizeof *sample->space_bodies);
+        memcpy(trajectory->space_states + sample_index * trajectory->joint_count,
+               sample->space_joints, trajectory->joint_count * sizeof *sample->space_joints);
+    }
 }
 
 const Motion *trajectory_motion(const Trajectory *trajectory, size_t sample, size_t body)
@@ -92,6 +109,17 @@ const Motion *trajectory_motion(const Trajectory *trajectory, size_t sample, siz
 const JointState *trajectory_state(const Trajectory *trajectory, size_t sample, size_t joint)
 {
     return trajectory->states + sample * trajectory->joint_count + joint;
+}
+
+const SpaceMotion *trajectory_space_motion(const Trajectory *trajectory, size_t sample, size_t body)
+{
+    return trajectory->space_motions + sample * trajectory->body_count + body;
+}
+
+const SpaceJointState *trajectory_space_state(const Trajectory *trajectory, size_t sample,
+                                              size_t joint)
+{
+    return trajectory->space_states + sample * trajectory->joint_count + joint;
 }
 
 static Range range_of(const Trajectory *trajectory, size_t signal, size_t sample)

@@ -4,6 +4,7 @@
 #include "model/ranges.h"
 #include "model/scenario.h"
 #include "model/signal_spikes.h"
+#include "model/space.h"
 
 #include <stdint.h>
 
@@ -17,6 +18,20 @@ typedef struct JointState {
     Vec2 force_on_b;   // the force itself, on body b, N
     bool is_touching;  // pin and hole overlap (an ideal joint always touches)
 } JointState;
+
+// What a joint with play has in space beside that. There `eccentricity` is that of the pin's middle
+// in the world's x and y, `gap` the smaller of those at the hole's two ends, `force` the sum of
+// what presses there, friction included, and `is_touching` whether an end does.
+typedef struct SpaceJointState {
+    Vec3 force_on_b;      // N, of all places together
+    Vec3 offset;          // m, the pin's middle less the hole's
+    Vec3 ends[2];         // m, the pin's axis less the centre of each end of the hole
+    double end_gaps[2];   // m
+    double end_forces[2]; // N
+    double tilt;          // rad, between the axes of pin and hole
+    double axial;         // m, of the pin's middle along the hole's axis
+    double axial_force;   // N, of the collars on the pin, along the hole's axis
+} SpaceJointState;
 
 // A greatest or smallest value and when it stood.
 typedef struct Extreme {
@@ -51,14 +66,20 @@ typedef struct JointExtremes {
     double contact_time;                // s
     size_t spike_count;                 // of those kept below
     Spike spikes[TRAJECTORY_SPIKE_MAX]; // the strongest by force, strongest first
+    // in space only
+    Extreme tilt_max;  // rad
+    Extreme axial_max; // m, distance of the pin's middle from the hole's along the axis
 } JointExtremes;
 
 // The state at one sample.
 typedef struct Sample {
     double time_s;
     double crank_rad;
-    Motion bodies[LINKAGE_BODY_MAX];
+    Motion bodies[LINKAGE_BODY_MAX]; // in space what the plane sees of them: space_planar
     JointState joints[LINKAGE_JOINT_MAX];
+    // of a linkage in space only
+    SpaceMotion space_bodies[LINKAGE_BODY_MAX];
+    SpaceJointState space_joints[LINKAGE_JOINT_MAX];
 } Sample;
 
 // Where the energy of a run went, J.
@@ -80,12 +101,14 @@ typedef struct Trajectory {
     int driven_body;                // whose motion is prescribed, or LINKAGE_GROUND
     double reach[LINKAGE_BODY_MAX]; // m, of each body's points from its centre: linkage_reach
     size_t sample_count;
-    double *times;        // s, by sample; owned, like the three below
-    double *crank_angles; // rad, by sample, not wrapped
-    Motion *motions;      // [sample * body_count + body]
-    JointState *states;   // [sample * joint_count + joint]
-    size_t parts;         // stretches of the ranges in a sample interval
-    Ranges ranges;        // between the samples, from every step; empty where not asked for
+    double *times;              // s, by sample; owned, like the three below
+    double *crank_angles;       // rad, by sample, not wrapped
+    Motion *motions;            // [sample * body_count + body]
+    JointState *states;         // [sample * joint_count + joint]
+    SpaceMotion *space_motions; // likewise, of a linkage in space; else NULL, like the next
+    SpaceJointState *space_states;
+    size_t parts;  // stretches of the ranges in a sample interval
+    Ranges ranges; // between the samples, from every step; empty where not asked for
     BodyExtremes bodies[LINKAGE_BODY_MAX];
     JointExtremes joints[LINKAGE_JOINT_MAX];
     SignalSpikes alpha_spikes[LINKAGE_BODY_MAX];
@@ -132,6 +155,10 @@ double trajectory_contact_share(const Trajectory *trajectory, size_t joint);
 // The state of one body or joint at one sample.
 const Motion *trajectory_motion(const Trajectory *trajectory, size_t sample, size_t body);
 const JointState *trajectory_state(const Trajectory *trajectory, size_t sample, size_t joint);
+const SpaceMotion *trajectory_space_motion(const Trajectory *trajectory, size_t sample,
+                                           size_t body);
+const SpaceJointState *trajectory_space_state(const Trajectory *trajectory, size_t sample,
+                                              size_t joint);
 
 // Whether the run let the play of a joint happen: it is complete, the joint has play, and the
 // solver is not the closed form, which takes every joint as ideal.

@@ -1,0 +1,187 @@
+// How does what the plane says of a linkage stand in space?
+#include "model/space.h"
+
+// of a principal moment: rounding of the numbers of a case
+static const double INERTIA_ROUNDING = 1e-9;
+
+static Vec3 lift(Vec2 a, double z)
+{
+    return (Vec3){a.x, a.y, z};
+}
+
+static Quat turn_about_z(double angle)
+{
+    return (Quat){cos(0.5 * angle), 0.0, 0.0, sin(0.5 * angle)};
+}
+
+void space_start(const Linkage *linkage, SpaceMotion *motions)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Motion *start = &linkage->bodies[i].start;
+        const BodySpace *space = &linkage->bodies[i].space;
+        motions[i] = (SpaceMotion){
+            .position = lift(start->position, space->height),
+            .turn = turn_about_z(start->angle),
+            .velocity = lift(start->velocity, space->velocity_z),
+            .omega = {space->omega_x, space->omega_y, start->omega},
+            .acceleration = lift(start->acceleration, 0.0),
+            .alpha = {0.0, 0.0, start->alpha},
+        };
+    }
+}
+
+SpaceMotion space_driven(const Linkage *linkage, double time_s)
+{
+    const Driver *driver = &linkage->driver;
+    const Joint *joint = &linkage->joints[driver->joint];
+    const Body *body = &linkage->bodies[joint->body_b];
+    const Vec3 axis = joint->space.axis;
+    const Vec3 pivot = lift(joint->anchor_a, joint->space.height);
+    const SpaceEnd end = space_end(linkage, (size_t)driver->joint, 1);
+    const Quat turned = quat_of_turn(vec3_scale(driver->speed * time_s, axis));
+    const Quat turn = quat_unit(quat_product(turned, turn_about_z(body->start.angle)));
+    const Vec3 arm = vec3_scale(-1.0, quat_rotate(turn, end.anchor));
+    const Vec3 omega = vec3_scale(driver->speed, axis);
+    const Vec3 velocity = vec3_cross(omega, arm);
+    return (SpaceMotion){
+        .position = vec3_add(pivot, arm),
+        .turn = turn,
+        .velocity = velocity,
+        .omega = omega,
+        .acceleration = vec3_cross(omega, velocity),
+    };
+}
+
+Motion space_planar(const SpaceMotion *motion)
+{
+    const Mat3 turn = quat_matrix(motion->turn);
+    return (Motion){
+        .position = {motion->position.x, motion->position.y},
+        .angle = atan2(turn.row[1].x, turn.row[0].x),
+        .velocity = {motion->velocity.x, motion->velocity.y},
+        .omega = motion->omega.z,
+        .acceleration = {motion->acceleration.x, motion->acceleration.y},
+        .alpha = motion->alpha.z,
+    };
+}
+
+Mat3 space_inertia(const Body *body)
+{
+    const BodySpace *space = &body->space;
+    return (Mat3){{
+        {space->inertia_x, -space->product_xy, -space->product_xz},
+        {-space->product_xy, space->inertia_y, -space->product_yz},
+        {-space->product_xz, -space->product_yz, body->inertia},
+    }};
+}
+
+Mat3 space_world_inertia(const Body *body, Quat turn)
+{
+    const Mat3 own = space_inertia(body);
+    const Mat3 r = quat_matrix(turn);
+    Mat3 world;
+    for (int i = 0; i < 3; i++) {
+        // row i of R I, then of its product with R'
+        world.row[i] = mat3_apply(&r, mat3_apply(&own, r.row[i]));
+    }
+    return world;
+}
+
+SpaceEnd space_end(const Linkage *linkage, size_t joint, int side)
+{
+    const Joint *data = &linkage->joints[joint];
+    const JointEnd end = linkage_end(data, side);
+    if (end.body == LINKAGE_GROUND) {
+        return (SpaceEnd){LINKAGE_GROUND, lift(end.anchor, data->space.height), data->space.axis};
+    }
+    const Body *body = &linkage->bodies[end.body];
+    return (SpaceEnd){
+        .body = end.body,
+        .anchor = lift(end.anchor, data->space.height - body->space.height),
+        .axis = quat_rotate_back(turn_about_z(body->start.angle), data->space.axis),
+    };
+}
+
+Vec3 space_direction(const SpaceMotion *motions, int body, Vec3 local)
+{
+    return body == LINKAGE_GROUND ? local : quat_rotate(motions[body].turn, local);
+}
+
+Vec3 space_point(const SpaceMotion *motions, int body, Vec3 local)
+{
+    return body == LINKAGE_GROUND
+               ? local
+               : vec3_add(motions[body].position, quat_rotate(motions[body].turn, local));
+}
+
+Vec3 space_velocity_at(const SpaceMotion *motions, int body, Vec3 point)
+{
+    if (body == LINKAGE_GROUND) {
+        return (Vec3){0.0, 0.0, 0.0};
+    }
+    const SpaceMotion *motion = &motions[body];
+    return vec3_add(motion->velocity, vec3_cross(motion->omega, vec3_sub(point, motion->position)));
+}
+
+double space_kinetic_energy(const Linkage *linkage, const SpaceMotion *motions)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Mat3 inertia = space_world_inertia(&linkage->bodies[i], motions[i].turn);
+        const Vec3 v = motions[i].velocity;
+        const Vec3 w = motions[i].omega;
+        sum += 0.5 * linkage->bodies[i].mass * vec3_dot(v, v) +
+               0.5 * vec3_dot(w, mat3_apply(&inertia, w));
+    }
+    return sum;
+}
+
+double space_potential_energy(const Linkage *linkage, const SpaceMotion *motions, double gravity)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        sum += linkage->bodies[i].mass * gravity * motions[i].position.y;
+    }
+    return sum;
+}
+
+// Whether there are point masses with this matrix of inertia: its second moments, sums of m x x and
+// so on, are those of a positive semidefinite matrix.
+static bool is_possible(const Body *body)
+{
+    const BodySpace *space = &body->space;
+    const double half = 0.5 * (space->inertia_x + space->inertia_y + body->inertia);
+    const double xx = half - space->inertia_x;
+    const double yy = half - space->inertia_y;
+    const double zz = half - body->inertia;
+    const double xy = space->product_xy;
+    const double xz = space->product_xz;
+    const double yz = space->product_yz;
+    const double rounding = INERTIA_ROUNDING * half;
+    const double determinant =
+        xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    return xx >= -rounding && yy >= -rounding && zz >= -rounding &&
+           xx * yy - xy * xy >= -rounding * half && xx * zz - xz * xz >= -rounding * half &&
+           yy * zz - yz * yz >= -rounding * half && determinant >= -rounding * half * half;
+}
+
+bool space_check(const Linkage *linkage, Err *err)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Body *body = &linkage->bodies[i];
+        if (!(body->space.inertia_x > 0.0 && body->space.inertia_y > 0.0) || !is_possible(body)) {
+            return err_set(err, ERR_CASE,
+                           "%s: no body has these moments and products of inertia: each moment is "
+                           "at most the sum of the other two, and products are no larger than "
+                           "they allow",
+                           body->name);
+        }
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint->kind == JOINT_CLEARANCE && !(joint->clearance.width > 0.0)) {
+            return err_set(err, ERR_CASE, "%s: a pin in space needs a width", joint->name);
+        }
+    }
+    return true;
+}

@@ -1,0 +1,61 @@
+// A linkage in space: what its bodies and joints are beyond the plane, and how they move there.
+//
+// The mechanism is the one of model/linkage.h; z points out of the plane towards the viewer. At
+// time zero every body's frame is turned about z alone, by the angle of its planar start. A joint
+// is at the point of its planar anchors, at a height of its own, and has an axis; unless the case
+// says otherwise that is z. A pin with play fills the hole's width, tilts and slides in it.
+#pragma once
+
+#include "base/vec3.h"
+#include "model/linkage.h"
+
+// How a body moves in space at one instant, in the world's frame.
+typedef struct SpaceMotion {
+    Vec3 position; // of the centre of mass, m
+    Quat turn;     // from the body's frame to the world's
+    Vec3 velocity; // m/s
+    Vec3 omega;    // rad/s
+    Vec3 acceleration;
+    Vec3 alpha;
+} SpaceMotion;
+
+// The motions at time zero, at the speeds of the start.
+void space_start(const Linkage *linkage, SpaceMotion *motions);
+
+// The motion of the driven body at a time: about the axis of its joint with the ground.
+SpaceMotion space_driven(const Linkage *linkage, double time_s);
+
+// What the plane sees of a motion in space: x, y and the turning about z. The angle is that of the
+// body's x axis, in one turn.
+Motion space_planar(const SpaceMotion *motion);
+
+// The matrix of inertia about the centre of mass, kg m^2, in the body's frame.
+Mat3 space_inertia(const Body *body);
+
+// The same in the world's frame: R I R'.
+Mat3 space_world_inertia(const Body *body, Quat turn);
+
+// A joint's point and axis on one of its sides (0 body a, 1 body b), in the frame of that body or
+// of the ground.
+typedef struct SpaceEnd {
+    int body;
+    Vec3 anchor;
+    Vec3 axis; // unit
+} SpaceEnd;
+
+SpaceEnd space_end(const Linkage *linkage, size_t joint, int side);
+
+// A point given in a body's frame (or the ground's) in the world's, its velocity, and a direction.
+Vec3 space_point(const SpaceMotion *motions, int body, Vec3 local);
+Vec3 space_direction(const SpaceMotion *motions, int body, Vec3 local);
+
+// The velocity of the point of a body that is at a point of the world now; zero of the ground.
+Vec3 space_velocity_at(const SpaceMotion *motions, int body, Vec3 point);
+
+// Sum (m v^2 + w' I w) / 2, and sum m g y, J.
+double space_kinetic_energy(const Linkage *linkage, const SpaceMotion *motions);
+double space_potential_energy(const Linkage *linkage, const SpaceMotion *motions, double gravity);
+
+// Checks what must hold of bodies in space: inertias that some distribution of mass has, and a
+// width of every joint with play. Fails with ERR_CASE and the name of the offender.
+bool space_check(const Linkage *linkage, Err *err);
