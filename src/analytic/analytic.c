@@ -6,6 +6,7 @@
 #include "analytic/fourbar_motion.h"
 #include "analytic/inverse_dynamics.h"
 #include "model/solver.h"
+#include "model/space.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -150,6 +151,11 @@ static void analytic_observe(const void *state, double time_s, Sample *sample)
     const bool is_closed = evaluate(state, time_s, sample, &torque, &err);
     assert(is_closed);
     (void)is_closed;
+    const Linkage *linkage = &((const Analytic *)state)->scenario->linkage;
+    if (linkage->is_spatial) {
+        space_lift(linkage, sample->bodies, sample->space_bodies);
+        memset(sample->space_joints, 0, sizeof sample->space_joints);
+    }
 }
 
 static SolverModel analytic_model(const void *state)

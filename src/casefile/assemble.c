@@ -7,6 +7,7 @@
 #include "casefile/check.h"
 #include "casefile/closure.h"
 #include "casefile/store.h"
+#include "model/space.h"
 
 #include <string.h>
 
@@ -22,6 +23,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         Joint *joint = &linkage->joints[i];
         text_copy(joint->name, LINKAGE_NAME_SIZE, names[SCHEMA_JOINT].names[i]);
         joint->kind = entries_has_play(entries, i) ? JOINT_CLEARANCE : JOINT_REVOLUTE;
+        joint->space.axis = (Vec3){0.0, 0.0, 1.0};
     }
     for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
         text_copy(linkage->bodies[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_BODY].names[i]);
@@ -82,6 +84,8 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
         }
     }
     store_partners(entries, scenario);
+    scenario->linkage.is_spatial = scenario->space == SCENARIO_SPATIAL;
+    space_complete(&scenario->linkage);
     return true;
 }
 
@@ -92,6 +96,9 @@ static bool build_short(const Entries *entries, Scenario *scenario, Err *err)
 
 static bool build_long(const Entries *entries, Scenario *scenario, Err *err)
 {
+    if (scenario->linkage.is_spatial && !space_is_upright(&scenario->linkage)) {
+        return build_spatial(entries, scenario, err);
+    }
     return build_linkage(entries, scenario, err) && closure_check_ideal(entries, scenario, err);
 }
 

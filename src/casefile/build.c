@@ -10,6 +10,7 @@
 #include "casefile/keys.h"
 #include "model/kinematics.h"
 #include "model/nearest.h"
+#include "model/space_nearest.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -287,6 +288,44 @@ bool build_linkage(const Entries *entries, Scenario *scenario, Err *err)
     }
     for (size_t i = 0; i < linkage->body_count; i++) {
         linkage->bodies[i].start = motions[i];
+    }
+    return true;
+}
+
+static bool refuse_spatial_speeds(const Entry *entry, const Linkage *linkage, int joint, Err *err)
+{
+    return entries_refuse(entry, err,
+                          "the speeds at the start %s%s\nallowed: speeds that keep the ideal "
+                          "joints closed and follow the drive, or none: then they are found",
+                          joint >= 0 ? "open the ideal joint " : "are not those of the drive",
+                          joint >= 0 ? linkage->joints[joint].name : "");
+}
+
+bool build_spatial(const Entries *entries, Scenario *scenario, Err *err)
+{
+    Linkage *linkage = &scenario->linkage;
+    Motion motions[LINKAGE_BODY_MAX];
+    SpaceMotion space[LINKAGE_BODY_MAX];
+    linkage_start(linkage, motions);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Entry *start = entries_find(entries, "joints.*.start", i);
+        if (start != NULL && vec2_length(linkage->joints[i].clearance.start) > 0.0) {
+            return entries_refuse(start, err,
+                                  "with axes that are not all along z a pin starts in the middle "
+                                  "of its hole\nallowed: centred");
+        }
+    }
+    set_anchors(linkage, motions);
+    space_start(linkage, space);
+    const Entry *given = entries_speed(entries, linkage->body_count);
+    int joint = -1;
+    if (given == NULL) {
+        space_nearest_speeds(linkage, linkage->driver.is_present, space);
+    } else if (!space_nearest_check(linkage, space, &joint)) {
+        return refuse_spatial_speeds(given, linkage, joint, err);
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        space_set_start(&space[i], &linkage->bodies[i]);
     }
     return true;
 }

@@ -18,6 +18,10 @@ bool build_is_determined(const Linkage *linkage);
 // its hole. Fails as kinematics_solve does.
 bool build_start(Linkage *linkage, Motion *motions, Err *err);
 
+// The same of a linkage in space whose axes are not all z: every joint is closed and concentric
+// where it stands.
+bool build_spatial(const Entries *entries, Scenario *scenario, Err *err);
+
 // Turns the positions of the joints, which stand in anchor_a, into anchors of their bodies, puts
 // pins where they start, and finds or checks the speeds at time zero. Fails with ERR_CASE or
 // ERR_USAGE and a line of the case where joints are redundant or speeds do not agree, and with

@@ -2,6 +2,7 @@
 #include "casefile/check.h"
 
 #include "casefile/build.h"
+#include "casefile/check_space.h"
 #include "casefile/keys.h"
 #include "casefile/store.h"
 #include "contact/damping.h"
@@ -270,6 +271,11 @@ static bool check_collider(const Entries *entries, const Scenario *scenario, Err
     if (entry == NULL || ode->collider == ODE_COLLIDER_PIN_HOLE) {
         return true;
     }
+    if (scenario->linkage.is_spatial && scenario_has_clearance(scenario)) {
+        return entries_refuse(entries_blame(entries, "space ode.collider", 0), err,
+                              "in space only the exact collider knows a pin in its hole\n"
+                              "allowed: collider: pin-hole, or space: planar");
+    }
     const bool is_impulse = scenario->contact.model == CONTACT_IMPACT &&
                             (ode->map == ODE_MAP_IMPULSE || scenario->run.step == 0.0);
     if (scenario_has_clearance(scenario) && is_impulse) {
@@ -374,7 +380,7 @@ bool check_values(const Entries *entries, const Scenario *scenario, Err *err)
             return false;
         }
     }
-    return check_drive(entries, linkage, err) && check_speeds(entries, linkage, err) &&
-           check_contact(entries, scenario, err) && check_run(entries, scenario, err) &&
-           check_collider(entries, scenario, err);
+    return check_space(entries, scenario, err) && check_drive(entries, linkage, err) &&
+           check_speeds(entries, linkage, err) && check_contact(entries, scenario, err) &&
+           check_run(entries, scenario, err) && check_collider(entries, scenario, err);
 }

@@ -96,7 +96,10 @@ const Entry *entries_speed(const Entries *entries, size_t body_count)
 {
     const Entry *found = NULL;
     for (size_t i = 0; found == NULL && i < body_count; i++) {
-        found = entries_blame(entries, "bodies.*.velocity bodies.*.spin", i);
+        found = entries_blame(entries,
+                              "bodies.*.velocity bodies.*.velocity-z bodies.*.spin "
+                              "bodies.*.spin-x bodies.*.spin-y",
+                              i);
     }
     return found;
 }

@@ -6,7 +6,7 @@
 #include "casefile/schema.h"
 
 // every key of every body, joint and point, and every group
-enum { ENTRIES_MAX = 384, ENTRIES_GROUP_MAX = 64 };
+enum { ENTRIES_MAX = 640, ENTRIES_GROUP_MAX = 64 };
 
 // One key that was given. Borrows node and source.
 typedef struct Entry {

@@ -59,6 +59,7 @@ static ProbeKind kind_of(SchemaType type)
     case SCHEMA_BACKENDS:
     case SCHEMA_TEXT:
     case SCHEMA_VECTOR:
+    case SCHEMA_DIRECTION:
     case SCHEMA_ANCHOR:
     case SCHEMA_BETWEEN:
     case SCHEMA_EXPECT:

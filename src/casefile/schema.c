@@ -80,6 +80,7 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
     static const char *const WORDS[][2] = {
         [SCHEMA_TEXT] = {"text", "text on one line"},
         [SCHEMA_INTEGER] = {"a whole number", "a whole number such as 100"},
+        [SCHEMA_DIRECTION] = {"[x, y, z]", "a direction such as [0, 0, 1]"},
         [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},
         [SCHEMA_BODY_NAME] = {"a body", "a body"},
         [SCHEMA_JOINT_NAME] = {"a joint", "a joint"},
@@ -107,6 +108,7 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
                     row->zero_word != NULL ? ", or " : "", WORDS[row->type][with_example ? 1 : 0]);
         break;
     case SCHEMA_TEXT:
+    case SCHEMA_DIRECTION:
     case SCHEMA_BETWEEN:
     case SCHEMA_BODY_NAME:
     case SCHEMA_JOINT_NAME:

@@ -20,6 +20,7 @@ typedef enum SchemaType {
     SCHEMA_STIFFNESS,        // N/m^n -> contact.stiffness and contact.exponent
     SCHEMA_SPAN,             // time or turns of the driver -> run.report_from
     SCHEMA_VECTOR,           // [x, y], or `centred` where the row has it as default -> Vec2
+    SCHEMA_DIRECTION,        // [x, y, z] without units, of any length -> Vec3 of length 1
     SCHEMA_RADIAL_CLEARANCE, // length -> Clearance: both radii
     SCHEMA_ALONG,            // length from a link's first joint -> double from its centre of mass
     SCHEMA_ANCHOR,           // [x, y] of the world -> Joint.anchor_a, of a body once it is placed

@@ -1,7 +1,6 @@
 // What may a case file say? Every key, with its unit, range and meaning. Defaults stand in
 // model/options.c and model/scenario.c; here only what a number cannot say about them.
-#include "casefile/build.h"
-#include "casefile/schema.h"
+#include "casefile/schema_needs.h"
 #include "contact/facets.h"
 
 #include <stddef.h>
@@ -21,84 +20,6 @@ const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
 
 static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};
 
-// What a key may ask of a scenario before it matters; a row asks for all of its bits.
-enum {
-    MEMBER = 1 << 0, // the body, joint or point is there
-    LOOSE = 1 << 1,  // the joint has play
-    FREE = 1 << 2,   // no drive determines how the bodies move
-    DRIVE = 1 << 3,  // there is a drive
-    NO_DRIVE = 1 << 4,
-    PLAY = 1 << 5,   // some joint has play
-    IMPACT = 1 << 6, // and the contact is of that model
-    POISSON = 1 << 7,
-    LAW = 1 << 8,       // its stiffness is that of a law
-    STIFFNESS = 1 << 9, // or given
-    MATERIAL = 1 << 10, // the law, or the paper's Eq. (9) for the penalty
-    VISCOUS = 1 << 11,
-    FRICTION = 1 << 12,
-    REFERENCE = 1 << 13,
-    ODE = 1 << 14,
-    QUICK = 1 << 15,
-    IDEAL = 1 << 16, // no joint has play
-    GIVEN_STEP = 1 << 17,
-    CHOSEN_STEP = 1 << 18,
-    PLAIN = 1 << 19, // the stepping of a given step
-    EXTRAPOLATED = 1 << 20,
-    LOCAL = 1 << 21,   // the contact is integrated within the step
-    LATER = 1 << 22,   // what is reported begins after the start
-    FACETED = 1 << 23, // the collider takes holes for polygons
-};
-
-static unsigned bit(unsigned need, bool is_met)
-{
-    return is_met ? need : 0;
-}
-
-// How the steps are taken.
-static unsigned step_bits(const Scenario *scenario, bool is_impact)
-{
-    const OdeOptions *ode = &scenario->ode;
-    const bool is_given = scenario->run.step > 0.0;
-    return bit(GIVEN_STEP, is_given) | bit(CHOSEN_STEP, !is_given) |
-           bit(PLAIN, is_given && ode->stepping == ODE_PLAIN) |
-           bit(EXTRAPOLATED,
-               is_given ? ode->stepping == ODE_EXTRAPOLATED : !scenario_has_clearance(scenario)) |
-           bit(LOCAL, is_impact && (!is_given || ode->map == ODE_MAP_IMPULSE));
-}
-
-bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index)
-{
-    const Linkage *linkage = &scenario->linkage;
-    const ContactOptions *contact = &scenario->contact;
-    const size_t members[SCHEMA_FAMILY_COUNT] = {1, linkage->body_count, linkage->joint_count,
-                                                 scenario->point_count};
-    const bool is_member = index < members[row->family];
-    const bool is_joint = row->family == SCHEMA_JOINT && is_member;
-    const bool has_play = scenario_has_clearance(scenario);
-    const bool is_impact = has_play && contact->model == CONTACT_IMPACT;
-    const bool is_poisson = has_play && contact->model == CONTACT_POISSON;
-    const bool has_law = is_impact && contact->stiffness == 0.0;
-    unsigned met = bit(MEMBER, is_member) |
-                   bit(LOOSE, is_joint && linkage->joints[index].kind == JOINT_CLEARANCE) |
-                   bit(FREE, !build_is_determined(linkage)) |
-                   bit(DRIVE, linkage->driver.is_present) |
-                   bit(NO_DRIVE, !linkage->driver.is_present) | bit(PLAY, has_play) |
-                   bit(IDEAL, !has_play) | bit(IMPACT, is_impact) | bit(POISSON, is_poisson) |
-                   bit(LAW, has_law) | bit(STIFFNESS, is_impact && !has_law) |
-                   bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
-                   bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
-                   bit(FRICTION, has_play && contact->friction > 0.0) |
-                   bit(QUICK, scenario->ode.solver == ODE_QUICK) |
-                   bit(FACETED, scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) |
-                   bit(LATER, scenario->run.report_from > 0.0) | step_bits(scenario, is_impact);
-    for (size_t i = 0; i < scenario->run.backend_count; i++) {
-        met |= bit(REFERENCE, scenario->run.backends[i] == BACKEND_REFERENCE);
-        met |= bit(ODE, scenario->run.backends[i] == BACKEND_ODE);
-    }
-    const SchemaForm form = scenario->has_fourbar ? SCHEMA_SHORT : SCHEMA_LONG;
-    return (row->needs & ~met) == 0 && (row->form == SCHEMA_BOTH || row->form == form);
-}
-
 // clang-format off
 #define FULL_TURN 6.2831853071795872
 #define AT(field) .offset = offsetof(Scenario, field)
@@ -108,6 +29,19 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
 #define INERTIA(body) \
     .dimension = DIMENSION_INERTIA, AT(linkage.bodies[body].inertia), \
     .low = 1e-18, .high = 1e9, .is_required = true
+#define MOMENT(axis, member, own) \
+    .dimension = DIMENSION_INERTIA, AT(linkage.bodies[member].space.inertia_##axis), \
+    .low = 1e-18, .high = 1e9, .default_words = own, .doc = "with space: spatial, moment of " \
+    "inertia about the body's " #axis " axis"
+#define PRODUCT(axes, member) \
+    .dimension = DIMENSION_INERTIA, AT(linkage.bodies[member].space.product_##axes), \
+    .low = -1e9, .high = 1e9, .doc = "with space: spatial, product of inertia: sum of mass times " \
+    "both distances from the centre of mass"
+#define OFFSET(member) \
+    .dimension = DIMENSION_LENGTH, AT(linkage.bodies[member].space.height), .low = -1e3, \
+    .high = 1e3, .doc = "with space: spatial, z of the centre of mass at time zero"
+#define X_OWN "a hundredth of inertia"
+#define Y_OWN "inertia"
 #define LENGTH(link, words) \
     {.path = "four-bar." #link ".length", .type = SCHEMA_TOLERATED, .form = SCHEMA_SHORT, \
      .dimension = DIMENSION_LENGTH, AT(fourbar.link), .low = 1e-6, .high = 1e3, \
@@ -117,8 +51,16 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
     {.path = "four-bar." #link ".mass", .form = SCHEMA_SHORT, MASS(body), \
      .doc = "mass of the " #link}, \
     {.path = "four-bar." #link ".inertia", .form = SCHEMA_SHORT, INERTIA(body), \
-     .doc = "moment of inertia about the centre of mass, which is at mid-link"}
+     .doc = "moment of inertia about the centre of mass, which is at mid-link"}, \
+    {.path = "four-bar." #link ".inertia-x", SPACE_LINK, MOMENT(x, body, X_OWN)}, \
+    {.path = "four-bar." #link ".inertia-y", SPACE_LINK, MOMENT(y, body, Y_OWN)}, \
+    {.path = "four-bar." #link ".product-xy", SPACE_LINK, PRODUCT(xy, body)}, \
+    {.path = "four-bar." #link ".product-xz", SPACE_LINK, PRODUCT(xz, body)}, \
+    {.path = "four-bar." #link ".product-yz", SPACE_LINK, PRODUCT(yz, body)}, \
+    {.path = "four-bar." #link ".offset", SPACE_LINK, OFFSET(body)}
+#define SPACE_LINK .form = SCHEMA_SHORT, .needs = SPATIAL
 #define BODY .family = SCHEMA_BODY, .form = SCHEMA_LONG
+#define SPACE_BODY BODY, .needs = MEMBER | SPATIAL
 #define JOINT(field) \
     .family = SCHEMA_JOINT, AT(linkage.joints[0].clearance.field), .needs = LOOSE
 #define POINT(field) \
@@ -127,6 +69,9 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
 const SchemaRow SCHEMA_ROWS[] = {
     {.path = "title", .type = SCHEMA_TEXT, AT(title), .default_words = "none",
      .doc = "one line that names the case in reports"},
+    {.path = "space", .type = SCHEMA_CHOICE, AT(space), .words = SCENARIO_SPACES,
+     .doc = "planar: bodies stay in the plane; spatial: they move in space, and pins with play "
+            "tilt and slide in holes of a width"},
 
     LENGTH(ground, "from the crank's ground pivot, the origin, to the follower's, along +x"),
     LINK(crank, 0, "from its ground pivot to the crank pin"),
@@ -147,6 +92,12 @@ const SchemaRow SCHEMA_ROWS[] = {
      AT(linkage.bodies[0].start.angle), .low = -FULL_TURN, .high = FULL_TURN,
      .needs = MEMBER,
      .doc = "angle of the body's own x axis at time zero, counter-clockwise from the world's"},
+    {.path = "bodies.*.inertia-x", SPACE_BODY, MOMENT(x, 0, X_OWN)},
+    {.path = "bodies.*.inertia-y", SPACE_BODY, MOMENT(y, 0, Y_OWN)},
+    {.path = "bodies.*.product-xy", SPACE_BODY, PRODUCT(xy, 0)},
+    {.path = "bodies.*.product-xz", SPACE_BODY, PRODUCT(xz, 0)},
+    {.path = "bodies.*.product-yz", SPACE_BODY, PRODUCT(yz, 0)},
+    {.path = "bodies.*.offset", SPACE_BODY, OFFSET(0)},
     {.path = "bodies.*.velocity", BODY, .type = SCHEMA_VECTOR, .dimension = DIMENSION_SPEED,
      AT(linkage.bodies[0].start.velocity), .low = -1e4, .high = 1e4, .needs = MEMBER | FREE,
      .doc = "velocity [x, y] of the centre of mass at time zero; not allowed if the drive "
@@ -155,6 +106,19 @@ const SchemaRow SCHEMA_ROWS[] = {
      AT(linkage.bodies[0].start.omega), .low = -1e6, .high = 1e6, .needs = MEMBER | FREE,
      .doc = "angular velocity at time zero, counter-clockwise positive; not allowed if the drive "
             "determines it"},
+
+    {.path = "bodies.*.velocity-z", BODY, .dimension = DIMENSION_SPEED,
+     AT(linkage.bodies[0].space.velocity_z), .low = -1e4, .high = 1e4,
+     .needs = MEMBER | FREE | SPATIAL,
+     .doc = "with space: spatial, velocity of the centre of mass along z at time zero"},
+    {.path = "bodies.*.spin-x", BODY, .dimension = DIMENSION_ANGULAR_SPEED,
+     AT(linkage.bodies[0].space.omega_x), .low = -1e6, .high = 1e6,
+     .needs = MEMBER | FREE | SPATIAL,
+     .doc = "with space: spatial, angular velocity about the world's x axis at time zero"},
+    {.path = "bodies.*.spin-y", BODY, .dimension = DIMENSION_ANGULAR_SPEED,
+     AT(linkage.bodies[0].space.omega_y), .low = -1e6, .high = 1e6,
+     .needs = MEMBER | FREE | SPATIAL,
+     .doc = "with space: spatial, angular velocity about the world's y axis at time zero"},
 
     {.path = "joints.*.between", .type = SCHEMA_BETWEEN, .family = SCHEMA_JOINT,
      .form = SCHEMA_LONG, AT(linkage.joints[0]), .is_required = true,
@@ -181,11 +145,26 @@ const SchemaRow SCHEMA_ROWS[] = {
             "of 10 mm and the hole twice this more"},
     {.path = "joints.*.width", .dimension = DIMENSION_LENGTH, JOINT(width),
      .low = 1e-6, .high = 1e2, .default_words = "none",
-     .doc = "length over which pin and hole touch; required by the laws of cylinders"},
+     .doc = "length over which pin and hole touch; required by the laws of cylinders and with "
+            "space: spatial"},
     {.path = "joints.*.start", .type = SCHEMA_VECTOR, .dimension = DIMENSION_LENGTH,
      JOINT(start), .low = -0.1, .high = 0.1, .default_words = "centred",
      .doc = "pin centre minus hole centre at time zero: centred, or [x, y], no longer than the "
             "radial clearance"},
+
+    {.path = "joints.*.axial-clearance", .dimension = DIMENSION_LENGTH, .family = SCHEMA_JOINT,
+     AT(linkage.joints[0].space.axial_clearance), .low = 1e-9, .high = 1e2,
+     .default_words = "none: no collars", .needs = LOOSE | SPATIAL,
+     .doc = "with space: spatial, how far the pin can slide along its hole to either side of the "
+            "middle before a collar stops it"},
+    {.path = "joints.*.offset", .dimension = DIMENSION_LENGTH, .family = SCHEMA_JOINT,
+     AT(linkage.joints[0].space.height), .low = -1e3, .high = 1e3, .needs = MEMBER | SPATIAL,
+     .doc = "with space: spatial, z of the joint's middle at time zero"},
+    {.path = "joints.*.axis", .type = SCHEMA_DIRECTION, .family = SCHEMA_JOINT,
+     .form = SCHEMA_LONG, AT(linkage.joints[0].space.axis), .low = -1e6, .high = 1e6,
+     .default_words = "[0, 0, 1]", .needs = MEMBER | SPATIAL,
+     .doc = "with space: spatial, direction [x, y, z] of the joint's axis at time zero, of any "
+            "length"},
 
     {.path = "drive.joint", .type = SCHEMA_JOINT_NAME, .form = SCHEMA_LONG,
      AT(linkage.driver.joint), .is_required = true, .needs = DRIVE,

@@ -95,6 +95,14 @@ static void set_vector(CasefileSetting *setting, Vec2 vector)
     setting->number_count = 2;
 }
 
+static void set_direction(CasefileSetting *setting, Vec3 direction)
+{
+    set_number(setting, direction.x);
+    setting->numbers[1] = direction.y;
+    setting->numbers[2] = direction.z;
+    setting->number_count = 3;
+}
+
 // Where a joint's hole stands at time zero.
 static Vec2 joint_place(const Linkage *linkage, size_t index)
 {
@@ -155,6 +163,9 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         break;
     case SCHEMA_VECTOR:
         set_vector(setting, *(const Vec2 *)field);
+        break;
+    case SCHEMA_DIRECTION:
+        set_direction(setting, *(const Vec3 *)field);
         break;
     case SCHEMA_ANCHOR:
         set_vector(setting, joint_place(linkage, index));

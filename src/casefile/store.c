@@ -283,6 +283,29 @@ static bool store_vector(const Target *target)
     return true;
 }
 
+// A direction of any length, kept as one of length 1.
+static bool store_direction(const Target *target)
+{
+    const Node *node = target->entry->node;
+    const Node *item = node->kind == NODE_LIST ? node->first : NULL;
+    double parts[3] = {0.0, 0.0, 0.0};
+    int count = 0;
+    for (; item != NULL && count < 3; item = item->next) {
+        StoredNumber number;
+        if (!read_number(target, item, &number)) {
+            return false;
+        }
+        parts[count++] = number.value;
+    }
+    const Vec3 along = {parts[0], parts[1], parts[2]};
+    if (count < 3 || item != NULL || !(vec3_length(along) > 0.0)) {
+        return refuse(target, node->span, "%s takes a direction of three numbers, not all 0",
+                      target->path);
+    }
+    *(Vec3 *)target->field = vec3_scale(1.0 / vec3_length(along), along);
+    return true;
+}
+
 // Finds the number of a body or joint that the case names; the ground where it may stand.
 static bool find_name(const Target *target, const Node *node, SchemaFamily family,
                       bool may_be_ground, int *number)
@@ -345,6 +368,8 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
             seat_pin(&scenario->linkage.joints[entry->index].clearance);
         }
         return true;
+    case SCHEMA_DIRECTION:
+        return store_direction(&target);
     case SCHEMA_BETWEEN:
         return store_between(&target, target.field);
     case SCHEMA_BODY_NAME:

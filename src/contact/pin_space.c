@@ -46,6 +46,25 @@ size_t pin_space_list(const Scenario *scenario, PinSpace places[PIN_SPACE_MAX], 
     return count;
 }
 
+double pin_space_stored(const Scenario *scenario, size_t joint, const SpaceJointState *state)
+{
+    const Joint *data = &scenario->linkage.joints[joint];
+    ForceLaw law;
+    Err unused;
+    if (data->kind != JOINT_CLEARANCE || scenario->contact.model != CONTACT_IMPACT ||
+        !law_of_joint(scenario, data, &law, &unused)) {
+        return 0.0;
+    }
+    const ForceLaw end = force_law_share(&law, 1.0 / PIN_SPACE_ENDS);
+    double sum = 0.0;
+    for (int i = 0; i < PIN_SPACE_ENDS; i++) {
+        sum += force_law_energy(&end, fmax(0.0, -state->end_gaps[i]));
+    }
+    const double clearance = data->space.axial_clearance;
+    return clearance > 0.0 ? sum + force_law_energy(&law, fmax(0.0, fabs(state->axial) - clearance))
+                           : sum;
+}
+
 // From the force's points and the pin's offset, and how far the pin may be off.
 static PinSpacePose pose_at(const PinSpace *place, const SpaceMotion *motions, Vec3 at_a, Vec3 at_b,
                             Vec3 offset)

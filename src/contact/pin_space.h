@@ -14,8 +14,7 @@
 #pragma once
 
 #include "contact/force_law.h"
-#include "model/scenario.h"
-#include "model/space.h"
+#include "model/trajectory.h"
 
 enum {
     PIN_SPACE_ENDS = 2,   // places 0 and 1, at -w/2 and +w/2 along the hole's axis
@@ -47,6 +46,9 @@ typedef struct PinSpacePose {
 // Writes the places of all joints with play, joint by joint. Returns how many there are, or 0 with
 // ERR_CASE where a law does not fit a joint.
 size_t pin_space_list(const Scenario *scenario, PinSpace places[PIN_SPACE_MAX], Err *err);
+
+// The elastic energy, J, that a joint's places hold in a state; 0 in the velocity-level model.
+double pin_space_stored(const Scenario *scenario, size_t joint, const SpaceJointState *state);
 
 // The pose of a pin at a place.
 PinSpacePose pin_space_pose(const PinSpace *place, const SpaceMotion *motions);

@@ -38,8 +38,12 @@ static void add_body(const Trajectory *trajectory, const Trajectory *reference, 
     for (size_t k = 0; k < reference->sample_count; k++) {
         const Motion *truth = trajectory_motion(reference, k, body);
         const Motion *motion = trajectory_motion(trajectory, k, body);
-        const double omega = distance_of_rates(motion, truth, is_velocity) / scales->omega;
-        const double alpha = distance_of_changes(motion, truth, is_velocity) / scales->alpha;
+        const double omega = distance_between(distance_rate(trajectory, k, body, is_velocity),
+                                              distance_rate(reference, k, body, is_velocity)) /
+                             scales->omega;
+        const double alpha = distance_between(distance_change(trajectory, k, body, is_velocity),
+                                              distance_change(reference, k, body, is_velocity)) /
+                             scales->alpha;
         if (omega > error->omega_max) {
             error->omega_max = omega;
             error->omega_max_time_s = reference->times[k];

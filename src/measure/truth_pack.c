@@ -1,18 +1,19 @@
 // How does a truth cross a pipe?
 //
-// Truth | Trajectory | times | crank angles | motions | states, the pointers in the first two
+// Truth | Trajectory | times | crank angles | motions | states | motions and states in space, where
+// there are any, the pointers in the first two
 // replaced on arrival.
 #include "measure/truth_pack.h"
 
 #include <string.h>
 
-// The four arrays of a trajectory and their sizes in bytes.
+// The arrays of a trajectory and their sizes in bytes.
 typedef struct Part {
     void *start;
     size_t size;
 } Part;
 
-enum { PART_COUNT = 4 };
+enum { PART_COUNT = 6 };
 
 static void list_parts(const Trajectory *trajectory, Part parts[PART_COUNT])
 {
@@ -21,13 +22,22 @@ static void list_parts(const Trajectory *trajectory, Part parts[PART_COUNT])
     parts[1] = (Part){trajectory->crank_angles, samples * sizeof(double)};
     parts[2] = (Part){trajectory->motions, samples * trajectory->body_count * sizeof(Motion)};
     parts[3] = (Part){trajectory->states, samples * trajectory->joint_count * sizeof(JointState)};
+    const bool is_spatial = trajectory->space_motions != NULL;
+    const size_t bodies = is_spatial ? samples * trajectory->body_count : 0;
+    const size_t joints = is_spatial ? samples * trajectory->joint_count : 0;
+    parts[4] = (Part){trajectory->space_motions, bodies * sizeof(SpaceMotion)};
+    parts[5] = (Part){trajectory->space_states, joints * sizeof(SpaceJointState)};
 }
 
 size_t truth_pack_size(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
-    const size_t a_sample = 2 * sizeof(double) + linkage->body_count * sizeof(Motion) +
-                            linkage->joint_count * sizeof(JointState);
+    size_t a_sample = 2 * sizeof(double) + linkage->body_count * sizeof(Motion) +
+                      linkage->joint_count * sizeof(JointState);
+    if (linkage->is_spatial) {
+        a_sample += linkage->body_count * sizeof(SpaceMotion) +
+                    linkage->joint_count * sizeof(SpaceJointState);
+    }
     return sizeof(Truth) + sizeof(Trajectory) + scenario_sample_count(scenario) * a_sample;
 }
 
@@ -40,7 +50,9 @@ void truth_pack_write(const Truth *truth, void *packed)
     Part parts[PART_COUNT];
     list_parts(truth->trajectory, parts);
     for (int i = 0; i < PART_COUNT; i++) {
-        memcpy(target, parts[i].start, parts[i].size);
+        if (parts[i].size > 0) {
+            memcpy(target, parts[i].start, parts[i].size);
+        }
         target += parts[i].size;
     }
 }
@@ -60,9 +72,13 @@ Truth truth_pack_read(const Scenario *scenario, const void *packed)
     truth.trajectory->crank_angles = parts[1].start;
     truth.trajectory->motions = parts[2].start;
     truth.trajectory->states = parts[3].start;
+    truth.trajectory->space_motions = parts[4].start;
+    truth.trajectory->space_states = parts[5].start;
     source += sizeof truth + sizeof *truth.trajectory;
     for (int i = 0; i < PART_COUNT; i++) {
-        memcpy(parts[i].start, source, parts[i].size);
+        if (parts[i].size > 0) {
+            memcpy(parts[i].start, source, parts[i].size);
+        }
         source += parts[i].size;
     }
     return truth;

@@ -18,33 +18,67 @@ bool distance_is_by_velocity(const Trajectory *reference)
     return reference->driven_body == LINKAGE_GROUND;
 }
 
-double distance_of_rates(const Motion *motion, const Motion *truth, bool is_velocity)
+static Vec3 planar_rate(const Motion *motion, bool is_velocity)
 {
-    return is_velocity ? vec2_length(vec2_sub(motion->velocity, truth->velocity))
-                       : fabs(motion->omega - truth->omega);
+    return is_velocity ? (Vec3){motion->velocity.x, motion->velocity.y, 0.0}
+                       : (Vec3){motion->omega, 0.0, 0.0};
 }
 
-double distance_of_changes(const Motion *motion, const Motion *truth, bool is_velocity)
+Vec3 distance_rate(const Trajectory *trajectory, size_t sample, size_t body, bool is_velocity)
 {
-    return is_velocity ? vec2_length(vec2_sub(motion->acceleration, truth->acceleration))
-                       : fabs(motion->alpha - truth->alpha);
+    if (trajectory->space_motions == NULL) {
+        return planar_rate(trajectory_motion(trajectory, sample, body), is_velocity);
+    }
+    const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, body);
+    return is_velocity ? motion->velocity : motion->omega;
+}
+
+Vec3 distance_sample_rate(const Sample *sample, bool is_spatial, size_t body, bool is_velocity)
+{
+    if (!is_spatial) {
+        return planar_rate(&sample->bodies[body], is_velocity);
+    }
+    const SpaceMotion *motion = &sample->space_bodies[body];
+    return is_velocity ? motion->velocity : motion->omega;
+}
+
+Vec3 distance_change(const Trajectory *trajectory, size_t sample, size_t body, bool is_velocity)
+{
+    if (trajectory->space_motions == NULL) {
+        const Motion *motion = trajectory_motion(trajectory, sample, body);
+        return is_velocity ? (Vec3){motion->acceleration.x, motion->acceleration.y, 0.0}
+                           : (Vec3){motion->alpha, 0.0, 0.0};
+    }
+    const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, body);
+    return is_velocity ? motion->acceleration : motion->alpha;
+}
+
+double distance_between(Vec3 a, Vec3 b)
+{
+    const Vec3 apart = vec3_sub(a, b);
+    return hypot(hypot(apart.x, apart.y), apart.z);
 }
 
 // The largest rates of one body. A point of it moves with |v| + |omega| reach at most.
 static DistanceScale body_scale(const Trajectory *reference, size_t body)
 {
-    const Motion still = {.omega = 0.0};
+    const Vec3 still = {0.0, 0.0, 0.0};
     const bool is_velocity = distance_is_by_velocity(reference);
     const double reach = reference->reach[body];
     DistanceScale scale = {.omega = 0.0};
     for (size_t k = 0; k < reference->sample_count; k++) {
-        const Motion *truth = trajectory_motion(reference, k, body);
-        scale.omega = fmax(scale.omega, distance_of_rates(truth, &still, is_velocity));
-        scale.alpha = fmax(scale.alpha, distance_of_changes(truth, &still, is_velocity));
-        scale.moving =
-            fmax(scale.moving, vec2_length(truth->velocity) + fabs(truth->omega) * reach);
-        scale.changing =
-            fmax(scale.changing, vec2_length(truth->acceleration) + fabs(truth->alpha) * reach);
+        const Vec3 velocity = distance_rate(reference, k, body, true);
+        const Vec3 omega = distance_rate(reference, k, body, false);
+        const Vec3 acceleration = distance_change(reference, k, body, true);
+        const Vec3 alpha = distance_change(reference, k, body, false);
+        const double moving = distance_between(velocity, still);
+        const double changing = distance_between(acceleration, still);
+        const double turning = distance_between(omega, still);
+        const double speeding = distance_between(alpha, still);
+        scale.omega = fmax(scale.omega, is_velocity ? moving : turning);
+        scale.alpha = fmax(scale.alpha, is_velocity ? changing : speeding);
+        scale.moving = fmax(scale.moving, moving + turning * reach);
+        scale.changing = fmax(scale.changing, changing + speeding * reach);
     }
     return scale;
 }
@@ -86,9 +120,8 @@ double distance_at(const Trajectory *trajectory, const Trajectory *reference, si
     double largest = 0.0;
     for (size_t i = 0; i < reference->body_count; i++) {
         if (scales[i].omega > 0.0) {
-            const double apart =
-                distance_of_rates(trajectory_motion(trajectory, sample, i),
-                                  trajectory_motion(reference, sample, i), is_velocity);
+            const double apart = distance_between(distance_rate(trajectory, sample, i, is_velocity),
+                                                  distance_rate(reference, sample, i, is_velocity));
             largest = fmax(largest, apart / scales[i].omega);
         }
     }

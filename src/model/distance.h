@@ -28,9 +28,16 @@ void distance_scales(const Trajectory *reference, DistanceScale scales[LINKAGE_B
 // Whether velocities of centres take the place of omega.
 bool distance_is_by_velocity(const Trajectory *reference);
 
-// The difference of two motions in omega or velocity, and in alpha or acceleration.
-double distance_of_rates(const Motion *motion, const Motion *truth, bool is_velocity);
-double distance_of_changes(const Motion *motion, const Motion *truth, bool is_velocity);
+// A body's omega or velocity at a sample, and its alpha or acceleration: as vectors, in the plane
+// of omega (omega, 0, 0).
+Vec3 distance_rate(const Trajectory *trajectory, size_t sample, size_t body, bool is_velocity);
+Vec3 distance_change(const Trajectory *trajectory, size_t sample, size_t body, bool is_velocity);
+
+// The rate of a body in a sample that no trajectory holds.
+Vec3 distance_sample_rate(const Sample *sample, bool is_spatial, size_t body, bool is_velocity);
+
+// How far apart two of these are.
+double distance_between(Vec3 a, Vec3 b);
 
 // The largest relative distance of any body at one sample.
 double distance_at(const Trajectory *trajectory, const Trajectory *reference, size_t sample,

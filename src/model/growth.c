@@ -85,25 +85,46 @@ static void close_runs(const Solver *solver, Runs *runs, Growth *growth)
     free(runs->scenarios);
 }
 
-// The products of the rows of (D_1b ... D_fb), of one body: of two rows where D are velocities.
+// The products of the rows of (D_1b ... D_fb), of one body: a symmetric matrix of 3 by 3.
 typedef struct Gram {
-    double xx;
-    double xy;
-    double yy;
+    double xx, xy, yy, xz, yz, zz;
 } Gram;
 
-static void add_difference(const Motion *moved, const Motion *truth, bool is_velocity, Gram *gram)
+static void add_difference(Vec3 apart, Gram *gram)
 {
-    const Vec2 apart = is_velocity ? vec2_sub(moved->velocity, truth->velocity)
-                                   : (Vec2){moved->omega - truth->omega, 0.0};
     gram->xx += apart.x * apart.x;
     gram->xy += apart.x * apart.y;
     gram->yy += apart.y * apart.y;
+    gram->xz += apart.x * apart.z;
+    gram->yz += apart.y * apart.z;
+    gram->zz += apart.z * apart.z;
 }
 
-// The larger singular value, by the larger eigenvalue of the products.
+// The largest eigenvalue of a symmetric matrix of 3 by 3 in closed form (Smith, Comm. ACM 4 (1961)
+// 168).
+static double largest_of_three(Gram g)
+{
+    const double mean = (g.xx + g.yy + g.zz) / 3.0;
+    const double x = g.xx - mean;
+    const double y = g.yy - mean;
+    const double z = g.zz - mean;
+    const double size =
+        sqrt((x * x + y * y + z * z + 2.0 * (g.xy * g.xy + g.xz * g.xz + g.yz * g.yz)) / 6.0);
+    if (!(size > 0.0)) {
+        return mean + size;
+    }
+    const double determinant = x * (y * z - g.yz * g.yz) - g.xy * (g.xy * z - g.yz * g.xz) +
+                               g.xz * (g.xy * g.yz - y * g.xz);
+    const double cosine = fmax(-1.0, fmin(1.0, 0.5 * determinant / (size * size * size)));
+    return mean + 2.0 * size * cos(acos(cosine) / 3.0);
+}
+
+// The largest singular value, by the largest eigenvalue of the products.
 static double largest_singular(Gram gram)
 {
+    if (gram.zz != 0.0) {
+        return sqrt(largest_of_three(gram));
+    }
     const double mean = 0.5 * (gram.xx + gram.yy);
     return sqrt(mean + hypot(0.5 * (gram.xx - gram.yy), gram.xy));
 }
@@ -113,14 +134,16 @@ static bool find_at(const GrowthWork *work, Runs *runs, size_t k, double *found,
 {
     const Trajectory *beside = work->beside;
     const bool is_velocity = distance_is_by_velocity(beside);
-    Gram grams[LINKAGE_BODY_MAX] = {{0.0, 0.0, 0.0}};
+    const bool is_spatial = work->scenario->linkage.is_spatial;
+    Gram grams[LINKAGE_BODY_MAX] = {{.xx = 0.0}};
     for (size_t i = 0; i < runs->count; i++) {
         Sample sample;
         if (!walk_to(work, &runs->walks[i], beside->times[k], &sample, &growth->failure)) {
             return false;
         }
         for (size_t body = 0; body < beside->body_count; body++) {
-            add_difference(&sample.bodies[body], trajectory_motion(beside, k, body), is_velocity,
+            add_difference(vec3_sub(distance_sample_rate(&sample, is_spatial, body, is_velocity),
+                                    distance_rate(beside, k, body, is_velocity)),
                            &grams[body]);
         }
     }

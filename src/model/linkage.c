@@ -49,7 +49,10 @@ double linkage_reach(const Linkage *linkage, int body)
     double reach = sqrt(own->inertia / own->mass);
     for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
         const JointEnd end = linkage_end(&linkage->joints[i / 2], i % 2);
-        reach = end.body == body ? fmax(reach, vec2_length(end.anchor)) : reach;
+        const double above =
+            linkage->is_spatial ? linkage->joints[i / 2].space.height - own->space.height : 0.0;
+        const double length = hypot(vec2_length(end.anchor), above);
+        reach = end.body == body ? fmax(reach, length) : reach;
     }
     return reach;
 }

@@ -9,6 +9,7 @@
 #include "base/dense.h"
 #include "model/closed_path.h"
 #include "model/nearest.h"
+#include "model/space.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -233,7 +234,8 @@ static Lock walk(ClosedPath *path, double turn)
 Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
 {
     const Lock unknown = {LOCK_UNKNOWN, linkage->driver.start};
-    if (!linkage->driver.is_present) {
+    const bool is_planar = !linkage->is_spatial || space_is_upright(linkage);
+    if (!linkage->driver.is_present || !is_planar) {
         return unknown;
     }
     const Linkage ideal = idealised(linkage, joints);

@@ -12,10 +12,13 @@ bool nearest_positions(const Linkage *linkage, Motion *motions);
 // follows the driver. Where it cannot be solved nothing changes.
 void nearest_speeds(const Linkage *linkage, bool with_play, Motion *motions);
 
-// A change of a body's speeds.
+// A change of a body's speeds. The last three are 0 in the plane.
 typedef struct SpeedChange {
     Vec2 velocity; // m/s, of the centre
     double omega;  // rad/s
+    double velocity_z;
+    double omega_x;
+    double omega_y;
 } SpeedChange;
 
 // Alters changes of the bodies' speeds as little as keeps the ideal joints closed and the driver as

@@ -9,6 +9,7 @@
 #include "model/perturb.h"
 
 #include "base/lcg.h"
+#include "model/space_nearest.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -26,6 +27,16 @@ typedef struct Unit {
     double turning; // rad/s
 } Unit;
 
+// What is left of changes that joints and driver allow.
+static void allow_change(const Linkage *linkage, const Motion *motions, SpeedChange *changes)
+{
+    if (linkage->is_spatial) {
+        space_nearest_change(linkage, changes);
+    } else {
+        nearest_change(linkage, motions, changes);
+    }
+}
+
 // As errors are measured, and what errors do not measure by the speed of the body's points.
 static Unit unit_of(const Linkage *linkage, const DistanceScale *scale)
 {
@@ -42,6 +53,10 @@ static double change_size(const Linkage *linkage, const DistanceScale *scales,
             const Unit unit = unit_of(linkage, &scales[i]);
             size = fmax(size, vec2_length(changes[i].velocity) / unit.moving);
             size = fmax(size, fabs(changes[i].omega) / unit.turning);
+            if (linkage->is_spatial) {
+                size = fmax(size, fabs(changes[i].velocity_z) / unit.moving);
+                size = fmax(size, hypot(changes[i].omega_x, changes[i].omega_y) / unit.turning);
+            }
         }
     }
     return size;
@@ -77,7 +92,7 @@ static void draw_changes(const Scenario *scenario, const DistanceScale *scales,
     const Linkage *linkage = &scenario->linkage;
     uint64_t seed = lcg_stirred(member);
     for (size_t i = 0; i < linkage->body_count; i++) {
-        changes[i] = (SpeedChange){{0.0, 0.0}, 0.0};
+        changes[i] = (SpeedChange){.omega = 0.0};
         if ((int)i != linkage_driven_body(linkage)) {
             const Unit unit = unit_of(linkage, &scales[i]);
             const Vec2 along = vec2_scale(unit.moving, own_direction(scenario, motions, i));
@@ -86,6 +101,11 @@ static void draw_changes(const Scenario *scenario, const DistanceScale *scales,
             changes[i].velocity =
                 vec2_add(vec2_scale(ahead, along), vec2_scale(aside, vec2_perp(along)));
             changes[i].omega = unit.turning * lcg_draw(&seed);
+            if (linkage->is_spatial) {
+                changes[i].velocity_z = unit.moving * lcg_draw(&seed);
+                changes[i].omega_x = unit.turning * lcg_draw(&seed);
+                changes[i].omega_y = unit.turning * lcg_draw(&seed);
+            }
         }
     }
 }
@@ -99,7 +119,7 @@ bool perturb_start(Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_M
     linkage_start(linkage, motions);
     draw_changes(scenario, scales, motions, member, changes);
     const double drawn = change_size(linkage, scales, changes);
-    nearest_change(linkage, motions, changes);
+    allow_change(linkage, motions, changes);
     const double allowed = change_size(linkage, scales, changes);
     if (!(allowed > ALLOWED * drawn)) {
         return false;
@@ -114,6 +134,10 @@ void perturb_along(Scenario *scenario, const SpeedChange changes[LINKAGE_BODY_MA
         Motion *start = &scenario->linkage.bodies[i].start;
         start->velocity = vec2_add(start->velocity, vec2_scale(factor, changes[i].velocity));
         start->omega += factor * changes[i].omega;
+        BodySpace *space = &scenario->linkage.bodies[i].space;
+        space->velocity_z += factor * changes[i].velocity_z;
+        space->omega_x += factor * changes[i].omega_x;
+        space->omega_y += factor * changes[i].omega_y;
     }
 }
 
@@ -126,6 +150,10 @@ static double product(const Linkage *linkage, const DistanceScale *scales, const
             const Unit unit = unit_of(linkage, &scales[i]);
             sum += vec2_dot(a[i].velocity, b[i].velocity) / (unit.moving * unit.moving) +
                    a[i].omega * b[i].omega / (unit.turning * unit.turning);
+            // these are 0 in the plane
+            sum += a[i].velocity_z * b[i].velocity_z / (unit.moving * unit.moving) +
+                   (a[i].omega_x * b[i].omega_x + a[i].omega_y * b[i].omega_y) /
+                       (unit.turning * unit.turning);
         }
     }
     return sum;
@@ -137,7 +165,18 @@ static void add_multiple(const Linkage *linkage, double factor, const SpeedChang
     for (size_t i = 0; i < linkage->body_count; i++) {
         to[i].velocity = vec2_add(to[i].velocity, vec2_scale(factor, from[i].velocity));
         to[i].omega += factor * from[i].omega;
+        to[i].velocity_z += factor * from[i].velocity_z;
+        to[i].omega_x += factor * from[i].omega_x;
+        to[i].omega_y += factor * from[i].omega_y;
     }
+}
+
+// One rate of a body, the three of the plane first.
+static double *rate_of(SpeedChange *change, int rate)
+{
+    double *const rates[] = {&change->velocity.x, &change->velocity.y, &change->omega,
+                             &change->velocity_z, &change->omega_x,    &change->omega_y};
+    return rates[rate];
 }
 
 // What joints and driver allow of each single rate of each body. Returns the freedoms: the trace of
@@ -146,21 +185,21 @@ static size_t allow_each(const Linkage *linkage, const DistanceScale *scales, Pe
 {
     Motion motions[LINKAGE_BODY_MAX];
     linkage_start(linkage, motions);
+    const int rates = linkage->is_spatial ? 6 : 3;
     double trace = 0.0;
     each->count = 0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Unit unit = unit_of(linkage, &scales[i]);
-        for (int rate = 0; rate < 3 && (int)i != linkage_driven_body(linkage); rate++) {
+        for (int rate = 0; rate < rates && (int)i != linkage_driven_body(linkage); rate++) {
             SpeedChange *changes = each->changes[each->count++];
             for (size_t k = 0; k < linkage->body_count; k++) {
-                changes[k] = (SpeedChange){{0.0, 0.0}, 0.0};
+                changes[k] = (SpeedChange){.omega = 0.0};
             }
-            double *own = rate == 0   ? &changes[i].velocity.x
-                          : rate == 1 ? &changes[i].velocity.y
-                                      : &changes[i].omega;
-            const double asked = rate == 2 ? unit.turning : unit.moving;
+            double *own = rate_of(&changes[i], rate);
+            const bool is_turning = rate == 2 || rate > 3;
+            const double asked = is_turning ? unit.turning : unit.moving;
             *own = asked;
-            nearest_change(linkage, motions, changes);
+            allow_change(linkage, motions, changes);
             trace += *own / asked;
         }
     }
@@ -193,7 +232,10 @@ static bool group_of(const Linkage *linkage, const size_t *groups, const SpeedCh
 {
     bool is_found = false;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        const bool is_moved = vec2_length(changes[i].velocity) > 0.0 || changes[i].omega != 0.0;
+        const SpeedChange *change = &changes[i];
+        const bool is_moved = vec2_length(change->velocity) > 0.0 || change->omega != 0.0 ||
+                              change->velocity_z != 0.0 || change->omega_x != 0.0 ||
+                              change->omega_y != 0.0;
         if (is_moved && is_found && groups[i] != *group) {
             return false;
         }

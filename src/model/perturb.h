@@ -15,7 +15,7 @@
 bool perturb_start(Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_MAX], double size,
                    unsigned member);
 
-enum { PERTURB_FREEDOM_MAX = 3 * LINKAGE_BODY_MAX };
+enum { PERTURB_FREEDOM_MAX = 6 * LINKAGE_BODY_MAX };
 
 // Changes of the bodies' speeds that span all that joints and driver allow, each of length 1 in
 //     |w|^2 = sum over bodies (w_omega / omega_b)^2 + (w_v / v_b)^2

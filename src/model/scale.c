@@ -37,11 +37,13 @@ SpeedScale scale_speeds(const Scenario *scenario)
     double turning = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Motion *start = &linkage->bodies[i].start;
+        const BodySpace *space = &linkage->bodies[i].space; // 0 in the plane
         const double reach = linkage_reach(linkage, (int)i);
+        const double omega = hypot(start->omega, hypot(space->omega_x, space->omega_y));
+        const double speed = hypot(vec2_length(start->velocity), space->velocity_z);
         largest = fmax(largest, reach);
-        turning = fmax(turning, fabs(start->omega));
-        scale.moving =
-            fmax(scale.moving, vec2_length(start->velocity) + fabs(start->omega) * reach);
+        turning = fmax(turning, omega);
+        scale.moving = fmax(scale.moving, speed + omega * reach);
     }
     double fall = sqrt(2.0 * gravity * largest);
     if (linkage->driver.is_present) {

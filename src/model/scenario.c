@@ -1,6 +1,8 @@
 // What is to be run, for how long, and how often is it looked at?
 #include "model/scenario.h"
 
+const char *const SCENARIO_SPACES[] = {"planar", "spatial", NULL};
+
 Scenario scenario_default(void)
 {
     return (Scenario){

@@ -15,9 +15,18 @@ typedef struct TracedPoint {
     Vec2 local; // in the body's frame, m
 } TracedPoint;
 
+// Where bodies may move.
+typedef enum ScenarioSpace {
+    SCENARIO_PLANAR,  // in the plane: pins have no length
+    SCENARIO_SPATIAL, // in space: pins tilt and slide in their holes
+} ScenarioSpace;
+
+extern const char *const SCENARIO_SPACES[]; // the words, ending in NULL
+
 typedef struct Scenario {
     char title[SCENARIO_TITLE_SIZE];
     char path[SCENARIO_PATH_SIZE]; // of the case file, as given; empty where there is none
+    ScenarioSpace space;           // linkage.is_spatial is the same
     Linkage linkage;
     bool has_fourbar; // whether the case used the short form
     FourBar fourbar;

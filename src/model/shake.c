@@ -23,6 +23,27 @@ static void shake_vector(Vec2 *vector, uint64_t *seed)
     shake(&vector->y, seed);
 }
 
+static void shake_body_space(BodySpace *space, uint64_t *seed)
+{
+    shake(&space->inertia_x, seed);
+    shake(&space->inertia_y, seed);
+    shake(&space->product_xy, seed);
+    shake(&space->product_xz, seed);
+    shake(&space->product_yz, seed);
+    shake(&space->height, seed);
+    shake(&space->velocity_z, seed);
+    shake(&space->omega_x, seed);
+    shake(&space->omega_y, seed);
+}
+
+static void shake_joint_space(JointSpace *space, uint64_t *seed)
+{
+    shake(&space->height, seed);
+    shake(&space->axis.x, seed);
+    shake(&space->axis.y, seed);
+    shake(&space->axial_clearance, seed);
+}
+
 static void shake_body(Body *body, uint64_t *seed)
 {
     shake(&body->mass, seed);
@@ -82,9 +103,15 @@ void shake_inputs(Scenario *scenario, unsigned seed)
     uint64_t drawn = lcg_stirred(seed);
     for (size_t i = 0; i < scenario->linkage.body_count; i++) {
         shake_body(&scenario->linkage.bodies[i], &drawn);
+        if (scenario->linkage.is_spatial) {
+            shake_body_space(&scenario->linkage.bodies[i].space, &drawn);
+        }
     }
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         shake_joint(&scenario->linkage.joints[i], &drawn);
+        if (scenario->linkage.is_spatial) {
+            shake_joint_space(&scenario->linkage.joints[i].space, &drawn);
+        }
     }
     shake_world(scenario, &drawn);
 }

@@ -4,6 +4,9 @@
 // of a principal moment: rounding of the numbers of a case
 static const double INERTIA_ROUNDING = 1e-9;
 
+// moment of inertia of a slender body about its length, over that about the axes across it
+static const double SLENDER = 1e-2;
+
 static Vec3 lift(Vec2 a, double z)
 {
     return (Vec3){a.x, a.y, z};
@@ -14,20 +17,40 @@ static Quat turn_about_z(double angle)
     return (Quat){cos(0.5 * angle), 0.0, 0.0, sin(0.5 * angle)};
 }
 
-void space_start(const Linkage *linkage, SpaceMotion *motions)
+void space_lift(const Linkage *linkage, const Motion *planar, SpaceMotion *motions)
 {
     for (size_t i = 0; i < linkage->body_count; i++) {
-        const Motion *start = &linkage->bodies[i].start;
-        const BodySpace *space = &linkage->bodies[i].space;
         motions[i] = (SpaceMotion){
-            .position = lift(start->position, space->height),
-            .turn = turn_about_z(start->angle),
-            .velocity = lift(start->velocity, space->velocity_z),
-            .omega = {space->omega_x, space->omega_y, start->omega},
-            .acceleration = lift(start->acceleration, 0.0),
-            .alpha = {0.0, 0.0, start->alpha},
+            .position = lift(planar[i].position, linkage->bodies[i].space.height),
+            .turn = turn_about_z(planar[i].angle),
+            .velocity = lift(planar[i].velocity, 0.0),
+            .omega = {0.0, 0.0, planar[i].omega},
+            .acceleration = lift(planar[i].acceleration, 0.0),
+            .alpha = {0.0, 0.0, planar[i].alpha},
         };
     }
+}
+
+void space_start(const Linkage *linkage, SpaceMotion *motions)
+{
+    Motion planar[LINKAGE_BODY_MAX];
+    linkage_start(linkage, planar);
+    space_lift(linkage, planar, motions);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const BodySpace *space = &linkage->bodies[i].space;
+        motions[i].velocity.z = space->velocity_z;
+        motions[i].omega.x = space->omega_x;
+        motions[i].omega.y = space->omega_y;
+    }
+}
+
+void space_set_start(const SpaceMotion *motion, Body *body)
+{
+    body->start.velocity = (Vec2){motion->velocity.x, motion->velocity.y};
+    body->start.omega = motion->omega.z;
+    body->space.velocity_z = motion->velocity.z;
+    body->space.omega_x = motion->omega.x;
+    body->space.omega_y = motion->omega.y;
 }
 
 SpaceMotion space_driven(const Linkage *linkage, double time_s)
@@ -145,9 +168,8 @@ double space_potential_energy(const Linkage *linkage, const SpaceMotion *motions
     return sum;
 }
 
-// Whether there are point masses with this matrix of inertia: its second moments, sums of m x x and
-// so on, are those of a positive semidefinite matrix.
-static bool is_possible(const Body *body)
+// Its second moments, sums of m x x, m x y and so on, make a positive semidefinite matrix.
+bool space_is_possible(const Body *body)
 {
     const BodySpace *space = &body->space;
     const double half = 0.5 * (space->inertia_x + space->inertia_y + body->inertia);
@@ -165,23 +187,23 @@ static bool is_possible(const Body *body)
            yy * zz - yz * yz >= -rounding * half && determinant >= -rounding * half * half;
 }
 
-bool space_check(const Linkage *linkage, Err *err)
+bool space_is_upright(const Linkage *linkage)
 {
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        const Body *body = &linkage->bodies[i];
-        if (!(body->space.inertia_x > 0.0 && body->space.inertia_y > 0.0) || !is_possible(body)) {
-            return err_set(err, ERR_CASE,
-                           "%s: no body has these moments and products of inertia: each moment is "
-                           "at most the sum of the other two, and products are no larger than "
-                           "they allow",
-                           body->name);
-        }
-    }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (joint->kind == JOINT_CLEARANCE && !(joint->clearance.width > 0.0)) {
-            return err_set(err, ERR_CASE, "%s: a pin in space needs a width", joint->name);
+        const Vec3 axis = linkage->joints[i].space.axis;
+        if (axis.x != 0.0 || axis.y != 0.0 || axis.z < 0.0) {
+            return false;
         }
     }
     return true;
+}
+
+void space_complete(Linkage *linkage)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        Body *body = &linkage->bodies[i];
+        body->space.inertia_x =
+            body->space.inertia_x > 0.0 ? body->space.inertia_x : SLENDER * body->inertia;
+        body->space.inertia_y = body->space.inertia_y > 0.0 ? body->space.inertia_y : body->inertia;
+    }
 }

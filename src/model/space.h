@@ -19,8 +19,14 @@ typedef struct SpaceMotion {
     Vec3 alpha;
 } SpaceMotion;
 
+// Motions in the plane as motions in space, the bodies at their heights.
+void space_lift(const Linkage *linkage, const Motion *planar, SpaceMotion *motions);
+
 // The motions at time zero, at the speeds of the start.
 void space_start(const Linkage *linkage, SpaceMotion *motions);
+
+// Makes the speeds of a motion those of a body's start.
+void space_set_start(const SpaceMotion *motion, Body *body);
 
 // The motion of the driven body at a time: about the axis of its joint with the ground.
 SpaceMotion space_driven(const Linkage *linkage, double time_s);
@@ -56,6 +62,12 @@ Vec3 space_velocity_at(const SpaceMotion *motions, int body, Vec3 point);
 double space_kinetic_energy(const Linkage *linkage, const SpaceMotion *motions);
 double space_potential_energy(const Linkage *linkage, const SpaceMotion *motions, double gravity);
 
-// Checks what must hold of bodies in space: inertias that some distribution of mass has, and a
-// width of every joint with play. Fails with ERR_CASE and the name of the offender.
-bool space_check(const Linkage *linkage, Err *err);
+// Whether some distribution of mass has the body's moments and products of inertia.
+bool space_is_possible(const Body *body);
+
+// Whether every joint's axis is z, so that the plane shows how the linkage moves until a pin tilts.
+bool space_is_upright(const Linkage *linkage);
+
+// Fills in the moments of inertia about x and y that a case leaves out: those of a slender body
+// along x.
+void space_complete(Linkage *linkage);

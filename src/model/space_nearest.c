@@ -102,16 +102,11 @@ static void correct(const Linkage *linkage, Solution *solution, SpaceMotion *mot
     }
 }
 
-void space_nearest_speeds(const Linkage *linkage, bool with_play, SpaceMotion *motions)
+// The driven body keeps its speeds.
+static void keep_joints(const Linkage *linkage, bool with_play, SpaceMotion *motions)
 {
     Solution *solution = malloc(sizeof *solution);
     assert(solution != NULL);
-    const int driven = linkage_driven_body(linkage);
-    if (driven != LINKAGE_GROUND) {
-        const SpaceMotion given = space_driven(linkage, 0.0);
-        motions[driven].velocity = given.velocity;
-        motions[driven].omega = given.omega;
-    }
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Mat3 inertia = space_world_inertia(&linkage->bodies[i], motions[i].turn);
         solution->inverse[i] = mat3_inverse(&inertia);
@@ -121,6 +116,37 @@ void space_nearest_speeds(const Linkage *linkage, bool with_play, SpaceMotion *m
         correct(linkage, solution, motions);
     }
     free(solution);
+}
+
+void space_nearest_speeds(const Linkage *linkage, bool with_play, SpaceMotion *motions)
+{
+    const int driven = linkage_driven_body(linkage);
+    if (driven != LINKAGE_GROUND) {
+        const SpaceMotion given = space_driven(linkage, 0.0);
+        motions[driven].velocity = given.velocity;
+        motions[driven].omega = given.omega;
+    }
+    keep_joints(linkage, with_play, motions);
+}
+
+void space_nearest_change(const Linkage *linkage, SpeedChange *changes)
+{
+    SpaceMotion motions[LINKAGE_BODY_MAX];
+    space_start(linkage, motions);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const SpeedChange *change = &changes[i];
+        const bool is_free = gives_way(linkage, (int)i);
+        const Vec3 velocity = {change->velocity.x, change->velocity.y, change->velocity_z};
+        const Vec3 omega = {change->omega_x, change->omega_y, change->omega};
+        motions[i].velocity = is_free ? velocity : (Vec3){0.0, 0.0, 0.0};
+        motions[i].omega = is_free ? omega : (Vec3){0.0, 0.0, 0.0};
+    }
+    keep_joints(linkage, false, motions);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Vec3 velocity = motions[i].velocity;
+        const Vec3 omega = motions[i].omega;
+        changes[i] = (SpeedChange){{velocity.x, velocity.y}, omega.z, velocity.z, omega.x, omega.y};
+    }
 }
 
 bool space_nearest_check(const Linkage *linkage, const SpaceMotion *motions, int *joint)

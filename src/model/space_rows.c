@@ -171,3 +171,16 @@ size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions,
     free(kept);
     return count;
 }
+
+size_t space_rows_mobility(const Linkage *linkage, const SpaceMotion *motions, bool ideal_only)
+{
+    Linkage undriven = *linkage;
+    undriven.driver.is_present = false;
+    bool is_asked[LINKAGE_JOINT_MAX];
+    unsigned chosen[LINKAGE_JOINT_MAX];
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        is_asked[i] = !ideal_only || linkage->joints[i].kind == JOINT_REVOLUTE;
+    }
+    return SPACE_FREEDOMS * linkage->body_count -
+           space_rows_choose(&undriven, motions, is_asked, chosen);
+}

@@ -39,6 +39,10 @@ void space_rows_opening(const Linkage *linkage, const SpaceMotion *motions, size
 // The velocity in a row.
 double space_row_speed(const SpaceRow *row, const SpaceMotion *motions);
 
+// The freedoms of all bodies, the driven one included, that joints leave: all of them, or the ideal
+// ones alone.
+size_t space_rows_mobility(const Linkage *linkage, const SpaceMotion *motions, bool ideal_only);
+
 // Chooses rows that are independent, joint by joint in the order of the linkage, of the joints
 // whose flag is set: bit k of chosen[joint] stands for its row k. Bodies that a driver moves give
 // no freedom. Returns the number chosen. Joints that fit together leave the others redundant at

@@ -189,8 +189,19 @@ static void raise_joint(Recorder *recorder, size_t number, const JointState *sta
     raise_to(&joint->penetration_max, recorder->is_empty, depth, 1.0, time_s);
 }
 
+static void raise_joint_space(Recorder *recorder, size_t number, const SpaceJointState *state,
+                              double time_s)
+{
+    JointExtremes *joint = &recorder->trajectory->joints[number];
+    raise_to(&joint->tilt_max, recorder->is_empty, state->tilt, 1.0, time_s);
+    raise_to(&joint->axial_max, recorder->is_empty, fabs(state->axial), 1.0, time_s);
+}
+
 static void raise_all(Recorder *recorder, const StepRecord *step)
 {
+    for (size_t i = 0; step->space_joints != NULL && i < recorder->trajectory->joint_count; i++) {
+        raise_joint_space(recorder, i, &step->space_joints[i], step->joint_s);
+    }
     for (size_t i = 0; i < recorder->trajectory->body_count; i++) {
         raise_body(recorder, i, step->omega[i], step->alpha[i], step->end_s);
     }
@@ -248,6 +259,9 @@ void recorder_see(Recorder *recorder, const Sample *sample)
     }
     for (size_t i = 0; i < trajectory->joint_count; i++) {
         raise_joint(recorder, i, &sample->joints[i], time_s);
+        if (recorder->scenario->linkage.is_spatial) {
+            raise_joint_space(recorder, i, &sample->space_joints[i], time_s);
+        }
     }
 }
 
@@ -275,5 +289,7 @@ void recorder_finish(Recorder *recorder)
         }
         set_crank(linkage, &trajectory->joints[i].force_max);
         set_crank(linkage, &trajectory->joints[i].penetration_max);
+        set_crank(linkage, &trajectory->joints[i].tilt_max);
+        set_crank(linkage, &trajectory->joints[i].axial_max);
     }
 }

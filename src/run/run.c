@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "contact/law.h"
+#include "contact/pin_space.h"
 #include "model/lock.h"
 
 #include <stdio.h>
@@ -81,8 +82,13 @@ static void unwrap_angles(const Loop *loop, Sample *sample)
 
 static double mechanical_energy(const Scenario *scenario, const Sample *sample)
 {
-    return linkage_kinetic_energy(&scenario->linkage, sample->bodies) +
-           linkage_potential_energy(&scenario->linkage, sample->bodies, scenario->gravity);
+    const Linkage *linkage = &scenario->linkage;
+    if (linkage->is_spatial) {
+        return space_kinetic_energy(linkage, sample->space_bodies) +
+               space_potential_energy(linkage, sample->space_bodies, scenario->gravity);
+    }
+    return linkage_kinetic_energy(linkage, sample->bodies) +
+           linkage_potential_energy(linkage, sample->bodies, scenario->gravity);
 }
 
 // What the contacts of pins that start inside their walls have stored, J.
@@ -93,6 +99,10 @@ static double stored_energy(const Scenario *scenario, const Sample *sample)
         const Joint *joint = &scenario->linkage.joints[i];
         ForceLaw law;
         Err unused;
+        if (scenario->linkage.is_spatial) {
+            sum += pin_space_stored(scenario, i, &sample->space_joints[i]);
+            continue;
+        }
         // what the contacts of the velocity-level model press with, they never store
         if (joint->kind == JOINT_CLEARANCE && scenario->contact.model == CONTACT_IMPACT &&
             sample->joints[i].gap < 0.0 && law_of_joint(scenario, joint, &law, &unused)) {

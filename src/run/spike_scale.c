@@ -9,6 +9,7 @@
 #include "analytic/inverse_dynamics.h"
 #include "base/dense.h"
 #include "model/kinematics.h"
+#include "model/space.h"
 
 #include <math.h>
 
@@ -41,7 +42,9 @@ static bool move_to(const Scenario *scenario, double crank_rad, Motion *motions)
 SpikeScale spike_scale(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
-    SpikeScale scale = {.is_known = linkage->driver.is_present};
+    // of axes that are not all along z the plane shows no mechanism
+    const bool is_planar = !linkage->is_spatial || space_is_upright(linkage);
+    SpikeScale scale = {.is_known = linkage->driver.is_present && is_planar};
     scale.alpha = linkage->driver.speed * linkage->driver.speed;
     double least[LINKAGE_BODY_MAX] = {0.0};
     double most[LINKAGE_BODY_MAX] = {0.0};

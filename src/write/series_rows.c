@@ -45,6 +45,43 @@ static void write_ranges(const Trajectory *trajectory, size_t sample, FILE *stre
     }
 }
 
+// What a linkage in space has more than one in the plane.
+static void write_space_heads(const Linkage *linkage, FILE *stream)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const char *name = linkage->bodies[i].name;
+        fprintf(stream, ",%s_z_m,%s_omega_x_rad_s,%s_omega_y_rad_s", name, name, name);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const char *name = linkage->joints[i].name;
+        if (linkage->joints[i].kind == JOINT_CLEARANCE) {
+            fprintf(stream, ",%s_tilt_rad,%s_axial_m,%s_axial_force_N", name, name, name);
+            fprintf(stream, ",%s_gap_back_m,%s_gap_front_m", name, name);
+            fprintf(stream, ",%s_force_back_N,%s_force_front_N", name, name);
+        }
+    }
+}
+
+static void write_space(const Linkage *linkage, const Trajectory *trajectory, size_t sample,
+                        FILE *stream)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, i);
+        write_cells((const double[]){motion->position.z, motion->omega.x, motion->omega.y}, 3,
+                    stream);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const SpaceJointState *state = trajectory_space_state(trajectory, sample, i);
+        const double numbers[] = {
+            state->tilt,        state->axial,         state->axial_force,   state->end_gaps[0],
+            state->end_gaps[1], state->end_forces[0], state->end_forces[1],
+        };
+        if (linkage->joints[i].kind == JOINT_CLEARANCE) {
+            write_cells(numbers, sizeof numbers / sizeof numbers[0], stream);
+        }
+    }
+}
+
 static void write_head(const Scenario *scenario, const Trajectory *trajectory, FILE *stream)
 {
     const Linkage *linkage = &scenario->linkage;
@@ -60,6 +97,9 @@ static void write_head(const Scenario *scenario, const Trajectory *trajectory, F
     for (size_t i = 0; i < scenario->point_count; i++) {
         const char *name = scenario->points[i].name;
         fprintf(stream, ",%s_x_m,%s_y_m", name, name);
+    }
+    if (linkage->is_spatial) {
+        write_space_heads(linkage, stream);
     }
     if (trajectory->ranges.count > 0) {
         write_range_heads(linkage, stream);
@@ -88,6 +128,9 @@ static void write_row(const Scenario *scenario, const Trajectory *trajectory, si
         const TracedPoint *point = &scenario->points[i];
         const Vec2 position = linkage_point(motions, point->body, point->local);
         write_cells((const double[]){position.x, position.y}, 2, stream);
+    }
+    if (scenario->linkage.is_spatial) {
+        write_space(&scenario->linkage, trajectory, sample, stream);
     }
     if (trajectory->ranges.count > 0) {
         write_ranges(trajectory, sample, stream);

@@ -70,12 +70,12 @@ static PerturbBasis turned(const PerturbBasis *basis, double angle)
     for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
         const SpeedChange a = basis->changes[0][i];
         const SpeedChange b = basis->changes[1][i];
-        other.changes[0][i] =
-            (SpeedChange){vec2_add(vec2_scale(c, a.velocity), vec2_scale(s, b.velocity)),
-                          c * a.omega + s * b.omega};
-        other.changes[1][i] =
-            (SpeedChange){vec2_sub(vec2_scale(c, b.velocity), vec2_scale(s, a.velocity)),
-                          c * b.omega - s * a.omega};
+        other.changes[0][i] = (SpeedChange){
+            .velocity = vec2_add(vec2_scale(c, a.velocity), vec2_scale(s, b.velocity)),
+            .omega = c * a.omega + s * b.omega};
+        other.changes[1][i] = (SpeedChange){
+            .velocity = vec2_sub(vec2_scale(c, b.velocity), vec2_scale(s, a.velocity)),
+            .omega = c * b.omega - s * a.omega};
     }
     return other;
 }

@@ -44,6 +44,10 @@ static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
         json_value_set(joint, "force_max_crank_deg", extremes->force_max.crank_rad * UNITS_DEG);
         json_value_set(joint, "impulse_N_s", is_felt ? extremes->impulse : NAN);
         json_value_set(joint, "penetration_max_m", is_felt ? extremes->penetration_max.value : NAN);
+        if (linkage->is_spatial) {
+            json_value_set(joint, "tilt_max_rad", is_felt ? extremes->tilt_max.value : NAN);
+            json_value_set(joint, "axial_max_m", is_felt ? extremes->axial_max.value : NAN);
+        }
         json_value_set(joint, "contact_fraction", is_felt ? trajectory_contact_share(run, i) : NAN);
         json_object_set_new(joint, "has_play", json_boolean(has_play));
         if (has_play) {

@@ -129,6 +129,52 @@ void run_tables_contacts(const RunReport *report, const Style *style, Text *text
     }
 }
 
+static void pin_row(Table *table, const RunReport *report, const Trajectory *run, size_t number)
+{
+    const Joint *joint = &report->scenario->linkage.joints[number];
+    const JointExtremes *extremes = &run->joints[number];
+    const double limit = 2.0 * linkage_radial_clearance(joint) / joint->clearance.width;
+    table_cell(table, "%s", joint->name);
+    table_cell(table, "%s", run->backend);
+    section_number(table, extremes->tilt_max.value * UNITS_MRAD);
+    table_cell(table, "%.1f", sin(extremes->tilt_max.value) / limit * UNITS_PERCENT);
+    when_cell(table, report, extremes->tilt_max);
+    section_number(table, extremes->axial_max.value * UNITS_UM);
+    when_cell(table, report, extremes->axial_max);
+}
+
+void run_tables_pins(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"joint", "", TABLE_LEFT},
+        {"backend", "", TABLE_LEFT},
+        {"tilt max", "mrad", TABLE_RIGHT},
+        {"of its limit", "%", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
+        {"slid max", "um", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
+    };
+    const Linkage *linkage = &report->scenario->linkage;
+    Table *table = NULL;
+    for (size_t joint = 0; linkage->is_spatial && joint < linkage->joint_count; joint++) {
+        for (size_t i = 0; i < report->run_count; i++) {
+            const Trajectory *run = report->runs[i];
+            if (!trajectory_feels_play(run, &linkage->joints[joint])) {
+                continue;
+            }
+            if (table == NULL) {
+                table = section_begin("Pins in space", 7, HEADS, style, text);
+                head_when(table, 4, report);
+                head_when(table, 6, report);
+            }
+            pin_row(table, report, run, joint);
+        }
+    }
+    if (table != NULL) {
+        section_end(table, text);
+    }
+}
+
 // The contacts that were kept of all joints with play.
 static size_t count_spikes(const Linkage *linkage, const Trajectory *run)
 {

@@ -3,20 +3,47 @@
 #include "contact/law.h"
 #include "contact/penalty.h"
 #include "model/kinematics.h"
+#include "model/space_rows.h"
 #include "write/units.h"
 
 #include <math.h>
 #include <stdio.h>
 
-static void write_freedoms(const Linkage *linkage, bool has_play, Text *text)
+static size_t mobility(const Linkage *linkage, bool ideal_only)
 {
+    if (linkage->is_spatial) {
+        SpaceMotion motions[LINKAGE_BODY_MAX];
+        space_start(linkage, motions);
+        return space_rows_mobility(linkage, motions, ideal_only);
+    }
     Motion motions[LINKAGE_BODY_MAX];
     linkage_start(linkage, motions);
-    text_append(text, "  mechanism   %zu %s, %zu joint%s, mobility %zu", linkage->body_count,
-                linkage->body_count == 1 ? "body" : "bodies", linkage->joint_count,
-                linkage->joint_count == 1 ? "" : "s", kinematics_mobility(linkage, motions, false));
+    return kinematics_mobility(linkage, motions, ideal_only);
+}
+
+static void write_freedoms(const Linkage *linkage, bool has_play, Text *text)
+{
+    text_append(text, "  mechanism   %zu %s%s, %zu joint%s, mobility %zu", linkage->body_count,
+                linkage->body_count == 1 ? "body" : "bodies",
+                linkage->is_spatial ? " in space" : "", linkage->joint_count,
+                linkage->joint_count == 1 ? "" : "s", mobility(linkage, false));
     if (has_play) {
-        text_append(text, " (%zu with the play open)", kinematics_mobility(linkage, motions, true));
+        text_append(text, " (%zu with the play open)", mobility(linkage, true));
+    }
+}
+
+// How far a pin in space can tilt and slide.
+static void write_room(const Joint *joint, Text *text)
+{
+    const double limit =
+        asin(fmin(1.0, 2.0 * linkage_radial_clearance(joint) / joint->clearance.width));
+    text_append(text, "              width %.7g mm: tilts up to %.4g mrad, ",
+                joint->clearance.width * UNITS_MM, limit * UNITS_MRAD);
+    if (joint->space.axial_clearance > 0.0) {
+        text_append(text, "slides up to %.4g um to either side\n",
+                    joint->space.axial_clearance * UNITS_UM);
+    } else {
+        text_append(text, "slides freely\n");
     }
 }
 
@@ -41,6 +68,9 @@ static void write_mechanism(const RunReport *report, Text *text)
                         joint->name, 2.0 * joint->clearance.hole_radius * UNITS_MM,
                         2.0 * joint->clearance.pin_radius * UNITS_MM,
                         linkage_radial_clearance(joint) * UNITS_UM);
+            if (scenario->linkage.is_spatial) {
+                write_room(joint, text);
+            }
         }
     }
 }
@@ -153,6 +183,7 @@ void run_text_write(const void *of, const Style *style, Text *text)
     run_truth_errors(report, style, text);
     run_tables_extremes(report, style, text);
     run_tables_contacts(report, style, text);
+    run_tables_pins(report, style, text);
     run_tables_spikes(report, RUN_TEXT_SPIKES, style, text);
     spike_tables_write(report, RUN_TEXT_SPIKES, style, text);
     run_truth_matches(report, style, text);

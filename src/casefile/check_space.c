@@ -1,0 +1,35 @@
+// Do a case's values make bodies and pins in space?
+#include "casefile/check_space.h"
+
+#include "model/space.h"
+
+#include <stdio.h>
+
+bool check_space(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    for (size_t i = 0; linkage->is_spatial && i < linkage->body_count; i++) {
+        char path[SCHEMA_PATH_SIZE] = "bodies.*";
+        if (entries->form == SCHEMA_SHORT) {
+            snprintf(path, sizeof path, "four-bar.%s", SCHEMA_LINK_NAMES[i]);
+        }
+        const size_t index = entries->form == SCHEMA_SHORT ? 0 : i;
+        if (!space_is_possible(&linkage->bodies[i])) {
+            return entries_refuse_group(
+                entries_group(entries, path, index), err,
+                "no body has the moments and products of inertia of '%s'\nallowed: each moment at "
+                "most the sum of the other two, and products that go with them",
+                linkage->bodies[i].name);
+        }
+    }
+    for (size_t i = 0; linkage->is_spatial && i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint->kind == JOINT_CLEARANCE && joint->clearance.width == 0.0) {
+            return entries_refuse_group(entries_group(entries, "joints.*", i), err,
+                                        "in space the joint '%s' needs a width\nallowed: width: "
+                                        "13 mm, or space: planar",
+                                        joint->name);
+        }
+    }
+    return true;
+}

@@ -1,0 +1,55 @@
+// Which keys of a case matter to a scenario?
+#include "casefile/schema_needs.h"
+
+#include "casefile/build.h"
+
+static unsigned bit(unsigned need, bool is_met)
+{
+    return is_met ? need : 0;
+}
+
+// How the steps are taken.
+static unsigned step_bits(const Scenario *scenario, bool is_impact)
+{
+    const OdeOptions *ode = &scenario->ode;
+    const bool is_given = scenario->run.step > 0.0;
+    return bit(GIVEN_STEP, is_given) | bit(CHOSEN_STEP, !is_given) |
+           bit(PLAIN, is_given && ode->stepping == ODE_PLAIN) |
+           bit(EXTRAPOLATED,
+               is_given ? ode->stepping == ODE_EXTRAPOLATED : !scenario_has_clearance(scenario)) |
+           bit(LOCAL, is_impact && (!is_given || ode->map == ODE_MAP_IMPULSE));
+}
+
+bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const ContactOptions *contact = &scenario->contact;
+    const size_t members[SCHEMA_FAMILY_COUNT] = {1, linkage->body_count, linkage->joint_count,
+                                                 scenario->point_count};
+    const bool is_member = index < members[row->family];
+    const bool is_joint = row->family == SCHEMA_JOINT && is_member;
+    const bool has_play = scenario_has_clearance(scenario);
+    const bool is_impact = has_play && contact->model == CONTACT_IMPACT;
+    const bool is_poisson = has_play && contact->model == CONTACT_POISSON;
+    const bool has_law = is_impact && contact->stiffness == 0.0;
+    unsigned met = bit(MEMBER, is_member) |
+                   bit(LOOSE, is_joint && linkage->joints[index].kind == JOINT_CLEARANCE) |
+                   bit(FREE, !build_is_determined(linkage)) |
+                   bit(DRIVE, linkage->driver.is_present) |
+                   bit(NO_DRIVE, !linkage->driver.is_present) | bit(PLAY, has_play) |
+                   bit(IDEAL, !has_play) | bit(IMPACT, is_impact) | bit(POISSON, is_poisson) |
+                   bit(LAW, has_law) | bit(STIFFNESS, is_impact && !has_law) |
+                   bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
+                   bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
+                   bit(FRICTION, has_play && contact->friction > 0.0) |
+                   bit(QUICK, scenario->ode.solver == ODE_QUICK) |
+                   bit(FACETED, scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) |
+                   bit(SPATIAL, linkage->is_spatial) | bit(LATER, scenario->run.report_from > 0.0) |
+                   step_bits(scenario, is_impact);
+    for (size_t i = 0; i < scenario->run.backend_count; i++) {
+        met |= bit(REFERENCE, scenario->run.backends[i] == BACKEND_REFERENCE);
+        met |= bit(ODE, scenario->run.backends[i] == BACKEND_ODE);
+    }
+    const SchemaForm form = scenario->has_fourbar ? SCHEMA_SHORT : SCHEMA_LONG;
+    return (row->needs & ~met) == 0 && (row->form == SCHEMA_BOTH || row->form == form);
+}

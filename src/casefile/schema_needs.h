@@ -1,0 +1,33 @@
+// What a key of a case may ask of the scenario before it matters.
+#pragma once
+
+#include "casefile/schema.h"
+
+// A row asks for all of its bits.
+enum {
+    MEMBER = 1 << 0, // the body, joint or point is there
+    LOOSE = 1 << 1,  // the joint has play
+    FREE = 1 << 2,   // no drive determines how the bodies move
+    DRIVE = 1 << 3,  // there is a drive
+    NO_DRIVE = 1 << 4,
+    PLAY = 1 << 5,   // some joint has play
+    IMPACT = 1 << 6, // and the contact is of that model
+    POISSON = 1 << 7,
+    LAW = 1 << 8,       // its stiffness is that of a law
+    STIFFNESS = 1 << 9, // or given
+    MATERIAL = 1 << 10, // the law, or the paper's Eq. (9) for the penalty
+    VISCOUS = 1 << 11,
+    FRICTION = 1 << 12,
+    REFERENCE = 1 << 13,
+    ODE = 1 << 14,
+    QUICK = 1 << 15,
+    IDEAL = 1 << 16, // no joint has play
+    GIVEN_STEP = 1 << 17,
+    CHOSEN_STEP = 1 << 18,
+    PLAIN = 1 << 19, // the stepping of a given step
+    EXTRAPOLATED = 1 << 20,
+    LOCAL = 1 << 21,   // the contact is integrated within the step
+    LATER = 1 << 22,   // what is reported begins after the start
+    FACETED = 1 << 23, // the collider takes holes for polygons
+    SPATIAL = 1 << 24, // bodies move in space
+};
