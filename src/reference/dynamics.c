@@ -17,28 +17,44 @@ typedef struct Loads {
     Vec2 driven_force;   // N, their sum
 } Loads;
 
-size_t dynamics_sum_index(const Dynamics *dynamics, size_t sum)
+// What the coordinates of the tree are.
+static void list_coordinates(Dynamics *dynamics)
 {
-    return 2 * dynamics->tree.coordinate_count + sum;
-}
-
-size_t dynamics_size(const Dynamics *dynamics)
-{
-    return dynamics_sum_index(dynamics, DYNAMICS_IMPULSES) + dynamics->contact_count;
+    const Tree *tree = &dynamics->tree;
+    SystemCoordinate *coordinates = dynamics->system.coordinates;
+    dynamics->system.coordinate_count = tree->coordinate_count;
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const TreeNode *node = &tree->nodes[i];
+        const Body *body = &tree->linkage->bodies[node->body];
+        SystemCoordinate *angle = &coordinates[node->angle_column];
+        *angle = (SystemCoordinate){
+            .turning = node->body,
+            .reach = linkage_reach(tree->linkage, node->body),
+            .inertia = body->inertia,
+        };
+        if (node->joint < 0) {
+            angle[-1] = angle[-2] = (SystemCoordinate){-1, 1.0, body->mass};
+        } else {
+            const Vec2 arm = tree->anchors[node->own_end];
+            angle->inertia += body->mass * vec2_dot(arm, arm);
+        }
+    }
 }
 
 bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
 {
-    *dynamics = (Dynamics){.scenario = scenario};
+    System *system = &dynamics->system;
+    *dynamics = (Dynamics){.system = {.scenario = scenario}};
     tree_build(&scenario->linkage, &dynamics->tree);
+    list_coordinates(dynamics);
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
         if (joint->kind != JOINT_CLEARANCE) {
             continue;
         }
-        DynamicsContact *contact = &dynamics->contacts[dynamics->contact_count++];
+        Contact *contact = &system->contacts[system->contact_count++];
         contact->joint = (int)i;
-        contact->radial_clearance = linkage_radial_clearance(joint);
+        contact->clearance = linkage_radial_clearance(joint);
         contact->hole_radius = joint->clearance.hole_radius;
         if (!law_of_joint(scenario, joint, &contact->law, err)) {
             return false;
@@ -67,11 +83,11 @@ static void load_end(const Tree *tree, const TreeState *state, int end, Vec2 bes
 static void load_contact(const Dynamics *dynamics, size_t number, const TreeState *state,
                          const ContactForce *force, Loads *loads)
 {
-    const DynamicsContact *contact = &dynamics->contacts[number];
+    const Contact *contact = &dynamics->system.contacts[number];
     const int hole = 2 * contact->joint;
     Vec2 from_hole;
     Vec2 from_pin;
-    dynamics_contact_points(contact, &dynamics->scenario->contact, &force->pose, &from_hole,
+    dynamics_contact_points(contact, &dynamics->system.scenario->contact, &force->pose, &from_hole,
                             &from_pin);
     load_end(&dynamics->tree, state, hole + 1, from_pin, force->force, loads);
     load_end(&dynamics->tree, state, hole, from_hole, vec2_scale(-1.0, force->force), loads);
@@ -83,7 +99,7 @@ static void start_loads(const Dynamics *dynamics, Loads *loads)
     const Tree *tree = &dynamics->tree;
     for (size_t i = 0; i < tree->node_count; i++) {
         const int body = tree->nodes[i].body;
-        const double weight = tree->linkage->bodies[body].mass * dynamics->scenario->gravity;
+        const double weight = tree->linkage->bodies[body].mass * dynamics->system.scenario->gravity;
         loads->force[body] = (Vec2){0.0, -weight};
         loads->moment[body] = 0.0;
     }
@@ -185,8 +201,8 @@ static void find_drive(const Dynamics *dynamics, const Loads *loads, DynamicsSta
     }
     const double mass = tree->linkage->bodies[tree->driven].mass;
     const Motion *motion = &state->tree.motions[tree->driven];
-    const Vec2 needed =
-        vec2_scale(mass, vec2_add(motion->acceleration, (Vec2){0.0, dynamics->scenario->gravity}));
+    const Vec2 needed = vec2_scale(
+        mass, vec2_add(motion->acceleration, (Vec2){0.0, dynamics->system.scenario->gravity}));
     state->drive_power = vec2_dot(needed, motion->velocity) - loads->driven_power;
     state->reactions[tree->linkage->driver.joint] = vec2_sub(needed, loads->driven_force);
 }
@@ -217,10 +233,10 @@ static bool find_rates(const Dynamics *dynamics, double since_s, const double *y
     double matrix[DYNAMICS_EQUATION_MAX * DYNAMICS_EQUATION_MAX];
     tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state->tree);
     start_loads(dynamics, loads);
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         state->contacts[i] = dynamics_contact_find(
-            &dynamics->contacts[i], &dynamics->scenario->contact, tree, &state->tree);
-        if (dynamics->contacts[i].mode == CONTACT_PRESSING) {
+            &dynamics->system.contacts[i], &dynamics->system.scenario->contact, tree, &state->tree);
+        if (dynamics->system.contacts[i].mode == CONTACT_PRESSING) {
             load_contact(dynamics, i, &state->tree, &state->contacts[i], loads);
         }
     }
@@ -258,6 +274,9 @@ bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y
     }
     find_motion(&dynamics->tree, solved, &loads, state);
     find_drive(dynamics, &loads, state);
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
+        state->shared.contacts[i] = state->contacts[i].press;
+    }
     return true;
 }
 
@@ -267,20 +286,20 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
     const Tree *tree = &dynamics->tree;
     TreeState state;
     tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state);
-    return dynamics_contact_find(&dynamics->contacts[contact], &dynamics->scenario->contact, tree,
-                                 &state);
+    return dynamics_contact_find(&dynamics->system.contacts[contact],
+                                 &dynamics->system.scenario->contact, tree, &state);
 }
 
 static void fill_sums(const Dynamics *dynamics, const DynamicsState *state, double *sums)
 {
-    sums[DYNAMICS_DRIVE_WORK] = state->drive_power;
-    sums[DYNAMICS_DISSIPATED] = 0.0;
-    sums[DYNAMICS_FRICTION] = 0.0;
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
+    sums[SYSTEM_DRIVE_WORK] = state->drive_power;
+    sums[SYSTEM_DISSIPATED] = 0.0;
+    sums[SYSTEM_FRICTION] = 0.0;
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         const Vec2 force = state->contacts[i].force;
-        sums[DYNAMICS_DISSIPATED] += state->contacts[i].damping_power;
-        sums[DYNAMICS_FRICTION] += state->contacts[i].friction_power;
-        sums[DYNAMICS_IMPULSES + i] = sqrt(vec2_dot(force, force));
+        sums[SYSTEM_DISSIPATED] += state->contacts[i].press.damping_power;
+        sums[SYSTEM_FRICTION] += state->contacts[i].press.friction_power;
+        sums[SYSTEM_IMPULSES + i] = sqrt(vec2_dot(force, force));
     }
 }
 
@@ -293,7 +312,7 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
     Loads loads;
     double solved[DYNAMICS_EQUATION_MAX];
     if (!find_rates(dynamics, since_s, y, &state, &loads, solved)) {
-        for (size_t i = 0; i < dynamics_size(dynamics); i++) {
+        for (size_t i = 0; i < system_size(&dynamics->system); i++) {
             rates[i] = NAN;
         }
         return;
@@ -308,18 +327,4 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
         rates[n + i] = solved[i];
     }
     fill_sums(dynamics, &state, rates + 2 * n);
-}
-
-bool dynamics_check_depth(const Dynamics *dynamics, const DynamicsState *state, double share,
-                          Err *err)
-{
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
-        const DynamicsContact *contact = &dynamics->contacts[i];
-        const Joint *joint = &dynamics->scenario->linkage.joints[contact->joint];
-        if (!law_check_depth(&contact->law, joint, state->contacts[i].pose.penetration, share,
-                             err)) {
-            return false;
-        }
-    }
-    return true;
 }

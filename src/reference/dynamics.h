@@ -1,34 +1,23 @@
-// The equations of motion of a linkage with play in the coordinates of its tree, contacts as
-// smooth forces while their mode is frozen.
+// The equations of motion of a linkage with play in the plane, in the coordinates of its tree,
+// contacts as smooth forces while their mode is frozen.
 #pragma once
 
 #include "reference/dynamics_contact.h"
+#include "reference/system.h"
 
 typedef struct Dynamics {
-    const Scenario *scenario;
+    System system; // the first
     Tree tree;
-    size_t contact_count;
-    DynamicsContact contacts[LINKAGE_JOINT_MAX];
 } Dynamics;
 
 // Everything at one instant.
 typedef struct DynamicsState {
+    SystemState shared;                       // the first
     TreeState tree;                           // accelerations filled in
     ContactForce contacts[LINKAGE_JOINT_MAX]; // by contact
     Vec2 reactions[LINKAGE_JOINT_MAX];        // N, on body b, of ideal joints
     double drive_power;                       // W
 } DynamicsState;
-
-// The parts of the integrator's state: coordinates, their rates, and what is added up over time.
-typedef enum DynamicsSum {
-    DYNAMICS_DRIVE_WORK, // J
-    DYNAMICS_DISSIPATED, // J
-    DYNAMICS_FRICTION,   // J
-    DYNAMICS_IMPULSES,   // N s, of each contact from here on
-} DynamicsSum;
-
-size_t dynamics_size(const Dynamics *dynamics);
-size_t dynamics_sum_index(const Dynamics *dynamics, size_t sum);
 
 // Fails with ERR_CASE where a contact law does not fit a joint.
 bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err);
@@ -60,7 +49,3 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
 // One contact at a time, for events: cheaper than the whole state.
 ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
                               const double *y);
-
-// Fails with ERR_SOLVER where a pin is deeper in its wall than a share of what its law knows.
-bool dynamics_check_depth(const Dynamics *dynamics, const DynamicsState *state, double share,
-                          Err *err);

@@ -1,8 +1,8 @@
 // With which force do pin and hole press on one another?
 //
-// From the law, along the normal, never below zero (that is the slack mode):
-//     N = F_el(d) (1 + chi d'/v0) + c d'
-// and against the sliding speed v_t of the two bodies at the wall's nearest point, along the wall:
+// Along the normal as its law has it (reference/press.h), never below zero (that is the slack
+// mode), and against the sliding speed v_t of the two bodies at the wall's nearest point, along the
+// wall:
 //     mu N tanh(v_t / v_s)
 // tanh makes Coulomb's law smooth.
 #include "reference/dynamics_contact.h"
@@ -18,7 +18,7 @@ Vec2 dynamics_contact_velocity(const Tree *tree, const TreeState *state, int end
                : vec2_add(velocity, vec2_scale(state->motions[body].omega, vec2_perp(beside)));
 }
 
-void dynamics_contact_points(const DynamicsContact *contact, const ContactOptions *options,
+void dynamics_contact_points(const Contact *contact, const ContactOptions *options,
                              const PinHole *pose, Vec2 *from_hole, Vec2 *from_pin)
 {
     *from_hole = *from_pin = (Vec2){0.0, 0.0};
@@ -29,8 +29,8 @@ void dynamics_contact_points(const DynamicsContact *contact, const ContactOption
 }
 
 // Adds what friction does to a contact that presses.
-static void add_friction(const DynamicsContact *contact, const ContactOptions *options,
-                         const Tree *tree, const TreeState *state, ContactForce *force)
+static void add_friction(const Contact *contact, const ContactOptions *options, const Tree *tree,
+                         const TreeState *state, ContactForce *force)
 {
     const int hole = 2 * contact->joint;
     const Vec2 tangent = vec2_perp(force->pose.normal);
@@ -40,37 +40,25 @@ static void add_friction(const DynamicsContact *contact, const ContactOptions *o
     const Vec2 sliding = vec2_sub(dynamics_contact_velocity(tree, state, hole + 1, from_pin),
                                   dynamics_contact_velocity(tree, state, hole, from_hole));
     const double speed = vec2_dot(tangent, sliding);
-    const double held = options->friction * force->normal * tanh(speed / options->friction_speed);
+    const double held =
+        options->friction * force->press.normal * tanh(speed / options->friction_speed);
     force->force = vec2_sub(force->force, vec2_scale(held, tangent));
-    force->friction_power = held * speed;
+    force->press.friction_power = held * speed;
 }
 
-ContactForce dynamics_contact_find(const DynamicsContact *contact, const ContactOptions *options,
+ContactForce dynamics_contact_find(const Contact *contact, const ContactOptions *options,
                                    const Tree *tree, const TreeState *state)
 {
-    const ForceLaw *law = &contact->law;
     const Vec2 gap = tree_joint_gap(tree, state, contact->joint);
     const Vec2 moving = tree_joint_velocity(tree, state, contact->joint);
     ContactForce force = {
-        .pose = pin_hole_pose((Vec2){0.0, 0.0}, gap, moving, contact->radial_clearance),
+        .pose = pin_hole_pose((Vec2){0.0, 0.0}, gap, moving, contact->clearance),
     };
-    if (contact->mode == CONTACT_APART) {
+    force.press = press_find(contact, force.pose.penetration, force.pose.approach_speed);
+    if (contact->mode != CONTACT_PRESSING) {
         return force;
     }
-    // odd below zero depth: a step that overshoots the end of a contact stays smooth
-    const double depth = force.pose.penetration;
-    const double closing = force.pose.approach_speed;
-    force.elastic = copysign(force_law_elastic(law, fabs(depth)), depth);
-    const double rise = 1.0 + contact->damping_rate * closing;
-    force.pressing = force.elastic * rise + law->viscous * closing;
-    force.release = law->viscous > 0.0 ? force.pressing : rise;
-    // a slack spring relaxes by itself: what it had stored is lost like the damper's work
-    force.normal = contact->mode == CONTACT_PRESSING ? force.pressing : 0.0;
-    force.damping_power = (force.normal - force.elastic) * closing;
-    if (contact->mode == CONTACT_SLACK) {
-        return force;
-    }
-    force.force = vec2_scale(force.normal, force.pose.normal);
+    force.force = vec2_scale(force.press.normal, force.pose.normal);
     if (options->friction > 0.0) {
         add_friction(contact, options, tree, state, &force);
     }

@@ -11,13 +11,12 @@
 
 #include "base/dense.h"
 #include "reference/loops.h"
-#include "reference/stiffness.h"
 
 #include <math.h>
 
 // A pressing contact and what its force changes with.
 typedef struct Pressing {
-    const DynamicsContact *contact;
+    const Contact *contact;
     const ContactOptions *options;
     ContactForce force;
     Vec2 velocity;                    // m/s, v
@@ -57,8 +56,8 @@ static void find_friction(const Dynamics *dynamics, const TreeState *state, Pres
 
 static Pressing look_at(const Dynamics *dynamics, const TreeState *state, size_t number)
 {
-    const DynamicsContact *contact = &dynamics->contacts[number];
-    const ContactOptions *options = &dynamics->scenario->contact;
+    const Contact *contact = &dynamics->system.contacts[number];
+    const ContactOptions *options = &dynamics->system.scenario->contact;
     Pressing pressing = {
         .contact = contact,
         .options = options,
@@ -68,7 +67,7 @@ static Pressing look_at(const Dynamics *dynamics, const TreeState *state, size_t
     const PinHole *pose = &pressing.force.pose;
     pressing.stiffness = (1.0 + contact->damping_rate * pose->approach_speed) *
                          force_law_tangent(&contact->law, fabs(pose->penetration));
-    pressing.damping = stiffness_damping(contact, &pressing.force);
+    pressing.damping = press_damping(contact, &pressing.force.press);
     loops_joint_row(&dynamics->tree, state, contact->joint, pressing.centre);
     if (options->friction > 0.0) {
         find_friction(dynamics, state, &pressing);
@@ -94,13 +93,13 @@ static Change change_force(const Pressing *pressing, Vec2 moved, Vec2 faster, do
         const double slid =
             vec2_dot(tangent, faster) - turned * vec2_dot(normal, velocity) - rolled;
         const double gripped = (1.0 - grip * grip) * slid / pressing->options->friction_speed;
-        held = pressing->options->friction * pressing->force.normal * grip;
+        held = pressing->options->friction * pressing->force.press.normal * grip;
         friction =
-            pressing->options->friction * (pressed * grip + pressing->force.normal * gripped);
+            pressing->options->friction * (pressed * grip + pressing->force.press.normal * gripped);
     }
     // n turns towards t, and t away from n
     const double across = pressed + held * turned;
-    const double along = pressing->force.normal * turned - friction;
+    const double along = pressing->force.press.normal * turned - friction;
     return (Change){vec2_add(vec2_scale(across, normal), vec2_scale(along, tangent)), friction};
 }
 
@@ -158,8 +157,8 @@ void dynamics_slopes(double since_s, const double *y, double *by_position, doubl
     for (size_t i = 0; i < n * n; i++) {
         by_position[i] = by_rate[i] = start;
     }
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
-        if (dynamics->contacts[i].mode == CONTACT_PRESSING) {
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
+        if (dynamics->system.contacts[i].mode == CONTACT_PRESSING) {
             const Pressing pressing = look_at(dynamics, &state, i);
             add_slopes(dynamics, &pressing, factored, pivots, by_position, by_rate);
         }

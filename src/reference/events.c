@@ -30,56 +30,38 @@ static const double LANDED = 1e-19;
 static const double ROUNDINGS = 4.0 * DBL_EPSILON;
 
 typedef struct Margin {
-    const Dynamics *dynamics;
+    const System *system;
     const Dop853 *integrator;
     size_t contact;
     int which;
 } Margin;
 
-static double margin_of(const ContactForce *force, ContactMode mode, int which)
+static double margin_of(const Press *press, ContactMode mode, int which)
 {
     switch (mode) {
     case CONTACT_APART:
-        return -force->pose.penetration;
+        return -press->depth;
     case CONTACT_PRESSING:
-        return which == 0 ? force->pose.penetration : force->release;
+        return which == 0 ? press->depth : press->release;
     default:
-        return which == 0 ? force->pose.penetration : -force->release;
-    }
-}
-
-// Sum of the lengths and of the speeds that the position and the velocity of a joint's end come
-// from.
-static void end_size(const Tree *tree, const TreeState *state, int end, double *length,
-                     double *speed)
-{
-    const int body = tree->end_bodies[end];
-    *length += vec2_length(tree_end_point(tree, state, end));
-    *speed += vec2_length(tree_end_velocity(tree, state, end));
-    if (body != LINKAGE_GROUND) {
-        const Motion *motion = &state->motions[body];
-        const double arm = vec2_length(state->arms[end]);
-        // an angle of many turns has fewer digits left for its direction
-        *length += arm * (1.0 + fabs(motion->angle));
-        *speed += arm * fabs(motion->omega) * (1.0 + fabs(motion->angle));
+        return which == 0 ? press->depth : -press->release;
     }
 }
 
 // How far rounding alone may take a margin to either side of zero.
-static double rounding_of(const Dynamics *dynamics, const DynamicsState *state, size_t number,
+static double rounding_of(const System *system, const SystemState *state, size_t number,
                           ContactMode mode, int which)
 {
-    const DynamicsContact *contact = &dynamics->contacts[number];
+    const Contact *contact = &system->contacts[number];
     double length = 0.0;
     double speed = 0.0;
-    end_size(&dynamics->tree, &state->tree, 2 * contact->joint, &length, &speed);
-    end_size(&dynamics->tree, &state->tree, 2 * contact->joint + 1, &length, &speed);
+    system->kind->sizes(system, state, number, &length, &speed);
     const double depth = ROUNDINGS * length;
     if (mode == CONTACT_APART || which == 0) {
         return depth;
     }
     if (contact->law.viscous > 0.0) {
-        const double reached = fmax(state->contacts[number].pose.penetration, depth);
+        const double reached = fmax(state->contacts[number].depth, depth);
         return force_law_tangent(&contact->law, reached) * depth +
                contact->law.viscous * ROUNDINGS * speed;
     }
@@ -91,8 +73,9 @@ static double margin_at(double time, void *context)
     const Margin *margin = context;
     double y[DOP853_SIZE_MAX];
     dop853_dense(margin->integrator, time, y);
-    const ContactForce force = dynamics_contact(margin->dynamics, margin->contact, time, y);
-    return margin_of(&force, margin->dynamics->contacts[margin->contact].mode, margin->which);
+    const System *system = margin->system;
+    const Press press = system->kind->press(system, margin->contact, time, y);
+    return margin_of(&press, system->contacts[margin->contact].mode, margin->which);
 }
 
 // The mode that follows when a margin of the present one is used up.
@@ -133,29 +116,29 @@ double events_point_time(const Dop853 *integrator, const EventPoints *points, si
                                       : integrator->time + share * integrator->tried;
 }
 
-bool events_look(const Dynamics *dynamics, const Dop853 *integrator, EventPoints *points)
+bool events_look(const System *system, const Dop853 *integrator, EventPoints *points)
 {
     double y[DOP853_SIZE_MAX];
     points->count = EVENTS_POINTS_MAX;
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
-        points->count = dynamics->contacts[i].mode == CONTACT_PRESSING ? 1 : points->count;
+    for (size_t i = 0; i < system->contact_count; i++) {
+        points->count = system->contacts[i].mode == CONTACT_PRESSING ? 1 : points->count;
     }
     for (size_t i = 0; i + 1 < points->count; i++) {
         const double time = events_point_time(integrator, points, i);
         dop853_dense(integrator, time, y);
-        if (!dynamics_evaluate(dynamics, time, y, &points->states[i])) {
+        if (!system->kind->evaluate(system, time, y, points->states[i])) {
             return false;
         }
     }
-    return dynamics_evaluate(dynamics, integrator->time + integrator->tried, integrator->next,
-                             &points->states[points->count - 1]);
+    return system->kind->evaluate(system, integrator->time + integrator->tried, integrator->next,
+                                  points->states[points->count - 1]);
 }
 
 // Takes note of an event of a contact, if it is the first of this contact.
 static void note_event(const Margin *margin, double time, Event *event)
 {
     if (time < event->time) {
-        const ContactMode mode = margin->dynamics->contacts[margin->contact].mode;
+        const ContactMode mode = margin->system->contacts[margin->contact].mode;
         *event = (Event){
             .time = time,
             .contact = margin->contact,
@@ -169,7 +152,7 @@ static double approach_at(double time, void *context)
     const Margin *margin = context;
     double y[DOP853_SIZE_MAX];
     dop853_dense(margin->integrator, time, y);
-    return dynamics_contact(margin->dynamics, margin->contact, time, y).pose.approach_speed;
+    return margin->system->kind->press(margin->system, margin->contact, time, y).closing;
 }
 
 // A free pin that went towards its wall and comes back may have been there in between: where the
@@ -184,40 +167,40 @@ static bool has_been_there(Margin *margin, double first, double first_speed, dou
 
 static void look_at(Margin *margin, const EventPoints *points, Event *event)
 {
-    const Dynamics *dynamics = margin->dynamics;
-    const ContactMode mode = dynamics->contacts[margin->contact].mode;
+    const System *system = margin->system;
+    const ContactMode mode = system->contacts[margin->contact].mode;
     const bool is_free = mode == CONTACT_APART;
     double before = margin->integrator->time;
     double speed = is_free ? approach_at(before, margin) : 0.0;
     for (size_t i = 0; i < points->count; i++) {
         const double time = events_point_time(margin->integrator, points, i);
-        const DynamicsState *state = &points->states[i];
-        const ContactForce *force = &state->contacts[margin->contact];
-        const double rounding = rounding_of(dynamics, state, margin->contact, mode, margin->which);
+        const SystemState *state = points->states[i];
+        const Press *press = &state->contacts[margin->contact];
+        const double rounding = rounding_of(system, state, margin->contact, mode, margin->which);
         double top = time;
-        if (is_free && has_been_there(margin, before, speed, time, force->pose.approach_speed,
-                                      rounding, &top)) {
+        if (is_free &&
+            has_been_there(margin, before, speed, time, press->closing, rounding, &top)) {
             note_event(margin, crossing(margin, before, top), event);
             return;
         }
-        if (margin_of(force, mode, margin->which) < -rounding) {
+        if (margin_of(press, mode, margin->which) < -rounding) {
             note_event(margin, crossing(margin, before, time), event);
             return;
         }
         before = time;
-        speed = force->pose.approach_speed;
+        speed = press->closing;
     }
 }
 
-void events_find(const Dynamics *dynamics, const Dop853 *integrator, const EventPoints *points,
+void events_find(const System *system, const Dop853 *integrator, const EventPoints *points,
                  EventList *found)
 {
     found->count = 0;
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
-        const int margins = dynamics->contacts[i].mode == CONTACT_APART ? 1 : MARGINS;
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const int margins = system->contacts[i].mode == CONTACT_APART ? 1 : MARGINS;
         Event event = {.time = INFINITY};
         for (int which = 0; which < margins; which++) {
-            Margin margin = {dynamics, integrator, i, which};
+            Margin margin = {system, integrator, i, which};
             look_at(&margin, points, &event);
         }
         if (event.time < INFINITY) {
@@ -236,14 +219,14 @@ const Event *events_first(const EventList *found)
 }
 
 // Whether an event begins or ends at the wall.
-static bool is_at_wall(const Dynamics *dynamics, const Event *event)
+static bool is_at_wall(const System *system, const Event *event)
 {
-    return event->mode == CONTACT_APART || dynamics->contacts[event->contact].mode == CONTACT_APART;
+    return event->mode == CONTACT_APART || system->contacts[event->contact].mode == CONTACT_APART;
 }
 
-void events_land(const Dynamics *dynamics, Dop853 *integrator, Event *event)
+void events_land(const System *system, Dop853 *integrator, Event *event)
 {
-    const bool is_depth = is_at_wall(dynamics, event);
+    const bool is_depth = is_at_wall(system, event);
     // the event lies in the step that showed it
     const double longest = integrator->tried;
     double step = fmax(0.0, event->time - integrator->time);
@@ -251,9 +234,9 @@ void events_land(const Dynamics *dynamics, Dop853 *integrator, Event *event)
     double best_depth = INFINITY;
     for (int i = 0; i < LANDINGS && step >= 0.0 && step <= longest; i++) {
         dop853_try(integrator, step);
-        const ContactForce force =
-            dynamics_contact(dynamics, event->contact, integrator->time + step, integrator->next);
-        const double depth = fabs(force.pose.penetration);
+        const Press press =
+            system->kind->press(system, event->contact, integrator->time + step, integrator->next);
+        const double depth = fabs(press.depth);
         if (!(depth < best_depth)) {
             break;
         }
@@ -263,30 +246,28 @@ void events_land(const Dynamics *dynamics, Dop853 *integrator, Event *event)
         if (!is_depth || depth <= LANDED || step == 0.0) {
             break;
         }
-        step -= force.pose.penetration / force.pose.approach_speed;
+        step -= press.depth / press.closing;
     }
     dop853_try(integrator, best);
     event->time = integrator->time + best;
     dop853_fill(integrator);
 }
 
-void events_gather(const Dynamics *dynamics, const Dop853 *integrator, const Event *landed,
-                   double same_s, EventList *found)
+void events_gather(const System *system, const Dop853 *integrator, const EventPoints *points,
+                   const Event *landed, double same_s, EventList *found)
 {
     const EventList all = *found;
+    const SystemState *end = points->states[points->count - 1];
     const double time_s = integrator->time + integrator->tried;
-    DynamicsState state;
-    tree_evaluate(&dynamics->tree, time_s, integrator->next,
-                  integrator->next + dynamics->tree.coordinate_count, &state.tree);
     found->count = 0;
     for (size_t i = 0; i < all.count; i++) {
         const Event *event = &all.events[i];
         bool is_now = event->contact == landed->contact || fabs(event->time - time_s) <= same_s;
-        if (!is_now && is_at_wall(dynamics, event)) {
-            const double rounding = rounding_of(dynamics, &state, event->contact, CONTACT_APART, 0);
-            const ContactForce force =
-                dynamics_contact(dynamics, event->contact, time_s, integrator->next);
-            is_now = fabs(force.pose.penetration) <= rounding;
+        if (!is_now && is_at_wall(system, event)) {
+            const double rounding = rounding_of(system, end, event->contact, CONTACT_APART, 0);
+            const Press press =
+                system->kind->press(system, event->contact, time_s, integrator->next);
+            is_now = fabs(press.depth) <= rounding;
         }
         if (is_now) {
             found->events[found->count++] = *event;
@@ -294,14 +275,14 @@ void events_gather(const Dynamics *dynamics, const Dop853 *integrator, const Eve
     }
 }
 
-void events_apply(Dynamics *dynamics, const EventList *events, double time_s, const double *y)
+void events_apply(System *system, const EventList *events, double time_s, const double *y)
 {
     for (size_t i = 0; i < events->count; i++) {
         const Event *event = &events->events[i];
-        DynamicsContact *contact = &dynamics->contacts[event->contact];
+        Contact *contact = &system->contacts[event->contact];
         if (contact->mode == CONTACT_APART) {
-            contact->impact_speed =
-                dynamics_contact(dynamics, event->contact, time_s, y).pose.approach_speed;
+            contact->onset_s = system->kind->time(system, time_s);
+            contact->impact_speed = system->kind->press(system, event->contact, time_s, y).closing;
             contact->damping_rate = contact->law.hysteresis /
                                     fmax(contact->impact_speed, contact->law.impact_speed_floor);
         }

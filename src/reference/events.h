@@ -1,8 +1,7 @@
 // When does a contact begin, end or go slack?
 #pragma once
 
-#include "reference/dop853.h"
-#include "reference/dynamics.h"
+#include "reference/system.h"
 
 typedef struct Event {
     double time; // s
@@ -13,7 +12,7 @@ typedef struct Event {
 // Events of a step, at most one a contact.
 typedef struct EventList {
     size_t count;
-    Event events[LINKAGE_JOINT_MAX];
+    Event events[SYSTEM_CONTACT_MAX];
 } EventList;
 
 // A step is looked at in some points, equal parts of it, the last at its end. While nothing presses
@@ -23,30 +22,30 @@ enum { EVENTS_POINTS_MAX = 4 };
 
 typedef struct EventPoints {
     size_t count;
-    DynamicsState states[EVENTS_POINTS_MAX];
+    SystemState *states[EVENTS_POINTS_MAX]; // owned by the stepper
 } EventPoints;
 
 // Evaluates the points of the tried and filled step. Returns false where the accelerations are not
 // determined.
-bool events_look(const Dynamics *dynamics, const Dop853 *integrator, EventPoints *points);
+bool events_look(const System *system, const Dop853 *integrator, EventPoints *points);
 
 // The time of one point.
 double events_point_time(const Dop853 *integrator, const EventPoints *points, size_t point);
 
 // The first event of each contact in the step, as far as there is one.
-void events_find(const Dynamics *dynamics, const Dop853 *integrator, const EventPoints *points,
+void events_find(const System *system, const Dop853 *integrator, const EventPoints *points,
                  EventList *found);
 
 // The earliest of those that were found; NULL where there is none.
 const Event *events_first(const EventList *found);
 
 // Shortens the tried step so that it ends on the event to rounding, and fills it again.
-void events_land(const Dynamics *dynamics, Dop853 *integrator, Event *event);
+void events_land(const System *system, Dop853 *integrator, Event *event);
 
 // Keeps of the events that were found the one that the step has landed on and those that nothing
 // but rounding keeps apart from it: within a time, s, of it, or at the wall like it.
-void events_gather(const Dynamics *dynamics, const Dop853 *integrator, const Event *landed,
-                   double same_s, EventList *found);
+void events_gather(const System *system, const Dop853 *integrator, const EventPoints *points,
+                   const Event *landed, double same_s, EventList *found);
 
 // Changes the contacts' modes at the end of the step, with their impact speeds.
-void events_apply(Dynamics *dynamics, const EventList *events, double time_s, const double *y);
+void events_apply(System *system, const EventList *events, double time_s, const double *y);

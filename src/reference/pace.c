@@ -13,54 +13,53 @@ static const double STEP_LEAST = 5e-8; // twenty million steps a turn: minutes e
 
 enum { EVENTS_MOST = 1000, STEPS_COUNTED = 50000 };
 
-static double turn_of(const Dynamics *dynamics)
+static double turn_of(const System *system)
 {
-    const Scenario *scenario = dynamics->scenario;
+    const Scenario *scenario = system->scenario;
     return scenario->linkage.driver.is_present ? linkage_period(&scenario->linkage)
                                                : scenario_duration(scenario);
 }
 
-static const char *joint_name(const Dynamics *dynamics, size_t contact)
+static const char *joint_name(const System *system, size_t contact)
 {
-    return dynamics->scenario->linkage.joints[dynamics->contacts[contact].joint].name;
+    return system->scenario->linkage.joints[system->contacts[contact].joint].name;
 }
 
-static bool refuse_steps(const Pace *pace, const Dynamics *dynamics, double time_s, Err *err)
+static bool refuse_steps(const Pace *pace, const System *system, double time_s, Err *err)
 {
     const double width_s = time_s - pace->since_s;
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
-        if (dynamics->contacts[i].mode == CONTACT_PRESSING) {
+    for (size_t i = 0; i < system->contact_count; i++) {
+        if (system->contacts[i].mode == CONTACT_PRESSING) {
             return err_set(
                 err, ERR_SOLVER,
                 "%d steps advanced the motion by only %.3g s: the contact of %s is too stiff "
                 "or too strongly damped; use a higher restitution, another damping or a "
                 "lower stiffness",
-                STEPS_COUNTED, width_s, joint_name(dynamics, i));
+                STEPS_COUNTED, width_s, joint_name(system, i));
         }
     }
     return err_set(err, ERR_SOLVER, "%d steps advanced the motion by only %.3g s", STEPS_COUNTED,
                    width_s);
 }
 
-bool pace_keep(Pace *pace, const Dynamics *dynamics, const EventList *events, double time_s,
-               Err *err)
+bool pace_keep(Pace *pace, const System *system, const EventList *events, double time_s, Err *err)
 {
-    const double turn_s = turn_of(dynamics);
+    const double turn_s = turn_of(system);
     if (time_s - pace->instant_s > INSTANT * turn_s) {
         pace->instant_s = time_s;
         pace->events = 0;
     }
     pace->events += events->count;
-    if (pace->events > EVENTS_MOST * dynamics->contact_count) {
+    if (pace->events > EVENTS_MOST * system->contact_count) {
         return err_set(err, ERR_SOLVER,
                        "the contact of %s keeps beginning and ending: %zu changes within %.3g s",
-                       joint_name(dynamics, events->events[0].contact), pace->events,
+                       joint_name(system, events->events[0].contact), pace->events,
                        time_s - pace->instant_s);
     }
     pace->steps++;
     if (pace->steps == STEPS_COUNTED) {
         if (time_s - pace->since_s < STEP_LEAST * STEPS_COUNTED * turn_s) {
-            return refuse_steps(pace, dynamics, time_s, err);
+            return refuse_steps(pace, system, time_s, err);
         }
         pace->steps = 0;
         pace->since_s = time_s;

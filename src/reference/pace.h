@@ -12,8 +12,7 @@ typedef struct Pace {
 
 // Counts a step that starts at a time, and the events there. Fails with ERR_SOLVER and the joint to
 // blame where steps or events have come so close together that the run would not end.
-bool pace_keep(Pace *pace, const Dynamics *dynamics, const EventList *events, double time_s,
-               Err *err);
+bool pace_keep(Pace *pace, const System *system, const EventList *events, double time_s, Err *err);
 
 // The equations for the accelerations have no solution: joints hold each other up. Returns false,
 // with ERR_SOLVER.

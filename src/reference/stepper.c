@@ -6,10 +6,11 @@
 // is from the pivot that it turns about. Work and losses are allowed the tolerance times m v^2.
 #include "reference/stepper.h"
 
-#include "reference/dynamics_slopes.h"
-#include "reference/loops.h"
+#include "reference/plane_system.h"
 
 #include <float.h>
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // of a step: two events nearer to each other than this are one, seen with rounding
@@ -34,24 +35,25 @@ static const double ROUNDING = 0x1p-50;
 // of the time: below this, rounding of the time would show in a step
 static const double SHORTEST = 16.0 * DBL_EPSILON;
 
+static const SystemState *state_at_end(const Stepper *stepper)
+{
+    return stepper->points.states[stepper->points.count - 1];
+}
+
 // Lets the sizes of errors follow the largest speeds so far.
 static void set_tolerances(Stepper *stepper)
 {
-    const Tree *tree = &stepper->dynamics.tree;
-    const size_t n = tree->coordinate_count;
+    const System *system = stepper->system;
+    const size_t n = system->coordinate_count;
     const double tolerance = stepper->scenario->reference.tolerance;
     const SpeedScale *scale = &stepper->scale;
     const double moving = MOVING_SHARE * tolerance * scale->moving;
     Dop853 *integrator = &stepper->integrator;
     for (size_t i = 0; i < n; i++) {
-        integrator->fixed[n + i] = moving;
-        integrator->grown[i] = POSITION_SHARE * moving;
-    }
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const size_t angle = tree->nodes[i].angle_column;
-        const double turning = TURNING_SHARE * tolerance * scale->turning[tree->nodes[i].body];
-        integrator->fixed[n + angle] = turning;
-        integrator->grown[angle] = POSITION_SHARE * turning;
+        const int body = system->coordinates[i].turning;
+        const double allowed = body < 0 ? moving : TURNING_SHARE * tolerance * scale->turning[body];
+        integrator->fixed[n + i] = allowed;
+        integrator->grown[i] = POSITION_SHARE * allowed;
     }
     // the bodies' mean speed is some tenth of the largest scale, and work goes to and fro
     const double energy_share = 3e-2;
@@ -59,12 +61,12 @@ static void set_tolerances(Stepper *stepper)
     for (size_t i = 0; i < stepper->scenario->linkage.body_count; i++) {
         mass += stepper->scenario->linkage.bodies[i].mass;
     }
-    double *sums = integrator->fixed + dynamics_sum_index(&stepper->dynamics, 0);
-    sums[DYNAMICS_DRIVE_WORK] = energy_share * mass * moving * scale->moving;
-    sums[DYNAMICS_DISSIPATED] = energy_share * mass * moving * scale->moving;
-    sums[DYNAMICS_FRICTION] = energy_share * mass * moving * scale->moving;
-    for (size_t i = 0; i < stepper->dynamics.contact_count; i++) {
-        sums[DYNAMICS_IMPULSES + i] = mass * moving;
+    double *sums = integrator->fixed + system_sum_index(system, 0);
+    sums[SYSTEM_DRIVE_WORK] = energy_share * mass * moving * scale->moving;
+    sums[SYSTEM_DISSIPATED] = energy_share * mass * moving * scale->moving;
+    sums[SYSTEM_FRICTION] = energy_share * mass * moving * scale->moving;
+    for (size_t i = 0; i < system->contact_count; i++) {
+        sums[SYSTEM_IMPULSES + i] = mass * moving;
     }
 }
 
@@ -72,66 +74,46 @@ static void set_tolerances(Stepper *stepper)
 // stiffness that it presses on there, is a force, and the rates feel it for as long as the step.
 static void allow_rounding(Stepper *stepper)
 {
-    const Tree *tree = &stepper->dynamics.tree;
-    const DynamicsState *state = &stepper->points.states[stepper->points.count - 1];
-    const size_t n = tree->coordinate_count;
+    const System *system = stepper->system;
+    const SystemState *state = state_at_end(stepper);
+    const size_t n = system->coordinate_count;
     double *fixed = stepper->integrator.fixed;
     double *grown = stepper->integrator.grown;
-    double *sums = grown + dynamics_sum_index(&stepper->dynamics, 0);
+    double *sums = grown + system_sum_index(system, 0);
     const bool is_stiff = stepper->integrator.method != NULL;
     double force = 0.0;
     double damped = 0.0;
     double moved = 0.0;
-    for (size_t i = 0; i < stepper->dynamics.contact_count; i++) {
-        const DynamicsContact *contact = &stepper->dynamics.contacts[i];
-        const double rounding = ROUNDING * contact->radial_clearance;
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Contact *contact = &system->contacts[i];
+        const double rounding = ROUNDING * contact->clearance;
         // a contact that rounding alone keeps from its end is continued below zero depth
-        const double depth = fmax(fabs(state->contacts[i].pose.penetration), rounding);
+        const double depth = fmax(fabs(state->contacts[i].depth), rounding);
         if (contact->mode == CONTACT_PRESSING) {
             force += rounding * force_law_tangent(&contact->law, depth);
             damped +=
-                ROUNDING * stepper->scale.moving * stiffness_damping(contact, &state->contacts[i]);
+                ROUNDING * stepper->scale.moving * press_damping(contact, &state->contacts[i]);
         }
         moved = moved > 0.0 ? fmin(moved, rounding) : rounding;
-        sums[DYNAMICS_IMPULSES + i] = force + (is_stiff ? damped : 0.0);
+        sums[SYSTEM_IMPULSES + i] = force + (is_stiff ? damped : 0.0);
     }
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const TreeNode *node = &tree->nodes[i];
-        const Body *body = &tree->linkage->bodies[node->body];
-        const double reach = linkage_reach(tree->linkage, node->body);
-        double inertia = body->inertia;
-        if (node->joint < 0) {
-            grown[n + node->angle_column - 2] = force / body->mass;
-            grown[n + node->angle_column - 1] = force / body->mass;
-            fixed[node->angle_column - 2] = moved;
-            fixed[node->angle_column - 1] = moved;
-        } else {
-            const Vec2 arm = tree->anchors[node->own_end];
-            inertia += body->mass * vec2_dot(arm, arm);
-        }
-        grown[n + node->angle_column] = force * reach / inertia;
-        fixed[node->angle_column] = moved / reach;
+    for (size_t i = 0; i < n; i++) {
+        const SystemCoordinate *coordinate = &system->coordinates[i];
+        grown[n + i] = force * coordinate->reach / coordinate->inertia;
+        fixed[i] = moved / coordinate->reach;
     }
     force += is_stiff ? damped : 0.0;
-    sums[DYNAMICS_DRIVE_WORK] = force * stepper->scale.moving;
-    sums[DYNAMICS_DISSIPATED] = force * stepper->scale.moving;
-    sums[DYNAMICS_FRICTION] = force * stepper->scale.moving;
+    sums[SYSTEM_DRIVE_WORK] = force * stepper->scale.moving;
+    sums[SYSTEM_DISSIPATED] = force * stepper->scale.moving;
+    sums[SYSTEM_FRICTION] = force * stepper->scale.moving;
 }
 
 // Raises the scale where a body has become faster than any before.
 static void follow_speeds(Stepper *stepper)
 {
-    const Tree *tree = &stepper->dynamics.tree;
-    const TreeState *state = &stepper->points.states[stepper->points.count - 1].tree;
-    const Linkage *linkage = tree->linkage;
-    double moving = 0.0;
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const int body = tree->nodes[i].body;
-        const Motion *motion = &state->motions[body];
-        const double speed = sqrt(vec2_dot(motion->velocity, motion->velocity));
-        moving = fmax(moving, speed + fabs(motion->omega) * linkage_reach(linkage, body));
-    }
-    if (scale_raise(linkage, moving, &stepper->scale)) {
+    const System *system = stepper->system;
+    const double moving = system->kind->fastest(system, state_at_end(stepper));
+    if (scale_raise(&stepper->scenario->linkage, moving, &stepper->scale)) {
         set_tolerances(stepper);
     }
 }
@@ -141,29 +123,30 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     memset(stepper, 0, sizeof *stepper);
     stepper->scenario = scenario;
     stepper->duration_s = scenario_duration(scenario);
-    if (!dynamics_init(scenario, &stepper->dynamics, err)) {
+    stepper->system = plane_system_create(scenario, err);
+    if (stepper->system == NULL) {
         return false;
     }
-    const size_t n = stepper->dynamics.tree.coordinate_count;
-    Motion motions[LINKAGE_BODY_MAX];
-    linkage_start(&scenario->linkage, motions);
+    System *system = stepper->system;
     double y[DOP853_SIZE_MAX] = {0.0};
-    tree_start(&stepper->dynamics.tree, motions, y + n);
-    loops_start(&stepper->dynamics.tree, y, y + n);
+    system->kind->start(system, y);
     Dop853 *integrator = &stepper->integrator;
-    integrator->size = dynamics_size(&stepper->dynamics);
-    integrator->motion_size = dynamics_sum_index(&stepper->dynamics, 0);
-    integrator->rates = dynamics_rates;
-    integrator->slopes = dynamics_slopes;
-    integrator->context = &stepper->dynamics;
+    integrator->size = system_size(system);
+    integrator->motion_size = system_sum_index(system, 0);
+    integrator->rates = system->kind->rates;
+    integrator->slopes = system->kind->slopes;
+    integrator->context = system;
     stepper->scale = scale_speeds(scenario);
     set_tolerances(stepper);
     // the first step finds its own length: a thousandth of the run is long enough to be shortened
     integrator->step = 1e-3 * stepper->duration_s;
     stepper->onset_step = integrator->step;
     dop853_start(integrator, 0.0, y);
+    for (size_t i = 0; i < EVENTS_POINTS_MAX; i++) {
+        stepper->points.states[i] = system_state_create(system);
+    }
     stepper->points.count = 1;
-    if (!dynamics_evaluate(&stepper->dynamics, 0.0, y, &stepper->points.states[0])) {
+    if (!system->kind->evaluate(system, 0.0, y, stepper->points.states[0])) {
         return pace_undetermined(err);
     }
     return true;
@@ -172,6 +155,10 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
 void stepper_finish(Stepper *stepper)
 {
     stiffness_finish(&stepper->stiffness);
+    for (size_t i = 0; i < EVENTS_POINTS_MAX; i++) {
+        free(stepper->points.states[i]);
+    }
+    free(stepper->system);
 }
 
 // Whether a contact begins to press at the end of the step.
@@ -189,29 +176,24 @@ static bool is_onset(const Stepper *stepper)
 static void take_over(Stepper *stepper)
 {
     Dop853 *integrator = &stepper->integrator;
-    Tree *tree = &stepper->dynamics.tree;
-    const size_t n = tree->coordinate_count;
+    System *system = stepper->system;
     follow_speeds(stepper);
     allow_rounding(stepper);
     dop853_accept(integrator);
-    if (tree->loop_count > 0) {
-        loops_project(tree, integrator->time, integrator->y, integrator->y + n);
-    }
     // time and coordinates count from here on
-    tree_rebase(tree, integrator->time, integrator->y);
+    const bool is_other = system->kind->rebase(system, integrator->time, integrator->y);
     integrator->time = 0.0;
-    integrator->shortest = SHORTEST * tree_time(tree, 0.0);
+    integrator->shortest = SHORTEST * system->kind->time(system, 0.0);
     if (stepper->events.count > 0) {
-        events_apply(&stepper->dynamics, &stepper->events, integrator->time, integrator->y);
+        events_apply(system, &stepper->events, integrator->time, integrator->y);
         if (is_onset(stepper)) {
             integrator->step = fmin(integrator->step, stepper->onset_step);
         }
     }
-    if (tree->loop_count > 0 || stepper->events.count > 0) {
+    if (is_other || stepper->events.count > 0) {
         dop853_start(integrator, integrator->time, integrator->y);
     }
-    stiffness_follow(&stepper->stiffness, &stepper->dynamics,
-                     &stepper->points.states[stepper->points.count - 1], &stepper->scale,
+    stiffness_follow(&stepper->stiffness, system, state_at_end(stepper), &stepper->scale,
                      stepper->events.count > 0, integrator);
 }
 
@@ -219,19 +201,15 @@ static void take_over(Stepper *stepper)
 // flight, which it integrates exactly, be as long as it likes.
 static double flight_limit(const Stepper *stepper)
 {
-    const Tree *tree = &stepper->dynamics.tree;
-    const TreeState *state = &stepper->points.states[stepper->points.count - 1].tree;
-    double limit = stepper->duration_s - tree_time(tree, 0.0);
-    for (size_t i = 0; i < stepper->dynamics.contact_count; i++) {
-        const DynamicsContact *contact = &stepper->dynamics.contacts[i];
+    const System *system = stepper->system;
+    double limit = stepper->duration_s - system->kind->time(system, 0.0);
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Contact *contact = &system->contacts[i];
         if (contact->mode == CONTACT_PRESSING) {
             continue;
         }
-        const Vec2 v = tree_joint_velocity(tree, state, contact->joint);
-        const Vec2 a = tree_joint_acceleration(tree, state, contact->joint);
-        const double play = contact->radial_clearance;
-        const double speed = vec2_length(v) + sqrt(play * vec2_length(a));
-        limit = speed > 0.0 ? fmin(limit, play / speed) : limit;
+        const double speed = system->kind->crossing(system, state_at_end(stepper), i);
+        limit = speed > 0.0 ? fmin(limit, contact->clearance / speed) : limit;
     }
     return limit;
 }
@@ -240,9 +218,10 @@ static double flight_limit(const Stepper *stepper)
 static bool fail_to_step(const Stepper *stepper, Err *err)
 {
     const Dop853 *integrator = &stepper->integrator;
-    DynamicsState state;
-    if (dynamics_evaluate(&stepper->dynamics, integrator->time, integrator->y, &state) &&
-        !dynamics_check_depth(&stepper->dynamics, &state, NEARLY, err)) {
+    const System *system = stepper->system;
+    SystemState *state = stepper->points.states[0];
+    if (system->kind->evaluate(system, integrator->time, integrator->y, state) &&
+        !system_check_depth(system, state, NEARLY, err)) {
         return false;
     }
     return err_set(err, ERR_SOLVER,
@@ -254,7 +233,7 @@ static bool fail_to_step(const Stepper *stepper, Err *err)
 // Tries and fills one step, shortened to the first event in it.
 static bool step_to_event(Stepper *stepper, Err *err)
 {
-    const Dynamics *dynamics = &stepper->dynamics;
+    const System *system = stepper->system;
     Dop853 *integrator = &stepper->integrator;
     if (!dop853_attempt(integrator, flight_limit(stepper))) {
         return fail_to_step(stepper, err);
@@ -263,23 +242,23 @@ static bool step_to_event(Stepper *stepper, Err *err)
     const double same_s = SAME * integrator->tried;
     Event landed = {.time = INFINITY};
     stepper->events.count = 0;
-    for (size_t i = 0; i <= dynamics->contact_count; i++) {
-        if (!events_look(dynamics, integrator, &stepper->points)) {
+    for (size_t i = 0; i <= system->contact_count; i++) {
+        if (!events_look(system, integrator, &stepper->points)) {
             return pace_undetermined(err);
         }
         // a shorter step sees better: it may show an event before the one it was cut to
         EventList found;
-        events_find(dynamics, integrator, &stepper->points, &found);
+        events_find(system, integrator, &stepper->points, &found);
         const Event *first = events_first(&found);
         if (first == NULL || first->time >= landed.time - SAME * integrator->tried) {
             break;
         }
         landed = *first;
-        events_land(dynamics, integrator, &landed);
+        events_land(system, integrator, &landed);
         stepper->events = found;
     }
     if (stepper->events.count > 0) {
-        events_gather(dynamics, integrator, &landed, same_s, &stepper->events);
+        events_gather(system, integrator, &stepper->points, &landed, same_s, &stepper->events);
     }
     return true;
 }
@@ -295,8 +274,8 @@ bool stepper_next(Stepper *stepper, Err *err)
             stepper->is_after_onset = stepper->is_after_onset || has_begun;
             take_over(stepper);
         }
-        const double time_s = tree_time(&stepper->dynamics.tree, 0.0);
-        if (!pace_keep(&stepper->pace, &stepper->dynamics, &stepper->events, time_s, err) ||
+        const double time_s = stepper->system->kind->time(stepper->system, 0.0);
+        if (!pace_keep(&stepper->pace, stepper->system, &stepper->events, time_s, err) ||
             !step_to_event(stepper, err)) {
             return false;
         }

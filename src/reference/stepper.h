@@ -6,10 +6,11 @@
 #include "reference/events.h"
 #include "reference/pace.h"
 #include "reference/stiffness.h"
+#include "reference/system.h"
 
 typedef struct Stepper {
     const Scenario *scenario;
-    Dynamics dynamics;
+    System *system;    // owned
     Dop853 integrator; // its tried step is the present one
     EventPoints points;
     EventList events; // at its end

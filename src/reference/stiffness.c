@@ -33,53 +33,43 @@ static const double WORTH = 8.0;
 static const double SPEED_SHARE = 1e-7;
 static const double DEPTH_SHARE = 1e-3;
 
-double stiffness_damping(const DynamicsContact *contact, const ContactForce *force)
-{
-    return force->elastic * contact->damping_rate + contact->law.viscous;
-}
-
 // The smallest depth that a force depends on in the next step, m; 0 where nothing presses.
-static double smallest_depth(const Dynamics *dynamics, const DynamicsState *state, double step)
+static double smallest_depth(const System *system, const SystemState *state, double step)
 {
     double smallest = 0.0;
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
-        const PinHole *pose = &state->contacts[i].pose;
-        if (dynamics->contacts[i].mode == CONTACT_PRESSING) {
-            const double depth = fabs(pose->penetration) + step * fabs(pose->approach_speed);
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Press *press = &state->contacts[i];
+        if (system->contacts[i].mode == CONTACT_PRESSING) {
+            const double depth = fabs(press->depth) + step * fabs(press->closing);
             smallest = smallest > 0.0 ? fmin(smallest, depth) : depth;
         }
     }
     return smallest;
 }
 
-static void set_nudges(const Tree *tree, const SpeedScale *scale, double depth, double *nudge)
+static void set_nudges(const System *system, const SpeedScale *scale, double depth, double *nudge)
 {
-    const size_t n = tree->coordinate_count;
+    const size_t n = system->coordinate_count;
     for (size_t i = 0; i < n; i++) {
-        nudge[i] = DEPTH_SHARE * depth;
-        nudge[n + i] = SPEED_SHARE * scale->moving;
-    }
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const size_t angle = tree->nodes[i].angle_column;
-        const double turning = scale->turning[tree->nodes[i].body];
-        nudge[angle] = DEPTH_SHARE * depth * turning / scale->moving;
-        nudge[n + angle] = SPEED_SHARE * turning;
+        const int body = system->coordinates[i].turning;
+        const double moved = DEPTH_SHARE * depth;
+        nudge[i] = body < 0 ? moved : moved * scale->turning[body] / scale->moving;
+        nudge[n + i] = SPEED_SHARE * (body < 0 ? scale->moving : scale->turning[body]);
     }
 }
 
 // Whether the damping of the contacts outweighs their springs by so much that explicit steps may be
 // far shorter than need be.
-static bool is_doubtful(const Dynamics *dynamics, const DynamicsState *state, double step,
-                        double decay)
+static bool is_doubtful(const System *system, const SystemState *state, double step, double decay)
 {
     double relaxation_s = 0.0; // the longest time in which a spring moves its damper
     size_t count = 0;
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
-        const DynamicsContact *contact = &dynamics->contacts[i];
-        const double depth = fabs(state->contacts[i].pose.penetration);
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Contact *contact = &system->contacts[i];
+        const double depth = fabs(state->contacts[i].depth);
         const double stiffness = force_law_tangent(&contact->law, depth);
         if (contact->mode == CONTACT_PRESSING) {
-            const double damping = stiffness_damping(contact, &state->contacts[i]);
+            const double damping = press_damping(contact, &state->contacts[i]);
             relaxation_s = stiffness > 0.0 ? fmax(relaxation_s, damping / stiffness) : relaxation_s;
             count++;
         }
@@ -89,14 +79,14 @@ static bool is_doubtful(const Dynamics *dynamics, const DynamicsState *state, do
 }
 
 // Whether the implicit method takes over from the explicit one, or is put on trial.
-static bool takes_over(Stiffness *stiffness, const Dynamics *dynamics, const DynamicsState *state,
+static bool takes_over(Stiffness *stiffness, const System *system, const SystemState *state,
                        Dop853 *integrator)
 {
     const double decay = stiffness->radau->decay;
     if (integrator->step * decay > STIFF) {
         return true;
     }
-    if (!is_doubtful(dynamics, state, integrator->step, decay)) {
+    if (!is_doubtful(system, state, integrator->step, decay)) {
         return false;
     }
     if (stiffness->wait > 0) {
@@ -127,10 +117,10 @@ static bool stays(Stiffness *stiffness, Dop853 *integrator)
     return false;
 }
 
-void stiffness_follow(Stiffness *stiffness, const Dynamics *dynamics, const DynamicsState *state,
+void stiffness_follow(Stiffness *stiffness, const System *system, const SystemState *state,
                       const SpeedScale *scale, bool is_event, Dop853 *integrator)
 {
-    const double depth = smallest_depth(dynamics, state, integrator->step);
+    const double depth = smallest_depth(system, state, integrator->step);
     const bool is_implicit = integrator->method != NULL;
     stiffness->steps = is_event ? 0 : stiffness->steps + 1;
     if (is_event || !(depth > 0.0)) {
@@ -149,12 +139,12 @@ void stiffness_follow(Stiffness *stiffness, const Dynamics *dynamics, const Dyna
         stiffness->radau = radau_create();
     }
     Radau *radau = stiffness->radau;
-    set_nudges(&dynamics->tree, scale, depth, radau->nudge);
+    set_nudges(system, scale, depth, radau->nudge);
     if (!is_implicit || is_event) {
         radau_look(radau, integrator);
     }
     const bool is_next = is_implicit ? stays(stiffness, integrator)
-                                     : takes_over(stiffness, dynamics, state, integrator);
+                                     : takes_over(stiffness, system, state, integrator);
     integrator->method = is_next ? &radau->method : NULL;
 }
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "model/scale.h"
-#include "reference/dynamics.h"
 #include "reference/radau.h"
+#include "reference/system.h"
 
 typedef struct Stiffness {
     Radau *radau; // owned; NULL before the first look
@@ -17,10 +17,7 @@ typedef struct Stiffness {
 
 // To be asked before each step, whether an event has come at its start or not; the integrator
 // stands at the state. Sets the method.
-void stiffness_follow(Stiffness *stiffness, const Dynamics *dynamics, const DynamicsState *state,
+void stiffness_follow(Stiffness *stiffness, const System *system, const SystemState *state,
                       const SpeedScale *scale, bool is_event, Dop853 *integrator);
-
-// How strongly a contact is damped, N s/m.
-double stiffness_damping(const DynamicsContact *contact, const ContactForce *force);
 
 void stiffness_finish(Stiffness *stiffness);

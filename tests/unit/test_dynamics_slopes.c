@@ -5,7 +5,7 @@
 #include "base/lcg.h"
 #include "reference/dynamics_slopes.h"
 
-enum { SIZE = 2 * TREE_COORDINATE_MAX + DYNAMICS_IMPULSES + LINKAGE_JOINT_MAX };
+enum { SIZE = 2 * TREE_COORDINATE_MAX + SYSTEM_IMPULSES + LINKAGE_JOINT_MAX };
 
 static const double DEPTH = 1e-6; // m
 static const double PLACE = 1e-5; // m or rad, that coordinates are away from the start
@@ -38,12 +38,12 @@ static void press(Pressed *pressed, size_t joints)
         pressed->y[k] = PLACE * lcg_draw(&seed);
         pressed->y[n + k] = RATE * lcg_draw(&seed);
     }
-    for (size_t i = 0; i < dynamics->contact_count; i++) {
-        DynamicsContact *contact = &dynamics->contacts[i];
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
+        Contact *contact = &dynamics->system.contacts[i];
         contact->mode = CONTACT_PRESSING;
         contact->damping_rate = 1e3;
         const PinHole pose = dynamics_contact(dynamics, i, 0.0, pressed->y).pose;
-        contact->radial_clearance = vec2_length(pose.eccentricity) - DEPTH;
+        contact->clearance = vec2_length(pose.eccentricity) - DEPTH;
     }
 }
 

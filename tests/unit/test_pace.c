@@ -3,6 +3,7 @@
 
 #include "mechanism.h"
 
+#include "reference/dynamics.h"
 #include "reference/stepper.h"
 
 #include <string.h>
@@ -15,7 +16,7 @@ static Dynamics loose(const Scenario *scenario)
     Dynamics dynamics;
     Err err = {ERR_NONE, ""};
     assert_true(dynamics_init(scenario, &dynamics, &err));
-    assert_int_equal(dynamics.contact_count, 1);
+    assert_int_equal(dynamics.system.contact_count, 1);
     return dynamics;
 }
 
@@ -25,7 +26,7 @@ static size_t steps_until_failure(const Dynamics *dynamics, double step_s, size_
     Pace pace = {0};
     const EventList list = {.count = events};
     for (size_t i = 1; i <= MANY; i++) {
-        if (!pace_keep(&pace, dynamics, &list, (double)i * step_s, err)) {
+        if (!pace_keep(&pace, &dynamics->system, &list, (double)i * step_s, err)) {
             return i;
         }
     }
@@ -42,7 +43,7 @@ static void steps_that_lead_nowhere_end_with_the_joint_to_blame(void **state)
     assert_int_equal(err.kind, ERR_SOLVER);
     assert_non_null(strstr(err.text, "steps advanced the motion by only"));
     assert_null(strstr(err.text, "crank-coupler"));
-    dynamics.contacts[0].mode = CONTACT_PRESSING;
+    dynamics.system.contacts[0].mode = CONTACT_PRESSING;
     err = (Err){ERR_NONE, ""};
     assert_true(steps_until_failure(&dynamics, 1e-12, 0, &err) > 0);
     assert_non_null(strstr(err.text, "the contact of crank-coupler is too stiff"));
@@ -93,18 +94,18 @@ static void a_pin_beyond_the_end_of_its_law_ends(void **state)
     (void)state;
     const Scenario scenario = mechanism_loose(1);
     const Dynamics dynamics = loose(&scenario);
-    DynamicsState *at = test_calloc(1, sizeof *at);
+    SystemState *at = test_calloc(1, sizeof *at);
     Err err = {ERR_NONE, ""};
-    at->contacts[0].pose.penetration = 1e-6;
-    assert_true(dynamics_check_depth(&dynamics, at, 1.0, &err));
-    at->contacts[0].pose.penetration = 1e-3;
-    assert_false(dynamics_check_depth(&dynamics, at, 1.0, &err));
+    at->contacts[0].depth = 1e-6;
+    assert_true(system_check_depth(&dynamics.system, at, 1.0, &err));
+    at->contacts[0].depth = 1e-3;
+    assert_false(system_check_depth(&dynamics.system, at, 1.0, &err));
     assert_int_equal(err.kind, ERR_SOLVER);
     assert_non_null(strstr(err.text, "no contact law holds beyond"));
     // and a depth that is no number
     err = (Err){ERR_NONE, ""};
-    at->contacts[0].pose.penetration = NAN;
-    assert_false(dynamics_check_depth(&dynamics, at, 1.0, &err));
+    at->contacts[0].depth = NAN;
+    assert_false(system_check_depth(&dynamics.system, at, 1.0, &err));
     test_free(at);
 }
 

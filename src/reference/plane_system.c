@@ -1,0 +1,215 @@
+// What do those who step through the plane's equations of motion see of them?
+//
+// The depth of a contact grows as d'' = n . (a_pin - a_hole) + (v across n)^2 / |e|, n outwards.
+#include "reference/plane_system.h"
+
+#include "reference/dynamics.h"
+#include "reference/dynamics_slopes.h"
+#include "reference/loops.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const Dynamics *dynamics_of(const System *system)
+{
+    return (const Dynamics *)system;
+}
+
+static const DynamicsState *state_of(const SystemState *state)
+{
+    return (const DynamicsState *)state;
+}
+
+static void plane_start(System *system, double *y)
+{
+    Tree *tree = &((Dynamics *)system)->tree;
+    Motion motions[LINKAGE_BODY_MAX];
+    linkage_start(tree->linkage, motions);
+    tree_start(tree, motions, y + tree->coordinate_count);
+    loops_start(tree, y, y + tree->coordinate_count);
+}
+
+static bool plane_evaluate(const System *system, double since_s, const double *y,
+                           SystemState *state)
+{
+    return dynamics_evaluate(dynamics_of(system), since_s, y, (DynamicsState *)state);
+}
+
+static Press plane_press(const System *system, size_t contact, double since_s, const double *y)
+{
+    return dynamics_contact(dynamics_of(system), contact, since_s, y).press;
+}
+
+static void add_end_size(const Tree *tree, const TreeState *state, int end, double *length,
+                         double *speed)
+{
+    const int body = tree->end_bodies[end];
+    *length += vec2_length(tree_end_point(tree, state, end));
+    *speed += vec2_length(tree_end_velocity(tree, state, end));
+    if (body != LINKAGE_GROUND) {
+        const Motion *motion = &state->motions[body];
+        const double arm = vec2_length(state->arms[end]);
+        // an angle of many turns has fewer digits left for its direction
+        *length += arm * (1.0 + fabs(motion->angle));
+        *speed += arm * fabs(motion->omega) * (1.0 + fabs(motion->angle));
+    }
+}
+
+static void plane_sizes(const System *system, const SystemState *state, size_t contact,
+                        double *length, double *speed)
+{
+    const Tree *tree = &dynamics_of(system)->tree;
+    const int joint = system->contacts[contact].joint;
+    add_end_size(tree, &state_of(state)->tree, 2 * joint, length, speed);
+    add_end_size(tree, &state_of(state)->tree, 2 * joint + 1, length, speed);
+}
+
+static double plane_crossing(const System *system, const SystemState *state, size_t contact)
+{
+    const Tree *tree = &dynamics_of(system)->tree;
+    const TreeState *at = &state_of(state)->tree;
+    const Contact *of = &system->contacts[contact];
+    const Vec2 v = tree_joint_velocity(tree, at, of->joint);
+    const Vec2 a = tree_joint_acceleration(tree, at, of->joint);
+    return vec2_length(v) + sqrt(of->clearance * vec2_length(a));
+}
+
+static double plane_fastest(const System *system, const SystemState *state)
+{
+    const Tree *tree = &dynamics_of(system)->tree;
+    double fastest = 0.0;
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const int body = tree->nodes[i].body;
+        const Motion *motion = &state_of(state)->tree.motions[body];
+        const double speed = sqrt(vec2_dot(motion->velocity, motion->velocity));
+        fastest = fmax(fastest, speed + fabs(motion->omega) * linkage_reach(tree->linkage, body));
+    }
+    return fastest;
+}
+
+static void plane_peak(const System *system, const SystemState *state, size_t number,
+                       double values[2], double rates[2])
+{
+    const Tree *tree = &dynamics_of(system)->tree;
+    const Contact *contact = &system->contacts[number];
+    const ContactForce *force = &state_of(state)->contacts[number];
+    const Vec2 outward = vec2_scale(-1.0, force->pose.normal);
+    const Vec2 closing = tree_joint_acceleration(tree, &state_of(state)->tree, contact->joint);
+    const Vec2 moving = tree_joint_velocity(tree, &state_of(state)->tree, contact->joint);
+    const double across = vec2_cross(outward, moving);
+    const double second =
+        vec2_dot(outward, closing) + across * across / force->pose.eccentricity_size;
+    values[0] = force->press.normal;
+    values[1] = force->press.depth;
+    rates[0] = press_rate(contact, &force->press, second);
+    rates[1] = force->press.closing;
+}
+
+static void plane_project(const System *system, double since_s, double *y)
+{
+    const Tree *tree = &dynamics_of(system)->tree;
+    loops_project(tree, since_s, y, y + tree->coordinate_count);
+}
+
+static bool plane_rebase(System *system, double since_s, double *y)
+{
+    Tree *tree = &((Dynamics *)system)->tree;
+    plane_project(system, since_s, y);
+    tree_rebase(tree, since_s, y);
+    return tree->loop_count > 0;
+}
+
+static double plane_time(const System *system, double since_s)
+{
+    return tree_time(&dynamics_of(system)->tree, since_s);
+}
+
+static double plane_since(const System *system, double time_s)
+{
+    return (double)(time_s - dynamics_of(system)->tree.base_time_s);
+}
+
+static void plane_turning(const System *system, const SystemState *state, double *omega,
+                          double *alpha)
+{
+    for (size_t i = 0; i < system->scenario->linkage.body_count; i++) {
+        omega[i] = state_of(state)->tree.motions[i].omega;
+        alpha[i] = state_of(state)->tree.motions[i].alpha;
+    }
+}
+
+static void plane_joints(const System *system, const SystemState *state, JointState *joints,
+                         SpaceJointState *space_joints)
+{
+    (void)space_joints;
+    const Linkage *linkage = &system->scenario->linkage;
+    const Tree *tree = &dynamics_of(system)->tree;
+    const DynamicsState *at = state_of(state);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage->joints[i].kind == JOINT_REVOLUTE) {
+            const Vec2 a = tree_end_point(tree, &at->tree, 2 * (int)i);
+            const Vec2 b = tree_end_point(tree, &at->tree, 2 * (int)i + 1);
+            joints[i] = (JointState){
+                .eccentricity = vec2_sub(b, a),
+                .force_on_b = at->reactions[i],
+                .force = sqrt(vec2_dot(at->reactions[i], at->reactions[i])),
+                .is_touching = true,
+            };
+        }
+    }
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const ContactForce *force = &at->contacts[i];
+        joints[system->contacts[i].joint] = (JointState){
+            .eccentricity = force->pose.eccentricity,
+            .gap = force->pose.gap,
+            .force_on_b = force->force,
+            .force = sqrt(vec2_dot(force->force, force->force)),
+            .is_touching = system->contacts[i].mode != CONTACT_APART,
+        };
+    }
+}
+
+static void plane_bodies(const System *system, const SystemState *state, Sample *sample)
+{
+    const size_t count = system->scenario->linkage.body_count;
+    memcpy(sample->bodies, state_of(state)->tree.motions, count * sizeof *sample->bodies);
+}
+
+static size_t plane_rows(const System *system)
+{
+    return 2 * dynamics_of(system)->tree.loop_count;
+}
+
+static const SystemKind PLANE = {
+    .state_size = sizeof(DynamicsState),
+    .start = plane_start,
+    .evaluate = plane_evaluate,
+    .rates = dynamics_rates,
+    .slopes = dynamics_slopes,
+    .press = plane_press,
+    .sizes = plane_sizes,
+    .crossing = plane_crossing,
+    .fastest = plane_fastest,
+    .peak = plane_peak,
+    .project = plane_project,
+    .rebase = plane_rebase,
+    .time = plane_time,
+    .since = plane_since,
+    .turning = plane_turning,
+    .joints = plane_joints,
+    .bodies = plane_bodies,
+    .rows = plane_rows,
+};
+
+System *plane_system_create(const Scenario *scenario, Err *err)
+{
+    Dynamics *dynamics = malloc(sizeof *dynamics);
+    assert(dynamics != NULL);
+    if (!dynamics_init(scenario, dynamics, err)) {
+        free(dynamics);
+        return NULL;
+    }
+    dynamics->system.kind = &PLANE;
+    return &dynamics->system;
+}

@@ -1,0 +1,103 @@
+// Equations of motion with contacts, as those see them who step through them: events, peaks, the
+// stepper and the solver. Those of the plane are in reference/dynamics.c, those of space in
+// reference/space_system.c; each puts a System first in a structure of its own.
+//
+// The integrator's vector holds the coordinates since the base (where the linkage stood at the
+// start of the present step), their rates, and what is added up over time. Times are those since
+// the base, s.
+#pragma once
+
+#include "contact/pin_space.h"
+#include "model/trajectory.h"
+#include "reference/dop853.h"
+#include "reference/press.h"
+
+enum {
+    SYSTEM_CONTACT_MAX = PIN_SPACE_MAX,
+    SYSTEM_COORDINATE_MAX = 6 * LINKAGE_BODY_MAX,
+};
+
+// What is added up, behind the rates.
+typedef enum SystemSum {
+    SYSTEM_DRIVE_WORK, // J
+    SYSTEM_DISSIPATED, // J
+    SYSTEM_FRICTION,   // J
+    SYSTEM_IMPULSES,   // N s, of each contact from here on
+} SystemSum;
+
+// What a coordinate is, for the sizes of errors.
+typedef struct SystemCoordinate {
+    int turning;    // the body that it turns; -1: it is a length
+    double reach;   // m, of that body's points; 1 of a length
+    double inertia; // kg m^2, or kg of a length: what resists it at the least
+} SystemCoordinate;
+
+typedef struct System System;
+
+// Everything at one instant. What the equations have beyond it lies behind it.
+typedef struct SystemState {
+    Press contacts[SYSTEM_CONTACT_MAX];
+} SystemState;
+
+typedef struct SystemKind {
+    size_t state_size; // of what begins with a SystemState
+    // Writes the integrator's vector at the scenario's start, with sums of zero.
+    void (*start)(System *system, double *y);
+    // The state at a time. Returns false where the accelerations are not determined.
+    bool (*evaluate)(const System *system, double since_s, const double *y, SystemState *state);
+    // Rates of the integrator's vector; NaN where they are not determined. The context is a System.
+    Dop853Rates rates;
+    Dop853Slopes slopes; // or NULL
+    // One contact at a time, for events: cheaper than the whole state.
+    Press (*press)(const System *system, size_t contact, double since_s, const double *y);
+    // Sums of the lengths and speeds that the position and velocity of a contact come from.
+    void (*sizes)(const System *system, const SystemState *state, size_t contact, double *length,
+                  double *speed);
+    // How fast a pin that is apart may cross its play, m/s.
+    double (*crossing)(const System *system, const SystemState *state, size_t contact);
+    // The greatest speed of any point of a free body, m/s.
+    double (*fastest)(const System *system, const SystemState *state);
+    // Of a contact that presses: force and depth whose maxima are asked for, and their rates.
+    void (*peak)(const System *system, const SystemState *state, size_t contact, double values[2],
+                 double rates[2]);
+    // Closes the loops at a time; between its ends a long step keeps them to its tolerance only.
+    void (*project)(const System *system, double since_s, double *y);
+    // Moves the base on to a time and vector. Returns whether rates at the new base are others.
+    bool (*rebase)(System *system, double since_s, double *y);
+    // The time that lies so long after the base, and the other way round, s.
+    double (*time)(const System *system, double since_s);
+    double (*since)(const System *system, double time_s);
+    // What people see of a state: speeds of turning about z and their rates, joints, bodies.
+    void (*turning)(const System *system, const SystemState *state, double *omega, double *alpha);
+    void (*joints)(const System *system, const SystemState *state, JointState *joints,
+                   SpaceJointState *space_joints);
+    void (*bodies)(const System *system, const SystemState *state, Sample *sample);
+    // Rows of the joints that close loops.
+    size_t (*rows)(const System *system);
+} SystemKind;
+
+struct System {
+    const SystemKind *kind;
+    const Scenario *scenario;
+    size_t coordinate_count;
+    SystemCoordinate coordinates[SYSTEM_COORDINATE_MAX];
+    size_t contact_count;
+    Contact contacts[SYSTEM_CONTACT_MAX];
+};
+
+// Where a sum is in the integrator's vector, and how long that is.
+static inline size_t system_sum_index(const System *system, size_t sum)
+{
+    return 2 * system->coordinate_count + sum;
+}
+
+static inline size_t system_size(const System *system)
+{
+    return system_sum_index(system, SYSTEM_IMPULSES) + system->contact_count;
+}
+
+// Room for a state of these equations; the caller frees it.
+SystemState *system_state_create(const System *system);
+
+// Fails with ERR_SOLVER where a pin is deeper in its wall than a share of what its law knows.
+bool system_check_depth(const System *system, const SystemState *state, double share, Err *err);
