@@ -44,6 +44,14 @@ static void add_stages(const Dop853 *integrator, const double *weights, int coun
     }
 }
 
+// The sum alone.
+static void sum_stages(const Dop853 *integrator, const double *weights, int count, double factor,
+                       double *sum)
+{
+    memset(sum, 0, padded(integrator) * sizeof *sum);
+    add_stages(integrator, weights, count, factor, sum);
+}
+
 // State at the nodes of one stage.
 static void stage_state(const Dop853 *integrator, int stage, double *y)
 {
@@ -121,12 +129,12 @@ double dop853_try(Dop853 *integrator, double step)
         stage_state(integrator, stage, y);
         evaluate(integrator, stage, y);
     }
-    double change[DOP853_SIZE_MAX] = {0.0};
-    double e5[DOP853_SIZE_MAX] = {0.0};
-    double e3[DOP853_SIZE_MAX] = {0.0};
-    add_stages(integrator, DOP853_COUPLING[END_STAGE], END_STAGE, step, change);
-    add_stages(integrator, DOP853_ERROR_5, STEP_STAGES, 1.0, e5);
-    add_stages(integrator, DOP853_ERROR_3, STEP_STAGES, 1.0, e3);
+    double change[DOP853_SIZE_MAX];
+    double e5[DOP853_SIZE_MAX];
+    double e3[DOP853_SIZE_MAX];
+    sum_stages(integrator, DOP853_COUPLING[END_STAGE], END_STAGE, step, change);
+    sum_stages(integrator, DOP853_ERROR_5, STEP_STAGES, 1.0, e5);
+    sum_stages(integrator, DOP853_ERROR_3, STEP_STAGES, 1.0, e3);
     dop853_end(integrator, change);
     return dop853_judge(integrator, e5, e3, fabs(step));
 }
@@ -178,8 +186,7 @@ void dop853_fill(Dop853 *integrator)
         p[3][i] = change - h * integrator->stages[END_STAGE][i] - p[2][i];
     }
     for (int row = 0; row < DOP853_DENSE_ROWS; row++) {
-        memset(p[4 + row], 0, padded(integrator) * sizeof p[4 + row][0]);
-        add_stages(integrator, DOP853_DENSE[row], DOP853_STAGES, h, p[4 + row]);
+        sum_stages(integrator, DOP853_DENSE[row], DOP853_STAGES, h, p[4 + row]);
     }
 }
 

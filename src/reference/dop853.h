@@ -15,8 +15,8 @@ extern const double DOP853_ERROR_5[DOP853_STAGES];
 extern const double DOP853_ERROR_3[DOP853_STAGES];
 extern const double DOP853_DENSE[DOP853_DENSE_ROWS][DOP853_STAGES];
 
-// the most equations: three coordinates and rates a body, sums; a multiple of eight
-enum { DOP853_SIZE_MAX = 128, DOP853_POLYNOMIAL = 8 };
+// the most equations: in space six coordinates and rates a body, sums; a multiple of eight
+enum { DOP853_SIZE_MAX = 272, DOP853_POLYNOMIAL = 8 };
 
 // Writes dy/dt at a time and state.
 typedef void (*Dop853Rates)(double time, const double *y, double *rates, void *context);
