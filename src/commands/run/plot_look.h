@@ -58,5 +58,10 @@ void plot_joints_forces(const RunReport *report, PlotPanel panel);
 // joints have play.
 void plot_joints_paths(const RunReport *report, PlotPanel panel);
 
+// Of a linkage in space: how each pin tilts, and the path of its axis at both ends of its hole in
+// the last run that has any.
+void plot_pins_tilts(const RunReport *report, PlotPanel panel);
+void plot_pins_ends(const RunReport *report, PlotPanel panel);
+
 // Where no joint has play: how far omega is from the run that is taken as the truth.
 void plot_joints_errors(const RunReport *report, PlotPanel panel);

@@ -10,10 +10,11 @@
 
 static const double PICTURE_WIDTH = 1000.0; // pixels, as all that follow
 static const double PICTURE_HEIGHT = 880.0;
+static const double ROW_HEIGHT = 384.0; // of a third row of panels
 static const double PANEL_WIDTH = 390.0;
 static const double PANEL_HEIGHT = 290.0;
 static const double PANEL_LEFT[2] = {84.0, 584.0};
-static const double PANEL_TOP[2] = {146.0, 530.0};
+static const double PANEL_TOP[3] = {146.0, 530.0, 914.0};
 static const double LEGEND_TOP = 62.0;
 static const double LEGEND_ROW = 22.0;
 
@@ -273,7 +274,9 @@ void plot_run_write(const void *of, Text *svg)
 {
     const RunReport *report = of;
     const char *title = report->scenario->title;
-    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT, title);
+    const bool has_pins =
+        report->scenario->linkage.is_spatial && scenario_has_clearance(report->scenario);
+    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT + (has_pins ? ROW_HEIGHT : 0.0), title);
     plot_text(svg, PANEL_LEFT[0], 34.0, "start", "title", title);
     draw_legend(report, svg);
     draw_motions(report, svg);
@@ -283,6 +286,10 @@ void plot_run_write(const void *of, Text *svg)
         plot_joints_paths(report, panel);
     } else {
         plot_joints_errors(report, panel);
+    }
+    if (has_pins) {
+        plot_pins_tilts(report, place_panel(report, svg, 2, 0, ""));
+        plot_pins_ends(report, place_panel(report, svg, 2, 1, ""));
     }
     plot_end(svg);
 }

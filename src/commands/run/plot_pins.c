@@ -1,0 +1,123 @@
+// How did the pins tilt in their holes, and where were they at the holes' ends?
+#include "commands/run/plot_look.h"
+#include "write/units.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+static double tilt_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
+{
+    (void)report;
+    return trajectory_space_state(run, sample, joint)->tilt * UNITS_MRAD;
+}
+
+static const PlotQuantity TILT = {"tilt, mrad", true, -1, tilt_of};
+
+static bool shows(const RunReport *report, size_t run, size_t joint)
+{
+    return trajectory_feels_play(report->runs[run], &report->scenario->linkage.joints[joint]);
+}
+
+// The tilt at which a pin touches at both ends, mrad.
+static double tilt_limit(const Joint *joint)
+{
+    return asin(fmin(1.0, 2.0 * linkage_radial_clearance(joint) / joint->clearance.width)) *
+           UNITS_MRAD;
+}
+
+void plot_pins_tilts(const RunReport *report, PlotPanel panel)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    panel.title = "Tilt of the pin in its hole; dashed: both ends touch";
+    panel.y.title = "tilt, mrad";
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        const bool has_play = linkage->joints[joint].kind == JOINT_CLEARANCE;
+        const double limit = has_play ? tilt_limit(&linkage->joints[joint]) : 0.0;
+        panel.y.high = fmax(panel.y.high, 1.08 * limit);
+        for (size_t run = 0; run < report->run_count; run++) {
+            for (size_t i = 0; shows(report, run, joint) && i < report->runs[run]->sample_count;
+                 i++) {
+                panel.y.high =
+                    fmax(panel.y.high, 1.05 * tilt_of(report, report->runs[run], i, joint));
+            }
+        }
+    }
+    plot_enter(&panel);
+    plot_look_shade(report, &panel);
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        if (linkage->joints[joint].kind == JOINT_CLEARANCE) {
+            const double limit = tilt_limit(&linkage->joints[joint]);
+            const PlotStyle style = {"#222222", 1.2, 1.0, "6 4"};
+            plot_line(&panel, 2, (const double[]){panel.x.low, panel.x.high},
+                      (const double[]){limit, limit}, style);
+        }
+        for (size_t run = 0; run < report->run_count; run++) {
+            if (shows(report, run, joint)) {
+                plot_look_draw(report, &panel, run, TILT, joint);
+            }
+        }
+    }
+    plot_leave(&panel);
+}
+
+// Where the pin's axis is at an end of the hole, as a share of the play, in two directions across
+// the hole's axis: x and y where that is z.
+static Vec2 end_place(const RunReport *report, const Trajectory *run, size_t sample, size_t joint,
+                      int end)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    const SpaceEnd hole = space_end(linkage, joint, 0);
+    const SpaceMotion *motions = trajectory_space_motion(run, sample, 0);
+    const Vec3 axis = space_direction(motions, hole.body, hole.axis);
+    const Vec3 first = vec3_normal_to(axis);
+    const Vec3 offset = trajectory_space_state(run, sample, joint)->ends[end];
+    const double scale = 1.0 / linkage_radial_clearance(&linkage->joints[joint]);
+    return (Vec2){scale * vec3_dot(first, offset),
+                  scale * vec3_dot(vec3_cross(axis, first), offset)};
+}
+
+static void draw_end(const RunReport *report, const PlotPanel *panel, size_t run, size_t joint,
+                     int end)
+{
+    const Trajectory *trajectory = report->runs[run];
+    double *x = calloc(trajectory->sample_count, sizeof *x);
+    double *y = calloc(trajectory->sample_count, sizeof *y);
+    assert(x != NULL && y != NULL);
+    for (size_t i = 0; i < trajectory->sample_count; i++) {
+        const Vec2 place = end_place(report, trajectory, i, joint, end);
+        x[i] = place.x;
+        y[i] = place.y;
+    }
+    PlotStyle style = plot_style(1, plot_look_colour(report, true, joint) + (size_t)end);
+    style.width = 1.0;
+    style.opacity = 0.8;
+    plot_line(panel, trajectory->sample_count, x, y, style);
+    free(x);
+    free(y);
+}
+
+void plot_pins_ends(const RunReport *report, PlotPanel panel)
+{
+    static const PlotStyle WALL = {"#222222", 1.6, 1.0, "6 4"};
+    const double high = 1.15;
+    const double wide = high * panel.width / panel.height;
+    panel.title = "Pin's axis at the hole's back (first colour) and front end (next)";
+    panel.x = (Axis){.title = "across, of the radial clearance", .low = -wide, .high = wide};
+    panel.y = (Axis){.title = "of the radial clearance", .low = -high, .high = high};
+    plot_enter(&panel);
+    for (size_t run = report->run_count; run-- > 0;) {
+        bool is_drawn = false;
+        for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
+            for (int end = 0; shows(report, run, joint) && end < 2; end++) {
+                draw_end(report, &panel, run, joint, end);
+                is_drawn = true;
+            }
+        }
+        if (is_drawn) {
+            break; // paths of several solvers would hide one another
+        }
+    }
+    plot_circle(&panel, 1.0, WALL);
+    plot_leave(&panel);
+}
