@@ -273,7 +273,8 @@ static bool check_collider(const Entries *entries, const Scenario *scenario, Err
     }
     if (scenario->linkage.is_spatial && scenario_has_clearance(scenario)) {
         return entries_refuse(entries_blame(entries, "space ode.collider", 0), err,
-                              "in space only the exact collider knows a pin in its hole\n"
+                              "in space the contact of pin and hole is found by collider pin-hole "
+                              "alone\n"
                               "allowed: collider: pin-hole, or space: planar");
     }
     const bool is_impulse = scenario->contact.model == CONTACT_IMPACT &&
