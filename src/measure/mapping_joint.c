@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "base/sorted.h"
 #include "model/response.h"
+#include "model/space.h"
 #include "run/registry.h"
 
 #include <assert.h>
@@ -177,6 +178,11 @@ static void conclude(Gathering *gathering, MappingJoint *joints)
 bool mapping_joint_measure(const Scenario *scenario, RunWatch watch,
                            MappingJoint joints[LINKAGE_JOINT_MAX], size_t *count, Err *err)
 {
+    if (!space_has_plane(&scenario->linkage)) {
+        return err_set(err, ERR_SOLVER,
+                       "the mapping takes masses from the plane, and not all axes of this case are "
+                       "along z; run and compare show what each map makes of it");
+    }
     Gathering *gathering = gathering_start(scenario);
     bool is_right = response_init(&scenario->linkage, false, &gathering->response, err) &&
                     gather(gathering, watch, err);

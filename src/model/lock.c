@@ -234,8 +234,7 @@ static Lock walk(ClosedPath *path, double turn)
 Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
 {
     const Lock unknown = {LOCK_UNKNOWN, linkage->driver.start};
-    const bool is_planar = !linkage->is_spatial || space_is_upright(linkage);
-    if (!linkage->driver.is_present || !is_planar) {
+    if (!linkage->driver.is_present || !space_has_plane(linkage)) {
         return unknown;
     }
     const Linkage ideal = idealised(linkage, joints);

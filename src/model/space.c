@@ -198,6 +198,11 @@ bool space_is_upright(const Linkage *linkage)
     return true;
 }
 
+bool space_has_plane(const Linkage *linkage)
+{
+    return !linkage->is_spatial || space_is_upright(linkage);
+}
+
 void space_complete(Linkage *linkage)
 {
     for (size_t i = 0; i < linkage->body_count; i++) {

@@ -68,6 +68,10 @@ bool space_is_possible(const Body *body);
 // Whether every joint's axis is z, so that the plane shows how the linkage moves until a pin tilts.
 bool space_is_upright(const Linkage *linkage);
 
+// Whether the plane shows how the linkage moves, but for the tilting of pins: it moves in the
+// plane, or in space with upright axes.
+bool space_has_plane(const Linkage *linkage);
+
 // Fills in the moments of inertia about x and y that a case leaves out: those of a slender body
 // along x.
 void space_complete(Linkage *linkage);

@@ -42,9 +42,7 @@ static bool move_to(const Scenario *scenario, double crank_rad, Motion *motions)
 SpikeScale spike_scale(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
-    // of axes that are not all along z the plane shows no mechanism
-    const bool is_planar = !linkage->is_spatial || space_is_upright(linkage);
-    SpikeScale scale = {.is_known = linkage->driver.is_present && is_planar};
+    SpikeScale scale = {.is_known = linkage->driver.is_present && space_has_plane(linkage)};
     scale.alpha = linkage->driver.speed * linkage->driver.speed;
     double least[LINKAGE_BODY_MAX] = {0.0};
     double most[LINKAGE_BODY_MAX] = {0.0};

@@ -47,6 +47,10 @@ static bool write_code(const void *target, Text *text, const char **nothing, Err
 {
     const TuneReport *report = target;
     const TuneTrial *trial = tune_export_trial(report);
+    if (report->scenario->linkage.is_spatial) {
+        *nothing = "programs are written for cases in the plane alone";
+        return false;
+    }
     if (!has_contact(report, trial != NULL, "no run has a meaningful error", nothing)) {
         return false;
     }

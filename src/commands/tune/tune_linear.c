@@ -12,6 +12,7 @@
 #include "contact/damping.h"
 #include "contact/law.h"
 #include "model/response.h"
+#include "model/space.h"
 
 #include <math.h>
 
@@ -74,7 +75,8 @@ static double find_mass(const Linkage *linkage, const Trajectory *trajectory, si
     Err unused = {ERR_NONE, ""};
     const size_t sample = sample_near(trajectory, time_s);
     const Motion *motions = trajectory_motion(trajectory, sample, 0);
-    if (!response_init(linkage, false, &response, &unused) || !response_place(&response, motions)) {
+    if (!space_has_plane(linkage) || !response_init(linkage, false, &response, &unused) ||
+        !response_place(&response, motions)) {
         return NAN;
     }
     const Vec2 offset = trajectory_state(trajectory, sample, joint)->eccentricity;
