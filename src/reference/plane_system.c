@@ -181,6 +181,11 @@ static size_t plane_rows(const System *system)
     return 2 * dynamics_of(system)->tree.loop_count;
 }
 
+static void plane_destroy(System *system)
+{
+    free(system);
+}
+
 static const SystemKind PLANE = {
     .state_size = sizeof(DynamicsState),
     .start = plane_start,
@@ -200,6 +205,7 @@ static const SystemKind PLANE = {
     .joints = plane_joints,
     .bodies = plane_bodies,
     .rows = plane_rows,
+    .destroy = plane_destroy,
 };
 
 System *plane_system_create(const Scenario *scenario, Err *err)

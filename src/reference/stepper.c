@@ -7,6 +7,7 @@
 #include "reference/stepper.h"
 
 #include "reference/plane_system.h"
+#include "reference/space_system.h"
 
 #include <float.h>
 #include <math.h>
@@ -123,7 +124,8 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     memset(stepper, 0, sizeof *stepper);
     stepper->scenario = scenario;
     stepper->duration_s = scenario_duration(scenario);
-    stepper->system = plane_system_create(scenario, err);
+    stepper->system = scenario->linkage.is_spatial ? space_system_create(scenario, err)
+                                                   : plane_system_create(scenario, err);
     if (stepper->system == NULL) {
         return false;
     }
@@ -158,7 +160,9 @@ void stepper_finish(Stepper *stepper)
     for (size_t i = 0; i < EVENTS_POINTS_MAX; i++) {
         free(stepper->points.states[i]);
     }
-    free(stepper->system);
+    if (stepper->system != NULL) {
+        stepper->system->kind->destroy(stepper->system);
+    }
 }
 
 // Whether a contact begins to press at the end of the step.
@@ -220,8 +224,10 @@ static bool fail_to_step(const Stepper *stepper, Err *err)
     const Dop853 *integrator = &stepper->integrator;
     const System *system = stepper->system;
     SystemState *state = stepper->points.states[0];
-    if (system->kind->evaluate(system, integrator->time, integrator->y, state) &&
-        !system_check_depth(system, state, NEARLY, err)) {
+    if (!system->kind->evaluate(system, integrator->time, integrator->y, state)) {
+        return pace_undetermined(err);
+    }
+    if (!system_check_depth(system, state, NEARLY, err)) {
         return false;
     }
     return err_set(err, ERR_SOLVER,

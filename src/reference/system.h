@@ -74,6 +74,7 @@ typedef struct SystemKind {
     void (*bodies)(const System *system, const SystemState *state, Sample *sample);
     // Rows of the joints that close loops.
     size_t (*rows)(const System *system);
+    void (*destroy)(System *system);
 } SystemKind;
 
 struct System {

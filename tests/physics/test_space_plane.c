@@ -1,0 +1,94 @@
+// Is a mechanism in space that has no reason to leave the plane the plane's?
+//
+// Bodies without products of inertia whose joints are at the heights of their centres stay in the
+// plane. Each end of a hole has half of the joint's law: together they press as the planar pin
+// does, whose run by the planar reference is the truth. The controls have a reason to leave it.
+#include "complete_run.h"
+#include "load_case.h"
+
+static Scenario four_bar(const char *space, const char *friction, const char *other)
+{
+    const char *const overrides[] = {space, friction, "run.samples=600", other};
+    return load("cases/paper/impact-k66.yaml", overrides, other != NULL ? 4 : 3);
+}
+
+// The largest difference of any omega about z over the largest omega, up to a time.
+static double apart(const Trajectory *a, const Trajectory *b, double until_s)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < a->body_count; i++) {
+        const double scale = trajectory_omega_scale(a, i);
+        for (size_t k = 0; k < a->sample_count && a->times[k] <= until_s; k++) {
+            const double difference =
+                trajectory_motion(a, k, i)->omega - trajectory_motion(b, k, i)->omega;
+            largest = fmax(largest, fabs(difference) / scale);
+        }
+    }
+    return largest;
+}
+
+static void assert_same_contacts(const Trajectory *space, const Trajectory *plane)
+{
+    const JointExtremes *a = &space->joints[1];
+    const JointExtremes *b = &plane->joints[1];
+    assert_int_equal(a->impacts, b->impacts);
+    assert_true(a->impacts > 1);
+    assert_close(a->force_max.value, b->force_max.value, 1e-9);
+    assert_close(a->penetration_max.value, b->penetration_max.value, 1e-9);
+    assert_close(a->impulse, b->impulse, 1e-9);
+    assert_close(a->spikes[0].approach_speed, b->spikes[0].approach_speed, 1e-9);
+    assert_close(space->energy.dissipated, plane->energy.dissipated, 1e-9);
+    assert_true(a->tilt_max.value < 1e-15);
+    assert_true(a->axial_max.value < 1e-15);
+}
+
+static void a_lifted_mechanism_moves_as_in_the_plane(void **state)
+{
+    (void)state;
+    const char *const frictions[] = {"contact.friction=0", "contact.friction=0.1"};
+    for (int i = 0; i < 2; i++) {
+        const Scenario flat = four_bar("space=planar", frictions[i], NULL);
+        const Scenario lifted = four_bar("space=spatial", frictions[i], NULL);
+        Trajectory *plane = complete_run(&flat, BACKEND_REFERENCE);
+        Trajectory *space = complete_run(&lifted, BACKEND_REFERENCE);
+        const double error = apart(space, plane, plane->duration_s);
+        if (!(error < 1e-10)) {
+            fail_msg("friction %d: omega differs by %.3g", i, error);
+        }
+        assert_same_contacts(space, plane);
+        assert_close(space->energy.friction, plane->energy.friction, 1e-9);
+        trajectory_destroy(space);
+        trajectory_destroy(plane);
+    }
+}
+
+// With play at both its ends nothing holds the coupler in the plane but that it has no reason to
+// leave it. The controls give it one.
+static void a_coupler_with_play_at_both_ends_stays_in_the_plane(void **state)
+{
+    (void)state;
+    const char *const loose =
+        "joints.coupler-follower={radial-clearance: 14.5 um, width: 13 mm, start: centred}";
+    const char *const others[] = {NULL, "four-bar.coupler.offset=1 mm",
+                                  "four-bar.coupler.product-xz=5 kg mm^2"};
+    const Scenario flat = four_bar("space=planar", loose, NULL);
+    Trajectory *plane = complete_run(&flat, BACKEND_REFERENCE);
+    for (int i = 0; i < 3; i++) {
+        const Scenario lifted = four_bar("space=spatial", loose, others[i]);
+        Trajectory *space = complete_run(&lifted, BACKEND_REFERENCE);
+        const double error = apart(space, plane, 0.2 * plane->duration_s);
+        assert_true(i == 0 ? error < 1e-10 : error > 1e-5);
+        assert_true(i == 0 || space->joints[2].tilt_max.value > 1e-5);
+        trajectory_destroy(space);
+    }
+    trajectory_destroy(plane);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_lifted_mechanism_moves_as_in_the_plane),
+        cmocka_unit_test(a_coupler_with_play_at_both_ends_stays_in_the_plane),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
