@@ -29,7 +29,7 @@ static double tilt_limit(const Joint *joint)
 void plot_pins_tilts(const RunReport *report, PlotPanel panel)
 {
     const Linkage *linkage = &report->scenario->linkage;
-    panel.title = "Tilt of the pin in its hole; dashed: both ends touch";
+    panel.title = "Tilt of the pin; dashed: both ends touch";
     panel.y.title = "tilt, mrad";
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         const bool has_play = linkage->joints[joint].kind == JOINT_CLEARANCE;
@@ -89,20 +89,37 @@ static void draw_end(const RunReport *report, const PlotPanel *panel, size_t run
         x[i] = place.x;
         y[i] = place.y;
     }
-    PlotStyle style = plot_style(1, plot_look_colour(report, true, joint) + (size_t)end);
+    PlotStyle style = plot_style(1, plot_look_colour(report, true, joint));
     style.width = 1.0;
     style.opacity = 0.8;
+    style.dash = end == 0 ? NULL : "3 2";
     plot_line(panel, trajectory->sample_count, x, y, style);
     free(x);
     free(y);
 }
 
+// How far the axis of any pin comes from the middle of an end of its hole, of its play.
+static double farthest(const RunReport *report)
+{
+    double most = 0.0;
+    for (size_t run = 0; run < report->run_count; run++) {
+        for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
+            for (size_t i = 0; shows(report, run, joint) && i < report->runs[run]->sample_count;
+                 i++) {
+                most = fmax(most, vec2_length(end_place(report, report->runs[run], i, joint, 0)));
+                most = fmax(most, vec2_length(end_place(report, report->runs[run], i, joint, 1)));
+            }
+        }
+    }
+    return most;
+}
+
 void plot_pins_ends(const RunReport *report, PlotPanel panel)
 {
     static const PlotStyle WALL = {"#222222", 1.6, 1.0, "6 4"};
-    const double high = 1.15;
+    const double high = fmax(1.15, 1.06 * farthest(report));
     const double wide = high * panel.width / panel.height;
-    panel.title = "Pin's axis at the hole's back (first colour) and front end (next)";
+    panel.title = "Pin's axis at the hole's ends; broken: front";
     panel.x = (Axis){.title = "across, of the radial clearance", .low = -wide, .high = wide};
     panel.y = (Axis){.title = "of the radial clearance", .low = -high, .high = high};
     plot_enter(&panel);
