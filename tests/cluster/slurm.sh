@@ -22,7 +22,7 @@ trap leave EXIT
 trap 'exit 1' INT TERM HUP
 
 JOB_WAIT=240 # s for an array and what gathers it: some 30 s on two free cores
-RUNS=240     # of the study below, some 0.1 s each: a shard takes longer than it takes to hit it
+RUNS=72      # of the study below, some 0.2 s each: a shard takes longer than it takes to hit it
 number=0
 
 # A sentence, and whether it is true: the status of the command behind it.
@@ -46,7 +46,7 @@ set: {run.step: 1 us}
 vary:
   drive.speed: {from: 300 rpm, to: 1500 rpm, count: 6}
 draw:
-  count: 40
+  count: 12
   method: random
   seed: 1
   keys:
