@@ -3,21 +3,23 @@
 # builds, and runs the tests until one fails: a comparison turned round or made strict, a sign, a
 # factor, a condition that always holds, a result 'true' for 'false', a statement left out.
 #
-# tests/measure/faults.sh [COUNT [FIRST]]
-#   COUNT   faults (default 100)
-#   FIRST   the first seed (default 1)
+# tests/measure/faults.sh [COUNT [FIRST [PROCESSES]]]
+#   COUNT      faults (default 100)
+#   FIRST      the first seed (default 1)
+#   PROCESSES  tests at a time (default 2)
 # Prints each fault with its seed, place and what saw it, and at the end the share that was seen.
 # A fault that nothing sees either does not matter (say why) or needs a test. A minute a fault.
 set -u
 root=$(cd "$(dirname "$0")/../.." && pwd)
 count=${1:-100}
 first=${2:-1}
+processes=${3:-2}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 tree=$work/tree
 mkdir "$tree"
 git -C "$root" archive HEAD | tar -x -C "$tree"
-meson setup "$work/build" "$tree" -Dtests=enabled -Dbuildtype=debugoptimized >/dev/null || exit 2
+meson setup "$work/build" "$tree" -Dtests=enabled >/dev/null || exit 2
 ninja -C "$work/build" --quiet >/dev/null || exit 2
 cd "$tree" || exit 2
 find src -name '*.c' | sort | xargs grep -nE '[;{)]' |
@@ -55,17 +57,35 @@ draw() {
         }' "$work/lines"
 }
 
-# The first test that fails, or nothing.
+# Runs tests until one fails; false then, with the result in the log.
+run_tests() {
+    meson test -C "$work/build" --no-rebuild --num-processes "$processes" --maxfail 1 "$@" \
+        >"$work/log" 2>&1
+}
+
+# The first test that fails, or nothing. Those that take less time come first.
 find_witness() {
-    for suite in unit physics command numbers style; do
-        if ! meson test -C "$work/build" --no-rebuild --suite "$suite" --maxfail 1 \
-            >"$work/log" 2>&1; then
+    for group in 0 1 2 3; do
+        # shellcheck disable=SC2046 # the names are words
+        if ! run_tests $(cat "$work/tests.$group"); then
             sed -n 's/^ *[0-9]*\/[0-9]* [^ ]* *[^ ]* *\/ *\([a-z_0-9]*\) *\(FAIL\|ERROR\|TIMEOUT\).*/\1/p' \
                 "$work/log" | head -n 1
             return
         fi
     done
 }
+
+# without a fault no test fails; its times give the order
+if ! run_tests --no-suite cluster; then
+    cat "$work/log"
+    exit 1
+fi
+for group in 0 1 2 3; do
+    sed -n 's/^{"name": "[^"]* \([a-z_0-9]*\)".*"duration": \([0-9.e-]*\),.*/\1 \2/p' \
+        "$work/build/meson-logs/testlog.json" |
+        awk -v group=$group '{ at = $2 < 0.2 ? 0 : $2 < 1 ? 1 : $2 < 5 ? 2 : 3 }
+            at == group { print $1 }' >"$work/tests.$group"
+done
 
 tried=0
 seen=0
