@@ -131,9 +131,10 @@ list_command() {
 log=$work/log
 . "$(dirname "$0")/../support/tap.sh"
 
+# What changes as soon as anything is written to a file, or another put in its place: its number, its
+# size, and when it was last changed.
 list_files() {
-    find . -type f -exec cksum {} + | sort
-    find . -type l
+    find . \( -type f -printf '%p %i %s %C@\n' \) -o \( -type l -print \)
 }
 
 # Runs words of a command with an output in place; its status.
@@ -145,6 +146,13 @@ run_with() {
     "$program" $1 --quiet >"$work/output" 2>"$work/log"
 }
 
+is_in() {
+    case $1 in
+    *"$2"*) true ;;
+    *) false ;;
+    esac
+}
+
 # One pair under one name: the option, the name, and what the message has to name.
 tried=0
 refused=0
@@ -153,9 +161,10 @@ try() {
     run_with "$1" "$2" "$3"
     status=$?
     list_files >"$work/after"
+    message=$(cat "$work/log")
     if { [ $status = 2 ] || [ $status = 5 ]; } && cmp -s "$work/before" "$work/after" &&
-        [ ! -s "$work/output" ] && grep -qF -e "$4" "$work/log" &&
-        { [ "$2" = @ ] || grep -qE -e "$2|--bless" "$work/log"; }; then
+        [ ! -s "$work/output" ] && is_in "$message" "$4" &&
+        { [ "$2" = @ ] || is_in "$message" "$2" || is_in "$message" --bless; }; then
         refused=$((refused + 1))
     else
         echo "# jointplay $1 $2 $3: status $status"
