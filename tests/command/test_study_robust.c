@@ -22,7 +22,7 @@ static const char STUDY[] = "title: A study to be hurt\n"
                             "truth: %s\n"
                             "limits: {time: 60 s}\n";
 
-static const char FOUR_STEPS[] = "5 us, 10 us, 15 us, 20 us";
+static const char FOUR_STEPS[] = "10 us, 20 us, 30 us, 40 us";
 
 static void write_study(const Program *program, const char *revolutions, const char *speed,
                         const char *steps, const char *truth)
@@ -137,7 +137,7 @@ static void killing_it_at_any_moment_loses_nothing_and_makes_nothing_twice(void 
     for (int i = 0; i < KILLS; i++) {
         const pid_t process = start(program, "killed.sqlite", "2");
         // from before the first row to well after some
-        rest(0.4 * (double)rand_r(&seed) / RAND_MAX);
+        rest(0.2 * (double)rand_r(&seed) / RAND_MAX);
         kill(process, SIGKILL);
         waitpid(process, NULL, 0);
         if (is_there(program, "killed.sqlite")) {
