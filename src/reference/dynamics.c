@@ -44,7 +44,7 @@ static void list_coordinates(Dynamics *dynamics)
 bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
 {
     System *system = &dynamics->system;
-    *dynamics = (Dynamics){.system = {.scenario = scenario}};
+    *dynamics = (Dynamics){.system = {.scenario = scenario, .torn = -1}};
     tree_build(&scenario->linkage, &dynamics->tree);
     list_coordinates(dynamics);
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {

@@ -67,6 +67,14 @@ bool pace_keep(Pace *pace, const System *system, const EventList *events, double
     return true;
 }
 
+bool pace_torn(const System *system, Err *err)
+{
+    return err_set(err, ERR_SOLVER,
+                   "the ideal joint %s cannot be kept closed: the loop that it closes is locked; "
+                   "give one of its joints play, or let its lengths and axes fit",
+                   system->scenario->linkage.joints[system->torn].name);
+}
+
 bool pace_undetermined(Err *err)
 {
     return err_set(err, ERR_SOLVER,

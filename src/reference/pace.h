@@ -14,6 +14,9 @@ typedef struct Pace {
 // blame where steps or events have come so close together that the run would not end.
 bool pace_keep(Pace *pace, const System *system, const EventList *events, double time_s, Err *err);
 
+// An ideal joint cannot be kept closed. Returns false, with ERR_SOLVER.
+bool pace_torn(const System *system, Err *err);
+
 // The equations for the accelerations have no solution: joints hold each other up. Returns false,
 // with ERR_SOLVER.
 bool pace_undetermined(Err *err);

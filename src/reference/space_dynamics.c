@@ -57,7 +57,7 @@ static void list_coordinates(SpaceDynamics *dynamics)
 
 bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err *err)
 {
-    *dynamics = (SpaceDynamics){.system = {.scenario = scenario}};
+    *dynamics = (SpaceDynamics){.system = {.scenario = scenario, .torn = -1}};
     System *system = &dynamics->system;
     space_tree_build(&scenario->linkage, &dynamics->tree);
     list_coordinates(dynamics);
@@ -286,7 +286,7 @@ static bool find_rates(const SpaceDynamics *dynamics, double since_s, const doub
     }
     assemble(tree, &state->tree, loads, width, dynamics->matrix, dynamics->right);
     append_loops(dynamics, &state->tree, width, dynamics->matrix, dynamics->right);
-    return !dynamics->loops.is_stuck && dense_solve(width, dynamics->matrix, dynamics->right);
+    return dense_solve(width, dynamics->matrix, dynamics->right);
 }
 
 bool space_dynamics_evaluate(const SpaceDynamics *dynamics, double since_s, const double *y,

@@ -16,6 +16,9 @@
 
 enum { PASSES = 2 };
 
+// rad, or of a body's reach: the lengths and axes of a case have at least five digits
+static const double TORN = 1e-5;
+
 // m: a start is closed to some 1e-12; a pin farther from its own was meant to be elsewhere
 static const double ROUNDED = 1e-10;
 
@@ -173,6 +176,25 @@ double space_loops_project(const SpaceTree *tree, const SpaceLoops *loops, doubl
         largest = fmax(largest, fabs(opening_of(tree, scratch, loops, i, false)));
     }
     return largest;
+}
+
+int space_loops_torn(const SpaceTree *tree, const SpaceTreeState *state, const SpaceLoops *loops)
+{
+    SpaceLoops one = *loops;
+    for (size_t i = 0; i < tree->loop_count; i++) {
+        const int joint = tree->loops[i];
+        for (int which = 0; which < SPACE_JOINT_ROWS; which++) {
+            const int body = tree->ends[2 * joint + 1].body;
+            const double reach = linkage_reach(
+                tree->linkage, body == LINKAGE_GROUND ? tree->ends[2 * joint].body : body);
+            one.rows[0] = (SpaceLoopRow){joint, which};
+            const double opening = fabs(opening_of(tree, state, &one, 0, false));
+            if (!(opening <= TORN * (which < SPACE_POINT_ROWS ? reach : 1.0))) {
+                return joint;
+            }
+        }
+    }
+    return -1;
 }
 
 void space_loops_start(SpaceTree *tree, SpaceLoops *loops, double *q, double *u,

@@ -19,7 +19,6 @@ typedef struct SpaceLoops {
     size_t row_count;
     SpaceLoopRow rows[SPACE_LOOPS_ROW_MAX];
     Vec3 base_sides[LINKAGE_JOINT_MAX][2]; // of body a: unit, at right angles to the joint's axis
-    bool is_stuck; // rows were redundant when they were chosen that are not any more
 } SpaceLoops;
 
 // Chooses the rows at the base of the tree; the first time, or anew.
@@ -42,6 +41,10 @@ Vec3 space_loops_direction(const SpaceTree *tree, const SpaceTreeState *state,
 // Returns how far the rows are still open, m or rad; 0 where there are none.
 double space_loops_project(const SpaceTree *tree, const SpaceLoops *loops, double since_s,
                            double *q, double *u, SpaceTreeState *scratch);
+
+// The joint of a row that was not chosen and has opened, by more than rounding of a case's lengths
+// explains: the loop cannot be kept closed. -1 where there is none.
+int space_loops_torn(const SpaceTree *tree, const SpaceTreeState *state, const SpaceLoops *loops);
 
 // Moves the base, coordinates and rates of a start onto the closed loops. Where there is a driver
 // each pin is brought to its start in the hole as well, as in the plane (reference/loops.h).

@@ -1,7 +1,7 @@
 // Which rows hold the joints that close loops in space, when many follow from others?
 //
 // They are chosen by Gram-Schmidt, the one that has most left over first. A choice stays until
-// another would leave three times as much of its last row: the reactions of joints that hold each
+// another would leave twice as much of its last row: the reactions of joints that hold each
 // other up are not determined, and should not jump without need.
 #include "reference/space_loops.h"
 
@@ -14,7 +14,7 @@
 static const double INDEPENDENT = 1e-7;
 
 // A choice stays while its worst row has this share left of what the fittest choice has
-static const double FIT = 0.3;
+static const double FIT = 0.5;
 
 // A matrix of the rows of loops, one behind the other, in units of length.
 typedef struct Rows {
@@ -145,7 +145,6 @@ void space_loops_choose(const SpaceTree *tree, const SpaceTreeState *state, bool
     fill_rows(tree, state, loops, &rows);
     loops->row_count = choose(&rows, 0, NULL, loops->rows, left);
     if (!is_first) {
-        loops->is_stuck = before.is_stuck || loops->row_count > before.row_count;
         const double fittest = loops->row_count > 0 ? left[loops->row_count - 1] : 0.0;
         fill_rows(tree, state, loops, &rows);
         SpaceLoopRow kept[SPACE_LOOPS_ROW_MAX];

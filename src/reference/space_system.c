@@ -136,6 +136,7 @@ static bool space_rebase(System *system, double since_s, double *y)
     if (tree->loop_count > 0) {
         space_tree_evaluate(tree, 0.0, y, y + n, &dynamics->scratch->tree);
         space_loops_choose(tree, &dynamics->scratch->tree, false, &dynamics->loops);
+        system->torn = space_loops_torn(tree, &dynamics->scratch->tree, &dynamics->loops);
     }
     // the turns of floating bodies have other rates from their new base on
     return tree->has_floating || tree->loop_count > 0;

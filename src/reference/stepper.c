@@ -279,6 +279,9 @@ bool stepper_next(Stepper *stepper, Err *err)
             has_begun = is_onset(stepper);
             stepper->is_after_onset = stepper->is_after_onset || has_begun;
             take_over(stepper);
+            if (stepper->system->torn >= 0) {
+                return pace_torn(stepper->system, err);
+            }
         }
         const double time_s = stepper->system->kind->time(stepper->system, 0.0);
         if (!pace_keep(&stepper->pace, stepper->system, &stepper->events, time_s, err) ||
