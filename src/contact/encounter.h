@@ -2,8 +2,11 @@
 // integrated by themselves, in steps of their own, within one step of the world.
 //
 // The relative motion of each pin in its hole has rows: x and y of the pin's centre less the
-// hole's, and with friction the turns of the hole's and of the pin's body. What acts in a row moves
-// all rows by the mobility of the linkage (model/response.h).
+// hole's, and with friction the turns of the hole's and of the pin's body. In space every place at
+// which a pin can touch is a joint of its own, x and y are across the pin's axis, and friction also
+// has rows for the sliding along the axis and for the turns of both bodies about x and y
+// (contact/pin_space_rows.h). What acts in a row moves all rows by the mobility of the linkage
+// (model/response.h).
 #pragma once
 
 #include "contact/force_law.h"
@@ -15,12 +18,22 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// One joint with play. The first four are given; the rest lives on from one step to the next.
+enum {
+    ENCOUNTER_JOINT_MAX = 32, // one bit each in a node
+    ENCOUNTER_ROWS_PLAIN = 2, // of a joint without friction
+    ENCOUNTER_ROWS_MOST = 9,  // with friction in space; RESPONSE_ROWS_A_JOINT in the plane
+};
+
+// One joint with play. The first five are given; the rest lives on from one step to the next.
 typedef struct EncounterJoint {
     ForceLaw law;
     double radial_clearance; // m
     double hole_radius;      // m
     int joint;               // number in the linkage
+    int other_end;           // of a hole with two ends in space, where the other one stands among
+                             // the joints from here: 1 or -1; else 0
+    size_t first_row;
+    size_t row_count;
     bool is_touching;
     double impact_speed; // m/s, closing speed where the contact under way began
     double touching_s;   // s, since then
@@ -30,9 +43,10 @@ typedef struct EncounterJoint {
 
 typedef struct Encounter {
     size_t joint_count;
-    EncounterJoint joints[LINKAGE_JOINT_MAX];
-    size_t rows_a_joint; // 2, or 4 with friction
-    double friction;     // 1, Coulomb's coefficient
+    EncounterJoint joints[ENCOUNTER_JOINT_MAX];
+    size_t row_count;               // all joints together
+    int joint_of[RESPONSE_ROW_MAX]; // of a row: which of the joints here
+    double friction;                // 1, Coulomb's coefficient
     double friction_speed;
     double phase;  // rad of a contact's oscillation in one local step
     double stable; // time constants of a contact's damping in an explicit local step, at most
@@ -63,8 +77,12 @@ typedef struct EncounterPose {
     bool is_touching;
 } EncounterPose;
 
-// An encounter of no joints yet; the number of joints and their given parts are set next.
+// An encounter of no joints yet.
 Encounter encounter_start(double friction, double friction_speed, double phase);
+
+// Adds a joint, of which the first five parts are given, with its rows: ENCOUNTER_ROWS_PLAIN, or
+// more of one with friction. Returns false where there is no room for it.
+bool encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t rows);
 void encounter_finish(Encounter *encounter);
 
 // The number of rows, all joints together.

@@ -16,9 +16,10 @@ static void move_rows(const Encounter *encounter, size_t joint, const double *im
                       double *moved)
 {
     const size_t all = encounter_rows(encounter);
-    const size_t own = encounter->rows_a_joint;
+    const size_t first = encounter->joints[joint].first_row;
+    const size_t own = encounter->joints[joint].row_count;
     for (size_t i = 0; i < own; i++) {
-        const double *mobility = encounter->mobility + (joint * own + i) * all;
+        const double *mobility = encounter->mobility + (first + i) * all;
         moved[i] = 0.0;
         for (size_t k = 0; k < all; k++) {
             moved[i] += mobility[k] * impulse[k];
@@ -29,9 +30,10 @@ static void move_rows(const Encounter *encounter, size_t joint, const double *im
 // The size of what rows do along the wall, turns at the wall included.
 static double along_wall(const Encounter *encounter, size_t joint, Vec2 tangent, const double *rows)
 {
+    const EncounterJoint *of = &encounter->joints[joint];
     double sum = fabs(tangent.x * rows[0] + tangent.y * rows[1]);
-    for (size_t i = 2; i < encounter->rows_a_joint; i++) {
-        sum += encounter->joints[joint].hole_radius * fabs(rows[i]);
+    for (size_t i = ENCOUNTER_ROWS_PLAIN; i < of->row_count; i++) {
+        sum += (i == ENCOUNTER_ROW_AXIAL ? 1.0 : of->hole_radius) * fabs(rows[i]);
     }
     return sum;
 }
@@ -40,18 +42,18 @@ static double share_of_joint(const Encounter *encounter, size_t joint, const Enc
                              double width_s, const double *moved, const double *impulse,
                              const double *moment)
 {
-    const size_t own = encounter->rows_a_joint;
+    const size_t first = encounter->joints[joint].first_row;
+    const size_t own = encounter->joints[joint].row_count;
     const double square = encounter->phase * encounter->phase;
     const double rounding = ROUNDINGS * encounter->joints[joint].radial_clearance;
     const PinHole pose =
         encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
     const Vec2 tangent = vec2_perp(pose.normal);
-    double speeds[RESPONSE_ROWS_A_JOINT];
-    double changes[RESPONSE_ROWS_A_JOINT];
-    double errors[2][RESPONSE_ROWS_A_JOINT];
+    double speeds[ENCOUNTER_ROWS_MOST];
+    double changes[ENCOUNTER_ROWS_MOST];
+    double errors[2][ENCOUNTER_ROWS_MOST];
     for (size_t i = 0; i < own; i++) {
-        speeds[i] =
-            encounter_force_row_speed(encounter, joint * own + i, from->time_s, from->impulse);
+        speeds[i] = encounter_force_row_speed(encounter, first + i, from->time_s, from->impulse);
     }
     move_rows(encounter, joint, moved, changes);
     move_rows(encounter, joint, impulse, errors[0]);

@@ -3,7 +3,11 @@
 // Normal force by the law (contact/force_law.h). Friction, as in reference/dynamics_contact.c:
 // mu N tanh(v_t / v_s) against the sliding speed
 //     v_t = t . u_e' + R u_a' - (R - |e|) u_b',   t the normal turned by a quarter turn,
-// R the hole's radius, e eccentricity, u_a', u_b' the turning of the hole's and the pin's body.
+// R the hole's radius, e eccentricity, u_a', u_b' the turning of the hole's and the pin's body
+// about the pin's axis. In space the pin slides along the axis too, with w the turning about x and
+// y,
+//     v_z = u_z' - R t . w_a + (R - |e|) t . w_b
+// and friction is mu N tanh(s / v_s) against the direction of (v_t, v_z), s its size.
 #include "contact/encounter_force.h"
 
 #include <math.h>
@@ -38,7 +42,7 @@ double encounter_force_row_speed(const Encounter *encounter, size_t row, double 
 PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double time_s,
                              const double *impulse, const double *moment)
 {
-    const size_t row = joint * encounter->rows_a_joint;
+    const size_t row = encounter->joints[joint].first_row;
     const Vec2 position = {row_position(encounter, row, time_s, moment),
                            row_position(encounter, row + 1, time_s, moment)};
     const Vec2 speed = {encounter_force_row_speed(encounter, row, time_s, impulse),
@@ -47,25 +51,63 @@ PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double ti
                          encounter->joints[joint].radial_clearance);
 }
 
+// How fast a pin slides round its hole.
+static double sliding_round(const Encounter *encounter, size_t row, double time_s,
+                            const double *impulse, Vec2 tangent, double hole_arm, double pin_arm)
+{
+    return tangent.x * encounter_force_row_speed(encounter, row, time_s, impulse) +
+           tangent.y * encounter_force_row_speed(encounter, row + 1, time_s, impulse) +
+           hole_arm * encounter_force_row_speed(encounter, row + 2, time_s, impulse) -
+           pin_arm * encounter_force_row_speed(encounter, row + 3, time_s, impulse);
+}
+
+// How fast a pin slides along its axis.
+static double sliding_along(const Encounter *encounter, size_t row, double time_s,
+                            const double *impulse, Vec2 tangent, double hole_arm, double pin_arm)
+{
+    double rates[ENCOUNTER_ROWS_MOST];
+    for (size_t i = ENCOUNTER_ROW_AXIAL; i < ENCOUNTER_ROWS_MOST; i++) {
+        rates[i] = encounter_force_row_speed(encounter, row + i, time_s, impulse);
+    }
+    const double *hole = rates + ENCOUNTER_ROW_HOLE;
+    const double *pin = rates + ENCOUNTER_ROW_PIN;
+    return rates[ENCOUNTER_ROW_AXIAL] - hole_arm * (tangent.x * hole[0] + tangent.y * hole[1]) +
+           pin_arm * (tangent.x * pin[0] + tangent.y * pin[1]);
+}
+
 // Adds friction to a joint's rows that press with a normal force; returns the power it takes, W.
 static double add_friction(const Encounter *encounter, size_t joint, double time_s,
                            const double *impulse, const PinHole *pose, double normal, double *force)
 {
-    const size_t row = joint * encounter->rows_a_joint;
-    const double hole_arm = encounter->joints[joint].hole_radius;
+    const EncounterJoint *of = &encounter->joints[joint];
+    const size_t row = of->first_row;
+    const double hole_arm = of->hole_radius;
     const double pin_arm = hole_arm - pose->eccentricity_size;
     const Vec2 tangent = vec2_perp(pose->normal);
     const double sliding =
-        tangent.x * encounter_force_row_speed(encounter, row, time_s, impulse) +
-        tangent.y * encounter_force_row_speed(encounter, row + 1, time_s, impulse) +
-        hole_arm * encounter_force_row_speed(encounter, row + 2, time_s, impulse) -
-        pin_arm * encounter_force_row_speed(encounter, row + 3, time_s, impulse);
-    const double held = encounter->friction * normal * tanh(sliding / encounter->friction_speed);
+        sliding_round(encounter, row, time_s, impulse, tangent, hole_arm, pin_arm);
+    double held = encounter->friction * normal * tanh(sliding / encounter->friction_speed);
+    double power = held * sliding;
+    if (of->row_count == ENCOUNTER_ROWS_MOST) {
+        const double axial =
+            sliding_along(encounter, row, time_s, impulse, tangent, hole_arm, pin_arm);
+        const double size = hypot(sliding, axial);
+        const double all = encounter->friction * normal * tanh(size / encounter->friction_speed);
+        const double share = size > 0.0 ? all / size : 0.0;
+        const double along = share * axial;
+        held = share * sliding;
+        power = all * size;
+        force[row + ENCOUNTER_ROW_AXIAL] = -along;
+        force[row + ENCOUNTER_ROW_HOLE] = hole_arm * along * tangent.x;
+        force[row + ENCOUNTER_ROW_HOLE + 1] = hole_arm * along * tangent.y;
+        force[row + ENCOUNTER_ROW_PIN] = -pin_arm * along * tangent.x;
+        force[row + ENCOUNTER_ROW_PIN + 1] = -pin_arm * along * tangent.y;
+    }
     force[row] -= held * tangent.x;
     force[row + 1] -= held * tangent.y;
-    force[row + 2] = -hole_arm * held;
-    force[row + 3] = pin_arm * held;
-    return held * sliding;
+    force[row + ENCOUNTER_ROW_TURN] = -hole_arm * held;
+    force[row + ENCOUNTER_ROW_TURN + 1] = pin_arm * held;
+    return power;
 }
 
 void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
@@ -75,9 +117,9 @@ void encounter_force_find(Encounter *encounter, double time_s, const double *imp
     powers[0] = powers[1] = 0.0;
     for (size_t i = 0; i < encounter->joint_count; i++) {
         const EncounterJoint *joint = &encounter->joints[i];
-        double *own = force + i * encounter->rows_a_joint;
+        double *own = force + joint->first_row;
         if (!joint->is_touching) {
-            memset(own, 0, encounter->rows_a_joint * sizeof *own);
+            memset(own, 0, joint->row_count * sizeof *own);
             continue;
         }
         const PinHole pose = encounter_force_pose(encounter, i, time_s, impulse, moment);
@@ -87,20 +129,28 @@ void encounter_force_find(Encounter *encounter, double time_s, const double *imp
         own[0] = normal * pose.normal.x;
         own[1] = normal * pose.normal.y;
         powers[0] += (normal - elastic) * pose.approach_speed;
-        if (encounter->friction > 0.0) {
+        if (joint->row_count > ENCOUNTER_ROWS_PLAIN) {
             powers[1] += add_friction(encounter, i, time_s, impulse, &pose, normal, force);
         }
     }
 }
 
-// Mobility along the normal of a joint, 1/kg.
+// Mobility along the normal of a joint, 1/kg. Two ends of a hole that press alike move each other.
 static double normal_mobility(const Encounter *encounter, size_t joint, Vec2 normal)
 {
     const size_t width = encounter_rows(encounter);
-    const size_t row = joint * encounter->rows_a_joint;
-    const double *first = encounter->mobility + row * width + row;
-    return normal.x * (first[0] * normal.x + 2.0 * first[1] * normal.y) +
-           normal.y * first[width + 1] * normal.y;
+    const EncounterJoint *of = &encounter->joints[joint];
+    const double *first = encounter->mobility + of->first_row * width + of->first_row;
+    const double own = normal.x * (first[0] * normal.x + 2.0 * first[1] * normal.y) +
+                       normal.y * first[width + 1] * normal.y;
+    if (of->other_end == 0) {
+        return own;
+    }
+    const double *other =
+        encounter->mobility + of->first_row * width + (of + of->other_end)->first_row;
+    const double between = normal.x * (other[0] * normal.x + other[1] * normal.y) +
+                           normal.y * (other[width] * normal.x + other[width + 1] * normal.y);
+    return own + fabs(between);
 }
 
 double encounter_force_frequency(const Encounter *encounter, size_t joint, Vec2 normal,
@@ -120,12 +170,13 @@ double encounter_force_decay(const Encounter *encounter, size_t joint, Vec2 norm
 double encounter_force_friction_time(const Encounter *encounter, size_t joint, const double *force)
 {
     const size_t width = encounter_rows(encounter);
-    const size_t row = joint * encounter->rows_a_joint;
+    const size_t row = encounter->joints[joint].first_row;
     const double arm = encounter->joints[joint].hole_radius;
     double mobility = 0.0;
-    for (size_t k = 0; k < 4; k++) {
+    for (size_t k = 0; k < encounter->joints[joint].row_count; k++) {
         const double diagonal = encounter->mobility[(row + k) * width + row + k];
-        mobility += k < 2 ? diagonal : arm * arm * diagonal;
+        const bool is_turn = k >= ENCOUNTER_ROWS_PLAIN && k != ENCOUNTER_ROW_AXIAL;
+        mobility += is_turn ? arm * arm * diagonal : diagonal;
     }
     const double held = encounter->friction * hypot(force[row], force[row + 1]);
     return held > 0.0 ? encounter->friction_speed / (held * mobility) : INFINITY;

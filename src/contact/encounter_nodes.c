@@ -108,7 +108,7 @@ void encounter_at(const Encounter *encounter, size_t node, double time_s, Encoun
 EncounterPose encounter_pose(const Encounter *encounter, size_t joint, size_t node, double time_s,
                              const EncounterSums *sums)
 {
-    const size_t row = joint * encounter->rows_a_joint;
+    const size_t row = encounter->joints[joint].first_row;
     return (EncounterPose){
         .pose = encounter_force_pose(encounter, joint, time_s, sums->impulse, sums->moment),
         .force = {sums->force[row], sums->force[row + 1]},

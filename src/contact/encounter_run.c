@@ -32,7 +32,6 @@ static const double AT_ONCE = 1e-7;
 Encounter encounter_start(double friction, double friction_speed, double phase)
 {
     return (Encounter){
-        .rows_a_joint = friction > 0.0 ? 4 : 2,
         .friction = friction,
         .friction_speed = friction_speed,
         .phase = phase,
@@ -42,7 +41,24 @@ Encounter encounter_start(double friction, double friction_speed, double phase)
 
 size_t encounter_rows(const Encounter *encounter)
 {
-    return encounter->joint_count * encounter->rows_a_joint;
+    return encounter->row_count;
+}
+
+bool encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t rows)
+{
+    if (encounter->joint_count == ENCOUNTER_JOINT_MAX ||
+        encounter->row_count + rows > RESPONSE_ROW_MAX) {
+        return false;
+    }
+    EncounterJoint *added = &encounter->joints[encounter->joint_count];
+    *added = *joint;
+    added->first_row = encounter->row_count;
+    added->row_count = rows;
+    for (size_t i = 0; i < rows; i++) {
+        encounter->joint_of[encounter->row_count++] = (int)encounter->joint_count;
+    }
+    encounter->joint_count++;
+    return true;
 }
 
 static void complete_point(Encounter *encounter, EncounterPoint *point)
@@ -155,7 +171,7 @@ static uint32_t find_events(Encounter *encounter, const EncounterPoint *from,
                             const EncounterPoint *to, double *width_s)
 {
     const double whole_s = *width_s;
-    double crossings[LINKAGE_JOINT_MAX];
+    double crossings[ENCOUNTER_JOINT_MAX];
     for (size_t i = 0; i < encounter->joint_count; i++) {
         double bracket_s = whole_s;
         double first;

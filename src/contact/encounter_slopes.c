@@ -7,12 +7,16 @@
 //     H = mu N tanh(v_t / v_s)
 //     dv_t = (n . v) (t . de) / |e| + u_b' o . de + t . dv + R du_a' - (R - |e|) du_b'
 //     F = N n - H t,  moments -R H and (R - |e|) H
+// In space, with s = |(v_t, v_z)| and phi = tanh(s / v_s) / s,
+//     H_t = mu N phi v_t,  H_z = mu N phi v_z
+//     dv_z = du_z' + (R - |e|) t . dw_b - R t . dw_a
+//            + ((R - |e|) n . w_b - R n . w_a) (t . de) / |e| - t . w_b o . de
 #include "contact/encounter_slopes.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { PLACES = 2, SPEEDS = RESPONSE_ROWS_A_JOINT, PARTS = PLACES + SPEEDS };
+enum { PLACES = 2, SPEEDS = ENCOUNTER_ROWS_MOST, PARTS = PLACES + SPEEDS };
 
 // A scalar's derivatives: by e, then by the rates of the joint's rows.
 typedef struct Gradient {
@@ -21,7 +25,7 @@ typedef struct Gradient {
 
 static Gradient along(Vec2 by_place, Vec2 by_speed)
 {
-    return (Gradient){{by_place.x, by_place.y, by_speed.x, by_speed.y, 0.0, 0.0}};
+    return (Gradient){{by_place.x, by_place.y, by_speed.x, by_speed.y}};
 }
 
 // The normal force and its gradient.
@@ -63,10 +67,65 @@ static void write_slopes(EncounterSlopes *slopes, size_t row, double force,
     memcpy(slopes->by_speed[row], gradient->of + PLACES, SPEEDS * sizeof *gradient->of);
 }
 
-// Friction's force along the tangent, taken from it, and its gradient.
-static double find_friction(const Encounter *encounter, const EncounterJoint *joint,
-                            const PinHole *pose, const double *speeds, double normal,
-                            const Gradient *by_normal, Gradient *gradient)
+// Friction's force, taken from the pin: along the tangent, and along its axis; with gradients.
+typedef struct Held {
+    double round;
+    double axial;
+    Gradient by_round;
+    Gradient by_axial;
+} Held;
+
+// How fast the pin slides along its axis, and how that changes.
+static double find_axial(const EncounterJoint *joint, const PinHole *pose, const double *speeds,
+                         Gradient *gradient)
+{
+    const double hole_arm = joint->hole_radius;
+    const double pin_arm = hole_arm - pose->eccentricity_size;
+    const Vec2 tangent = vec2_perp(pose->normal);
+    const Vec2 hole = {speeds[ENCOUNTER_ROW_HOLE], speeds[ENCOUNTER_ROW_HOLE + 1]};
+    const Vec2 pin = {speeds[ENCOUNTER_ROW_PIN], speeds[ENCOUNTER_ROW_PIN + 1]};
+    const Vec2 arms = vec2_sub(vec2_scale(pin_arm, pin), vec2_scale(hole_arm, hole));
+    const double turning = vec2_dot(pose->normal, arms) / pose->eccentricity_size;
+    *gradient = along(
+        vec2_add(vec2_scale(turning, tangent), vec2_scale(vec2_dot(tangent, pin), pose->normal)),
+        (Vec2){0.0, 0.0});
+    double *by_speed = gradient->of + PLACES;
+    by_speed[ENCOUNTER_ROW_AXIAL] = 1.0;
+    by_speed[ENCOUNTER_ROW_HOLE] = -hole_arm * tangent.x;
+    by_speed[ENCOUNTER_ROW_HOLE + 1] = -hole_arm * tangent.y;
+    by_speed[ENCOUNTER_ROW_PIN] = pin_arm * tangent.x;
+    by_speed[ENCOUNTER_ROW_PIN + 1] = pin_arm * tangent.y;
+    return speeds[ENCOUNTER_ROW_AXIAL] + vec2_dot(tangent, arms);
+}
+
+// Friction against a sliding that has two directions.
+static void find_both(const Encounter *encounter, double round, const Gradient *by_round,
+                      double axial, const Gradient *by_axial, double normal,
+                      const Gradient *by_normal, Held *held)
+{
+    const double speed = encounter->friction_speed;
+    const double size = hypot(round, axial);
+    const double hold = tanh(size / speed);
+    const bool is_slow = size < 1e-4 * speed;
+    const double share = is_slow ? 1.0 / speed : hold / size;
+    const double bend = is_slow ? -2.0 / (3.0 * speed * speed * speed)
+                                : ((1.0 - hold * hold) / speed - share) / (size * size);
+    for (size_t k = 0; k < PARTS; k++) {
+        const double growth = bend * (round * by_round->of[k] + axial * by_axial->of[k]);
+        const double along_round = share * by_round->of[k] + growth * round;
+        const double along_axis = share * by_axial->of[k] + growth * axial;
+        held->by_round.of[k] =
+            encounter->friction * (share * round * by_normal->of[k] + normal * along_round);
+        held->by_axial.of[k] =
+            encounter->friction * (share * axial * by_normal->of[k] + normal * along_axis);
+    }
+    held->round = encounter->friction * normal * share * round;
+    held->axial = encounter->friction * normal * share * axial;
+}
+
+static void find_friction(const Encounter *encounter, const EncounterJoint *joint,
+                          const PinHole *pose, const double *speeds, double normal,
+                          const Gradient *by_normal, Held *held)
 {
     const Vec2 tangent = vec2_perp(pose->normal);
     const Vec2 velocity = {speeds[0], speeds[1]};
@@ -78,13 +137,60 @@ static double find_friction(const Encounter *encounter, const EncounterJoint *jo
         vec2_add(vec2_scale(turning, tangent), vec2_scale(-speeds[3], pose->normal)), tangent);
     by_sliding.of[PLACES + 2] = hole_arm;
     by_sliding.of[PLACES + 3] = -pin_arm;
+    if (joint->row_count == ENCOUNTER_ROWS_MOST) {
+        Gradient by_axial;
+        const double axial = find_axial(joint, pose, speeds, &by_axial);
+        find_both(encounter, sliding, &by_sliding, axial, &by_axial, normal, by_normal, held);
+        return;
+    }
     const double share = tanh(sliding / encounter->friction_speed);
     const double slope = (1.0 - share * share) / encounter->friction_speed;
     for (size_t k = 0; k < PARTS; k++) {
-        gradient->of[k] =
+        held->by_round.of[k] =
             encounter->friction * (share * by_normal->of[k] + normal * slope * by_sliding.of[k]);
     }
-    return encounter->friction * normal * share;
+    held->round = encounter->friction * normal * share;
+}
+
+// The rows of the bodies' turns about the pin's axis.
+static void write_turns(const EncounterJoint *joint, const PinHole *pose, const Held *held,
+                        EncounterSlopes *slopes)
+{
+    const Vec2 still = {0.0, 0.0};
+    const double arm = joint->hole_radius;
+    const double pin_arm = arm - pose->eccentricity_size;
+    const Gradient fixed = along(still, still);
+    const Gradient shortens = along(pose->normal, still); // of R - |e|
+    const Gradient on_hole = product_rule(held->round, &held->by_round, -arm, &fixed);
+    const Gradient on_pin = product_rule(held->round, &held->by_round, pin_arm, &shortens);
+    write_slopes(slopes, ENCOUNTER_ROW_TURN, -arm * held->round, &on_hole);
+    write_slopes(slopes, ENCOUNTER_ROW_TURN + 1, pin_arm * held->round, &on_pin);
+}
+
+// The rows that friction along the axis acts in.
+static void write_axial(const EncounterJoint *joint, const PinHole *pose, const Held *held,
+                        EncounterSlopes *slopes)
+{
+    const Vec2 still = {0.0, 0.0};
+    const Vec2 tangent = vec2_perp(pose->normal);
+    const Vec2 round = vec2_scale(1.0 / pose->eccentricity_size, tangent);
+    const double n[2] = {pose->normal.x, pose->normal.y};
+    const double t[2] = {tangent.x, tangent.y};
+    const double arm = joint->hole_radius;
+    const double pin_arm = arm - pose->eccentricity_size;
+    const Gradient fixed = along(still, still);
+    const Gradient lengthens = along(vec2_scale(-1.0, pose->normal), still); // of |e| - R
+    const Gradient on_axis = product_rule(held->axial, &held->by_axial, -1.0, &fixed);
+    write_slopes(slopes, ENCOUNTER_ROW_AXIAL, -held->axial, &on_axis);
+    for (size_t i = 0; i < 2; i++) {
+        const Gradient turns = along(vec2_scale(n[i], round), still);
+        const double part = held->axial * t[i];
+        const Gradient by_part = product_rule(held->axial, &held->by_axial, t[i], &turns);
+        const Gradient on_hole = product_rule(part, &by_part, arm, &fixed);
+        const Gradient on_pin = product_rule(part, &by_part, -pin_arm, &lengthens);
+        write_slopes(slopes, ENCOUNTER_ROW_HOLE + i, arm * part, &on_hole);
+        write_slopes(slopes, ENCOUNTER_ROW_PIN + i, -pin_arm * part, &on_pin);
+    }
 }
 
 void encounter_slopes_find(const Encounter *encounter, size_t number, double time_s,
@@ -92,15 +198,14 @@ void encounter_slopes_find(const Encounter *encounter, size_t number, double tim
                            EncounterSlopes *slopes)
 {
     const EncounterJoint *joint = &encounter->joints[number];
-    const size_t rows = encounter->rows_a_joint;
     const PinHole pose = encounter_force_pose(encounter, number, time_s, impulse, moment);
     memset(slopes, 0, sizeof *slopes);
     if (!joint->is_touching || (pose.penetration <= 0.0 && from_depth == 0.0)) {
         return;
     }
     double speeds[SPEEDS] = {0.0};
-    for (size_t i = 0; i < rows; i++) {
-        speeds[i] = encounter_force_row_speed(encounter, number * rows + i, time_s, impulse);
+    for (size_t i = 0; i < joint->row_count; i++) {
+        speeds[i] = encounter_force_row_speed(encounter, joint->first_row + i, time_s, impulse);
     }
     Gradient by_normal;
     const double normal =
@@ -114,30 +219,25 @@ void encounter_slopes_find(const Encounter *encounter, size_t number, double tim
     const Vec2 still = {0.0, 0.0};
     const double n[2] = {pose.normal.x, pose.normal.y};
     const double t[2] = {tangent.x, tangent.y};
-    Gradient by_friction = along(still, still);
+    Held held = {.round = 0.0};
     // a wall that pulls rubs on nothing
-    const double held =
-        encounter->friction > 0.0 && normal > 0.0
-            ? find_friction(encounter, joint, &pose, speeds, normal, &by_normal, &by_friction)
-            : 0.0;
+    if (joint->row_count > ENCOUNTER_ROWS_PLAIN && normal > 0.0) {
+        find_friction(encounter, joint, &pose, speeds, normal, &by_normal, &held);
+    }
     for (size_t i = 0; i < 2; i++) {
         const Gradient normal_turns = along(vec2_scale(-t[i], round), still);
         const Gradient tangent_turns = along(vec2_scale(n[i], round), still);
         Gradient row = product_rule(normal, &by_normal, n[i], &normal_turns);
-        const Gradient taken = product_rule(held, &by_friction, t[i], &tangent_turns);
+        const Gradient taken = product_rule(held.round, &held.by_round, t[i], &tangent_turns);
         for (size_t k = 0; k < PARTS; k++) {
             row.of[k] -= taken.of[k];
         }
-        write_slopes(slopes, i, normal * n[i] - held * t[i], &row);
+        write_slopes(slopes, i, normal * n[i] - held.round * t[i], &row);
     }
-    if (rows == RESPONSE_ROWS_A_JOINT) {
-        const double arm = joint->hole_radius;
-        const double pin_arm = arm - pose.eccentricity_size;
-        const Gradient fixed = along(still, still);
-        const Gradient shortens = along(pose.normal, still); // of R - |e|
-        const Gradient on_hole = product_rule(held, &by_friction, -arm, &fixed);
-        const Gradient on_pin = product_rule(held, &by_friction, pin_arm, &shortens);
-        write_slopes(slopes, 2, -arm * held, &on_hole);
-        write_slopes(slopes, 3, pin_arm * held, &on_pin);
+    if (joint->row_count > ENCOUNTER_ROWS_PLAIN) {
+        write_turns(joint, &pose, &held, slopes);
+    }
+    if (joint->row_count == ENCOUNTER_ROWS_MOST) {
+        write_axial(joint, &pose, &held, slopes);
     }
 }

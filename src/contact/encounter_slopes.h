@@ -4,9 +4,9 @@
 #include "contact/encounter_force.h"
 
 typedef struct EncounterSlopes {
-    double force[RESPONSE_ROWS_A_JOINT];                           // N, N m
-    double by_place[RESPONSE_ROWS_A_JOINT][2];                     // N/m, of the first two rows
-    double by_speed[RESPONSE_ROWS_A_JOINT][RESPONSE_ROWS_A_JOINT]; // N s/m
+    double force[ENCOUNTER_ROWS_MOST];                         // N, N m
+    double by_place[ENCOUNTER_ROWS_MOST][2];                   // N/m, of the first two rows
+    double by_speed[ENCOUNTER_ROWS_MOST][ENCOUNTER_ROWS_MOST]; // N s/m
 } EncounterSlopes;
 
 // Writes force and derivatives of one joint, all zero where it does not touch. With `from_depth` 0,

@@ -46,7 +46,7 @@ static void list_rows(const Encounter *encounter, EncounterStages *stages,
         stages->from_depth[i] = FROM_DEPTH * fmax(pose.penetration, 0.0);
     }
     for (size_t i = 0; i < encounter_rows(encounter); i++) {
-        if (encounter->joints[i / encounter->rows_a_joint].is_touching) {
+        if (encounter->joints[encounter->joint_of[i]].is_touching) {
             stages->row_of[stages->count++] = i;
         }
     }
@@ -58,15 +58,16 @@ static void differentiate(const Encounter *encounter, EncounterStages *stages, s
                           bool is_smooth)
 {
     const size_t all = encounter_rows(encounter);
-    const size_t own = encounter->rows_a_joint;
     const size_t n = stages->count;
-    for (size_t first = 0; first < n; first += own) {
-        const size_t joint = stages->row_of[first] / own;
-        const double *mobility = encounter->mobility + joint * own * all;
+    for (size_t first = 0, own; first < n; first += own) {
+        const size_t row = stages->row_of[first];
+        const size_t joint = (size_t)encounter->joint_of[row];
+        const double *mobility = encounter->mobility + row * all;
+        own = encounter->joints[joint].row_count;
         EncounterSlopes slopes;
         encounter_slopes_find(encounter, joint, time_s, impulse, moment,
                               is_smooth ? stages->from_depth[joint] : 0.0, &slopes);
-        memcpy(stages->forces[which] + joint * own, slopes.force, own * sizeof *slopes.force);
+        memcpy(stages->forces[which] + row, slopes.force, own * sizeof *slopes.force);
         for (size_t i = 0; i < own; i++) {
             for (size_t k = 0; k < n; k++) {
                 const double *column = mobility + stages->row_of[k];
@@ -171,8 +172,9 @@ static double correct_stages(const Encounter *encounter, EncounterStages *stages
 static void extend_forces(const Encounter *encounter, EncounterStages *stages,
                           const EncounterPoint *from, double after_s, size_t stage, size_t joint)
 {
-    const size_t own = encounter->rows_a_joint;
-    const double *free = encounter->free + joint * own;
+    const size_t row = encounter->joints[joint].first_row;
+    const size_t own = encounter->joints[joint].row_count;
+    const double *free = encounter->free + row;
     EncounterSlopes slopes;
     encounter_slopes_find(encounter, joint, from->time_s, from->impulse, from->moment,
                           stages->from_depth[joint], &slopes);
@@ -187,7 +189,7 @@ static void extend_forces(const Encounter *encounter, EncounterStages *stages,
         for (size_t k = 0; k < own; k++) {
             force += slopes.by_speed[i][k] * after_s * free[k];
         }
-        stages->forces[stage][joint * own + i] = force;
+        stages->forces[stage][row + i] = force;
     }
 }
 
@@ -196,15 +198,15 @@ static void extend_forces(const Encounter *encounter, EncounterStages *stages,
 static bool guess_stages(const Encounter *encounter, EncounterStages *stages,
                          const EncounterPoint *from, double width_s)
 {
-    const size_t own = encounter->rows_a_joint;
     memset(stages->moved, 0, sizeof stages->moved);
     differentiate(encounter, stages, ENCOUNTER_STAGES, from->time_s, from->impulse, from->moment,
                   true);
     for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
         find_stage(encounter, stages, from, width_s, s);
-        for (size_t first = 0; first < stages->count; first += own) {
-            extend_forces(encounter, stages, from, ENCOUNTER_NODE[s] * width_s, s,
-                          stages->row_of[first] / own);
+        for (size_t i = 0; i < encounter->joint_count; i++) {
+            if (encounter->joints[i].is_touching) {
+                extend_forces(encounter, stages, from, ENCOUNTER_NODE[s] * width_s, s, i);
+            }
         }
     }
     if (!factor_stages(stages, width_s, true)) {
@@ -234,22 +236,31 @@ static bool iterate_stages(Encounter *encounter, EncounterStages *stages,
     return false;
 }
 
-// Whether the forces at the stages are where the smooth ones are right.
+// Whether the forces of a joint at the stages are where the smooth ones are right.
+static bool is_joint_pressing(const Encounter *encounter, const EncounterStages *stages,
+                              const EncounterPoint *from, double width_s, size_t joint)
+{
+    const size_t row = encounter->joints[joint].first_row;
+    for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
+        const PinHole pose =
+            encounter_force_pose(encounter, joint, from->time_s + ENCOUNTER_NODE[s] * width_s,
+                                 stages->impulse[s], stages->moment[s]);
+        const double along =
+            pose.normal.x * stages->forces[s][row] + pose.normal.y * stages->forces[s][row + 1];
+        if (!(along >= 0.0 && pose.penetration >= stages->from_depth[joint])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool is_pressing(const Encounter *encounter, const EncounterStages *stages,
                         const EncounterPoint *from, double width_s)
 {
-    const size_t own = encounter->rows_a_joint;
-    for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
-        for (size_t first = 0; first < stages->count; first += own) {
-            const size_t row = stages->row_of[first];
-            const PinHole pose = encounter_force_pose(encounter, row / own,
-                                                      from->time_s + ENCOUNTER_NODE[s] * width_s,
-                                                      stages->impulse[s], stages->moment[s]);
-            const double along =
-                pose.normal.x * stages->forces[s][row] + pose.normal.y * stages->forces[s][row + 1];
-            if (!(along >= 0.0 && pose.penetration >= stages->from_depth[row / own])) {
-                return false;
-            }
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        if (encounter->joints[i].is_touching &&
+            !is_joint_pressing(encounter, stages, from, width_s, i)) {
+            return false;
         }
     }
     return true;

@@ -13,7 +13,7 @@ extern const double ENCOUNTER_COUPLING[ENCOUNTER_STAGES][ENCOUNTER_STAGES];
 typedef struct EncounterStages {
     size_t count; // rows that touch
     size_t row_of[RESPONSE_ROW_MAX];
-    double from_depth[LINKAGE_JOINT_MAX];             // m, below which a smooth force is linear
+    double from_depth[ENCOUNTER_JOINT_MAX];           // m, below which a smooth force is linear
     double moved[ENCOUNTER_STAGES][RESPONSE_ROW_MAX]; // N s: the impulses since the start, by row
     double impulse[ENCOUNTER_STAGES][RESPONSE_ROW_MAX];
     double moment[ENCOUNTER_STAGES][RESPONSE_ROW_MAX];

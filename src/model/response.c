@@ -268,16 +268,16 @@ void response_solve(const Response *response, double *rows)
     solve_back(response, rows);
 }
 
-void response_close(const Response *response, const double *openings, double *changes)
+void response_close(const Response *response, const double *openings, double *impulses,
+                    double *changes)
 {
-    double rows[RESPONSE_ROW_MAX];
     for (size_t i = 0; i < response->ideal_rows; i++) {
-        rows[i] = -openings[i];
+        impulses[i] = -openings[i];
     }
-    response_solve(response, rows);
+    response_solve(response, impulses);
     memset(changes, 0, 3 * response->linkage->body_count * sizeof *changes);
     for (size_t i = 0; i < response->ideal_rows; i++) {
-        add_row(response->linkage, &response->rows[i], rows[i], changes);
+        add_row(response->linkage, &response->rows[i], impulses[i], changes);
     }
 }
 

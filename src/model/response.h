@@ -66,8 +66,10 @@ void response_apply(const Response *response, const double *impulses, double *ch
 void response_solve(const Response *response, double *rows);
 
 // Writes the changes, three a body, weighed by mass and inertia the least, that take from the rows
-// of the ideal joints what is given there: openings, m, of positions or m/s of velocities.
-void response_close(const Response *response, const double *openings, double *changes);
+// of the ideal joints what is given there: openings, m, of positions or m/s of velocities; and the
+// impulses in those rows, N s, that change velocities so.
+void response_close(const Response *response, const double *openings, double *impulses,
+                    double *changes);
 
 // The opening of the ideal joints at the positions, and the rate at which they open, two rows a
 // joint.

@@ -97,7 +97,7 @@ static void take_part(Impulse *impulse, const Mark *mark, const EncounterSums *b
     size_t touching = 0;
     for (size_t i = 0; i < encounter->joint_count; i++) {
         const EncounterJoint *joint = &encounter->joints[i];
-        const size_t row = i * encounter->rows_a_joint;
+        const size_t row = joint->first_row;
         impulse->impulse[joint->joint] =
             hypot(impulse->sums.impulse[row] - before->impulse[row],
                   impulse->sums.impulse[row + 1] - before->impulse[row + 1]);

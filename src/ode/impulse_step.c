@@ -48,18 +48,24 @@ static bool init_encounter(ImpulseStep *step, Err *err)
     const ContactOptions *contact = &scenario->contact;
     step->encounter =
         encounter_start(contact->friction, contact->friction_speed, scenario->ode.contact_phase);
+    const size_t rows = contact->friction > 0.0 ? RESPONSE_ROWS_A_JOINT : ENCOUNTER_ROWS_PLAIN;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
         if (joint->kind != JOINT_CLEARANCE) {
             continue;
         }
-        EncounterJoint *added = &step->encounter.joints[step->encounter.joint_count++];
-        added->joint = (int)i;
-        added->radial_clearance = linkage_radial_clearance(joint);
-        added->hole_radius = joint->clearance.hole_radius;
-        if (!law_of_joint(scenario, joint, &added->law, err)) {
+        EncounterJoint added = {
+            .joint = (int)i,
+            .radial_clearance = linkage_radial_clearance(joint),
+            .hole_radius = joint->clearance.hole_radius,
+        };
+        if (!law_of_joint(scenario, joint, &added.law, err)) {
             return false;
         }
+        // there is room: the response has as many rows
+        const bool is_added = encounter_add(&step->encounter, &added, rows);
+        assert(is_added);
+        (void)is_added;
     }
     return true;
 }
@@ -87,14 +93,14 @@ static void fill_rows(ImpulseStep *step)
     Encounter *encounter = &step->encounter;
     const Linkage *linkage = &step->scenario->linkage;
     for (size_t i = 0; i < encounter->joint_count; i++) {
-        const size_t row = i * encounter->rows_a_joint;
+        const size_t row = encounter->joints[i].first_row;
         const Joint *joint = &linkage->joints[encounter->joints[i].joint];
         const JointGap gap = linkage_joint_gap(linkage, step->before, encounter->joints[i].joint);
         encounter->position[row] = gap.position.x;
         encounter->position[row + 1] = gap.position.y;
         encounter->speed[row] = gap.velocity.x;
         encounter->speed[row + 1] = gap.velocity.y;
-        if (encounter->rows_a_joint == 4) {
+        if (encounter->joints[i].row_count == RESPONSE_ROWS_A_JOINT) {
             const int bodies[2] = {joint->body_a, joint->body_b};
             for (size_t k = 0; k < 2; k++) {
                 encounter->speed[row + 2 + k] =
@@ -109,7 +115,7 @@ static bool is_near_wall(const ImpulseStep *step, double width_s)
 {
     const Encounter *encounter = &step->encounter;
     for (size_t i = 0; i < encounter->joint_count; i++) {
-        const size_t row = i * encounter->rows_a_joint;
+        const size_t row = encounter->joints[i].first_row;
         const double clearance = encounter->joints[i].radial_clearance;
         // the free acceleration of the step before will do
         const Vec2 now = {encounter->position[row], encounter->position[row + 1]};
@@ -227,8 +233,9 @@ static void find_end(ImpulseStep *step, const Motion *middle)
     double openings[RESPONSE_ROW_MAX];
     double rates[RESPONSE_ROW_MAX];
     response_openings(&step->response, step->after, openings, rates);
-    response_close(&step->response, openings, positions);
-    response_close(&step->response, rates, speeds);
+    double unused[RESPONSE_ROW_MAX];
+    response_close(&step->response, openings, unused, positions);
+    response_close(&step->response, rates, step->closing, speeds);
     change_motions(step, positions, speeds, step->after);
 }
 
@@ -263,6 +270,20 @@ static void prepare_inside(ImpulseStep *step, double width_before_s)
     }
 }
 
+// The mean forces of the ideal joints: those of the step of the world, whose rows stand at
+// mid-step, and those that put the speeds back onto the joints.
+static void find_means(ImpulseStep *step)
+{
+    const Response *response = &step->response;
+    world_joint_forces(&step->world, step->mean);
+    for (size_t row = 0; row < response->ideal_rows; row += 2) {
+        JointState *mean = &step->mean[response->joint_of[row]];
+        const Vec2 closing = {step->closing[row], step->closing[row + 1]};
+        mean->force_on_b = vec2_add(mean->force_on_b, vec2_scale(1.0 / step->width_s, closing));
+        mean->force = vec2_length(mean->force_on_b);
+    }
+}
+
 // The work of the drive in the step: mean forces at mid-step, and what the contacts' force does
 // beyond its mean, as the driven body's speed turns.
 static void find_drive_work(ImpulseStep *step, const Motion *driven)
@@ -273,7 +294,7 @@ static void find_drive_work(ImpulseStep *step, const Motion *driven)
     const Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
     double work = 0.0;
     for (size_t i = 0; i < encounter->joint_count; i++) {
-        const size_t row = i * encounter->rows_a_joint;
+        const size_t row = encounter->joints[i].first_row;
         const double *sum = step->total.impulse + row;
         const double *moment = step->total.moment + row;
         JointState *mean = &step->mean[encounter->joints[i].joint];
@@ -288,7 +309,8 @@ static void find_drive_work(ImpulseStep *step, const Motion *driven)
         const Vec2 turning =
             vec2_sub(driven->acceleration, vec2_scale(driven->omega * driven->omega, arm));
         work -= (is_on_a ? -1.0 : 1.0) * vec2_dot(early, turning);
-        work -= encounter->rows_a_joint == 4 ? sum[is_on_a ? 2 : 3] * driven->omega : 0.0;
+        const bool has_turns = encounter->joints[i].row_count == RESPONSE_ROWS_A_JOINT;
+        work -= has_turns ? sum[is_on_a ? 2 : 3] * driven->omega : 0.0;
     }
     step->drive_work = work + width_s * stepping_drive(step->scenario, driven, offsets, step->mean);
 }
@@ -330,7 +352,7 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
     }
     find_end(step, middle);
     prepare_inside(step, width_before_s);
-    world_joint_forces(&step->world, step->mean);
+    find_means(step);
     find_drive_work(step, &middle[step->driven >= 0 ? step->driven : 0]);
     step->count++;
     return true;

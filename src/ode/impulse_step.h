@@ -27,6 +27,7 @@ typedef struct ImpulseStep {
     double rest[IMPULSE_CHANGE_MAX];      // of the end's positions, beyond the formula for inside
     double drive_work;                    // J, in the whole step
     EncounterSums total;                  // of the contacts, in the whole step
+    double closing[RESPONSE_ROW_MAX];     // N s, of the ideal joints' rows, beside the world's step
     JointState mean[LINKAGE_JOINT_MAX];   // mean forces of the ideal joints
 } ImpulseStep;
 

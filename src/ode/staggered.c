@@ -113,7 +113,7 @@ static bool move_on(const Scenario *scenario, double start_s, Response *response
         openings[row] -= 0.5 * step_s * step_s * turning.x;
         openings[row + 1] -= 0.5 * step_s * step_s * turning.y;
     }
-    response_close(response, openings, changes);
+    response_close(response, openings, rates, changes);
     for (size_t i = 0; i < linkage->body_count; i++) {
         motions[i].position.x += changes[3 * i];
         motions[i].position.y += changes[3 * i + 1];

@@ -143,12 +143,12 @@ static void a_pressed_disc_is_braked_by_friction(void **state)
     const double sideways = 0.3;
     const double duration_s = 2e-4;
     Encounter pin = encounter_start(friction, 5e-4, LONE_PIN_PHASE);
-    pin.joint_count = 1;
-    pin.joints[0] = (EncounterJoint){
+    const EncounterJoint joint = {
         .law = sticking(1e-9),
         .radial_clearance = clearance,
         .hole_radius = clearance + radius,
     };
+    encounter_add(&pin, &joint, RESPONSE_ROWS_A_JOINT);
     pin.mobility[0] = pin.mobility[5] = 1.0 / ONE_IMPACT_MASS;
     pin.mobility[15] = 2.0 / (ONE_IMPACT_MASS * radius * radius);
     pin.position[0] = clearance - BESIDE;

@@ -21,12 +21,12 @@ static inline ForceLaw lone_pin_hertz(double chi)
 static inline Encounter lone_pin(ForceLaw law, double phase)
 {
     Encounter encounter = encounter_start(0.0, 5e-3, phase);
-    encounter.joint_count = 1;
-    encounter.joints[0] = (EncounterJoint){
+    const EncounterJoint joint = {
         .law = law,
         .radial_clearance = ONE_IMPACT_CLEARANCE,
         .hole_radius = ONE_IMPACT_CLEARANCE + 5e-3,
     };
+    encounter_add(&encounter, &joint, ENCOUNTER_ROWS_PLAIN);
     encounter.mobility[0] = encounter.mobility[3] = 1.0 / ONE_IMPACT_MASS;
     encounter.position[0] = ONE_IMPACT_CLEARANCE - LONE_PIN_GAP;
     encounter.speed[0] = ONE_IMPACT_SPEED;

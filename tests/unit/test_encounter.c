@@ -260,12 +260,12 @@ static const double DISC_RADIUS = 5e-3;    // m
 static Encounter disc(double friction, double sideways)
 {
     Encounter pin = encounter_start(friction, 5e-3, LONE_PIN_PHASE);
-    pin.joint_count = 1;
-    pin.joints[0] = (EncounterJoint){
+    const EncounterJoint joint = {
         .law = lone_pin_hertz(0.3),
         .radial_clearance = DISC_CLEARANCE,
         .hole_radius = DISC_CLEARANCE + DISC_RADIUS,
     };
+    encounter_add(&pin, &joint, RESPONSE_ROWS_A_JOINT);
     pin.mobility[0] = pin.mobility[5] = 1.0 / ONE_IMPACT_MASS;
     pin.mobility[15] = 2.0 / (ONE_IMPACT_MASS * DISC_RADIUS * DISC_RADIUS);
     pin.position[0] = DISC_CLEARANCE - LONE_PIN_GAP;

@@ -4,17 +4,17 @@
 #include "base/lcg.h"
 #include "contact/encounter_slopes.h"
 
-enum { ROWS = RESPONSE_ROWS_A_JOINT };
+enum { ROWS = ENCOUNTER_ROWS_MOST };
 
 static const double CLEARANCE = 1e-4; // m
 static const double DEPTH = 1e-7;     // m
 static const double NOTHING[ROWS] = {0.0};
 
 // A pin in its wall, somewhere round the hole, sliding and turning and on its way in.
-static Encounter pressed(uint64_t *seed, double friction)
+static Encounter pressed(uint64_t *seed, double friction, size_t rows)
 {
     Encounter pin = encounter_start(friction, 5e-3, 0.05);
-    pin.joint_count = 1;
+    encounter_add(&pin, &(EncounterJoint){.joint = 0}, rows);
     EncounterJoint *joint = &pin.joints[0];
     joint->law = force_law_power(6.6e10, 1.5);
     joint->law.hysteresis = 0.7;
@@ -28,8 +28,8 @@ static Encounter pressed(uint64_t *seed, double friction)
     pin.position[1] = (CLEARANCE + DEPTH) * sin(angle);
     pin.speed[0] = 0.02 * cos(angle) + 5e-3 * lcg_draw(seed);
     pin.speed[1] = 0.02 * sin(angle) + 5e-3 * lcg_draw(seed);
-    for (size_t i = 2; i < pin.rows_a_joint; i++) {
-        pin.speed[i] = lcg_draw(seed);
+    for (size_t i = 2; i < pin.row_count; i++) {
+        pin.speed[i] = (i == ENCOUNTER_ROW_AXIAL ? 5e-3 : 1.0) * lcg_draw(seed);
     }
     return pin;
 }
@@ -45,7 +45,7 @@ static void differences(Encounter *pin, double *at, double nudge, double *slopes
         encounter_force_find(pin, 0.0, NOTHING, NOTHING, forces[i], powers);
     }
     *at = kept;
-    for (size_t i = 0; i < pin->rows_a_joint; i++) {
+    for (size_t i = 0; i < pin->row_count; i++) {
         slopes[i] = (forces[0][i] - forces[1][i]) / (2.0 * nudge);
     }
 }
@@ -60,7 +60,7 @@ static double mismatch(Encounter *pin, size_t row, bool of_position)
                 of_position ? 1e-3 * DEPTH : 1e-7, expected);
     double largest = 0.0;
     double apart = 0.0;
-    for (size_t i = 0; i < pin->rows_a_joint; i++) {
+    for (size_t i = 0; i < pin->row_count; i++) {
         const double found = of_position ? slopes.by_place[i][row] : slopes.by_speed[i][row];
         largest = fmax(largest, fabs(expected[i]));
         apart = fmax(apart, fabs(found - expected[i]));
@@ -73,16 +73,17 @@ static void slopes_are_those_of_the_force(void **state)
     (void)state;
     for (unsigned number = 0; number < 20; number++) {
         uint64_t seed = lcg_stirred(number);
-        Encounter pin = pressed(&seed, number % 2 == 0 ? 0.3 : 0.0);
+        const size_t rows[3] = {ENCOUNTER_ROWS_PLAIN, RESPONSE_ROWS_A_JOINT, ENCOUNTER_ROWS_MOST};
+        Encounter pin = pressed(&seed, number % 3 == 0 ? 0.0 : 0.3, rows[number % 3]);
         EncounterSlopes slopes;
         double force[ROWS];
         double powers[2];
         encounter_force_find(&pin, 0.0, NOTHING, NOTHING, force, powers);
         encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, 0.0, &slopes);
-        for (size_t i = 0; i < pin.rows_a_joint; i++) {
+        for (size_t i = 0; i < pin.row_count; i++) {
             assert_near(slopes.force[i], force[i], 1e-13 * hypot(force[0], force[1]));
         }
-        for (size_t row = 0; row < pin.rows_a_joint; row++) {
+        for (size_t row = 0; row < pin.row_count; row++) {
             assert_true(mismatch(&pin, row, false) < 1e-7);
             // the depth is a thousandth of the play, and its rounding that much larger
             assert_true(row >= 2 || mismatch(&pin, row, true) < 1e-6);
@@ -96,7 +97,7 @@ static void a_force_that_would_pull_is_none_unless_it_is_smooth(void **state)
 {
     (void)state;
     uint64_t seed = lcg_stirred(1);
-    Encounter pin = pressed(&seed, 0.3);
+    Encounter pin = pressed(&seed, 0.3, ENCOUNTER_ROWS_MOST);
     for (size_t i = 0; i < 2; i++) {
         pin.speed[i] = -1e4 * pin.position[i];
     }
@@ -118,7 +119,7 @@ static void a_smooth_force_goes_on_below_a_depth(void **state)
 {
     (void)state;
     uint64_t seed = lcg_stirred(2);
-    Encounter pin = pressed(&seed, 0.0);
+    Encounter pin = pressed(&seed, 0.0, ENCOUNTER_ROWS_PLAIN);
     const double outward[2] = {pin.position[0] / (CLEARANCE + DEPTH),
                                pin.position[1] / (CLEARANCE + DEPTH)};
     double along[3];
