@@ -111,10 +111,30 @@ static inline Quat quat_unit(Quat a)
 // The rotation by a vector: about its direction, by its length, rad.
 static inline Quat quat_of_turn(Vec3 turn)
 {
-    const double angle = vec3_length(turn);
-    // sin(angle / 2) / angle, whose series ends in the last bit below this angle
-    const double share = angle < 1e-4 ? 0.5 - angle * angle / 48.0 : sin(0.5 * angle) / angle;
-    return (Quat){cos(0.5 * angle), share * turn.x, share * turn.y, share * turn.z};
+    const double square = vec3_dot(turn, turn);
+    double cosine;
+    double share; // sin(angle / 2) / angle
+    if (square < 1e-4) {
+        // what is left of the series is below the last bit
+        cosine = 1.0 - square * (1.0 / 8.0 - square * (1.0 / 384.0 - square / 46080.0));
+        share = 0.5 - square * (1.0 / 48.0 - square / 3840.0);
+    } else {
+        const double angle = sqrt(square);
+        cosine = cos(0.5 * angle);
+        share = sin(0.5 * angle) / angle;
+    }
+    return (Quat){cosine, share * turn.x, share * turn.y, share * turn.z};
+}
+
+static inline Vec3 quat_turn_between(Quat from, Quat to)
+{
+    const Quat back = {from.w, -from.x, -from.y, -from.z};
+    const Quat turn = quat_product(to, back);
+    const double sine = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
+    // the angle over the sine of its half, which tends to 2
+    const double sign = turn.w < 0.0 ? -1.0 : 1.0;
+    const double scale = sine > 0.0 ? 2.0 * sign * atan2(sine, sign * turn.w) / sine : 2.0 * sign;
+    return (Vec3){scale * turn.x, scale * turn.y, scale * turn.z};
 }
 
 static inline Mat3 quat_matrix(Quat q)

@@ -110,6 +110,13 @@ Mat3 space_world_inertia(const Body *body, Quat turn)
     return world;
 }
 
+// A direction of the start in the body's frame.
+static Vec3 own_axis(const Body *body, Vec3 axis)
+{
+    const bool is_z = axis.x == 0.0 && axis.y == 0.0;
+    return is_z ? axis : quat_rotate_back(turn_about_z(body->start.angle), axis);
+}
+
 SpaceEnd space_end(const Linkage *linkage, size_t joint, int side)
 {
     const Joint *data = &linkage->joints[joint];
@@ -121,7 +128,7 @@ SpaceEnd space_end(const Linkage *linkage, size_t joint, int side)
     return (SpaceEnd){
         .body = end.body,
         .anchor = lift(end.anchor, data->space.height - body->space.height),
-        .axis = quat_rotate_back(turn_about_z(body->start.angle), data->space.axis),
+        .axis = own_axis(body, data->space.axis),
     };
 }
 
@@ -144,6 +151,18 @@ Vec3 space_velocity_at(const SpaceMotion *motions, int body, Vec3 point)
     }
     const SpaceMotion *motion = &motions[body];
     return vec3_add(motion->velocity, vec3_cross(motion->omega, vec3_sub(point, motion->position)));
+}
+
+Vec3 space_acceleration_at(const SpaceMotion *motions, int body, Vec3 point)
+{
+    if (body == LINKAGE_GROUND) {
+        return (Vec3){0.0, 0.0, 0.0};
+    }
+    const SpaceMotion *motion = &motions[body];
+    const Vec3 arm = vec3_sub(point, motion->position);
+    return vec3_add(motion->acceleration,
+                    vec3_add(vec3_cross(motion->alpha, arm),
+                             vec3_cross(motion->omega, vec3_cross(motion->omega, arm))));
 }
 
 double space_kinetic_energy(const Linkage *linkage, const SpaceMotion *motions)

@@ -58,6 +58,9 @@ Vec3 space_direction(const SpaceMotion *motions, int body, Vec3 local);
 // The velocity of the point of a body that is at a point of the world now; zero of the ground.
 Vec3 space_velocity_at(const SpaceMotion *motions, int body, Vec3 point);
 
+// Likewise its acceleration.
+Vec3 space_acceleration_at(const SpaceMotion *motions, int body, Vec3 point);
+
 // Sum (m v^2 + w' I w) / 2, and sum m g y, J.
 double space_kinetic_energy(const Linkage *linkage, const SpaceMotion *motions);
 double space_potential_energy(const Linkage *linkage, const SpaceMotion *motions, double gravity);

@@ -141,13 +141,46 @@ static double mean_reach(const Linkage *linkage)
     return sum / (double)linkage->body_count;
 }
 
+// Directions that the rows chosen so far hold, at right angles to each other.
+typedef struct Basis {
+    double (*kept)[SPACE_COLUMN_MAX];
+    size_t count;
+    double length; // m, by which turns are measured
+} Basis;
+
+static Basis open_basis(const Linkage *linkage)
+{
+    Basis basis = {.kept = malloc((SPACE_COLUMN_MAX + 1) * sizeof *basis.kept)};
+    assert(basis.kept != NULL);
+    basis.length = mean_reach(linkage);
+    return basis;
+}
+
+// What is left of a row, as a share of it, and where the next direction would stand.
+static double share_left(const Linkage *linkage, Basis *basis, const SpaceRow *row)
+{
+    spread(linkage, row, basis->length, basis->kept[basis->count]);
+    return reduce(basis->kept, basis->count, basis->kept[basis->count]);
+}
+
+// Takes a row into the basis if it is independent. Returns whether it is.
+static bool add_row(const Linkage *linkage, Basis *basis, const SpaceRow *row)
+{
+    if (basis->count == SPACE_COLUMN_MAX || !(share_left(linkage, basis, row) > INDEPENDENT)) {
+        return false;
+    }
+    double *added = basis->kept[basis->count++];
+    const double size = sqrt(product(added, added));
+    for (size_t k = 0; k < SPACE_COLUMN_MAX; k++) {
+        added[k] /= size;
+    }
+    return true;
+}
+
 size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions,
                          const bool is_asked[LINKAGE_JOINT_MAX], unsigned chosen[LINKAGE_JOINT_MAX])
 {
-    double(*kept)[SPACE_COLUMN_MAX] = malloc(SPACE_COLUMN_MAX * sizeof *kept);
-    assert(kept != NULL);
-    const double length = mean_reach(linkage);
-    size_t count = 0;
+    Basis basis = open_basis(linkage);
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         SpaceRow rows[SPACE_JOINT_ROWS];
         chosen[joint] = 0;
@@ -155,21 +188,47 @@ size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions,
             continue;
         }
         space_rows_of_joint(linkage, motions, joint, rows);
-        for (int i = 0; i < SPACE_JOINT_ROWS && count < SPACE_COLUMN_MAX; i++) {
-            double *row = kept[count];
-            spread(linkage, &rows[i], length, row);
-            if (reduce(kept, count, row) > INDEPENDENT) {
-                const double size = sqrt(product(row, row));
-                for (size_t k = 0; k < SPACE_COLUMN_MAX; k++) {
-                    row[k] /= size;
-                }
-                chosen[joint] |= 1U << i;
-                count++;
+        for (int i = 0; i < SPACE_JOINT_ROWS; i++) {
+            chosen[joint] |= add_row(linkage, &basis, &rows[i]) ? 1U << i : 0;
+        }
+    }
+    free(basis.kept);
+    return basis.count;
+}
+
+size_t space_rows_choose_points(const Linkage *linkage, const SpaceMotion *motions,
+                                const bool is_asked[LINKAGE_JOINT_MAX],
+                                unsigned chosen[LINKAGE_JOINT_MAX])
+{
+    Basis basis = open_basis(linkage);
+    SpaceRow rows[SPACE_JOINT_ROWS];
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        chosen[joint] = 0;
+        if (is_asked[joint]) {
+            space_rows_of_joint(linkage, motions, joint, rows);
+            for (int i = 0; i < SPACE_POINT_ROWS; i++) {
+                chosen[joint] |= add_row(linkage, &basis, &rows[i]) ? 1U << i : 0;
             }
         }
     }
-    free(kept);
-    return count;
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        if (!is_asked[joint]) {
+            continue;
+        }
+        space_rows_of_joint(linkage, motions, joint, rows);
+        // of two that hold the same, the one that holds more of it
+        int order[2] = {SPACE_POINT_ROWS, SPACE_POINT_ROWS + 1};
+        if (basis.count < SPACE_COLUMN_MAX && share_left(linkage, &basis, &rows[order[1]]) >
+                                                  share_left(linkage, &basis, &rows[order[0]])) {
+            order[0] = SPACE_POINT_ROWS + 1;
+            order[1] = SPACE_POINT_ROWS;
+        }
+        for (int i = 0; i < 2; i++) {
+            chosen[joint] |= add_row(linkage, &basis, &rows[order[i]]) ? 1U << order[i] : 0;
+        }
+    }
+    free(basis.kept);
+    return basis.count;
 }
 
 size_t space_rows_mobility(const Linkage *linkage, const SpaceMotion *motions, bool ideal_only)

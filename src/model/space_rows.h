@@ -50,3 +50,9 @@ size_t space_rows_mobility(const Linkage *linkage, const SpaceMotion *motions, b
 size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions,
                          const bool is_asked[LINKAGE_JOINT_MAX],
                          unsigned chosen[LINKAGE_JOINT_MAX]);
+
+// The same, but the points of all joints before the directions of their axes: what is left out is
+// of axes wherever the points alone are independent.
+size_t space_rows_choose_points(const Linkage *linkage, const SpaceMotion *motions,
+                                const bool is_asked[LINKAGE_JOINT_MAX],
+                                unsigned chosen[LINKAGE_JOINT_MAX]);

@@ -2,6 +2,7 @@
 //
 // Hands on to the way of stepping that the scenario asks for; each is a solver of its own.
 #include "model/solver.h"
+#include "ode/space_stepping.h"
 #include "ode/stepping.h"
 
 #include <assert.h>
@@ -17,8 +18,17 @@ typedef struct Ode {
 static const Solver *choose(const Scenario *scenario)
 {
     static const Solver *const STEPPINGS[] = {OPTIONS_ODE_STEPPING_LIST(MEMBER)};
-    return scenario_integrates_contacts(scenario) ? &STEPPING_IMPULSE
-                                                  : STEPPINGS[scenario->ode.stepping];
+    // extrapolated worlds are of ideal joints in the plane: the case is refused
+    static const Solver *const IN_SPACE[] = {
+        [ODE_PLAIN] = &SPACE_PLAIN,
+        [ODE_STAGGERED] = &SPACE_STAGGERED,
+        [ODE_EXTRAPOLATED] = NULL,
+    };
+    const bool is_spatial = scenario->linkage.is_spatial;
+    if (scenario_integrates_contacts(scenario)) {
+        return is_spatial ? &SPACE_IMPULSE : &STEPPING_IMPULSE;
+    }
+    return is_spatial ? IN_SPACE[scenario->ode.stepping] : STEPPINGS[scenario->ode.stepping];
 }
 
 static bool ode_open(const Scenario *scenario, void **state, Err *err)
@@ -28,6 +38,11 @@ static bool ode_open(const Scenario *scenario, void **state, Err *err)
     Ode *ode = calloc(1, sizeof *ode);
     assert(ode != NULL);
     ode->stepping = choose(scenario);
+    if (ode->stepping == NULL) {
+        free(ode);
+        return err_set(err, ERR_CASE,
+                       "ode.stepping extrapolated is for linkages in the plane; use staggered");
+    }
     if (!ode->stepping->open(scenario, &ode->state, err)) {
         free(ode);
         return false;

@@ -146,10 +146,15 @@ static bool make_pair(const Scenario *scenario, int number, World *world, Err *e
     return true;
 }
 
-// Everything that ODE would otherwise take from its own defaults.
-static void set_world(const Scenario *scenario, dWorldID id)
+void world_start(const Scenario *scenario, World *world)
 {
     const OdeOptions *options = &scenario->ode;
+    memset(world, 0, sizeof *world);
+    engine_start();
+    engine_seed(options->seed);
+    const dWorldID id = dWorldCreate();
+    world->id = id;
+    world->linkage = &scenario->linkage;
     dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);
     dWorldSetERP(id, joint_erp(options));
     dWorldSetCFM(id, options->cfm);
@@ -170,13 +175,9 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
     if (!check_rows(scenario, motions, &rows, err)) {
         return false;
     }
-    engine_start();
-    engine_seed(scenario->ode.seed);
-    world->linkage = &scenario->linkage;
-    world->id = dWorldCreate();
+    world_start(scenario, world);
     world->constraint_rows = rows;
     world->collider = collider_get(scenario->ode.collider);
-    set_world(scenario, world->id);
     make_bodies(scenario, motions, world);
     const Linkage *linkage = &scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {

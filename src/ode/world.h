@@ -31,6 +31,10 @@ typedef struct World {
 // too.
 bool world_build(const Scenario *scenario, const Motion *motions, World *world, Err *err);
 
+// A world without bodies: engine, gravity and everything that ODE would otherwise take from its own
+// defaults.
+void world_start(const Scenario *scenario, World *world);
+
 // Destroys what was built; accepts a zeroed world.
 void world_finish(World *world);
 

@@ -1,0 +1,347 @@
+// What does a pin that touches its hole in space become inside ODE, and which force came of it?
+//
+// Each place (contact/pin_space.h) that touches is one contact of ODE, with the place's own part of
+// the joint's law, by the map chosen, as in ode/contact_rows.c. Two ends of one hole that press
+// together share the mass m of the linkage: an end i that presses with F_i has
+//     m_i = F_i / sum_j W_ij F_j,     W_ij the mobility between the normals of places i and j
+// so that both ends together oscillate as one contact of the whole law on m. For a map's limit of
+// stability it is the stiffest motion of the two that counts, at most 1 / m_i = sum_j |W_ij| k_j /
+// k_i.
+#include "ode/space_contacts.h"
+
+#include "contact/law.h"
+#include "contact/penalty.h"
+
+#include <string.h>
+
+bool space_contacts_init(SpaceContacts *contacts, const Scenario *scenario, World *world,
+                         SpaceResponse *response, bool is_staggered, Err *err)
+{
+    memset(contacts, 0, sizeof *contacts);
+    contacts->scenario = scenario;
+    contacts->world = world;
+    contacts->response = response;
+    contacts->is_staggered = is_staggered;
+    contacts->group = dJointGroupCreate(0);
+    contacts->penalty = scenario->contact.penalty > 0.0
+                            ? scenario->contact.penalty
+                            : penalty_estimate(scenario->linkage.driver.speed, &scenario->material);
+    if (!scenario_has_clearance(scenario)) {
+        return true;
+    }
+    if (scenario->contact.model == CONTACT_IMPACT) {
+        contacts->map = map_get(scenario->ode.map);
+    }
+    contacts->count = pin_space_list(scenario, contacts->places, err);
+    return contacts->count > 0;
+}
+
+void space_contacts_finish(SpaceContacts *contacts)
+{
+    if (contacts->group != NULL) {
+        dJointGroupDestroy(contacts->group);
+    }
+    contacts->group = NULL;
+}
+
+// The speed at which a pin that overlaps its wall for the first time came to it; as in
+// ode/contact_row.c.
+static double onset_speed(const SpaceContact *contact, bool is_staggered, double step_s)
+{
+    if (!is_staggered || contact->gaps_known == 0) {
+        return contact->pose.approach_speed;
+    }
+    const double mean = (contact->gaps[0] - contact->pose.gap) / step_s;
+    if (contact->gaps_known == 1 || !(mean > 0.0)) {
+        return mean;
+    }
+    const double change = mean - (contact->gaps[1] - contact->gaps[0]) / step_s;
+    return mean + change * (0.5 - contact->depth / (mean * step_s));
+}
+
+static void find_contact(SpaceContacts *contacts, size_t number, const SpaceMotion *motions,
+                         double step_s)
+{
+    const PinSpace *place = &contacts->places[number];
+    SpaceContact *contact = &contacts->contacts[number];
+    const bool was_touching = contact->is_touching;
+    contact->pose = pin_space_pose(place, motions);
+    contact->depth = -contact->pose.gap;
+    contact->is_touching = contact->pose.gap < 0.0;
+    if (!contact->is_touching) {
+        contact->impact_speed = contact->pose.approach_speed;
+    } else if (!was_touching) {
+        contact->impact_speed = onset_speed(contact, contacts->is_staggered, step_s);
+    }
+    contact->gaps_known =
+        contact->is_touching ? 0 : contact->gaps_known + (contact->gaps_known < 2 ? 1 : 0);
+    contact->gaps[1] = contact->gaps[0];
+    contact->gaps[0] = contact->pose.gap;
+    const Clearance *clearance = &contacts->scenario->linkage.joints[place->joint].clearance;
+    contact->point = contact->pose.at_a;
+    if (place->place == PIN_SPACE_COLLAR) {
+        contact->hole_axis = space_direction(motions, place->hole.body, place->hole.axis);
+    } else {
+        contact->point =
+            vec3_sub(contact->pose.at_a, vec3_scale(clearance->hole_radius, contact->pose.normal));
+    }
+}
+
+// The joint's places that touch, one bit each.
+static unsigned touching_places(const SpaceContacts *contacts, int joint)
+{
+    unsigned places = 0;
+    for (size_t i = 0; i < contacts->count; i++) {
+        if (contacts->places[i].joint == joint && contacts->contacts[i].is_touching) {
+            places |= 1U << contacts->places[i].place;
+        }
+    }
+    return places;
+}
+
+// The masses that all places of a joint that touch meet along their normals.
+static void find_masses(SpaceContacts *contacts, const SpaceMotion *motions, int joint,
+                        unsigned places)
+{
+    SpaceRow rows[PIN_SPACE_PLACES] = {0};
+    SpaceContact *found[PIN_SPACE_PLACES];
+    double forces[PIN_SPACE_PLACES];
+    double stiffness[PIN_SPACE_PLACES];
+    double mobility[PIN_SPACE_PLACES * PIN_SPACE_PLACES];
+    size_t count = 0;
+    for (size_t i = 0; i < contacts->count; i++) {
+        const PinSpace *place = &contacts->places[i];
+        if (place->joint == joint && contacts->contacts[i].is_touching) {
+            SpaceContact *contact = &contacts->contacts[i];
+            rows[count] =
+                space_row_along(motions, place->hole.body, contact->pose.at_a, place->pin.body,
+                                contact->pose.at_b, contact->pose.normal);
+            forces[count] = force_law_elastic(&place->law, contact->depth);
+            stiffness[count] = force_law_tangent(&place->law, contact->depth);
+            found[count++] = contact;
+        }
+    }
+    if (!space_response_place(contacts->response, motions, rows, count)) {
+        return;
+    }
+    space_response_mobility(contacts->response, mobility);
+    for (size_t i = 0; i < count; i++) {
+        double together = 0.0;
+        double stiffest = 0.0;
+        for (size_t k = 0; k < count; k++) {
+            together += mobility[i * count + k] * forces[k] / forces[i];
+            stiffest += fabs(mobility[i * count + k]) * stiffness[k] / stiffness[i];
+        }
+        const double own = mobility[i * count + i];
+        found[i]->mass = 1.0 / (together > 0.0 ? together : own);
+        found[i]->stiff_mass = 1.0 / stiffest;
+        found[i]->mass_normal = found[i]->pose.normal;
+        found[i]->mass_places = places;
+    }
+}
+
+// Brings the masses of a place up to date: they change as slowly as the linkage turns, or when
+// another place of the joint comes to touch.
+static void update_mass(SpaceContacts *contacts, size_t number, const SpaceMotion *motions)
+{
+    static const double SAME_NORMAL = 0.995; // the cosine of 6 degrees
+    const SpaceContact *contact = &contacts->contacts[number];
+    const int joint = contacts->places[number].joint;
+    const unsigned places = touching_places(contacts, joint);
+    const bool is_known = contact->mass_places == places &&
+                          vec3_dot(contact->mass_normal, contact->pose.normal) > SAME_NORMAL;
+    if (!is_known || contacts->map->needs_mass) {
+        find_masses(contacts, motions, joint, places);
+    }
+}
+
+// Whether the row would not be stable under the map at this step.
+static void check_stability(SpaceContacts *contacts, size_t number, const SpaceMotion *motions,
+                            double step_s)
+{
+    SpaceContact *contact = &contacts->contacts[number];
+    contact->falls_back = false;
+    if (contacts->map == NULL || isinf(contacts->map->stability_limit)) {
+        return;
+    }
+    update_mass(contacts, number, motions);
+    const double frequency = sqrt(force_law_tangent(&contacts->places[number].law, contact->depth) /
+                                  contact->stiff_mass);
+    contact->falls_back = !(frequency * step_s < contacts->map->stability_limit);
+    contacts->fallback_count += contact->falls_back ? 1 : 0;
+}
+
+static dSurfaceParameters surface_of(SpaceContacts *contacts, size_t number, double step_s)
+{
+    const ContactOptions *options = &contacts->scenario->contact;
+    const PinSpace *place = &contacts->places[number];
+    SpaceContact *contact = &contacts->contacts[number];
+    dSurfaceParameters surface = {.mode = dContactSoftERP | dContactSoftCFM, .mu = 0.0};
+    if (options->model == CONTACT_POISSON) {
+        const bool is_end = place->place != PIN_SPACE_COLLAR;
+        surface.mode |= dContactBounce;
+        surface.bounce = options->restitution;
+        surface.bounce_vel = options->bounce_speed;
+        surface.soft_erp = contacts->scenario->ode.push_out;
+        surface.soft_cfm =
+            map_poisson_cfm(contacts->penalty / (is_end ? (double)PIN_SPACE_ENDS : 1.0));
+        return surface;
+    }
+    contact->damping = force_law_damping(&place->law, contact->depth, contact->impact_speed);
+    const MapContact row = {
+        .stiffness = force_law_secant(&place->law, contact->depth),
+        .damping = contact->damping,
+        .step = step_s,
+        .mass = contact->mass,
+        .depth = contact->depth,
+        .closing = contact->pose.approach_speed,
+    };
+    const Map *map = contact->falls_back ? map_get(ODE_MAP_TEXTBOOK) : contacts->map;
+    const ErpCfm soft = map->convert(&row);
+    surface.soft_erp = soft.erp;
+    surface.soft_cfm = soft.cfm;
+    return surface;
+}
+
+static dBodyID body_of(const World *world, int body)
+{
+    return body == LINKAGE_GROUND ? 0 : world->bodies[body];
+}
+
+// A contact as ODE wants it: its normal is that of the force on the hole.
+static void make_row(SpaceContacts *contacts, size_t number, double step_s)
+{
+    SpaceContact *contact = &contacts->contacts[number];
+    const PinSpace *place = &contacts->places[number];
+    const Vec3 normal = contact->pose.normal;
+    contact->contact = (dContact){
+        .surface = surface_of(contacts, number, step_s),
+        .geom = {.pos = {contact->point.x, contact->point.y, contact->point.z},
+                 .normal = {-normal.x, -normal.y, -normal.z},
+                 .depth = contact->depth},
+    };
+    const dJointID joint =
+        dJointCreateContact(contacts->world->id, contacts->group, &contact->contact);
+    dJointAttach(joint, body_of(contacts->world, place->hole.body),
+                 body_of(contacts->world, place->pin.body));
+    dJointSetFeedback(joint, &contact->feedback);
+}
+
+bool space_contacts_make(SpaceContacts *contacts, const SpaceMotion *motions, double step_s,
+                         double *approach, Err *err)
+{
+    const Linkage *linkage = &contacts->scenario->linkage;
+    size_t rows = 0;
+    for (size_t i = 0; i < contacts->count; i++) {
+        find_contact(contacts, i, motions, step_s);
+    }
+    for (size_t i = 0; i < contacts->count; i++) {
+        SpaceContact *contact = &contacts->contacts[i];
+        const PinSpace *place = &contacts->places[i];
+        if (place->place == 0 || (place->place == 1 && contact->is_touching)) {
+            approach[place->joint] = contact->impact_speed;
+        }
+        if (!contact->is_touching) {
+            continue;
+        }
+        if (!law_check_depth(&place->law, &linkage->joints[place->joint], contact->depth, 1.0,
+                             err)) {
+            return false;
+        }
+        check_stability(contacts, i, motions, step_s);
+        make_row(contacts, i, step_s);
+        rows++;
+    }
+    contacts->most_rows = rows > contacts->most_rows ? rows : contacts->most_rows;
+    return true;
+}
+
+// What a contact lost and stored in the step, by its law; as in ode/contact_rows.c.
+static void book_energy(SpaceContacts *contacts, size_t number, const SpaceMotion *motions,
+                        double step_s)
+{
+    SpaceContact *contact = &contacts->contacts[number];
+    contact->elastic = contact->dissipated = contact->friction = 0.0;
+    if (!contact->is_touching) {
+        return;
+    }
+    const PinSpace *place = &contacts->places[number];
+    const PinSpacePose after = pin_space_pose(place, motions);
+    const double before = contact->pose.approach_speed;
+    const double mean = 0.5 * (before + after.approach_speed);
+    const double pressing = vec3_dot(contact->pose.normal, contact->force);
+    if (contacts->scenario->contact.model == CONTACT_POISSON) {
+        contact->dissipated = pressing * mean * step_s;
+        return;
+    }
+    const double closing = contacts->is_staggered ? mean : after.approach_speed;
+    const double depth = contacts->is_staggered ? 0.5 * (contact->depth - after.gap) : -after.gap;
+    contact->dissipated = pressing > 0.0 ? contact->damping * closing * closing * step_s : 0.0;
+    contact->elastic = force_law_energy(&place->law, fmax(0.0, depth));
+}
+
+void space_contacts_clear(SpaceContacts *contacts, double step_s, SpaceJoints *joints)
+{
+    SpaceMotion motions[LINKAGE_BODY_MAX];
+    bool any = false;
+    for (size_t i = 0; i < contacts->count; i++) {
+        any = any || contacts->contacts[i].is_touching;
+    }
+    for (size_t i = 0; any && i < contacts->scenario->linkage.body_count; i++) {
+        motions[i] = space_world_motion(contacts->world, i);
+    }
+    for (size_t i = 0; i < contacts->count; i++) {
+        const PinSpace *place = &contacts->places[i];
+        SpaceContact *contact = &contacts->contacts[i];
+        contact->force = (Vec3){0.0, 0.0, 0.0};
+        if (contact->is_touching) {
+            // ODE gives the force on the first body attached: the hole's, if it is no ground
+            const double sign = place->hole.body != LINKAGE_GROUND ? -1.0 : 1.0;
+            const dReal *force = contact->feedback.f1;
+            contact->force = vec3_scale(sign, (Vec3){force[0], force[1], force[2]});
+            space_joints_press(joints, place, contact->force, contact->hole_axis);
+        }
+        book_energy(contacts, i, motions, step_s);
+    }
+    if (any) {
+        dJointGroupEmpty(contacts->group);
+    }
+}
+
+void space_contacts_load(const SpaceContacts *contacts, int body, Vec3 centre, SpaceChange *load)
+{
+    for (size_t i = 0; i < contacts->count && body != LINKAGE_GROUND; i++) {
+        const SpaceContact *contact = &contacts->contacts[i];
+        const PinSpace *place = &contacts->places[i];
+        if (contact->is_touching && (place->hole.body == body || place->pin.body == body)) {
+            const double sign = place->pin.body == body ? 1.0 : -1.0;
+            const Vec3 force = vec3_scale(sign, contact->force);
+            load->move = vec3_add(load->move, force);
+            load->turn = vec3_add(load->turn, vec3_cross(vec3_sub(contact->point, centre), force));
+        }
+    }
+}
+
+void space_contacts_impulses(const SpaceContacts *contacts, double step_s, double *impulses)
+{
+    for (size_t i = 0; i < contacts->count; i++) {
+        const PinSpace *place = &contacts->places[i];
+        if (place->place == 0) {
+            impulses[place->joint] = 0.0;
+        }
+        if (place->place != PIN_SPACE_COLLAR) {
+            impulses[place->joint] += step_s * vec3_length(contacts->contacts[i].force);
+        }
+    }
+}
+
+ContactEnergy space_contacts_energy(const SpaceContacts *contacts)
+{
+    ContactEnergy sum = {0.0, 0.0, 0.0};
+    for (size_t i = 0; i < contacts->count; i++) {
+        sum.dissipated += contacts->contacts[i].dissipated;
+        sum.friction += contacts->contacts[i].friction;
+        sum.elastic += contacts->contacts[i].elastic;
+    }
+    return sum;
+}

@@ -1,0 +1,345 @@
+// How does a linkage in space move in ODE if its contacts are integrated within the step?
+//
+// The step of ode/impulse_step.c, with rotations for angles: bodies turn by (h/2) omega up to
+// mid-step and by (h/2) omega' from there. The rows of the contacts are frozen at mid-step
+// (contact/pin_space_rows.h). Turning inertias are a torque in the step of the world
+// (ode/space_world.c); what omega will be at its end is known but for an error of the order of h^2,
+// as the contacts have been integrated by then and what is beside them changes slowly.
+#include "ode/space_impulse_step.h"
+
+#include "ode/engine.h"
+#include "ode/stepping.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+// as in ode/impulse_step.c
+static const double NEAR = 0.02;
+static const double SHORT = 0.1;
+
+static size_t body_count(const SpaceImpulseStep *step)
+{
+    return step->scenario->linkage.body_count;
+}
+
+void space_impulse_step_finish(SpaceImpulseStep *step)
+{
+    encounter_finish(&step->encounter);
+    free(step->response);
+    free(step->there);
+    world_finish(&step->world);
+}
+
+static bool init_encounter(SpaceImpulseStep *step, Err *err)
+{
+    const Scenario *scenario = step->scenario;
+    const ContactOptions *contact = &scenario->contact;
+    step->encounter =
+        encounter_start(contact->friction, contact->friction_speed, scenario->ode.contact_phase);
+    step->place_count = pin_space_list(scenario, step->places, err);
+    if (step->place_count == 0) {
+        return false;
+    }
+    for (size_t i = 0; i < step->place_count; i++) {
+        const PinSpace *place = &step->places[i];
+        const size_t rows = pin_space_row_count(place, contact->friction > 0.0);
+        const Joint *joint = &scenario->linkage.joints[place->joint];
+        const EncounterJoint added = {
+            .law = place->law,
+            .radial_clearance = place->clearance,
+            .hole_radius = joint->clearance.hole_radius,
+            .joint = place->joint,
+            .other_end = place->place == PIN_SPACE_COLLAR ? 0 : 1 - 2 * place->place,
+        };
+        if (!encounter_add(&step->encounter, &added, rows)) {
+            return err_set(err, ERR_SOLVER,
+                           "the joints have more places and rows of contact than the %d and %d "
+                           "that map impulse can integrate; use map midpoint",
+                           ENCOUNTER_JOINT_MAX, RESPONSE_ROW_MAX);
+        }
+    }
+    return true;
+}
+
+bool space_impulse_step_init(const Scenario *scenario, SpaceImpulseStep *step, Err *err)
+{
+    step->scenario = scenario;
+    step->driven = linkage_driven_body(&scenario->linkage);
+    step->tick_s = scenario->run.step / (double)scenario->ode.gear;
+    step->response = calloc(1, sizeof *step->response);
+    step->there = calloc(1, sizeof *step->there);
+    assert(step->response != NULL && step->there != NULL);
+    space_start(&scenario->linkage, step->after);
+    if (!init_encounter(step, err) ||
+        !space_world_build(scenario, step->after, &step->world, step->response, err)) {
+        return false;
+    }
+    *step->there = *step->response;
+    return true;
+}
+
+// Where the rows of play are at the start of the step, and how fast they go.
+static void fill_rows(SpaceImpulseStep *step)
+{
+    Encounter *encounter = &step->encounter;
+    for (size_t i = 0; i < step->place_count; i++) {
+        const size_t row = encounter->joints[i].first_row;
+        pin_space_rows_state(&step->places[i], &step->rows[i], step->before,
+                             encounter->position + row, encounter->speed + row);
+    }
+}
+
+// Whether a pin touches or will have come near its wall at the end of a step of that length.
+static bool is_near_wall(const SpaceImpulseStep *step, double width_s)
+{
+    for (size_t i = 0; i < step->place_count; i++) {
+        const PinSpacePose pose = pin_space_pose(&step->places[i], step->before);
+        // the speed alone: what it may gain meanwhile is less than the margin
+        const double limit = NEAR * step->places[i].clearance;
+        const double moved = width_s * pose.approach_speed;
+        if (step->encounter.joints[i].is_touching || pose.gap < limit || pose.gap - moved < limit) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Moves and turns a body by its speeds for a time.
+static void coast(SpaceMotion *motion, Vec3 velocity, Vec3 omega, double span_s)
+{
+    const SpaceChange moved = {vec3_scale(span_s, velocity), vec3_scale(span_s, omega)};
+    space_change(motion, &moved, NULL);
+}
+
+// The bodies at mid-step, with the speeds of its start.
+static void find_middle(const SpaceImpulseStep *step, SpaceMotion *middle)
+{
+    const double half_s = 0.5 * step->width_s;
+    for (size_t i = 0; i < body_count(step); i++) {
+        middle[i] = step->before[i];
+        coast(&middle[i], middle[i].velocity, middle[i].omega, half_s);
+    }
+    if (step->driven >= 0) {
+        middle[step->driven] = space_driven(&step->scenario->linkage, step->start_s + half_s);
+    }
+}
+
+// Freezes the rows and the linkage's response at mid-step, and finds how fast the rows move freely.
+static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
+{
+    Encounter *encounter = &step->encounter;
+    SpaceRow rows[RESPONSE_ROW_MAX];
+    double play_drift[RESPONSE_ROW_MAX];
+    double ideal_drift[SPACE_COLUMN_MAX];
+    SpaceMotion loose[LINKAGE_BODY_MAX];
+    const bool has_friction = step->scenario->contact.friction > 0.0;
+    for (size_t i = 0; i < step->place_count; i++) {
+        const EncounterJoint *joint = &encounter->joints[i];
+        pin_space_rows_place(&step->places[i], middle, has_friction, &step->rows[i]);
+        memcpy(rows + joint->first_row, step->rows[i].rows, joint->row_count * sizeof *rows);
+    }
+    if (!space_response_place(step->response, middle, rows, encounter_rows(encounter))) {
+        return false;
+    }
+    space_response_link(step->response);
+    memcpy(loose, middle, body_count(step) * sizeof *loose);
+    space_response_loosen(step->response, step->scenario->gravity,
+                          step->start_s + 0.5 * step->width_s, loose);
+    for (size_t i = 0; i < step->place_count; i++) {
+        pin_space_rows_drift(&step->places[i], &step->rows[i], loose,
+                             play_drift + encounter->joints[i].first_row);
+    }
+    space_response_drift(step->response, loose, ideal_drift);
+    space_response_mobility(step->response, encounter->mobility);
+    space_response_free(step->response, ideal_drift, play_drift, encounter->free);
+    return true;
+}
+
+// Lets the contacts run through the step by themselves.
+static bool run_encounter(SpaceImpulseStep *step, const SpaceMotion *middle, SpaceChange *pushed,
+                          Err *err)
+{
+    Encounter *encounter = &step->encounter;
+    if (!place_linkage(step, middle)) {
+        return err_set(err, ERR_SOLVER,
+                       "the ideal joints are redundant here: give one joint of the loop some play");
+    }
+    fill_rows(step);
+    if (!encounter_run(encounter, step->width_s)) {
+        return err_set(err, ERR_SOLVER,
+                       "contact sub-stepping exceeded 100000 steps in one step; reduce run.step");
+    }
+    encounter_at(encounter, encounter->node_count - 1, step->width_s, &step->total);
+    space_response_apply(step->response, step->total.impulse, pushed);
+    return true;
+}
+
+// One step of the world under the contacts' mean force.
+static bool step_world(SpaceImpulseStep *step, const SpaceMotion *middle, const SpaceChange *pushed,
+                       Err *err)
+{
+    const double rate = 1.0 / step->width_s;
+    SpaceChange loads[LINKAGE_BODY_MAX];
+    space_response_load(step->response, step->total.impulse, loads);
+    for (size_t i = 0; i < body_count(step); i++) {
+        SpaceMotion placed = middle[i];
+        if (space_impulse_step_is_free(step, i)) {
+            const dBodyID body = step->world.bodies[i];
+            const Vec3 force = vec3_scale(rate, loads[i].move);
+            const Vec3 rest = vec3_add(vec3_sub(step->free[i].turn, step->gyration[i]),
+                                       vec3_scale(rate, pushed[i].turn));
+            const Vec3 turning = space_world_gyration(step->response, i, &middle[i], rest,
+                                                      step->width_s, &step->gyration[i]);
+            const Vec3 torque = vec3_add(vec3_scale(rate, loads[i].turn), turning);
+            dBodyAddForce(body, force.x, force.y, force.z);
+            dBodyAddTorque(body, torque.x, torque.y, torque.z);
+        } else {
+            // the rows hold at the step's end: so must the speed in them
+            placed.velocity = step->after[i].velocity;
+            placed.omega = step->after[i].omega;
+        }
+        space_world_place(&step->world, i, &placed);
+    }
+    const bool is_quick = step->scenario->ode.solver == ODE_QUICK;
+    return engine_step(step->world.id, step->width_s, is_quick, err) &&
+           space_world_check(&step->world, err);
+}
+
+// Adds changes to the free bodies' positions and speeds.
+static void change_motions(SpaceImpulseStep *step, const SpaceChange *positions,
+                           const SpaceChange *speeds)
+{
+    for (size_t i = 0; i < body_count(step); i++) {
+        if (space_impulse_step_is_free(step, i)) {
+            space_change(&step->after[i], &positions[i], speeds != NULL ? &speeds[i] : NULL);
+        }
+    }
+}
+
+// Positions and speeds at the end of the step.
+static void find_end(SpaceImpulseStep *step, const SpaceMotion *middle)
+{
+    const double half_s = 0.5 * step->width_s;
+    for (size_t i = 0; i < body_count(step); i++) {
+        if (space_impulse_step_is_free(step, i)) {
+            const SpaceMotion now = space_world_motion(&step->world, i);
+            SpaceMotion *after = &step->after[i];
+            *after = middle[i];
+            after->velocity = now.velocity;
+            after->omega = now.omega;
+            coast(after, now.velocity, now.omega, half_s);
+        }
+    }
+    SpaceChange positions[LINKAGE_BODY_MAX];
+    SpaceChange speeds[LINKAGE_BODY_MAX];
+    // when in the step the impulse came
+    double late[RESPONSE_ROW_MAX];
+    for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
+        late[i] = step->total.moment[i] - half_s * step->total.impulse[i];
+    }
+    space_response_apply(step->response, late, positions);
+    change_motions(step, positions, NULL);
+    // back onto the ideal joints
+    double openings[SPACE_COLUMN_MAX];
+    double rates[SPACE_COLUMN_MAX];
+    space_response_openings(step->response, step->after, openings, rates);
+    double unused[SPACE_COLUMN_MAX];
+    space_response_close(step->response, openings, unused, positions);
+    space_response_close(step->response, rates, step->closing, speeds);
+    change_motions(step, positions, speeds);
+}
+
+// The mean acceleration of one part of a body's motion beside the contacts', and how it changes.
+static void find_free(const SpaceImpulseStep *step, double width_before_s, Vec3 gained, Vec3 *free,
+                      Vec3 *free_rate)
+{
+    const double apart_s = 0.5 * (step->width_s + width_before_s);
+    if (step->width_s < SHORT * width_before_s) {
+        *free = vec3_add(*free, vec3_scale(apart_s, *free_rate));
+        return;
+    }
+    const Vec3 mean = vec3_scale(1.0 / step->width_s, gained);
+    *free_rate = width_before_s > 0.0 ? vec3_scale(1.0 / apart_s, vec3_sub(mean, *free))
+                                      : (Vec3){0.0, 0.0, 0.0};
+    *free = mean;
+}
+
+// What is left of a move over the step, beyond the formula for inside.
+static Vec3 rest_of(double width_s, Vec3 moved, Vec3 speed, Vec3 mean, Vec3 pushed)
+{
+    const Vec3 coasted = vec3_scale(width_s, vec3_add(speed, vec3_scale(0.5 * width_s, mean)));
+    return vec3_sub(vec3_sub(moved, coasted), pushed);
+}
+
+// What the state inside the step is worked out from.
+static void prepare_inside(SpaceImpulseStep *step, const SpaceChange *pushed, double width_before_s)
+{
+    const double width_s = step->width_s;
+    SpaceChange moved[LINKAGE_BODY_MAX];
+    space_response_apply(step->response, step->total.moment, moved);
+    for (size_t i = 0; i < body_count(step); i++) {
+        const SpaceMotion *first = &step->before[i];
+        const SpaceMotion *last = &step->after[i];
+        SpaceChange *free = &step->free[i];
+        const Vec3 gained = vec3_sub(last->velocity, first->velocity);
+        const Vec3 spun = vec3_sub(last->omega, first->omega);
+        find_free(step, width_before_s, vec3_sub(gained, pushed[i].move), &free->move,
+                  &step->free_rate[i].move);
+        find_free(step, width_before_s, vec3_sub(spun, pushed[i].turn), &free->turn,
+                  &step->free_rate[i].turn);
+        const Vec3 went = vec3_sub(last->position, first->position);
+        const Vec3 turned = quat_turn_between(first->turn, last->turn);
+        step->rest[i] = (SpaceChange){
+            rest_of(width_s, went, first->velocity, free->move, moved[i].move),
+            rest_of(width_s, turned, first->omega, free->turn, moved[i].turn),
+        };
+    }
+}
+
+// Where the step ends: on the ticks, but not beyond the run, so that no contact is recorded there.
+static void set_end(SpaceImpulseStep *step)
+{
+    static const double ROUNDING = 1e-6; // of a step: less is no step of its own
+    const double duration_s = scenario_duration(step->scenario);
+    step->end_s = (double)step->tick * step->tick_s;
+    if (step->start_s < duration_s && step->end_s > duration_s - ROUNDING * step->tick_s) {
+        step->end_s = duration_s;
+    }
+}
+
+// Sets the length of the next step, and what the drive does in it.
+static void begin_step(SpaceImpulseStep *step)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    const size_t gear = step->scenario->ode.gear;
+    step->start_s = step->end_s;
+    memcpy(step->before, step->after, body_count(step) * sizeof *step->before);
+    if (step->driven >= 0) {
+        step->before[step->driven] = space_driven(linkage, step->start_s);
+    }
+    const bool is_fine =
+        gear > 1 && (step->count == 0 || is_near_wall(step, (double)gear * step->tick_s));
+    step->tick += is_fine ? 1 : gear;
+    set_end(step);
+    step->width_s = step->end_s - step->start_s;
+    if (step->driven >= 0) {
+        step->after[step->driven] = space_driven(linkage, step->end_s);
+    }
+}
+
+bool space_impulse_step_take(SpaceImpulseStep *step, Err *err)
+{
+    const double width_before_s = step->width_s;
+    SpaceMotion *const middle = step->middle;
+    SpaceChange pushed[LINKAGE_BODY_MAX]; // what the contacts change of the speeds
+    begin_step(step);
+    find_middle(step, middle);
+    if (!run_encounter(step, middle, pushed, err) || !step_world(step, middle, pushed, err)) {
+        return stepping_fail(step->scenario, step->start_s, step->count + 1, step->width_s, err);
+    }
+    find_end(step, middle);
+    prepare_inside(step, pushed, width_before_s);
+    step->count++;
+    return true;
+}

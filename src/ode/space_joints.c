@@ -1,0 +1,88 @@
+// How do pins stand in their holes in space, and what does the drive do?
+//
+// Of the driven body, whose motion is given and whose angular velocity is constant along an axis:
+//     F_drive = m (a - g) - sum F_i,   P = m (a - g) . v - sum (F_i . v + M_i . omega)
+// with F_i and M_i the other forces and their moments about the centre of mass; the momentum of a
+// body that turns steadily about a fixed axis takes no power.
+#include "ode/space_joints.h"
+
+#include <math.h>
+#include <string.h>
+
+// Of one joint: everything but the forces.
+static void place_joint(const SpaceResponse *response, const SpaceMotion *motions, size_t number,
+                        JointState *plane, SpaceJointState *space)
+{
+    const SpaceEnd hole = response->ends[number][0];
+    const SpaceEnd pin = response->ends[number][1];
+    const Vec3 middle = space_point(motions, hole.body, hole.anchor);
+    const Vec3 hole_axis = space_direction(motions, hole.body, hole.axis);
+    const Vec3 pin_axis = space_direction(motions, pin.body, pin.axis);
+    const Vec3 offset = vec3_sub(space_point(motions, pin.body, pin.anchor), middle);
+    plane->eccentricity = (Vec2){offset.x, offset.y};
+    plane->gap = 0.0;
+    plane->is_touching = true;
+    space->offset = offset;
+    const Joint *joint = &response->linkage->joints[number];
+    if (joint->kind != JOINT_CLEARANCE) {
+        return;
+    }
+    const double clearance = linkage_radial_clearance(joint);
+    for (int end = 0; end < PIN_SPACE_ENDS; end++) {
+        const double along = (end == 0 ? -0.5 : 0.5) * joint->clearance.width;
+        const Vec3 between = vec3_sub(offset, vec3_scale(along, hole_axis));
+        space->ends[end] = vec3_across(between, pin_axis);
+        space->end_gaps[end] = clearance - vec3_length(space->ends[end]);
+    }
+    space->tilt =
+        atan2(vec3_length(vec3_cross(hole_axis, pin_axis)), vec3_dot(hole_axis, pin_axis));
+    space->axial = vec3_dot(hole_axis, offset);
+    plane->gap = fmin(space->end_gaps[0], space->end_gaps[1]);
+    plane->is_touching = plane->gap < 0.0;
+}
+
+void space_joints_place(const SpaceResponse *response, const SpaceMotion *motions,
+                        JointState *plane, SpaceJointState *space)
+{
+    for (size_t i = 0; i < response->linkage->joint_count; i++) {
+        place_joint(response, motions, i, &plane[i], &space[i]);
+    }
+}
+
+void space_joints_clear(const Linkage *linkage, SpaceJoints *joints)
+{
+    memset(joints->plane, 0, linkage->joint_count * sizeof *joints->plane);
+    memset(joints->space, 0, linkage->joint_count * sizeof *joints->space);
+}
+
+void space_joints_press(SpaceJoints *joints, const PinSpace *place, Vec3 force, Vec3 hole_axis)
+{
+    JointState *plane = &joints->plane[place->joint];
+    SpaceJointState *space = &joints->space[place->joint];
+    space->force_on_b = vec3_add(space->force_on_b, force);
+    plane->force_on_b = (Vec2){space->force_on_b.x, space->force_on_b.y};
+    if (place->place == PIN_SPACE_COLLAR) {
+        space->axial_force = vec3_dot(hole_axis, force);
+    } else {
+        space->end_forces[place->place] = vec3_length(force);
+        plane->force = space->end_forces[0] + space->end_forces[1];
+    }
+}
+
+void space_joints_hold(SpaceJoints *joints, size_t joint, Vec3 force)
+{
+    joints->space[joint].force_on_b = force;
+    joints->plane[joint].force_on_b = (Vec2){force.x, force.y};
+    joints->plane[joint].force = vec3_length(force);
+}
+
+double space_joints_drive(const Scenario *scenario, const SpaceMotion *driven,
+                          const SpaceChange *others, Vec3 *force)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const Vec3 needed =
+        vec3_scale(linkage->bodies[linkage_driven_body(linkage)].mass,
+                   vec3_add(driven->acceleration, (Vec3){0.0, scenario->gravity, 0.0}));
+    *force = vec3_sub(needed, others->move);
+    return vec3_dot(*force, driven->velocity) - vec3_dot(others->turn, driven->omega);
+}

@@ -1,0 +1,370 @@
+// How does a linkage in space move in ODE with contacts as rows of the world?
+//
+// Plain and staggered stepping, as ode/plain.c and ode/staggered.c have them in the plane. Bodies
+// turn by finite rotations: staggered, by h omega from mid-step to mid-step. Turning inertias are
+// ODE's own affair in plain stepping; in staggered stepping a torque of second order stands for
+// them (ode/space_world.c), with the angular acceleration of the step before for what else acts.
+#include "ode/engine.h"
+#include "ode/space_between.h"
+#include "ode/space_contacts.h"
+#include "ode/space_stepping.h"
+#include "ode/stepping.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+// One step, as it is handed on.
+typedef struct Stride {
+    double start_s;
+    SpaceMotion first[LINKAGE_BODY_MAX]; // speeds at the step's start, and positions there (plain)
+                                         // or at mid-step (staggered)
+    SpaceMotion last[LINKAGE_BODY_MAX];  // as ODE leaves them; accelerations are means of the step
+    double omega[LINKAGE_BODY_MAX];      // rad/s, about z, at its end
+    double alpha[LINKAGE_BODY_MAX];      // rad/s^2, about z, mean
+    SpaceJoints joints;
+    double impulse[LINKAGE_JOINT_MAX];
+    double approach[LINKAGE_JOINT_MAX];
+    double drive_work; // J
+    ContactEnergy energy;
+} Stride;
+
+typedef struct SpaceRows {
+    const Scenario *scenario;
+    bool is_staggered;
+    World world;
+    SpaceResponse response;
+    SpaceContacts contacts;
+    double step_s;
+    long index; // of the next step: it starts at that many times step_s
+    int driven;
+    Vec3 rest[LINKAGE_BODY_MAX]; // rad/s^2, of the last step, beside the turning inertias'
+    Stride strides[3];           // before the one handed on, that one, and the one ahead of it
+    Stride *before;
+    Stride *now;
+    Stride *ahead; // of plain stepping the one handed on
+} SpaceRows;
+
+static void space_rows_close(void *state)
+{
+    SpaceRows *rows = state;
+    if (rows != NULL) {
+        space_contacts_finish(&rows->contacts);
+        world_finish(&rows->world);
+        free(rows);
+    }
+}
+
+// The bodies half a step on, each ideal joint as far open as it stays: h^2 / 2 of how fast the
+// rates of its rows change as the bodies turn.
+static bool move_on(SpaceRows *rows, SpaceMotion *motions, Err *err)
+{
+    const Linkage *linkage = &rows->scenario->linkage;
+    const double half_s = 0.5 * rows->step_s;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const SpaceChange moved = {vec3_scale(half_s, motions[i].velocity),
+                                   vec3_scale(half_s, motions[i].omega)};
+        space_change(&motions[i], &moved, NULL);
+        motions[i].acceleration = motions[i].alpha = (Vec3){0.0, 0.0, 0.0};
+    }
+    if (rows->driven >= 0) {
+        motions[rows->driven] = space_driven(linkage, half_s);
+        motions[rows->driven].acceleration = (Vec3){0.0, 0.0, 0.0};
+    }
+    if (!space_response_place(&rows->response, motions, NULL, 0)) {
+        return err_set(err, ERR_SOLVER,
+                       "the ideal joints are redundant at the start: give one joint of the "
+                       "loop some play");
+    }
+    double openings[SPACE_COLUMN_MAX];
+    double rates[SPACE_COLUMN_MAX];
+    double drift[SPACE_COLUMN_MAX];
+    SpaceChange changes[LINKAGE_BODY_MAX];
+    space_response_openings(&rows->response, motions, openings, rates);
+    space_response_drift(&rows->response, motions, drift);
+    for (size_t i = 0; i < rows->response.ideal_rows; i++) {
+        openings[i] -= 2.0 * half_s * half_s * drift[i];
+    }
+    space_response_close(&rows->response, openings, rates, changes);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if ((int)i != rows->driven) {
+            space_change(&motions[i], &changes[i], NULL);
+        }
+        space_world_place(&rows->world, i, &motions[i]);
+    }
+    return true;
+}
+
+static bool open_rows(const Scenario *scenario, bool is_staggered, void **state, Err *err)
+{
+    SpaceRows *rows = calloc(1, sizeof *rows);
+    assert(rows != NULL);
+    rows->scenario = scenario;
+    rows->is_staggered = is_staggered;
+    rows->step_s = scenario->run.step;
+    rows->driven = linkage_driven_body(&scenario->linkage);
+    rows->before = &rows->strides[0];
+    rows->now = &rows->strides[1];
+    rows->ahead = &rows->strides[2];
+    SpaceMotion motions[LINKAGE_BODY_MAX];
+    space_start(&scenario->linkage, motions);
+    // built closed, so that every joint gets its anchors where they belong, and moved then
+    if (space_world_build(scenario, motions, &rows->world, &rows->response, err) &&
+        space_contacts_init(&rows->contacts, scenario, &rows->world, &rows->response, is_staggered,
+                            err) &&
+        (!is_staggered || move_on(rows, motions, err))) {
+        *state = rows;
+        return true;
+    }
+    space_rows_close(rows);
+    return false;
+}
+
+static bool open_plain(const Scenario *scenario, void **state, Err *err)
+{
+    return open_rows(scenario, false, state, err);
+}
+
+static bool open_staggered(const Scenario *scenario, void **state, Err *err)
+{
+    return open_rows(scenario, true, state, err);
+}
+
+// Puts the driven body to its position with its speed at another time.
+static void place_driven(SpaceRows *rows, const SpaceMotion *driven, double speed_s)
+{
+    if (rows->driven >= 0) {
+        SpaceMotion placed = *driven;
+        const SpaceMotion then = space_driven(&rows->scenario->linkage, speed_s);
+        placed.velocity = then.velocity;
+        placed.omega = then.omega;
+        space_world_place(&rows->world, (size_t)rows->driven, &placed);
+    }
+}
+
+// Lets the turning of inertias act; writes the angular accelerations it makes.
+static void gyrate(SpaceRows *rows, const Stride *stride, Vec3 *alpha)
+{
+    for (size_t i = 0; i < rows->scenario->linkage.body_count; i++) {
+        alpha[i] = (Vec3){0.0, 0.0, 0.0};
+        if (rows->is_staggered && (int)i != rows->driven) {
+            const Vec3 torque = space_world_gyration(&rows->response, i, &stride->first[i],
+                                                     rows->rest[i], rows->step_s, &alpha[i]);
+            dBodyAddTorque(rows->world.bodies[i], torque.x, torque.y, torque.z);
+        }
+    }
+}
+
+// Speeds and accelerations of a step that has been taken.
+static void read_motions(SpaceRows *rows, const Vec3 *gyration, Stride *stride)
+{
+    for (size_t i = 0; i < rows->scenario->linkage.body_count; i++) {
+        SpaceMotion *last = &stride->last[i];
+        const SpaceMotion *first = &stride->first[i];
+        const double rate = 1.0 / rows->step_s;
+        *last = space_world_motion(&rows->world, i);
+        last->acceleration = vec3_scale(rate, vec3_sub(last->velocity, first->velocity));
+        last->alpha = vec3_scale(rate, vec3_sub(last->omega, first->omega));
+        if ((int)i == rows->driven) {
+            last->alpha = (Vec3){0.0, 0.0, 0.0};
+        }
+        rows->rest[i] = vec3_sub(last->alpha, gyration[i]);
+        stride->omega[i] = last->omega.z;
+        stride->alpha[i] = last->alpha.z;
+    }
+    if (rows->driven >= 0 && !rows->is_staggered) {
+        stride->omega[rows->driven] = stride->first[rows->driven].omega.z;
+    }
+}
+
+// Forces, energies, impulses and the drive's part of a step that has been taken.
+static void book(SpaceRows *rows, const SpaceMotion *driven, Stride *stride)
+{
+    const Linkage *linkage = &rows->scenario->linkage;
+    SpaceChange others = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    space_contacts_clear(&rows->contacts, rows->step_s, &stride->joints);
+    space_contacts_load(&rows->contacts, rows->driven, driven->position, &others);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (!linkage_is_ideal(linkage, i)) {
+            continue;
+        }
+        space_joints_hold(&stride->joints, i, space_world_force(&rows->world, i));
+        if (rows->driven >= 0 && (joint->body_a == rows->driven || joint->body_b == rows->driven)) {
+            const SpaceChange load = space_world_load(&rows->world, i, rows->driven);
+            others.move = vec3_add(others.move, load.move);
+            others.turn = vec3_add(others.turn, load.turn);
+        }
+    }
+    stride->drive_work = 0.0;
+    if (rows->driven >= 0) {
+        Vec3 force;
+        stride->drive_work =
+            rows->step_s * space_joints_drive(rows->scenario, driven, &others, &force);
+        space_joints_hold(&stride->joints, (size_t)linkage->driver.joint, force);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        stride->impulse[i] = stride->joints.plane[i].force * rows->step_s;
+    }
+    space_contacts_impulses(&rows->contacts, rows->step_s, stride->impulse);
+    stride->energy = space_contacts_energy(&rows->contacts);
+}
+
+static bool advance(SpaceRows *rows, Stride *stride, Err *err)
+{
+    const Linkage *linkage = &rows->scenario->linkage;
+    const double step_s = rows->step_s;
+    World *world = &rows->world;
+    stride->start_s = (double)rows->index * step_s;
+    SpaceMotion driven = {.turn = {1.0, 0.0, 0.0, 0.0}};
+    if (rows->driven >= 0) {
+        driven = space_driven(linkage, stride->start_s + (rows->is_staggered ? 0.5 * step_s : 0.0));
+    }
+    place_driven(rows, &driven, stride->start_s);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        stride->first[i] = space_world_motion(world, i);
+    }
+    space_joints_clear(linkage, &stride->joints);
+    space_joints_place(&rows->response, stride->first, stride->joints.plane, stride->joints.space);
+    Vec3 gyration[LINKAGE_BODY_MAX];
+    gyrate(rows, stride, gyration);
+    const bool is_quick = rows->scenario->ode.solver == ODE_QUICK;
+    bool is_good =
+        space_contacts_make(&rows->contacts, stride->first, step_s, stride->approach, err);
+    if (is_good && rows->is_staggered) {
+        place_driven(rows, &driven, stride->start_s + step_s);
+    }
+    is_good =
+        is_good && engine_step(world->id, step_s, is_quick, err) && space_world_check(world, err);
+    if (!is_good) {
+        return stepping_fail(rows->scenario, stride->start_s, (size_t)rows->index + 1, step_s, err);
+    }
+    read_motions(rows, gyration, stride);
+    book(rows, &driven, stride);
+    rows->index++;
+    return true;
+}
+
+// The step before the first has no accelerations: they go on as they come.
+static void guess_before(SpaceRows *rows)
+{
+    for (size_t i = 0; i < rows->scenario->linkage.body_count; i++) {
+        const SpaceMotion *now = &rows->now->last[i];
+        const SpaceMotion *ahead = &rows->ahead->last[i];
+        SpaceMotion *before = &rows->before->last[i];
+        before->acceleration = vec3_sub(vec3_scale(2.0, now->acceleration), ahead->acceleration);
+        before->alpha = vec3_sub(vec3_scale(2.0, now->alpha), ahead->alpha);
+    }
+}
+
+static bool space_rows_step(void *state, double stop_s, Err *err)
+{
+    (void)stop_s; // a fixed step: samples are looked up inside it
+    SpaceRows *rows = state;
+    if (!rows->is_staggered) {
+        return advance(rows, rows->ahead, err);
+    }
+    // the first time also one ahead
+    do {
+        Stride *const spare = rows->before;
+        rows->before = rows->now;
+        rows->now = rows->ahead;
+        rows->ahead = spare;
+        if (!advance(rows, rows->ahead, err)) {
+            return false;
+        }
+    } while (rows->index < 2);
+    if (rows->index == 2) {
+        guess_before(rows);
+    }
+    return true;
+}
+
+static const Stride *handed_on(const SpaceRows *rows)
+{
+    return rows->is_staggered ? rows->now : rows->ahead;
+}
+
+static StepRecord space_rows_record(const void *state)
+{
+    const SpaceRows *rows = state;
+    const Stride *now = handed_on(rows);
+    const long number = rows->is_staggered ? rows->index - 1 : rows->index;
+    return (StepRecord){
+        .start_s = now->start_s,
+        .end_s = (double)number * rows->step_s,
+        .joint_s = now->start_s + (rows->is_staggered ? 0.5 * rows->step_s : 0.0),
+        .is_mean = true,
+        .omega = now->omega,
+        .alpha = now->alpha,
+        .joints = now->joints.plane,
+        .space_joints = now->joints.space,
+        .impulse = now->impulse,
+        .approach = now->approach,
+        .drive_work = now->drive_work,
+        .dissipated = now->energy.dissipated,
+        .friction = now->energy.friction,
+        .elastic = now->energy.elastic,
+    };
+}
+
+static void space_rows_observe(const void *state, double time_s, Sample *sample)
+{
+    const SpaceRows *rows = state;
+    const Linkage *linkage = &rows->scenario->linkage;
+    const Stride *now = handed_on(rows);
+    const double since_s = time_s - now->start_s;
+    sample->time_s = time_s;
+    sample->crank_rad = linkage_crank_angle(linkage, time_s);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Stride *other =
+            since_s < 0.5 * rows->step_s ? rows->before : rows->ahead; // of staggered stepping
+        sample->space_bodies[i] =
+            rows->is_staggered
+                ? space_between_leapfrog(&now->first[i], &now->last[i], &other->last[i], since_s,
+                                         rows->step_s)
+                : space_between_plain(&now->first[i], &now->last[i], since_s, rows->step_s);
+        if ((int)i == rows->driven) {
+            sample->space_bodies[i] = space_driven(linkage, time_s);
+        }
+        sample->bodies[i] = space_planar(&sample->space_bodies[i]);
+    }
+    memcpy(sample->joints, now->joints.plane, sizeof sample->joints);
+    memcpy(sample->space_joints, now->joints.space, sizeof sample->space_joints);
+    space_joints_place(&rows->response, sample->space_bodies, sample->joints, sample->space_joints);
+}
+
+static SolverModel space_rows_model(const void *state)
+{
+    const SpaceRows *rows = state;
+    SolverModel model = {
+        .step_s = rows->step_s,
+        .constraint_rows = rows->world.constraint_rows,
+        .contact_rows = rows->contacts.most_rows,
+        .fallback_rows = rows->contacts.fallback_count,
+        .steps = (size_t)rows->index,
+    };
+    stepping_label(rows->scenario, rows->is_staggered ? "staggered" : "plain",
+                   OPTIONS_ODE_MAPS[rows->scenario->ode.map], model.label);
+    return model;
+}
+
+const Solver SPACE_PLAIN = {
+    .name = "plain",
+    .open = open_plain,
+    .step = space_rows_step,
+    .record = space_rows_record,
+    .observe = space_rows_observe,
+    .model = space_rows_model,
+    .close = space_rows_close,
+};
+
+const Solver SPACE_STAGGERED = {
+    .name = "staggered",
+    .open = open_staggered,
+    .step = space_rows_step,
+    .record = space_rows_record,
+    .observe = space_rows_observe,
+    .model = space_rows_model,
+    .close = space_rows_close,
+};

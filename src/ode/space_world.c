@@ -1,0 +1,233 @@
+// How is a linkage built in ODE in space, with no row that follows from others?
+//
+// A joint in space has five rows. ODE's own joints have five (hinge), four (universal: the point,
+// and one of the two directions of the axis) or three (ball). In a loop some follow from others:
+// the parallel axes of a planar four-bar leave three too many. The response of the linkage chooses
+// (model/space_rows.h): all points, and of each axis both directions, one, or none.
+//
+// A universal joint keeps its first axis u, on one body, at right angles to its second, w, on the
+// other: the row is (u x w) . (omega_b - omega_a). w is chosen so that u x w is the direction asked
+// for, and turns with body b.
+//
+// Turning inertias: with I at mid-step, o and n the angular velocities at start and end, the
+// angular momenta in the world's frame are
+//     L = exp(-h/2 o) I o,   L' = exp(h/2 n) I n        exp(u) x: x turned by the vector u
+// as the body turns by h/2 o up to mid-step and by h/2 n from there. ODE steps I (n - o) = h (T +
+// others); L' - L = h (others) needs
+//     h T = [1 - exp(h/2 n)] I n - [1 - exp(-h/2 o)] I o  = - h/2 (o x I o + n x I n) + O(h^2)
+// of second order and symmetric in time. ODE's own term (dBodySetGyroscopicMode) is implicit Euler,
+// of first order: a top that is let go loses its energy with the step.
+#include "ode/space_world.h"
+
+#include "ode/engine.h"
+
+#include <string.h>
+
+// each iteration leaves about the step's angle of the error before
+enum { GYRATION_STEPS = 12 };
+static const double GYRATION_ROUNDING = 1e-15;
+
+static void make_body(const Scenario *scenario, size_t number, const SpaceMotion *motion,
+                      World *world)
+{
+    const Body *body = &scenario->linkage.bodies[number];
+    const Mat3 inertia = space_inertia(body);
+    const dBodyID made = dBodyCreate(world->id);
+    dMass mass;
+    dMassSetParameters(&mass, body->mass, 0, 0, 0, inertia.row[0].x, inertia.row[1].y,
+                       inertia.row[2].z, inertia.row[0].y, inertia.row[0].z, inertia.row[1].z);
+    dBodySetMass(made, &mass);
+    dBodySetFiniteRotationMode(made, 1);
+    // plain stepping is what ODE's manual says
+    dBodySetGyroscopicMode(made, scenario->ode.stepping == ODE_PLAIN);
+    world->bodies[number] = made;
+    space_world_place(world, number, motion);
+}
+
+static dBodyID body_of(const World *world, int body)
+{
+    return body == LINKAGE_GROUND ? 0 : world->bodies[body];
+}
+
+// The directions of a joint's axis that are held, and, of one alone, which.
+static int held_directions(const SpaceResponse *response, int joint, Vec3 *direction)
+{
+    int count = 0;
+    for (size_t i = 0; i < response->ideal_rows; i++) {
+        if (response->joint_of[i] == joint && response->part_of[i] >= SPACE_POINT_ROWS) {
+            *direction = response->direction_of[i];
+            count++;
+        }
+    }
+    return count;
+}
+
+static dJointID make_joint(World *world, int count, Vec3 point, Vec3 axis, Vec3 direction,
+                           dBodyID a, dBodyID b)
+{
+    if (count == 0) {
+        const dJointID ball = dJointCreateBall(world->id, 0);
+        dJointAttach(ball, a, b);
+        dJointSetBallAnchor(ball, point.x, point.y, point.z);
+        return ball;
+    }
+    if (count == 1) {
+        const Vec3 second = vec3_cross(direction, axis);
+        const dJointID universal = dJointCreateUniversal(world->id, 0);
+        dJointAttach(universal, a, b);
+        dJointSetUniversalAnchor(universal, point.x, point.y, point.z);
+        dJointSetUniversalAxis1(universal, axis.x, axis.y, axis.z);
+        dJointSetUniversalAxis2(universal, second.x, second.y, second.z);
+        return universal;
+    }
+    const dJointID hinge = dJointCreateHinge(world->id, 0);
+    dJointAttach(hinge, a, b);
+    dJointSetHingeAnchor(hinge, point.x, point.y, point.z);
+    dJointSetHingeAxis(hinge, axis.x, axis.y, axis.z);
+    return hinge;
+}
+
+static void make_ideal(const Scenario *scenario, const SpaceMotion *motions, size_t number,
+                       const SpaceResponse *response, World *world)
+{
+    const SpaceEnd *ends = response->ends[number];
+    Vec3 direction = {0.0, 0.0, 0.0};
+    const int count = held_directions(response, (int)number, &direction);
+    const Vec3 point = space_point(motions, ends[0].body, ends[0].anchor);
+    const Vec3 axis = space_direction(motions, ends[0].body, ends[0].axis);
+    const Joint *joint = &scenario->linkage.joints[number];
+    const dJointID made = make_joint(world, count, point, axis, direction,
+                                     body_of(world, joint->body_a), body_of(world, joint->body_b));
+    if (count == 0) {
+        dJointSetBallParam(made, dParamERP, dWorldGetERP(world->id));
+        dJointSetBallParam(made, dParamCFM, dWorldGetCFM(world->id));
+    }
+    dJointSetFeedback(made, &world->feedback[number]);
+}
+
+bool space_world_build(const Scenario *scenario, const SpaceMotion *motions, World *world,
+                       SpaceResponse *response, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    memset(world, 0, sizeof *world);
+    if (!space_response_init(linkage, motions, response, err)) {
+        return false;
+    }
+    if (!space_response_place(response, motions, NULL, 0)) {
+        return err_set(err, ERR_SOLVER,
+                       "the ideal joints are redundant at the start: give one joint of the loop "
+                       "some play");
+    }
+    world_start(scenario, world);
+    world->constraint_rows = response->ideal_rows;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        make_body(scenario, i, &motions[i], world);
+    }
+    const int driven = linkage_driven_body(linkage);
+    if (driven >= 0) {
+        dBodySetKinematic(world->bodies[driven]);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage_is_ideal(linkage, i)) {
+            make_ideal(scenario, motions, i, response, world);
+        }
+    }
+    return true;
+}
+
+void space_world_place(World *world, size_t body, const SpaceMotion *motion)
+{
+    const dBodyID id = world->bodies[body];
+    const dQuaternion turn = {motion->turn.w, motion->turn.x, motion->turn.y, motion->turn.z};
+    dBodySetPosition(id, motion->position.x, motion->position.y, motion->position.z);
+    dBodySetQuaternion(id, turn);
+    dBodySetLinearVel(id, motion->velocity.x, motion->velocity.y, motion->velocity.z);
+    dBodySetAngularVel(id, motion->omega.x, motion->omega.y, motion->omega.z);
+}
+
+static Vec3 vector(const dReal *a)
+{
+    return (Vec3){a[0], a[1], a[2]};
+}
+
+SpaceMotion space_world_motion(const World *world, size_t body)
+{
+    const dBodyID id = world->bodies[body];
+    const dReal *turn = dBodyGetQuaternion(id);
+    return (SpaceMotion){
+        .position = vector(dBodyGetPosition(id)),
+        .turn = {turn[0], turn[1], turn[2], turn[3]},
+        .velocity = vector(dBodyGetLinearVel(id)),
+        .omega = vector(dBodyGetAngularVel(id)),
+    };
+}
+
+bool space_world_check(const World *world, Err *err)
+{
+    for (size_t i = 0; i < world->linkage->body_count; i++) {
+        const dReal *v = dBodyGetLinearVel(world->bodies[i]);
+        const dReal *w = dBodyGetAngularVel(world->bodies[i]);
+        if (!isfinite(v[0] + v[1] + v[2] + w[0] + w[1] + w[2])) {
+            return err_set(err, ERR_SOLVER, "the velocity of the %s is no longer finite",
+                           world->linkage->bodies[i].name);
+        }
+    }
+    return true;
+}
+
+SpaceChange space_world_load(const World *world, size_t joint, int body)
+{
+    const Joint *data = &world->linkage->joints[joint];
+    const dJointFeedback *feedback = &world->feedback[joint];
+    // ODE's first body is a, or b where a is the ground
+    const bool is_first = body == data->body_a || data->body_a == LINKAGE_GROUND;
+    return is_first ? (SpaceChange){vector(feedback->f1), vector(feedback->t1)}
+                    : (SpaceChange){vector(feedback->f2), vector(feedback->t2)};
+}
+
+Vec3 space_world_force(const World *world, size_t joint)
+{
+    const Joint *data = &world->linkage->joints[joint];
+    const double sign = data->body_a != LINKAGE_GROUND ? -1.0 : 1.0;
+    return vec3_scale(sign, vector(world->feedback[joint].f1));
+}
+
+// x less x turned by a vector u, with all its digits: -(sin u / u) u x x - ((1 - cos u) / u^2) u x
+// (u x x).
+static Vec3 turned_away(Vec3 u, Vec3 x)
+{
+    const double square = vec3_dot(u, u);
+    const double angle = sqrt(square);
+    const bool is_small = angle < 1e-4;
+    const double first = is_small ? 1.0 - square / 6.0 : sin(angle) / angle;
+    const double half = is_small ? 1.0 - square / 24.0 : sin(0.5 * angle) / (0.5 * angle);
+    const Vec3 across = vec3_cross(u, x);
+    return vec3_scale(-1.0, vec3_add(vec3_scale(first, across),
+                                     vec3_scale(0.5 * half * half, vec3_cross(u, across))));
+}
+
+Vec3 space_world_gyration(const SpaceResponse *response, size_t body, const SpaceMotion *middle,
+                          Vec3 rest, double step_s, Vec3 *alpha)
+{
+    const Mat3 turn = quat_matrix(middle->turn);
+    const Mat3 *inertia = &response->own_inertia[body];
+    const double half_s = 0.5 * step_s;
+    // all in the body's frame
+    const Vec3 omega = mat3_apply_back(&turn, middle->omega);
+    const Vec3 start = turned_away(vec3_scale(-half_s, omega), mat3_apply(inertia, omega));
+    const Vec3 unturned = vec3_add(omega, vec3_scale(step_s, mat3_apply_back(&turn, rest)));
+    const double rounding = GYRATION_ROUNDING * vec3_length(unturned);
+    Vec3 torque = {0.0, 0.0, 0.0};
+    Vec3 turning = {0.0, 0.0, 0.0};
+    double change = INFINITY;
+    for (int i = 0; i < GYRATION_STEPS && change > rounding; i++) {
+        const Vec3 next = vec3_add(unturned, vec3_scale(step_s, turning));
+        const Vec3 end = turned_away(vec3_scale(half_s, next), mat3_apply(inertia, next));
+        torque = vec3_scale(1.0 / step_s, vec3_sub(end, start));
+        const Vec3 before = turning;
+        turning = mat3_apply(&response->own_inverse[body], torque);
+        change = step_s * vec3_length(vec3_sub(turning, before));
+    }
+    *alpha = mat3_apply(&turn, turning);
+    return mat3_apply(&turn, torque);
+}

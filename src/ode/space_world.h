@@ -1,0 +1,34 @@
+// A linkage in space built in ODE: bodies with their full inertias, and ideal joints of which no
+// row follows from the others. Contacts are made step by step (ode/space_contacts.h).
+#pragma once
+
+#include "model/space_response.h"
+#include "ode/world.h"
+
+// Builds the world of a scenario with its bodies in the motions given, and the response of its
+// linkage. Fails with ERR_SOLVER where ODE's joints cannot hold it without redundant rows. The
+// world must not be copied, and is to be finished after a failure too.
+bool space_world_build(const Scenario *scenario, const SpaceMotion *motions, World *world,
+                       SpaceResponse *response, Err *err);
+
+// Puts one body where a motion says, with its velocities, and reads it back; accelerations are
+// zero.
+void space_world_place(World *world, size_t body, const SpaceMotion *motion);
+SpaceMotion space_world_motion(const World *world, size_t body);
+
+// Fails with ERR_SOLVER where a velocity is not finite.
+bool space_world_check(const World *world, Err *err);
+
+// The force that an ideal joint, not the drive's, put on its body b in the last step, N.
+Vec3 space_world_force(const World *world, size_t joint);
+
+// What it put on one of its two bodies: the force, and the moment about its centre of mass.
+SpaceChange space_world_load(const World *world, size_t joint, int body);
+
+// The torque, N m, that is to act on a body through a step of ODE so that its angular momentum
+// changes by what else acts. The body has its position at mid-step and omega as it is at the step's
+// start; `rest` is its angular acceleration, rad/s^2, by all that acts else, as well as it is
+// known: exact for a free body, whose momentum is then kept to rounding. Writes the angular
+// acceleration that the torque alone makes.
+Vec3 space_world_gyration(const SpaceResponse *response, size_t body, const SpaceMotion *middle,
+                          Vec3 rest, double step_s, Vec3 *alpha);
