@@ -3,14 +3,17 @@
 // Each place (contact/pin_space.h) that touches is one contact of ODE, with the place's own part of
 // the joint's law, by the map chosen, as in ode/contact_rows.c. Two ends of one hole that press
 // together share the mass m of the linkage: an end i that presses with F_i has
-//     m_i = F_i / sum_j W_ij F_j,     W_ij the mobility between the normals of places i and j
-// so that both ends together oscillate as one contact of the whole law on m. For a map's limit of
+//     1 / m_i = W_ii + sum_j max(0, W_ij) min(1, F_j / F_i)
+// with W_ij the mobility between the normals of places i and j, so that both ends of a pin that is
+// not tilted oscillate as one contact of the whole law on m. For a map's limit of
 // stability it is the stiffest motion of the two that counts, at most 1 / m_i = sum_j |W_ij| k_j /
 // k_i.
 #include "ode/space_contacts.h"
 
 #include "contact/law.h"
 #include "contact/penalty.h"
+#include "ode/space_friction_rows.h"
+#include "ode/space_world.h"
 
 #include <string.h>
 
@@ -126,14 +129,14 @@ static void find_masses(SpaceContacts *contacts, const SpaceMotion *motions, int
     }
     space_response_mobility(contacts->response, mobility);
     for (size_t i = 0; i < count; i++) {
-        double together = 0.0;
+        double together = mobility[i * count + i];
         double stiffest = 0.0;
         for (size_t k = 0; k < count; k++) {
-            together += mobility[i * count + k] * forces[k] / forces[i];
-            stiffest += fabs(mobility[i * count + k]) * stiffness[k] / stiffness[i];
+            const double between = mobility[i * count + k];
+            together += k == i ? 0.0 : fmax(0.0, between) * fmin(1.0, forces[k] / forces[i]);
+            stiffest += fabs(between) * stiffness[k] / stiffness[i];
         }
-        const double own = mobility[i * count + i];
-        found[i]->mass = 1.0 / (together > 0.0 ? together : own);
+        found[i]->mass = 1.0 / together;
         found[i]->stiff_mass = 1.0 / stiffest;
         found[i]->mass_normal = found[i]->pose.normal;
         found[i]->mass_places = places;
@@ -209,10 +212,9 @@ static dBodyID body_of(const World *world, int body)
 }
 
 // A contact as ODE wants it: its normal is that of the force on the hole.
-static void make_row(SpaceContacts *contacts, size_t number, double step_s)
+static void fill_contact(SpaceContacts *contacts, size_t number, double step_s)
 {
     SpaceContact *contact = &contacts->contacts[number];
-    const PinSpace *place = &contacts->places[number];
     const Vec3 normal = contact->pose.normal;
     contact->contact = (dContact){
         .surface = surface_of(contacts, number, step_s),
@@ -220,18 +222,31 @@ static void make_row(SpaceContacts *contacts, size_t number, double step_s)
                  .normal = {-normal.x, -normal.y, -normal.z},
                  .depth = contact->depth},
     };
-    const dJointID joint =
-        dJointCreateContact(contacts->world->id, contacts->group, &contact->contact);
-    dJointAttach(joint, body_of(contacts->world, place->hole.body),
-                 body_of(contacts->world, place->pin.body));
-    dJointSetFeedback(joint, &contact->feedback);
 }
 
-bool space_contacts_make(SpaceContacts *contacts, const SpaceMotion *motions, double step_s,
-                         double *approach, Err *err)
+// Makes the joints of all contacts. Returns their rows.
+static size_t make_joints(SpaceContacts *contacts)
+{
+    size_t rows = 0;
+    for (size_t i = 0; i < contacts->count; i++) {
+        SpaceContact *contact = &contacts->contacts[i];
+        const PinSpace *place = &contacts->places[i];
+        if (contact->is_touching) {
+            const dJointID joint =
+                dJointCreateContact(contacts->world->id, contacts->group, &contact->contact);
+            dJointAttach(joint, body_of(contacts->world, place->hole.body),
+                         body_of(contacts->world, place->pin.body));
+            dJointSetFeedback(joint, &contact->feedback);
+            rows += (contact->contact.surface.mode & dContactFDir1) != 0 ? 3 : 1;
+        }
+    }
+    return rows;
+}
+
+bool space_contacts_make(SpaceContacts *contacts, const SpaceMotion *motions,
+                         const SpaceMotion *seen, double step_s, double *approach, Err *err)
 {
     const Linkage *linkage = &contacts->scenario->linkage;
-    size_t rows = 0;
     for (size_t i = 0; i < contacts->count; i++) {
         find_contact(contacts, i, motions, step_s);
     }
@@ -249,9 +264,12 @@ bool space_contacts_make(SpaceContacts *contacts, const SpaceMotion *motions, do
             return false;
         }
         check_stability(contacts, i, motions, step_s);
-        make_row(contacts, i, step_s);
-        rows++;
+        fill_contact(contacts, i, step_s);
     }
+    if (contacts->scenario->contact.friction > 0.0) {
+        space_friction_rows_add(contacts, motions, seen, step_s);
+    }
+    const size_t rows = make_joints(contacts);
     contacts->most_rows = rows > contacts->most_rows ? rows : contacts->most_rows;
     return true;
 }
@@ -267,6 +285,14 @@ static void book_energy(SpaceContacts *contacts, size_t number, const SpaceMotio
     }
     const PinSpace *place = &contacts->places[number];
     const PinSpacePose after = pin_space_pose(place, motions);
+    if (contacts->scenario->contact.friction > 0.0 && place->place != PIN_SPACE_COLLAR) {
+        const Vec3 moved = vec3_sub(after.at_a, contact->pose.at_a);
+        const Vec3 sliding = space_friction_rows_sliding(
+            place, motions, vec3_add(contact->point, moved), contact->pose.normal);
+        const Vec3 mean_sliding =
+            contacts->is_staggered ? vec3_scale(0.5, vec3_add(contact->sliding, sliding)) : sliding;
+        contact->friction = -step_s * vec3_dot(contact->force, mean_sliding);
+    }
     const double before = contact->pose.approach_speed;
     const double mean = 0.5 * (before + after.approach_speed);
     const double pressing = vec3_dot(contact->pose.normal, contact->force);

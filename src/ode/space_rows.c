@@ -8,6 +8,7 @@
 #include "ode/space_between.h"
 #include "ode/space_contacts.h"
 #include "ode/space_stepping.h"
+#include "ode/space_world.h"
 #include "ode/stepping.h"
 
 #include <assert.h>
@@ -155,6 +156,25 @@ static void gyrate(SpaceRows *rows, const Stride *stride, Vec3 *alpha)
     }
 }
 
+// The motions as the rows of the step see them: the driven body with its speed at the time given,
+// the others accelerated by gravity and by their turning inertias.
+static void look_ahead(const SpaceRows *rows, const Stride *stride, const Vec3 *gyration,
+                       double speed_s, SpaceMotion *seen)
+{
+    const Linkage *linkage = &rows->scenario->linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        seen[i] = stride->first[i];
+        seen[i].acceleration = (Vec3){0.0, -rows->scenario->gravity, 0.0};
+        seen[i].alpha = gyration[i];
+    }
+    if (rows->driven >= 0) {
+        const SpaceMotion then = space_driven(linkage, speed_s);
+        seen[rows->driven].velocity = then.velocity;
+        seen[rows->driven].omega = then.omega;
+        seen[rows->driven].acceleration = seen[rows->driven].alpha = (Vec3){0.0, 0.0, 0.0};
+    }
+}
+
 // Speeds and accelerations of a step that has been taken.
 static void read_motions(SpaceRows *rows, const Vec3 *gyration, Stride *stride)
 {
@@ -229,11 +249,12 @@ static bool advance(SpaceRows *rows, Stride *stride, Err *err)
     Vec3 gyration[LINKAGE_BODY_MAX];
     gyrate(rows, stride, gyration);
     const bool is_quick = rows->scenario->ode.solver == ODE_QUICK;
+    const double speed_s = stride->start_s + (rows->is_staggered ? step_s : 0.0);
+    SpaceMotion seen[LINKAGE_BODY_MAX];
+    look_ahead(rows, stride, gyration, speed_s, seen);
     bool is_good =
-        space_contacts_make(&rows->contacts, stride->first, step_s, stride->approach, err);
-    if (is_good && rows->is_staggered) {
-        place_driven(rows, &driven, stride->start_s + step_s);
-    }
+        space_contacts_make(&rows->contacts, stride->first, seen, step_s, stride->approach, err);
+    place_driven(rows, &driven, speed_s);
     is_good =
         is_good && engine_step(world->id, step_s, is_quick, err) && space_world_check(world, err);
     if (!is_good) {

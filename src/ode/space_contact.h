@@ -1,0 +1,48 @@
+// The contacts of pins in space as ODE's rows, and the joints they belong to: what
+// ode/space_contacts.c and its parts share.
+#pragma once
+
+#include "contact/map.h"
+#include "contact/pin_space.h"
+#include "model/space_response.h"
+#include "ode/world.h"
+
+// What a pin does at one of its places.
+typedef struct SpaceContact {
+    bool is_touching;
+    double depth; // m, of the row, like all that follows up to the friction
+    PinSpacePose pose;
+    Vec3 point;          // m, where the force acts
+    Vec3 hole_axis;      // unit, of a collar
+    double impact_speed; // m/s, closing speed when the present contact began
+    double gaps[2];      // m, of the last step and of the one before it
+    size_t gaps_known;   // how many of them the pin was free in
+    double mass;         // kg, effective along the normal that it was worked out for
+    double stiff_mass;   // kg, with which the stiffest motion of the joint's places meets it
+    Vec3 mass_normal;
+    unsigned mass_places; // the joint's places that touched then, one bit each
+    bool falls_back;      // the map is not stable at this step: the row is the textbook's
+    double damping;       // N s/m
+    Vec3 sliding;         // m/s, along the wall before the step, where there is friction
+    Vec3 force;           // N, on the pin in the step
+    double elastic;       // J, stored after the step
+    double dissipated;    // J, lost along the normal in the step
+    double friction;      // J, lost in sliding in the step
+    dContact contact;     // as ODE is given it
+    dJointFeedback feedback;
+} SpaceContact;
+
+typedef struct SpaceContacts {
+    const Scenario *scenario;
+    World *world;
+    SpaceResponse *response; // the linkage's
+    const Map *map;
+    double penalty; // N s/m, of CONTACT_POISSON, of a whole joint
+    dJointGroupID group;
+    size_t count;
+    PinSpace places[PIN_SPACE_MAX];
+    SpaceContact contacts[PIN_SPACE_MAX];
+    size_t most_rows;
+    size_t fallback_count;
+    bool is_staggered; // positions stand half a step behind the speeds
+} SpaceContacts;

@@ -1,0 +1,274 @@
+// How do two rows of ODE follow the friction law mu N tanh(|v| / v_s) against v?
+//
+// As in ode/contact_friction.c, the step is solved here first, and ODE's rows are then made to come
+// to the same forces. With N what presses, F the force along the wall, a vector, W the mobility:
+//     u' = u + h (a + W_nn N + W_nt F),     u' + CFM N = (ERP / h) d,     N >= 0
+//     v' = v + h (a + W_tn N + W_tt F),     F = -mu N tanh(|w| / v_s) w / |w|
+//     w = theta v' + (1 - theta) v
+// Of one place, the others given: w (1 + theta phi W_tt h) = b, phi = mu N tanh(|w| / v_s) / |w|,
+// has one solution, as |w| of the left side grows with the |w| in phi.
+// ODE's first direction is that of w, with the slope of the law there; along the second one w is
+// zero, and the law's slope is phi. A pyramid with the bound mu N in both directions would hold
+// with up to sqrt 2 mu N, in a direction that depends on the choice of the two.
+//
+// The ideal joints hold as in ODE, J v' = -(ERP / h) opening, which is part of a.
+#include "ode/space_friction.h"
+
+#include <math.h>
+
+enum { SWEEPS_MAX = 50, ROOT_STEPS_MAX = 60, PARTS = 3 };
+
+static const double CONVERGED = 1e-8; // of the largest force
+static const double FLAT = 1e-9;      // slope of tanh, below which the row is at its bound
+
+enum { PLACE_MAX = SPACE_RESPONSE_PLAY_MAX / PARTS, UNKNOWN_MAX = PARTS * PLACE_MAX };
+
+typedef struct Share {
+    double free[PARTS];   // m/s: speeds after the step if nothing pressed: normal, side, other
+    double before[PARTS]; // m/s: of the two along the wall, before it
+    double theta;
+    double mean[PARTS]; // m/s: w, of the two along the wall
+} Share;
+
+// The equations of a step: of each place what presses, then what acts along the wall.
+typedef struct System {
+    const ContactOptions *contact;
+    const SpaceFrictionRow *rows;
+    size_t count;
+    Share shares[PLACE_MAX];
+    double change[UNKNOWN_MAX * UNKNOWN_MAX]; // s/kg: h W
+    double forces[UNKNOWN_MAX];               // N
+} System;
+
+static Vec3 direction(const SpaceFrictionRow *row, int part)
+{
+    return part == 0 ? row->normal : part == 1 ? row->side : vec3_cross(row->normal, row->side);
+}
+
+static double at(const System *system, size_t row, size_t column)
+{
+    return system->change[row * PARTS * system->count + column];
+}
+
+// How the speeds of all rows would be after the step if nothing pressed.
+static void find_free(System *system, SpaceResponse *response, const SpaceFrictionStep *step,
+                      const SpaceRow *play_rows)
+{
+    double openings[SPACE_COLUMN_MAX];
+    double rates[SPACE_COLUMN_MAX];
+    double ideal_drift[SPACE_COLUMN_MAX];
+    double play_drift[UNKNOWN_MAX];
+    double free[UNKNOWN_MAX];
+    SpaceMotion pushed[LINKAGE_BODY_MAX];
+    for (size_t i = 0; i < response->linkage->body_count; i++) {
+        pushed[i] = step->motions[i];
+        pushed[i].velocity = step->motions[i].acceleration;
+        pushed[i].omega = step->motions[i].alpha;
+    }
+    space_response_openings(response, step->motions, openings, rates);
+    for (size_t i = 0; i < response->ideal_rows; i++) {
+        const SpaceRow *row = &response->rows[i].row;
+        const double late =
+            space_row_speed(row, step->motions) + step->erp / step->step_s * openings[i];
+        ideal_drift[i] = space_row_speed(row, pushed) + late / step->step_s;
+    }
+    for (size_t i = 0; i < PARTS * system->count; i++) {
+        play_drift[i] = space_row_speed(&play_rows[i], pushed);
+    }
+    space_response_free(response, ideal_drift, play_drift, free);
+    for (size_t i = 0; i < PARTS * system->count; i++) {
+        system->shares[i / PARTS].free[i % PARTS] =
+            space_row_speed(&play_rows[i], step->motions) + step->step_s * free[i];
+    }
+}
+
+static bool start_system(System *system, SpaceResponse *response, const SpaceFrictionStep *step)
+{
+    SpaceRow play_rows[UNKNOWN_MAX];
+    for (size_t i = 0; i < PARTS * system->count; i++) {
+        const SpaceFrictionRow *row = &system->rows[i / PARTS];
+        const Vec3 along = direction(row, (int)(i % PARTS));
+        play_rows[i] = space_row_along(step->motions, row->body[0], row->point, row->body[1],
+                                       row->point, along);
+        system->shares[i / PARTS].before[i % PARTS] = vec3_dot(row->sliding, along);
+        system->forces[i] = 0.0;
+    }
+    if (!space_response_place(response, step->motions, play_rows, PARTS * system->count)) {
+        return false;
+    }
+    space_response_mobility(response, system->change);
+    for (size_t i = 0; i < PARTS * system->count * PARTS * system->count; i++) {
+        system->change[i] *= step->step_s;
+    }
+    find_free(system, response, step, play_rows);
+    return true;
+}
+
+// The speed along a row after the step from all forces but those of some rows of its own place.
+static double speed_by_others(const System *system, size_t unknown, size_t from, size_t to)
+{
+    const size_t place = unknown / PARTS;
+    double sum = system->shares[place].free[unknown % PARTS];
+    for (size_t k = 0; k < PARTS * system->count; k++) {
+        if (k < from || k >= to) {
+            sum += at(system, unknown, k) * system->forces[k];
+        }
+    }
+    return sum;
+}
+
+// w for a given theta phi: of (1 + K M) w = b.
+static double solve_mean(double factor, const double m[3], const double b[2], double w[2])
+{
+    const double xx = 1.0 + factor * m[0];
+    const double xy = factor * m[1];
+    const double yy = 1.0 + factor * m[2];
+    const double determinant = xx * yy - xy * xy;
+    w[0] = (yy * b[0] - xy * b[1]) / determinant;
+    w[1] = (xx * b[1] - xy * b[0]) / determinant;
+    return sqrt(w[0] * w[0] + w[1] * w[1]);
+}
+
+// phi: what holds at a sliding speed, for each unit of it.
+static double hold_at(double most, double speed, double size)
+{
+    return size < 1e-6 * speed ? most / speed : most * tanh(size / speed) / size;
+}
+
+// Solves (1 + theta phi M) w = b for w, whose size phi depends on, by the Illinois method.
+static void find_sliding(double most, double speed, double theta, const double m[3],
+                         const double b[2], double w[2])
+{
+    double low = 0.0;
+    double high = hypot(b[0], b[1]);
+    const double within = CONVERGED * (1e-3 * speed + high);
+    double size = high;
+    double missing = solve_mean(theta * hold_at(most, speed, high), m, b, w) - high;
+    double at_high = missing;
+    double at_low = solve_mean(theta * hold_at(most, speed, low), m, b, w);
+    int side = 0;
+    for (int i = 0; i < ROOT_STEPS_MAX && high - low > within; i++) {
+        size = (low * at_high - high * at_low) / (at_high - at_low);
+        missing = solve_mean(theta * hold_at(most, speed, size), m, b, w) - size;
+        if (fabs(missing) <= 1e-3 * within) {
+            return;
+        }
+        if (missing > 0.0) {
+            low = size;
+            at_low = missing;
+            at_high *= side == 1 ? 0.5 : 1.0;
+            side = 1;
+        } else {
+            high = size;
+            at_high = missing;
+            at_low *= side == -1 ? 0.5 : 1.0;
+            side = -1;
+        }
+    }
+    solve_mean(theta * hold_at(most, speed, size), m, b, w);
+}
+
+// Solves for what holds a place, given what presses there and all other places.
+static void find_hold(System *system, size_t place)
+{
+    Share *share = &system->shares[place];
+    const size_t first = PARTS * place + 1;
+    const double speed = system->contact->friction_speed;
+    const double most = system->contact->friction * system->forces[PARTS * place];
+    const double m[3] = {at(system, first, first), at(system, first, first + 1),
+                         at(system, first + 1, first + 1)};
+    const double stiffness = fmax(m[0], m[2]) * most / speed;
+    share->theta = stiffness > 2.0 ? 1.0 - 1.0 / stiffness : 0.5;
+    double b[2];
+    for (size_t i = 0; i < 2; i++) {
+        b[i] = share->theta * speed_by_others(system, first + i, first, first + 2) +
+               (1.0 - share->theta) * share->before[1 + i];
+    }
+    double w[2];
+    find_sliding(most, speed, share->theta, m, b, w);
+    const double held = hold_at(most, speed, hypot(w[0], w[1]));
+    for (size_t i = 0; i < 2; i++) {
+        share->mean[1 + i] = w[i];
+        system->forces[first + i] = -held * w[i];
+    }
+}
+
+// Solves for what presses and, with friction, for what holds, in turns until nothing changes.
+static void solve_forces(System *system, bool has_friction)
+{
+    double change = INFINITY;
+    double largest = 0.0;
+    for (int sweep = 0; sweep < SWEEPS_MAX && change > CONVERGED * largest; sweep++) {
+        change = 0.0;
+        for (size_t i = 0; i < system->count; i++) {
+            double *forces = &system->forces[PARTS * i];
+            const double before[PARTS] = {forces[0], forces[1], forces[2]};
+            const double own = at(system, PARTS * i, PARTS * i) + system->rows[i].cfm;
+            const double speed = speed_by_others(system, PARTS * i, PARTS * i, PARTS * i + 1);
+            forces[0] = fmax(0.0, (system->rows[i].target - speed) / own);
+            if (has_friction && system->rows[i].has_friction) {
+                find_hold(system, i);
+            }
+            for (int k = 0; k < PARTS; k++) {
+                change = fmax(change, fabs(forces[k] - before[k]));
+            }
+            largest = fmax(largest, forces[0]);
+        }
+    }
+}
+
+// The rows of a place that come to the forces found.
+static void make_rows(const System *system, size_t place, double alone, SpaceFrictionRow *row)
+{
+    const Share *share = &system->shares[place];
+    const double *w = share->mean + 1;
+    const double speed = system->contact->friction_speed;
+    const double pressing = system->forces[PARTS * place];
+    const double most = system->contact->friction * pressing;
+    const double size = hypot(w[0], w[1]);
+    if (!row->has_friction || !(most > 0.0)) {
+        return;
+    }
+    if (size > 0.0) {
+        row->along = vec3_scale(1.0 / size, vec3_add(vec3_scale(w[0], direction(row, 1)),
+                                                     vec3_scale(w[1], direction(row, 2))));
+    }
+    row->bound = alone > 0.0 ? system->contact->friction * pressing / alone : row->bound;
+    const Vec3 across = vec3_cross(row->normal, row->along);
+    const double before[2] = {(1.0 - share->theta) * vec3_dot(row->sliding, row->along),
+                              (1.0 - share->theta) * vec3_dot(row->sliding, across)};
+    const double held = tanh(size / speed);
+    const double slope = 1.0 - held * held;
+    if (slope > FLAT) {
+        const double reach = speed / (share->theta * slope);
+        row->slip[0] = reach / most;
+        row->surface[0] = (size - before[0]) / share->theta - held * reach;
+    }
+    row->slip[1] = 1.0 / (share->theta * hold_at(most, speed, size));
+    row->surface[1] = -before[1] / share->theta;
+}
+
+bool space_friction_find(const ContactOptions *contact, SpaceResponse *response,
+                         const SpaceFrictionStep *step, SpaceFrictionRow *rows, size_t count)
+{
+    System system; // large, and filled in as far as it is used
+    double alone[PLACE_MAX];
+    if (count > PLACE_MAX) {
+        return false;
+    }
+    system.contact = contact;
+    system.rows = rows;
+    system.count = count;
+    if (!start_system(&system, response, step)) {
+        return false;
+    }
+    solve_forces(&system, false);
+    for (size_t i = 0; i < count; i++) {
+        alone[i] = system.forces[PARTS * i];
+    }
+    solve_forces(&system, true);
+    for (size_t i = 0; i < count; i++) {
+        make_rows(&system, i, alone[i], &rows[i]);
+    }
+    return true;
+}
