@@ -181,10 +181,20 @@ bool closure_check_ideal(const Entries *entries, const Scenario *scenario, Err *
     const Driver *driver = &scenario->linkage.driver;
     const Lock lock =
         lock_find(&scenario->linkage, LOCK_IDEAL_ONLY, 2.0 * M_PI * scenario->run.revolutions);
+    const Entry *entry = entries_blame(entries, "run.revolutions drive.speed", 0);
+    if (lock.has_crossing &&
+        fabs(lock.crossing - driver->start) <= 2.0 * M_PI * scenario->run.revolutions) {
+        return entries_refuse(entry, err,
+                              "ideal joints do not say how the mechanism goes on: from %.4g deg it "
+                              "reaches a change point at %.4g deg, where it can continue in two "
+                              "ways\nallowed: less than %.4g revolutions, or play in one of the "
+                              "joints that are in line there",
+                              driver->start / DEGREE, lock.crossing / DEGREE,
+                              fabs(lock.crossing - driver->start) / (2.0 * M_PI));
+    }
     if (lock.state != LOCK_FOUND) {
         return true;
     }
-    const Entry *entry = entries_blame(entries, "run.revolutions drive.speed", 0);
     return entries_refuse(entry, err,
                           "the crank cannot turn through the run: from %.4g deg it turns up to "
                           "%.6g deg, where the mechanism locks\nallowed: less than %.4g "

@@ -205,3 +205,26 @@ double closed_path_crank_rate(const ClosedPath *path)
     const double rate = path->tangent[crank_column(path->linkage)];
     return path->linkage->driver.speed < 0.0 ? -rate : rate;
 }
+
+double closed_path_determinant(const ClosedPath *path)
+{
+    const size_t n = path->columns;
+    double matrix[KINEMATICS_COLUMN_MAX * KINEMATICS_COLUMN_MAX];
+    double missing[KINEMATICS_ROW_MAX];
+    size_t pivots[KINEMATICS_COLUMN_MAX];
+    Jacobian jacobian;
+    evaluate(path, path->at, &jacobian, missing);
+    if (jacobian.rows + 1 != n) {
+        return 0.0;
+    }
+    memcpy(matrix, jacobian.entries, jacobian.rows * n * sizeof *matrix);
+    memcpy(matrix + jacobian.rows * n, path->tangent, n * sizeof *matrix);
+    if (!dense_factor(n, matrix, pivots)) {
+        return 0.0;
+    }
+    double product = 1.0;
+    for (size_t k = 0; k < n; k++) {
+        product *= pivots[k] == k ? matrix[k * n + k] : -matrix[k * n + k];
+    }
+    return product;
+}

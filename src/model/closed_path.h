@@ -30,3 +30,7 @@ double closed_path_reach(const ClosedPath *path);
 // Angle of the driven body, rad, and its rate by arc length in the direction of the driver.
 double closed_path_crank(const ClosedPath *path);
 double closed_path_crank_rate(const ClosedPath *path);
+
+// The determinant of the joints' rows and the tangent, all scaled: it changes sign where two paths
+// cross. 0 where rows are redundant, so that it says nothing.
+double closed_path_determinant(const ClosedPath *path);

@@ -3,7 +3,8 @@
 // The positions that the ideal joints allow make a path. Along it the crank turns on, until it has
 // to turn back: there the rate of its angle by arc length passes zero, the loops can be closed at
 // no angle beyond, and the mechanism locks. Where the rate jumps, two paths cross: that is a change
-// point, which can be passed.
+// point, which can be passed. There the determinant of the joints' rows and the path's tangent
+// changes sign.
 #include "model/lock.h"
 
 #include "base/dense.h"
@@ -213,12 +214,30 @@ static Passage pass(ClosedPath *path, double *crank_angle)
     return PASSAGE_UNKNOWN;
 }
 
+// Notes a change point between two positions, where the determinant has changed sign: between, it
+// is almost straight.
+static void note_crossing(double angle_before, double before, double angle, double after,
+                          Lock *lock)
+{
+    if (!lock->has_crossing && before * after < 0.0) {
+        lock->has_crossing = true;
+        lock->crossing = angle_before + (angle - angle_before) * before / (before - after);
+    }
+}
+
 static Lock walk(ClosedPath *path, double turn)
 {
     const double start = closed_path_crank(path);
-    Lock lock = {LOCK_NONE, start};
+    Lock lock = {LOCK_NONE, start, false, start};
+    double determinant = closed_path_determinant(path);
     for (int i = 0; i < WALK_STEPS_MAX && fabs(lock.crank_angle - start) < turn; i++) {
+        const double before = lock.crank_angle;
         const Passage passage = pass(path, &lock.crank_angle);
+        if (passage == PASSAGE_OPEN) {
+            const double after = closed_path_determinant(path);
+            note_crossing(before, determinant, lock.crank_angle, after, &lock);
+            determinant = after;
+        }
         if (passage != PASSAGE_OPEN) {
             const bool is_inside = fabs(lock.crank_angle - start) <= turn;
             lock.state = passage == PASSAGE_UNKNOWN ? LOCK_UNKNOWN
@@ -233,7 +252,8 @@ static Lock walk(ClosedPath *path, double turn)
 
 Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
 {
-    const Lock unknown = {LOCK_UNKNOWN, linkage->driver.start};
+    const double start_angle = linkage->driver.start;
+    const Lock unknown = {LOCK_UNKNOWN, start_angle, false, start_angle};
     if (!linkage->driver.is_present || !space_has_plane(linkage)) {
         return unknown;
     }

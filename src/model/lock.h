@@ -12,6 +12,8 @@ typedef enum LockState {
 typedef struct Lock {
     LockState state;
     double crank_angle; // rad, of the driven body where it locks, or up to where it does not
+    bool has_crossing;  // whether it passes a change point before that
+    double crossing;    // rad, its angle at the first one
 } Lock;
 
 // Which joints keep bodies together.
@@ -21,8 +23,9 @@ typedef enum LockJoints {
 } LockJoints;
 
 // Turns the driver from its start through an angle, rad, and looks whether that part of the linkage
-// that it determines can follow. Change points, where two ways to go on cross, are passed. The
-// angle of a lock is right to 1e-8 rad or better. Takes some milliseconds.
+// that it determines can follow. Change points, where two ways to go on cross, are passed and noted;
+// not seen are those where a third way crosses as well. The angle of a lock is right to 1e-8 rad or
+// better, that of a change point to 1e-5 rad. Takes some milliseconds.
 Lock lock_find(const Linkage *linkage, LockJoints joints, double turn);
 
 // The lock that a run which failed at a time, s, had reached or nearly reached by then. A run that

@@ -120,6 +120,7 @@ static void four_bars_lock_where_the_closed_form_says(void **state)
         const Lock lock = lock_find(&linkage, LOCK_ALL_AS_IDEAL, 2.0 * M_PI);
         if (isinf(expected)) {
             assert_int_equal(lock.state, LOCK_NONE);
+            assert_false(lock.has_crossing);
             turning++;
         } else {
             assert_int_equal(lock.state, LOCK_FOUND);
@@ -144,6 +145,14 @@ static void parallelogram_and_kite_pass_their_change_points(void **state)
     const Linkage deltoid = four_bar(kite, 90.0 * DEGREE, 1.0, -30.0);
     assert_int_equal(lock_find(&parallelogram, LOCK_ALL_AS_IDEAL, 4.0 * M_PI).state, LOCK_NONE);
     assert_int_equal(lock_find(&deltoid, LOCK_ALL_AS_IDEAL, 4.0 * M_PI).state, LOCK_NONE);
+    // the links of the one lie in line at 180 deg, those of the other at 0
+    const Lock first = lock_find(&parallelogram, LOCK_ALL_AS_IDEAL, 4.0 * M_PI);
+    const Lock second = lock_find(&deltoid, LOCK_ALL_AS_IDEAL, 4.0 * M_PI);
+    assert_true(first.has_crossing && second.has_crossing);
+    assert_near(first.crossing, 180.0 * DEGREE, 1e-5);
+    assert_near(second.crossing, 0.0, 1e-5);
+    // the control: nothing crosses before
+    assert_false(lock_find(&parallelogram, LOCK_ALL_AS_IDEAL, 80.0 * DEGREE).has_crossing);
     // a bar too much, parallel to the others, changes nothing
     const Scenario three = mechanism_parallelogram();
     assert_int_equal(lock_find(&three.linkage, LOCK_ALL_AS_IDEAL, 2.0 * M_PI).state, LOCK_NONE);
