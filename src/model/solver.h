@@ -49,7 +49,8 @@ typedef struct Solver {
     bool (*step)(void *state, double stop_s, Err *err);
     // The record of the last step; not called before the first.
     StepRecord (*record)(const void *state);
-    // The state at a time in the last step, both ends included.
+    // The state at a time in the last step, both ends included. An omega that is no number marks a
+    // state that the joints do not determine: the run ends there.
     void (*observe)(const void *state, double time_s, Sample *sample);
     SolverModel (*model)(const void *state);
     // Optional: extremes from a time on known better than from steps (a closed form), which return

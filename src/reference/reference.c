@@ -199,11 +199,15 @@ static void reference_observe(const void *state, double time_s, Sample *sample)
     const double since_s = system->kind->since(system, time_s);
     dop853_dense(&reference->stepper.integrator, since_s, y);
     system->kind->project(system, since_s, y);
-    const bool is_determined = system->kind->evaluate(system, since_s, y, at);
-    assert(is_determined);
-    (void)is_determined;
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
+    if (!system->kind->evaluate(system, since_s, y, at)) {
+        // at a change point, where the run ends
+        for (size_t i = 0; i < linkage->body_count; i++) {
+            sample->bodies[i].omega = NAN;
+        }
+        return;
+    }
     system->kind->bodies(system, at, sample);
     system->kind->joints(system, at, sample->joints, sample->space_joints);
 }

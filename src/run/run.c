@@ -131,6 +131,23 @@ static bool may_go_on(Loop *loop, const Trajectory *trajectory, size_t sample, E
     return !loop->is_stopped;
 }
 
+// A solver marks a state that the joints do not determine by omegas that are no numbers.
+static bool check_sample(const Loop *loop, const Sample *sample, Err *err)
+{
+    const Linkage *linkage = &loop->scenario->linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if (!isfinite(sample->bodies[i].omega)) {
+            char where[LINKAGE_INSTANT_SIZE];
+            linkage_describe_instant(linkage, sample->time_s, where);
+            return err_set(err, ERR_SOLVER,
+                           "%s: the motion of %s is not determined: the ideal joints stand at a "
+                           "change point, or are redundant; give one of them play",
+                           where, linkage->bodies[i].name);
+        }
+    }
+    return true;
+}
+
 static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
 {
     // a first step, so that the sample at zero already stands in one
@@ -145,6 +162,9 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
         // a solver fills in what the linkage has; the rest is never looked at
         Sample sample;
         loop->solver->observe(loop->state, time_s, &sample);
+        if (!check_sample(loop, &sample, err)) {
+            return false;
+        }
         if (k == 0) {
             loop->start_energy =
                 mechanical_energy(loop->scenario, &sample) + stored_energy(loop->scenario, &sample);
