@@ -22,6 +22,12 @@ bool casefile_load_text(const char *name, const char *text, size_t size,
                         const char *const *overrides, size_t override_count, Scenario *scenario,
                         Err *err);
 
+// What a case file that casefile_load refuses expects: whether it says `refused with` of all its
+// runs, which holds for the file itself, and its title, empty where it has none. Settings of the
+// command line are left aside.
+bool casefile_expects_refusal(const char *path, char title[SCENARIO_TITLE_SIZE],
+                              ExpectedOutcome *outcome);
+
 // Appends the case format for people: in a terminal, and as the page docs/case-format.md.
 void casefile_describe(Text *text);
 void casefile_describe_markdown(Text *text);

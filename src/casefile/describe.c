@@ -1,6 +1,7 @@
 // What may stand in a case file, for people: in a terminal and as a page of the documentation.
 #include "casefile/casefile.h"
 #include "casefile/expect.h"
+#include "casefile/expect_outcome.h"
 #include "casefile/schema.h"
 
 #include <stdio.h>
@@ -214,6 +215,40 @@ static void describe_expectation(const ExpectRow *row, bool is_page, Text *text)
     text_finish(&units);
 }
 
+// How runs are expected to end.
+static void describe_outcomes(bool is_page, Text *text)
+{
+    static const char WORDS[] =
+        "`outcome` is how runs end. Without a path in front it applies to every backend of the "
+        "case that models the play; behind a backend, to that one; behind the words of a scheme of "
+        "ODE, as `compare --schemes` takes them, to every scheme that has these words, at the "
+        "case's step (run.step). `jointplay check` makes these runs itself: one that is expected "
+        "to "
+        "fail is no error.";
+    static const char KINDS[] =
+        "agrees: it ends, and its error of omega up to the predictability horizon and the "
+        "reference's uncertainty are together within X. reported: it ends, and the error, which "
+        "`jointplay run` prints, is above X. detected: it stops after its first step with a "
+        "message, or ends short of its tolerance, and says so in these words. refused: the case "
+        "file or the solver says so in these words before the first step.";
+    static const char EXAMPLE_OF_OUTCOMES[] = "expect:\n"
+                                              "  outcome: agrees within 1e-3\n"
+                                              "  direct/staggered/impulse.outcome: agrees within "
+                                              "1e-5\n"
+                                              "  plain/textbook.outcome: reported above 0.1\n";
+    if (is_page) {
+        text_append(text, "\n%s\n\nAn outcome is one of: `%s`.\n\n```yaml\n%s```\n\n%s\n", WORDS,
+                    EXPECT_OUTCOME_FORMS, EXAMPLE_OF_OUTCOMES, KINDS);
+        return;
+    }
+    text_append(text, "\n");
+    append_wrapped(WORDS, 2, text);
+    text_append(text, "  An outcome is one of:\n");
+    append_wrapped(EXPECT_OUTCOME_FORMS, 4, text);
+    text_append(text, "\n%s\n", EXAMPLE_OF_OUTCOMES);
+    append_wrapped(KINDS, 2, text);
+}
+
 static void describe_expect(bool is_page, Text *text)
 {
     static const char WORDS[] =
@@ -237,6 +272,7 @@ static void describe_expect(bool is_page, Text *text)
     for (int i = 0; i < EXPECTED_NUMBER_COUNT; i++) {
         describe_expectation(&EXPECT_ROWS[i], is_page, text);
     }
+    describe_outcomes(is_page, text);
 }
 
 void casefile_describe(Text *text)

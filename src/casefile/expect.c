@@ -2,8 +2,11 @@
 //
 //     path = [backend .] bodies . NAME . number | [backend .] joints . NAME . number
 //          | [backend .] error . number | [backend .] energy . number | [backend .] cost . number
+//
+// How its runs end is read in expect_outcome.c.
 #include "casefile/expect.h"
 
+#include "casefile/expect_outcome.h"
 #include "casefile/keys.h"
 
 #include <stdio.h>
@@ -85,7 +88,7 @@ static bool refuse_path(const Path *path, Err *err)
 {
     return source_error(path->source, keys_span(path->node),
                         "joints.NAME.NUMBER, bodies.NAME.NUMBER, error.NUMBER, energy.NUMBER, "
-                        "cost.NUMBER, each with a backend before it or none",
+                        "cost.NUMBER, outcome, each with a backend before it or none",
                         err, "'%.60s' is not the path of a number", path->node->key->text);
 }
 
@@ -242,6 +245,23 @@ static bool read_one(const Entries *entries, const Entry *entry, const Node *nod
     return true;
 }
 
+static bool add_outcome(const Entry *entry, const Node *node, Scenario *scenario, Err *err)
+{
+    ExpectedOutcome *outcome = &scenario->outcomes[scenario->outcome_count];
+    if (!expect_outcome_read(entry->source, node, outcome, err)) {
+        return false;
+    }
+    scenario->outcome_count++;
+    return true;
+}
+
+static bool refuse_count(const Source *source, const Node *node, size_t most, Err *err)
+{
+    char allowed[32];
+    snprintf(allowed, sizeof allowed, "at most %zu", most);
+    return source_error(source, keys_span(node), allowed, err, "one expectation too many");
+}
+
 bool expect_store(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
 {
     const Node *map = entry->node;
@@ -249,15 +269,16 @@ bool expect_store(const Entries *entries, const Entry *entry, Scenario *scenario
         return false;
     }
     scenario->expectation_count = 0;
+    scenario->outcome_count = 0;
     for (const Node *node = map->first; node != NULL; node = node->next) {
-        if (scenario->expectation_count == EXPECTATION_MAX) {
-            char allowed[32];
-            snprintf(allowed, sizeof allowed, "at most %d", EXPECTATION_MAX);
-            return source_error(entry->source, keys_span(node), allowed, err,
-                                "one expectation too many");
+        const bool is_outcome = expect_outcome_is(node);
+        const size_t count = is_outcome ? scenario->outcome_count : scenario->expectation_count;
+        if (count == (is_outcome ? OUTCOME_MAX : EXPECTATION_MAX)) {
+            return refuse_count(entry->source, node, count, err);
         }
         if (!keys_check_single(entry->source, map, node, err) ||
-            !read_one(entries, entry, node, scenario, err)) {
+            !(is_outcome ? add_outcome(entry, node, scenario, err)
+                         : read_one(entries, entry, node, scenario, err))) {
             return false;
         }
     }

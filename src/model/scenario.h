@@ -40,6 +40,8 @@ typedef struct Scenario {
     OdeOptions ode;
     size_t expectation_count;
     Expectation expectations[EXPECTATION_MAX]; // for the checks of runs; no solver reads them
+    size_t outcome_count;
+    ExpectedOutcome outcomes[OUTCOME_MAX]; // likewise
 } Scenario;
 
 // A scenario with every option at its default and an empty linkage.

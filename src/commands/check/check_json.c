@@ -55,6 +55,24 @@ static json_t *limit_object(const CheckLimit *limit)
     return object;
 }
 
+static json_t *outcome_object(const CheckOutcome *outcome)
+{
+    const OutcomeRun *run = &outcome->run;
+    char words[CHECK_OUTCOME_TEXT_SIZE];
+    check_outcome_words(outcome, words);
+    json_t *object = json_pack(
+        "{s:o, s:o, s:s, s:b, s:o, s:o, s:I}", "run", json_value_text(outcome->name), "expected",
+        json_value_text(outcome->expected->words), "outcome", check_outcome_kind(outcome),
+        "complete", (int)run->is_complete, "message", json_value_text(run->message), "found",
+        json_value_text(words), "steps", (json_int_t)run->steps);
+    json_value_set(object, "error", run->has_error ? run->error : NAN);
+    json_value_set(object, "reference_uncertainty", outcome->uncertainty);
+    json_value_set(object, "horizon_s", outcome->share > 0.0 ? outcome->horizon_s : NAN);
+    json_value_set(object, "step_s", run->step_s);
+    json_value_set(object, "wall_s", run->wall_s);
+    return object;
+}
+
 static json_t *case_object(const CheckReport *report, const CheckCase *item)
 {
     const CheckCounts counts = check_report_count(item);
@@ -76,6 +94,11 @@ static json_t *case_object(const CheckReport *report, const CheckCase *item)
         json_array_append_new(limits, limit_object(&item->limits[i]));
     }
     json_object_set_new(object, "limits", limits);
+    json_t *outcomes = json_array();
+    for (size_t i = 0; i < item->outcome_count; i++) {
+        json_array_append_new(outcomes, outcome_object(&item->outcomes[i]));
+    }
+    json_object_set_new(object, "outcomes", outcomes);
     if (report->is_blessed && item->err.kind == ERR_NONE) {
         json_object_set_new(object, "change", json_string(CHECK_CHANGE_WORDS[item->change]));
         json_object_set_new(object, "numbers", json_integer((json_int_t)item->made_count));

@@ -1,9 +1,9 @@
 // What does a CI system read of a regression check?
 //
 // testsuites > testsuite, one a case > testcase: first one for the runs, whose time is theirs, then
-// one a limit of the case and one a number, which take none. A number out is a failure, whose
-// message has the numbers; one not looked at is skipped; of a case that could not be checked the
-// runs are in error.
+// one an outcome or a limit of the case and one a number, which take none. A number out is a
+// failure, whose message has the numbers; one not looked at is skipped; of a case that could not be
+// checked the runs are in error.
 //
 // Jenkins takes what stands before the last dot of a class name for its package: the class of
 // cases/paper/impact-k66.yaml is cases.paper.impact-k66, and no other dot stands in a name.
@@ -120,15 +120,32 @@ static void append_limit(Text *text, const CheckCase *item, const CheckLimit *li
     text_finish(&message);
 }
 
+static void append_expected(Text *text, const CheckCase *item, const CheckOutcome *outcome)
+{
+    Text name;
+    text_init(&name);
+    text_append(&name, "%s/outcome", outcome->name);
+    begin_test(text, item, "expect/", name.data, outcome->run.wall_s);
+    if (outcome->is_as_expected) {
+        text_append(text, "/>\n");
+    } else {
+        char words[CHECK_OUTCOME_TEXT_SIZE];
+        check_outcome_words(outcome, words);
+        append_outcome(text, "failure", "outcome", words);
+    }
+    text_finish(&name);
+}
+
 // A case that its limits alone judge has no baseline to pass.
 static bool lacks_baseline(const CheckCase *item)
 {
-    return item->err.kind == ERR_NONE && item->baseline[0] == '\0';
+    return item->err.kind == ERR_NONE && item->baseline[0] == '\0' && item->limit_count > 0;
 }
 
 static size_t count_tests(const CheckCase *item)
 {
-    return 1 + item->row_count + item->limit_count + (lacks_baseline(item) ? 1 : 0);
+    return 1 + item->row_count + item->limit_count + item->outcome_count +
+           (lacks_baseline(item) ? 1 : 0);
 }
 
 static void append_case(Text *text, const CheckCase *item)
@@ -140,8 +157,8 @@ static void append_case(Text *text, const CheckCase *item)
     text_append(text,
                 "\" tests=\"%zu\" failures=\"%zu\" errors=\"%d\" skipped=\"%zu\" "
                 "time=\"%.3f\">\n",
-                count_tests(item), counts.out + counts.limits_out, is_failed ? 1 : 0,
-                counts.left_out + (lacks_baseline(item) ? 1 : 0), item->wall_s);
+                count_tests(item), counts.out + counts.limits_out + counts.outcomes_wrong,
+                is_failed ? 1 : 0, counts.left_out + (lacks_baseline(item) ? 1 : 0), item->wall_s);
     begin_test(text, item, "", RUNS, item->wall_s);
     if (is_failed) {
         append_outcome(text, "error", "not checked", item->err.text);
@@ -152,6 +169,9 @@ static void append_case(Text *text, const CheckCase *item)
         begin_test(text, item, "", "baseline", 0.0);
         append_outcome(text, "skipped", "no baseline",
                        item->note[0] != '\0' ? item->note : "judged by its limits alone");
+    }
+    for (size_t i = 0; i < item->outcome_count; i++) {
+        append_expected(text, item, &item->outcomes[i]);
     }
     for (size_t i = 0; i < item->limit_count; i++) {
         append_limit(text, item, &item->limits[i]);
@@ -172,7 +192,7 @@ void check_junit_write(const void *target, Text *text)
         const CheckCase *item = &report->cases[i];
         const CheckCounts counts = check_report_count(item);
         tests += count_tests(item);
-        failures += counts.out + counts.limits_out;
+        failures += counts.out + counts.limits_out + counts.outcomes_wrong;
         wall_s += item->wall_s;
     }
     text_append(text,

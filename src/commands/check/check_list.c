@@ -73,12 +73,23 @@ static void read_baseline(CheckItem *item, bool is_blessing)
 // no baseline.
 static bool is_by_limits(CheckItem *item, const CheckOptions *options)
 {
-    const size_t limits = item->scenario->expectation_count;
+    const size_t limits = item->scenario->expectation_count + item->scenario->outcome_count;
     if (options->is_expect_only && limits == 0) {
         err_set(&item->err, ERR_CASE, "%s sets no limits: it has no expect:", item->path);
     }
     const bool is_there = access(item->baseline_path, F_OK) == 0;
     return options->is_expect_only || (!options->is_blessing && !is_there && limits > 0);
+}
+
+// A case file that expects to be refused, and was, is no error.
+static void note_refusal(CheckItem *item, const CheckOptions *options)
+{
+    item->is_refused = !options->is_blessing && !item->has_baseline && item->err.kind == ERR_CASE &&
+                       casefile_expects_refusal(item->path, item->title, &item->refusal);
+    if (item->is_refused) {
+        item->refused = item->err;
+        item->err = (Err){ERR_NONE, ""};
+    }
 }
 
 static bool read_case(CheckItem *item, const CheckOptions *options)
@@ -94,6 +105,7 @@ static bool read_case(CheckItem *item, const CheckOptions *options)
                        item->scenario, &item->err)) {
         free(item->scenario);
         item->scenario = NULL;
+        note_refusal(item, options);
         return false;
     }
     baseline_set_head(&item->now, item->scenario, &item->baseline.plan);
@@ -101,12 +113,12 @@ static bool read_case(CheckItem *item, const CheckOptions *options)
 }
 
 // A case that was named: its baseline must be its own.
-static void add_named(CheckItem *item, const char *path, const CheckOptions *options)
+static void add_named(CheckItem *item, const CheckOptions *options)
 {
+    const char *path = item->path;
     char whole[FILE_PATH_SIZE];
     char folder[FILE_PATH_SIZE];
     char name[FILE_PATH_SIZE];
-    text_copy(item->path, sizeof item->path, path);
     if (!read_case(item, options)) {
         return;
     }
@@ -187,13 +199,62 @@ static bool find_all(const CheckOptions *options, CheckItem **items, size_t *cou
                    options->folder);
 }
 
+static int is_case(const struct dirent *entry)
+{
+    const size_t length = strlen(entry->d_name);
+    return length > 5 && strcmp(entry->d_name + length - 5, ".yaml") == 0;
+}
+
+// Adds the path of one case, in the item that will be its own.
+static void add_path(const char *path, CheckItem **items, size_t *count)
+{
+    *items = realloc(*items, (*count + 1) * sizeof **items);
+    assert(*items != NULL);
+    CheckItem *item = &(*items)[(*count)++];
+    *item = (CheckItem){.has_baseline = false};
+    text_copy(item->path, sizeof item->path, path);
+}
+
+// Adds the cases of a folder; false where it is none.
+static bool add_folder(const char *path, CheckItem **items, size_t *count, Err *err)
+{
+    struct dirent **entries;
+    struct stat status;
+    if (stat(path, &status) != 0 || !S_ISDIR(status.st_mode)) {
+        return false;
+    }
+    const int found = scandir(path, &entries, is_case, alphasort);
+    size_t length = strlen(path);
+    while (length > 1 && path[length - 1] == '/') {
+        length--;
+    }
+    for (int i = 0; i < found; i++) {
+        char joined[2 * FILE_PATH_SIZE];
+        snprintf(joined, sizeof joined, "%.*s/%s", (int)length, path, entries[i]->d_name);
+        add_path(joined, items, count);
+        free(entries[i]);
+    }
+    if (found >= 0) {
+        free(entries);
+    }
+    if (found <= 0) {
+        err_set(err, ERR_FILE, "there is no case in the folder %s: no file ends in .yaml", path);
+    }
+    return true;
+}
+
 static bool name_all(const CheckOptions *options, CheckItem **items, size_t *count, Err *err)
 {
-    *items = calloc(options->path_count, sizeof **items);
-    assert(*items != NULL);
-    *count = options->path_count;
+    for (size_t i = 0; i < options->path_count; i++) {
+        if (!add_folder(options->paths[i], items, count, err)) {
+            add_path(options->paths[i], items, count);
+        }
+        if (err->kind != ERR_NONE) {
+            return false;
+        }
+    }
     for (size_t i = 0; i < *count; i++) {
-        add_named(&(*items)[i], options->paths[i], options);
+        add_named(&(*items)[i], options);
         for (size_t k = 0; k < i && (*items)[i].baseline_path[0] != '\0'; k++) {
             if (strcmp((*items)[i].baseline_path, (*items)[k].baseline_path) == 0) {
                 return err_set(err, ERR_USAGE, "%s and %s would both have the baseline %s",

@@ -20,11 +20,15 @@ typedef struct CheckItem {
     bool has_baseline;                  // false: the limits of the case alone judge it
     bool is_there;                      // a file stands where the baseline belongs
     Err baseline_err;                   // when blessing: why there is no old one to read
+    bool is_refused;                    // the file was refused, as it expects:
+    ExpectedOutcome refusal;            // so
+    Err refused;                        // with this
+    char title[SCENARIO_TITLE_SIZE];    // of a file that was
 } CheckItem;
 
-// Lists the cases, reads them and their baselines. A case or a baseline that cannot be read is an
-// error of its item. Fails with ERR_FILE where there is not one baseline to check, or where a new
-// one would replace what is none; with ERR_USAGE for a setting that is wrong, or for two cases that
-// would have one baseline; the list is then empty.
+// Lists the cases, those of a folder by name, and reads them and their baselines. A case or a
+// baseline that cannot be read is an error of its item. Fails with ERR_FILE where there is not one
+// baseline to check, or where a new one would replace what is none; with ERR_USAGE for a setting
+// that is wrong, or for two cases that would have one baseline; the list is then empty.
 bool check_list_make(const CheckOptions *options, CheckItem **items, size_t *count, Err *err);
 void check_list_destroy(CheckItem *items, size_t count);

@@ -2,6 +2,7 @@
 #include "commands/check/check_report.h"
 
 #include "base/printable.h"
+#include "write/units.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -65,15 +66,28 @@ static void append_name(Text *text, const char *words)
     text_append(text, " ");
 }
 
-static void append_cell(Text *text, const char *words)
+// Words in a cell, where no character is special.
+static void append_words(Text *text, const char *words)
 {
     char *shown = printable_copy(words, false);
-    text_append(text, "| ");
     for (const char *c = shown; *c != '\0'; c++) {
         text_append(text, strchr("|`<>&\\*_[]", *c) != NULL ? "\\%c" : "%c", *c);
     }
     text_append(text, " ");
     free(shown);
+}
+
+static void append_cell(Text *text, const char *words)
+{
+    text_append(text, "| ");
+    append_words(text, words);
+}
+
+// The file of a path.
+static const char *file_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
 }
 
 // What a paragraph is about.
@@ -190,6 +204,49 @@ static void append_all(const CheckReport *report, Text *text)
     text_append(text, "\n</details>\n");
 }
 
+// One run; the case is named in its first.
+static void append_expected(const CheckCase *item, size_t number, Text *text)
+{
+    const CheckOutcome *outcome = &item->outcomes[number];
+    const OutcomeRun *run = &outcome->run;
+    const bool is_first = number == 0;
+    char words[CHECK_OUTCOME_TEXT_SIZE];
+    check_outcome_words(outcome, words);
+    append_cell(text, is_first ? file_name(item->path) : "");
+    append_cell(text, is_first ? item->title : "");
+    append_cell(text, outcome->name);
+    const bool has_words = !outcome->is_as_expected || !run->is_complete || run->is_short;
+    text_append(text, "| %s", outcome->is_as_expected ? "" : "**WRONG**: ");
+    text_append(text, "%s", has_words ? "" : check_outcome_kind(outcome));
+    append_words(text, has_words ? words : "");
+    if (run->has_error) {
+        text_append(text, "| %.2g ", run->error);
+    } else {
+        text_append(text, "| ");
+    }
+    text_append(text, "| %zu | %.0f |\n", run->steps, run->wall_s * UNITS_MS);
+}
+
+// The runs whose end the cases expect, in one table.
+static void append_outcomes(const CheckReport *report, Text *text)
+{
+    Text counts;
+    text_init(&counts);
+    check_report_outcomes(report, &counts);
+    if (counts.length > 0) {
+        text_append(text,
+                    "\n%s\n\n| case | what it is | run | outcome | error | steps | time, ms |\n"
+                    "|---|---|---|---|---:|---:|---:|\n",
+                    counts.data);
+    }
+    text_finish(&counts);
+    for (size_t i = 0; i < report->case_count; i++) {
+        for (size_t k = 0; k < report->cases[i].outcome_count; k++) {
+            append_expected(&report->cases[i], k, text);
+        }
+    }
+}
+
 void check_markdown_write(const void *target, Text *text)
 {
     const CheckReport *report = target;
@@ -211,5 +268,6 @@ void check_markdown_write(const void *target, Text *text)
             append_out(item, text);
         }
     }
+    append_outcomes(report, text);
     append_all(report, text);
 }

@@ -1,6 +1,8 @@
 // How is a number that moved described?
 #include "commands/check/check_report.h"
 
+#include "casefile/expect_outcome.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -63,13 +65,42 @@ CheckCounts check_report_count(const CheckCase *item)
         counts.limits_within += is_within ? 1 : 0;
         counts.limits_out += is_within ? 0 : 1;
     }
+    for (size_t i = 0; i < item->outcome_count; i++) {
+        const CheckOutcome *outcome = &item->outcomes[i];
+        counts.outcomes[outcome->expected->kind] += outcome->is_as_expected ? 1 : 0;
+        counts.outcomes_wrong += outcome->is_as_expected ? 0 : 1;
+    }
     return counts;
 }
 
 bool check_report_is_out(const CheckCase *item)
 {
     const CheckCounts counts = check_report_count(item);
-    return counts.out + counts.limits_out > 0;
+    return counts.out + counts.limits_out + counts.outcomes_wrong > 0;
+}
+
+void check_report_outcomes(const CheckReport *report, Text *text)
+{
+    size_t kinds[OUTCOME_KIND_COUNT] = {0};
+    size_t wrong = 0;
+    size_t all = 0;
+    for (size_t i = 0; i < report->case_count; i++) {
+        const CheckCounts counts = check_report_count(&report->cases[i]);
+        for (int kind = 0; kind < OUTCOME_KIND_COUNT; kind++) {
+            kinds[kind] += counts.outcomes[kind];
+        }
+        wrong += counts.outcomes_wrong;
+        all += report->cases[i].outcome_count;
+    }
+    if (all == 0) {
+        return;
+    }
+    text_append(text, "%zu %s: ", all, all == 1 ? "outcome" : "outcomes");
+    for (int kind = 0; kind < OUTCOME_KIND_COUNT; kind++) {
+        text_append(text, "%s%zu %s", kind > 0 ? ", " : "", kinds[kind],
+                    EXPECT_OUTCOME_WORDS[kind]);
+    }
+    text_append(text, ", %zu WRONG", wrong);
 }
 
 size_t check_report_errors(const CheckReport *report)

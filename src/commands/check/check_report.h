@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "commands/check/check_limits.h"
+#include "commands/check/check_outcome.h"
 #include "write/style.h"
 
 #include <jansson.h>
@@ -35,6 +36,9 @@ typedef struct CheckCase {
     const CheckRow *rows; // worst first
     size_t limit_count;
     const CheckLimit *limits; // that the case sets itself, in its order
+    const char *title;        // of a case with outcomes; may be empty
+    size_t outcome_count;
+    const CheckOutcome *outcomes; // of the runs whose end the case expects
 } CheckCase;
 
 typedef struct CheckReport {
@@ -52,10 +56,16 @@ typedef struct CheckCounts {
     size_t out;
     size_t left_out;
     size_t limits_within;
-    size_t limits_out; // those that were not measured among them
+    size_t limits_out;                   // those that were not measured among them
+    size_t outcomes[OUTCOME_KIND_COUNT]; // as expected, by kind
+    size_t outcomes_wrong;
 } CheckCounts;
 
 CheckCounts check_report_count(const CheckCase *item);
+
+// The outcomes of all cases in one line: "12 outcomes: 9 agrees, 1 refused, 2 WRONG"; nothing where
+// there are none.
+void check_report_outcomes(const CheckReport *report, Text *text);
 
 // Cases of which the new baseline is that to the one before.
 size_t check_report_changes(const CheckReport *report, CheckChange change);
@@ -63,7 +73,7 @@ size_t check_report_changes(const CheckReport *report, CheckChange change);
 // The change of a case in words: "new baseline: 114 numbers", "replaced: 3 of 114 numbers moved".
 void check_report_change(const CheckCase *item, Text *text);
 
-// Whether a row or a limit of the case is out.
+// Whether a row, a limit or an outcome of the case is out.
 bool check_report_is_out(const CheckCase *item);
 
 // Cases that could not be checked, and cases with a number out.

@@ -1,7 +1,9 @@
 // What has become of the numbers of some cases?
 #include "commands/check/check_run.h"
 
+#include "base/clock.h"
 #include "base/text.h"
+#include "commands/check/check_outcome_run.h"
 #include "commands/check/check_progress.h"
 #include "commands/check/check_work.h"
 #include "commands/check/expect_value.h"
@@ -39,12 +41,18 @@ static void add_work(CheckWork *work, const CheckItem *item, CheckStart start, b
     assert(work->measure != NULL);
 }
 
+// Whether anything is measured of a case: not of one that expects outcomes alone.
+static bool needs_start(const CheckItem *item)
+{
+    return item->has_baseline || (item->scenario != NULL && item->scenario->expectation_count > 0);
+}
+
 // The starts of one item: its own, and in a full check those of a sample.
 static Share plan_item(const CheckOptions *options, const CheckItem *item, CheckWork *works,
                        size_t first)
 {
     Share share = {first, 0};
-    if (item->err.kind != ERR_NONE) {
+    if (item->err.kind != ERR_NONE || !needs_start(item)) {
         return share;
     }
     const CheckStart own = {0, 0.0, 0};
@@ -76,7 +84,7 @@ static void note_versions(const CheckItem *item, CheckCase *result)
 // Why no baseline judges a case, and why an error could not be measured.
 static void note_alone(const CheckOptions *options, const CheckItem *item, CheckCase *result)
 {
-    if (!options->is_expect_only) {
+    if (!options->is_expect_only && item->scenario->expectation_count > 0) {
         snprintf(result->note, sizeof result->note,
                  "there is no baseline %.150s: judged by its limits alone", item->baseline_path);
     }
@@ -120,13 +128,11 @@ static CheckMeasure *gather(const CheckWork *works, Share share)
 static void finish_item(const CheckOptions *options, const CheckItem *item, const CheckWork *works,
                         Share share, const CheckReport *report, CheckCase *result)
 {
-    *result = (CheckCase){.path = item->path,
-                          .baseline = item->has_baseline ? item->baseline_path : "",
-                          .err = item->err};
     for (size_t i = share.first; i < share.first + share.count; i++) {
         result->wall_s += works[i].wall_s;
     }
-    if (result->err.kind != ERR_NONE || !check_share(works, share, &result->err)) {
+    if (result->err.kind != ERR_NONE || share.count == 0 ||
+        !check_share(works, share, &result->err)) {
         return;
     }
     CheckLimit *limits = calloc(CHECK_LIMIT_MAX, sizeof *limits);
@@ -161,7 +167,8 @@ static void wait_for_truth(const char *doing, void *context)
 static void find_plan(const CheckOptions *options, CheckProgress *progress, CheckItem *item)
 {
     bool needs_truth = false;
-    for (size_t i = 0; item->err.kind == ERR_NONE && i < item->scenario->expectation_count; i++) {
+    const size_t limits = item->scenario != NULL ? item->scenario->expectation_count : 0;
+    for (size_t i = 0; item->err.kind == ERR_NONE && i < limits; i++) {
         needs_truth = needs_truth || expect_value_is_error(&item->scenario->expectations[i]);
     }
     if (item->has_baseline || !needs_truth) {
@@ -199,6 +206,36 @@ static CheckRun begin(const CheckOptions *options, const CheckItem *items, size_
     return run;
 }
 
+static void begin_case(const CheckItem *item, CheckCase *result)
+{
+    *result = (CheckCase){.path = item->path,
+                          .baseline = item->has_baseline ? item->baseline_path : "",
+                          .title = item->scenario != NULL ? item->scenario->title : item->title,
+                          .err = item->err};
+}
+
+// Makes the runs whose end each case expects.
+static void find_outcomes(const CheckOptions *options, CheckItem *items, size_t count,
+                          CheckProgress *progress, CheckRun *run)
+{
+    for (size_t i = 0; i < count; i++) {
+        CheckCase *result = &run->cases[i];
+        CheckOutcome *outcomes = NULL;
+        const double started_s = clock_now_s();
+        const OutcomeWork work = {&items[i], options->common.jobs, options->common.time_limit_s,
+                                  progress};
+        progress->case_number = i + 1;
+        progress->case_count = count;
+        if (result->err.kind != ERR_NONE ||
+            !check_outcome_run(&work, &outcomes, &result->outcome_count, &result->err)) {
+            continue;
+        }
+        result->outcomes = outcomes;
+        result->wall_s += result->outcome_count > 0 ? clock_now_s() - started_s : 0.0;
+    }
+    progress->case_count = 0;
+}
+
 static bool wait(const CheckWorkState *state, void *context)
 {
     check_progress_show(context, state);
@@ -214,6 +251,10 @@ bool check_run_execute(const CheckOptions *options, CheckItem *items, size_t cou
     assert(works != NULL && shares != NULL);
     size_t total = 0;
     CheckProgress progress = check_progress_start("checking", options->common.is_quiet);
+    for (size_t i = 0; i < count; i++) {
+        begin_case(&items[i], &run->cases[i]);
+    }
+    find_outcomes(options, items, count, &progress, run);
     for (size_t i = 0; i < count; i++) {
         find_plan(options, &progress, &items[i]);
         shares[i] = plan_item(options, &items[i], works, total);
@@ -239,6 +280,7 @@ void check_run_finish(CheckRun *run)
     for (size_t i = 0; run->cases != NULL && i < run->report.case_count; i++) {
         free((CheckRow *)run->cases[i].rows);
         free((CheckLimit *)run->cases[i].limits);
+        free((CheckOutcome *)run->cases[i].outcomes);
     }
     free(run->cases);
     *run = (CheckRun){.cases = NULL};

@@ -2,6 +2,7 @@
 #include "commands/check/check_report.h"
 
 #include "write/section.h"
+#include "write/units.h"
 
 #include <math.h>
 #include <string.h>
@@ -88,6 +89,44 @@ static void write_limits(const CheckCase *item, const Style *style, Text *text)
                 counts.limits_within, item->limit_count, counts.limits_out > 0 ? style->end : "");
 }
 
+// How each run whose end the case expects did end.
+static void write_outcomes(const CheckCase *item, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"run", "", TABLE_LEFT},
+        {"outcome", "", TABLE_LEFT},
+        {"error", "1", TABLE_RIGHT},
+        {"reference +-", "1", TABLE_RIGHT | TABLE_DETAIL},
+        {"up to", "%", TABLE_RIGHT | TABLE_MINOR},
+        {"steps", "", TABLE_RIGHT},
+        {"time", "ms", TABLE_RIGHT},
+    };
+    if (item->outcome_count == 0) {
+        return;
+    }
+    Table *table = section_begin(item->path, 7, HEADS, style, text);
+    for (size_t i = 0; i < item->outcome_count; i++) {
+        const CheckOutcome *outcome = &item->outcomes[i];
+        const OutcomeRun *run = &outcome->run;
+        table_cell(table, "%s", outcome->name);
+        table_cell(table, "%s", check_outcome_kind(outcome));
+        section_finite(table, "%.2g", run->has_error ? run->error : NAN);
+        section_finite(table, "%.2g", outcome->uncertainty);
+        section_finite(table, "%.3g", run->has_error ? outcome->share * UNITS_PERCENT : NAN);
+        table_cell(table, "%zu", run->steps);
+        table_cell(table, "%.0f", run->wall_s * UNITS_MS);
+    }
+    section_end(table, text);
+    for (size_t i = 0; i < item->outcome_count; i++) {
+        const CheckOutcome *outcome = &item->outcomes[i];
+        char words[CHECK_OUTCOME_TEXT_SIZE];
+        if (!outcome->is_as_expected) {
+            check_outcome_words(outcome, words);
+            text_append(text, "  %s%s: %s%s\n", style->failure, outcome->name, words, style->end);
+        }
+    }
+}
+
 static void write_counts(const CheckCase *item, const Style *style, Text *text)
 {
     const CheckCounts counts = check_report_count(item);
@@ -108,6 +147,7 @@ static void write_case(const CheckReport *report, const CheckCase *item, bool is
                     style->end);
         return;
     }
+    write_outcomes(item, style, text);
     write_limits(item, style, text);
     if (item->baseline[0] == '\0') {
         text_append(text, "%s%s%s", item->note[0] != '\0' ? "  " : "", item->note,
@@ -155,4 +195,9 @@ void check_text_write(const void *target, const Style *style, Text *text)
                     report->rate);
     }
     text_append(text, "%s\n", report->is_full ? "" : "; quick: no ensembles, no orders");
+    Text outcomes;
+    text_init(&outcomes);
+    check_report_outcomes(report, &outcomes);
+    text_append(text, "%s%s", outcomes.data, outcomes.length > 0 ? "\n" : "");
+    text_finish(&outcomes);
 }

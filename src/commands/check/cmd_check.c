@@ -20,7 +20,7 @@ static const ResultFile FILES[] = {
 static const Results RESULTS = {
     .json = check_json_build, .text = check_text_write, RESULT_FILES(FILES)};
 
-// A limit of the case itself comes before what its baseline says.
+// A limit or an outcome of the case itself comes before what its baseline says.
 static bool refuse_case(const CheckReport *report, const CheckCase *item, Err *err)
 {
     char words[CHECK_WORDS_SIZE];
@@ -31,6 +31,16 @@ static bool refuse_case(const CheckReport *report, const CheckCase *item, Err *e
             check_report_limit(limit, words);
             return err_set(err, ERR_DIFFERS, "%zu of %zu cases out of limits or bands; %s: %s %s",
                            differing, report->case_count, item->path, limit->name, words);
+        }
+    }
+    for (size_t i = 0; i < item->outcome_count; i++) {
+        const CheckOutcome *outcome = &item->outcomes[i];
+        if (!outcome->is_as_expected) {
+            check_outcome_words(outcome, words);
+            return err_set(err, ERR_DIFFERS,
+                           "%zu of %zu cases end otherwise than expected, or are out of limits or "
+                           "bands; %s: %s: %s",
+                           differing, report->case_count, item->path, outcome->name, words);
         }
     }
     const CheckRow *worst = &item->rows[0];
