@@ -316,6 +316,11 @@ static bool check_stepping(const Entries *entries, const Scenario *scenario, Err
                               "extrapolated stepping is for ideal joints: contacts are not "
                               "smooth\nallowed: plain, staggered");
     }
+    if (scenario->linkage.is_spatial && ode->stepping == ODE_EXTRAPOLATED) {
+        return entries_refuse(entries_blame(entries, "space ode.stepping", 0), err,
+                              "extrapolated stepping is for linkages in the plane\nallowed: "
+                              "stepping: plain or staggered, or space: planar");
+    }
     if (is_impact && ode->map == ODE_MAP_IMPULSE && ode->stepping != ODE_STAGGERED) {
         return entries_refuse(
             entries_blame(entries, "ode.map ode.stepping", 0), err,

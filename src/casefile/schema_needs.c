@@ -16,7 +16,7 @@ static unsigned step_bits(const Scenario *scenario, bool is_impact)
     return bit(GIVEN_STEP, is_given) | bit(CHOSEN_STEP, !is_given) |
            bit(PLAIN, is_given && ode->stepping == ODE_PLAIN) |
            bit(EXTRAPOLATED,
-               is_given ? ode->stepping == ODE_EXTRAPOLATED : !scenario_has_clearance(scenario)) |
+               is_given ? ode->stepping == ODE_EXTRAPOLATED : scenario_is_extrapolable(scenario)) |
            bit(LOCAL, is_impact && (!is_given || ode->map == ODE_MAP_IMPULSE));
 }
 

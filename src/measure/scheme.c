@@ -41,10 +41,10 @@ static void name_scheme(Scheme *scheme, bool has_map)
 }
 
 // Whether two choices go together in a scenario.
-static bool go_together(const Scheme *scheme, bool has_play, bool has_map)
+static bool go_together(const Scheme *scheme, const Scenario *scenario, bool has_map)
 {
     const bool is_impulse = has_map && scheme->map == ODE_MAP_IMPULSE;
-    return !(has_play && scheme->stepping == ODE_EXTRAPOLATED) &&
+    return (scheme->stepping != ODE_EXTRAPOLATED || scenario_is_extrapolable(scenario)) &&
            !(is_impulse && scheme->stepping != ODE_STAGGERED) &&
            !(is_impulse && scheme->collider != ODE_COLLIDER_PIN_HOLE);
 }
@@ -94,8 +94,10 @@ static size_t list_ode(const Scenario *scenario, Scheme *schemes)
     const bool has_play = scenario_has_clearance(scenario);
     const bool has_map = has_play && scenario->contact.model != CONTACT_POISSON;
     const Choice maps = choose(OPTIONS_ODE_MAPS, has_map, (int)ode->map);
-    // without play every collider is the exact one, which has nothing to do
-    const Choice colliders = choose(OPTIONS_ODE_COLLIDERS, has_play, ODE_COLLIDER_PIN_HOLE);
+    // without play every collider is the exact one, which has nothing to do; in space there is no
+    // other
+    const bool has_colliders = has_play && !scenario->linkage.is_spatial;
+    const Choice colliders = choose(OPTIONS_ODE_COLLIDERS, has_colliders, ODE_COLLIDER_PIN_HOLE);
     const int solvers = word_count(OPTIONS_ODE_SOLVERS);
     const int steppings = word_count(OPTIONS_ODE_STEPPINGS);
     size_t count = 0;
@@ -108,7 +110,7 @@ static size_t list_ode(const Scenario *scenario, Scheme *schemes)
                                            .stepping = (OdeStepping)stepping,
                                            .map = (OdeMap)map,
                                            .collider = (OdeCollider)collider};
-                    if (go_together(&scheme, has_play, has_map)) {
+                    if (go_together(&scheme, scenario, has_map)) {
                         add_ode(&scheme, ode->collider, has_map, schemes, &count);
                     }
                 }

@@ -68,6 +68,11 @@ bool scenario_has_clearance(const Scenario *scenario)
     return false;
 }
 
+bool scenario_is_extrapolable(const Scenario *scenario)
+{
+    return !scenario_has_clearance(scenario) && !scenario->linkage.is_spatial;
+}
+
 bool scenario_integrates_contacts(const Scenario *scenario)
 {
     return scenario->ode.stepping == ODE_STAGGERED && scenario->ode.map == ODE_MAP_IMPULSE &&
@@ -78,7 +83,7 @@ Scenario scenario_with_step(const Scenario *scenario, double step_s)
 {
     Scenario given = *scenario;
     given.run.step = step_s;
-    given.ode.stepping = scenario_has_clearance(scenario) ? ODE_STAGGERED : ODE_EXTRAPOLATED;
+    given.ode.stepping = scenario_is_extrapolable(scenario) ? ODE_EXTRAPOLATED : ODE_STAGGERED;
     given.ode.map = ODE_MAP_IMPULSE;
     // which follows the exact circle and asks no collider
     given.ode.collider = ODE_COLLIDER_PIN_HOLE;

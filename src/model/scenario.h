@@ -63,6 +63,9 @@ double scenario_sample_time(const Scenario *scenario, size_t sample);
 // Whether any joint has play.
 bool scenario_has_clearance(const Scenario *scenario);
 
+// Whether ODE's motion can be extrapolated from several worlds: all joints ideal, in the plane.
+bool scenario_is_extrapolable(const Scenario *scenario);
+
 // Whether ODE integrates the contacts within its steps, by the map that makes no rows.
 bool scenario_integrates_contacts(const Scenario *scenario);
 
