@@ -282,6 +282,12 @@ static void a_sample_that_is_not_that_of_its_median_and_mean_is_damaged(void **s
                  " \"sample\": [1, 2, 3]}");
     assert_true(baseline_json_read(bench->path, &read, &err));
     baseline_finish(&read);
+    // so is one of nothing but zeros
+    write_sample(bench,
+                 "{\"value\": 0.0, \"band\": 1.0, \"mean\": 0.0, \"why\": \"statistical: x\","
+                 " \"sample\": [0, 0, 0]}");
+    assert_true(baseline_json_read(bench->path, &read, &err));
+    baseline_finish(&read);
     static const char *const WRONG[] = {
         "{\"value\": 2.0, \"band\": 1.0, \"mean\": 2.0, \"why\": \"statistical: x\", \"sample\": "
         "[1, 2, 4]}",
