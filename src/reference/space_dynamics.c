@@ -19,11 +19,6 @@ typedef struct SpaceLoads {
     Vec3 moment[SPACE_TREE_BODY_MAX];
 } SpaceLoads;
 
-static size_t equations_of(const SpaceDynamics *dynamics)
-{
-    return dynamics->tree.coordinate_count + dynamics->loops.row_count;
-}
-
 // What the coordinates of the tree are.
 static void list_coordinates(SpaceDynamics *dynamics)
 {
@@ -264,13 +259,13 @@ static void find_reactions(const SpaceTree *tree, SpaceLoads *loads, SpaceState 
     }
 }
 
-// Solves for the coordinates' second rates (and the loops' multipliers behind them).
-static bool find_rates(const SpaceDynamics *dynamics, double since_s, const double *y,
-                       SpaceState *state, SpaceLoads *loads)
+// The equations for the coordinates' second rates (and the loops' multipliers behind them).
+static void set_up(const SpaceDynamics *dynamics, double since_s, const double *y,
+                   SpaceState *state, SpaceLoads *loads)
 {
     const SpaceTree *tree = &dynamics->tree;
     const System *system = &dynamics->system;
-    const size_t width = equations_of(dynamics);
+    const size_t width = space_dynamics_equations(dynamics);
     space_tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state->tree);
     start_loads(dynamics, loads);
     for (size_t i = 0; i < system->contact_count; i++) {
@@ -286,7 +281,21 @@ static bool find_rates(const SpaceDynamics *dynamics, double since_s, const doub
     }
     assemble(tree, &state->tree, loads, width, dynamics->matrix, dynamics->right);
     append_loops(dynamics, &state->tree, width, dynamics->matrix, dynamics->right);
-    return dense_solve(width, dynamics->matrix, dynamics->right);
+}
+
+static bool find_rates(const SpaceDynamics *dynamics, double since_s, const double *y,
+                       SpaceState *state, SpaceLoads *loads)
+{
+    set_up(dynamics, since_s, y, state, loads);
+    return dense_solve(space_dynamics_equations(dynamics), dynamics->matrix, dynamics->right);
+}
+
+bool space_dynamics_factor(const SpaceDynamics *dynamics, double since_s, const double *y,
+                           SpaceState *state, size_t *pivots)
+{
+    SpaceLoads unused;
+    set_up(dynamics, since_s, y, state, &unused);
+    return dense_factor(space_dynamics_equations(dynamics), dynamics->matrix, pivots);
 }
 
 bool space_dynamics_evaluate(const SpaceDynamics *dynamics, double since_s, const double *y,

@@ -37,6 +37,19 @@ void space_dynamics_finish(SpaceDynamics *dynamics);
 bool space_dynamics_evaluate(const SpaceDynamics *dynamics, double since_s, const double *y,
                              SpaceState *state);
 
+// Unknowns of the equations for the accelerations: the coordinates' second rates, and a multiplier
+// for each row of the loops.
+static inline size_t space_dynamics_equations(const SpaceDynamics *dynamics)
+{
+    return dynamics->tree.coordinate_count + dynamics->loops.row_count;
+}
+
+// Fills in positions, velocities and the contacts' forces, and factors the matrix of these
+// equations into dynamics->matrix, for dense_substitute. Returns false where the accelerations are
+// not determined.
+bool space_dynamics_factor(const SpaceDynamics *dynamics, double since_s, const double *y,
+                           SpaceState *state, size_t *pivots);
+
 // Rates of the integrator's vector; NaN where they are not determined. The context is a
 // SpaceDynamics.
 void space_dynamics_rates(double since_s, const double *y, double *rates, void *context);

@@ -1,7 +1,7 @@
 // What do those who step through the equations of motion in space see of them?
 #include "reference/space_system.h"
 
-#include "reference/space_dynamics.h"
+#include "reference/space_slopes.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -249,6 +249,7 @@ static const SystemKind SPACE = {
     .start = space_begin,
     .evaluate = space_evaluate,
     .rates = space_dynamics_rates,
+    .slopes = space_slopes,
     .press = space_press,
     .sizes = space_sizes,
     .crossing = space_crossing,

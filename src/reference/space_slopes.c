@@ -1,0 +1,210 @@
+// How do the accelerations change with coordinates and rates where pins in space press?
+//
+//     dA = M^-1 (G_P' df_n + G_W' df_t),   de = G_P dq across the pin,  dw = G_P du,  ds = G_W du
+// G_P, G_W: how the pin's point moves against the hole's by each coordinate, where the normal force
+// acts and where friction does; M the mass matrix with the loops' rows; s the sliding velocity. Of
+// the force on the pin, n = e / |e| outwards,
+//     f_n = -N n,   f_t = -mu N h s,   h = tanh(|s| / v_s) / |s|
+// with  dn = (de - n dd) / |e|,  dd = n de,  dN = (1 + chi d'/v0) k dd + (chi F_el / v0 + c) dd',
+// dd' = n dw + dn w,  dh = ((1 - tanh^2) / v_s - h) / |s| d|s|,
+// and s stays across n.
+#include "reference/space_slopes.h"
+
+#include "base/dense.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+// A pressing place and what its force changes with.
+typedef struct Pressing {
+    const Contact *contact;
+    const ContactOptions *options;
+    const SpaceForce *force;
+    double stiffness;                       // N/m, dN by depth
+    double damping;                         // N s/m, dN by closing speed
+    Vec3 sliding;                           // m/s, s
+    double share;                           // s/m, h
+    double share_slope;                     // s^2/m^2, dh by |s|
+    Vec3 centre[SPACE_TREE_COORDINATE_MAX]; // G_P
+    Vec3 wall[SPACE_TREE_COORDINATE_MAX];   // G_W
+} Pressing;
+
+// Adds how a body's point on an arm moves by each coordinate, with a sign.
+static void add_point(const SpaceTree *tree, const SpaceTreeState *state, int body, Vec3 arm,
+                      double sign, Vec3 *row)
+{
+    if (body == LINKAGE_GROUND || body == tree->driven) {
+        return;
+    }
+    const SpaceNode *node = &tree->nodes[tree->node_of[body]];
+    const SpaceColumn *columns = state->columns[tree->node_of[body]];
+    for (size_t i = 0; i < node->chain_count; i++) {
+        const Vec3 moved = vec3_add(columns[i].linear, vec3_cross(columns[i].angular, arm));
+        row[node->chain[i]] = vec3_add(row[node->chain[i]], vec3_scale(sign, moved));
+    }
+}
+
+static void find_points(const SpaceTree *tree, const SpaceTreeState *state, const PinSpace *place,
+                        Vec3 arm_a, Vec3 arm_b, Vec3 *row)
+{
+    for (size_t i = 0; i < tree->coordinate_count; i++) {
+        row[i] = (Vec3){0.0, 0.0, 0.0};
+    }
+    add_point(tree, state, place->hole.body, arm_a, -1.0, row);
+    add_point(tree, state, place->pin.body, arm_b, 1.0, row);
+}
+
+static void look_at(const SpaceDynamics *dynamics, const SpaceState *state, size_t number,
+                    Pressing *pressing)
+{
+    const PinSpace *place = &dynamics->contacts[number].place;
+    const SpaceForce *force = &state->forces[number];
+    const Contact *contact = &dynamics->system.contacts[number];
+    pressing->contact = contact;
+    pressing->options = &dynamics->system.scenario->contact;
+    pressing->force = force;
+    pressing->stiffness = (1.0 + contact->damping_rate * force->press.closing) *
+                          force_law_tangent(&contact->law, fabs(force->press.depth));
+    pressing->damping = press_damping(contact, &force->press);
+    find_points(&dynamics->tree, &state->tree, place, force->from_a, force->from_b,
+                pressing->centre);
+    find_points(&dynamics->tree, &state->tree, place, force->force_a, force->force_b,
+                pressing->wall);
+    pressing->share = pressing->share_slope = 0.0;
+    if (pressing->options->friction > 0.0 && !contact->is_collar) {
+        const double scale = pressing->options->friction_speed;
+        pressing->sliding = vec3_across(
+            vec3_sub(space_tree_velocity(&state->tree, place->pin.body, force->force_b),
+                     space_tree_velocity(&state->tree, place->hole.body, force->force_a)),
+            force->outward);
+        const double speed = vec3_length(pressing->sliding);
+        const double grip = tanh(speed / scale);
+        const bool is_slow = !(speed > 1e-4 * scale);
+        pressing->share = is_slow ? 1.0 / scale : grip / speed;
+        pressing->share_slope =
+            is_slow ? 0.0 : ((1.0 - grip * grip) / scale - pressing->share) / speed;
+    }
+}
+
+// What small changes make of the force on the pin: across its wall, and in friction.
+typedef struct Change {
+    Vec3 normal;
+    Vec3 friction;
+} Change;
+
+// By a move of the pin's point, a change of its velocity and one of the sliding velocity.
+static Change change_force(const Pressing *pressing, Vec3 moved, Vec3 faster, Vec3 slid)
+{
+    const SpaceForce *force = pressing->force;
+    const Vec3 outward = force->outward;
+    const Vec3 none = {0.0, 0.0, 0.0};
+    const Vec3 aside = vec3_across(vec3_across(moved, force->axis), outward);
+    const Vec3 turned = pressing->contact->is_collar ? none : vec3_scale(1.0 / force->size, aside);
+    const double closing = vec3_dot(outward, faster) + vec3_dot(turned, force->relative);
+    const double pressed =
+        pressing->stiffness * vec3_dot(outward, moved) + pressing->damping * closing;
+    const double normal = force->press.normal;
+    Change change = {
+        .normal = vec3_sub(vec3_scale(-pressed, outward), vec3_scale(normal, turned)),
+    };
+    if (pressing->share > 0.0) {
+        const double friction = pressing->options->friction;
+        // the wall turns: so does what slides along it
+        const Vec3 swung = vec3_add(vec3_scale(force->press.closing, turned),
+                                    vec3_scale(vec3_dot(pressing->sliding, turned), outward));
+        const Vec3 across = vec3_sub(vec3_across(slid, outward), swung);
+        const double speed = vec3_length(pressing->sliding);
+        const double quicker = speed > 0.0 ? vec3_dot(pressing->sliding, across) / speed : 0.0;
+        const double held = pressed * pressing->share + normal * pressing->share_slope * quicker;
+        change.friction =
+            vec3_scale(-friction, vec3_add(vec3_scale(held, pressing->sliding),
+                                           vec3_scale(normal * pressing->share, across)));
+    }
+    return change;
+}
+
+// Accelerations by a force on the pin along x, y and z: at the points of the normal force, then at
+// those of friction. Each is a vector of all equations.
+enum { PUSHES = 6 };
+
+typedef struct Pushed {
+    size_t width;
+    size_t count; // 3 without friction
+    double *by[PUSHES];
+} Pushed;
+
+static void add_column(size_t n, const Pushed *pushed, Change change, double *column)
+{
+    const double forces[PUSHES] = {change.normal.x,   change.normal.y,   change.normal.z,
+                                   change.friction.x, change.friction.y, change.friction.z};
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < pushed->count; k++) {
+            column[i * n] += pushed->by[k][i] * forces[k];
+        }
+    }
+}
+
+static void find_pushed(const SpaceDynamics *dynamics, const Pressing *pressing,
+                        const size_t *pivots, Pushed *pushed)
+{
+    const size_t n = dynamics->tree.coordinate_count;
+    pushed->count = pressing->share > 0.0 ? PUSHES : 3;
+    for (size_t k = 0; k < pushed->count; k += 3) {
+        const Vec3 *points = k == 0 ? pressing->centre : pressing->wall;
+        for (size_t i = 0; i < pushed->width; i++) {
+            const Vec3 along = i < n ? points[i] : (Vec3){0.0, 0.0, 0.0};
+            pushed->by[k][i] = along.x;
+            pushed->by[k + 1][i] = along.y;
+            pushed->by[k + 2][i] = along.z;
+        }
+    }
+    for (size_t k = 0; k < pushed->count; k++) {
+        dense_substitute(pushed->width, dynamics->matrix, pivots, pushed->by[k]);
+    }
+}
+
+static void add_slopes(const SpaceDynamics *dynamics, const Pressing *pressing,
+                       const size_t *pivots, Pushed *pushed, double *by_position, double *by_rate)
+{
+    static const Vec3 NONE = {0.0, 0.0, 0.0};
+    const size_t n = dynamics->tree.coordinate_count;
+    find_pushed(dynamics, pressing, pivots, pushed);
+    for (size_t k = 0; k < n; k++) {
+        const Vec3 centre = pressing->centre[k];
+        const Vec3 wall = pressing->wall[k];
+        if (vec3_dot(centre, centre) + vec3_dot(wall, wall) > 0.0) {
+            add_column(n, pushed, change_force(pressing, centre, NONE, NONE), by_position + k);
+            add_column(n, pushed, change_force(pressing, NONE, centre, wall), by_rate + k);
+        }
+    }
+}
+
+void space_slopes(double since_s, const double *y, double *by_position, double *by_rate,
+                  void *context)
+{
+    const SpaceDynamics *dynamics = context;
+    const size_t n = dynamics->tree.coordinate_count;
+    const size_t width = space_dynamics_equations(dynamics);
+    SpaceState *state = dynamics->scratch;
+    size_t pivots[2 * SPACE_TREE_COORDINATE_MAX];
+    Pushed pushed = {.width = width};
+    Pressing *pressing = malloc(sizeof *pressing);
+    double *room = malloc(PUSHES * width * sizeof *room);
+    assert(pressing != NULL && room != NULL);
+    for (size_t i = 0; i < PUSHES; i++) {
+        pushed.by[i] = room + i * width;
+    }
+    const double start = space_dynamics_factor(dynamics, since_s, y, state, pivots) ? 0.0 : NAN;
+    for (size_t i = 0; i < n * n; i++) {
+        by_position[i] = by_rate[i] = start;
+    }
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
+        if (dynamics->system.contacts[i].mode == CONTACT_PRESSING) {
+            look_at(dynamics, state, i, pressing);
+            add_slopes(dynamics, pressing, pivots, &pushed, by_position, by_rate);
+        }
+    }
+    free(room);
+    free(pressing);
+}
