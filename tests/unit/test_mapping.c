@@ -207,6 +207,33 @@ static void the_advised_penalty_is_enough_and_half_of_it_is_not(void **state)
     }
 }
 
+// What a row gives back of an impact of which 0.9 was asked for.
+static VerdictKind verdict_of(double restitution)
+{
+    Scenario scenario = thrown_pin(0.3);
+    scenario.contact.damping = DAMPING_EXACT;
+    MappingContact contact;
+    Err err = {ERR_NONE, ""};
+    assert_true(
+        mapping_contact_make(&scenario, &(MappingJoint){.joint = 0}, 0.1, 0.3, &contact, &err));
+    assert_near(contact.asked.restitution, 0.9, 1e-6);
+    MapImpact given = contact.asked;
+    given.restitution = restitution;
+    const ImpactFigures figures = impact_figures_of(&given);
+    return verdict_judge(&contact, ODE_MAP_TEXTBOOK, 1e-3 * contact.half_period_s, &figures);
+}
+
+static void what_gives_all_back_gains_nothing(void **state)
+{
+    (void)state;
+    assert_int_equal(verdict_of(0.9), VERDICT_VALID);
+    assert_int_equal(verdict_of(0.8), VERDICT_OVER_DAMPED);
+    // what rounding may add is no gain
+    assert_int_equal(verdict_of(1.0), VERDICT_UNDER_DAMPED);
+    assert_int_equal(verdict_of(1.0 + 1e-9), VERDICT_UNDER_DAMPED);
+    assert_int_equal(verdict_of(1.0 + 1e-4), VERDICT_GAINS);
+}
+
 static void a_row_gives_the_pair_it_was_made_from(void **state)
 {
     (void)state;
@@ -263,6 +290,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_mapped_is_said_so),
         cmocka_unit_test(a_bad_setting_is_told_with_what_would_be_right),
         cmocka_unit_test(the_advised_penalty_is_enough_and_half_of_it_is_not),
+        cmocka_unit_test(what_gives_all_back_gains_nothing),
         cmocka_unit_test(a_row_gives_the_pair_it_was_made_from),
         cmocka_unit_test(rows_that_are_no_spring_and_damper_are_told_apart),
     };

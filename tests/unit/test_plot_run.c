@@ -56,6 +56,24 @@ static void a_picture_is_well_formed_and_shows_every_contact(void **state)
     text_finish(&svg);
 }
 
+static void forces_are_those_of_joints_with_play_that_are_known(void **state)
+{
+    Fixture *fixture = *state;
+    Trajectory *run = fixture->runs[1];
+    // the ideal joint behind the one with play has a force, too
+    for (size_t i = 0; i < run->sample_count; i++) {
+        run->states[i * run->joint_count + 2].force = 100.0;
+    }
+    ranges_finish(&run->ranges); // so that it is the samples that are drawn
+    Text svg;
+    text_init(&svg);
+    plot_run_write(&fixture->report, &svg);
+    assert_non_null(strstr(svg.data, "<title>ode: force crank-coupler</title>"));
+    assert_null(strstr(svg.data, "force coupler-follower"));
+    assert_null(strstr(svg.data, "broken: force"));
+    text_finish(&svg);
+}
+
 static void a_picture_without_play_shows_the_difference(void **state)
 {
     Fixture *fixture = *state;
@@ -135,6 +153,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_picture_is_well_formed_and_shows_every_contact,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(forces_are_those_of_joints_with_play_that_are_known,
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_picture_without_play_shows_the_difference, fixture_set_up,
                                         fixture_tear_down),

@@ -187,6 +187,9 @@ static void status_counts_fates_and_reasons(void **state)
     assert_has(text, "not begun");
     assert_has(text, "timed out     1   0.91");
     assert_has(text, "2  failed     a number is not finite at 0.0125 s            7");
+    // the most frequent reason first
+    assert_has(text, "1  timed out  ");
+    assert_true(strstr(text.data, "2  failed") < strstr(text.data, "1  timed out  "));
     assert_has(text, "one core has");
     store_close(store, &err);
     text_finish(&text);
