@@ -138,12 +138,13 @@ static double coupling(const SpaceResponseRow *a, const SpaceResponseRow *b)
 {
     double sum = 0.0;
     for (int i = 0; i < 2; i++) {
-        for (int k = 0; k < 2; k++) {
-            if (a->mover[i] == b->mover[k] && a->mover[i] != NO_MOVER) {
-                sum += vec3_dot(a->row.linear[i], b->answer[k].move) +
-                       vec3_dot(a->row.angular[i], b->answer[k].turn);
-            }
+        const int mover = a->mover[i];
+        if (mover == NO_MOVER || (mover != b->mover[0] && mover != b->mover[1])) {
+            continue;
         }
+        // a row has two different bodies
+        const SpaceChange *answer = &b->answer[mover == b->mover[0] ? 0 : 1];
+        sum += vec3_dot(a->row.linear[i], answer->move) + vec3_dot(a->row.angular[i], answer->turn);
     }
     return sum;
 }

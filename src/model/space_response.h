@@ -72,9 +72,8 @@ double space_response_between(const SpaceResponse *response, size_t first_from, 
                               const double *to);
 
 // Fills in the accelerations that the bodies would have if no joint held them: gravity's, along -y,
-// and that of turning inertias, I alpha = -omega x I omega; of the driven body its own, at a time.
-void space_response_loosen(const SpaceResponse *response, double gravity, double time_s,
-                           SpaceMotion *motions);
+// and that of turning inertias, I alpha = -omega x I omega. Those of the driven body stay.
+void space_response_loosen(const SpaceResponse *response, double gravity, SpaceMotion *motions);
 
 // Writes how fast the rates of the ideal rows change under the accelerations of the motions.
 void space_response_drift(const SpaceResponse *response, const SpaceMotion *motions, double *drift);

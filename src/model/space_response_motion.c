@@ -7,16 +7,12 @@
 //     r' = s . (alpha_b - alpha_a) + (omega_a x s) . (omega_b - omega_a)
 #include "model/space_response.h"
 
-void space_response_loosen(const SpaceResponse *response, double gravity, double time_s,
-                           SpaceMotion *motions)
+void space_response_loosen(const SpaceResponse *response, double gravity, SpaceMotion *motions)
 {
     const int driven = linkage_driven_body(response->linkage);
     for (size_t i = 0; i < response->linkage->body_count; i++) {
         SpaceMotion *motion = &motions[i];
         if ((int)i == driven) {
-            const SpaceMotion given = space_driven(response->linkage, time_s);
-            motion->acceleration = given.acceleration;
-            motion->alpha = given.alpha;
             continue;
         }
         const Mat3 *turn = &response->turns[i];

@@ -144,8 +144,7 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
     }
     space_response_link(step->response);
     memcpy(loose, middle, body_count(step) * sizeof *loose);
-    space_response_loosen(step->response, step->scenario->gravity,
-                          step->start_s + 0.5 * step->width_s, loose);
+    space_response_loosen(step->response, step->scenario->gravity, loose);
     for (size_t i = 0; i < step->place_count; i++) {
         pin_space_rows_drift(&step->places[i], &step->rows[i], loose,
                              play_drift + encounter->joints[i].first_row);
