@@ -189,7 +189,7 @@ void pin_space_rows_drift(const PinSpace *place, const PinSpaceRows *rows,
                    vec3_dot(relative, axis) * vec3_dot(rows->across[i], turning);
     }
     if (rows->count == PIN_SPACE_ROWS) {
-        drift[ROW_AXIAL] = vec3_dot(axis, changing);
+        drift[ROW_AXIAL] = vec3_dot(axis, changing) + vec3_dot(turning, relative);
         write_turns(rows, alpha_of(motions, a), alpha_of(motions, b), drift);
     }
 }

@@ -214,22 +214,6 @@ void space_response_mobility(const SpaceResponse *response, double *mobility)
     }
 }
 
-double space_response_between(const SpaceResponse *response, size_t first_from, size_t count_from,
-                              const double *from, size_t first_to, size_t count_to,
-                              const double *to)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < count_from; i++) {
-        for (size_t k = 0; k < count_to; k++) {
-            const size_t row = response->ideal_rows + first_from + i;
-            const size_t column = response->ideal_rows + first_to + k;
-            const size_t at = row < column ? triangle(column) + row : triangle(row) + column;
-            sum += from[i] * response->matrix[at] * to[k];
-        }
-    }
-    return sum;
-}
-
 void space_response_free(const SpaceResponse *response, const double *ideal_drift,
                          const double *play_drift, double *rates)
 {

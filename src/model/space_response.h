@@ -66,11 +66,6 @@ void space_response_link(SpaceResponse *response);
 // that act there.
 void space_response_mobility(const SpaceResponse *response, double *mobility);
 
-// The product n W m of two combinations of rows of play, each of neighbouring rows.
-double space_response_between(const SpaceResponse *response, size_t first_from, size_t count_from,
-                              const double *from, size_t first_to, size_t count_to,
-                              const double *to);
-
 // Fills in the accelerations that the bodies would have if no joint held them: gravity's, along -y,
 // and that of turning inertias, I alpha = -omega x I omega. Those of the driven body stay.
 void space_response_loosen(const SpaceResponse *response, double gravity, SpaceMotion *motions);
