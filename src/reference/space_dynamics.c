@@ -229,9 +229,13 @@ static void find_drive(const SpaceDynamics *dynamics, const SpaceLoads *loads, S
             continue;
         }
         const SpaceBodyState *at = space_tree_body(&state->tree, body);
-        const Mat3 inertia = space_tree_inertia(tree, &state->tree, body);
-        const Vec3 spun = vec3_add(mat3_apply(&inertia, at->alpha),
-                                   vec3_cross(at->omega, mat3_apply(&inertia, at->omega)));
+        // the driven body's own is across the axis
+        Vec3 spun = {0.0, 0.0, 0.0};
+        if (body != tree->driven) {
+            const Mat3 inertia = space_tree_inertia(tree, &state->tree, body);
+            spun = vec3_add(mat3_apply(&inertia, at->alpha),
+                            vec3_cross(at->omega, mat3_apply(&inertia, at->omega)));
+        }
         const Vec3 centre = vec3_add(long_vec3_round(tree->base_position[body + 1]), at->moved);
         const Vec3 turning = vec3_cross(axis, vec3_sub(centre, pivot));
         state->drive_power += vec3_dot(turning, force_missing(tree, &state->tree, loads, body)) +

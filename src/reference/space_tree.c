@@ -209,7 +209,10 @@ static void set_hanging(const SpaceTree *tree, size_t number, const double *q, c
 void space_tree_evaluate(const SpaceTree *tree, double since_s, const double *q, const double *u,
                          SpaceTreeState *state)
 {
-    set_arms(tree, LINKAGE_GROUND, state);
+    for (size_t i = 0; i < tree->end_counts[0]; i++) {
+        const int end = tree->ends_of[0][i];
+        state->arms[end] = tree->base_arms[end];
+    }
     if (tree->driven >= 0) {
         set_driven(tree, since_s, state);
     }

@@ -29,6 +29,11 @@ static LongQuat unit(LongQuat a)
     return (LongQuat){scale * a.w, scale * a.x, scale * a.y, scale * a.z};
 }
 
+static Quat rounded(LongQuat a)
+{
+    return (Quat){(double)a.w, (double)a.x, (double)a.y, (double)a.z};
+}
+
 static LongQuat about(Vec3 axis, long double angle)
 {
     const LongVec3 along = long_vec3(axis);
@@ -91,9 +96,8 @@ static void settle_body(SpaceTree *tree, int body, int parent_end, int own_end)
     if (parent_end >= 0) {
         tree->base_position[body + 1] = minus(end_point(tree, parent_end), end_arm(tree, own_end));
     }
-    const LongQuat turn = tree->base_turn[body + 1];
-    const Quat rounded = {(double)turn.w, (double)turn.x, (double)turn.y, (double)turn.z};
-    tree->base_inertia[body] = space_world_inertia(&tree->linkage->bodies[body], rounded);
+    tree->base_inertia[body] =
+        space_world_inertia(&tree->linkage->bodies[body], rounded(tree->base_turn[body + 1]));
 }
 
 // Centres and turns of the bodies that are driven or hang, arms and gaps.
@@ -118,15 +122,19 @@ static void settle(SpaceTree *tree)
             product(tree->base_turn[node->parent + 1], product(own, tree->start_turn[node->body])));
         settle_body(tree, node->body, node->parent_end, node->own_end);
     }
-    for (int end = 0; end < 2 * (int)tree->linkage->joint_count; end++) {
-        const SpaceEnd *data = &tree->ends[end];
-        const Vec3 axis = long_vec3_round(space_tree_base_arm(tree, data->body, data->axis));
-        tree->base_axes[end] = vec3_scale(1.0 / vec3_length(axis), axis);
-        tree->base_arms[end] = long_vec3_round(end_arm(tree, end));
-    }
     for (int joint = 0; joint < (int)tree->linkage->joint_count; joint++) {
-        tree->base_gaps[joint] =
-            long_vec3_round(minus(end_point(tree, 2 * joint + 1), end_point(tree, 2 * joint)));
+        LongVec3 points[2];
+        for (int side = 0; side < 2; side++) {
+            const int end = 2 * joint + side;
+            const int body = tree->ends[end].body;
+            const LongVec3 arm = end_arm(tree, end);
+            points[side] = long_vec3_add(tree->base_position[body + 1], arm);
+            tree->base_arms[end] = long_vec3_round(arm);
+            // of directions the digits of a double are enough
+            const Vec3 axis = quat_rotate(rounded(tree->base_turn[body + 1]), tree->ends[end].axis);
+            tree->base_axes[end] = vec3_scale(1.0 / vec3_length(axis), axis);
+        }
+        tree->base_gaps[joint] = long_vec3_round(minus(points[1], points[0]));
     }
 }
 
@@ -226,15 +234,13 @@ void space_tree_motions(const SpaceTree *tree, const SpaceTreeState *state, Spac
 {
     for (int i = 0; i < (int)tree->linkage->body_count; i++) {
         const SpaceBodyState *at = space_tree_body(state, i);
-        const LongQuat base = tree->base_turn[i + 1];
-        const Quat rounded = {(double)base.w, (double)base.x, (double)base.y, (double)base.z};
         Mat3 turned = at->turned;
         turned.row[0].x += 1.0;
         turned.row[1].y += 1.0;
         turned.row[2].z += 1.0;
         motions[i] = (SpaceMotion){
             .position = vec3_add(long_vec3_round(tree->base_position[i + 1]), at->moved),
-            .turn = quat_unit(quat_product(quat_of(&turned), rounded)),
+            .turn = quat_unit(quat_product(quat_of(&turned), rounded(tree->base_turn[i + 1]))),
             .velocity = at->velocity,
             .omega = at->omega,
             .acceleration = at->acceleration,
