@@ -81,11 +81,31 @@ static void a_pin_in_a_hole_runs_without_a_drive(void **state)
     assert_says(program->output, "Contacts matched within the horizon, ode");
 }
 
+// A wrong number with nothing beside it that says so would be silent.
+static void an_error_that_is_not_known_is_said_to_be(void **state)
+{
+    Program *program = *state;
+    const char *words = "The error of ode is not known";
+    program_run(program,
+                "run -q --backend ode --step '5 us' $cases/literature/pin-in-hole-drop.yaml");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, words);
+    // the controls: with the reference, and with a step chosen for an error, it is known
+    program_run(program, "run -q --backend reference --backend ode --step '5 us' "
+                         "$cases/literature/pin-in-hole-drop.yaml");
+    assert_int_equal(program->status, 0);
+    assert_true(strstr(program->output, words) == NULL);
+    program_run(program, "run -q --backend ode $cases/literature/pin-in-hole-drop.yaml");
+    assert_int_equal(program->status, 0);
+    assert_true(strstr(program->output, words) == NULL);
+}
+
 #define COMMAND_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        COMMAND_TEST(an_error_that_is_not_known_is_said_to_be),
         COMMAND_TEST(errors_are_against_the_certified_reference),
         COMMAND_TEST(beyond_the_horizon_distributions_stand_in_for_errors),
         COMMAND_TEST(ideal_joints_have_the_closed_form_for_truth),

@@ -63,7 +63,8 @@ const char *check_outcome_kind(const CheckOutcome *outcome)
 static void say_found(const CheckOutcome *outcome, char words[CHECK_OUTCOME_TEXT_SIZE])
 {
     const OutcomeRun *run = &outcome->run;
-    const int room = CHECK_OUTCOME_TEXT_SIZE / 2;
+    // the first line of a message, without the lines of a case file
+    const int room = (int)strcspn(run->message, "\n");
     if (run->is_lost || is_refused(run) || is_detected(run)) {
         snprintf(words, CHECK_OUTCOME_TEXT_SIZE, "%s: %.*s",
                  run->is_lost      ? "lost"

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 // of the largest kinetic energy: what rounding leaves of a work that is none is a million times
 // less
@@ -69,9 +70,28 @@ static void write_other_model(const RunReport *report, Text *text)
     }
 }
 
+// Whether ODE ran at a step that was given, and nothing says how far it is off.
+static bool has_unknown_error(const RunReport *report)
+{
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        if (run->is_complete && !report->errors[i].is_known && run->error_estimate == 0.0 &&
+            strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ODE]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // What has to be said about the truth though nothing was compared with it.
 static void write_truth_alone(const RunReport *report, const Style *style, Text *text)
 {
+    if (has_unknown_error(report)) {
+        text_append(text,
+                    "\n%sError%s\n\n  The error of ode is not known: there is no run of the "
+                    "reference to compare it with. Add reference to run.backends.\n",
+                    style->heading, style->end);
+    }
     const bool is_doubtful = run_report_has_truth(report) && report->truth->message[0] != '\0';
     if (is_doubtful || run_report_mixes_models(report)) {
         text_append(text, "\n%sThe reference%s\n\n", style->heading, style->end);
