@@ -31,8 +31,16 @@ static void store_presence(const Entries *entries, Scenario *scenario)
     for (size_t i = 0; i < SCENARIO_POINT_MAX; i++) {
         text_copy(scenario->points[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_POINT].names[i]);
     }
-    linkage->driver.is_present =
-        entries->form == SCHEMA_SHORT || entries_group(entries, "drive", 0) != NULL;
+    linkage->spring_count = names[SCHEMA_SPRING].count;
+    linkage->torsion_count = names[SCHEMA_TORSION_SPRING].count;
+    for (size_t i = 0; i < LINKAGE_SPRING_MAX; i++) {
+        text_copy(linkage->springs[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_SPRING].names[i]);
+        text_copy(linkage->torsions[i].name, LINKAGE_NAME_SIZE,
+                  names[SCHEMA_TORSION_SPRING].names[i]);
+    }
+    const bool has_torque = entries_find(entries, "drive.torque", 0) != NULL;
+    linkage->driver.is_present = entries->form == SCHEMA_SHORT ||
+                                 (entries_group(entries, "drive", 0) != NULL && !has_torque);
     if (entries->form == SCHEMA_LONG) {
         // the closed form knows four-bars only
         scenario->run.backend_count = 2;
@@ -83,6 +91,7 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
             }
         }
     }
+    scenario->linkage.torque.joint = scenario->linkage.driver.joint;
     store_partners(entries, scenario);
     scenario->linkage.is_spatial = scenario->space == SCENARIO_SPATIAL;
     space_complete(&scenario->linkage);

@@ -8,6 +8,7 @@
 
 #include "base/dense.h"
 #include "casefile/keys.h"
+#include "model/forces.h"
 #include "model/kinematics.h"
 #include "model/nearest.h"
 #include "model/space_nearest.h"
@@ -158,6 +159,11 @@ static void set_anchors(Linkage *linkage, const Motion *motions)
         joint->anchor_a = to_body(motions, joint->body_a, point);
         joint->anchor_b = to_body(motions, joint->body_b, point);
     }
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        Spring *spring = &linkage->springs[i];
+        spring->anchor_a = to_body(motions, spring->body_a, spring->anchor_a);
+        spring->anchor_b = to_body(motions, spring->body_b, spring->anchor_b);
+    }
     Driver *driver = &linkage->driver;
     if (driver->is_present) {
         Joint *joint = &linkage->joints[driver->joint];
@@ -268,7 +274,25 @@ static bool refuse_positions(const Entries *entries, const Linkage *linkage, Err
                                 "are\nallowed: joints and bodies of one size");
 }
 
-bool build_linkage(const Entries *entries, Scenario *scenario, Err *err)
+// Springs of which the case does not say where they are relaxed are so at time zero.
+static void relax_springs(const Entries *entries, Linkage *linkage)
+{
+    Motion motions[LINKAGE_BODY_MAX];
+    linkage_start(linkage, motions);
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        if (entries_find(entries, "springs.*.length", i) == NULL) {
+            linkage->springs[i].length = forces_line(&linkage->springs[i], motions).distance;
+        }
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        TorsionSpring *spring = &linkage->torsions[i];
+        if (entries_find(entries, "torsion-springs.*.angle", i) == NULL) {
+            spring->angle = forces_turn(linkage, spring->joint, motions).angle;
+        }
+    }
+}
+
+static bool start_linkage(const Entries *entries, Scenario *scenario, Err *err)
 {
     Linkage *linkage = &scenario->linkage;
     Motion motions[LINKAGE_BODY_MAX];
@@ -289,6 +313,15 @@ bool build_linkage(const Entries *entries, Scenario *scenario, Err *err)
     for (size_t i = 0; i < linkage->body_count; i++) {
         linkage->bodies[i].start = motions[i];
     }
+    return true;
+}
+
+bool build_linkage(const Entries *entries, Scenario *scenario, Err *err)
+{
+    if (!start_linkage(entries, scenario, err)) {
+        return false;
+    }
+    relax_springs(entries, &scenario->linkage);
     return true;
 }
 

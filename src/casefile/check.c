@@ -2,6 +2,7 @@
 #include "casefile/check.h"
 
 #include "casefile/build.h"
+#include "casefile/check_forces.h"
 #include "casefile/check_space.h"
 #include "casefile/keys.h"
 #include "casefile/store.h"
@@ -216,12 +217,14 @@ static bool check_length(const Entries *entries, bool is_driven, Err *err)
     if (wrong == NULL) {
         return true;
     }
-    return is_driven ? entries_refuse(wrong, err,
-                                      "a run with a drive has no duration of its own\n"
-                                      "allowed: revolutions of the drive, such as revolutions: 1")
-                     : entries_refuse(wrong, err,
-                                      "without a drive there are no revolutions\n"
-                                      "allowed: a duration, such as duration: 60 ms");
+    return is_driven
+               ? entries_refuse(wrong, err,
+                                "a run with a drive has no duration of its own\n"
+                                "allowed: revolutions of the drive, such as revolutions: 1")
+               : entries_refuse(wrong, err, "%s\nallowed: a duration, such as duration: 60 ms",
+                                entries_find(entries, "drive.torque", 0) != NULL
+                                    ? "a torque turns nothing by given revolutions"
+                                    : "without a drive there are no revolutions");
 }
 
 // What is reported begins before the run ends.
@@ -352,6 +355,9 @@ static bool check_drive(const Entries *entries, const Linkage *linkage, Err *err
     }
     const Joint *driven = &linkage->joints[linkage->driver.joint];
     const bool has_play = driven->kind == JOINT_CLEARANCE;
+    if (!has_play && linkage->torque.count > 0) {
+        return true;
+    }
     if (!has_play && (driven->body_a == LINKAGE_GROUND || driven->body_b == LINKAGE_GROUND)) {
         return true;
     }
@@ -386,7 +392,8 @@ bool check_values(const Entries *entries, const Scenario *scenario, Err *err)
             return false;
         }
     }
-    return check_space(entries, scenario, err) && check_drive(entries, linkage, err) &&
-           check_speeds(entries, linkage, err) && check_contact(entries, scenario, err) &&
-           check_run(entries, scenario, err) && check_collider(entries, scenario, err);
+    return check_space(entries, scenario, err) && check_forces(entries, scenario, err) &&
+           check_drive(entries, linkage, err) && check_speeds(entries, linkage, err) &&
+           check_contact(entries, scenario, err) && check_run(entries, scenario, err) &&
+           check_collider(entries, scenario, err);
 }

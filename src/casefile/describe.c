@@ -76,8 +76,9 @@ static void describe_default(size_t row_number, Text *text)
 {
     const SchemaRow *row = &SCHEMA_ROWS[row_number];
     if (row->is_required) {
-        text_append(text, row->rivalry == SCHEMA_SIZES ? "required without radial-clearance"
-                                                       : "required");
+        text_append(text, row->rivalry == SCHEMA_SIZES     ? "required without radial-clearance"
+                          : row->rivalry == SCHEMA_DRIVING ? "required without torque"
+                                                           : "required");
         return;
     }
     if (row->default_words != NULL) {

@@ -5,8 +5,8 @@
 #include "casefile/document.h"
 #include "casefile/schema.h"
 
-// every key of every body, joint and point, and every group
-enum { ENTRIES_MAX = 640, ENTRIES_GROUP_MAX = 64 };
+// every key of every body, joint, point and spring, and every group
+enum { ENTRIES_MAX = 896, ENTRIES_GROUP_MAX = 112 };
 
 // One key that was given. Borrows node and source.
 typedef struct Entry {

@@ -56,7 +56,7 @@ const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
     NUMBER(EXPECTED_DRIVE_WORK, EXPECT_ENERGY, "drive_work", DIMENSION_ENERGY,
            "work of the drive"),
     NUMBER(EXPECTED_DISSIPATED, EXPECT_ENERGY, "dissipated", DIMENSION_ENERGY,
-           "lost in the damping of contacts"),
+           "lost in the damping of contacts and dampers"),
     NUMBER(EXPECTED_CHANGE, EXPECT_ENERGY, "change", DIMENSION_ENERGY,
            "change of kinetic, potential and elastic energy"),
     NUMBER(EXPECTED_RESIDUAL, EXPECT_ENERGY, "residual", DIMENSION_ENERGY,

@@ -84,6 +84,8 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},
         [SCHEMA_BODY_NAME] = {"a body", "a body"},
         [SCHEMA_JOINT_NAME] = {"a joint", "a joint"},
+        [SCHEMA_TORQUE] = {"a torque, or a list of [time, torque]",
+                           "a torque such as 0.1 N m, or points [[0 s, 1 N m], [10 ms, 0 N m]]"},
         [SCHEMA_EXPECT] = {"a mapping of paths to limits", "a mapping of paths to limits"},
     };
     switch (row->type) {
@@ -112,6 +114,7 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
     case SCHEMA_BETWEEN:
     case SCHEMA_BODY_NAME:
     case SCHEMA_JOINT_NAME:
+    case SCHEMA_TORQUE:
     case SCHEMA_EXPECT:
         text_append(text, "%s", WORDS[row->type][with_example]);
         break;

@@ -23,20 +23,23 @@ typedef enum SchemaType {
     SCHEMA_DIRECTION,        // [x, y, z] without units, of any length -> Vec3 of length 1
     SCHEMA_RADIAL_CLEARANCE, // length -> Clearance: both radii
     SCHEMA_ALONG,            // length from a link's first joint -> double from its centre of mass
-    SCHEMA_ANCHOR,           // [x, y] of the world -> Joint.anchor_a, of a body once it is placed
-    SCHEMA_BETWEEN,          // [body, body] -> Joint.body_a and body_b
+    SCHEMA_ANCHOR,           // [x, y] of the world -> an anchor, of a body once it is placed
+    SCHEMA_BETWEEN,          // [body, body] -> body_a and body_b of a joint or spring
     SCHEMA_BODY_NAME,        // name of a body -> int
     SCHEMA_JOINT_NAME,       // name of a joint -> int
+    SCHEMA_TORQUE,           // torque, or list of [time, torque] -> Torque
     SCHEMA_EXPECT,           // mapping of paths to limits -> expectations; no setting of a run
 } SchemaType;
 
-// Keys that come once, or once a body, joint or traced point. A `*` in the path stands for the
-// name of that.
+// Keys that come once, or once a body, joint, traced point or spring. A `*` in the path stands for
+// the name of that.
 typedef enum SchemaFamily {
     SCHEMA_SINGLE,
     SCHEMA_BODY,
     SCHEMA_JOINT,
     SCHEMA_POINT,
+    SCHEMA_SPRING,
+    SCHEMA_TORSION_SPRING,
     SCHEMA_FAMILY_COUNT,
 } SchemaFamily;
 
@@ -49,6 +52,7 @@ typedef enum SchemaRivalry {
     SCHEMA_NO_RIVAL,
     SCHEMA_SIZES,      // hole and pin against radial-clearance
     SCHEMA_ELASTICITY, // law against stiffness
+    SCHEMA_DRIVING,    // speed against torque
 } SchemaRivalry;
 
 typedef struct SchemaRow {
@@ -64,7 +68,7 @@ typedef struct SchemaRow {
     bool low_is_open;
     bool is_required;
     SchemaRivalry rivalry;
-    int side;                  // of the rivalry
+    int side;                  // of the rivalry; of an anchor, the end that it is of
     const char *const *words;  // of a choice, ends in NULL
     const char *zero_word;     // what may be written for the number 0; NULL: nothing
     const char *default_words; // in place of the default's number; NULL: the number says it

@@ -24,8 +24,12 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
 {
     const Linkage *linkage = &scenario->linkage;
     const ContactOptions *contact = &scenario->contact;
-    const size_t members[SCHEMA_FAMILY_COUNT] = {1, linkage->body_count, linkage->joint_count,
-                                                 scenario->point_count};
+    const size_t members[SCHEMA_FAMILY_COUNT] = {1,
+                                                 linkage->body_count,
+                                                 linkage->joint_count,
+                                                 scenario->point_count,
+                                                 linkage->spring_count,
+                                                 linkage->torsion_count};
     const bool is_member = index < members[row->family];
     const bool is_joint = row->family == SCHEMA_JOINT && is_member;
     const bool has_play = scenario_has_clearance(scenario);
@@ -35,7 +39,8 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
     unsigned met = bit(MEMBER, is_member) |
                    bit(LOOSE, is_joint && linkage->joints[index].kind == JOINT_CLEARANCE) |
                    bit(FREE, !build_is_determined(linkage)) |
-                   bit(DRIVE, linkage->driver.is_present) |
+                   bit(DRIVE, linkage->driver.is_present) | bit(TORQUE, linkage->torque.count > 0) |
+                   bit(DRIVEN, linkage->driver.is_present || linkage->torque.count > 0) |
                    bit(NO_DRIVE, !linkage->driver.is_present) | bit(PLAY, has_play) |
                    bit(IDEAL, !has_play) | bit(IMPACT, is_impact) | bit(POISSON, is_poisson) |
                    bit(LAW, has_law) | bit(STIFFNESS, is_impact && !has_law) |

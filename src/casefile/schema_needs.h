@@ -30,4 +30,6 @@ enum {
     LATER = 1 << 22,   // what is reported begins after the start
     FACETED = 1 << 23, // the collider takes holes for polygons
     SPATIAL = 1 << 24, // bodies move in space
+    TORQUE = 1 << 25,  // a torque drives
+    DRIVEN = 1 << 26,  // there is a drive or a torque
 };

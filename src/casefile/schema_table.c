@@ -16,6 +16,9 @@ const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
     [SCHEMA_BODY] = {"bodies", "body", LINKAGE_BODY_MAX, sizeof(Body)},
     [SCHEMA_JOINT] = {"joints", "joint", LINKAGE_JOINT_MAX, sizeof(Joint)},
     [SCHEMA_POINT] = {"points", "point", SCENARIO_POINT_MAX, sizeof(TracedPoint)},
+    [SCHEMA_SPRING] = {"springs", "spring", LINKAGE_SPRING_MAX, sizeof(Spring)},
+    [SCHEMA_TORSION_SPRING] = {"torsion-springs", "torsion spring", LINKAGE_SPRING_MAX,
+                               sizeof(TorsionSpring)},
 };
 
 static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};
@@ -63,6 +66,11 @@ static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};
 #define SPACE_BODY BODY, .needs = MEMBER | SPATIAL
 #define JOINT(field) \
     .family = SCHEMA_JOINT, AT(linkage.joints[0].clearance.field), .needs = LOOSE
+#define SPRING(field) \
+    .family = SCHEMA_SPRING, .form = SCHEMA_LONG, AT(linkage.springs[0].field), .needs = MEMBER
+#define TORSION(field) \
+    .family = SCHEMA_TORSION_SPRING, .form = SCHEMA_LONG, AT(linkage.torsions[0].field), \
+    .needs = MEMBER
 #define POINT(field) \
     .family = SCHEMA_POINT, AT(points[0].field), .needs = MEMBER
 
@@ -166,12 +174,46 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "with space: spatial, direction [x, y, z] of the joint's axis at time zero, of any "
             "length"},
 
+    {.path = "springs.*.between", .type = SCHEMA_BETWEEN, SPRING(body_a), .is_required = true,
+     .doc = "[body, body]: two bodies, or a body and ground"},
+    {.path = "springs.*.at-a", .type = SCHEMA_ANCHOR, SPRING(anchor_a), .is_required = true,
+     .dimension = DIMENSION_LENGTH, .low = -1e3, .high = 1e3, .side = 0,
+     .doc = "position [x, y] in the world at time zero of the end on the first body"},
+    {.path = "springs.*.at-b", .type = SCHEMA_ANCHOR, SPRING(anchor_b), .is_required = true,
+     .dimension = DIMENSION_LENGTH, .low = -1e3, .high = 1e3, .side = 1,
+     .doc = "likewise of the end on the second body"},
+    {.path = "springs.*.stiffness", SPRING(stiffness), .dimension = DIMENSION_SPRING,
+     .low = 0.0, .high = 1e12, .doc = "force over elongation"},
+    {.path = "springs.*.length", SPRING(length), .dimension = DIMENSION_LENGTH, .low = 0.0,
+     .high = 1e3, .default_words = "that at time zero", .doc = "length of the relaxed spring"},
+    {.path = "springs.*.damping", SPRING(damping), .dimension = DIMENSION_DAMPING, .low = 0.0,
+     .high = 1e12, .doc = "force over the rate of the length, both of spring and damper along "
+     "the line between the points"},
+    {.path = "torsion-springs.*.joint", .type = SCHEMA_JOINT_NAME, TORSION(joint),
+     .is_required = true, .doc = "the joint whose two bodies it turns against each other"},
+    {.path = "torsion-springs.*.stiffness", TORSION(stiffness),
+     .dimension = DIMENSION_TORSION_SPRING, .low = 0.0, .high = 1e12, .doc = "torque over angle"},
+    {.path = "torsion-springs.*.angle", TORSION(angle), .dimension = DIMENSION_ANGLE,
+     .low = -1e4, .high = 1e4, .default_words = "that at time zero",
+     .doc = "where it is relaxed: angle of the joint's second body less that of its first, the "
+            "ground counting as the first"},
+    {.path = "torsion-springs.*.damping", TORSION(damping),
+     .dimension = DIMENSION_TORSION_DAMPING, .low = 0.0, .high = 1e12,
+     .doc = "torque over angular velocity"},
+
     {.path = "drive.joint", .type = SCHEMA_JOINT_NAME, .form = SCHEMA_LONG,
-     AT(linkage.driver.joint), .is_required = true, .needs = DRIVE,
-     .doc = "the ideal joint with the ground about which the drive turns a body"},
+     AT(linkage.driver.joint), .is_required = true, .needs = DRIVEN,
+     .doc = "the ideal joint with the ground about which the drive turns a body; of a torque any "
+            "ideal joint: it acts on the second body, and against it on the first"},
     {.path = "drive.speed", .dimension = DIMENSION_ANGULAR_SPEED, AT(linkage.driver.speed),
-     .low = -1e6, .high = 1e6, .is_required = true, .needs = DRIVE,
+     .low = -1e6, .high = 1e6, .is_required = true, .rivalry = SCHEMA_DRIVING, .side = 0,
+     .needs = DRIVE,
      .doc = "angular velocity of the driven body, constant, counter-clockwise positive; not 0"},
+    {.path = "drive.torque", .type = SCHEMA_TORQUE, .form = SCHEMA_LONG,
+     .dimension = DIMENSION_TORQUE, AT(linkage.torque), .low = -1e9, .high = 1e9,
+     .rivalry = SCHEMA_DRIVING, .side = 1, .default_words = "none", .needs = TORQUE,
+     .doc = "instead of speed: a torque, constant, or linear in time between points with constant "
+            "ends, at most 32; counter-clockwise positive"},
     {.path = "drive.start", .form = SCHEMA_SHORT, .dimension = DIMENSION_ANGLE,
      AT(linkage.driver.start), .low = -FULL_TURN, .high = FULL_TURN,
      .doc = "angle of the crank at time zero, counter-clockwise from the ground link; with "
@@ -229,7 +271,7 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "revolutions of the drive in the run; may be a fraction"},
     {.path = "run.duration", .form = SCHEMA_LONG, .dimension = DIMENSION_TIME, AT(run.duration),
      .low = 0.0, .high = 1e6, .low_is_open = true, .needs = NO_DRIVE,
-     .doc = "duration of a run without a drive, instead of revolutions"},
+     .doc = "duration of a run without a speed of the drive, instead of revolutions"},
     {.path = "run.samples", .type = SCHEMA_INTEGER, AT(run.samples), .low = 1.0, .high = 1e7,
      .doc = "samples written per revolution of the drive, or in the whole run without one"},
     {.path = "run.step", .dimension = DIMENSION_TIME, AT(run.step), .low = 0.0, .high = 1.0,
@@ -332,27 +374,6 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "expect", .type = SCHEMA_EXPECT, AT(expectations), .default_words = "none",
      .doc = "limits for numbers of the runs, which `jointplay check` judges: see below"},
 };
-
-const SchemaGroup SCHEMA_GROUPS[] = {
-    {"", "Keys outside any group."},
-    {"four-bar", "The links of a four-bar. A length may have a tolerance: 108 +- 0.3 mm, "
-                 "108 +0.1/-0.2 mm."},
-    {"bodies", "Any linkage, instead of four-bar: up to 16 rigid bodies, with names of letters, "
-               "digits, - and _."},
-    {"joints", "With four-bar, the joints with play, by name: crank-coupler, coupler-follower, "
-               "follower-ground; a joint that is not named is ideal, and the drive joint "
-               "ground-crank always is. With bodies, every joint, up to 24, with any name; a joint "
-               "without sizes is ideal."},
-    {"drive", "How the crank turns; optional with bodies."},
-    {"material", "Material of pins and holes; steel by default."},
-    {"contact", "The contact between pin and hole."},
-    {"run", "Duration, samples, step and solvers."},
-    {"reference", "Accuracy of the reference."},
-    {"ode", "How the Open Dynamics Engine is used."},
-    {"points", "Points of bodies whose paths are written, at most 4, with names of letters, "
-               "digits, - and _."},
-};
 // clang-format on
 
 const size_t SCHEMA_ROW_COUNT = sizeof SCHEMA_ROWS / sizeof SCHEMA_ROWS[0];
-const size_t SCHEMA_GROUP_COUNT = sizeof SCHEMA_GROUPS / sizeof SCHEMA_GROUPS[0];

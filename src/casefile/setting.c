@@ -103,14 +103,19 @@ static void set_direction(CasefileSetting *setting, Vec3 direction)
     setting->number_count = 3;
 }
 
-// Where a joint's hole stands at time zero.
-static Vec2 joint_place(const Linkage *linkage, size_t index)
+// Where a joint's hole, or an end of a spring, stands at time zero.
+static Vec2 anchor_place(const SchemaRow *row, const Linkage *linkage, size_t index)
 {
+    const Joint *joint = &linkage->joints[index];
+    const Spring *spring = &linkage->springs[index];
     Motion motions[LINKAGE_BODY_MAX];
     for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
         motions[i] = linkage->bodies[i].start;
     }
-    return linkage_point(motions, linkage->joints[index].body_a, linkage->joints[index].anchor_a);
+    return row->family != SCHEMA_SPRING
+               ? linkage_point(motions, joint->body_a, joint->anchor_a)
+               : linkage_point(motions, row->side == 0 ? spring->body_a : spring->body_b,
+                               row->side == 0 ? spring->anchor_a : spring->anchor_b);
 }
 
 static const char *body_name(const Linkage *linkage, int body)
@@ -122,6 +127,32 @@ static void set_words(CasefileSetting *setting, const char *first, const char *s
 {
     setting->kind = CASEFILE_TEXT;
     snprintf(setting->text, sizeof setting->text, second != NULL ? "%s, %s" : "%s", first, second);
+}
+
+static void set_between(CasefileSetting *setting, const SchemaRow *row, const Linkage *linkage,
+                        size_t index)
+{
+    const Joint *joint = &linkage->joints[index];
+    const Spring *spring = &linkage->springs[index];
+    const bool is_spring = row->family == SCHEMA_SPRING;
+    set_words(setting, body_name(linkage, is_spring ? spring->body_a : joint->body_a),
+              body_name(linkage, is_spring ? spring->body_b : joint->body_b));
+}
+
+// A constant torque is one number, in N m; one over time pairs of s and N m.
+static void set_torque(CasefileSetting *setting, const Torque *torque)
+{
+    if (torque->count <= 1) {
+        set_number(setting, torque->values[0]);
+        return;
+    }
+    setting->kind = CASEFILE_POINTS;
+    setting->number_count = 2 * torque->count;
+    for (size_t i = 0; i < torque->count; i++) {
+        setting->numbers[2 * i] = torque->times[i];
+        setting->numbers[2 * i + 1] = torque->values[i];
+    }
+    text_copy(setting->unit, sizeof setting->unit, "s, N m");
 }
 
 static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scenario *scenario,
@@ -168,17 +199,20 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         set_direction(setting, *(const Vec3 *)field);
         break;
     case SCHEMA_ANCHOR:
-        set_vector(setting, joint_place(linkage, index));
+        set_vector(setting, anchor_place(row, linkage, index));
         break;
     case SCHEMA_BETWEEN:
-        set_words(setting, body_name(linkage, linkage->joints[index].body_a),
-                  body_name(linkage, linkage->joints[index].body_b));
+        set_between(setting, row, linkage, index);
         break;
     case SCHEMA_BODY_NAME:
         set_words(setting, body_name(linkage, scenario->points[index].body), NULL);
         break;
     case SCHEMA_JOINT_NAME:
-        set_words(setting, linkage->joints[linkage->driver.joint].name, NULL);
+        memcpy(&number, field, sizeof number);
+        set_words(setting, linkage->joints[number].name, NULL);
+        break;
+    case SCHEMA_TORQUE:
+        set_torque(setting, field);
         break;
     case SCHEMA_RADIAL_CLEARANCE:
         set_number(setting, linkage_radial_clearance(&linkage->joints[index]));
@@ -194,10 +228,12 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
 // The name of a family's member; one that the scenario does not have keeps the star.
 static const char *member_name(const Scenario *scenario, SchemaFamily family, size_t member)
 {
-    const char *name = family == SCHEMA_BODY    ? scenario->linkage.bodies[member].name
-                       : family == SCHEMA_JOINT ? scenario->linkage.joints[member].name
-                       : family == SCHEMA_POINT ? scenario->points[member].name
-                                                : "";
+    const char *name = family == SCHEMA_BODY             ? scenario->linkage.bodies[member].name
+                       : family == SCHEMA_JOINT          ? scenario->linkage.joints[member].name
+                       : family == SCHEMA_POINT          ? scenario->points[member].name
+                       : family == SCHEMA_SPRING         ? scenario->linkage.springs[member].name
+                       : family == SCHEMA_TORSION_SPRING ? scenario->linkage.torsions[member].name
+                                                         : "";
     return name[0] != '\0' ? name : "*";
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/printable.h"
 #include "casefile/expect.h"
+#include "casefile/torque_table.h"
 
 #include <float.h>
 #include <stdarg.h>
@@ -321,18 +322,19 @@ static bool find_name(const Target *target, const Node *node, SchemaFamily famil
     return true; // the ground is LINKAGE_GROUND, which is what an unknown name has
 }
 
-static bool store_between(const Target *target, Joint *joint)
+static bool store_between(const Target *target, int *body_a, int *body_b)
 {
     const Node *node = target->entry->node;
     const Node *pair[2];
     if (!find_pair(node, pair)) {
-        return refuse(target, node->span, "%s takes the two bodies of the joint", target->path);
+        return refuse(target, node->span, "%s takes the two bodies of the %s", target->path,
+                      SCHEMA_FAMILIES[target->entry->row->family].what);
     }
-    if (!find_name(target, pair[0], SCHEMA_BODY, true, &joint->body_a) ||
-        !find_name(target, pair[1], SCHEMA_BODY, true, &joint->body_b)) {
+    if (!find_name(target, pair[0], SCHEMA_BODY, true, body_a) ||
+        !find_name(target, pair[1], SCHEMA_BODY, true, body_b)) {
         return false;
     }
-    return joint->body_a != joint->body_b ||
+    return *body_a != *body_b ||
            source_error(target->entry->source, pair[1]->span, "two different bodies", target->err,
                         "%s names %s twice", target->path, pair[1]->text);
 }
@@ -352,6 +354,8 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
     Target target = {.entries = entries, .entry = entry, .err = err};
     schema_path(entry->row, entries_name(entries, entry->row, entry->index), target.path);
     target.field = schema_field(entry->row, scenario, entry->index);
+    Joint *joint;
+    Spring *spring;
     switch (entry->row->type) {
     case SCHEMA_CHOICE:
         return find_word(&target, entry->node, target.field); // an enumeration is an int
@@ -371,11 +375,17 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
     case SCHEMA_DIRECTION:
         return store_direction(&target);
     case SCHEMA_BETWEEN:
-        return store_between(&target, target.field);
+        joint = &scenario->linkage.joints[entry->index];
+        spring = &scenario->linkage.springs[entry->index];
+        return entry->row->family == SCHEMA_SPRING
+                   ? store_between(&target, &spring->body_a, &spring->body_b)
+                   : store_between(&target, &joint->body_a, &joint->body_b);
     case SCHEMA_BODY_NAME:
         return find_name(&target, entry->node, SCHEMA_BODY, false, target.field);
     case SCHEMA_JOINT_NAME:
         return find_name(&target, entry->node, SCHEMA_JOINT, false, target.field);
+    case SCHEMA_TORQUE:
+        return torque_table_store(entry, target.field, err);
     case SCHEMA_EXPECT:
         return expect_store(entries, entry, scenario, err);
     default:

@@ -25,6 +25,10 @@ typedef enum Dimension {
     DIMENSION_IMPULSE,
     DIMENSION_ENERGY,
     DIMENSION_ANGULAR_ACCELERATION,
+    DIMENSION_SPRING, // of a spring along a line
+    DIMENSION_TORQUE,
+    DIMENSION_TORSION_SPRING,
+    DIMENSION_TORSION_DAMPING,
     DIMENSION_STIFFNESS, // N/m^n; read by quantity_stiffness, listed here for its words only
     DIMENSION_COUNT,
 } Dimension;

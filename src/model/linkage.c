@@ -15,6 +15,14 @@ bool linkage_is_ideal(const Linkage *linkage, size_t joint)
            !(linkage->driver.is_present && linkage->driver.joint == (int)joint);
 }
 
+void linkage_turning(const Linkage *linkage, int joint, int *turned, int *against)
+{
+    const Joint *of = &linkage->joints[joint];
+    const bool is_b = of->body_b != LINKAGE_GROUND;
+    *turned = is_b ? of->body_b : of->body_a;
+    *against = is_b ? of->body_a : of->body_b;
+}
+
 int linkage_driven_body(const Linkage *linkage)
 {
     return linkage->driver.is_present ? linkage->joints[linkage->driver.joint].body_b
@@ -195,6 +203,49 @@ static bool check_driver(const Linkage *linkage, Err *err)
     return true;
 }
 
+static bool check_springs(const Linkage *linkage, Err *err)
+{
+    const int count = (int)linkage->body_count;
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const Spring *spring = &linkage->springs[i];
+        if (spring->body_a < LINKAGE_GROUND || spring->body_a >= count ||
+            spring->body_b < LINKAGE_GROUND || spring->body_b >= count ||
+            spring->body_a == spring->body_b) {
+            return err_set(err, ERR_CASE,
+                           "spring '%s' must join two different bodies of the linkage",
+                           spring->name);
+        }
+        if (!isfinite(spring->stiffness + spring->length) || !(spring->damping >= 0.0)) {
+            return err_set(err, ERR_CASE, "spring '%s' has a number that is out of range",
+                           spring->name);
+        }
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        if (spring->joint < 0 || spring->joint >= (int)linkage->joint_count ||
+            !isfinite(spring->stiffness + spring->angle) || !(spring->damping >= 0.0)) {
+            return err_set(err, ERR_CASE, "torsion spring '%s' needs a joint and finite numbers",
+                           spring->name);
+        }
+    }
+    return true;
+}
+
+static bool check_torque(const Linkage *linkage, Err *err)
+{
+    const Torque *torque = &linkage->torque;
+    for (size_t i = 0; i < torque->count; i++) {
+        if (!isfinite(torque->values[i]) || !isfinite(torque->times[i]) ||
+            (i > 0 && !(torque->times[i] > torque->times[i - 1]))) {
+            return err_set(err, ERR_CASE, "the times of a torque must increase");
+        }
+    }
+    if (torque->count > 0 && (torque->joint < 0 || torque->joint >= (int)linkage->joint_count)) {
+        return err_set(err, ERR_CASE, "the joint of the torque does not exist");
+    }
+    return true;
+}
+
 bool linkage_check(const Linkage *linkage, Err *err)
 {
     if (linkage->body_count == 0 || linkage->body_count > LINKAGE_BODY_MAX ||
@@ -211,7 +262,7 @@ bool linkage_check(const Linkage *linkage, Err *err)
             return false;
         }
     }
-    return check_driver(linkage, err);
+    return check_springs(linkage, err) && check_driver(linkage, err) && check_torque(linkage, err);
 }
 
 double linkage_kinetic_energy(const Linkage *linkage, const Motion *motions)

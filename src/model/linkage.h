@@ -1,5 +1,5 @@
-// A linkage as data: rigid bodies with mass properties, the joints between them, one driver. It
-// moves in the plane, or in space where the case asks for it.
+// A linkage as data: rigid bodies with mass properties, the joints and springs between them, one
+// driver. It moves in the plane, or in space where the case asks for it.
 //
 // Coordinates: a body's frame has its origin at the centre of mass; its x axis runs along the link.
 // The ground is no body; it has the number LINKAGE_GROUND and the fixed frame of the world, y up.
@@ -16,6 +16,8 @@ enum {
     LINKAGE_GROUND = -1,
     LINKAGE_BODY_MAX = 16,
     LINKAGE_JOINT_MAX = 24,
+    LINKAGE_SPRING_MAX = 16, // of each kind
+    LINKAGE_TORQUE_MAX = 32, // points of a torque over time
     LINKAGE_NAME_SIZE = 48,
 };
 
@@ -83,6 +85,38 @@ typedef struct Joint {
     JointSpace space;
 } Joint;
 
+// A spring with a damper along the line between two points. Its tension is
+//     stiffness (distance - length) + damping (rate of the distance)
+typedef struct Spring {
+    char name[LINKAGE_NAME_SIZE];
+    int body_a; // number of a body or LINKAGE_GROUND
+    int body_b;
+    Vec2 anchor_a; // in body a's frame, m
+    Vec2 anchor_b;
+    double stiffness; // N/m
+    double length;    // m, of the relaxed spring
+    double damping;   // N s/m
+} Spring;
+
+// A spring with a damper that turns the two bodies of a joint against each other; see
+// linkage_turning for its angle.
+typedef struct TorsionSpring {
+    char name[LINKAGE_NAME_SIZE];
+    int joint;        // number, of any kind
+    double stiffness; // N m/rad
+    double angle;     // rad, of the relaxed spring
+    double damping;   // N m s/rad
+} TorsionSpring;
+
+// Pushes the turned body of a joint, and the other one the other way (linkage_turning), by a torque
+// over time: linear between its points, constant before the first and after the last.
+typedef struct Torque {
+    int joint;                         // number of the joint, which is ideal
+    size_t count;                      // of points; 0: there is no torque
+    double times[LINKAGE_TORQUE_MAX];  // s, increasing
+    double values[LINKAGE_TORQUE_MAX]; // N m, counter-clockwise positive
+} Torque;
+
 // Turns one body at constant speed about its joint with the ground.
 typedef struct Driver {
     bool is_present;
@@ -97,7 +131,12 @@ typedef struct Linkage {
     Body bodies[LINKAGE_BODY_MAX];
     size_t joint_count;
     Joint joints[LINKAGE_JOINT_MAX];
+    size_t spring_count;
+    Spring springs[LINKAGE_SPRING_MAX];
+    size_t torsion_count;
+    TorsionSpring torsions[LINKAGE_SPRING_MAX];
     Driver driver;
+    Torque torque; // instead of a driver
 } Linkage;
 
 // One side of a joint: 0 that of body a, 1 that of body b.
@@ -117,6 +156,10 @@ double linkage_radial_clearance(const Joint *joint);
 
 // Whether a joint is ideal and not the drive's: one that constrains how bodies move.
 bool linkage_is_ideal(const Linkage *linkage, size_t joint);
+
+// The body that a joint turns and the one that it turns against: its bodies b and a, but the other
+// way round where b is the ground. The joint's angle is that of the first less that of the second.
+void linkage_turning(const Linkage *linkage, int joint, int *turned, int *against);
 
 // The number of the driven body, or LINKAGE_GROUND where there is no driver.
 int linkage_driven_body(const Linkage *linkage);
@@ -157,8 +200,9 @@ typedef struct JointGap {
 JointGap linkage_joint_gap(const Linkage *linkage, const Motion *motions, int joint);
 
 // Checks what must hold for any linkage: mass and inertia positive and finite, names unique,
-// joints between two different existing bodies, pin smaller than hole, driver at an ideal joint
-// with the ground. Fails with ERR_CASE and the name of the offender.
+// joints and springs between two different existing bodies, pin smaller than hole, driver at an
+// ideal joint with the ground, a torque's times increasing. Fails with ERR_CASE and the name of the
+// offender.
 bool linkage_check(const Linkage *linkage, Err *err);
 
 // Kinetic energy of all bodies, J, sum (m v^2 + I w^2) / 2; and potential energy in gravity along

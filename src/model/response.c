@@ -160,32 +160,50 @@ void response_mobility(const Response *response, double *mobility)
     }
 }
 
-// Acceleration of the end of a joint on one body, which turns but is not turned faster.
+// By how much loads speed up the turning of a body whose motion is free, rad/s^2.
+static double load_turning(const Linkage *linkage, int body, const BodyLoad *loads)
+{
+    return loads == NULL || body == LINKAGE_GROUND || body == linkage_driven_body(linkage)
+               ? 0.0
+               : loads[body].moment / linkage->bodies[body].inertia;
+}
+
+// Acceleration of the end of a joint on one body under gravity and loads.
 static Vec2 end_acceleration(const Linkage *linkage, const Motion *motions, int body, Vec2 anchor,
-                             double gravity)
+                             double gravity, const BodyLoad *loads)
 {
     if (body == LINKAGE_GROUND) {
         return (Vec2){0.0, 0.0};
     }
     const Motion *motion = &motions[body];
-    const Vec2 centre =
-        body == linkage_driven_body(linkage) ? motion->acceleration : (Vec2){0.0, -gravity};
+    const bool is_driven = body == linkage_driven_body(linkage);
+    Vec2 centre = is_driven ? motion->acceleration : (Vec2){0.0, -gravity};
     const Vec2 arm = vec2_rotate(motion->angle, anchor);
+    if (loads != NULL && !is_driven) {
+        const double mass = linkage->bodies[body].mass;
+        const Vec2 turning = vec2_scale(load_turning(linkage, body, loads), vec2_perp(arm));
+        centre = vec2_add(centre, vec2_add(vec2_scale(1.0 / mass, loads[body].force), turning));
+    }
     return vec2_sub(centre, vec2_scale(motion->omega * motion->omega, arm));
 }
 
-void response_free(const Response *response, const Motion *motions, double gravity, double *rates)
+void response_free(const Response *response, const Motion *motions, double gravity,
+                   const BodyLoad *loads, double *rates)
 {
     const Linkage *linkage = response->linkage;
     double gamma[RESPONSE_ROW_MAX] = {0.0};
     for (size_t row = 0; row < response->row_count;) {
         const Joint *joint = &linkage->joints[response->joint_of[row]];
-        const Vec2 relative =
-            vec2_sub(end_acceleration(linkage, motions, joint->body_b, joint->anchor_b, gravity),
-                     end_acceleration(linkage, motions, joint->body_a, joint->anchor_a, gravity));
+        const Vec2 relative = vec2_sub(
+            end_acceleration(linkage, motions, joint->body_b, joint->anchor_b, gravity, loads),
+            end_acceleration(linkage, motions, joint->body_a, joint->anchor_a, gravity, loads));
         gamma[row] = relative.x;
         gamma[row + 1] = relative.y;
-        row += row >= response->ideal_rows && response->with_turns ? 4 : 2;
+        row += 2;
+        if (row > response->ideal_rows && response->with_turns) {
+            gamma[row++] = load_turning(linkage, joint->body_a, loads);
+            gamma[row++] = load_turning(linkage, joint->body_b, loads);
+        }
     }
     // forward through the factor: what is left in the rows of play is g
     for (size_t pivot = 0; pivot < response->ideal_rows; pivot++) {

@@ -3,7 +3,7 @@
 // Delassus operator.
 #pragma once
 
-#include "model/linkage.h"
+#include "model/forces.h"
 
 enum {
     RESPONSE_ROWS_A_JOINT = 4, // x and y of the pin against the hole, turns of the two bodies
@@ -47,8 +47,10 @@ bool response_place(Response *response, const Motion *motions);
 void response_mobility(const Response *response, double *mobility);
 
 // Writes the acceleration of the rows of the joints with play while nothing acts in them: under
-// gravity, m/s^2 along -y, at the velocities given; of the driven body its own acceleration.
-void response_free(const Response *response, const Motion *motions, double gravity, double *rates);
+// gravity, m/s^2 along -y, and loads on the bodies (NULL: none), at the velocities given; of the
+// driven body its own acceleration.
+void response_free(const Response *response, const Motion *motions, double gravity,
+                   const BodyLoad *loads, double *rates);
 
 // Writes the impulses, N s, with which the ideal joints answer impulses in the joints with play:
 // two rows a joint, on its body b.

@@ -1,10 +1,13 @@
 // Which speeds are large and which are rounding, in a scenario that may start at rest?
 //
-//     V = max(|v| + |w| reach at the start, |w_drive| span, min(sqrt(2 g reach), g T))
-//     A = max(V max |w|, g),   of a body  turning = V / reach,  speeding = A / reach
+//     V = max(|v| + |w| reach at the start, |w_drive| span, min(sqrt(2 g reach), g T), sqrt(2 E /
+//     m)) A = max(V max |w|, g),   of a body  turning = V / reach,  speeding = A / reach
 // reach: of a body's furthest joint from its centre; span: of the driven body's furthest point from
-// its pivot; T: period of the drive, in which gravity alone makes no more than g T.
+// its pivot; T: period of the drive, in which gravity alone makes no more than g T; E: stored in
+// springs at the start, and what a torque gives in one radian; m: of all bodies.
 #include "model/scale.h"
+
+#include "model/forces.h"
 
 // How far the driven body reaches from its pivot, m.
 static double driven_span(const Linkage *linkage)
@@ -17,6 +20,24 @@ static double driven_span(const Linkage *linkage)
         span = end.body == driven ? fmax(span, vec2_length(vec2_sub(end.anchor, pivot))) : span;
     }
     return span > 0.0 ? span : linkage_reach(linkage, driven);
+}
+
+// The speed that springs and torque alone give the bodies from rest, m/s.
+static double pushed_speed(const Linkage *linkage)
+{
+    Motion motions[LINKAGE_BODY_MAX];
+    linkage_start(linkage, motions);
+    const Torque *torque = &linkage->torque;
+    double energy = forces_energy(linkage, motions);
+    double mass = 0.0;
+    double largest = 0.0;
+    for (size_t i = 0; i < torque->count; i++) {
+        largest = fmax(largest, fabs(torque->values[i]));
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        mass += linkage->bodies[i].mass;
+    }
+    return sqrt(2.0 * (energy + largest) / mass);
 }
 
 static void set_bodies(const Linkage *linkage, SpeedScale *scale)
@@ -53,6 +74,7 @@ SpeedScale scale_speeds(const Scenario *scenario)
         fall = fmin(fall, gravity * linkage_period(linkage));
     }
     scale.moving = fmax(scale.moving, fall);
+    scale.moving = fmax(scale.moving, forces_any(linkage) ? pushed_speed(linkage) : 0.0);
     scale.moving = scale.moving > 0.0 ? scale.moving : 1.0;
     scale.changing = fmax(scale.moving * turning, gravity);
     scale.changing = scale.changing > 0.0 ? scale.changing : scale.moving * scale.moving / largest;

@@ -64,6 +64,26 @@ static void shake_joint(Joint *joint, uint64_t *seed)
     shake_vector(&joint->clearance.start, seed);
 }
 
+static void shake_forces(Linkage *linkage, uint64_t *seed)
+{
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        Spring *spring = &linkage->springs[i];
+        shake_vector(&spring->anchor_a, seed);
+        shake_vector(&spring->anchor_b, seed);
+        shake(&spring->stiffness, seed);
+        shake(&spring->length, seed);
+        shake(&spring->damping, seed);
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        shake(&linkage->torsions[i].stiffness, seed);
+        shake(&linkage->torsions[i].angle, seed);
+        shake(&linkage->torsions[i].damping, seed);
+    }
+    for (size_t i = 0; i < linkage->torque.count; i++) {
+        shake(&linkage->torque.values[i], seed);
+    }
+}
+
 static void shake_world(Scenario *scenario, uint64_t *seed)
 {
     double *const values[] = {
@@ -113,5 +133,6 @@ void shake_inputs(Scenario *scenario, unsigned seed)
             shake_joint_space(&scenario->linkage.joints[i].space, &drawn);
         }
     }
+    shake_forces(&scenario->linkage, &drawn);
     shake_world(scenario, &drawn);
 }

@@ -205,8 +205,8 @@ static void linearise_force(const System *system, size_t number, FrictionRow *ro
 }
 
 void contact_friction_find(const ContactOptions *contact, const Response *response,
-                           const Motion *motions, double gravity, double step_s, FrictionRow *rows,
-                           size_t count)
+                           const Motion *motions, double gravity, const BodyLoad *loads,
+                           double step_s, FrictionRow *rows, size_t count)
 {
     double free[RESPONSE_ROW_MAX];
     Share shares[LINKAGE_JOINT_MAX];
@@ -216,7 +216,7 @@ void contact_friction_find(const ContactOptions *contact, const Response *respon
     system.rows = rows;
     system.shares = shares;
     system.count = count;
-    response_free(response, motions, gravity, free);
+    response_free(response, motions, gravity, loads, free);
     for (size_t i = 0; i < count; i++) {
         rows[i].sliding = contact_friction_sliding(&rows[i]);
         shares[i] = start_share(&rows[i], free, step_s);

@@ -28,7 +28,8 @@ typedef struct FrictionRow {
 double contact_friction_sliding(const FrictionRow *row);
 
 // Finds the friction of all pins that touch, for a step of ODE's direct solver. The response is
-// placed, has turns, and has the motions before the step; gravity in m/s^2 along -y.
+// placed, has turns, and has the motions before the step; gravity in m/s^2 along -y; loads on the
+// bodies, NULL where there are none.
 void contact_friction_find(const ContactOptions *contact, const Response *response,
-                           const Motion *motions, double gravity, double step_s, FrictionRow *rows,
-                           size_t count);
+                           const Motion *motions, double gravity, const BodyLoad *loads,
+                           double step_s, FrictionRow *rows, size_t count);

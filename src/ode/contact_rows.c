@@ -145,8 +145,9 @@ static void find_friction(ContactRows *rows, double step_s)
     Motion motions[LINKAGE_BODY_MAX];
     if (options->model == CONTACT_IMPACT && rows->scenario->ode.solver == ODE_DIRECT && count > 0 &&
         place_response(rows, motions)) {
-        contact_friction_find(options, &rows->response, motions, rows->scenario->gravity, step_s,
-                              found, count);
+        const Applied *applied = &rows->world->applied;
+        contact_friction_find(options, &rows->response, motions, rows->scenario->gravity,
+                              applied->is_any ? applied->loads : NULL, step_s, found, count);
     }
     for (size_t i = 0; i < count; i++) {
         add_friction(&rows->rows[numbers[i]], &found[i]);

@@ -20,6 +20,12 @@
 // of an interval: a part that ends so close to a node goes up to it, or as little beyond
 static const double ROUNDING = 1e-6;
 
+// W, of the drive, and what the dampers take.
+typedef struct Powers {
+    double drive;
+    double damping;
+} Powers;
+
 typedef struct Extrapolated {
     const Scenario *scenario;
     Nodes nodes;
@@ -30,8 +36,9 @@ typedef struct Extrapolated {
     Hermite paths[LINKAGE_BODY_MAX][3]; // x, y and angle in the interval
     double start_s;                     // of the last part
     Sample end;                         // of it
-    double power;                       // W, of the drive there
+    Powers powers;                      // there
     double drive_work;                  // J, in the last part
+    double damped;                      // J, in dampers, likewise
     double omega[LINKAGE_BODY_MAX];
     double alpha[LINKAGE_BODY_MAX];
     double impulse[LINKAGE_JOINT_MAX];
@@ -120,22 +127,26 @@ static void fill_motions(const Extrapolated *own, double time_s, Motion *motions
     }
 }
 
-// The motions and the joints' forces at a time in the interval, and the drive's power, W. Returns
-// false where the forces are not determined; they are then untouched.
-static bool work_out(const Extrapolated *own, double time_s, Sample *sample, double *power)
+// The motions and the joints' forces at a time in the interval, and the powers. Returns false where
+// the forces are not determined; they are then untouched.
+static bool work_out(const Extrapolated *own, double time_s, Sample *sample, Powers *powers)
 {
+    const Linkage *linkage = &own->scenario->linkage;
+    BodyLoad loads[LINKAGE_BODY_MAX];
     sample->time_s = time_s;
-    sample->crank_rad = linkage_crank_angle(&own->scenario->linkage, time_s);
+    sample->crank_rad = linkage_crank_angle(linkage, time_s);
     fill_motions(own, time_s, sample->bodies);
-    if (!ideal_forces_solve(own->scenario, sample->bodies, own->response, sample->joints)) {
+    forces_loads(linkage, sample->bodies, time_s, loads);
+    if (!ideal_forces_solve(own->scenario, sample->bodies, loads, own->response, sample->joints)) {
         return false;
     }
-    *power = 0.0;
+    powers->drive = forces_torque_power(linkage, sample->bodies, time_s);
+    powers->damping = forces_damping_power(linkage, sample->bodies);
     if (own->driven >= 0) {
         // an ideal joint's force acts at its anchor
         const Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
-        *power =
-            stepping_drive(own->scenario, &sample->bodies[own->driven], offsets, sample->joints);
+        powers->drive = stepping_drive(own->scenario, &sample->bodies[own->driven],
+                                       &loads[own->driven], offsets, sample->joints);
     }
     return true;
 }
@@ -151,12 +162,12 @@ static void observe_joints(const Extrapolated *own, Sample *sample)
 static bool make_part(Extrapolated *own, double end_s, Err *err)
 {
     const Sample start = own->end;
-    const double start_power = own->power;
+    const Powers from = own->powers;
     const double sixth_s = (end_s - start.time_s) / 6.0;
     Sample middle;
-    double middle_power = 0.0;
-    if (!work_out(own, 0.5 * (start.time_s + end_s), &middle, &middle_power) ||
-        !work_out(own, end_s, &own->end, &own->power)) {
+    Powers mid = {0.0, 0.0};
+    if (!work_out(own, 0.5 * (start.time_s + end_s), &middle, &mid) ||
+        !work_out(own, end_s, &own->end, &own->powers)) {
         err_set(err, ERR_SOLVER,
                 "the ideal joints are redundant: give one joint of the loop some play, or "
                 "choose another stepping");
@@ -165,7 +176,8 @@ static bool make_part(Extrapolated *own, double end_s, Err *err)
     }
     observe_joints(own, &own->end);
     own->start_s = start.time_s;
-    own->drive_work = sixth_s * (start_power + 4.0 * middle_power + own->power);
+    own->drive_work = sixth_s * (from.drive + 4.0 * mid.drive + own->powers.drive);
+    own->damped = sixth_s * (from.damping + 4.0 * mid.damping + own->powers.damping);
     for (size_t i = 0; i < own->scenario->linkage.body_count; i++) {
         own->omega[i] = own->end.bodies[i].omega;
         own->alpha[i] = own->end.bodies[i].alpha;
@@ -208,6 +220,7 @@ static StepRecord extrapolated_record(const void *state)
         .impulse = own->impulse,
         .approach = own->approach,
         .drive_work = own->drive_work,
+        .dissipated = own->damped,
     };
 }
 
@@ -220,8 +233,8 @@ static void extrapolated_observe(const void *state, double time_s, Sample *sampl
     }
     // should the forces not be determined, those of the end stand
     *sample = own->end;
-    double power = 0.0;
-    work_out(own, time_s, sample, &power);
+    Powers unused;
+    work_out(own, time_s, sample, &unused);
     observe_joints(own, sample);
 }
 

@@ -1,29 +1,32 @@
 // Which forces in the ideal joints make the bodies move as they do?
 //
 // Newton and Euler of all bodies that are not driven, J the rows of the ideal joints:
-//     M (a - g) = J' lambda,   so that   D lambda = J (a - g),   D = J M^-1 J'
-// a holds the angular accelerations too. J a is the bodies' part alone and without centripetal
-// terms: this is a balance of forces, and says nothing of whether the joints stay closed. lambda is
-// the force on body b of each joint.
+//     M (a - g) - f = J' lambda,   so that   D lambda = J (a - g - M^-1 f),   D = J M^-1 J'
+// f: springs, dampers, torque. a holds the angular accelerations too. J a is the bodies' part alone
+// and without centripetal terms: this is a balance of forces, and says nothing of whether the
+// joints stay closed. lambda is the force on body b of each joint.
 #include "ode/ideal_forces.h"
 
-// One row of J (a - g).
-static double row_acceleration(const ResponseRow *row, const Motion *motions, double gravity)
+// One row of J (a - g - M^-1 f).
+static double row_acceleration(const ResponseRow *row, const Linkage *linkage,
+                               const Motion *motions, double gravity, const BodyLoad *loads)
 {
     double sum = 0.0;
     for (int end = 0; end < 2; end++) {
         if (row->body[end] != LINKAGE_GROUND) {
             const Motion *motion = &motions[row->body[end]];
-            sum += row->x[end] * motion->acceleration.x +
-                   row->y[end] * (motion->acceleration.y + gravity) +
-                   row->turn[end] * motion->alpha;
+            const Body *body = &linkage->bodies[row->body[end]];
+            const BodyLoad *load = &loads[row->body[end]];
+            sum += row->x[end] * (motion->acceleration.x - load->force.x / body->mass) +
+                   row->y[end] * (motion->acceleration.y + gravity - load->force.y / body->mass) +
+                   row->turn[end] * (motion->alpha - load->moment / body->inertia);
         }
     }
     return sum;
 }
 
-bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, Response *response,
-                        JointState *joints)
+bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, const BodyLoad *loads,
+                        Response *response, JointState *joints)
 {
     if (!response_place(response, motions)) {
         return false;
@@ -31,7 +34,8 @@ bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, Respons
     const size_t count = response->ideal_rows;
     double lambda[RESPONSE_ROW_MAX];
     for (size_t i = 0; i < count; i++) {
-        lambda[i] = row_acceleration(&response->rows[i], motions, scenario->gravity);
+        lambda[i] = row_acceleration(&response->rows[i], &scenario->linkage, motions,
+                                     scenario->gravity, loads);
     }
     response_solve(response, lambda);
     for (size_t i = 0; i < count; i += 2) {

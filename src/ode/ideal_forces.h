@@ -8,5 +8,5 @@
 // Fills in force and force_on_b of the ideal joints, the drive's joint apart, from positions and
 // accelerations. The response must have been prepared for the scenario's linkage. Returns false
 // where the forces are not determined; the joints are then untouched.
-bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, Response *response,
-                        JointState *joints);
+bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, const BodyLoad *loads,
+                        Response *response, JointState *joints);

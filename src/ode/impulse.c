@@ -131,6 +131,7 @@ static bool impulse_step(void *state, double stop_s, Err *err)
     encounter_at(&impulse->step.encounter, mark->node, mark->time_s, &impulse->sums);
     take_part(impulse, mark, &before);
     impulse->record.drive_work = is_last ? impulse->step.drive_work : 0.0;
+    impulse->record.dissipated += is_last ? impulse->step.damped : 0.0;
     return check_depths(impulse, err) ||
            stepping_fail(impulse->step.scenario, impulse->part_end_s, impulse->step.count,
                          impulse->step.width_s, err);

@@ -91,7 +91,8 @@ static void find_joints(const ImpulseStep *step, size_t node, double since_s,
     }
     if (step->driven >= 0) {
         const Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
-        stepping_drive(step->scenario, &motions[step->driven], offsets, joints);
+        const BodyLoad load = applied_on(&step->world.applied, step->driven);
+        stepping_drive(step->scenario, &motions[step->driven], &load, offsets, joints);
     }
 }
 

@@ -156,7 +156,9 @@ static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
                        "the ideal joints are redundant here: give one joint of the loop some play");
     }
     response_mobility(&step->response, encounter->mobility);
-    response_free(&step->response, middle, step->scenario->gravity, encounter->free);
+    const Applied *applied = &step->world.applied;
+    response_free(&step->response, middle, step->scenario->gravity,
+                  applied->is_any ? applied->loads : NULL, encounter->free);
     if (!encounter_run(encounter, step->width_s)) {
         return err_set(err, ERR_SOLVER,
                        "contact sub-stepping exceeded 100000 steps in one step; reduce run.step");
@@ -172,6 +174,7 @@ static bool step_world(ImpulseStep *step, const Motion *middle, Err *err)
     const double width_s = step->width_s;
     double loads[IMPULSE_CHANGE_MAX];
     response_load(&step->response, step->total.impulse, loads);
+    impulse_step_push_late(step, middle);
     for (size_t i = 0; i < body_count(step); i++) {
         Motion placed = middle[i];
         if (impulse_step_is_free(step, i)) {
@@ -312,7 +315,11 @@ static void find_drive_work(ImpulseStep *step, const Motion *driven)
         const bool has_turns = encounter->joints[i].row_count == RESPONSE_ROWS_A_JOINT;
         work -= has_turns ? sum[is_on_a ? 2 : 3] * driven->omega : 0.0;
     }
-    step->drive_work = work + width_s * stepping_drive(step->scenario, driven, offsets, step->mean);
+    const AppliedWork applied = applied_book(&step->world.applied, width_s);
+    const BodyLoad load = applied_on(&step->world.applied, step->driven);
+    const double power = stepping_drive(step->scenario, driven, &load, offsets, step->mean);
+    step->damped = applied.damping;
+    step->drive_work = work + width_s * power + applied.torque;
 }
 
 // Where the step ends: on the ticks, but not beyond the run, so that no contact is recorded there.
@@ -347,6 +354,7 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
         step->after[step->driven] = stepping_driven(&step->scenario->linkage, step->end_s);
     }
     find_middle(step, middle);
+    impulse_step_push(step, middle);
     if (!run_encounter(step, middle, err) || !step_world(step, middle, err)) {
         return stepping_fail(step->scenario, step->start_s, step->count + 1, step->width_s, err);
     }

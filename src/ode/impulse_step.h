@@ -26,6 +26,7 @@ typedef struct ImpulseStep {
     double free_rate[IMPULSE_CHANGE_MAX]; // its rate of change
     double rest[IMPULSE_CHANGE_MAX];      // of the end's positions, beyond the formula for inside
     double drive_work;                    // J, in the whole step
+    double damped;                        // J, in dampers, likewise
     EncounterSums total;                  // of the contacts, in the whole step
     double closing[RESPONSE_ROW_MAX];     // N s, of the ideal joints' rows, beside the world's step
     JointState mean[LINKAGE_JOINT_MAX];   // mean forces of the ideal joints
@@ -44,6 +45,11 @@ void impulse_step_finish(ImpulseStep *step);
 
 // Takes the next step.
 bool impulse_step_take(ImpulseStep *step, Err *err);
+
+// Of a step: springs, dampers and torque push the bodies, which move as given at mid-step; and once
+// the contacts are integrated, what the dampers feel of when in the step their impulse came.
+void impulse_step_push(ImpulseStep *step, const Motion *middle);
+void impulse_step_push_late(ImpulseStep *step, const Motion *middle);
 
 // How the bodies move and what the joints do at a time since the step's start, from the contacts'
 // sums up to then. Accelerations at a peak are worked out where the bodies are, else at mid-step.

@@ -100,6 +100,15 @@ static bool step_level(Nodes *nodes, NodesLevel *level, long direction, Err *err
     const int driven = linkage_driven_body(linkage);
     const double start_s = (double)level->index * level->step_s;
     const double step_s = (double)direction * level->step_s;
+    const bool has_driven_speed = driven >= 0 && forces_damp(linkage);
+    if (has_driven_speed) {
+        Motion motion = stepping_driven(linkage, start_s + 0.5 * step_s);
+        const Motion start = stepping_driven(linkage, start_s);
+        motion.velocity = vec2_scale((double)direction, start.velocity);
+        motion.omega = (double)direction * start.omega;
+        world_place(&level->world, (size_t)driven, &motion);
+    }
+    applied_push(&level->world.applied, start_s, level->step_s, APPLIED_AT_MEAN, (int)direction);
     if (driven >= 0) {
         Motion motion = stepping_driven(linkage, start_s + 0.5 * step_s);
         const Motion end = stepping_driven(linkage, start_s + step_s);

@@ -30,7 +30,8 @@ typedef struct Plain {
     JointState joints[LINKAGE_JOINT_MAX];
     double impulse[LINKAGE_JOINT_MAX];
     double approach[LINKAGE_JOINT_MAX];
-    double drive_work; // J, in the last step
+    double drive_work;   // J, in the last step
+    AppliedWork applied; // in the last step
 } Plain;
 
 static void plain_close(void *state)
@@ -61,7 +62,8 @@ static double drive_power(Plain *plain, const Motion *driven)
 {
     Vec2 offsets[LINKAGE_JOINT_MAX];
     contact_rows_offsets(&plain->contacts, plain->driven, offsets);
-    return stepping_drive(plain->scenario, driven, offsets, plain->joints);
+    const BodyLoad load = applied_on(&plain->world.applied, plain->driven);
+    return stepping_drive(plain->scenario, driven, &load, offsets, plain->joints);
 }
 
 static bool advance(Plain *plain, Err *err)
@@ -74,6 +76,7 @@ static bool advance(Plain *plain, Err *err)
     for (size_t i = 0; i < plain->scenario->linkage.body_count; i++) {
         plain->before[i] = world_snapshot(&plain->world, i);
     }
+    applied_push(&plain->world.applied, start_s, plain->step_s, APPLIED_AT_END, 1);
     const bool is_quick = plain->scenario->ode.solver == ODE_QUICK;
     if (!contact_rows_make(&plain->contacts, plain->step_s, plain->joints, plain->approach, err) ||
         !engine_step(plain->world.id, plain->step_s, is_quick, err)) {
@@ -82,7 +85,8 @@ static bool advance(Plain *plain, Err *err)
     contact_rows_clear(&plain->contacts, plain->step_s, plain->joints);
     read_velocities(plain);
     world_joint_forces(&plain->world, plain->joints);
-    plain->drive_work = drive_power(plain, &driven) * plain->step_s;
+    plain->applied = applied_book(&plain->world.applied, plain->step_s);
+    plain->drive_work = drive_power(plain, &driven) * plain->step_s + plain->applied.torque;
     for (size_t i = 0; i < plain->scenario->linkage.joint_count; i++) {
         plain->impulse[i] = plain->joints[i].force * plain->step_s;
     }
@@ -145,7 +149,7 @@ static StepRecord plain_record(const void *state)
         .impulse = plain->impulse,
         .approach = plain->approach,
         .drive_work = plain->drive_work,
-        .dissipated = energy.dissipated,
+        .dissipated = energy.dissipated + plain->applied.damping,
         .friction = energy.friction,
         .elastic = energy.elastic,
     };

@@ -39,6 +39,7 @@ typedef struct Stride {
     double impulse[LINKAGE_JOINT_MAX];
     double approach[LINKAGE_JOINT_MAX];
     double drive_work; // J
+    double damped;     // J, in dampers
     ContactEnergy energy;
 } Stride;
 
@@ -179,8 +180,12 @@ static void book(Staggered *staggered, const Motion *middle, Stride *stride)
     const Linkage *linkage = &staggered->scenario->linkage;
     Vec2 offsets[LINKAGE_JOINT_MAX];
     contact_rows_offsets(&staggered->contacts, staggered->driven, offsets);
-    stride->drive_work =
-        staggered->step_s * stepping_drive(staggered->scenario, middle, offsets, stride->joints);
+    const AppliedWork applied = applied_book(&staggered->world.applied, staggered->step_s);
+    const BodyLoad load = applied_on(&staggered->world.applied, staggered->driven);
+    const double power =
+        stepping_drive(staggered->scenario, middle, &load, offsets, stride->joints);
+    stride->drive_work = staggered->step_s * power + applied.torque;
+    stride->damped = applied.damping;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         stride->impulse[i] = stride->joints[i].force * staggered->step_s;
     }
@@ -199,6 +204,7 @@ static bool advance(Staggered *staggered, Stride *stride, Err *err)
     for (size_t i = 0; i < staggered->scenario->linkage.body_count; i++) {
         stride->middle[i] = world_snapshot(world, i);
     }
+    applied_push(&world->applied, stride->start_s, step_s, APPLIED_AT_MEAN, 1);
     if (!contact_rows_make(&staggered->contacts, step_s, stride->joints, stride->approach, err)) {
         return stepping_fail(staggered->scenario, stride->start_s, staggered->steps + 1, step_s,
                              err);
@@ -269,7 +275,7 @@ static StepRecord staggered_record(const void *state)
         .impulse = now->impulse,
         .approach = now->approach,
         .drive_work = now->drive_work,
-        .dissipated = now->energy.dissipated,
+        .dissipated = now->energy.dissipated + now->damped,
         .friction = now->energy.friction,
         .elastic = now->energy.elastic,
     };

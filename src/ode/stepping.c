@@ -43,8 +43,8 @@ long stepping_start(const Scenario *scenario, double step_s, long steps_back, Mo
     return steps_back;
 }
 
-double stepping_drive(const Scenario *scenario, const Motion *driven, const Vec2 *offsets,
-                      JointState *joints)
+double stepping_drive(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
+                      const Vec2 *offsets, JointState *joints)
 {
     const Linkage *linkage = &scenario->linkage;
     const int body = linkage_driven_body(linkage);
@@ -54,8 +54,8 @@ double stepping_drive(const Scenario *scenario, const Motion *driven, const Vec2
     const double mass = linkage->bodies[body].mass;
     const Vec2 needed =
         vec2_scale(mass, vec2_add(driven->acceleration, (Vec2){0.0, scenario->gravity}));
-    Vec2 others = {0.0, 0.0};
-    double power = vec2_dot(needed, driven->velocity);
+    Vec2 others = load->force;
+    double power = vec2_dot(needed, driven->velocity) - forces_load_power(load, driven);
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const bool is_on_a = joint->body_a == body;

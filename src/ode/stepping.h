@@ -20,9 +20,10 @@ long stepping_start(const Scenario *scenario, double step_s, long steps_back, Mo
 
 // The force in the driven joint, N, and the power of the drive, W, from the body's own equations:
 // all other forces on it are known. `joints` holds those forces and receives the driven joint's;
-// `offsets` lead, by joint, from the driven body's anchor to where the force acts, m.
-double stepping_drive(const Scenario *scenario, const Motion *driven, const Vec2 *offsets,
-                      JointState *joints);
+// `offsets` lead, by joint, from the driven body's anchor to where the force acts, m; `load` is of
+// springs and dampers on the driven body.
+double stepping_drive(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
+                      const Vec2 *offsets, JointState *joints);
 
 // Puts time, crank angle and number of the step in front of what went wrong there; returns false.
 bool stepping_fail(const Scenario *scenario, double time_s, size_t step, double step_s, Err *err);

@@ -188,6 +188,7 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
             return false;
         }
     }
+    applied_make(linkage, world->id, world->bodies, motions, &world->applied);
     return true;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "model/trajectory.h"
+#include "ode/applied.h"
 #include "ode/collider.h"
 
 #include <ode/ode.h>
@@ -23,6 +24,7 @@ typedef struct World {
     size_t pair_count;
     WorldPair pairs[LINKAGE_JOINT_MAX];
     size_t constraint_rows; // scalar rows of the ideal joints, all independent
+    Applied applied;        // springs, dampers, torque
 } World;
 
 // Builds the world of a scenario with its bodies in the motions given. Fails with ERR_SOLVER where

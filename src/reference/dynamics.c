@@ -2,11 +2,13 @@
 //
 //     M qdd = sum over bodies B^T (F - m a_bias) + moments + J^T lambda,   J qdd = gamma
 // B: velocity of each centre by each coordinate (reference/tree.h), M = sum m B^T B + I; J, gamma:
-// the joints that close loops. The contacts' forces: reference/dynamics_contact.c.
+// the joints that close loops. The contacts' forces: reference/dynamics_contact.c; those of
+// springs, dampers and torques: model/forces.c.
 #include "reference/dynamics.h"
 
 #include "base/dense.h"
 #include "contact/law.h"
+#include "model/forces.h"
 #include "reference/loops.h"
 
 // Forces on the bodies, by body: at the centre, and the moment about it.
@@ -45,6 +47,7 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
 {
     System *system = &dynamics->system;
     *dynamics = (Dynamics){.system = {.scenario = scenario, .torn = -1}};
+    dynamics->has_forces = forces_any(&scenario->linkage);
     tree_build(&scenario->linkage, &dynamics->tree);
     list_coordinates(dynamics);
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
@@ -105,6 +108,34 @@ static void start_loads(const Dynamics *dynamics, Loads *loads)
     }
     loads->driven_power = 0.0;
     loads->driven_force = (Vec2){0.0, 0.0};
+}
+
+// Adds springs, dampers and a torque; fills in their powers.
+static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState *state,
+                        Loads *loads)
+{
+    state->drive_power = 0.0;
+    state->damping_power = 0.0;
+    if (!dynamics->has_forces) {
+        return;
+    }
+    const Tree *tree = &dynamics->tree;
+    const Linkage *linkage = tree->linkage;
+    const Motion *motions = state->tree.motions;
+    const double time_s = tree_time(tree, since_s);
+    BodyLoad added[LINKAGE_BODY_MAX];
+    forces_loads(linkage, motions, time_s, added);
+    for (int i = 0; i < (int)linkage->body_count; i++) {
+        if (i == tree->driven) {
+            loads->driven_power += forces_load_power(&added[i], &motions[i]);
+            loads->driven_force = vec2_add(loads->driven_force, added[i].force);
+        } else {
+            loads->force[i] = vec2_add(loads->force[i], added[i].force);
+            loads->moment[i] += added[i].moment;
+        }
+    }
+    state->drive_power = forces_torque_power(linkage, motions, time_s);
+    state->damping_power = forces_damping_power(linkage, motions);
 }
 
 // Mass matrix (n by n, in rows of `width`) and right-hand side of the coordinates; a body counts
@@ -195,7 +226,6 @@ static void find_reactions(const Tree *tree, const TreeState *state, Loads *load
 static void find_drive(const Dynamics *dynamics, const Loads *loads, DynamicsState *state)
 {
     const Tree *tree = &dynamics->tree;
-    state->drive_power = 0.0;
     if (tree->driven < 0) {
         return;
     }
@@ -233,6 +263,7 @@ static bool find_rates(const Dynamics *dynamics, double since_s, const double *y
     double matrix[DYNAMICS_EQUATION_MAX * DYNAMICS_EQUATION_MAX];
     tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state->tree);
     start_loads(dynamics, loads);
+    load_forces(dynamics, since_s, state, loads);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         state->contacts[i] = dynamics_contact_find(
             &dynamics->system.contacts[i], &dynamics->system.scenario->contact, tree, &state->tree);
@@ -293,7 +324,7 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
 static void fill_sums(const Dynamics *dynamics, const DynamicsState *state, double *sums)
 {
     sums[SYSTEM_DRIVE_WORK] = state->drive_power;
-    sums[SYSTEM_DISSIPATED] = 0.0;
+    sums[SYSTEM_DISSIPATED] = state->damping_power;
     sums[SYSTEM_FRICTION] = 0.0;
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         const Vec2 force = state->contacts[i].force;

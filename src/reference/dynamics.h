@@ -8,6 +8,7 @@
 typedef struct Dynamics {
     System system; // the first
     Tree tree;
+    bool has_forces; // whether springs, dampers or a torque act
 } Dynamics;
 
 // Everything at one instant.
@@ -16,7 +17,8 @@ typedef struct DynamicsState {
     TreeState tree;                           // accelerations filled in
     ContactForce contacts[LINKAGE_JOINT_MAX]; // by contact
     Vec2 reactions[LINKAGE_JOINT_MAX];        // N, on body b, of ideal joints
-    double drive_power;                       // W
+    double drive_power;                       // W, of drive or torque
+    double damping_power;                     // W, that the dampers take
 } DynamicsState;
 
 // Fails with ERR_CASE where a contact law does not fit a joint.

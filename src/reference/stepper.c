@@ -6,6 +6,7 @@
 // is from the pivot that it turns about. Work and losses are allowed the tolerance times m v^2.
 #include "reference/stepper.h"
 
+#include "model/forces.h"
 #include "reference/plane_system.h"
 #include "reference/space_system.h"
 
@@ -201,12 +202,24 @@ static void take_over(Stepper *stepper)
                      stepper->events.count > 0, integrator);
 }
 
+// The longest step to the end of the run, or to where a torque over time bends: across it the rates
+// are not smooth.
+static double smooth_limit(const Stepper *stepper)
+{
+    const System *system = stepper->system;
+    const Torque *torque = &stepper->scenario->linkage.torque;
+    const double time_s = system->kind->time(system, 0.0);
+    const double least_s = SHORTEST * time_s; // a bend nearer than this has been reached
+    const double bend_s = forces_next_bend(torque, time_s + least_s);
+    return fmin(stepper->duration_s, bend_s) - time_s;
+}
+
 // The longest step in which no free pin crosses more than its play: error control alone lets a free
 // flight, which it integrates exactly, be as long as it likes.
 static double flight_limit(const Stepper *stepper)
 {
     const System *system = stepper->system;
-    double limit = stepper->duration_s - system->kind->time(system, 0.0);
+    double limit = smooth_limit(stepper);
     for (size_t i = 0; i < system->contact_count; i++) {
         const Contact *contact = &system->contacts[i];
         if (contact->mode == CONTACT_PRESSING) {

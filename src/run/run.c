@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "contact/law.h"
 #include "contact/pin_space.h"
+#include "model/forces.h"
 #include "model/lock.h"
 
 #include <stdio.h>
@@ -88,7 +89,8 @@ static double mechanical_energy(const Scenario *scenario, const Sample *sample)
                space_potential_energy(linkage, sample->space_bodies, scenario->gravity);
     }
     return linkage_kinetic_energy(linkage, sample->bodies) +
-           linkage_potential_energy(linkage, sample->bodies, scenario->gravity);
+           linkage_potential_energy(linkage, sample->bodies, scenario->gravity) +
+           forces_energy(linkage, sample->bodies);
 }
 
 // What the contacts of pins that start inside their walls have stored, J.
@@ -165,11 +167,11 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
         if (!check_sample(loop, &sample, err)) {
             return false;
         }
+        unwrap_angles(loop, &sample);
         if (k == 0) {
             loop->start_energy =
                 mechanical_energy(loop->scenario, &sample) + stored_energy(loop->scenario, &sample);
         }
-        unwrap_angles(loop, &sample);
         recorder_see(&loop->recorder, &sample);
         trajectory_store(trajectory, k, &sample);
         if (!may_go_on(loop, trajectory, k, err)) {
@@ -185,6 +187,7 @@ static void close_energy(const Loop *loop, Trajectory *trajectory)
 {
     Sample last = {.time_s = loop->reached_s};
     loop->solver->observe(loop->state, loop->reached_s, &last);
+    unwrap_angles(loop, &last);
     Energy *energy = &trajectory->energy;
     energy->change = mechanical_energy(loop->scenario, &last) - loop->start_energy + loop->elastic;
     energy->residual = energy->drive_work - energy->change - energy->dissipated - energy->friction;

@@ -27,6 +27,16 @@ static json_t *words_array(const char *words)
     return list;
 }
 
+static json_t *points_array(const CasefileSetting *setting)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i + 1 < setting->number_count; i += 2) {
+        json_array_append_new(list, json_pack("[o, o]", json_value_real(setting->numbers[i]),
+                                              json_value_real(setting->numbers[i + 1])));
+    }
+    return list;
+}
+
 static json_t *setting_value(const CasefileSetting *setting)
 {
     const double *numbers = setting->numbers;
@@ -35,6 +45,8 @@ static json_t *setting_value(const CasefileSetting *setting)
         return json_integer((json_int_t)numbers[0]);
     case CASEFILE_NUMBER:
         break;
+    case CASEFILE_POINTS:
+        return points_array(setting);
     case CASEFILE_WORDS:
         return words_array(setting->text);
     default:

@@ -152,8 +152,8 @@ static void the_free_acceleration_is_that_of_the_whole_equations(void **state)
         double now[RESPONSE_ROW_MAX];
         double weightless[RESPONSE_ROW_MAX];
         double difference = 0.0;
-        response_free(&here.response, here.motions, gravity, now);
-        response_free(&here.response, here.motions, 0.0, weightless);
+        response_free(&here.response, here.motions, gravity, NULL, now);
+        response_free(&here.response, here.motions, 0.0, NULL, weightless);
         for (size_t i = 0; i < width; i++) {
             const size_t row = here.whole.ideal_rows + i;
             truth[i] = whole_rate(&here.whole, row, accelerations) + given[row];

@@ -59,7 +59,7 @@ static void set_setting(BaselineSetting *target, const CasefileSetting *setting)
 {
     Text text;
     text_init(&text);
-    if (setting->kind == CASEFILE_NUMBER || setting->kind == CASEFILE_INTEGER) {
+    if (setting->number_count > 0 && setting->kind != CASEFILE_WORD) {
         for (size_t i = 0; i < setting->number_count; i++) {
             text_append(&text, "%s", i > 0 ? ", " : "");
             text_append_number(&text, setting->numbers[i]);

@@ -107,7 +107,7 @@ static const Metric METRICS[] = {
     FOUND(OF_RUN, "alpha_peak_rad_s2", REAL, NOTHING, find_alpha_peak,
           "largest magnitude of any body's angular acceleration"),
     RUN("energy_drive_work_J", REAL, NOTHING, energy.drive_work, "work of the drive"),
-    RUN("energy_dissipated_J", REAL, NOTHING, energy.dissipated, "lost in contact damping"),
+    RUN("energy_dissipated_J", REAL, NOTHING, energy.dissipated, "lost in the damping of contacts and dampers"),
     RUN("energy_residual_J", REAL, NOTHING, energy.residual, "unexplained by the balance: the solver's error"),
     RUN("step_s", REAL, FIXED_STEP, step_s, "step of ODE"),
     RUN("steps", WHOLE, NOTHING, steps, "steps of the solver"),

@@ -6,6 +6,7 @@
 #include "commands/tune/tune_code.h"
 
 #include "base/shell.h"
+#include "commands/tune/tune_code_forces.h"
 #include "commands/tune/tune_sources.h"
 #include "contact/law.h"
 #include "contact/penalty.h"
@@ -224,6 +225,7 @@ static void write_scenario(const Scenario *scenario, Text *text)
     write_string(scenario->title, text);
     text_append(text, ",\n");
     write_linkage(&scenario->linkage, text);
+    tune_code_forces(&scenario->linkage, text);
     write_points(scenario, text);
     write_contact(scenario, text);
     write_run(scenario, text);

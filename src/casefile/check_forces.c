@@ -1,0 +1,42 @@
+// Do springs, dampers and a torque go with the rest of a case?
+#include "casefile/check_forces.h"
+
+static bool check_space(const Entries *entries, const Linkage *linkage, Err *err)
+{
+    static const char FORMAT[] = "%s not available in space\nallowed: space: planar, or none";
+    const EntryGroup *springs = entries_group(entries, "springs", 0);
+    const EntryGroup *torsions = entries_group(entries, "torsion-springs", 0);
+    const Entry *torque = entries_find(entries, "drive.torque", 0);
+    if (!linkage->is_spatial) {
+        return true;
+    }
+    if (linkage->spring_count > 0) {
+        return entries_refuse_group(springs, err, FORMAT, "springs are");
+    }
+    if (linkage->torsion_count > 0) {
+        return entries_refuse_group(torsions, err, FORMAT, "torsion springs are");
+    }
+    return torque == NULL || entries_refuse(torque, err, FORMAT, "a torque is");
+}
+
+// Points that coincide have no line between them, along which a spring could pull.
+static bool check_lines(const Entries *entries, const Linkage *linkage, Err *err)
+{
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const Spring *spring = &linkage->springs[i];
+        const Vec2 along = vec2_sub(spring->anchor_b, spring->anchor_a);
+        if (!(vec2_length(along) > 0.0) && (spring->length > 0.0 || spring->damping > 0.0)) {
+            return entries_refuse(entries_find(entries, "springs.*.at-b", i), err,
+                                  "the ends of spring '%s' coincide: it has no direction\nallowed: "
+                                  "two points, or length: 0 mm without damping",
+                                  spring->name);
+        }
+    }
+    return true;
+}
+
+bool check_forces(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    return check_space(entries, &scenario->linkage, err) &&
+           check_lines(entries, &scenario->linkage, err);
+}

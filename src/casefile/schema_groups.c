@@ -1,0 +1,32 @@
+// What is each group of keys for?
+#include "casefile/schema.h"
+
+// clang-format off
+const SchemaGroup SCHEMA_GROUPS[] = {
+    {"", "Keys outside any group."},
+    {"four-bar", "The links of a four-bar. A length may have a tolerance: 108 +- 0.3 mm, "
+                 "108 +0.1/-0.2 mm."},
+    {"bodies", "Any linkage, instead of four-bar: up to 16 rigid bodies, with names of letters, "
+               "digits, - and _."},
+    {"joints", "With four-bar, the joints with play, by name: crank-coupler, coupler-follower, "
+               "follower-ground; a joint that is not named is ideal, and the drive joint "
+               "ground-crank always is. With bodies, every joint, up to 24, with any name; a joint "
+               "without sizes is ideal."},
+    {"springs", "With bodies: springs with dampers along the line between two points, at most 16, "
+                "with names of letters, digits, - and _. In the plane only."},
+    {"torsion-springs", "With bodies: springs with dampers that turn the two bodies of a joint "
+                        "against each other, at most 16. In the plane only."},
+    {"drive", "How the crank turns; optional with bodies. At a constant speed, or with bodies by a "
+              "torque: they then start with their own speeds, at rest by default, and the run has "
+              "a duration."},
+    {"material", "Material of pins and holes; steel by default."},
+    {"contact", "The contact between pin and hole."},
+    {"run", "Duration, samples, step and solvers."},
+    {"reference", "Accuracy of the reference."},
+    {"ode", "How the Open Dynamics Engine is used."},
+    {"points", "Points of bodies whose paths are written, at most 4, with names of letters, "
+               "digits, - and _."},
+};
+// clang-format on
+
+const size_t SCHEMA_GROUP_COUNT = sizeof SCHEMA_GROUPS / sizeof SCHEMA_GROUPS[0];

@@ -1,0 +1,64 @@
+// How are springs, dampers and a torque written as data of a C program?
+#include "commands/tune/tune_code_forces.h"
+
+#include "model/forces.h"
+#include "write/number.h"
+
+static void write_springs(const Linkage *linkage, Text *text)
+{
+    text_append(text, "    .linkage.spring_count = %zu,\n", linkage->spring_count);
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const Spring *spring = &linkage->springs[i];
+        text_append(text, "    .linkage.springs[%zu] = {.body_a = %d, .body_b = %d,\n", i,
+                    spring->body_a, spring->body_b);
+        text_append(text, "                            .anchor_a = {%s, %s}",
+                    number_shortest(spring->anchor_a.x).text,
+                    number_shortest(spring->anchor_a.y).text);
+        text_append(text, ",\n                            .anchor_b = {%s, %s}",
+                    number_shortest(spring->anchor_b.x).text,
+                    number_shortest(spring->anchor_b.y).text);
+        text_append(text,
+                    ",\n                            .stiffness = %s, // N/m\n"
+                    "                            .length = %s, // m\n"
+                    "                            .damping = %s}, // N s/m\n",
+                    number_shortest(spring->stiffness).text, number_shortest(spring->length).text,
+                    number_shortest(spring->damping).text);
+    }
+}
+
+static void write_torsions(const Linkage *linkage, Text *text)
+{
+    text_append(text, "    .linkage.torsion_count = %zu,\n", linkage->torsion_count);
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        text_append(text,
+                    "    .linkage.torsions[%zu] = {.joint = %d,\n"
+                    "                             .stiffness = %s, // N m/rad\n"
+                    "                             .angle = %s, // rad\n"
+                    "                             .damping = %s}, // N m s/rad\n",
+                    i, spring->joint, number_shortest(spring->stiffness).text,
+                    number_shortest(spring->angle).text, number_shortest(spring->damping).text);
+    }
+}
+
+static void write_torque(const Torque *torque, Text *text)
+{
+    text_append(text, "    .linkage.torque.joint = %d,\n    .linkage.torque.count = %zu,\n",
+                torque->joint, torque->count);
+    for (size_t i = 0; i < torque->count; i++) {
+        text_append(text,
+                    "    .linkage.torque.times[%zu] = %s, // s\n"
+                    "    .linkage.torque.values[%zu] = %s, // N m\n",
+                    i, number_shortest(torque->times[i]).text, i,
+                    number_shortest(torque->values[i]).text);
+    }
+}
+
+void tune_code_forces(const Linkage *linkage, Text *text)
+{
+    if (forces_any(linkage)) {
+        write_springs(linkage, text);
+        write_torsions(linkage, text);
+        write_torque(&linkage->torque, text);
+    }
+}

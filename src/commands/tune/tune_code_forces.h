@@ -1,0 +1,8 @@
+// Springs, dampers and a torque as members of a scenario in C.
+#pragma once
+
+#include "base/text.h"
+#include "model/linkage.h"
+
+// Appends them as designated initialisers; nothing where there are none.
+void tune_code_forces(const Linkage *linkage, Text *text);

@@ -1,0 +1,218 @@
+// Which forces do springs, dampers and the torque of a drive put on the bodies?
+//
+// Between points p_a and p_b, d = p_b - p_a, n = d / |d|:
+//     tension  T = k (|d| - l) + c d|d|/dt,   force T n on body a, -T n on body b
+// At a joint, angle phi of its turned body against the other:
+//     moment  M = -k (phi - phi_0) - c dphi/dt  on the turned body, -M on the other
+// Torque of the drive: M(t) on the turned body of its joint, -M(t) on the other.
+//     energy  sum k (|d| - l)^2 / 2 + sum k (phi - phi_0)^2 / 2
+#include "model/forces.h"
+
+bool forces_any(const Linkage *linkage)
+{
+    return linkage->spring_count > 0 || linkage->torsion_count > 0 || linkage->torque.count > 0;
+}
+
+bool forces_damp(const Linkage *linkage)
+{
+    bool is_damped = false;
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        is_damped = is_damped || linkage->springs[i].damping > 0.0;
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        is_damped = is_damped || linkage->torsions[i].damping > 0.0;
+    }
+    return is_damped;
+}
+
+SpringLine forces_line(const Spring *spring, const Motion *motions)
+{
+    const Vec2 a = linkage_point(motions, spring->body_a, spring->anchor_a);
+    const Vec2 b = linkage_point(motions, spring->body_b, spring->anchor_b);
+    const Vec2 moving = vec2_sub(linkage_point_velocity(motions, spring->body_b, spring->anchor_b),
+                                 linkage_point_velocity(motions, spring->body_a, spring->anchor_a));
+    const Vec2 along = vec2_sub(b, a);
+    SpringLine line = {.ends = {a, b}, .distance = vec2_length(along)};
+    if (line.distance > 0.0) {
+        line.direction = vec2_scale(1.0 / line.distance, along);
+        line.rate = vec2_dot(line.direction, moving);
+    }
+    return line;
+}
+
+JointTurn forces_turn(const Linkage *linkage, int joint, const Motion *motions)
+{
+    int turned;
+    int against;
+    linkage_turning(linkage, joint, &turned, &against);
+    JointTurn turn = {motions[turned].angle, motions[turned].omega};
+    if (against != LINKAGE_GROUND) {
+        turn.angle -= motions[against].angle;
+        turn.rate -= motions[against].omega;
+    }
+    return turn;
+}
+
+static void add_force(int body, Vec2 point, Vec2 force, const Motion *motions, BodyLoad *loads)
+{
+    if (body == LINKAGE_GROUND) {
+        return;
+    }
+    BodyLoad *load = &loads[body];
+    load->force = vec2_add(load->force, force);
+    load->moment += vec2_cross(vec2_sub(point, motions[body].position), force);
+}
+
+void forces_add_tension(const Spring *spring, const SpringLine *line, const Motion *motions,
+                        double tension, BodyLoad *loads)
+{
+    const Vec2 force = vec2_scale(tension, line->direction);
+    add_force(spring->body_a, line->ends[0], force, motions, loads);
+    add_force(spring->body_b, line->ends[1], vec2_scale(-1.0, force), motions, loads);
+}
+
+void forces_add_moment(const Linkage *linkage, int joint, double moment, BodyLoad *loads)
+{
+    int turned;
+    int against;
+    linkage_turning(linkage, joint, &turned, &against);
+    loads[turned].moment += moment;
+    if (against != LINKAGE_GROUND) {
+        loads[against].moment -= moment;
+    }
+}
+
+void forces_add_springs(const Linkage *linkage, const Motion *motions, BodyLoad *loads)
+{
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const Spring *spring = &linkage->springs[i];
+        const SpringLine line = forces_line(spring, motions);
+        const double tension = spring->stiffness * (line.distance - spring->length);
+        forces_add_tension(spring, &line, motions, tension, loads);
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        const JointTurn turn = forces_turn(linkage, spring->joint, motions);
+        forces_add_moment(linkage, spring->joint, -spring->stiffness * (turn.angle - spring->angle),
+                          loads);
+    }
+}
+
+void forces_add_dampers(const Linkage *linkage, const Motion *motions, BodyLoad *loads)
+{
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const Spring *spring = &linkage->springs[i];
+        const SpringLine line = forces_line(spring, motions);
+        forces_add_tension(spring, &line, motions, spring->damping * line.rate, loads);
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        const JointTurn turn = forces_turn(linkage, spring->joint, motions);
+        forces_add_moment(linkage, spring->joint, -spring->damping * turn.rate, loads);
+    }
+}
+
+void forces_add_torque(const Linkage *linkage, double torque, BodyLoad *loads)
+{
+    if (linkage->torque.count > 0) {
+        forces_add_moment(linkage, linkage->torque.joint, torque, loads);
+    }
+}
+
+void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, BodyLoad *loads)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        loads[i] = (BodyLoad){{0.0, 0.0}, 0.0};
+    }
+    forces_add_springs(linkage, motions, loads);
+    forces_add_dampers(linkage, motions, loads);
+    forces_add_torque(linkage, forces_torque_at(&linkage->torque, time_s), loads);
+}
+
+double forces_energy(const Linkage *linkage, const Motion *motions)
+{
+    double energy = 0.0;
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const Spring *spring = &linkage->springs[i];
+        const double stretch = forces_line(spring, motions).distance - spring->length;
+        energy += 0.5 * spring->stiffness * stretch * stretch;
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        const double turn = forces_turn(linkage, spring->joint, motions).angle - spring->angle;
+        energy += 0.5 * spring->stiffness * turn * turn;
+    }
+    return energy;
+}
+
+double forces_damping_power(const Linkage *linkage, const Motion *motions)
+{
+    double power = 0.0;
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const double rate = forces_line(&linkage->springs[i], motions).rate;
+        power += linkage->springs[i].damping * rate * rate;
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const double rate = forces_turn(linkage, linkage->torsions[i].joint, motions).rate;
+        power += linkage->torsions[i].damping * rate * rate;
+    }
+    return power;
+}
+
+double forces_torque_power(const Linkage *linkage, const Motion *motions, double time_s)
+{
+    const Torque *torque = &linkage->torque;
+    return torque->count == 0 ? 0.0
+                              : forces_torque_at(torque, time_s) *
+                                    forces_turn(linkage, torque->joint, motions).rate;
+}
+
+double forces_load_power(const BodyLoad *load, const Motion *motion)
+{
+    return vec2_dot(load->force, motion->velocity) + load->moment * motion->omega;
+}
+
+// The line between two points of the table, at a time on it or beyond it.
+static double on_line(const Torque *torque, size_t first, double time_s)
+{
+    const double width_s = torque->times[first + 1] - torque->times[first];
+    const double share = (time_s - torque->times[first]) / width_s;
+    return torque->values[first] + share * (torque->values[first + 1] - torque->values[first]);
+}
+
+double forces_torque_at(const Torque *torque, double time_s)
+{
+    if (torque->count == 0) {
+        return 0.0;
+    }
+    // what goes on before time zero is the piece that holds at and after it
+    size_t after = 0;
+    while (after < torque->count && torque->times[after] <= fmax(time_s, 0.0)) {
+        after++;
+    }
+    return after == 0               ? torque->values[0]
+           : after == torque->count ? torque->values[after - 1]
+                                    : on_line(torque, after - 1, time_s);
+}
+
+double forces_next_bend(const Torque *torque, double time_s)
+{
+    for (size_t i = 0; i < torque->count; i++) {
+        if (torque->times[i] > time_s) {
+            return torque->times[i];
+        }
+    }
+    return INFINITY;
+}
+
+double forces_torque_mean(const Torque *torque, double from_s, double to_s)
+{
+    // piece by piece: the mean of a line is its value in the middle
+    double sum = 0.0;
+    for (double start_s = from_s; start_s < to_s;) {
+        const double end_s = fmin(to_s, fmax(forces_next_bend(torque, start_s), 0.0));
+        sum += (end_s - start_s) * forces_torque_at(torque, 0.5 * (start_s + end_s));
+        start_s = end_s;
+    }
+    return sum / (to_s - from_s);
+}

@@ -1,0 +1,62 @@
+// What acts on the bodies of a linkage beside gravity, joints and contacts: springs, dampers and
+// the torque of a drive.
+#pragma once
+
+#include "model/linkage.h"
+
+// Force on a body at its centre of mass, N, and moment about it, N m.
+typedef struct BodyLoad {
+    Vec2 force;
+    double moment;
+} BodyLoad;
+
+// Whether anything of the kind acts; and whether any of it is a damper.
+bool forces_any(const Linkage *linkage);
+bool forces_damp(const Linkage *linkage);
+
+// A spring's line at the motions given.
+typedef struct SpringLine {
+    Vec2 ends[2];    // m, on body a and on body b
+    Vec2 direction;  // unit, from the first to the second; zero where they coincide
+    double distance; // m
+    double rate;     // m/s, of the distance
+} SpringLine;
+
+SpringLine forces_line(const Spring *spring, const Motion *motions);
+
+// The angle of a joint, rad, and its rate, rad/s; see linkage_turning.
+typedef struct JointTurn {
+    double angle;
+    double rate;
+} JointTurn;
+
+JointTurn forces_turn(const Linkage *linkage, int joint, const Motion *motions);
+
+// Add the loads, by body, of all springs, all dampers, and a torque, N m, at the drive's joint.
+void forces_add_springs(const Linkage *linkage, const Motion *motions, BodyLoad *loads);
+void forces_add_dampers(const Linkage *linkage, const Motion *motions, BodyLoad *loads);
+void forces_add_torque(const Linkage *linkage, double torque, BodyLoad *loads);
+
+// Add the load of one damper that pulls along a spring's line with a tension, N.
+void forces_add_tension(const Spring *spring, const SpringLine *line, const Motion *motions,
+                        double tension, BodyLoad *loads);
+
+// Add a moment, N m, that a joint's turned body gets and the other one gives.
+void forces_add_moment(const Linkage *linkage, int joint, double moment, BodyLoad *loads);
+
+// Writes the loads of everything at a time.
+void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, BodyLoad *loads);
+
+// Energy stored in the springs, J; power that the dampers take and that the drive's torque gives at
+// a time, W; power of a load on a body, W.
+double forces_energy(const Linkage *linkage, const Motion *motions);
+double forces_damping_power(const Linkage *linkage, const Motion *motions);
+double forces_torque_power(const Linkage *linkage, const Motion *motions, double time_s);
+double forces_load_power(const BodyLoad *load, const Motion *motion);
+
+// The drive's torque at a time, its mean between two times, N m, and the first time after the one
+// given at which it bends, s: INFINITY where there is none. Before time zero the line at time zero
+// goes on.
+double forces_torque_at(const Torque *torque, double time_s);
+double forces_torque_mean(const Torque *torque, double from_s, double to_s);
+double forces_next_bend(const Torque *torque, double time_s);

@@ -1,0 +1,60 @@
+// Springs, dampers and the torque of a drive in a world. Springs and torque push before a step; a
+// damper is a constraint row with CFM, so that no damper, however strong, makes a step unstable.
+#pragma once
+
+#include "model/forces.h"
+
+#include <ode/ode.h>
+
+// One damper: ODE's joint that holds its row, and the force in it.
+typedef struct AppliedRow {
+    dJointID row; // NULL: the spring has no damper
+    dJointFeedback feedback;
+} AppliedRow;
+
+typedef struct Applied {
+    const Linkage *linkage;
+    const dBodyID *bodies;                   // of the world
+    bool is_any;                             // whether anything acts; else nothing below is used
+    double angles[LINKAGE_BODY_MAX];         // rad, of the bodies when last looked at, not wrapped
+    AppliedRow dampers[LINKAGE_SPRING_MAX];  // of the springs
+    AppliedRow torsions[LINKAGE_SPRING_MAX]; // of the torsion springs
+    SpringLine lines[LINKAGE_SPRING_MAX];    // at the positions of the step
+    Motion motions[LINKAGE_BODY_MAX];        // likewise, with the speeds of its start
+    BodyLoad loads[LINKAGE_BODY_MAX]; // of springs and torque, and of the dampers: before the step
+                                      // as the speeds of its start have them, behind it as they
+                                      // were
+    double torque;                    // N m, mean over the step
+    double turning;                   // rad/s, rate of the drive's joint at its start
+} Applied;
+
+// How a step reads the speeds that dampers feel.
+typedef enum AppliedRule {
+    APPLIED_AT_END,  // those of its end: first order
+    APPLIED_AT_MEAN, // mean of start and end, symmetric in time: second order
+} AppliedRule;
+
+// Makes the rows of the dampers in a world whose bodies stand in the motions given. Part of
+// world_build.
+void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
+                  const Motion *motions, Applied *applied);
+
+// Before a step: puts springs and torque on the bodies where they stand, and the dampers' rows to
+// their speeds, those of its start. A step backwards in time has a negative direction.
+void applied_push(Applied *applied, double start_s, double step_s, AppliedRule rule, int direction);
+
+// The same for motions that are known better than the world has them.
+void applied_push_at(Applied *applied, const Motion *motions, double start_s, double step_s,
+                     AppliedRule rule, int direction);
+
+// What the drive's torque gave and the dampers took in a step, J.
+typedef struct AppliedWork {
+    double torque;
+    double damping;
+} AppliedWork;
+
+// After the step: finds the dampers' forces and books the work.
+AppliedWork applied_book(Applied *applied, double step_s);
+
+// The load on a body, zero on the ground.
+BodyLoad applied_on(const Applied *applied, int body);

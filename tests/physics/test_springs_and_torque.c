@@ -1,0 +1,201 @@
+// Do springs, dampers and torques move a linkage as closed forms and published solutions say, in
+// the reference and in every way of stepping ODE?
+#include "ode_error.h"
+
+// A body of inertia 0.25 + 0.5^2 = 0.5 kg m^2 about its pivot.
+static Scenario arm(void)
+{
+    Scenario scenario = scenario_default();
+    Linkage *linkage = &scenario.linkage;
+    linkage->body_count = linkage->joint_count = 1;
+    linkage->bodies[0] = (Body){.name = "arm", .mass = 1.0, .inertia = 0.25};
+    linkage->bodies[0].start.position = (Vec2){0.5, 0.0};
+    linkage->joints[0] =
+        (Joint){.name = "pivot", .body_a = LINKAGE_GROUND, .body_b = 0, .anchor_b = {-0.5, 0.0}};
+    scenario.gravity = 0.0;
+    scenario.run.samples = 200;
+    scenario.run.duration = 2.0;
+    scenario.run.step = 1e-3;
+    return scenario;
+}
+
+static const Motion *at_end(const Trajectory *trajectory, size_t body)
+{
+    return trajectory_motion(trajectory, trajectory->sample_count - 1, body);
+}
+
+// The angle at the end, of a pendulum from the horizontal at rest, from the downward vertical:
+// (sin, cos) by the elliptic integral to 20 digits; IFToMM benchmark library, problem A01.
+static const double SWUNG_SIN = 0.27508746257616;
+static const double SWUNG_COS = 0.96141920509912504;
+
+static Scenario pendulum(double inertia)
+{
+    Scenario scenario = arm();
+    scenario.gravity = 9.81;
+    scenario.linkage.bodies[0].inertia = inertia;
+    // the arm's angle is from the horizontal: 90 deg less than from the vertical
+    scenario.run.duration = 10.0;
+    return scenario;
+}
+
+static double swung_error(Scenario scenario, BackendKind backend, double step_s)
+{
+    scenario.run.step = step_s;
+    scenario.reference.tolerance = 1e-14;
+    Trajectory *run = complete_run(&scenario, backend);
+    const double angle = at_end(run, 0)->angle + 0.5 * M_PI;
+    trajectory_destroy(run);
+    return hypot(sin(angle) - SWUNG_SIN, cos(angle) - SWUNG_COS);
+}
+
+static void a_pendulum_follows_the_elliptic_integral(void **state)
+{
+    (void)state;
+    Scenario scenario = pendulum(0.25);
+    // rounding of the published digits and of 10 s of integration
+    assert_near(swung_error(scenario, BACKEND_REFERENCE, 0.0), 0.0, 1e-12);
+    assert_true(swung_error(pendulum(0.2501), BACKEND_REFERENCE, 0.0) > 1e-4);
+    scenario.ode.stepping = ODE_STAGGERED;
+    const double coarse = swung_error(scenario, BACKEND_ODE, 1e-3);
+    const double fine = swung_error(scenario, BACKEND_ODE, 5e-4);
+    assert_near(ode_order(coarse, fine, 2.0), 2.0, 0.1);
+    scenario.ode.stepping = ODE_EXTRAPOLATED;
+    const double high_coarse = swung_error(scenario, BACKEND_ODE, 2e-3);
+    const double high_fine = swung_error(scenario, BACKEND_ODE, 1e-3);
+    assert_true(ode_order(high_coarse, high_fine, 2.0) > 4.0);
+    assert_true(high_fine < 1e-6);
+}
+
+// k and c on I: theta = e^(-a t) (cos w t + (a / w) sin w t), a = c / 2 I, w^2 = k / I - a^2
+static const double SPRING = 40.0; // N m/rad
+static const double DAMPER = 0.8;  // N m s/rad
+
+static Scenario sprung(double damping)
+{
+    Scenario scenario = arm();
+    scenario.linkage.torsion_count = 1;
+    scenario.linkage.torsions[0] =
+        (TorsionSpring){.joint = 0, .stiffness = SPRING, .angle = -1.0, .damping = damping};
+    return scenario;
+}
+
+static double sprung_error(Scenario scenario, BackendKind backend, double step_s)
+{
+    const double inertia = 0.5;
+    const double a = 0.5 * DAMPER / inertia;
+    const double w = sqrt(SPRING / inertia - a * a);
+    scenario.run.step = step_s;
+    Trajectory *run = complete_run(&scenario, backend);
+    double largest = 0.0;
+    for (size_t k = 0; k < run->sample_count; k++) {
+        const double t = run->times[k];
+        const double truth = exp(-a * t) * (cos(w * t) + a / w * sin(w * t)) - 1.0;
+        largest = fmax(largest, fabs(trajectory_motion(run, k, 0)->angle - truth));
+    }
+    trajectory_destroy(run);
+    return largest;
+}
+
+static void a_damped_oscillator_decays_as_its_closed_form(void **state)
+{
+    (void)state;
+    Scenario scenario = sprung(DAMPER);
+    assert_near(sprung_error(scenario, BACKEND_REFERENCE, 0.0), 0.0, 1e-11);
+    assert_true(sprung_error(sprung(0.99 * DAMPER), BACKEND_REFERENCE, 0.0) > 1e-4);
+    const struct {
+        OdeStepping stepping;
+        double step_s;
+        double order;
+        double within;
+    } rows[] = {
+        {ODE_PLAIN, 1e-3, 1.0, 0.1},
+        {ODE_STAGGERED, 1e-3, 2.0, 0.1},
+        {ODE_EXTRAPOLATED, 4e-3, 5.5, 0.7}, // 5, and 6 while the next term is the larger
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        scenario.ode.stepping = rows[i].stepping;
+        const double coarse = sprung_error(scenario, BACKEND_ODE, rows[i].step_s);
+        const double fine = sprung_error(scenario, BACKEND_ODE, 0.5 * rows[i].step_s);
+        assert_near(ode_order(coarse, fine, 2.0), rows[i].order, rows[i].within);
+    }
+}
+
+// A damper a thousand times too strong for an explicit step lets the arm creep: the spring pulls it
+// home at k / c.
+static void a_strong_damper_is_stable_at_any_step(void **state)
+{
+    (void)state;
+    const double damping = 2e4; // N m s/rad, c h / I = 400 at 10 ms
+    Scenario scenario = sprung(damping);
+    scenario.linkage.torsions[0].stiffness = 2e4;
+    for (OdeStepping stepping = ODE_PLAIN; stepping <= ODE_STAGGERED; stepping++) {
+        scenario.ode.stepping = stepping;
+        scenario.run.step = 1e-2;
+        Trajectory *run = complete_run(&scenario, BACKEND_ODE);
+        const double truth = exp(-2.0) - 1.0;
+        assert_near(at_end(run, 0)->angle, truth, 1e-2);
+        trajectory_destroy(run);
+    }
+}
+
+// I theta'' = M(t), a rise, a hold and a fall: the angle is its double integral.
+static Scenario turned_by_a_table(void)
+{
+    Scenario scenario = arm();
+    scenario.linkage.torque = (Torque){
+        .joint = 0, .count = 4, .times = {0.1, 0.4, 0.9, 1.3}, .values = {0.0, 3.0, 3.0, -1.0}};
+    return scenario;
+}
+
+static double table_angle(double t)
+{
+    // kinks of M: at each the slope changes by so much, which adds slope (t - t_k)^3 / 6
+    const double at[] = {0.1, 0.4, 0.9, 1.3};
+    const double slopes[] = {10.0, -10.0, -10.0, 10.0};
+    double sum = 0.0;
+    for (size_t i = 0; i < 4; i++) {
+        sum += t > at[i] ? slopes[i] * pow(t - at[i], 3.0) / 6.0 : 0.0;
+    }
+    return sum / 0.5;
+}
+
+static void a_torque_over_time_turns_as_its_integral(void **state)
+{
+    (void)state;
+    Scenario scenario = turned_by_a_table();
+    Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
+    for (size_t k = 0; k < run->sample_count; k++) {
+        assert_near(trajectory_motion(run, k, 0)->angle, table_angle(run->times[k]), 1e-12);
+    }
+    // a table of cubes is exact from kink to kink: a step that crossed one would have to be short
+    assert_true(run->steps < 60);
+    assert_near(run->energy.residual, 0.0, 1e-11);
+    trajectory_destroy(run);
+    // ODE crosses the bends in its stride
+    scenario.ode.stepping = ODE_STAGGERED;
+    double errors[2];
+    for (int i = 0; i < 2; i++) {
+        scenario.run.step = i == 0 ? 4e-3 : 2e-3;
+        run = complete_run(&scenario, BACKEND_ODE);
+        errors[i] = fabs(at_end(run, 0)->angle - table_angle(2.0));
+        trajectory_destroy(run);
+    }
+    assert_near(ode_order(errors[0], errors[1], 2.0), 2.0, 0.1);
+    assert_true(errors[1] < 2e-4);
+    scenario.linkage.torque.values[3] = 3.0;
+    run = complete_run(&scenario, BACKEND_ODE);
+    assert_true(fabs(at_end(run, 0)->angle - table_angle(2.0)) > 0.1);
+    trajectory_destroy(run);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pendulum_follows_the_elliptic_integral),
+        cmocka_unit_test(a_damped_oscillator_decays_as_its_closed_form),
+        cmocka_unit_test(a_strong_damper_is_stable_at_any_step),
+        cmocka_unit_test(a_torque_over_time_turns_as_its_integral),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
