@@ -184,6 +184,7 @@ static void take_over(Stepper *stepper)
     System *system = stepper->system;
     follow_speeds(stepper);
     allow_rounding(stepper);
+    const double taken_s = integrator->tried;
     dop853_accept(integrator);
     // time and coordinates count from here on
     const bool is_other = system->kind->rebase(system, integrator->time, integrator->y);
@@ -198,7 +199,7 @@ static void take_over(Stepper *stepper)
     if (is_other || stepper->events.count > 0) {
         dop853_start(integrator, integrator->time, integrator->y);
     }
-    stiffness_follow(&stepper->stiffness, system, state_at_end(stepper), &stepper->scale,
+    stiffness_follow(&stepper->stiffness, system, state_at_end(stepper), &stepper->scale, taken_s,
                      stepper->events.count > 0, integrator);
 }
 

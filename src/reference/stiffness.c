@@ -99,14 +99,14 @@ static bool takes_over(Stiffness *stiffness, const System *system, const SystemS
 }
 
 // Whether the implicit method stays: after a trial where its step was worth it.
-static bool stays(Stiffness *stiffness, Dop853 *integrator)
+static bool stays(Stiffness *stiffness, double taken_s, Dop853 *integrator)
 {
     const double beaten_s = stiffness->beaten_s;
     stiffness->beaten_s = 0.0;
     if (beaten_s == 0.0) {
         return integrator->step * stiffness->radau->decay > EASY;
     }
-    if (integrator->tried > WORTH * beaten_s) {
+    if (taken_s > WORTH * beaten_s) {
         stiffness->pause = 0;
         return true;
     }
@@ -118,7 +118,7 @@ static bool stays(Stiffness *stiffness, Dop853 *integrator)
 }
 
 void stiffness_follow(Stiffness *stiffness, const System *system, const SystemState *state,
-                      const SpeedScale *scale, bool is_event, Dop853 *integrator)
+                      const SpeedScale *scale, double taken_s, bool is_event, Dop853 *integrator)
 {
     const double depth = smallest_depth(system, state, integrator->step);
     const bool is_implicit = integrator->method != NULL;
@@ -143,7 +143,7 @@ void stiffness_follow(Stiffness *stiffness, const System *system, const SystemSt
     if (!is_implicit || is_event) {
         radau_look(radau, integrator);
     }
-    const bool is_next = is_implicit ? stays(stiffness, integrator)
+    const bool is_next = is_implicit ? stays(stiffness, taken_s, integrator)
                                      : takes_over(stiffness, system, state, integrator);
     integrator->method = is_next ? &radau->method : NULL;
 }

@@ -15,9 +15,9 @@ typedef struct Stiffness {
     size_t pause; // as many were waited for after the last trial that was lost
 } Stiffness;
 
-// To be asked before each step, whether an event has come at its start or not; the integrator
-// stands at the state. Sets the method.
+// To be asked before each step, whether an event has come at its start or not, with the length of
+// the step before it, s; the integrator stands at the state. Sets the method.
 void stiffness_follow(Stiffness *stiffness, const System *system, const SystemState *state,
-                      const SpeedScale *scale, bool is_event, Dop853 *integrator);
+                      const SpeedScale *scale, double taken_s, bool is_event, Dop853 *integrator);
 
 void stiffness_finish(Stiffness *stiffness);

@@ -84,11 +84,34 @@ static void a_coupler_with_play_at_both_ends_stays_in_the_plane(void **state)
     trajectory_destroy(plane);
 }
 
+// Where the implicit method wins its trial in the plane it wins it in space.
+static void strong_damping_takes_the_steps_of_the_plane(void **state)
+{
+    (void)state;
+    const char *const overrides[] = {
+        "space=planar",
+        "joints.coupler-follower={radial-clearance: 14.5 um, width: 13 mm, start: centred}",
+        "contact.damping=flores",
+        "contact.restitution=0.01",
+        "run.revolutions=0.1",
+        "run.samples=100",
+    };
+    Scenario scenario = load("cases/paper/impact-k66.yaml", overrides, 6);
+    Trajectory *plane = complete_run(&scenario, BACKEND_REFERENCE);
+    scenario.linkage.is_spatial = true;
+    Trajectory *space = complete_run(&scenario, BACKEND_REFERENCE);
+    assert_true(apart(space, plane, plane->duration_s) < 1e-9);
+    assert_true((double)space->steps < 1.2 * (double)plane->steps);
+    trajectory_destroy(space);
+    trajectory_destroy(plane);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lifted_mechanism_moves_as_in_the_plane),
         cmocka_unit_test(a_coupler_with_play_at_both_ends_stays_in_the_plane),
+        cmocka_unit_test(strong_damping_takes_the_steps_of_the_plane),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
