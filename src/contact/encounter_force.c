@@ -13,6 +13,9 @@
 #include <math.h>
 #include <string.h>
 
+// rows of an encounter from which on all are worked out together
+enum { WIDE = 8 };
+
 // Where a row is and how fast it goes, from the impulses so far.
 static double row_position(const Encounter *encounter, size_t row, double time_s,
                            const double *moment)
@@ -39,58 +42,108 @@ double encounter_force_row_speed(const Encounter *encounter, size_t row, double 
     return speed;
 }
 
+static PinHole pose_of(const Encounter *encounter, size_t joint, const double position[2],
+                       const double speed[2])
+{
+    return pin_hole_pose((Vec2){0.0, 0.0}, (Vec2){position[0], position[1]},
+                         (Vec2){speed[0], speed[1]}, encounter->joints[joint].radial_clearance);
+}
+
 PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double time_s,
                              const double *impulse, const double *moment)
 {
     const size_t row = encounter->joints[joint].first_row;
-    const Vec2 position = {row_position(encounter, row, time_s, moment),
-                           row_position(encounter, row + 1, time_s, moment)};
-    const Vec2 speed = {encounter_force_row_speed(encounter, row, time_s, impulse),
-                        encounter_force_row_speed(encounter, row + 1, time_s, impulse)};
-    return pin_hole_pose((Vec2){0.0, 0.0}, position, speed,
-                         encounter->joints[joint].radial_clearance);
+    const double position[2] = {row_position(encounter, row, time_s, moment),
+                                row_position(encounter, row + 1, time_s, moment)};
+    const double speed[2] = {encounter_force_row_speed(encounter, row, time_s, impulse),
+                             encounter_force_row_speed(encounter, row + 1, time_s, impulse)};
+    return pose_of(encounter, joint, position, speed);
+}
+
+// All rows at once: the same sums in the same order, but for rows side by side, which the compiler
+// turns into vectors. The mobility is symmetric.
+typedef struct AllRows {
+    double position[RESPONSE_ROW_MAX];
+    double speed[RESPONSE_ROW_MAX];
+} AllRows;
+
+static void find_all_rows(const Encounter *encounter, double time_s, const double *impulse,
+                          const double *moment, AllRows *all)
+{
+    const size_t width = encounter_rows(encounter);
+    for (size_t i = 0; i < width; i++) {
+        all->speed[i] = encounter->speed[i] + time_s * encounter->free[i];
+        all->position[i] = encounter->position[i] +
+                           time_s * (encounter->speed[i] + 0.5 * time_s * encounter->free[i]);
+    }
+    for (size_t k = 0; k < width; k++) {
+        const double *mobility = encounter->mobility + k * width;
+        const double pushed = impulse[k];
+        const double moved = moment[k];
+        // rows of a joint that has not touched yet
+        if (pushed == 0.0 && moved == 0.0) {
+            continue;
+        }
+        for (size_t i = 0; i < width; i++) {
+            all->speed[i] += mobility[i] * pushed;
+            all->position[i] += mobility[i] * moved;
+        }
+    }
+}
+
+// What one joint's rows do; of all of them only where there is friction.
+typedef struct OwnRows {
+    double position[2];
+    double speed[ENCOUNTER_ROWS_MOST];
+} OwnRows;
+
+static void find_own_rows(const Encounter *encounter, size_t joint, double time_s,
+                          const double *impulse, const double *moment, const AllRows *all,
+                          OwnRows *own)
+{
+    const size_t row = encounter->joints[joint].first_row;
+    const size_t count = encounter->joints[joint].row_count;
+    for (size_t i = 0; i < count; i++) {
+        own->speed[i] = all != NULL
+                            ? all->speed[row + i]
+                            : encounter_force_row_speed(encounter, row + i, time_s, impulse);
+    }
+    for (size_t i = 0; i < 2; i++) {
+        own->position[i] =
+            all != NULL ? all->position[row + i] : row_position(encounter, row + i, time_s, moment);
+    }
 }
 
 // How fast a pin slides round its hole.
-static double sliding_round(const Encounter *encounter, size_t row, double time_s,
-                            const double *impulse, Vec2 tangent, double hole_arm, double pin_arm)
+static double sliding_round(const double *speed, Vec2 tangent, double hole_arm, double pin_arm)
 {
-    return tangent.x * encounter_force_row_speed(encounter, row, time_s, impulse) +
-           tangent.y * encounter_force_row_speed(encounter, row + 1, time_s, impulse) +
-           hole_arm * encounter_force_row_speed(encounter, row + 2, time_s, impulse) -
-           pin_arm * encounter_force_row_speed(encounter, row + 3, time_s, impulse);
+    return tangent.x * speed[0] + tangent.y * speed[1] + hole_arm * speed[ENCOUNTER_ROW_TURN] -
+           pin_arm * speed[ENCOUNTER_ROW_TURN + 1];
 }
 
 // How fast a pin slides along its axis.
-static double sliding_along(const Encounter *encounter, size_t row, double time_s,
-                            const double *impulse, Vec2 tangent, double hole_arm, double pin_arm)
+static double sliding_along(const double *speed, Vec2 tangent, double hole_arm, double pin_arm)
 {
-    double rates[ENCOUNTER_ROWS_MOST];
-    for (size_t i = ENCOUNTER_ROW_AXIAL; i < ENCOUNTER_ROWS_MOST; i++) {
-        rates[i] = encounter_force_row_speed(encounter, row + i, time_s, impulse);
-    }
-    const double *hole = rates + ENCOUNTER_ROW_HOLE;
-    const double *pin = rates + ENCOUNTER_ROW_PIN;
-    return rates[ENCOUNTER_ROW_AXIAL] - hole_arm * (tangent.x * hole[0] + tangent.y * hole[1]) +
+    const double *hole = speed + ENCOUNTER_ROW_HOLE;
+    const double *pin = speed + ENCOUNTER_ROW_PIN;
+    return speed[ENCOUNTER_ROW_AXIAL] - hole_arm * (tangent.x * hole[0] + tangent.y * hole[1]) +
            pin_arm * (tangent.x * pin[0] + tangent.y * pin[1]);
 }
 
 // Adds friction to a joint's rows that press with a normal force; returns the power it takes, W.
-static double add_friction(const Encounter *encounter, size_t joint, double time_s,
-                           const double *impulse, const PinHole *pose, double normal, double *force)
+static double add_friction(const Encounter *encounter, size_t joint, const double *speed,
+                           const PinHole *pose, double normal, double *force)
 {
     const EncounterJoint *of = &encounter->joints[joint];
     const size_t row = of->first_row;
     const double hole_arm = of->hole_radius;
     const double pin_arm = hole_arm - pose->eccentricity_size;
     const Vec2 tangent = vec2_perp(pose->normal);
-    const double sliding =
-        sliding_round(encounter, row, time_s, impulse, tangent, hole_arm, pin_arm);
+    const double sliding = sliding_round(speed, tangent, hole_arm, pin_arm);
     double held = encounter->friction * normal * tanh(sliding / encounter->friction_speed);
     double power = held * sliding;
     if (of->row_count == ENCOUNTER_ROWS_MOST) {
-        const double axial =
-            sliding_along(encounter, row, time_s, impulse, tangent, hole_arm, pin_arm);
+        const double axial = sliding_along(speed, tangent, hole_arm, pin_arm);
         const double size = hypot(sliding, axial);
         const double all = encounter->friction * normal * tanh(size / encounter->friction_speed);
         const double share = size > 0.0 ? all / size : 0.0;
@@ -113,6 +166,11 @@ static double add_friction(const Encounter *encounter, size_t joint, double time
 void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
                           const double *moment, double *force, double powers[2])
 {
+    AllRows rows;
+    const bool is_wide = encounter->row_count >= WIDE;
+    if (is_wide) {
+        find_all_rows(encounter, time_s, impulse, moment, &rows);
+    }
     encounter->evaluations++;
     powers[0] = powers[1] = 0.0;
     for (size_t i = 0; i < encounter->joint_count; i++) {
@@ -122,7 +180,9 @@ void encounter_force_find(Encounter *encounter, double time_s, const double *imp
             memset(own, 0, joint->row_count * sizeof *own);
             continue;
         }
-        const PinHole pose = encounter_force_pose(encounter, i, time_s, impulse, moment);
+        OwnRows at;
+        find_own_rows(encounter, i, time_s, impulse, moment, is_wide ? &rows : NULL, &at);
+        const PinHole pose = pose_of(encounter, i, at.position, at.speed);
         const double normal = force_law_force(&joint->law, pose.penetration, pose.approach_speed,
                                               joint->impact_speed);
         const double elastic = force_law_elastic(&joint->law, pose.penetration);
@@ -130,7 +190,7 @@ void encounter_force_find(Encounter *encounter, double time_s, const double *imp
         own[1] = normal * pose.normal.y;
         powers[0] += (normal - elastic) * pose.approach_speed;
         if (joint->row_count > ENCOUNTER_ROWS_PLAIN) {
-            powers[1] += add_friction(encounter, i, time_s, impulse, &pose, normal, force);
+            powers[1] += add_friction(encounter, i, at.speed, &pose, normal, force);
         }
     }
 }

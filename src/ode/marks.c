@@ -32,12 +32,10 @@ static double force_at(const Encounter *encounter, size_t joint, size_t node)
     return hypot(force[0], force[1]);
 }
 
-static double closing_at(const Encounter *encounter, size_t joint, size_t node)
+static double closing_at(const Encounter *encounter, size_t joint, size_t node,
+                         const EncounterSums *sums)
 {
-    EncounterSums sums;
-    encounter_at(encounter, node, encounter->times[node], &sums);
-    return encounter_pose(encounter, joint, node, encounter->times[node], &sums)
-        .pose.approach_speed;
+    return encounter_pose(encounter, joint, node, encounter->times[node], sums).pose.approach_speed;
 }
 
 // The time of a maximum of the force that node `middle` is nearest to, or NAN.
@@ -63,13 +61,14 @@ static double force_peak(const Encounter *encounter, size_t joint, size_t middle
     return 0.5 * (t0 + t1) + 0.5 * (t2 - t0) * up / (up + down);
 }
 
-// The maxima of one joint in the interval behind a node.
-static void mark_maxima(Marks *marks, const Encounter *encounter, size_t joint, size_t node)
+// The maxima of one joint in the interval behind a node, from the sums at both its ends.
+static void mark_maxima(Marks *marks, const Encounter *encounter, size_t joint, size_t node,
+                        const EncounterSums sums[2])
 {
     const double start_s = encounter->times[node];
     const double end_s = encounter->times[node + 1];
-    const double before = closing_at(encounter, joint, node);
-    const double behind = closing_at(encounter, joint, node + 1);
+    const double before = closing_at(encounter, joint, node, &sums[0]);
+    const double behind = closing_at(encounter, joint, node + 1, &sums[1]);
     if (before > 0.0 && behind <= 0.0) {
         add_mark(marks, start_s + (end_s - start_s) * before / (before - behind), node);
     }
@@ -112,9 +111,14 @@ void marks_find(Marks *marks, const Encounter *encounter)
             node = behind;
         }
         const uint32_t touching = encounter->touching[node];
+        EncounterSums sums[2];
+        if (touching != 0) {
+            encounter_at(encounter, node, encounter->times[node], &sums[0]);
+            encounter_at(encounter, node + 1, encounter->times[node + 1], &sums[1]);
+        }
         for (size_t joint = 0; touching != 0 && joint < encounter->joint_count; joint++) {
             if ((touching >> joint & 1) != 0) {
-                mark_maxima(marks, encounter, joint, node);
+                mark_maxima(marks, encounter, joint, node, sums);
             }
         }
     }

@@ -26,6 +26,12 @@ SpaceMotion space_between_leapfrog(const SpaceMotion *first, const SpaceMotion *
     return motion;
 }
 
+void space_between_guess(const SpaceMotion *first, const SpaceMotion *second, SpaceMotion *before)
+{
+    before->acceleration = weigh(-1.0, first->acceleration, second->acceleration);
+    before->alpha = weigh(-1.0, first->alpha, second->alpha);
+}
+
 SpaceMotion space_between_plain(const SpaceMotion *first, const SpaceMotion *last, double since_s,
                                 double step_s)
 {

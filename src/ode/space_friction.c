@@ -18,7 +18,7 @@
 
 enum { SWEEPS_MAX = 50, ROOT_STEPS_MAX = 60, PARTS = 3 };
 
-static const double CONVERGED = 1e-8; // of the largest force
+static const double CONVERGED = 1e-7; // of the largest force: the step's own error is larger
 static const double FLAT = 1e-9;      // slope of tanh, below which the row is at its bound
 
 enum { PLACE_MAX = SPACE_RESPONSE_PLAY_MAX / PARTS, UNKNOWN_MAX = PARTS * PLACE_MAX };

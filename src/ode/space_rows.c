@@ -131,14 +131,35 @@ static bool open_staggered(const Scenario *scenario, void **state, Err *err)
     return open_rows(scenario, true, state, err);
 }
 
-// Puts the driven body to its position with its speed at another time.
-static void place_driven(SpaceRows *rows, const SpaceMotion *driven, double speed_s)
+// The driven body in a step: where it stands, and its speeds at the step's start and as the rows
+// see them.
+typedef struct Driven {
+    SpaceMotion placed;
+    SpaceMotion start;
+    SpaceMotion seen;
+} Driven;
+
+static Driven find_driven(const SpaceRows *rows, double start_s)
+{
+    const Linkage *linkage = &rows->scenario->linkage;
+    Driven driven = {.placed = {.turn = {1.0, 0.0, 0.0, 0.0}}};
+    if (rows->driven >= 0) {
+        driven.placed = driven.start = driven.seen = space_driven(linkage, start_s);
+    }
+    if (rows->driven >= 0 && rows->is_staggered) {
+        driven.placed = space_driven(linkage, start_s + 0.5 * rows->step_s);
+        driven.seen = space_driven(linkage, start_s + rows->step_s);
+    }
+    return driven;
+}
+
+// Puts the driven body to its position with its speeds at one of the times.
+static void place_driven(SpaceRows *rows, const Driven *driven, const SpaceMotion *speeds)
 {
     if (rows->driven >= 0) {
-        SpaceMotion placed = *driven;
-        const SpaceMotion then = space_driven(&rows->scenario->linkage, speed_s);
-        placed.velocity = then.velocity;
-        placed.omega = then.omega;
+        SpaceMotion placed = driven->placed;
+        placed.velocity = speeds->velocity;
+        placed.omega = speeds->omega;
         space_world_place(&rows->world, (size_t)rows->driven, &placed);
     }
 }
@@ -156,10 +177,10 @@ static void gyrate(SpaceRows *rows, const Stride *stride, Vec3 *alpha)
     }
 }
 
-// The motions as the rows of the step see them: the driven body with its speed at the time given,
-// the others accelerated by gravity and by their turning inertias.
+// The motions as the rows of the step see them: the bodies accelerated by gravity and by their
+// turning inertias.
 static void look_ahead(const SpaceRows *rows, const Stride *stride, const Vec3 *gyration,
-                       double speed_s, SpaceMotion *seen)
+                       const Driven *driven, SpaceMotion *seen)
 {
     const Linkage *linkage = &rows->scenario->linkage;
     for (size_t i = 0; i < linkage->body_count; i++) {
@@ -168,9 +189,8 @@ static void look_ahead(const SpaceRows *rows, const Stride *stride, const Vec3 *
         seen[i].alpha = gyration[i];
     }
     if (rows->driven >= 0) {
-        const SpaceMotion then = space_driven(linkage, speed_s);
-        seen[rows->driven].velocity = then.velocity;
-        seen[rows->driven].omega = then.omega;
+        seen[rows->driven].velocity = driven->seen.velocity;
+        seen[rows->driven].omega = driven->seen.omega;
         seen[rows->driven].acceleration = seen[rows->driven].alpha = (Vec3){0.0, 0.0, 0.0};
     }
 }
@@ -236,11 +256,8 @@ static bool advance(SpaceRows *rows, Stride *stride, Err *err)
     const double step_s = rows->step_s;
     World *world = &rows->world;
     stride->start_s = (double)rows->index * step_s;
-    SpaceMotion driven = {.turn = {1.0, 0.0, 0.0, 0.0}};
-    if (rows->driven >= 0) {
-        driven = space_driven(linkage, stride->start_s + (rows->is_staggered ? 0.5 * step_s : 0.0));
-    }
-    place_driven(rows, &driven, stride->start_s);
+    const Driven driven = find_driven(rows, stride->start_s);
+    place_driven(rows, &driven, &driven.start);
     for (size_t i = 0; i < linkage->body_count; i++) {
         stride->first[i] = space_world_motion(world, i);
     }
@@ -249,33 +266,20 @@ static bool advance(SpaceRows *rows, Stride *stride, Err *err)
     Vec3 gyration[LINKAGE_BODY_MAX];
     gyrate(rows, stride, gyration);
     const bool is_quick = rows->scenario->ode.solver == ODE_QUICK;
-    const double speed_s = stride->start_s + (rows->is_staggered ? step_s : 0.0);
     SpaceMotion seen[LINKAGE_BODY_MAX];
-    look_ahead(rows, stride, gyration, speed_s, seen);
+    look_ahead(rows, stride, gyration, &driven, seen);
     bool is_good =
         space_contacts_make(&rows->contacts, stride->first, seen, step_s, stride->approach, err);
-    place_driven(rows, &driven, speed_s);
+    place_driven(rows, &driven, &driven.seen);
     is_good =
         is_good && engine_step(world->id, step_s, is_quick, err) && space_world_check(world, err);
     if (!is_good) {
         return stepping_fail(rows->scenario, stride->start_s, (size_t)rows->index + 1, step_s, err);
     }
     read_motions(rows, gyration, stride);
-    book(rows, &driven, stride);
+    book(rows, &driven.placed, stride);
     rows->index++;
     return true;
-}
-
-// The step before the first has no accelerations: they go on as they come.
-static void guess_before(SpaceRows *rows)
-{
-    for (size_t i = 0; i < rows->scenario->linkage.body_count; i++) {
-        const SpaceMotion *now = &rows->now->last[i];
-        const SpaceMotion *ahead = &rows->ahead->last[i];
-        SpaceMotion *before = &rows->before->last[i];
-        before->acceleration = vec3_sub(vec3_scale(2.0, now->acceleration), ahead->acceleration);
-        before->alpha = vec3_sub(vec3_scale(2.0, now->alpha), ahead->alpha);
-    }
 }
 
 static bool space_rows_step(void *state, double stop_s, Err *err)
@@ -295,8 +299,8 @@ static bool space_rows_step(void *state, double stop_s, Err *err)
             return false;
         }
     } while (rows->index < 2);
-    if (rows->index == 2) {
-        guess_before(rows);
+    for (size_t i = 0; rows->index == 2 && i < rows->scenario->linkage.body_count; i++) {
+        space_between_guess(&rows->now->last[i], &rows->ahead->last[i], &rows->before->last[i]);
     }
     return true;
 }

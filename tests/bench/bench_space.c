@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { REPETITIONS = 25, ROWS = 6 };
+enum { REPETITIONS = 25, ROWS = 8 };
 
 static double run_us(const Scenario *scenario, BackendKind backend)
 {
@@ -47,15 +47,21 @@ int main(void)
         OdeStepping stepping;
         OdeMap map;
         double step_s;
+        double friction;
     } CASES[ROWS] = {
-        {"plain, textbook", BACKEND_ODE, ODE_DIRECT, ODE_PLAIN, ODE_MAP_TEXTBOOK, 1e-6},
-        {"staggered, midpoint", BACKEND_ODE, ODE_DIRECT, ODE_STAGGERED, ODE_MAP_MIDPOINT, 1e-6},
-        {"staggered, impulse, 1 us", BACKEND_ODE, ODE_DIRECT, ODE_STAGGERED, ODE_MAP_IMPULSE, 1e-6},
+        {"plain, textbook", BACKEND_ODE, ODE_DIRECT, ODE_PLAIN, ODE_MAP_TEXTBOOK, 1e-6, 0.0},
+        {"staggered, midpoint", BACKEND_ODE, ODE_DIRECT, ODE_STAGGERED, ODE_MAP_MIDPOINT, 1e-6,
+         0.0},
+        {"staggered, impulse, 1 us", BACKEND_ODE, ODE_DIRECT, ODE_STAGGERED, ODE_MAP_IMPULSE, 1e-6,
+         0.0},
         {"staggered, impulse, 10 us", BACKEND_ODE, ODE_DIRECT, ODE_STAGGERED, ODE_MAP_IMPULSE,
-         10e-6},
+         10e-6, 0.0},
+        {"midpoint, friction", BACKEND_ODE, ODE_DIRECT, ODE_STAGGERED, ODE_MAP_MIDPOINT, 1e-6, 0.1},
+        {"impulse, 10 us, friction", BACKEND_ODE, ODE_DIRECT, ODE_STAGGERED, ODE_MAP_IMPULSE, 10e-6,
+         0.1},
         {"quick, staggered, midpoint", BACKEND_ODE, ODE_QUICK, ODE_STAGGERED, ODE_MAP_MIDPOINT,
-         1e-6},
-        {"reference", BACKEND_REFERENCE, ODE_DIRECT, ODE_STAGGERED, ODE_MAP_IMPULSE, 1e-6},
+         1e-6, 0.0},
+        {"reference", BACKEND_REFERENCE, ODE_DIRECT, ODE_STAGGERED, ODE_MAP_IMPULSE, 1e-6, 0.0},
     };
     printf("%-28s %14s %14s %8s\n", "", "plane, us/step", "space, us/step", "ratio");
     for (int row = 0; row < ROWS; row++) {
@@ -65,6 +71,7 @@ int main(void)
         flat.ode.solver = CASES[row].solver;
         flat.ode.stepping = CASES[row].stepping;
         flat.ode.map = CASES[row].map;
+        flat.contact.friction = CASES[row].friction;
         const Scenario spatial = lifted(&flat);
         double least[2] = {INFINITY, INFINITY};
         for (int i = 0; i < REPETITIONS; i++) {
