@@ -206,19 +206,21 @@ double closed_path_crank_rate(const ClosedPath *path)
     return path->linkage->driver.speed < 0.0 ? -rate : rate;
 }
 
-double closed_path_determinant(const ClosedPath *path)
+double closed_path_determinant(const ClosedPath *path, const Group *group)
 {
-    const size_t n = path->columns;
+    const size_t n = 3 * group->body_count;
     double matrix[KINEMATICS_COLUMN_MAX * KINEMATICS_COLUMN_MAX];
     double missing[KINEMATICS_ROW_MAX];
     size_t pivots[KINEMATICS_COLUMN_MAX];
     Jacobian jacobian;
     evaluate(path, path->at, &jacobian, missing);
-    if (jacobian.rows + 1 != n) {
-        return 0.0;
+    for (size_t row = 0; row < n; row++) {
+        const size_t from = 2 * (size_t)group->joints[row / 2] + row % 2;
+        for (size_t column = 0; column < n; column++) {
+            const size_t at = 3 * (size_t)group->bodies[column / 3] + column % 3;
+            matrix[row * n + column] = jacobian.entries[from * jacobian.columns + at];
+        }
     }
-    memcpy(matrix, jacobian.entries, jacobian.rows * n * sizeof *matrix);
-    memcpy(matrix + jacobian.rows * n, path->tangent, n * sizeof *matrix);
     if (!dense_factor(n, matrix, pivots)) {
         return 0.0;
     }

@@ -2,6 +2,7 @@
 // arc length from one position to the next, also around points where the crank has to turn back.
 #pragma once
 
+#include "model/groups.h"
 #include "model/kinematics.h"
 
 typedef struct ClosedPath {
@@ -31,6 +32,6 @@ double closed_path_reach(const ClosedPath *path);
 double closed_path_crank(const ClosedPath *path);
 double closed_path_crank_rate(const ClosedPath *path);
 
-// The determinant of the joints' rows and the tangent, all scaled: it changes sign where two paths
-// cross. 0 where rows are redundant, so that it says nothing.
-double closed_path_determinant(const ClosedPath *path);
+// The determinant of the rows of a group of its bodies, scaled, with the rest held. While the crank
+// goes on turning it changes sign where the group can go on in two ways.
+double closed_path_determinant(const ClosedPath *path, const Group *group);

@@ -3,8 +3,8 @@
 // The positions that the ideal joints allow make a path. Along it the crank turns on, until it has
 // to turn back: there the rate of its angle by arc length passes zero, the loops can be closed at
 // no angle beyond, and the mechanism locks. Where the rate jumps, two paths cross: that is a change
-// point, which can be passed. There the determinant of the joints' rows and the path's tangent
-// changes sign.
+// point, which can be passed. There the determinant of a group of bodies that follow from the drive
+// together changes sign; group by group, so that two that cross at one angle are found as well.
 #include "model/lock.h"
 
 #include "base/dense.h"
@@ -214,14 +214,34 @@ static Passage pass(ClosedPath *path, double *crank_angle)
     return PASSAGE_UNKNOWN;
 }
 
-// Notes a change point between two positions, where the determinant has changed sign: between, it
-// is almost straight.
-static void note_crossing(double angle_before, double before, double angle, double after,
-                          Lock *lock)
+// The determinants of the groups at a position of the crank.
+typedef struct Signs {
+    double crank_angle;
+    double determinants[LINKAGE_BODY_MAX / 2];
+} Signs;
+
+static Signs find_signs(const ClosedPath *path, const Groups *groups)
 {
-    if (!lock->has_crossing && before * after < 0.0) {
-        lock->has_crossing = true;
-        lock->crossing = angle_before + (angle - angle_before) * before / (before - after);
+    Signs signs = {.crank_angle = closed_path_crank(path)};
+    for (size_t i = 0; i < groups->count; i++) {
+        signs.determinants[i] = closed_path_determinant(path, &groups->groups[i]);
+    }
+    return signs;
+}
+
+// Notes the first change point between two positions: a determinant is almost straight there.
+static void note_crossing(const Signs *before, const Signs *after, size_t count, Lock *lock)
+{
+    double least = 1.0; // share of the way
+    for (size_t i = 0; i < count; i++) {
+        const double first = before->determinants[i];
+        const double last = after->determinants[i];
+        if (first * last < 0.0 && first / (first - last) <= least) {
+            least = first / (first - last);
+            lock->crossing =
+                before->crank_angle + (after->crank_angle - before->crank_angle) * least;
+            lock->has_crossing = true;
+        }
     }
 }
 
@@ -229,14 +249,15 @@ static Lock walk(ClosedPath *path, double turn)
 {
     const double start = closed_path_crank(path);
     Lock lock = {LOCK_NONE, start, false, start};
-    double determinant = closed_path_determinant(path);
+    Groups groups;
+    groups_find(path->linkage, &groups);
+    Signs before = find_signs(path, &groups);
     for (int i = 0; i < WALK_STEPS_MAX && fabs(lock.crank_angle - start) < turn; i++) {
-        const double before = lock.crank_angle;
         const Passage passage = pass(path, &lock.crank_angle);
-        if (passage == PASSAGE_OPEN) {
-            const double after = closed_path_determinant(path);
-            note_crossing(before, determinant, lock.crank_angle, after, &lock);
-            determinant = after;
+        if (passage == PASSAGE_OPEN && !lock.has_crossing) {
+            const Signs after = find_signs(path, &groups);
+            note_crossing(&before, &after, groups.count, &lock);
+            before = after;
         }
         if (passage != PASSAGE_OPEN) {
             const bool is_inside = fabs(lock.crank_angle - start) <= turn;

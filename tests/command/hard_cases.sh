@@ -5,7 +5,7 @@ program=$1
 root=$2
 cd "$root" || exit 1
 folder=cases/hard
-cases="cannot-close change-point grashof-limit grazing jammed mass-ratio-ideal pin-leaves-its-hole
+cases="cannot-close change-point grashof-limit change-points-together grazing jammed mass-ratio-ideal pin-leaves-its-hole
     quick-1-iteration redundant start-in-the-wall step-through-the-hole three-impacts two-pins
     zero-eccentricity zeno-chatter"
 # shellcheck disable=SC2086

@@ -34,7 +34,7 @@ copy() { # the files, each under a name of its own
 }
 case $target in
 case)
-    copy "$root"/cases/{paper,literature}/*.yaml "$root"/tests/bad/*.yaml
+    copy "$root"/cases/{paper,literature,hard}/*.yaml "$root"/tests/bad/*.yaml
     {
         cat "$root/cases/paper/impact-k66.yaml"
         printf '#--set run.step=2 us\n#--set joints.crank-coupler.hole=10.1 mm\n'

@@ -158,6 +158,27 @@ static void parallelogram_and_kite_pass_their_change_points(void **state)
     assert_int_equal(lock_find(&three.linkage, LOCK_ALL_AS_IDEAL, 2.0 * M_PI).state, LOCK_NONE);
 }
 
+// A parallelogram behind a parallelogram: both change at 180 deg, and the determinant of all rows
+// does not change its sign.
+static void change_points_that_coincide_are_found(void **state)
+{
+    (void)state;
+    const double equal[4] = {0.2, 0.1, 0.2, 0.1};
+    Linkage row = four_bar(equal, 90.0 * DEGREE, 1.0, 30.0);
+    const Vec2 far = {0.3 + 0.4, -0.2};
+    const Vec2 first = {0.3 + 0.2, -0.2 + 0.1};
+    const Vec2 second = {0.3 + 0.4, -0.2 + 0.1};
+    set_body(&row, 3, first, second);
+    set_body(&row, 4, far, second);
+    join(&row, FOLLOWER, 3, first);
+    join(&row, 3, 4, second);
+    join(&row, LINKAGE_GROUND, 4, far);
+    const Lock lock = lock_find(&row, LOCK_ALL_AS_IDEAL, 2.0 * M_PI);
+    assert_true(lock.has_crossing);
+    assert_near(lock.crossing, 180.0 * DEGREE, 1e-5);
+    assert_false(lock_find(&row, LOCK_ALL_AS_IDEAL, 80.0 * DEGREE).has_crossing);
+}
+
 // The control of the test above: a hair's breadth off, and it locks next to the change point.
 static void nearly_a_parallelogram_locks_next_to_its_change_point(void **state)
 {
@@ -268,6 +289,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(four_bars_lock_where_the_closed_form_says),
         cmocka_unit_test(parallelogram_and_kite_pass_their_change_points),
+        cmocka_unit_test(change_points_that_coincide_are_found),
         cmocka_unit_test(nearly_a_parallelogram_locks_next_to_its_change_point),
         cmocka_unit_test(a_six_bar_locks_when_its_last_two_bars_lie_on_one_line),
         cmocka_unit_test(what_the_drive_does_not_determine_is_left_out),
