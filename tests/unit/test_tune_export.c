@@ -123,6 +123,24 @@ static void the_row_of_mujoco_is_the_spring_whatever_the_mass(void **state)
     finish(made);
 }
 
+static void a_step_that_mujoco_takes_as_asked_is_not_called_finer(void **state)
+{
+    (void)state;
+    Fixture *made = make();
+    TuneMujoco mujoco;
+    // 1 us is far below the contact's own 50 us
+    made->tune->held_s = 1e-6;
+    assert_true(tune_mujoco_find(&made->report, &mujoco));
+    assert_near(mujoco.step_s, 1e-6, 0.0);
+    assert_false(tune_mujoco_is_finer(&made->report, &mujoco));
+    // and 1 ms far above
+    made->tune->held_s = made->tune->linears[0].step_s = 1e-3;
+    assert_true(tune_mujoco_find(&made->report, &mujoco));
+    assert_true(mujoco.step_s < 1e-3);
+    assert_true(tune_mujoco_is_finer(&made->report, &mujoco));
+    finish(made);
+}
+
 static void nothing_is_written_without_a_contact(void **state)
 {
     (void)state;
@@ -144,6 +162,7 @@ int main(void)
         cmocka_unit_test(the_damper_gives_the_restitution),
         cmocka_unit_test(two_surfaces_of_gazebo_make_the_contact),
         cmocka_unit_test(the_row_of_mujoco_is_the_spring_whatever_the_mass),
+        cmocka_unit_test(a_step_that_mujoco_takes_as_asked_is_not_called_finer),
         cmocka_unit_test(nothing_is_written_without_a_contact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
