@@ -265,8 +265,8 @@ static bool find_rates(const Dynamics *dynamics, double since_s, const double *y
     start_loads(dynamics, loads);
     load_forces(dynamics, since_s, state, loads);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
-        state->contacts[i] = dynamics_contact_find(
-            &dynamics->system.contacts[i], &dynamics->system.scenario->contact, tree, &state->tree);
+        dynamics_contact_find(&dynamics->system.contacts[i], &dynamics->system.scenario->contact,
+                              tree, &state->tree, &state->contacts[i]);
         if (dynamics->system.contacts[i].mode == CONTACT_PRESSING) {
             load_contact(dynamics, i, &state->tree, &state->contacts[i], loads);
         }
@@ -317,8 +317,10 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
     const Tree *tree = &dynamics->tree;
     TreeState state;
     tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state);
-    return dynamics_contact_find(&dynamics->system.contacts[contact],
-                                 &dynamics->system.scenario->contact, tree, &state);
+    ContactForce force;
+    dynamics_contact_find(&dynamics->system.contacts[contact], &dynamics->system.scenario->contact,
+                          tree, &state, &force);
+    return force;
 }
 
 static void fill_sums(const Dynamics *dynamics, const DynamicsState *state, double *sums)

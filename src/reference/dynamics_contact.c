@@ -46,21 +46,19 @@ static void add_friction(const Contact *contact, const ContactOptions *options, 
     force->press.friction_power = held * speed;
 }
 
-ContactForce dynamics_contact_find(const Contact *contact, const ContactOptions *options,
-                                   const Tree *tree, const TreeState *state)
+void dynamics_contact_find(const Contact *contact, const ContactOptions *options, const Tree *tree,
+                           const TreeState *state, ContactForce *force)
 {
     const Vec2 gap = tree_joint_gap(tree, state, contact->joint);
     const Vec2 moving = tree_joint_velocity(tree, state, contact->joint);
-    ContactForce force = {
-        .pose = pin_hole_pose((Vec2){0.0, 0.0}, gap, moving, contact->clearance),
-    };
-    force.press = press_find(contact, force.pose.penetration, force.pose.approach_speed);
+    force->pose = pin_hole_pose((Vec2){0.0, 0.0}, gap, moving, contact->clearance);
+    force->press = press_find(contact, force->pose.penetration, force->pose.approach_speed);
+    force->force = (Vec2){0.0, 0.0};
     if (contact->mode != CONTACT_PRESSING) {
-        return force;
+        return;
     }
-    force.force = vec2_scale(force.press.normal, force.pose.normal);
+    force->force = vec2_scale(force->press.normal, force->pose.normal);
     if (options->friction > 0.0) {
-        add_friction(contact, options, tree, state, &force);
+        add_friction(contact, options, tree, state, force);
     }
-    return force;
 }

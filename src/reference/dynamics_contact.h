@@ -14,8 +14,8 @@ typedef struct ContactForce {
 } ContactForce;
 
 // One contact's quantities from the state of the tree.
-ContactForce dynamics_contact_find(const Contact *contact, const ContactOptions *options,
-                                   const Tree *tree, const TreeState *state);
+void dynamics_contact_find(const Contact *contact, const ContactOptions *options, const Tree *tree,
+                           const TreeState *state, ContactForce *force);
 
 // From the centres of hole and pin to the point of the wall where they touch. Without friction the
 // force's line passes through both centres, and those serve as well: zero.

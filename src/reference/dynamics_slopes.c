@@ -61,9 +61,9 @@ static Pressing look_at(const Dynamics *dynamics, const TreeState *state, size_t
     Pressing pressing = {
         .contact = contact,
         .options = options,
-        .force = dynamics_contact_find(contact, options, &dynamics->tree, state),
         .velocity = tree_joint_velocity(&dynamics->tree, state, contact->joint),
     };
+    dynamics_contact_find(contact, options, &dynamics->tree, state, &pressing.force);
     const PinHole *pose = &pressing.force.pose;
     pressing.stiffness = (1.0 + contact->damping_rate * pose->approach_speed) *
                          force_law_tangent(&contact->law, fabs(pose->penetration));
