@@ -11,6 +11,8 @@
 #include "model/forces.h"
 #include "reference/loops.h"
 
+#include <string.h>
+
 // Forces on the bodies, by body: at the centre, and the moment about it.
 typedef struct Loads {
     Vec2 force[LINKAGE_BODY_MAX];
@@ -50,6 +52,8 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
     dynamics->has_forces = forces_any(&scenario->linkage);
     tree_build(&scenario->linkage, &dynamics->tree);
     list_coordinates(dynamics);
+    const Tree *tree = &dynamics->tree;
+    dynamics->may_branch = tree->loop_count > 0 && tree->coordinate_count > 2 * tree->loop_count;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
         if (joint->kind != JOINT_CLEARANCE) {
@@ -344,6 +348,14 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
     DynamicsState state;
     Loads loads;
     double solved[DYNAMICS_EQUATION_MAX];
+    double closed[DOP853_SIZE_MAX];
+    if (dynamics->may_branch) {
+        // with loops open by the error of a stage, the accelerations are wrong by that over the
+        // distance from a change point
+        memcpy(closed, y, system_size(&dynamics->system) * sizeof *y);
+        loops_project(tree, since_s, closed, closed + n);
+        y = closed;
+    }
     if (!find_rates(dynamics, since_s, y, &state, &loads, solved)) {
         for (size_t i = 0; i < system_size(&dynamics->system); i++) {
             rates[i] = NAN;

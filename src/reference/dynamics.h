@@ -8,7 +8,10 @@
 typedef struct Dynamics {
     System system; // the first
     Tree tree;
-    bool has_forces; // whether springs, dampers or a torque act
+    bool has_forces;        // whether springs, dampers or a torque act
+    bool may_branch;        // whether loops move freely, and may come to a change point
+    double start_energy;    // J, of such a linkage: what it has, less what it was given
+    double greatest_energy; // J, kinetic, so far
 } Dynamics;
 
 // Everything at one instant.

@@ -67,6 +67,14 @@ bool pace_keep(Pace *pace, const System *system, const EventList *events, double
     return true;
 }
 
+bool pace_astray(Err *err)
+{
+    return err_set(err, ERR_SOLVER,
+                   "the energy is not kept where the ideal joints pass a change point, at which "
+                   "they do not determine how the motion goes on; give one of them play, or a "
+                   "looser reference.tolerance");
+}
+
 bool pace_torn(const System *system, Err *err)
 {
     return err_set(err, ERR_SOLVER,

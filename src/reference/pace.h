@@ -15,6 +15,7 @@ typedef struct Pace {
 bool pace_keep(Pace *pace, const System *system, const EventList *events, double time_s, Err *err);
 
 // An ideal joint cannot be kept closed. Returns false, with ERR_SOLVER.
+bool pace_astray(Err *err);
 bool pace_torn(const System *system, Err *err);
 
 // The equations for the accelerations have no solution: joints hold each other up. Returns false,

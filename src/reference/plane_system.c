@@ -3,6 +3,7 @@
 // The depth of a contact grows as d'' = n . (a_pin - a_hole) + (v across n)^2 / |e|, n outwards.
 #include "reference/plane_system.h"
 
+#include "model/forces.h"
 #include "reference/dynamics.h"
 #include "reference/dynamics_slopes.h"
 #include "reference/loops.h"
@@ -21,6 +22,39 @@ static const DynamicsState *state_of(const SystemState *state)
     return (const DynamicsState *)state;
 }
 
+// What the linkage has of energy less what it was given, J; its kinetic energy apart.
+static double energy_balance(const Dynamics *dynamics, const double *y, double *kinetic)
+{
+    const System *system = &dynamics->system;
+    const Linkage *linkage = dynamics->tree.linkage;
+    const double *sums = y + system_sum_index(system, 0);
+    TreeState state;
+    tree_evaluate(&dynamics->tree, 0.0, y, y + system->coordinate_count, &state);
+    *kinetic = linkage_kinetic_energy(linkage, state.motions);
+    double energy = *kinetic + forces_energy(linkage, state.motions) +
+                    linkage_potential_energy(linkage, state.motions, system->scenario->gravity);
+    for (size_t i = 0; i < system->contact_count; i++) {
+        if (system->contacts[i].mode != CONTACT_APART) {
+            const double depth = dynamics_contact(dynamics, i, 0.0, y).press.depth;
+            energy += force_law_energy(&system->contacts[i].law, depth);
+        }
+    }
+    return energy - sums[SYSTEM_DRIVE_WORK] + sums[SYSTEM_DISSIPATED] + sums[SYSTEM_FRICTION];
+}
+
+// Ideal joints keep the energy; at a change point, where their rows depend on one another, a step
+// that has lost its branch does not.
+static bool has_gone_astray(Dynamics *dynamics, const double *y)
+{
+    // a thousand times what a turn through change points costs at the default tolerance
+    const double share = fmax(1e-6, 1e4 * dynamics->system.scenario->reference.tolerance);
+    double kinetic = 0.0;
+    const double energy = energy_balance(dynamics, y, &kinetic);
+    dynamics->greatest_energy = fmax(dynamics->greatest_energy, kinetic);
+    return !(fabs(energy - dynamics->start_energy) <=
+             share * dynamics->greatest_energy + 1e-9 * fabs(dynamics->start_energy));
+}
+
 static void plane_start(System *system, double *y)
 {
     Tree *tree = &((Dynamics *)system)->tree;
@@ -28,6 +62,10 @@ static void plane_start(System *system, double *y)
     linkage_start(tree->linkage, motions);
     tree_start(tree, motions, y + tree->coordinate_count);
     loops_start(tree, y, y + tree->coordinate_count);
+    Dynamics *dynamics = (Dynamics *)system;
+    if (dynamics->may_branch) {
+        dynamics->start_energy = energy_balance(dynamics, y, &dynamics->greatest_energy);
+    }
 }
 
 static bool plane_evaluate(const System *system, double since_s, const double *y,
@@ -114,9 +152,11 @@ static void plane_project(const System *system, double since_s, double *y)
 
 static bool plane_rebase(System *system, double since_s, double *y)
 {
-    Tree *tree = &((Dynamics *)system)->tree;
+    Dynamics *dynamics = (Dynamics *)system;
+    Tree *tree = &dynamics->tree;
     plane_project(system, since_s, y);
     tree_rebase(tree, since_s, y);
+    system->is_astray = dynamics->may_branch && has_gone_astray(dynamics, y);
     return tree->loop_count > 0;
 }
 

@@ -293,6 +293,9 @@ bool stepper_next(Stepper *stepper, Err *err)
             has_begun = is_onset(stepper);
             stepper->is_after_onset = stepper->is_after_onset || has_begun;
             take_over(stepper);
+            if (stepper->system->is_astray) {
+                return pace_astray(err);
+            }
             if (stepper->system->torn >= 0) {
                 return pace_torn(stepper->system, err);
             }

@@ -82,7 +82,8 @@ struct System {
     const Scenario *scenario;
     size_t coordinate_count;
     SystemCoordinate coordinates[SYSTEM_COORDINATE_MAX];
-    int torn; // the number of an ideal joint that its loop could not keep closed; -1: none
+    bool is_astray; // whether the loops' energy has jumped, as it does at a change point
+    int torn;       // the number of an ideal joint that its loop could not keep closed; -1: none
     size_t contact_count;
     Contact contacts[SYSTEM_CONTACT_MAX];
 };
