@@ -90,7 +90,8 @@ static bool read_of(const Source *source, const Node *node, ExpectedOutcome *out
     snprintf(outcome->of, sizeof outcome->of, "%.*s", (int)length, node->key->text);
     const char *choices[WORD_MAX + BACKEND_COUNT];
     const size_t words = list_words(choices);
-    if (length == 0 || has_word(OPTIONS_BACKENDS, BACKEND_COUNT, outcome->of, length)) {
+    const bool is_of_all = length == 0 && node->key->text[0] != '.';
+    if (is_of_all || has_word(OPTIONS_BACKENDS, BACKEND_COUNT, outcome->of, length)) {
         return true;
     }
     for (const char *word = outcome->of;; word++) {
