@@ -103,19 +103,24 @@ static void set_direction(CasefileSetting *setting, Vec3 direction)
     setting->number_count = 3;
 }
 
+// The spring of a row of theirs, NULL for one of joints.
+static const Spring *spring_of(const SchemaRow *row, const Linkage *linkage, size_t index)
+{
+    return row->family == SCHEMA_SPRING ? &linkage->springs[index] : NULL;
+}
+
 // Where a joint's hole, or an end of a spring, stands at time zero.
 static Vec2 anchor_place(const SchemaRow *row, const Linkage *linkage, size_t index)
 {
     const Joint *joint = &linkage->joints[index];
-    const Spring *spring = &linkage->springs[index];
+    const Spring *spring = spring_of(row, linkage, index);
     Motion motions[LINKAGE_BODY_MAX];
     for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
         motions[i] = linkage->bodies[i].start;
     }
-    return row->family != SCHEMA_SPRING
-               ? linkage_point(motions, joint->body_a, joint->anchor_a)
-               : linkage_point(motions, row->side == 0 ? spring->body_a : spring->body_b,
-                               row->side == 0 ? spring->anchor_a : spring->anchor_b);
+    return spring == NULL ? linkage_point(motions, joint->body_a, joint->anchor_a)
+                          : linkage_point(motions, row->side == 0 ? spring->body_a : spring->body_b,
+                                          row->side == 0 ? spring->anchor_a : spring->anchor_b);
 }
 
 static const char *body_name(const Linkage *linkage, int body)
@@ -133,8 +138,8 @@ static void set_between(CasefileSetting *setting, const SchemaRow *row, const Li
                         size_t index)
 {
     const Joint *joint = &linkage->joints[index];
-    const Spring *spring = &linkage->springs[index];
-    const bool is_spring = row->family == SCHEMA_SPRING;
+    const Spring *spring = spring_of(row, linkage, index);
+    const bool is_spring = spring != NULL;
     set_words(setting, body_name(linkage, is_spring ? spring->body_a : joint->body_a),
               body_name(linkage, is_spring ? spring->body_b : joint->body_b));
 }
