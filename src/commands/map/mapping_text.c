@@ -32,6 +32,11 @@ static void write_head(const MappingReport *report, const Style *style, Text *te
                 "  delivered   by ODE: a lone pin of the joint's effective mass in its hole, means "
                 "over %d phases; other joints that are hit or hold meanwhile are left out\n",
                 MAP_IMPACT_PHASES);
+    if (scenario->linkage.is_spatial) {
+        text_append(text, "  in space    the pin is taken to stand straight: both ends of its hole "
+                          "together. An end that it hits alone has half of the stiffness and the "
+                          "damping, and the pin gives way to it by tilting\n");
+    }
 }
 
 static const char *source_words(MappingSource source)
