@@ -5,6 +5,8 @@
 // its own time; of a usual one that is some ten thousand steps a turn. Both end by themselves.
 #include "reference/pace.h"
 
+#include "model/forces.h"
+
 #include <math.h>
 
 // of a turn of the drive, or of a run without one
@@ -38,8 +40,10 @@ static bool refuse_steps(const Pace *pace, const System *system, double time_s, 
                 STEPS_COUNTED, width_s, joint_name(system, i));
         }
     }
-    return err_set(err, ERR_SOLVER, "%d steps advanced the motion by only %.3g s", STEPS_COUNTED,
-                   width_s);
+    return err_set(
+        err, ERR_SOLVER, "%d steps advanced the motion by only %.3g s%s", STEPS_COUNTED, width_s,
+        forces_any(&system->scenario->linkage) ? ": a spring or a damper is too strong; lower it"
+                                               : "");
 }
 
 bool pace_keep(Pace *pace, const System *system, const EventList *events, double time_s, Err *err)

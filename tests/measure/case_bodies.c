@@ -222,7 +222,26 @@ static void loosen(Sketch *sketch)
     }
 }
 
-static void write_case(uint64_t seed, FILE *file)
+// A spring with a damper from the ground to the end of every other link, and one at a joint.
+static void write_springs(Sketch *sketch, FILE *file)
+{
+    Draw *draw = &sketch->draw;
+    fprintf(file, "springs:\n");
+    for (size_t i = 0; i < sketch->body_count; i += 2) {
+        const Point end = sketch->ends[i][1];
+        fprintf(file, "  spring-%zu: {between: [ground, body-%zu], at-a: [%.6g m, %.6g m],\n", i, i,
+                end.x + draw_between(draw, 0.05, 0.3), end.y + draw_between(draw, -0.3, 0.3));
+        fprintf(file, "            at-b: [%.15g m, %.15g m], stiffness: %.4g N/m,\n", end.x, end.y,
+                draw_log_between(draw, 10.0, 1e4));
+        fprintf(file, "            length: %.4g m, damping: %.4g N s/m}\n",
+                draw_between(draw, 0.02, 0.3), draw_log_between(draw, 0.01, 30.0));
+    }
+    fprintf(file, "torsion-springs:\n  coil: {joint: joint-%zu, stiffness: %.4g N m/rad,\n",
+            draw_below(draw, sketch->pin_count), draw_log_between(draw, 0.01, 10.0));
+    fprintf(file, "         damping: %.4g N m s/rad}\n", draw_log_between(draw, 1e-4, 0.1));
+}
+
+static void write_case(uint64_t seed, FILE *file, bool is_sprung)
 {
     Sketch sketch = {.draw = draw_start(seed)};
     const size_t which = draw_below(&sketch.draw, 5);
@@ -241,6 +260,17 @@ static void write_case(uint64_t seed, FILE *file)
     for (size_t i = 0; i < sketch.pin_count; i++) {
         write_pin(&sketch, i, file);
     }
+    if (is_sprung) {
+        write_springs(&sketch, file);
+        if (sketch.is_driven && draw_chance(&sketch.draw, 0.5)) {
+            sketch.is_driven = false;
+            const double torque = draw_log_between(&sketch.draw, 0.01, 5.0);
+            fprintf(file,
+                    "drive: {joint: joint-0, torque: [[0 s, 0 N m], [50 ms, %.4g N m], [0.2 s, "
+                    "%.4g N m]]}\n",
+                    torque, -0.5 * torque);
+        }
+    }
     if (sketch.is_driven) {
         fprintf(file, "drive: {joint: joint-0, speed: %.5g rpm}\n", draw_speed_rpm(&sketch.draw));
     }
@@ -248,8 +278,24 @@ static void write_case(uint64_t seed, FILE *file)
     draw_run(&sketch.draw, sketch.is_driven ? "revolutions: 1" : "duration: 0.5 s", file);
 }
 
+static void write_bodies(uint64_t seed, FILE *file)
+{
+    write_case(seed, file, false);
+}
+
+static void write_sprung(uint64_t seed, FILE *file)
+{
+    write_case(seed, file, true);
+}
+
 const CaseKind CASE_BODIES = {
     .name = "bodies",
     .summary = "chains, six-bars and the like, as bodies, play in 1 to 3 joints",
-    .write = write_case,
+    .write = write_bodies,
+};
+
+const CaseKind CASE_SPRUNG = {
+    .name = "sprung",
+    .summary = "the same with springs, dampers and, one in two, a torque as the drive",
+    .write = write_sprung,
 };

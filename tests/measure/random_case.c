@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const CaseKind *const KINDS[] = {&CASE_FOUR_BAR,  &CASE_BODIES,    &CASE_PENDULA,
-                                        &CASE_FOUR_BARS, &CASE_LOCK,      &CASE_CHANGE_POINT,
-                                        &CASE_TOUCHING,  &CASE_SEPARATING};
+static const CaseKind *const KINDS[] = {&CASE_FOUR_BAR,  &CASE_BODIES,     &CASE_PENDULA,
+                                        &CASE_FOUR_BARS, &CASE_LOCK,       &CASE_CHANGE_POINT,
+                                        &CASE_TOUCHING,  &CASE_SEPARATING, &CASE_SPRUNG};
 
 enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 
