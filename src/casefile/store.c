@@ -375,11 +375,13 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
     case SCHEMA_DIRECTION:
         return store_direction(&target);
     case SCHEMA_BETWEEN:
+        // there are more joints than springs: the address of either is formed for its own alone
+        if (entry->row->family == SCHEMA_SPRING) {
+            spring = &scenario->linkage.springs[entry->index];
+            return store_between(&target, &spring->body_a, &spring->body_b);
+        }
         joint = &scenario->linkage.joints[entry->index];
-        spring = &scenario->linkage.springs[entry->index];
-        return entry->row->family == SCHEMA_SPRING
-                   ? store_between(&target, &spring->body_a, &spring->body_b)
-                   : store_between(&target, &joint->body_a, &joint->body_b);
+        return store_between(&target, &joint->body_a, &joint->body_b);
     case SCHEMA_BODY_NAME:
         return find_name(&target, entry->node, SCHEMA_BODY, false, target.field);
     case SCHEMA_JOINT_NAME:
