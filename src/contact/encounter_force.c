@@ -163,6 +163,17 @@ static double add_friction(const Encounter *encounter, size_t joint, const doubl
     return power;
 }
 
+// What presses along the normal of a joint that touches. Where a contact has just begun its depth
+// is zero but for rounding, of either sign, and a viscous damper presses hardest.
+static double pressing(const EncounterJoint *joint, const PinHole *pose)
+{
+    if (pose->penetration <= 0.0) {
+        return fmax(0.0, joint->law.viscous * pose->approach_speed);
+    }
+    return force_law_force(&joint->law, pose->penetration, pose->approach_speed,
+                           joint->impact_speed);
+}
+
 void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
                           const double *moment, double *force, double powers[2])
 {
@@ -183,8 +194,7 @@ void encounter_force_find(Encounter *encounter, double time_s, const double *imp
         OwnRows at;
         find_own_rows(encounter, i, time_s, impulse, moment, is_wide ? &rows : NULL, &at);
         const PinHole pose = pose_of(encounter, i, at.position, at.speed);
-        const double normal = force_law_force(&joint->law, pose.penetration, pose.approach_speed,
-                                              joint->impact_speed);
+        const double normal = pressing(joint, &pose);
         const double elastic = force_law_elastic(&joint->law, pose.penetration);
         own[0] = normal * pose.normal.x;
         own[1] = normal * pose.normal.y;

@@ -56,6 +56,10 @@ Vec3 distance_change(const Trajectory *trajectory, size_t sample, size_t body, b
 double distance_between(Vec3 a, Vec3 b)
 {
     const Vec3 apart = vec3_sub(a, b);
+    // of turning in the plane
+    if (apart.y == 0.0 && apart.z == 0.0) {
+        return fabs(apart.x);
+    }
     return hypot(hypot(apart.x, apart.y), apart.z);
 }
 
