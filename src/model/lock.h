@@ -23,9 +23,9 @@ typedef enum LockJoints {
 } LockJoints;
 
 // Turns the driver from its start through an angle, rad, and looks whether that part of the linkage
-// that it determines can follow. Change points, where two ways to go on cross, are passed and noted,
-// unless redundant joints hide them. The angle of a lock is right to 1e-8 rad or
-// better, that of a change point to 1e-5 rad. Takes some milliseconds.
+// that it determines can follow. Change points, where two ways to go on cross, are passed and
+// noted, unless redundant joints hide them. The angle of a lock is right to 1e-8 rad or better,
+// that of a change point to 1e-5 rad. Takes some milliseconds.
 Lock lock_find(const Linkage *linkage, LockJoints joints, double turn);
 
 // The lock that a run which failed at a time, s, had reached or nearly reached by then. A run that

@@ -208,8 +208,7 @@ static void a_dragged_pin_is_braked_as_coulomb_has_it(void **state)
             scenario.run.samples = 20;
             set_ode(&scenario, ODE_STAGGERED, map, 10e-6);
             Trajectory *run = complete_run(&scenario, BACKEND_ODE);
-            const double last =
-                trajectory_space_motion(run, run->sample_count - 1, 0)->velocity.z;
+            const double last = trajectory_space_motion(run, run->sample_count - 1, 0)->velocity.z;
             const double round = spinning == 1 ? speed : 0.0;
             const double braked = friction * GRAVITY * scenario.run.duration;
             // the wall drags a turning pin out of the bottom, where less presses
