@@ -40,7 +40,7 @@ static void write_room(const Joint *joint, Text *text)
     text_append(text, "              width %.7g mm: tilts up to %.4g mrad, ",
                 joint->clearance.width * UNITS_MM, limit * UNITS_MRAD);
     if (joint->space.axial_clearance > 0.0) {
-        text_append(text, "slides up to %.4g um to either side\n",
+        text_append(text, "slides up to %.4g um each way\n",
                     joint->space.axial_clearance * UNITS_UM);
     } else {
         text_append(text, "slides freely\n");
