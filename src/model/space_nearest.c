@@ -169,13 +169,13 @@ bool space_nearest_check(const Linkage *linkage, const SpaceMotion *motions, int
             return false;
         }
     }
+    const double reach = linkage_reach(linkage, 0); // what turns of an axis are weighed by
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (!linkage_is_ideal(linkage, i)) {
             continue;
         }
         SpaceRow rows[SPACE_JOINT_ROWS];
         space_rows_of_joint(linkage, motions, i, rows);
-        const double reach = fmax(linkage_reach(linkage, 0), 0.0);
         for (int k = 0; k < SPACE_JOINT_ROWS; k++) {
             const double unit = k < SPACE_POINT_ROWS ? 1.0 : reach;
             const double speed = unit * fabs(space_row_speed(&rows[k], motions));
