@@ -6,12 +6,19 @@
 
 double linkage_radial_clearance(const Joint *joint)
 {
-    return joint->clearance.hole_radius - joint->clearance.pin_radius;
+    switch (joint->kind) {
+    case JOINT_CLEARANCE:
+        return joint->clearance.hole_radius - joint->clearance.pin_radius;
+    case JOINT_GUIDE:
+        return 0.5 * fabs(joint->guide.opening - joint->guide.height);
+    default:
+        return 0.0;
+    }
 }
 
 bool linkage_is_ideal(const Linkage *linkage, size_t joint)
 {
-    return linkage->joints[joint].kind == JOINT_REVOLUTE &&
+    return linkage_kind_is_ideal(linkage->joints[joint].kind) &&
            !(linkage->driver.is_present && linkage->driver.joint == (int)joint);
 }
 

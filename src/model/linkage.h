@@ -56,6 +56,12 @@ typedef struct Body {
 typedef enum JointKind {
     JOINT_REVOLUTE,  // ideal: the two anchors coincide
     JOINT_CLEARANCE, // a pin on body b in a hole of body a, with play between them
+    JOINT_PRISMATIC, // ideal: the anchor on body b stays on the line of body a (Joint.direction),
+                     // and the two bodies keep their angle to one another
+    JOINT_GUIDE,     // a block on body b between two guides of body a, or a sleeve on body b round
+                     // a rod of body a, with play between them
+    JOINT_STOP,      // a disc on body b that touches a line or a disc of body a from outside; it
+                     // holds nothing while apart
 } JointKind;
 
 // The sizes of a pin in its hole.
@@ -65,6 +71,26 @@ typedef struct Clearance {
     double width;       // m, the length over which pin and hole touch
     Vec2 start;         // eccentricity at time zero: pin centre minus hole centre, m, world frame
 } Clearance;
+
+// The sizes of a block between its guides. The block's middle is the anchor on body b; the guides'
+// middle line goes through the anchor on body a. Guides are as long as they need to be. With the
+// height below the opening the block is between the guides; with the height above it, it is a
+// sleeve round a rod: `opening` is the rod's thickness, `height` the width of the sleeve's own
+// opening.
+typedef struct Guide {
+    double opening; // m, from one guide to the other
+    double height;  // m, of the block, across the guides
+    double length;  // m, of the block, along the guides: its four corners are what touches
+    Vec2 start;     // at time zero: x the distance of the block's middle from the middle line, m,
+                    // y its tilt, rad; both as in the joint's rows (model/joint_rows.h)
+} Guide;
+
+// The sizes of a stop. The normal of a line is Joint.direction and points away from the wall.
+typedef struct Stop {
+    bool is_disc;    // whether body a carries a disc about its anchor; else a line through it
+    double radius_a; // m, of that disc
+    double radius_b; // m, of the disc about the anchor of body b; 0: a point
+} Stop;
 
 // What a joint has only in space.
 typedef struct JointSpace {
@@ -81,7 +107,12 @@ typedef struct Joint {
     int body_b;          // carries the pin
     Vec2 anchor_a;       // hole centre in body a's frame, m
     Vec2 anchor_b;       // pin centre in body b's frame, m
+    double direction;    // rad, in body a's frame: of the line or the guides; of a stop's normal
+    double held_angle;   // rad: angle of body b less that of body a where a JOINT_PRISMATIC holds
+                         // it and a JOINT_GUIDE is not tilted
     Clearance clearance; // of a JOINT_CLEARANCE
+    Guide guide;         // of a JOINT_GUIDE
+    Stop stop;           // of a JOINT_STOP
     JointSpace space;
 } Joint;
 
@@ -151,7 +182,15 @@ static inline JointEnd linkage_end(const Joint *joint, int side)
                      : (JointEnd){joint->body_b, joint->anchor_b};
 }
 
-// The centre distance at which pin and hole touch: hole radius minus pin radius, m.
+// Whether a joint of that kind holds its bodies without play.
+static inline bool linkage_kind_is_ideal(JointKind kind)
+{
+    return kind == JOINT_REVOLUTE || kind == JOINT_PRISMATIC;
+}
+
+// How far the middle of a pin or block can go from the middle of its hole or guides before it
+// touches, not tilted: hole radius minus pin radius, or half of what a block's height is less than
+// the opening (of a sleeve more), m; 0 of other kinds.
 double linkage_radial_clearance(const Joint *joint);
 
 // Whether a joint is ideal and not the drive's: one that constrains how bodies move.

@@ -12,11 +12,16 @@ enum { TRAJECTORY_LABEL_SIZE = 96, TRAJECTORY_SPIKE_MAX = 12 };
 
 // One joint at one instant.
 typedef struct JointState {
-    Vec2 eccentricity; // pin centre minus hole centre, m
-    double gap;        // radial clearance less eccentricity, m; negative inside the metal
-    double force;      // size of the force in the joint, N
-    Vec2 force_on_b;   // the force itself, on body b, N
-    bool is_touching;  // pin and hole overlap (an ideal joint always touches)
+    Vec2 eccentricity;  // pin centre minus hole centre, m; of a prismatic joint or a block between
+                        // guides: along and across the line (x along body a's direction)
+    double tilt;        // rad, of a prismatic joint or a block between guides
+    double gap;         // radial clearance less eccentricity, m; negative inside the metal; of a
+                        // block the smallest of its corners
+    double force;       // size of the force in the joint, N
+    Vec2 force_on_b;    // the force itself, on body b, N
+    double moment_on_b; // N m, about the anchor of body b, of prismatic joints and blocks between
+                        // guides: the couple that comes with the force
+    bool is_touching;   // pin and hole overlap (an ideal joint always touches)
 } JointState;
 
 // What a joint with play has in space beside that. There `eccentricity` is that of the pin's middle

@@ -1,0 +1,143 @@
+// Where do the bodies of a joint touch, and how deep?
+#include "contact/touch.h"
+
+#include "contact/law.h"
+
+// The corners of a block or sleeve against the guides or the rod. Corner by corner: which side of
+// the middle line, +1 along the lines' normal (their direction turned by a quarter turn), and which
+// end of the block, +1 along the direction. A block's own side meets the guide on that side, which
+// pushes it back; a sleeve's the rod's surface on that side, which pushes it away.
+static void place_corners(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
+{
+    const Guide *guide = &joint->guide;
+    const Vec2 across = vec2_perp(vec2_rotate(joint->direction, (Vec2){1.0, 0.0}));
+    // the block's own directions in body b's frame: parallel to the guides where it is not tilted
+    const Vec2 own_along = vec2_rotate(joint->direction - joint->held_angle, (Vec2){1.0, 0.0});
+    const Vec2 own_across = vec2_perp(own_along);
+    const bool is_sleeve = guide->height > guide->opening;
+    for (int i = 0; i < TOUCH_CORNERS; i++) {
+        const double side = i / 2 == 0 ? 1.0 : -1.0;
+        const double end = i % 2 == 0 ? 1.0 : -1.0;
+        const bool pushes_up = (side > 0.0) == is_sleeve;
+        places[i] = (Touch){
+            .joint = number,
+            .place = i,
+            .shape = TOUCH_LINE,
+            .anchor_a = vec2_add(joint->anchor_a, vec2_scale(0.5 * side * guide->opening, across)),
+            .anchor_b = vec2_add(joint->anchor_b,
+                                 vec2_add(vec2_scale(0.5 * side * guide->height, own_across),
+                                          vec2_scale(0.5 * end * guide->length, own_along))),
+            .direction = joint->direction + (pushes_up ? 0.5 : -0.5) * M_PI,
+        };
+    }
+}
+
+static Touch place_stop(const Joint *joint, int number)
+{
+    const Stop *stop = &joint->stop;
+    return (Touch){
+        .joint = number,
+        .shape = stop->is_disc ? TOUCH_DISC : TOUCH_LINE,
+        .anchor_a = joint->anchor_a,
+        .anchor_b = joint->anchor_b,
+        .direction = joint->direction,
+        .clearance = stop->radius_b + (stop->is_disc ? stop->radius_a : 0.0),
+        .radius_a = stop->is_disc ? stop->radius_a : 0.0,
+        .radius_b = stop->radius_b,
+    };
+}
+
+size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
+{
+    switch (joint->kind) {
+    case JOINT_CLEARANCE:
+        places[0] = (Touch){
+            .joint = number,
+            .shape = TOUCH_HOLE,
+            .anchor_a = joint->anchor_a,
+            .anchor_b = joint->anchor_b,
+            .clearance = linkage_radial_clearance(joint),
+            .radius_a = joint->clearance.hole_radius,
+            .radius_b = joint->clearance.pin_radius,
+        };
+        return 1;
+    case JOINT_GUIDE:
+        place_corners(joint, number, places);
+        return TOUCH_CORNERS;
+    case JOINT_STOP:
+        places[0] = place_stop(joint, number);
+        return 1;
+    default:
+        return 0;
+    }
+}
+
+bool touch_list(const Scenario *scenario, Touch places[TOUCH_MAX], size_t *count, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    *count = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        Touch own[TOUCH_CORNERS];
+        const size_t own_count = touch_places(&linkage->joints[i], (int)i, own);
+        ForceLaw law;
+        if (own_count > 0 && !law_of_joint(scenario, &linkage->joints[i], &law, err)) {
+            return false;
+        }
+        if (*count + own_count > TOUCH_MAX) {
+            return err_set(err, ERR_CASE,
+                           "the joints with play touch at more places than the %d allowed: one a "
+                           "pin or stop, four a block between guides",
+                           TOUCH_MAX);
+        }
+        for (size_t k = 0; k < own_count; k++) {
+            places[*count] = own[k];
+            places[(*count)++].law = law;
+        }
+    }
+    return true;
+}
+
+TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions)
+{
+    const Joint *joint = &linkage->joints[place->joint];
+    TouchPose pose = {
+        .offset = vec2_sub(linkage_point(motions, joint->body_b, place->anchor_b),
+                           linkage_point(motions, joint->body_a, place->anchor_a)),
+        .velocity = vec2_sub(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
+                             linkage_point_velocity(motions, joint->body_a, place->anchor_a)),
+    };
+    if (place->shape == TOUCH_LINE) {
+        const bool is_ground = joint->body_a == LINKAGE_GROUND;
+        const double angle = is_ground ? 0.0 : motions[joint->body_a].angle;
+        const double omega = is_ground ? 0.0 : motions[joint->body_a].omega;
+        pose.has_normal = true;
+        pose.normal = vec2_rotate(angle + place->direction, (Vec2){1.0, 0.0});
+        pose.gap = vec2_dot(pose.normal, pose.offset) - place->clearance;
+        pose.approach_speed = -vec2_dot(pose.normal, pose.velocity) -
+                              omega * vec2_dot(vec2_perp(pose.normal), pose.offset);
+        return pose;
+    }
+    const double outside = place->shape == TOUCH_DISC ? 1.0 : -1.0;
+    const double distance = vec2_length(pose.offset);
+    pose.gap = outside * (distance - place->clearance);
+    pose.has_normal = distance > 0.0;
+    pose.normal = pose.has_normal ? vec2_scale(outside / distance, pose.offset) : (Vec2){0.0, 0.0};
+    pose.approach_speed =
+        pose.has_normal ? -vec2_dot(pose.normal, pose.velocity) : vec2_length(pose.velocity);
+    return pose;
+}
+
+void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 *from_b)
+{
+    if (place->shape == TOUCH_HOLE) {
+        *from_a = vec2_scale(-place->radius_a, pose->normal);
+        *from_b = vec2_sub(*from_a, pose->offset);
+    } else if (place->shape == TOUCH_DISC) {
+        *from_a = vec2_scale(place->radius_a, pose->normal);
+        *from_b = vec2_sub(*from_a, pose->offset);
+    } else {
+        // on body b: the circle's lowest point; of body a the point beside it
+        *from_b = vec2_scale(-place->radius_b, pose->normal);
+        *from_a = vec2_add(pose->offset, *from_b);
+    }
+}

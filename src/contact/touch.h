@@ -1,0 +1,61 @@
+// The places at which the bodies of a joint with play touch in the plane: a pin in its hole at one,
+// a block between its guides (or a sleeve round a rod) at its four corners, a stop at one.
+//
+// At every place a circle on body b (of radius 0: a point) meets a line or a circle of body a.
+// With d from the anchor on body a to that on body b, n the direction of the force on body b, and
+// closing speed the rate of the penetration:
+//     hole    gap = c - |d|,      n = -d / |d|       c radial clearance
+//     disc    gap = |d| - c,      n =  d / |d|       c sum of the radii
+//     line    gap = m . d - c,    n =  m             m the line's normal, c radius on body b
+#pragma once
+
+#include "contact/force_law.h"
+#include "model/scenario.h"
+
+typedef enum TouchShape {
+    TOUCH_HOLE,
+    TOUCH_DISC,
+    TOUCH_LINE,
+} TouchShape;
+
+enum {
+    TOUCH_CORNERS = 4,
+    TOUCH_MAX = 32, // of a linkage
+};
+
+typedef struct Touch {
+    int joint; // number in the linkage
+    int place; // 0, or number of the corner
+    TouchShape shape;
+    Vec2 anchor_a;    // in body a's frame, m: centre of hole or disc, a point of the line
+    Vec2 anchor_b;    // in body b's frame, m: centre of the circle
+    double direction; // rad, in body a's frame: of a line's normal, away from the wall
+    double clearance; // m, c above
+    double radius_a;  // m, of hole or disc; 0 of a line
+    double radius_b;  // m
+    ForceLaw law;     // of this place alone
+} Touch;
+
+// How a place is at an instant.
+typedef struct TouchPose {
+    Vec2 offset;           // d, m
+    Vec2 velocity;         // m/s: of anchor b less that of anchor a
+    double gap;            // m, negative inside the metal
+    bool has_normal;       // false of a circle whose centre is that of the other
+    Vec2 normal;           // unit: direction of the force on body b; zero without a normal
+    double approach_speed; // m/s, rate of the penetration; without a normal the relative speed
+} TouchPose;
+
+// Writes the places of all joints with play, joint by joint, with their laws. Returns false with
+// ERR_CASE where a law does not fit a joint, or there are more than TOUCH_MAX places.
+bool touch_list(const Scenario *scenario, Touch places[TOUCH_MAX], size_t *count, Err *err);
+
+// Writes the places of one joint without their laws; returns how many there are, 0 of an ideal one.
+size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS]);
+
+// The pose of a place whose bodies move so.
+TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions);
+
+// The point at which the force acts, seen from the anchor on body a and from that on body b, m.
+// Without friction the anchors themselves serve as well where both are circles.
+void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 *from_b);
