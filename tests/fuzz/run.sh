@@ -4,14 +4,14 @@
 # whose input it keeps and names; the target run with that file alone shows it again.
 #
 # tests/fuzz/run.sh TARGET [SECONDS [SEED [BUILD [CORPUS]]]]
-#   TARGET   case, study, baseline or journal
+#   TARGET   case, study, baseline, journal or store
 #   SECONDS  (default 60)
 #   SEED     (default 1)
 #   BUILD    a build folder, made with clang where it is not there (default build-fuzz)
 #   CORPUS   a folder in which inputs that reach new code are kept (default: a temporary one)
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
-target=${1:?a target: case, study, baseline or journal}
+target=${1:?a target: case, study, baseline, journal or store}
 seconds=${2:-60}
 seed=${3:-1}
 build=$(realpath -m "${4:-$root/build-fuzz}")
@@ -34,7 +34,7 @@ copy() { # the files, each under a name of its own
 }
 case $target in
 case)
-    copy "$root"/cases/{paper,literature,hard}/*.yaml "$root"/tests/bad/*.yaml
+    copy "$root"/cases/{paper,literature,hard,mechanisms,space}/*.yaml "$root"/tests/bad/*.yaml
     {
         cat "$root/cases/paper/impact-k66.yaml"
         printf '#--set run.step=2 us\n#--set joints.crank-coupler.hole=10.1 mm\n'
@@ -47,6 +47,28 @@ study)
     ;;
 baseline) copy "$root"/results/baseline/*.json ;;
 journal) copy "$root"/tests/fuzz/journal/* ;;
+store)
+    ninja -C "$build" --quiet src/cli/jointplay >/dev/null
+    cat >"$work/study.yaml" <<STUDY
+case: $root/cases/paper/impact-k66.yaml
+vary: {run.step: [20 us, 50 us]}
+STUDY
+    "$build/src/cli/jointplay" study "$work/study.yaml" --store="$work/store" >"$work/log" 2>&1 || {
+        cat "$work/log"
+        exit 1
+    }
+    cp "$work/store" "$work/seeds/store"
+    # with the journal of a write that was cut short: SQLite's magic, a page count, the page size
+    {
+        cat "$work/store"
+        printf '<journal>\331\325\005\371\040\241\143\327\000\000\000\001\000\000\000\000'
+        printf '\000\000\000\005\000\000\002\000\000\000\020\000'
+        head -c 484 /dev/zero
+        printf '\000\000\000\001'
+        head -c 4096 "$work/store"
+        head -c 4 /dev/zero
+    } >"$work/seeds/hot"
+    ;;
 *)
     echo "$0: no target $target" >&2
     exit 2
@@ -54,7 +76,7 @@ journal) copy "$root"/tests/fuzz/journal/* ;;
 esac
 
 # words of the format, so that mutations hit upon keys
-grep -oE '[A-Za-z][A-Za-z0-9.^/-]{2,30}' "$root/docs/case-format.md" "$root/docs/studies.md" -h |
+grep -oE '[A-Za-z][A-Za-z0-9.^/-]{2,30}' "$root/docs/case-format.md" "$root/docs/study-format.md" -h |
     sort -u | sed 's/.*/"&"/' >"$work/words"
 if [ "$target" = baseline ] || [ "$target" = journal ]; then
     grep -ohE '"[A-Za-z_-]{2,30}"' "$root"/results/baseline/ideal-nominal.json \
