@@ -66,6 +66,10 @@ static void json_of_one_case_is_one_object(void **state)
     // the paper's Table VII and VIII, ideal nominal, as continuous extremes
     assert_near(number_of(analytic, "bodies", "coupler", "omega_min_rad_s"), -78.6973, 1e-4);
     assert_near(number_of(analytic, "bodies", "follower", "alpha_max_rad_s2"), 12485.5, 0.1);
+    // the drive's power is what the energy changes by
+    const json_t *forces = json_object_get(root, "inverse_dynamics");
+    const json_t *residual = json_object_get(forces, "power_residual");
+    assert_true(json_is_number(residual) && json_number_value(residual) <= 1e-10);
     const json_t *ode = json_array_get(runs, 1);
     assert_string_equal(json_string_value(json_object_get(ode, "status")), "ok");
     const json_t *error = json_object_get(ode, "error");

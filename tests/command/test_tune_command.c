@@ -295,6 +295,27 @@ static void where_nothing_at_the_step_will_do_the_longest_that_does_is_named(voi
     json_decref(root);
 }
 
+// A linear law is one spring whatever the depth: no constants are run twice.
+static void a_linear_law_has_one_spring(void **state)
+{
+    Program *program = *state;
+    json_t *root = tune(program,
+                        "$cases/paper/impact-k66.yaml --set run.revolutions=0.05 "
+                        "--set 'contact.stiffness=1e8 N/m' "
+                        "--error 1e-2 --schemes direct/staggered/impulse",
+                        0);
+    const json_t *constants = json_object_get(root, "constants");
+    assert_true(json_array_size(constants) >= 1);
+    for (size_t i = 0; i < json_array_size(constants); i++) {
+        const json_t *one = json_array_get(constants, i);
+        assert_close(number(one, "stiffness_N_m"), 1e8, 1e-12);
+        for (size_t k = 0; k < i; k++) {
+            assert_true(number(json_array_get(constants, k), "step_s") != number(one, "step_s"));
+        }
+    }
+    json_decref(root);
+}
+
 static void files_hold_what_was_asked_for(void **state)
 {
     Program *program = *state;
@@ -373,6 +394,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(
             where_nothing_at_the_step_will_do_the_longest_that_does_is_named, program_set_up,
             program_tear_down),
+        cmocka_unit_test_setup_teardown(a_linear_law_has_one_spring, program_set_up,
+                                        program_tear_down),
         cmocka_unit_test_setup_teardown(files_hold_what_was_asked_for, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(what_cannot_be_asked_is_refused, program_set_up,

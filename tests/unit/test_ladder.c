@@ -373,6 +373,12 @@ static void a_task_does_in_this_process_what_it_does_in_a_child(void **state)
     Ensemble ensemble = {0};
     task_spread(&task, &ensemble);
     assert_int_equal(ensemble.members + ensemble.failed, ENSEMBLE_MEMBERS);
+    // and with a step that is chosen
+    task.scenario.run.step = 0.0;
+    task.scenario.run.tolerance = 1e-3;
+    task_spread(&task, &ensemble);
+    assert_int_equal(ensemble.failed, 0);
+    assert_int_equal(ensemble.members, ENSEMBLE_MEMBERS);
     truth_finish(&truth);
     free(packed);
     ladder_destroy(ladder);

@@ -24,6 +24,17 @@ static void the_papers_mechanism_passes(void **state)
     assert_true(scenario_check(&scenario, &err));
 }
 
+static void a_step_is_finite_and_not_negative(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    static const double BAD[] = {-1e-6, INFINITY, NAN};
+    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
+        scenario.run.step = BAD[i];
+        expect_refused(&scenario, "step");
+    }
+}
+
 static void bodies_need_mass_inertia_and_a_name_of_their_own(void **state)
 {
     (void)state;
@@ -122,6 +133,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_papers_mechanism_passes),
+        cmocka_unit_test(a_step_is_finite_and_not_negative),
         cmocka_unit_test(bodies_need_mass_inertia_and_a_name_of_their_own),
         cmocka_unit_test(joints_join_two_bodies_that_exist),
         cmocka_unit_test(a_pin_is_smaller_than_its_hole_and_starts_inside_it),

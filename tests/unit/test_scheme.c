@@ -231,6 +231,7 @@ static void a_chosen_step_is_applied_with_its_tolerance(void **state)
     Scheme schemes[SCHEME_MAX];
     const size_t count = scheme_list(&scenario, schemes);
     for (size_t i = 0; i < count; i++) {
+        assert_int_equal(scheme_is_chosen(&schemes[i]), strncmp(schemes[i].name, "auto/", 5) == 0);
         if (strcmp(schemes[i].name, "auto/1e-5") == 0) {
             assert_false(scheme_has_step(&schemes[i]));
             scheme_apply(&schemes[i], 1e-6, &scenario);

@@ -226,10 +226,31 @@ static void rates_of_rows_change_as_they_are_said_to(void **state)
     }
 }
 
+// The rows that a start chose may depend on each other later.
+static void rows_that_have_become_dependent_are_chosen_anew(void **state)
+{
+    (void)state;
+    static double mobility[2][SPACE_RESPONSE_PLAY_MAX * SPACE_RESPONSE_PLAY_MAX];
+    Case here = make_case(1);
+    SpaceResponse *response = here.response;
+    space_response_mobility(response, mobility[0]);
+    const int part = response->part_of[1];
+    response->joint_of[1] = response->joint_of[0];
+    response->part_of[1] = response->part_of[0];
+    assert_true(space_response_place(response, here.motions, here.play_rows, here.play_count));
+    assert_int_equal(response->ideal_rows, 10);
+    assert_int_equal(response->part_of[1], part);
+    space_response_mobility(response, mobility[1]);
+    assert_memory_equal(mobility[0], mobility[1],
+                        here.play_count * here.play_count * sizeof(double));
+    free(response);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pushes_are_answered_as_the_whole_system_answers),
+        cmocka_unit_test(rows_that_have_become_dependent_are_chosen_anew),
         cmocka_unit_test(rates_of_rows_change_as_they_are_said_to),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
