@@ -141,3 +141,39 @@ void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 
         *from_a = vec2_add(pose->offset, *from_b);
     }
 }
+
+double touch_sliding(const Linkage *linkage, const Touch *place, const TouchPose *pose,
+                     const Motion *motions)
+{
+    const Joint *joint = &linkage->joints[place->joint];
+    const int bodies[2] = {joint->body_a, joint->body_b};
+    Vec2 arms[2];
+    Vec2 turning[2] = {{0.0, 0.0}, {0.0, 0.0}};
+    touch_points(place, pose, &arms[0], &arms[1]);
+    for (int side = 0; side < 2; side++) {
+        if (bodies[side] != LINKAGE_GROUND) {
+            turning[side] = vec2_scale(motions[bodies[side]].omega, vec2_perp(arms[side]));
+        }
+    }
+    const Vec2 relative = vec2_add(pose->velocity, vec2_sub(turning[1], turning[0]));
+    return vec2_dot(vec2_perp(pose->normal), relative);
+}
+
+bool touch_response(const Linkage *linkage, const Touch *places, size_t count, bool has_friction,
+                    Response *response, Err *err)
+{
+    ResponsePlace rows[TOUCH_MAX];
+    for (size_t i = 0; i < count; i++) {
+        const bool is_line = places[i].shape == TOUCH_LINE;
+        rows[i] = (ResponsePlace){
+            .joint = places[i].joint,
+            .is_line = is_line,
+            .has_turns = has_friction && !is_line,
+            .anchor_a = places[i].anchor_a,
+            .anchor_b = places[i].anchor_b,
+            .direction = places[i].direction,
+            .radius = places[i].radius_b,
+        };
+    }
+    return response_init_places(linkage, rows, count, response, err);
+}

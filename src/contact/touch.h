@@ -10,6 +10,7 @@
 #pragma once
 
 #include "contact/force_law.h"
+#include "model/response.h"
 #include "model/scenario.h"
 
 typedef enum TouchShape {
@@ -59,3 +60,13 @@ TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *m
 // The point at which the force acts, seen from the anchor on body a and from that on body b, m.
 // Without friction the anchors themselves serve as well where both are circles.
 void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 *from_b);
+
+// How fast the point of body b at which the force acts moves against that of body a, m/s, along the
+// normal turned by a quarter turn.
+double touch_sliding(const Linkage *linkage, const Touch *place, const TouchPose *pose,
+                     const Motion *motions);
+
+// Prepares the response of a linkage with its places, in their order; where there is friction, with
+// the turns that it acts in.
+bool touch_response(const Linkage *linkage, const Touch *places, size_t count, bool has_friction,
+                    Response *response, Err *err);

@@ -21,30 +21,33 @@
 // 1e-15, of either sign, of one that they make redundant
 static const double INDEPENDENT = 1e-12;
 
-static bool add_rows(Response *response, size_t joint, size_t count)
+static bool add_rows(Response *response, int joint, int place, size_t count)
 {
     if (response->row_count + count > RESPONSE_ROW_MAX) {
         return false;
     }
     for (size_t i = 0; i < count; i++) {
-        response->joint_of[response->row_count++] = (int)joint;
+        response->joint_of[response->row_count] = joint;
+        response->place_of[response->row_count++] = place;
     }
     return true;
 }
 
-bool response_init(const Linkage *linkage, bool with_turns, Response *response, Err *err)
+bool response_init_places(const Linkage *linkage, const ResponsePlace *places, size_t count,
+                          Response *response, Err *err)
 {
     memset(response, 0, sizeof *response);
     response->linkage = linkage;
-    response->with_turns = with_turns;
-    bool has_room = true;
+    bool has_room = count <= RESPONSE_PLACE_MAX;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        has_room = has_room && (!linkage_is_ideal(linkage, i) || add_rows(response, i, 2));
+        has_room = has_room && (!linkage_is_ideal(linkage, i) || add_rows(response, (int)i, -1, 2));
     }
     response->ideal_rows = response->row_count;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        has_room = has_room && (linkage->joints[i].kind != JOINT_CLEARANCE ||
-                                add_rows(response, i, with_turns ? 4 : 2));
+    for (size_t i = 0; has_room && i < count; i++) {
+        response->places[i] = places[i];
+        response->first_row[i] = response_play_rows(response);
+        has_room = add_rows(response, places[i].joint, (int)i, response_place_rows(&places[i]));
+        response->place_count++;
     }
     return has_room || err_set(err, ERR_SOLVER,
                                "the linkage has more joint rows than the %d that contacts can be "
@@ -52,52 +55,27 @@ bool response_init(const Linkage *linkage, bool with_turns, Response *response, 
                                RESPONSE_ROW_MAX);
 }
 
+bool response_init(const Linkage *linkage, bool with_turns, Response *response, Err *err)
+{
+    ResponsePlace places[LINKAGE_JOINT_MAX];
+    size_t count = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint->kind == JOINT_CLEARANCE) {
+            places[count++] = (ResponsePlace){
+                .joint = (int)i,
+                .has_turns = with_turns,
+                .anchor_a = joint->anchor_a,
+                .anchor_b = joint->anchor_b,
+            };
+        }
+    }
+    return response_init_places(linkage, places, count, response, err);
+}
+
 size_t response_play_rows(const Response *response)
 {
     return response->row_count - response->ideal_rows;
-}
-
-// The two rows of a joint, x and y: pin or second anchor against hole or first.
-static void place_joint(Response *response, size_t row, const Motion *motions)
-{
-    const Linkage *linkage = response->linkage;
-    ResponseRow *x_row = &response->rows[row];
-    ResponseRow *y_row = &response->rows[row + 1];
-    for (int side = 0; side < 2; side++) {
-        const JointEnd end = linkage_end(&linkage->joints[response->joint_of[row]], side);
-        const bool is_fixed =
-            end.body == LINKAGE_GROUND || end.body == linkage_driven_body(linkage);
-        const double sign = side == 0 ? -1.0 : 1.0;
-        const Vec2 arm = is_fixed ? end.anchor : vec2_rotate(motions[end.body].angle, end.anchor);
-        x_row->body[side] = y_row->body[side] = is_fixed ? LINKAGE_GROUND : end.body;
-        x_row->x[side] = sign;
-        x_row->turn[side] = -sign * arm.y;
-        y_row->y[side] = sign;
-        y_row->turn[side] = sign * arm.x;
-    }
-}
-
-// The turn of one body of a joint, as a row of its own.
-static void place_turn(Response *response, size_t row, int end)
-{
-    const ResponseRow *x_row = &response->rows[row - 2 - (size_t)end];
-    ResponseRow *turn = &response->rows[row];
-    turn->body[0] = x_row->body[end];
-    turn->turn[0] = 1.0;
-    turn->body[1] = LINKAGE_GROUND;
-}
-
-static void place_rows(Response *response, const Motion *motions)
-{
-    for (size_t row = 0; row < response->row_count;) {
-        place_joint(response, row, motions);
-        row += 2;
-        if (row > response->ideal_rows && response->with_turns) {
-            place_turn(response, row, 0);
-            place_turn(response, row + 1, 1);
-            row += 2;
-        }
-    }
 }
 
 // One entry of D: what the rows have in common through the bodies they share.
@@ -118,7 +96,7 @@ static double coupling(const Linkage *linkage, const ResponseRow *a, const Respo
 
 bool response_place(Response *response, const Motion *motions)
 {
-    place_rows(response, motions);
+    response_rows_place(response, motions);
     const size_t count = response->row_count;
     double diagonal[RESPONSE_ROW_MAX];
     for (size_t i = 0; i < count; i++) {
@@ -160,51 +138,11 @@ void response_mobility(const Response *response, double *mobility)
     }
 }
 
-// By how much loads speed up the turning of a body whose motion is free, rad/s^2.
-static double load_turning(const Linkage *linkage, int body, const BodyLoad *loads)
-{
-    return loads == NULL || body == LINKAGE_GROUND || body == linkage_driven_body(linkage)
-               ? 0.0
-               : loads[body].moment / linkage->bodies[body].inertia;
-}
-
-// Acceleration of the end of a joint on one body under gravity and loads.
-static Vec2 end_acceleration(const Linkage *linkage, const Motion *motions, int body, Vec2 anchor,
-                             double gravity, const BodyLoad *loads)
-{
-    if (body == LINKAGE_GROUND) {
-        return (Vec2){0.0, 0.0};
-    }
-    const Motion *motion = &motions[body];
-    const bool is_driven = body == linkage_driven_body(linkage);
-    Vec2 centre = is_driven ? motion->acceleration : (Vec2){0.0, -gravity};
-    const Vec2 arm = vec2_rotate(motion->angle, anchor);
-    if (loads != NULL && !is_driven) {
-        const double mass = linkage->bodies[body].mass;
-        const Vec2 turning = vec2_scale(load_turning(linkage, body, loads), vec2_perp(arm));
-        centre = vec2_add(centre, vec2_add(vec2_scale(1.0 / mass, loads[body].force), turning));
-    }
-    return vec2_sub(centre, vec2_scale(motion->omega * motion->omega, arm));
-}
-
 void response_free(const Response *response, const Motion *motions, double gravity,
                    const BodyLoad *loads, double *rates)
 {
-    const Linkage *linkage = response->linkage;
-    double gamma[RESPONSE_ROW_MAX] = {0.0};
-    for (size_t row = 0; row < response->row_count;) {
-        const Joint *joint = &linkage->joints[response->joint_of[row]];
-        const Vec2 relative = vec2_sub(
-            end_acceleration(linkage, motions, joint->body_b, joint->anchor_b, gravity, loads),
-            end_acceleration(linkage, motions, joint->body_a, joint->anchor_a, gravity, loads));
-        gamma[row] = relative.x;
-        gamma[row + 1] = relative.y;
-        row += 2;
-        if (row > response->ideal_rows && response->with_turns) {
-            gamma[row++] = load_turning(linkage, joint->body_a, loads);
-            gamma[row++] = load_turning(linkage, joint->body_b, loads);
-        }
-    }
+    double gamma[RESPONSE_ROW_MAX];
+    response_rows_loose(response, motions, gravity, loads, gamma);
     // forward through the factor: what is left in the rows of play is g
     for (size_t pivot = 0; pivot < response->ideal_rows; pivot++) {
         gamma[pivot] /= response->matrix[pivot][pivot];
@@ -317,13 +255,25 @@ int response_joint(const Response *response, size_t play_row)
     return response->joint_of[response->ideal_rows + play_row];
 }
 
+size_t response_first_row(const Response *response, size_t place)
+{
+    return response->first_row[place];
+}
+
+static size_t rows_at(const Response *response, size_t first)
+{
+    const int place = response->place_of[response->ideal_rows + first];
+    return response_place_rows(&response->places[place]);
+}
+
 double response_between(const Response *response, size_t first_from, const double *from,
                         size_t first_to, const double *to)
 {
-    const size_t count = response->with_turns ? RESPONSE_ROWS_A_JOINT : 2;
+    const size_t from_count = rows_at(response, first_from);
+    const size_t to_count = rows_at(response, first_to);
     double sum = 0.0;
-    for (size_t i = 0; i < count; i++) {
-        for (size_t k = 0; k < count; k++) {
+    for (size_t i = 0; i < from_count; i++) {
+        for (size_t k = 0; k < to_count; k++) {
             const size_t row = response->ideal_rows + first_from + i;
             const size_t column = response->ideal_rows + first_to + k;
             const double mobility =

@@ -3,37 +3,21 @@
 // Delassus operator.
 #pragma once
 
-#include "model/forces.h"
+#include "model/response_rows.h"
 
-enum {
-    RESPONSE_ROWS_A_JOINT = 4, // x and y of the pin against the hole, turns of the two bodies
-    RESPONSE_ROW_MAX = 64,     // 16 joints with play and friction, and 24 without friction
-};
+// Prepares the response of a linkage with places at which its joints touch, joint by joint
+// (contact/touch.h makes them). Fails with ERR_SOLVER where it has more rows than there is room
+// for.
+bool response_init_places(const Linkage *linkage, const ResponsePlace *places, size_t count,
+                          Response *response, Err *err);
 
-// A relative velocity as a sum over one or two bodies. A body that cannot give way has no part.
-typedef struct ResponseRow {
-    int body[2]; // LINKAGE_GROUND where there is none
-    double x[2]; // 1, of the velocity of its centre
-    double y[2];
-    double turn[2]; // m, or 1 for a row that is a turn: of its angular velocity
-} ResponseRow;
-
-typedef struct Response {
-    const Linkage *linkage;
-    bool with_turns;   // two rows more a joint with play, for friction
-    size_t ideal_rows; // they come first, two a joint; the drive's joint has none
-    size_t row_count;
-    ResponseRow rows[RESPONSE_ROW_MAX];
-    int joint_of[RESPONSE_ROW_MAX];
-    double matrix[RESPONSE_ROW_MAX][RESPONSE_ROW_MAX]; // lower triangle: Cholesky's factor in the
-                                                       // ideal columns, then the mobility
-} Response;
-
-// Prepares the response of a linkage. Fails with ERR_SOLVER where it has more rows than there is
-// room for. With turns, each joint with play has four rows: velocity of the pin's centre less that
-// of the hole's, x and y, then angular velocity of the hole's and of the pin's body; else only the
-// first two.
+// The same where pins in holes are all that touches. With turns, each joint with play has four
+// rows: velocity of the pin's centre less that of the hole's, x and y, then angular velocity of the
+// hole's and of the pin's body; else only the first two.
 bool response_init(const Linkage *linkage, bool with_turns, Response *response, Err *err);
+
+// The first row of a place among the rows of play.
+size_t response_first_row(const Response *response, size_t place);
 
 // The number of rows of the joints with play, all together.
 size_t response_play_rows(const Response *response);
@@ -82,8 +66,8 @@ void response_openings(const Response *response, const Motion *motions, double *
 int response_joint(const Response *response, size_t play_row);
 
 // By how much an impulse of 1 along a combination of one joint's rows changes the velocity along a
-// combination of another's, or of its own: from W to. As many numbers each as a joint has rows; the
-// first of them among the rows of play is given.
+// combination of another's, or of its own: from W to. As many numbers each as the place has rows;
+// the first of them among the rows of play is given.
 double response_between(const Response *response, size_t first_from, const double *from,
                         size_t first_to, const double *to);
 

@@ -60,7 +60,7 @@ static bool place_response(ContactRows *rows, Motion motions[LINKAGE_BODY_MAX])
 // The first of a pair's rows in the response.
 static size_t response_row(const ContactRows *rows, size_t number)
 {
-    return (rows->response.with_turns ? RESPONSE_ROWS_A_JOINT : 2) * number;
+    return response_first_row(&rows->response, number);
 }
 
 static dSurfaceParameters surface_of(const ContactRows *rows, ContactRow *row, double step_s)

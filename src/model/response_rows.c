@@ -1,0 +1,191 @@
+// Where do the rows of a linkage's response stand, and how fast do their rates change by
+// themselves?
+//
+// Ideal joints and pins: x and y of anchor b less anchor a.
+// At a line of body a with normal n and tangent t = perp n, d from anchor a to anchor b, r the
+// radius of body b's circle; w, alpha turning and its rate:
+//     rates     n . d' + w_a t . d                           of the gap
+//               t . d' - w_a (n . d - r) - w_b r             of sliding
+//     theirs    n . d'' + 2 w_a t . d' - w_a^2 n . d + alpha_a t . d
+//               t . d'' - 2 w_a n . d' - w_a^2 t . d - alpha_a (n . d - r) - alpha_b r
+#include "model/response_rows.h"
+
+static bool is_fixed(const Linkage *linkage, int body)
+{
+    return body == LINKAGE_GROUND || body == linkage_driven_body(linkage);
+}
+
+// Two rows, x and y: pin or second anchor against hole or first.
+static void place_point(Response *response, size_t row, const JointEnd ends[2],
+                        const Motion *motions)
+{
+    ResponseRow *x_row = &response->rows[row];
+    ResponseRow *y_row = &response->rows[row + 1];
+    for (int side = 0; side < 2; side++) {
+        const JointEnd end = ends[side];
+        const bool stays = is_fixed(response->linkage, end.body);
+        const double sign = side == 0 ? -1.0 : 1.0;
+        const Vec2 arm = stays ? end.anchor : vec2_rotate(motions[end.body].angle, end.anchor);
+        x_row->body[side] = y_row->body[side] = stays ? LINKAGE_GROUND : end.body;
+        x_row->x[side] = sign;
+        x_row->turn[side] = -sign * arm.y;
+        y_row->y[side] = sign;
+        y_row->turn[side] = sign * arm.x;
+    }
+}
+
+// The normal of a line, in the world.
+static Vec2 line_normal(const ResponsePlace *place, int body_a, const Motion *motions)
+{
+    const double angle = body_a == LINKAGE_GROUND ? 0.0 : motions[body_a].angle;
+    return vec2_rotate(angle + place->direction, (Vec2){1.0, 0.0});
+}
+
+// Two rows, along the normal and the tangent of a line: of both bodies the point that touches.
+static void place_line(Response *response, size_t row, const ResponsePlace *place,
+                       const JointEnd ends[2], const Motion *motions)
+{
+    const Vec2 normal = line_normal(place, ends[0].body, motions);
+    const Vec2 directions[2] = {normal, vec2_perp(normal)};
+    const Vec2 point = vec2_sub(linkage_point(motions, ends[1].body, ends[1].anchor),
+                                vec2_scale(place->radius, normal));
+    for (int side = 0; side < 2; side++) {
+        const int body =
+            is_fixed(response->linkage, ends[side].body) ? LINKAGE_GROUND : ends[side].body;
+        const double sign = side == 0 ? -1.0 : 1.0;
+        const Vec2 arm = body == LINKAGE_GROUND ? point : vec2_sub(point, motions[body].position);
+        for (size_t i = 0; i < 2; i++) {
+            ResponseRow *of = &response->rows[row + i];
+            of->body[side] = body;
+            of->x[side] = sign * directions[i].x;
+            of->y[side] = sign * directions[i].y;
+            of->turn[side] = sign * vec2_cross(arm, directions[i]);
+        }
+    }
+}
+
+// The turn of one body of a joint, as a row of its own.
+static void place_turn(Response *response, size_t row, int end)
+{
+    const ResponseRow *x_row = &response->rows[row - 2 - (size_t)end];
+    ResponseRow *turn = &response->rows[row];
+    turn->body[0] = x_row->body[end];
+    turn->turn[0] = 1.0;
+    turn->body[1] = LINKAGE_GROUND;
+}
+
+void response_rows_place(Response *response, const Motion *motions)
+{
+    const Joint *joints = response->linkage->joints;
+    size_t row = 0;
+    for (; row < response->ideal_rows; row += 2) {
+        const Joint *joint = &joints[response->joint_of[row]];
+        place_point(response, row, (JointEnd[]){linkage_end(joint, 0), linkage_end(joint, 1)},
+                    motions);
+    }
+    for (size_t i = 0; i < response->place_count; i++) {
+        const ResponsePlace *place = &response->places[i];
+        const JointEnd ends[2] = {{joints[place->joint].body_a, place->anchor_a},
+                                  {joints[place->joint].body_b, place->anchor_b}};
+        if (place->is_line) {
+            place_line(response, row, place, ends, motions);
+        } else {
+            place_point(response, row, ends, motions);
+        }
+        row += 2;
+        if (place->has_turns) {
+            place_turn(response, row, 0);
+            place_turn(response, row + 1, 1);
+            row += 2;
+        }
+    }
+}
+
+// By how much loads speed up the turning of a body whose motion is free, rad/s^2.
+static double load_turning(const Linkage *linkage, int body, const BodyLoad *loads)
+{
+    return loads == NULL || body == LINKAGE_GROUND || body == linkage_driven_body(linkage)
+               ? 0.0
+               : loads[body].moment / linkage->bodies[body].inertia;
+}
+
+// Acceleration of the end of a joint on one body under gravity and loads.
+static Vec2 end_acceleration(const Linkage *linkage, const Motion *motions, int body, Vec2 anchor,
+                             double gravity, const BodyLoad *loads)
+{
+    if (body == LINKAGE_GROUND) {
+        return (Vec2){0.0, 0.0};
+    }
+    const Motion *motion = &motions[body];
+    const bool is_driven = body == linkage_driven_body(linkage);
+    Vec2 centre = is_driven ? motion->acceleration : (Vec2){0.0, -gravity};
+    const Vec2 arm = vec2_rotate(motion->angle, anchor);
+    if (loads != NULL && !is_driven) {
+        const double mass = linkage->bodies[body].mass;
+        const Vec2 turning = vec2_scale(load_turning(linkage, body, loads), vec2_perp(arm));
+        centre = vec2_add(centre, vec2_add(vec2_scale(1.0 / mass, loads[body].force), turning));
+    }
+    return vec2_sub(centre, vec2_scale(motion->omega * motion->omega, arm));
+}
+
+// Acceleration of the anchor on body b less that of the anchor on body a.
+static Vec2 relative_acceleration(const Linkage *linkage, const Motion *motions, int joint,
+                                  Vec2 anchor_a, Vec2 anchor_b, double gravity,
+                                  const BodyLoad *loads)
+{
+    const Joint *of = &linkage->joints[joint];
+    return vec2_sub(end_acceleration(linkage, motions, of->body_b, anchor_b, gravity, loads),
+                    end_acceleration(linkage, motions, of->body_a, anchor_a, gravity, loads));
+}
+
+// The rates of the rates of a line's rows, from the relative acceleration of its anchors.
+static void line_free(const Linkage *linkage, const ResponsePlace *place, const Motion *motions,
+                      const BodyLoad *loads, Vec2 relative, double *gamma)
+{
+    const int a = linkage->joints[place->joint].body_a;
+    const int b = linkage->joints[place->joint].body_b;
+    const double omega = a == LINKAGE_GROUND ? 0.0 : motions[a].omega;
+    const double alpha = load_turning(linkage, a, loads);
+    const Vec2 n = line_normal(place, a, motions);
+    const Vec2 t = vec2_perp(n);
+    const Vec2 d = vec2_sub(linkage_point(motions, b, place->anchor_b),
+                            linkage_point(motions, a, place->anchor_a));
+    const Vec2 rate = vec2_sub(linkage_point_velocity(motions, b, place->anchor_b),
+                               linkage_point_velocity(motions, a, place->anchor_a));
+    gamma[0] = vec2_dot(n, relative) + 2.0 * omega * vec2_dot(t, rate) -
+               omega * omega * vec2_dot(n, d) + alpha * vec2_dot(t, d);
+    gamma[1] = vec2_dot(t, relative) - 2.0 * omega * vec2_dot(n, rate) -
+               omega * omega * vec2_dot(t, d) - alpha * (vec2_dot(n, d) - place->radius) -
+               load_turning(linkage, b, loads) * place->radius;
+}
+
+void response_rows_loose(const Response *response, const Motion *motions, double gravity,
+                         const BodyLoad *loads, double *gamma)
+{
+    const Linkage *linkage = response->linkage;
+    size_t row = 0;
+    for (; row < response->ideal_rows; row += 2) {
+        const int number = response->joint_of[row];
+        const Joint *joint = &linkage->joints[number];
+        const Vec2 relative = relative_acceleration(linkage, motions, number, joint->anchor_a,
+                                                    joint->anchor_b, gravity, loads);
+        gamma[row] = relative.x;
+        gamma[row + 1] = relative.y;
+    }
+    for (size_t i = 0; i < response->place_count; i++) {
+        const ResponsePlace *place = &response->places[i];
+        const Joint *joint = &linkage->joints[place->joint];
+        const Vec2 relative = relative_acceleration(linkage, motions, place->joint, place->anchor_a,
+                                                    place->anchor_b, gravity, loads);
+        gamma[row] = relative.x;
+        gamma[row + 1] = relative.y;
+        if (place->is_line) {
+            line_free(linkage, place, motions, loads, relative, gamma + row);
+        }
+        row += 2;
+        if (place->has_turns) {
+            gamma[row++] = load_turning(linkage, joint->body_a, loads);
+            gamma[row++] = load_turning(linkage, joint->body_b, loads);
+        }
+    }
+}

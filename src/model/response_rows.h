@@ -1,0 +1,61 @@
+// The rows of a linkage's response (model/response.h), and where they stand.
+#pragma once
+
+#include "model/forces.h"
+
+enum {
+    RESPONSE_ROWS_A_JOINT = 4, // x and y of the pin against the hole, turns of the two bodies
+    RESPONSE_ROW_MAX = 64,     // 16 joints with play and friction, and 24 without friction
+    RESPONSE_PLACE_MAX = RESPONSE_ROW_MAX / 2,
+};
+
+// A place at which the bodies of a joint with play touch. It has two rows: x and y in the world of
+// anchor b less anchor a; or, at a line of body a, the rates at which the touching points of body b
+// and body a part along the line's normal and along its tangent, the normal turned by a quarter
+// turn. With turns, two more: the angular velocities of body a and of body b. Friction at a line
+// acts in the second row and needs none.
+typedef struct ResponsePlace {
+    int joint; // number in the linkage
+    bool is_line;
+    bool has_turns;
+    Vec2 anchor_a;    // in body a's frame, m
+    Vec2 anchor_b;    // in body b's frame, m
+    double direction; // rad, in body a's frame: of a line's normal
+    double radius;    // m, of body b's circle that meets the line
+} ResponsePlace;
+
+// A relative velocity as a sum over one or two bodies. A body that cannot give way has no part.
+typedef struct ResponseRow {
+    int body[2]; // LINKAGE_GROUND where there is none
+    double x[2]; // 1, of the velocity of its centre
+    double y[2];
+    double turn[2]; // m, or 1 for a row that is a turn: of its angular velocity
+} ResponseRow;
+
+typedef struct Response {
+    const Linkage *linkage;
+    size_t ideal_rows; // they come first, two a joint; the drive's joint has none
+    size_t row_count;
+    ResponseRow rows[RESPONSE_ROW_MAX];
+    int joint_of[RESPONSE_ROW_MAX];
+    size_t place_count;
+    ResponsePlace places[RESPONSE_PLACE_MAX];          // their rows come after the ideal ones
+    size_t first_row[RESPONSE_PLACE_MAX];              // of a place, among the rows of play
+    int place_of[RESPONSE_ROW_MAX];                    // -1 of an ideal row
+    double matrix[RESPONSE_ROW_MAX][RESPONSE_ROW_MAX]; // lower triangle: Cholesky's factor in the
+                                                       // ideal columns, then the mobility
+} Response;
+
+// The number of rows of a place.
+static inline size_t response_place_rows(const ResponsePlace *place)
+{
+    return place->has_turns ? RESPONSE_ROWS_A_JOINT : 2;
+}
+
+// Writes the rows where the bodies are.
+void response_rows_place(Response *response, const Motion *motions);
+
+// Writes the accelerations of all rows under gravity and loads (NULL: none) while nothing acts in
+// any of them, those of the ideal joints included.
+void response_rows_loose(const Response *response, const Motion *motions, double gravity,
+                         const BodyLoad *loads, double *rates);
