@@ -7,19 +7,11 @@
 #include "reference/dynamics.h"
 
 #include "base/dense.h"
-#include "contact/law.h"
 #include "model/forces.h"
+#include "reference/dynamics_reactions.h"
 #include "reference/loops.h"
 
 #include <string.h>
-
-// Forces on the bodies, by body: at the centre, and the moment about it.
-typedef struct Loads {
-    Vec2 force[LINKAGE_BODY_MAX];
-    double moment[LINKAGE_BODY_MAX];
-    double driven_power; // W, of all forces on the driven body but the drive's
-    Vec2 driven_force;   // N, their sum
-} Loads;
 
 // What the coordinates of the tree are.
 static void list_coordinates(Dynamics *dynamics)
@@ -30,74 +22,82 @@ static void list_coordinates(Dynamics *dynamics)
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
         const Body *body = &tree->linkage->bodies[node->body];
-        SystemCoordinate *angle = &coordinates[node->angle_column];
-        *angle = (SystemCoordinate){
+        SystemCoordinate *own = &coordinates[node->chain[node->chain_count - 1]];
+        if (node->is_sliding) {
+            *own = (SystemCoordinate){-1, 1.0, body->mass};
+            continue;
+        }
+        *own = (SystemCoordinate){
             .turning = node->body,
             .reach = linkage_reach(tree->linkage, node->body),
             .inertia = body->inertia,
         };
         if (node->joint < 0) {
-            angle[-1] = angle[-2] = (SystemCoordinate){-1, 1.0, body->mass};
+            own[-1] = own[-2] = (SystemCoordinate){-1, 1.0, body->mass};
         } else {
             const Vec2 arm = tree->anchors[node->own_end];
-            angle->inertia += body->mass * vec2_dot(arm, arm);
+            own->inertia += body->mass * vec2_dot(arm, arm);
         }
     }
 }
 
-bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
+// m: a place that is apart is looked at before its bodies have come so much nearer. Of a stop that
+// is no play, but how far the body that touches reaches from where it does.
+static double flight_of(const Linkage *linkage, const Touch *touch)
+{
+    const Joint *joint = &linkage->joints[touch->joint];
+    if (joint->kind != JOINT_STOP) {
+        return linkage_radial_clearance(joint);
+    }
+    const int body = joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b;
+    return touch->shape == TOUCH_DISC ? touch->clearance : linkage_reach(linkage, body);
+}
+
+static bool list_contacts(const Scenario *scenario, Dynamics *dynamics, Err *err)
 {
     System *system = &dynamics->system;
+    Touch touches[TOUCH_MAX];
+    if (!touch_list(scenario, touches, &system->contact_count, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Touch *touch = &touches[i];
+        const bool is_corner = scenario->linkage.joints[touch->joint].kind == JOINT_GUIDE;
+        system->contacts[i] = (Contact){
+            .joint = touch->joint,
+            .law = touch->law,
+            .clearance = linkage_radial_clearance(&scenario->linkage.joints[touch->joint]),
+            .flight = flight_of(&scenario->linkage, touch),
+        };
+        dynamics->places[i] = (PlanePlace){
+            .touch = *touch,
+            .pair = is_corner ? dynamics->tree.corners[touch->joint] + touch->place : touch->joint,
+            .acts_beside = touch->shape == TOUCH_LINE || scenario->contact.friction > 0.0,
+        };
+    }
+    return true;
+}
+
+bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
+{
     *dynamics = (Dynamics){.system = {.scenario = scenario, .torn = -1}};
     dynamics->has_forces = forces_any(&scenario->linkage);
     tree_build(&scenario->linkage, &dynamics->tree);
     list_coordinates(dynamics);
     const Tree *tree = &dynamics->tree;
     dynamics->may_branch = tree->loop_count > 0 && tree->coordinate_count > 2 * tree->loop_count;
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        const Joint *joint = &scenario->linkage.joints[i];
-        if (joint->kind != JOINT_CLEARANCE) {
-            continue;
-        }
-        Contact *contact = &system->contacts[system->contact_count++];
-        contact->joint = (int)i;
-        contact->clearance = linkage_radial_clearance(joint);
-        contact->hole_radius = joint->clearance.hole_radius;
-        if (!law_of_joint(scenario, joint, &contact->law, err)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-// A force on the body of an end, beside the end.
-static void load_end(const Tree *tree, const TreeState *state, int end, Vec2 beside, Vec2 force,
-                     Loads *loads)
-{
-    const int body = tree->end_bodies[end];
-    if (body == LINKAGE_GROUND) {
-        return;
-    }
-    if (body == tree->driven) {
-        loads->driven_power += vec2_dot(force, dynamics_contact_velocity(tree, state, end, beside));
-        loads->driven_force = vec2_add(loads->driven_force, force);
-        return;
-    }
-    loads->force[body] = vec2_add(loads->force[body], force);
-    loads->moment[body] += vec2_cross(vec2_add(state->arms[end], beside), force);
+    return list_contacts(scenario, dynamics, err);
 }
 
 static void load_contact(const Dynamics *dynamics, size_t number, const TreeState *state,
                          const ContactForce *force, Loads *loads)
 {
-    const Contact *contact = &dynamics->system.contacts[number];
-    const int hole = 2 * contact->joint;
-    Vec2 from_hole;
-    Vec2 from_pin;
-    dynamics_contact_points(contact, &dynamics->system.scenario->contact, &force->pose, &from_hole,
-                            &from_pin);
-    load_end(&dynamics->tree, state, hole + 1, from_pin, force->force, loads);
-    load_end(&dynamics->tree, state, hole, from_hole, vec2_scale(-1.0, force->force), loads);
+    const int end = 2 * dynamics->places[number].pair;
+    Vec2 from_a;
+    Vec2 from_b;
+    dynamics_contact_points(&dynamics->places[number], &force->pose, &from_a, &from_b);
+    dynamics_load_end(&dynamics->tree, state, end + 1, from_b, force->force, loads);
+    dynamics_load_end(&dynamics->tree, state, end, from_a, vec2_scale(-1.0, force->force), loads);
 }
 
 // Gravity, and nothing else yet.
@@ -170,8 +170,11 @@ static void assemble(const Tree *tree, const TreeState *state, const Loads *load
             }
             matrix[row * width + row] += vec2_dot(heavy, columns[j]);
         }
-        matrix[node->angle_column * width + node->angle_column] += body->inertia;
-        right[node->angle_column] += loads->moment[node->body];
+        if (node->angle_column >= 0) {
+            const size_t angle = (size_t)node->angle_column;
+            matrix[angle * width + angle] += body->inertia;
+            right[angle] += loads->moment[node->body];
+        }
     }
 }
 
@@ -181,64 +184,16 @@ static void append_loops(const Tree *tree, const TreeState *state, size_t width,
     const size_t n = tree->coordinate_count;
     Vec2 row[TREE_COORDINATE_MAX];
     for (size_t loop = 0; loop < tree->loop_count; loop++) {
-        const int end = 2 * tree->loops[loop];
-        const Vec2 gamma =
-            vec2_sub(tree_end_bias(tree, state, end), tree_end_bias(tree, state, end + 1));
+        const Vec2 bias = loops_bias(tree, state, loop);
         const size_t x = n + 2 * loop;
         loops_row(tree, state, loop, row);
         for (size_t j = 0; j < n; j++) {
             matrix[x * width + j] = matrix[j * width + x] = row[j].x;
             matrix[(x + 1) * width + j] = matrix[j * width + x + 1] = row[j].y;
         }
-        right[x] = gamma.x;
-        right[x + 1] = gamma.y;
+        right[x] = -bias.x;
+        right[x + 1] = -bias.y;
     }
-}
-
-// Forces of the loop joints on their bodies b: the multipliers' negatives.
-static void load_loops(const Tree *tree, const TreeState *state, const double *solved,
-                       Vec2 *reactions, Loads *loads)
-{
-    for (size_t loop = 0; loop < tree->loop_count; loop++) {
-        const int end = 2 * tree->loops[loop];
-        const double *lambda = solved + tree->coordinate_count + 2 * loop;
-        const Vec2 force = {-lambda[0], -lambda[1]};
-        reactions[tree->loops[loop]] = force;
-        load_end(tree, state, end + 1, (Vec2){0.0, 0.0}, force, loads);
-        load_end(tree, state, end, (Vec2){0.0, 0.0}, vec2_scale(-1.0, force), loads);
-    }
-}
-
-// Reactions of the tree's joints, children before parents, from each body's own equation.
-static void find_reactions(const Tree *tree, const TreeState *state, Loads *loads, Vec2 *reactions)
-{
-    for (size_t i = tree->node_count; i-- > 0;) {
-        const TreeNode *node = &tree->nodes[i];
-        if (node->joint < 0) {
-            continue;
-        }
-        const double mass = tree->linkage->bodies[node->body].mass;
-        const Vec2 held = vec2_sub(vec2_scale(mass, state->motions[node->body].acceleration),
-                                   loads->force[node->body]);
-        const bool is_child_b = tree->linkage->joints[node->joint].body_b == node->body;
-        reactions[node->joint] = is_child_b ? held : vec2_scale(-1.0, held);
-        load_end(tree, state, node->parent_end, (Vec2){0.0, 0.0}, vec2_scale(-1.0, held), loads);
-    }
-}
-
-// Power of the drive and force of the driven joint, from the driven body's own equations.
-static void find_drive(const Dynamics *dynamics, const Loads *loads, DynamicsState *state)
-{
-    const Tree *tree = &dynamics->tree;
-    if (tree->driven < 0) {
-        return;
-    }
-    const double mass = tree->linkage->bodies[tree->driven].mass;
-    const Motion *motion = &state->tree.motions[tree->driven];
-    const Vec2 needed = vec2_scale(
-        mass, vec2_add(motion->acceleration, (Vec2){0.0, dynamics->system.scenario->gravity}));
-    state->drive_power = vec2_dot(needed, motion->velocity) - loads->driven_power;
-    state->reactions[tree->linkage->driver.joint] = vec2_sub(needed, loads->driven_force);
 }
 
 // Solves the equations; two coordinates, as a four-bar with one loose joint has, at once.
@@ -269,8 +224,7 @@ static bool find_rates(const Dynamics *dynamics, double since_s, const double *y
     start_loads(dynamics, loads);
     load_forces(dynamics, since_s, state, loads);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
-        dynamics_contact_find(&dynamics->system.contacts[i], &dynamics->system.scenario->contact,
-                              tree, &state->tree, &state->contacts[i]);
+        dynamics_contact_find(dynamics, i, &state->tree, &state->contacts[i]);
         if (dynamics->system.contacts[i].mode == CONTACT_PRESSING) {
             load_contact(dynamics, i, &state->tree, &state->contacts[i], loads);
         }
@@ -291,12 +245,19 @@ bool dynamics_factor(const Dynamics *dynamics, const TreeState *state, double *m
     return dense_factor(width, matrix, pivots);
 }
 
-// Accelerations of the bodies, then reactions of the ideal joints.
-static void find_motion(const Tree *tree, const double *solved, Loads *loads, DynamicsState *state)
+// Power of the drive and force of the driven joint, from the driven body's own equations.
+static void find_drive(const Dynamics *dynamics, const Loads *loads, DynamicsState *state)
 {
-    tree_accelerate(tree, solved, &state->tree);
-    load_loops(tree, &state->tree, solved, state->reactions, loads);
-    find_reactions(tree, &state->tree, loads, state->reactions);
+    const Tree *tree = &dynamics->tree;
+    if (tree->driven < 0) {
+        return;
+    }
+    const double mass = tree->linkage->bodies[tree->driven].mass;
+    const Motion *motion = &state->tree.motions[tree->driven];
+    const Vec2 needed = vec2_scale(
+        mass, vec2_add(motion->acceleration, (Vec2){0.0, dynamics->system.scenario->gravity}));
+    state->drive_power = vec2_dot(needed, motion->velocity) - loads->driven_power;
+    state->reactions[tree->linkage->driver.joint] = vec2_sub(needed, loads->driven_force);
 }
 
 bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
@@ -307,7 +268,7 @@ bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y
     if (!find_rates(dynamics, since_s, y, state, &loads, solved)) {
         return false;
     }
-    find_motion(&dynamics->tree, solved, &loads, state);
+    dynamics_reactions_find(dynamics, solved, &loads, state);
     find_drive(dynamics, &loads, state);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         state->shared.contacts[i] = state->contacts[i].press;
@@ -322,8 +283,7 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
     TreeState state;
     tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state);
     ContactForce force;
-    dynamics_contact_find(&dynamics->system.contacts[contact], &dynamics->system.scenario->contact,
-                          tree, &state, &force);
+    dynamics_contact_find(dynamics, contact, &state, &force);
     return force;
 }
 
@@ -364,7 +324,7 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
     }
     // the drive's power needs the reactions only where the driven body carries ideal joints
     if (tree->is_driven_hung_on) {
-        find_motion(tree, solved, &loads, &state);
+        dynamics_reactions_find(dynamics, solved, &loads, &state);
     }
     find_drive(dynamics, &loads, &state);
     for (size_t i = 0; i < n; i++) {

@@ -3,26 +3,7 @@
 #pragma once
 
 #include "reference/dynamics_contact.h"
-#include "reference/system.h"
-
-typedef struct Dynamics {
-    System system; // the first
-    Tree tree;
-    bool has_forces;        // whether springs, dampers or a torque act
-    bool may_branch;        // whether loops move freely, and may come to a change point
-    double start_energy;    // J, of such a linkage: what it has, less what it was given
-    double greatest_energy; // J, kinetic, so far
-} Dynamics;
-
-// Everything at one instant.
-typedef struct DynamicsState {
-    SystemState shared;                       // the first
-    TreeState tree;                           // accelerations filled in
-    ContactForce contacts[LINKAGE_JOINT_MAX]; // by contact
-    Vec2 reactions[LINKAGE_JOINT_MAX];        // N, on body b, of ideal joints
-    double drive_power;                       // W, of drive or torque
-    double damping_power;                     // W, that the dampers take
-} DynamicsState;
+#include "reference/tree.h"
 
 // Fails with ERR_CASE where a contact law does not fit a joint.
 bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err);

@@ -1,11 +1,16 @@
-// With which force do pin and hole press on one another?
+// With which force do two bodies press on one another where they touch?
 //
-// Along the normal as its law has it (reference/press.h), never below zero (that is the slack
-// mode), and against the sliding speed v_t of the two bodies at the wall's nearest point, along the
-// wall:
+// Where: contact/touch.h, with distances that keep their digits (reference/tree_line.h). Along the
+// normal n as its law has it (reference/press.h), never below zero (that is the slack mode), and
+// against the sliding speed v_t of the two bodies at the touching point, across the normal:
 //     mu N tanh(v_t / v_s)
-// tanh makes Coulomb's law smooth.
+// tanh makes Coulomb's law smooth. The second rate of the gap of two circles, d from centre to
+// centre, v its rate, + of discs and - of a pin in its hole:
+//     n . d'' +- (v across n)^2 / |d|
 #include "reference/dynamics_contact.h"
+
+#include "contact/pin_hole.h"
+#include "reference/tree_line.h"
 
 #include <math.h>
 
@@ -18,27 +23,19 @@ Vec2 dynamics_contact_velocity(const Tree *tree, const TreeState *state, int end
                : vec2_add(velocity, vec2_scale(state->motions[body].omega, vec2_perp(beside)));
 }
 
-void dynamics_contact_points(const Contact *contact, const ContactOptions *options,
-                             const PinHole *pose, Vec2 *from_hole, Vec2 *from_pin)
-{
-    *from_hole = *from_pin = (Vec2){0.0, 0.0};
-    if (options->friction > 0.0) {
-        *from_hole = vec2_scale(-contact->hole_radius, pose->normal);
-        *from_pin = vec2_sub(*from_hole, pose->eccentricity);
-    }
-}
-
 // Adds what friction does to a contact that presses.
-static void add_friction(const Contact *contact, const ContactOptions *options, const Tree *tree,
-                         const TreeState *state, ContactForce *force)
+static void add_friction(const Dynamics *dynamics, size_t number, const TreeState *state,
+                         ContactForce *force)
 {
-    const int hole = 2 * contact->joint;
+    const ContactOptions *options = &dynamics->system.scenario->contact;
+    const int end = 2 * dynamics->places[number].pair;
     const Vec2 tangent = vec2_perp(force->pose.normal);
-    Vec2 from_hole;
-    Vec2 from_pin;
-    dynamics_contact_points(contact, options, &force->pose, &from_hole, &from_pin);
-    const Vec2 sliding = vec2_sub(dynamics_contact_velocity(tree, state, hole + 1, from_pin),
-                                  dynamics_contact_velocity(tree, state, hole, from_hole));
+    Vec2 from_a;
+    Vec2 from_b;
+    dynamics_contact_points(&dynamics->places[number], &force->pose, &from_a, &from_b);
+    const Vec2 sliding =
+        vec2_sub(dynamics_contact_velocity(&dynamics->tree, state, end + 1, from_b),
+                 dynamics_contact_velocity(&dynamics->tree, state, end, from_a));
     const double speed = vec2_dot(tangent, sliding);
     const double held =
         options->friction * force->press.normal * tanh(speed / options->friction_speed);
@@ -46,19 +43,71 @@ static void add_friction(const Contact *contact, const ContactOptions *options, 
     force->press.friction_power = held * speed;
 }
 
-void dynamics_contact_find(const Contact *contact, const ContactOptions *options, const Tree *tree,
-                           const TreeState *state, ContactForce *force)
+static TouchPose pose_in_hole(const Contact *contact, const Tree *tree, const TreeState *state,
+                              int pair)
 {
-    const Vec2 gap = tree_joint_gap(tree, state, contact->joint);
-    const Vec2 moving = tree_joint_velocity(tree, state, contact->joint);
-    force->pose = pin_hole_pose((Vec2){0.0, 0.0}, gap, moving, contact->clearance);
-    force->press = press_find(contact, force->pose.penetration, force->pose.approach_speed);
+    const Vec2 velocity = tree_pair_velocity(tree, state, pair);
+    const PinHole pin = pin_hole_pose((Vec2){0.0, 0.0}, tree_pair_gap(tree, state, pair), velocity,
+                                      contact->clearance);
+    return (TouchPose){
+        .offset = pin.eccentricity,
+        .velocity = velocity,
+        .gap = pin.gap,
+        .has_normal = pin.has_normal,
+        .normal = pin.normal,
+        .approach_speed = pin.approach_speed,
+    };
+}
+
+// A point or disc on body b against a line of body a, or a disc against a disc.
+static TouchPose pose_outside(const Tree *tree, const TreeState *state, const PlanePlace *place)
+{
+    TouchPose pose = {
+        .offset = tree_pair_gap(tree, state, place->pair),
+        .velocity = tree_pair_velocity(tree, state, place->pair),
+        .gap = tree_distance(tree, state, place->pair),
+        .has_normal = true,
+    };
+    if (place->touch.shape == TOUCH_LINE) {
+        pose.normal = tree_normal(tree, state, place->pair);
+        pose.approach_speed = -tree_line_rate(tree, state, place->pair);
+        return pose;
+    }
+    const double distance = vec2_length(pose.offset);
+    pose.has_normal = distance > 0.0;
+    pose.normal = pose.has_normal ? vec2_scale(1.0 / distance, pose.offset) : (Vec2){0.0, 0.0};
+    pose.approach_speed = -vec2_dot(pose.normal, pose.velocity);
+    return pose;
+}
+
+double dynamics_contact_second(const Dynamics *dynamics, size_t number, const TreeState *state,
+                               const TouchPose *pose)
+{
+    const PlanePlace *place = &dynamics->places[number];
+    if (place->touch.shape == TOUCH_LINE) {
+        return tree_line_second(&dynamics->tree, state, place->pair);
+    }
+    const double across = vec2_cross(pose->normal, pose->velocity);
+    const double turning = across * across / sqrt(vec2_dot(pose->offset, pose->offset));
+    return vec2_dot(pose->normal, tree_pair_acceleration(&dynamics->tree, state, place->pair)) +
+           (place->touch.shape == TOUCH_HOLE ? -turning : turning);
+}
+
+void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeState *state,
+                           ContactForce *force)
+{
+    const Contact *contact = &dynamics->system.contacts[number];
+    const PlanePlace *place = &dynamics->places[number];
+    force->pose = place->touch.shape == TOUCH_HOLE
+                      ? pose_in_hole(contact, &dynamics->tree, state, place->pair)
+                      : pose_outside(&dynamics->tree, state, place);
+    force->press = press_find(contact, -force->pose.gap, force->pose.approach_speed);
     force->force = (Vec2){0.0, 0.0};
     if (contact->mode != CONTACT_PRESSING) {
         return;
     }
     force->force = vec2_scale(force->press.normal, force->pose.normal);
-    if (options->friction > 0.0) {
-        add_friction(contact, options, tree, state, force);
+    if (dynamics->system.scenario->contact.friction > 0.0) {
+        add_friction(dynamics, number, state, force);
     }
 }

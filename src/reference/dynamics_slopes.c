@@ -1,25 +1,28 @@
-// How do the accelerations change with coordinates and rates where pins press on their walls?
+// How do the accelerations change with coordinates and rates where bodies press on one another?
 //
 //     dA = M^-1 (G^T df + s dg),   de = G dq,  dv = G du
-// G: how the pin's centre moves in the hole by each coordinate; s: the arms of friction about the
-// bodies' centres, r - |e| of the pin, -r of the hole; e eccentricity, v velocity of the centre, r
-// the hole's radius, M the mass matrix with the loops' rows. Of the force on the pin
+// G: how the circle's centre on body b moves against the circle's on body a, or against the point
+// of body a's line under it, by each coordinate; s: the arms of friction about these points; e
+// offset of the centres, v velocity, M the mass matrix with the loops' rows. Of the force on body b
 //     f = N n - g t,   N = F_el(d) (1 + chi d'/v0) + c d',   g = mu N tanh((t v - s u) / v_s)
-// with d = |e| - play, d' = -n v, n = -e / |e|, and t at right angles to n:
-//     dn = -t (t de) / |e|,   dN = (1 + chi d'/v0) k dd + (chi F_el / v0 + c) dd'
+// with d the depth, d' = -n v and t at right angles to n:
+//     dn = +-t (t de) / |e|,   dN = (1 + chi d'/v0) k dd + (chi F_el / v0 + c) dd'
+// + of discs, - of a pin in its hole; a line's normal turns as slowly as the mechanism moves.
 #include "reference/dynamics_slopes.h"
 
 #include "base/dense.h"
 #include "reference/loops.h"
+#include "reference/tree_line.h"
 
 #include <math.h>
 
 // A pressing contact and what its force changes with.
 typedef struct Pressing {
-    const Contact *contact;
+    const Touch *touch;
     const ContactOptions *options;
     ContactForce force;
     Vec2 velocity;                    // m/s, v
+    double bend;                      // m, +-|e| over which n turns; infinite of a line
     double stiffness;                 // N/m, dN by depth
     double damping;                   // N s/m, dN by closing speed
     double grip;                      // 1, g / (mu N)
@@ -33,22 +36,35 @@ typedef struct Change {
     double friction; // N, g
 } Change;
 
+// The arm of friction about the centre of the circle on body b, or on body a about that of its own
+// circle or the point of its line, m.
+static double friction_arm(const Touch *touch, const TouchPose *pose, int side)
+{
+    switch (touch->shape) {
+    case TOUCH_HOLE:
+        return side == 0 ? -touch->radius_a : touch->radius_a - vec2_length(pose->offset);
+    case TOUCH_DISC:
+        return side == 0 ? touch->radius_a : vec2_length(pose->offset) - touch->radius_a;
+    default:
+        return side == 0 ? -touch->radius_b : touch->radius_b;
+    }
+}
+
 // Arms of friction, and how it grips at a state of the tree.
-static void find_friction(const Dynamics *dynamics, const TreeState *state, Pressing *pressing)
+static void find_friction(const Dynamics *dynamics, const TreeState *state, int pair,
+                          Pressing *pressing)
 {
     const Tree *tree = &dynamics->tree;
-    const double radius = pressing->contact->hole_radius;
-    const PinHole *pose = &pressing->force.pose;
-    const Vec2 tangent = vec2_perp(pose->normal);
-    double sliding = vec2_dot(tangent, pressing->velocity);
-    for (int end = 0; end < 2; end++) {
-        const int body = tree->end_bodies[2 * pressing->contact->joint + end];
-        const double arm = end == 0 ? -radius : radius - vec2_length(pose->eccentricity);
+    const TouchPose *pose = &pressing->force.pose;
+    double sliding = vec2_dot(vec2_perp(pose->normal), pressing->velocity);
+    for (int side = 0; side < 2; side++) {
+        const int body = tree->end_bodies[2 * pair + side];
+        const double arm = friction_arm(pressing->touch, pose, side);
         if (body != LINKAGE_GROUND) {
             sliding -= arm * state->motions[body].omega;
         }
-        if (body != LINKAGE_GROUND && body != tree->driven) {
-            pressing->arms[tree->angle_column[body]] = arm;
+        if (body != LINKAGE_GROUND && tree->angle_column[body] >= 0) {
+            pressing->arms[tree->angle_column[body]] += arm;
         }
     }
     pressing->grip = tanh(sliding / pressing->options->friction_speed);
@@ -57,20 +73,26 @@ static void find_friction(const Dynamics *dynamics, const TreeState *state, Pres
 static Pressing look_at(const Dynamics *dynamics, const TreeState *state, size_t number)
 {
     const Contact *contact = &dynamics->system.contacts[number];
+    const PlanePlace *place = &dynamics->places[number];
     const ContactOptions *options = &dynamics->system.scenario->contact;
-    Pressing pressing = {
-        .contact = contact,
-        .options = options,
-        .velocity = tree_joint_velocity(&dynamics->tree, state, contact->joint),
-    };
-    dynamics_contact_find(contact, options, &dynamics->tree, state, &pressing.force);
-    const PinHole *pose = &pressing.force.pose;
+    Pressing pressing = {.touch = &place->touch, .options = options, .bend = INFINITY};
+    dynamics_contact_find(dynamics, number, state, &pressing.force);
+    const TouchPose *pose = &pressing.force.pose;
+    pressing.velocity = pose->velocity;
+    if (place->touch.shape == TOUCH_LINE) {
+        // against the point of body a under the circle's centre
+        const double omega = tree_omega(state, dynamics->tree.end_bodies[2 * place->pair]);
+        pressing.velocity = vec2_sub(pose->velocity, vec2_scale(omega, vec2_perp(pose->offset)));
+    } else {
+        const double distance = vec2_length(pose->offset);
+        pressing.bend = place->touch.shape == TOUCH_DISC ? distance : -distance;
+    }
     pressing.stiffness = (1.0 + contact->damping_rate * pose->approach_speed) *
-                         force_law_tangent(&contact->law, fabs(pose->penetration));
+                         force_law_tangent(&contact->law, fabs(pose->gap));
     pressing.damping = press_damping(contact, &pressing.force.press);
-    loops_joint_row(&dynamics->tree, state, contact->joint, pressing.centre);
+    loops_pair_row(&dynamics->tree, state, place->pair, pressing.centre);
     if (options->friction > 0.0) {
-        find_friction(dynamics, state, &pressing);
+        find_friction(dynamics, state, place->pair, &pressing);
     }
     return pressing;
 }
@@ -81,8 +103,7 @@ static Change change_force(const Pressing *pressing, Vec2 moved, Vec2 faster, do
     const Vec2 normal = pressing->force.pose.normal;
     const Vec2 tangent = vec2_perp(normal);
     const Vec2 velocity = pressing->velocity;
-    const double turned =
-        -vec2_dot(tangent, moved) / vec2_length(pressing->force.pose.eccentricity);
+    const double turned = vec2_dot(tangent, moved) / pressing->bend;
     const double deeper = -vec2_dot(normal, moved);
     const double closing = -vec2_dot(normal, faster) - turned * vec2_dot(tangent, velocity);
     const double pressed = pressing->stiffness * deeper + pressing->damping * closing;

@@ -7,12 +7,13 @@
 #include "reference/loops.h"
 
 #include "base/dense.h"
+#include "reference/tree_line.h"
 
 #include <string.h>
 
 enum { PASSES = 2, ROW_MAX = 2 * TREE_LOOP_MAX };
 
-// m: a start is closed to some 1e-12; a pin farther from its own was meant to be elsewhere
+// m, or rad: a start is closed to some 1e-12; a pin farther from its own was meant to be elsewhere
 static const double ROUNDED = 1e-10;
 
 // Adds the velocity of one end by each coordinate, with a sign.
@@ -28,32 +29,79 @@ static void add_end(const Tree *tree, const TreeState *state, int end, double si
         Vec2 *entry = &row[node->chain[i]];
         *entry = vec2_add(*entry, vec2_scale(sign, columns[i]));
     }
-    Vec2 *angle = &row[node->angle_column];
-    *angle = vec2_add(*angle, vec2_scale(sign, vec2_perp(state->arms[end])));
+    if (node->angle_column >= 0) {
+        Vec2 *angle = &row[node->angle_column];
+        *angle = vec2_add(*angle, vec2_scale(sign, vec2_perp(state->arms[end])));
+    }
 }
 
-void loops_joint_row(const Tree *tree, const TreeState *state, int joint, Vec2 *row)
+// The coordinate that is a body's angle, or -1.
+static int angle_column(const Tree *tree, int body)
 {
-    const int end = 2 * joint;
+    return body == LINKAGE_GROUND ? -1 : tree->angle_column[body];
+}
+
+void loops_pair_row(const Tree *tree, const TreeState *state, int pair, Vec2 *row)
+{
+    const int end = 2 * pair;
     for (size_t j = 0; j < tree->coordinate_count; j++) {
         row[j] = (Vec2){0.0, 0.0};
     }
     add_end(tree, state, end, -1.0, row);
     add_end(tree, state, end + 1, 1.0, row);
+    const int turning = angle_column(tree, tree->end_bodies[end]);
+    if (tree->measures[pair] == TREE_LINE && turning >= 0) {
+        row[turning] = vec2_sub(row[turning], vec2_perp(tree_pair_gap(tree, state, pair)));
+    }
+}
+
+// Whether the rows of a joint are a distance from a line and a tilt.
+static bool is_on_line(const Tree *tree, int joint)
+{
+    const JointKind kind = tree->linkage->joints[joint].kind;
+    return kind == JOINT_PRISMATIC || kind == JOINT_GUIDE;
 }
 
 void loops_row(const Tree *tree, const TreeState *state, size_t loop, Vec2 *row)
 {
-    loops_joint_row(tree, state, tree->loops[loop], row);
+    const int joint = tree->loops[loop];
+    loops_pair_row(tree, state, joint, row);
+    if (!is_on_line(tree, joint)) {
+        return;
+    }
+    const Vec2 normal = tree_normal(tree, state, joint);
+    for (size_t j = 0; j < tree->coordinate_count; j++) {
+        row[j] = (Vec2){vec2_dot(normal, row[j]), 0.0};
+    }
+    for (int side = 0; side < 2; side++) {
+        const int turning = angle_column(tree, tree->end_bodies[2 * joint + side]);
+        if (turning >= 0) {
+            row[turning].y += side == 0 ? -1.0 : 1.0;
+        }
+    }
+}
+
+Vec2 loops_bias(const Tree *tree, const TreeState *state, size_t loop)
+{
+    const int joint = tree->loops[loop];
+    if (is_on_line(tree, joint)) {
+        return (Vec2){tree_line_bias(tree, state, joint), 0.0};
+    }
+    return vec2_sub(tree_end_bias(tree, state, 2 * joint + 1),
+                    tree_end_bias(tree, state, 2 * joint));
 }
 
 // Gap (or its rate) of one loop.
 static Vec2 loop_gap(const Tree *tree, const TreeState *state, size_t loop, bool is_rate)
 {
-    if (is_rate) {
-        return tree_joint_velocity(tree, state, tree->loops[loop]);
+    const int joint = tree->loops[loop];
+    if (is_on_line(tree, joint)) {
+        const double turning = tree_omega(state, tree->end_bodies[2 * joint + 1]) -
+                               tree_omega(state, tree->end_bodies[2 * joint]);
+        return is_rate ? (Vec2){tree_line_rate(tree, state, joint), turning}
+                       : (Vec2){tree_distance(tree, state, joint), tree_tilt(tree, state, joint)};
     }
-    return tree_joint_gap(tree, state, tree->loops[loop]);
+    return is_rate ? tree_pair_velocity(tree, state, joint) : tree_pair_gap(tree, state, joint);
 }
 
 // Changes x by J^T (J J^T)^-1 (-gap).
@@ -113,6 +161,19 @@ double loops_project(const Tree *tree, double since_s, double *q, double *u)
     return largest;
 }
 
+// Counts the gap of a joint from where it starts. Returns whether only rounding is left of it.
+static bool starts_rounded(Tree *tree, int joint)
+{
+    const Joint *of = &tree->linkage->joints[joint];
+    if (of->kind == JOINT_GUIDE) {
+        tree->base_distances[joint] -= of->guide.start.x;
+        tree->base_tilts[joint] -= of->guide.start.y;
+        return hypot(tree->base_distances[joint], tree->base_tilts[joint]) <= ROUNDED;
+    }
+    tree->base_gaps[joint] = vec2_sub(tree->base_gaps[joint], of->clearance.start);
+    return vec2_length(tree->base_gaps[joint]) <= ROUNDED;
+}
+
 void loops_start(Tree *tree, double *q, double *u)
 {
     loops_project(tree, 0.0, q, u);
@@ -121,13 +182,13 @@ void loops_start(Tree *tree, double *q, double *u)
     if (!linkage->driver.is_present) {
         return;
     }
-    // pins are brought to their starts as loops are closed, with speeds that are not used
+    // pins and blocks are brought to their starts as loops are closed, with speeds that are not
+    // used
     Tree pinned = *tree;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_CLEARANCE) {
+        if (linkage->joints[i].kind == JOINT_CLEARANCE || linkage->joints[i].kind == JOINT_GUIDE) {
             pinned.loops[pinned.loop_count++] = i;
-            pinned.base_gaps[i] = vec2_sub(tree->base_gaps[i], linkage->joints[i].clearance.start);
-            if (!(vec2_length(pinned.base_gaps[i]) <= ROUNDED)) {
+            if (!starts_rounded(&pinned, i)) {
                 return;
             }
         }

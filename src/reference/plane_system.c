@@ -1,12 +1,11 @@
 // What do those who step through the plane's equations of motion see of them?
-//
-// The depth of a contact grows as d'' = n . (a_pin - a_hole) + (v across n)^2 / |e|, n outwards.
 #include "reference/plane_system.h"
 
 #include "model/forces.h"
 #include "reference/dynamics.h"
 #include "reference/dynamics_slopes.h"
 #include "reference/loops.h"
+#include "reference/tree_line.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -98,19 +97,26 @@ static void plane_sizes(const System *system, const SystemState *state, size_t c
                         double *length, double *speed)
 {
     const Tree *tree = &dynamics_of(system)->tree;
-    const int joint = system->contacts[contact].joint;
-    add_end_size(tree, &state_of(state)->tree, 2 * joint, length, speed);
-    add_end_size(tree, &state_of(state)->tree, 2 * joint + 1, length, speed);
+    const int end = 2 * dynamics_of(system)->places[contact].pair;
+    add_end_size(tree, &state_of(state)->tree, end, length, speed);
+    add_end_size(tree, &state_of(state)->tree, end + 1, length, speed);
 }
 
 static double plane_crossing(const System *system, const SystemState *state, size_t contact)
 {
-    const Tree *tree = &dynamics_of(system)->tree;
+    const Dynamics *dynamics = dynamics_of(system);
+    const Tree *tree = &dynamics->tree;
     const TreeState *at = &state_of(state)->tree;
     const Contact *of = &system->contacts[contact];
-    const Vec2 v = tree_joint_velocity(tree, at, of->joint);
-    const Vec2 a = tree_joint_acceleration(tree, at, of->joint);
-    return vec2_length(v) + sqrt(of->clearance * vec2_length(a));
+    const PlanePlace *place = &dynamics->places[contact];
+    if (place->touch.shape == TOUCH_LINE) {
+        // along the line it may go as fast as it likes
+        return fabs(tree_line_rate(tree, at, place->pair)) +
+               sqrt(of->flight * fabs(tree_line_second(tree, at, place->pair)));
+    }
+    const Vec2 v = tree_pair_velocity(tree, at, place->pair);
+    const Vec2 a = tree_pair_acceleration(tree, at, place->pair);
+    return vec2_length(v) + sqrt(of->flight * vec2_length(a));
 }
 
 static double plane_fastest(const System *system, const SystemState *state)
@@ -129,18 +135,13 @@ static double plane_fastest(const System *system, const SystemState *state)
 static void plane_peak(const System *system, const SystemState *state, size_t number,
                        double values[2], double rates[2])
 {
-    const Tree *tree = &dynamics_of(system)->tree;
-    const Contact *contact = &system->contacts[number];
+    const Dynamics *dynamics = dynamics_of(system);
     const ContactForce *force = &state_of(state)->contacts[number];
-    const Vec2 outward = vec2_scale(-1.0, force->pose.normal);
-    const Vec2 closing = tree_joint_acceleration(tree, &state_of(state)->tree, contact->joint);
-    const Vec2 moving = tree_joint_velocity(tree, &state_of(state)->tree, contact->joint);
-    const double across = vec2_cross(outward, moving);
     const double second =
-        vec2_dot(outward, closing) + across * across / force->pose.eccentricity_size;
+        -dynamics_contact_second(dynamics, number, &state_of(state)->tree, &force->pose);
     values[0] = force->press.normal;
     values[1] = force->press.depth;
-    rates[0] = press_rate(contact, &force->press, second);
+    rates[0] = press_rate(&system->contacts[number], &force->press, second);
     rates[1] = force->press.closing;
 }
 
@@ -179,29 +180,77 @@ static void plane_turning(const System *system, const SystemState *state, double
     }
 }
 
+// Where body b of a prismatic joint or a block is: along and across the line, and how tilted.
+static void place_on_line(const Tree *tree, const TreeState *state, int joint, JointState *to)
+{
+    const Vec2 normal = tree_normal(tree, state, joint);
+    const Vec2 gap = tree_pair_gap(tree, state, joint);
+    to->eccentricity = (Vec2){vec2_cross(gap, normal), tree_distance(tree, state, joint)};
+    to->tilt = tree_tilt(tree, state, joint);
+}
+
+static void fill_ideal(const Dynamics *dynamics, const DynamicsState *at, int joint, JointState *to)
+{
+    const Tree *tree = &dynamics->tree;
+    const Vec2 a = tree_end_point(tree, &at->tree, 2 * joint);
+    const Vec2 b = tree_end_point(tree, &at->tree, 2 * joint + 1);
+    *to = (JointState){
+        .eccentricity = vec2_sub(b, a),
+        .force_on_b = at->reactions[joint],
+        .force = sqrt(vec2_dot(at->reactions[joint], at->reactions[joint])),
+        .is_touching = true,
+    };
+    if (tree->measures[joint] == TREE_LINE) {
+        place_on_line(tree, &at->tree, joint, to);
+        to->moment_on_b = at->couples[joint];
+    }
+}
+
+// Adds what presses at one of a block's corners.
+static void add_corner(const Dynamics *dynamics, const DynamicsState *at, size_t number,
+                       JointState *to)
+{
+    const Tree *tree = &dynamics->tree;
+    const ContactForce *corner = &at->contacts[number];
+    const int joint = dynamics->places[number].touch.joint;
+    const int pair = dynamics->places[number].pair;
+    Vec2 from_a;
+    Vec2 from_b;
+    dynamics_contact_points(&dynamics->places[number], &corner->pose, &from_a, &from_b);
+    // from the anchor of body b to the corner
+    const Vec2 arm = vec2_sub(vec2_add(tree_end_point(tree, &at->tree, 2 * pair + 1), from_b),
+                              tree_end_point(tree, &at->tree, 2 * joint + 1));
+    to->gap = fmin(to->gap, corner->pose.gap);
+    to->force_on_b = vec2_add(to->force_on_b, corner->force);
+    to->force += sqrt(vec2_dot(corner->force, corner->force));
+    to->moment_on_b += vec2_cross(arm, corner->force);
+    to->is_touching = to->is_touching || dynamics->system.contacts[number].mode != CONTACT_APART;
+}
+
 static void plane_joints(const System *system, const SystemState *state, JointState *joints,
                          SpaceJointState *space_joints)
 {
     (void)space_joints;
     const Linkage *linkage = &system->scenario->linkage;
-    const Tree *tree = &dynamics_of(system)->tree;
+    const Dynamics *dynamics = dynamics_of(system);
     const DynamicsState *at = state_of(state);
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_REVOLUTE) {
-            const Vec2 a = tree_end_point(tree, &at->tree, 2 * (int)i);
-            const Vec2 b = tree_end_point(tree, &at->tree, 2 * (int)i + 1);
-            joints[i] = (JointState){
-                .eccentricity = vec2_sub(b, a),
-                .force_on_b = at->reactions[i],
-                .force = sqrt(vec2_dot(at->reactions[i], at->reactions[i])),
-                .is_touching = true,
-            };
+        if (linkage_kind_is_ideal(linkage->joints[i].kind)) {
+            fill_ideal(dynamics, at, (int)i, &joints[i]);
+        } else if (linkage->joints[i].kind == JOINT_GUIDE) {
+            joints[i] = (JointState){.gap = INFINITY};
+            place_on_line(&dynamics->tree, &at->tree, (int)i, &joints[i]);
         }
     }
     for (size_t i = 0; i < system->contact_count; i++) {
         const ContactForce *force = &at->contacts[i];
-        joints[system->contacts[i].joint] = (JointState){
-            .eccentricity = force->pose.eccentricity,
+        JointState *joint = &joints[system->contacts[i].joint];
+        if (linkage->joints[system->contacts[i].joint].kind == JOINT_GUIDE) {
+            add_corner(dynamics, at, i, joint);
+            continue;
+        }
+        *joint = (JointState){
+            .eccentricity = force->pose.offset,
             .gap = force->pose.gap,
             .force_on_b = force->force,
             .force = sqrt(vec2_dot(force->force, force->force)),

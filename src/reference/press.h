@@ -19,8 +19,9 @@ typedef enum ContactMode {
 typedef struct Contact {
     int joint;
     ForceLaw law;
-    double clearance;   // m, radial, or of a collar in space axial
-    double hole_radius; // m
+    double clearance;   // m, radial, or of a collar in space axial; 0 of a stop
+    double flight;      // m, by which it may come nearer between two looks while it is apart
+    double hole_radius; // m, of a pin in space
     bool is_collar;     // of a pin in space: it stops the pin along its axis
     ContactMode mode;
     double onset_s;      // when the contact under way began

@@ -215,7 +215,8 @@ static double smooth_limit(const Stepper *stepper)
     return fmin(stepper->duration_s, bend_s) - time_s;
 }
 
-// The longest step in which no free pin crosses more than its play: error control alone lets a free
+// The longest step in which no free pin crosses more than its play, nor a stop more than its size:
+// error control alone lets a free
 // flight, which it integrates exactly, be as long as it likes.
 static double flight_limit(const Stepper *stepper)
 {
@@ -227,7 +228,7 @@ static double flight_limit(const Stepper *stepper)
             continue;
         }
         const double speed = system->kind->crossing(system, state_at_end(stepper), i);
-        limit = speed > 0.0 ? fmin(limit, contact->clearance / speed) : limit;
+        limit = speed > 0.0 ? fmin(limit, contact->flight / speed) : limit;
     }
     return limit;
 }

@@ -53,7 +53,7 @@ typedef struct SystemKind {
     // Sums of the lengths and speeds that the position and velocity of a contact come from.
     void (*sizes)(const System *system, const SystemState *state, size_t contact, double *length,
                   double *speed);
-    // How fast a pin that is apart may cross its play, m/s.
+    // How fast a contact that is apart may come nearer over its flight, m/s.
     double (*crossing)(const System *system, const SystemState *state, size_t contact);
     // The greatest speed of any point of a free body, m/s.
     double (*fastest)(const System *system, const SystemState *state);

@@ -8,32 +8,48 @@
 // coordinate. Source: Haug 1989, velocity transformations.
 #include "reference/tree.h"
 
+#include "reference/tree_slide.h"
+
 #include <string.h>
+
+// What moves the parent moves the child; where in the chain the parent's angle is.
+static void start_chain(const Tree *tree, TreeNode *node)
+{
+    node->parent_angle = -1;
+    if (node->joint < 0 || node->parent == LINKAGE_GROUND || node->parent == tree->driven) {
+        return;
+    }
+    const TreeNode *above = &tree->nodes[tree->node_of[node->parent]];
+    node->chain_count = above->chain_count;
+    memcpy(node->chain, above->chain, sizeof node->chain);
+    for (size_t i = 0; i < above->chain_count; i++) {
+        if ((int)above->chain[i] == above->angle_column) {
+            node->parent_angle = (int)i;
+        }
+    }
+}
 
 static void add_node(Tree *tree, int body, int joint, int parent)
 {
     TreeNode *node = &tree->nodes[tree->node_count++];
     const size_t first = tree->coordinate_count;
     *node = (TreeNode){.body = body, .joint = joint, .parent = parent};
+    tree->coordinate_count += joint >= 0 ? 1 : 3;
+    node->angle_column = (int)tree->coordinate_count - 1;
     if (joint >= 0) {
-        const bool is_own_b = tree->linkage->joints[joint].body_b == body;
+        const Joint *of = &tree->linkage->joints[joint];
+        const bool is_own_b = of->body_b == body;
         node->own_end = 2 * joint + (is_own_b ? 1 : 0);
         node->parent_end = 2 * joint + (is_own_b ? 0 : 1);
-        node->angle_column = tree->coordinate_count;
-        tree->coordinate_count += 1;
+        node->is_sliding = of->kind == JOINT_PRISMATIC;
+        if (node->is_sliding) {
+            node->angle_column = parent == LINKAGE_GROUND ? -1 : tree->angle_column[parent];
+        }
         tree->is_driven_hung_on = tree->is_driven_hung_on || parent == tree->driven;
-    } else {
-        node->angle_column = tree->coordinate_count + 2;
-        tree->coordinate_count += 3;
     }
-    tree->angle_column[body] = (int)node->angle_column;
+    tree->angle_column[body] = node->angle_column;
     tree->node_of[body] = (int)tree->node_count - 1;
-    // what moves the parent moves the child
-    if (joint >= 0 && parent != LINKAGE_GROUND && parent != tree->driven) {
-        const TreeNode *above = &tree->nodes[tree->node_of[parent]];
-        node->chain_count = above->chain_count;
-        memcpy(node->chain, above->chain, sizeof node->chain);
-    }
+    start_chain(tree, node);
     for (size_t column = first; column < tree->coordinate_count; column++) {
         node->chain[node->chain_count++] = column;
     }
@@ -48,7 +64,7 @@ static void grow(Tree *tree, bool *is_known, bool *is_used)
         has_grown = false;
         for (size_t i = 0; i < linkage->joint_count; i++) {
             const Joint *joint = &linkage->joints[i];
-            if (joint->kind != JOINT_REVOLUTE || is_used[i]) {
+            if (!linkage_kind_is_ideal(joint->kind) || is_used[i]) {
                 continue;
             }
             // the ground is known: it stands one before the first body
@@ -66,20 +82,60 @@ static void grow(Tree *tree, bool *is_known, bool *is_used)
     }
 }
 
-static void list_ends(Tree *tree)
+static void add_end(Tree *tree, int end, int body, Vec2 anchor)
 {
-    for (int joint = 0; joint < (int)tree->linkage->joint_count; joint++) {
-        const int bodies[2] = {tree->linkage->joints[joint].body_a,
-                               tree->linkage->joints[joint].body_b};
-        const Vec2 anchors[2] = {tree->linkage->joints[joint].anchor_a,
-                                 tree->linkage->joints[joint].anchor_b};
-        for (int side = 0; side < 2; side++) {
-            const int body = bodies[side];
-            tree->end_bodies[2 * joint + side] = body;
-            tree->anchors[2 * joint + side] = anchors[side];
-            if (body != LINKAGE_GROUND) {
-                tree->ends[body][tree->end_counts[body]++] = 2 * joint + side;
-            }
+    tree->end_bodies[end] = body;
+    tree->anchors[end] = anchor;
+    if (body != LINKAGE_GROUND) {
+        tree->ends[body][tree->end_counts[body]++] = end;
+    } else if (end >= TREE_NORMAL) {
+        tree->base_arms[end] = anchor;
+    }
+}
+
+// Adds the ends of a pair; with a line on body a whose normal has a direction there, rad.
+static void add_pair(Tree *tree, int pair, const Joint *joint, const Touch *ends,
+                     TreeMeasure measure)
+{
+    add_end(tree, 2 * pair, joint->body_a, ends->anchor_a);
+    add_end(tree, 2 * pair + 1, joint->body_b, ends->anchor_b);
+    tree->measures[pair] = measure;
+    tree->offsets[pair] = ends->clearance;
+    if (measure != TREE_POINTS) {
+        tree->measured[tree->measured_count++] = pair;
+    }
+    if (measure == TREE_LINE) {
+        add_end(tree, TREE_NORMAL + pair, joint->body_a,
+                vec2_rotate(ends->direction, (Vec2){1.0, 0.0}));
+    }
+}
+
+static void list_pairs(Tree *tree)
+{
+    const Linkage *linkage = tree->linkage;
+    Touch places[TOUCH_CORNERS];
+    tree->pair_count = linkage->joint_count;
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        places[0] = (Touch){
+            .anchor_a = joint->anchor_a,
+            .anchor_b = joint->anchor_b,
+            .direction = joint->direction + 0.5 * M_PI,
+        };
+        TreeMeasure measure = TREE_POINTS;
+        if (joint->kind == JOINT_STOP) {
+            touch_places(joint, i, places);
+            measure = places[0].shape == TOUCH_LINE ? TREE_LINE : TREE_DISC;
+        } else if (joint->kind == JOINT_PRISMATIC || joint->kind == JOINT_GUIDE) {
+            measure = TREE_LINE;
+        }
+        add_pair(tree, i, joint, &places[0], measure);
+    }
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        tree->corners[i] = (int)tree->pair_count;
+        for (size_t k = 0; joint->kind == JOINT_GUIDE && k < touch_places(joint, i, places); k++) {
+            add_pair(tree, (int)tree->pair_count++, joint, &places[k], TREE_LINE);
         }
     }
 }
@@ -87,7 +143,7 @@ static void list_ends(Tree *tree)
 void tree_build(const Linkage *linkage, Tree *tree)
 {
     *tree = (Tree){.linkage = linkage, .driven = linkage_driven_body(linkage)};
-    list_ends(tree);
+    list_pairs(tree);
     bool is_known[LINKAGE_BODY_MAX + 1] = {true};
     bool is_used[LINKAGE_JOINT_MAX] = {false};
     if (tree->driven >= 0) {
@@ -105,7 +161,7 @@ void tree_build(const Linkage *linkage, Tree *tree)
         }
     }
     for (int i = 0; i < (int)linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_REVOLUTE && !is_used[i]) {
+        if (linkage_kind_is_ideal(linkage->joints[i].kind) && !is_used[i]) {
             tree->loops[tree->loop_count++] = i;
             tree->is_driven_hung_on = tree->is_driven_hung_on ||
                                       linkage->joints[i].body_a == tree->driven ||
@@ -136,14 +192,6 @@ static inline void set_arms(const Tree *tree, int body, double d, TreeState *sta
     }
 }
 
-// Puts a body's centre where it has moved to.
-static inline void set_centre(const Tree *tree, int body, Vec2 moved, TreeState *state)
-{
-    const TreePoint base = tree->base_position[body];
-    state->moved[body] = moved;
-    state->motions[body].position = (Vec2){(double)base.x + moved.x, (double)base.y + moved.y};
-}
-
 static void set_driven(const Tree *tree, double since_s, TreeState *state)
 {
     const Driver *driver = &tree->linkage->driver;
@@ -152,10 +200,11 @@ static void set_driven(const Tree *tree, double since_s, TreeState *state)
     motion->angle = (double)tree->base_angle[tree->driven] + turned;
     motion->omega = driver->speed;
     motion->alpha = 0.0;
+    state->turn[tree->driven] = turned;
     set_arms(tree, tree->driven, turned, state);
     const int end = 2 * driver->joint + 1;
     const Vec2 arm = state->arms[end];
-    set_centre(tree, tree->driven, vec2_scale(-1.0, state->turned[end]), state);
+    tree_set_centre(tree, tree->driven, vec2_scale(-1.0, state->turned[end]), state);
     motion->velocity = vec2_scale(-driver->speed, vec2_perp(arm));
     motion->acceleration = vec2_scale(driver->speed * driver->speed, arm);
     state->bias[tree->driven] = motion->acceleration;
@@ -164,9 +213,9 @@ static void set_driven(const Tree *tree, double since_s, TreeState *state)
 static void set_floating(const Tree *tree, const TreeNode *node, const double *q, const double *u,
                          Vec2 *columns, TreeState *state)
 {
-    const size_t column = node->angle_column;
+    const size_t column = (size_t)node->angle_column;
     Motion *motion = &state->motions[node->body];
-    set_centre(tree, node->body, (Vec2){q[column - 2], q[column - 1]}, state);
+    tree_set_centre(tree, node->body, (Vec2){q[column - 2], q[column - 1]}, state);
     motion->velocity = (Vec2){u[column - 2], u[column - 1]};
     state->bias[node->body] = (Vec2){0.0, 0.0};
     columns[0] = (Vec2){1.0, 0.0};
@@ -180,19 +229,16 @@ static void set_hanging(const Tree *tree, const TreeNode *node, Vec2 *columns, T
     const Vec2 arm = state->arms[node->own_end];
     const Vec2 lever = vec2_perp(arm);
     const Vec2 parent_moved = tree_end_moved(tree, state, node->parent_end);
-    set_centre(tree, node->body, vec2_sub(parent_moved, state->turned[node->own_end]), state);
+    tree_set_centre(tree, node->body, vec2_sub(parent_moved, state->turned[node->own_end]), state);
     motion->velocity = vec2_sub(tree_end_velocity(tree, state, node->parent_end),
                                 vec2_scale(motion->omega, lever));
     state->bias[node->body] = vec2_add(tree_end_bias(tree, state, node->parent_end),
                                        vec2_scale(motion->omega * motion->omega, arm));
     const size_t own = node->chain_count - 1;
-    if (own > 0) {
-        // the parent's chain, whose last coordinate is the parent's angle
-        const Vec2 *above = state->columns[tree->node_of[node->parent]];
-        for (size_t i = 0; i < own; i++) {
-            columns[i] = above[i];
-        }
-        columns[own - 1] = vec2_add(columns[own - 1], vec2_perp(state->arms[node->parent_end]));
+    tree_copy_chain(tree, node, columns, state);
+    if (node->parent_angle >= 0) {
+        Vec2 *by_parent = &columns[node->parent_angle];
+        *by_parent = vec2_add(*by_parent, vec2_perp(state->arms[node->parent_end]));
     }
     columns[own] = vec2_scale(-1.0, lever);
 }
@@ -205,10 +251,18 @@ void tree_evaluate(const Tree *tree, double since_s, const double *q, const doub
     }
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
+        if (node->is_sliding) {
+            tree_slide_turn(tree, node, q, u, state);
+            set_arms(tree, node->body, state->turn[node->body], state);
+            tree_slide_move(tree, node, q, u, state->columns[i], state);
+            continue;
+        }
+        const double turn = q[node->angle_column];
         Motion *motion = &state->motions[node->body];
-        motion->angle = (double)tree->base_angle[node->body] + q[node->angle_column];
+        state->turn[node->body] = turn;
+        motion->angle = (double)tree->base_angle[node->body] + turn;
         motion->omega = u[node->angle_column];
-        set_arms(tree, node->body, q[node->angle_column], state);
+        set_arms(tree, node->body, turn, state);
         if (node->joint < 0) {
             set_floating(tree, node, q, u, state->columns[i], state);
         } else {
@@ -227,6 +281,7 @@ void tree_accelerate(const Tree *tree, const double *rates, TreeState *state)
                 vec2_add(acceleration, vec2_scale(rates[node->chain[j]], state->columns[i][j]));
         }
         state->motions[node->body].acceleration = acceleration;
-        state->motions[node->body].alpha = rates[node->angle_column];
+        state->motions[node->body].alpha =
+            node->angle_column >= 0 ? rates[node->angle_column] : tree_alpha(state, node->parent);
     }
 }

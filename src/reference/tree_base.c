@@ -5,6 +5,9 @@
 // the gap of each joint there comes from positions in long double. It is worked out once a step.
 #include "reference/tree.h"
 
+#include "model/joint_rows.h"
+#include "reference/tree_line.h"
+
 static TreePoint add(TreePoint a, TreePoint b)
 {
     return (TreePoint){a.x + b.x, a.y + b.y};
@@ -33,6 +36,58 @@ static TreePoint end_point(const Tree *tree, const TreePoint *arms, int end)
                                   : add(tree->base_position[body], arms[end]);
 }
 
+// The normal of a pair's line; of a body that does not move that of its frame.
+static TreePoint normal_of(const Tree *tree, const TreePoint *arms, int pair)
+{
+    const int end = TREE_NORMAL + pair;
+    return tree->end_bodies[end] == LINKAGE_GROUND
+               ? (TreePoint){tree->anchors[end].x, tree->anchors[end].y}
+               : arms[end];
+}
+
+// Where a body that slides is, with the angle that it has on its parent.
+static void settle_sliding(Tree *tree, const TreeNode *node, TreePoint *arms)
+{
+    const Joint *joint = &tree->linkage->joints[node->joint];
+    const bool is_b = node->own_end % 2 == 1;
+    const long double held = is_b ? joint->held_angle : -(long double)joint->held_angle;
+    tree->base_angle[node->body] =
+        held + (node->parent == LINKAGE_GROUND ? 0.0L : tree->base_angle[node->parent]);
+    set_arms(tree, node->body, arms);
+    const TreePoint normal = normal_of(tree, arms, node->joint);
+    const long double slide = is_b ? tree->base_slide[node->body] : -tree->base_slide[node->body];
+    const TreePoint moved = {slide * normal.y, -slide * normal.x};
+    tree->base_position[node->body] =
+        subtract(add(end_point(tree, arms, node->parent_end), moved), arms[node->own_end]);
+}
+
+static long double base_angle_of(const Tree *tree, int body)
+{
+    return body == LINKAGE_GROUND ? 0.0L : tree->base_angle[body];
+}
+
+// Distances from lines and between discs, and tilts.
+static void measure(Tree *tree, const TreePoint *arms)
+{
+    for (size_t i = 0; i < tree->measured_count; i++) {
+        const int pair = tree->measured[i];
+        const TreePoint gap =
+            subtract(end_point(tree, arms, 2 * pair + 1), end_point(tree, arms, 2 * pair));
+        long double distance = hypotl(gap.x, gap.y);
+        if (tree->measures[pair] == TREE_LINE) {
+            const TreePoint normal = normal_of(tree, arms, pair);
+            tree->base_arms[TREE_NORMAL + pair] = (Vec2){(double)normal.x, (double)normal.y};
+            distance = normal.x * gap.x + normal.y * gap.y;
+        }
+        tree->base_distances[pair] = (double)(distance - tree->offsets[pair]);
+    }
+    for (size_t i = 0; tree->measured_count > 0 && i < tree->linkage->joint_count; i++) {
+        const Joint *joint = &tree->linkage->joints[i];
+        tree->base_tilts[i] = (double)(base_angle_of(tree, joint->body_b) -
+                                       base_angle_of(tree, joint->body_a) - joint->held_angle);
+    }
+}
+
 // Centres of the bodies that hang, arms and gaps, from the angles and the floating bodies' centres.
 static void settle(Tree *tree)
 {
@@ -45,22 +100,27 @@ static void settle(Tree *tree)
     }
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
+        if (node->is_sliding) {
+            settle_sliding(tree, node, arms);
+            continue;
+        }
         set_arms(tree, node->body, arms);
         if (node->joint >= 0) {
             tree->base_position[node->body] =
                 subtract(end_point(tree, arms, node->parent_end), arms[node->own_end]);
         }
     }
-    for (int joint = 0; joint < (int)tree->linkage->joint_count; joint++) {
+    for (int pair = 0; pair < (int)tree->pair_count; pair++) {
         const TreePoint gap =
-            subtract(end_point(tree, arms, 2 * joint + 1), end_point(tree, arms, 2 * joint));
-        tree->base_gaps[joint] = (Vec2){(double)gap.x, (double)gap.y};
-        for (int end = 2 * joint; end <= 2 * joint + 1; end++) {
+            subtract(end_point(tree, arms, 2 * pair + 1), end_point(tree, arms, 2 * pair));
+        tree->base_gaps[pair] = (Vec2){(double)gap.x, (double)gap.y};
+        for (int end = 2 * pair; end <= 2 * pair + 1; end++) {
             if (tree->end_bodies[end] != LINKAGE_GROUND) {
                 tree->base_arms[end] = (Vec2){(double)arms[end].x, (double)arms[end].y};
             }
         }
     }
+    measure(tree, arms);
 }
 
 void tree_start(Tree *tree, const Motion *motions, double *u)
@@ -74,6 +134,13 @@ void tree_start(Tree *tree, const Motion *motions, double *u)
         const Motion *motion = &motions[node->body];
         tree->base_angle[node->body] = motion->angle;
         tree->base_position[node->body] = (TreePoint){motion->position.x, motion->position.y};
+        if (node->is_sliding) {
+            const Vec2 along = joint_rows_along(tree->linkage, motions, node->joint);
+            const JointGap gap = linkage_joint_gap(tree->linkage, motions, node->joint);
+            tree->base_slide[node->body] = vec2_dot(along, gap.position);
+            u[node->chain[node->chain_count - 1]] = vec2_dot(along, gap.velocity);
+            continue;
+        }
         u[node->angle_column] = motion->omega;
         if (node->joint < 0) {
             u[node->angle_column - 2] = motion->velocity.x;
@@ -92,6 +159,10 @@ void tree_rebase(Tree *tree, double since_s, double *q)
     }
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
+        if (node->is_sliding) {
+            tree->base_slide[node->body] += q[node->chain[node->chain_count - 1]];
+            continue;
+        }
         tree->base_angle[node->body] += q[node->angle_column];
         if (node->joint < 0) {
             TreePoint *centre = &tree->base_position[node->body];

@@ -42,8 +42,8 @@ static void press(Pressed *pressed, size_t joints)
         Contact *contact = &dynamics->system.contacts[i];
         contact->mode = CONTACT_PRESSING;
         contact->damping_rate = 1e3;
-        const PinHole pose = dynamics_contact(dynamics, i, 0.0, pressed->y).pose;
-        contact->clearance = vec2_length(pose.eccentricity) - DEPTH;
+        const TouchPose pose = dynamics_contact(dynamics, i, 0.0, pressed->y).pose;
+        contact->clearance = vec2_length(pose.offset) - DEPTH;
     }
 }
 

@@ -1,0 +1,59 @@
+// How does a body follow the one that it slides on?
+//
+// It slides by x along the direction t of body a turns with its parent p, w_i = w_p = w, and
+// with r = r_i - r_p and + where it is body b, - where it is body a:
+//     r_i = r_p + R_p s_p +- x t - R_i s_i
+//     v_i = v_p + w z x r +- x' t
+//     a_i = a_p + al_p z x r - w^2 r +- (x'' t + 2 w x' z x t)
+#include "reference/tree_slide.h"
+
+void tree_slide_move(const Tree *tree, const TreeNode *node, const double *q, const double *u,
+                     Vec2 *columns, TreeState *state)
+{
+    Motion *motion = &state->motions[node->body];
+    const size_t own = node->chain_count - 1;
+    const double slide = q[node->chain[own]];
+    const double speed = u[node->chain[own]];
+    // from the direction's normal to what moves the body
+    const double sign = node->own_end % 2 == 1 ? -1.0 : 1.0;
+    const Vec2 along = vec2_scale(sign, vec2_perp(tree_normal(tree, state, node->joint)));
+    const Vec2 turned = vec2_scale(sign, vec2_perp(tree_normal_turned(tree, state, node->joint)));
+    const double before = (double)tree->base_slide[node->body];
+    const Vec2 moved = vec2_add(vec2_scale(slide, along), vec2_scale(before, turned));
+    tree_set_centre(tree, node->body,
+                    vec2_add(vec2_sub(tree_end_moved(tree, state, node->parent_end),
+                                      state->turned[node->own_end]),
+                             moved),
+                    state);
+    // from the parent's end to the body's centre
+    const Vec2 behind = vec2_sub(vec2_scale(before + slide, along), state->arms[node->own_end]);
+    const double omega = motion->omega;
+    motion->velocity = vec2_add(vec2_add(tree_end_velocity(tree, state, node->parent_end),
+                                         vec2_scale(omega, vec2_perp(behind))),
+                                vec2_scale(speed, along));
+    state->bias[node->body] = vec2_add(
+        vec2_sub(tree_end_bias(tree, state, node->parent_end), vec2_scale(omega * omega, behind)),
+        vec2_scale(2.0 * omega * speed, vec2_perp(along)));
+    tree_copy_chain(tree, node, columns, state);
+    if (node->parent_angle >= 0) {
+        const Vec2 lever = vec2_add(state->arms[node->parent_end], behind);
+        Vec2 *by_parent = &columns[node->parent_angle];
+        *by_parent = vec2_add(*by_parent, vec2_perp(lever));
+    }
+    columns[own] = along;
+}
+
+void tree_slide_turn(const Tree *tree, const TreeNode *node, const double *q, const double *u,
+                     TreeState *state)
+{
+    Motion *motion = &state->motions[node->body];
+    double *turn = &state->turn[node->body];
+    if (node->angle_column >= 0) {
+        *turn = q[node->angle_column];
+        motion->omega = u[node->angle_column];
+    } else {
+        *turn = node->parent == LINKAGE_GROUND ? 0.0 : state->turn[node->parent];
+        motion->omega = tree_omega(state, node->parent);
+    }
+    motion->angle = (double)tree->base_angle[node->body] + *turn;
+}

@@ -1,0 +1,169 @@
+// The freedoms of a linkage as a tree: one angle for each body that hangs on a revolute joint, one
+// slide for each that hangs on a prismatic joint (its angle is that of the body it hangs on), place
+// and angle for one that floats, and two constraint rows for each ideal joint that closes a loop.
+//
+// Ideal joints of the tree hold exactly, by construction. The driven body and the ground are known.
+// Time and coordinates are those since the base: where the linkage stood at the start of the
+// present step, kept in long double. How far a pin has moved in its hole since then carries all the
+// digits of a double, however long the links and whatever the angles.
+#pragma once
+
+#include "contact/touch.h"
+
+enum {
+    TREE_COORDINATE_MAX = 3 * LINKAGE_BODY_MAX,
+    TREE_LOOP_MAX = LINKAGE_JOINT_MAX,
+    // pairs of points, one on body a and one on body b: pair j has the anchors of joint j, those
+    // behind the joints' the corners of blocks between guides and points of the guides
+    TREE_PAIR_MAX = LINKAGE_JOINT_MAX + TOUCH_MAX,
+};
+
+// The ends of the pairs: end 2 p on body a, end 2 p + 1 on body b. Behind them the unit normals of
+// the lines of the pairs that have one: they turn with body a as arms do.
+enum { TREE_NORMAL = 2 * TREE_PAIR_MAX, TREE_END_MAX = 3 * TREE_PAIR_MAX };
+
+// What the distance between the ends of a pair is measured along (reference/tree_line.h).
+typedef enum TreeMeasure {
+    TREE_POINTS, // x and y
+    TREE_LINE,   // the normal of a line on body a
+    TREE_DISC,   // the line from one end to the other: the ends are centres of discs
+} TreeMeasure;
+
+typedef struct TreeNode {
+    int body;           // number of a body that is free to move
+    int joint;          // ideal joint it hangs on, or -1 for a floating body
+    bool is_sliding;    // whether that is a prismatic joint
+    int parent;         // body at the other end of that joint; LINKAGE_GROUND or a body's number
+    int parent_end;     // of the joint, on the parent
+    int own_end;        // and on the body
+    int angle_column;   // coordinate that is its angle, or that of the body on which it slides: -1
+                        // where a drive or the ground has it; a floating body's x and y stand
+                        // before it
+    int parent_angle;   // place in the chain of the parent's angle; -1: no coordinate is that
+    size_t chain_count; // coordinates that move it, its own last, and which
+    size_t chain[TREE_COORDINATE_MAX];
+} TreeNode;
+
+// m, in the world
+typedef struct TreePoint {
+    long double x;
+    long double y;
+} TreePoint;
+
+typedef struct Tree {
+    const Linkage *linkage;
+    int driven;        // number of the driven body or LINKAGE_GROUND
+    size_t node_count; // free bodies, parents before children
+    TreeNode nodes[LINKAGE_BODY_MAX];
+    int angle_column[LINKAGE_BODY_MAX]; // by body; -1 for the driven one and what slides on it
+    int node_of[LINKAGE_BODY_MAX];      // by body; -1 for the driven one
+    size_t pair_count;                  // those of the joints first
+    int corners[LINKAGE_JOINT_MAX];     // first pair of a block's corners, by joint
+    size_t measured_count;              // pairs with a line or discs, and which
+    int measured[TREE_PAIR_MAX];
+    TreeMeasure measures[TREE_PAIR_MAX]; // by pair
+    double offsets[TREE_PAIR_MAX];       // m, by which the distance of that pair counts less
+    int end_bodies[TREE_END_MAX];        // the body of each end, or LINKAGE_GROUND
+    Vec2 anchors[TREE_END_MAX];          // of each end in its body's frame, m
+    size_t end_counts[LINKAGE_BODY_MAX]; // how many ends each body has, and which
+    int ends[LINKAGE_BODY_MAX][TREE_END_MAX];
+    size_t coordinate_count;
+    bool is_driven_hung_on; // whether a body hangs on the driven one by an ideal joint
+    size_t loop_count;
+    int loops[TREE_LOOP_MAX]; // ideal joints that close loops
+    // the base
+    long double base_time_s;
+    long double base_angle[LINKAGE_BODY_MAX];  // rad
+    TreePoint base_position[LINKAGE_BODY_MAX]; // of the centres
+    long double base_slide[LINKAGE_BODY_MAX];  // m, of bodies that slide
+    Vec2 base_arms[TREE_END_MAX];              // from the body's centre to each end, m
+    Vec2 base_gaps[TREE_PAIR_MAX];             // from the end on body a to that on body b, m
+    double base_distances[TREE_PAIR_MAX];      // m, of measured pairs, offset subtracted
+    double base_tilts[LINKAGE_JOINT_MAX];      // rad, of prismatic joints and blocks
+} Tree;
+
+// Where the tree's bodies are and how their velocities depend on the coordinates' rates.
+typedef struct TreeState {
+    Motion motions[LINKAGE_BODY_MAX]; // of all bodies; accelerations after tree_accelerate
+    Vec2 arms[TREE_END_MAX];          // from the body's centre to each end, m; not of ground ends
+    Vec2 turned[TREE_END_MAX];        // change of that arm since the base, m
+    Vec2 moved[LINKAGE_BODY_MAX];     // of each centre since the base, m
+    double turn[LINKAGE_BODY_MAX];    // of each body since the base, rad
+    Vec2 bias[LINKAGE_BODY_MAX]; // acceleration of each centre with all coordinates' rates steady
+    // velocity of each node's centre by the rate of each coordinate of its chain
+    Vec2 columns[LINKAGE_BODY_MAX][TREE_COORDINATE_MAX];
+} TreeState;
+
+// How far an end of a joint has moved since the base, m.
+static inline Vec2 tree_end_moved(const Tree *tree, const TreeState *state, int end)
+{
+    const int body = tree->end_bodies[end];
+    return body == LINKAGE_GROUND ? (Vec2){0.0, 0.0}
+                                  : vec2_add(state->moved[body], state->turned[end]);
+}
+
+// How far the end on body b of a pair has moved against that on body a since the base, m.
+static inline Vec2 tree_pair_moved(const Tree *tree, const TreeState *state, int pair)
+{
+    return vec2_sub(tree_end_moved(tree, state, 2 * pair + 1),
+                    tree_end_moved(tree, state, 2 * pair));
+}
+
+// Where the end on body b of a pair is, seen from that on body a, m.
+static inline Vec2 tree_pair_gap(const Tree *tree, const TreeState *state, int pair)
+{
+    return vec2_add(tree->base_gaps[pair], tree_pair_moved(tree, state, pair));
+}
+
+// An end of a joint: its position, velocity, bias and (after tree_accelerate) acceleration.
+static inline Vec2 tree_end_point(const Tree *tree, const TreeState *state, int end)
+{
+    const int body = tree->end_bodies[end];
+    return body == LINKAGE_GROUND ? tree->anchors[end]
+                                  : vec2_add(state->motions[body].position, state->arms[end]);
+}
+
+static inline Vec2 tree_end_velocity(const Tree *tree, const TreeState *state, int end)
+{
+    const int body = tree->end_bodies[end];
+    if (body == LINKAGE_GROUND) {
+        return (Vec2){0.0, 0.0};
+    }
+    const Motion *motion = &state->motions[body];
+    return vec2_add(motion->velocity, vec2_scale(motion->omega, vec2_perp(state->arms[end])));
+}
+
+static inline Vec2 tree_end_bias(const Tree *tree, const TreeState *state, int end)
+{
+    const int body = tree->end_bodies[end];
+    if (body == LINKAGE_GROUND) {
+        return (Vec2){0.0, 0.0};
+    }
+    const double omega = state->motions[body].omega;
+    return vec2_sub(state->bias[body], vec2_scale(omega * omega, state->arms[end]));
+}
+
+static inline Vec2 tree_end_acceleration(const Tree *tree, const TreeState *state, int end)
+{
+    const int body = tree->end_bodies[end];
+    if (body == LINKAGE_GROUND) {
+        return (Vec2){0.0, 0.0};
+    }
+    const Motion *motion = &state->motions[body];
+    const Vec2 turned = vec2_sub(vec2_scale(motion->alpha, vec2_perp(state->arms[end])),
+                                 vec2_scale(motion->omega * motion->omega, state->arms[end]));
+    return vec2_add(motion->acceleration, turned);
+}
+
+// How the end on body b of a pair moves against that on body a.
+static inline Vec2 tree_pair_velocity(const Tree *tree, const TreeState *state, int pair)
+{
+    return vec2_sub(tree_end_velocity(tree, state, 2 * pair + 1),
+                    tree_end_velocity(tree, state, 2 * pair));
+}
+
+static inline Vec2 tree_pair_acceleration(const Tree *tree, const TreeState *state, int pair)
+{
+    return vec2_sub(tree_end_acceleration(tree, state, 2 * pair + 1),
+                    tree_end_acceleration(tree, state, 2 * pair));
+}
