@@ -6,6 +6,7 @@
 #include "casefile/build.h"
 #include "casefile/check.h"
 #include "casefile/closure.h"
+#include "casefile/joint_kind.h"
 #include "casefile/store.h"
 #include "model/space.h"
 
@@ -22,7 +23,9 @@ static void store_presence(const Entries *entries, Scenario *scenario)
     for (size_t i = 0; i < LINKAGE_JOINT_MAX; i++) {
         Joint *joint = &linkage->joints[i];
         text_copy(joint->name, LINKAGE_NAME_SIZE, names[SCHEMA_JOINT].names[i]);
-        joint->kind = entries_has_play(entries, i) ? JOINT_CLEARANCE : JOINT_REVOLUTE;
+        joint->kind = joint_kind_find(entries, i);
+        joint->stop.is_disc = entries_find(entries, "joints.*.discs", i) != NULL;
+        joint->contact.has_restitution = entries_find(entries, "joints.*.restitution", i) != NULL;
         joint->space.axis = (Vec3){0.0, 0.0, 1.0};
     }
     for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {

@@ -9,6 +9,7 @@
 #include "base/dense.h"
 #include "casefile/keys.h"
 #include "model/forces.h"
+#include "model/joint_rows.h"
 #include "model/kinematics.h"
 #include "model/nearest.h"
 #include "model/space_nearest.h"
@@ -96,6 +97,13 @@ static Linkage shift_holes(const Linkage *linkage, const Motion *motions)
     Linkage shifted = *linkage;
     for (size_t i = 0; i < shifted.joint_count; i++) {
         Joint *joint = &shifted.joints[i];
+        if (joint->kind == JOINT_GUIDE) {
+            // the ideal joint whose line goes through the block's middle and is tilted as the block
+            const Vec2 across = vec2_perp(vec2_rotate(joint->direction, (Vec2){1.0, 0.0}));
+            joint->anchor_a = vec2_add(joint->anchor_a, vec2_scale(joint->guide.start.x, across));
+            joint->held_angle += joint->guide.start.y;
+            joint->kind = JOINT_PRISMATIC;
+        }
         if (joint->kind != JOINT_CLEARANCE) {
             continue;
         }
@@ -108,7 +116,7 @@ static Linkage shift_holes(const Linkage *linkage, const Motion *motions)
 
 bool build_is_determined(const Linkage *linkage)
 {
-    return linkage->driver.is_present && 2 * linkage->joint_count + 1 == 3 * linkage->body_count;
+    return linkage->driver.is_present && joint_rows_total(linkage) + 1 == 3 * linkage->body_count;
 }
 
 bool build_start(Linkage *linkage, Motion *motions, Err *err)
@@ -151,13 +159,21 @@ static Vec2 to_body(const Motion *motions, int body, Vec2 point)
                : vec2_rotate(-motions[body].angle, vec2_sub(point, motions[body].position));
 }
 
+static double angle_of(const Motion *motions, int body)
+{
+    return body == LINKAGE_GROUND ? 0.0 : motions[body].angle;
+}
+
 static void set_anchors(Linkage *linkage, const Motion *motions)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Joint *joint = &linkage->joints[i];
         const Vec2 point = joint->anchor_a;
+        const Vec2 other = joint->kind == JOINT_STOP ? joint->anchor_b : point;
         joint->anchor_a = to_body(motions, joint->body_a, point);
-        joint->anchor_b = to_body(motions, joint->body_b, point);
+        joint->anchor_b = to_body(motions, joint->body_b, other);
+        joint->direction -= angle_of(motions, joint->body_a);
+        joint->held_angle = angle_of(motions, joint->body_b) - angle_of(motions, joint->body_a);
     }
     for (size_t i = 0; i < linkage->spring_count; i++) {
         Spring *spring = &linkage->springs[i];
@@ -184,7 +200,7 @@ static bool check_redundancy(const Entries *entries, const Linkage *linkage, con
 {
     bool is_ideal[LINKAGE_JOINT_MAX];
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        is_ideal[i] = linkage->joints[i].kind == JOINT_REVOLUTE;
+        is_ideal[i] = linkage_kind_is_ideal(linkage->joints[i].kind);
     }
     Jacobian jacobian;
     kinematics_jacobian(linkage, motions, is_ideal, true, &jacobian);

@@ -3,12 +3,13 @@
 
 #include "casefile/build.h"
 #include "casefile/check_forces.h"
+#include "casefile/check_joints.h"
 #include "casefile/check_space.h"
+#include "casefile/joint_kind.h"
 #include "casefile/keys.h"
-#include "casefile/store.h"
+#include "casefile/target.h"
 #include "contact/damping.h"
 #include "contact/facets.h"
-#include "contact/law.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -55,8 +56,10 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
     text_init(&allowed);
     if (row->rivalry == SCHEMA_SIZES) {
         text_append(&allowed, "hole and pin, or radial-clearance");
+    } else if (row->rivalry == SCHEMA_STOPPING) {
+        text_append(&allowed, "normal of a line, or discs");
     } else {
-        store_describe(entries, row, &allowed);
+        target_describe(entries, row, &allowed);
     }
     entries_refuse_group(group, err, "%s is missing\nallowed: %s", path, allowed.data);
     text_finish(&allowed);
@@ -69,8 +72,8 @@ static bool is_wanted(const Entries *entries, const SchemaRow *row, size_t index
     if (row->form != SCHEMA_BOTH && row->form != entries->form) {
         return false;
     }
-    if (row->rivalry == SCHEMA_SIZES) {
-        return entries_has_play(entries, index);
+    if (row->family == SCHEMA_JOINT && !schema_is_of_kind(row, joint_kind_find(entries, index))) {
+        return false;
     }
     const bool is_drive = strncmp(row->path, "drive.", strlen("drive.")) == 0;
     return !is_drive || entries->form == SCHEMA_SHORT || entries_group(entries, "drive", 0) != NULL;
@@ -78,6 +81,9 @@ static bool is_wanted(const Entries *entries, const SchemaRow *row, size_t index
 
 bool check_required(const Entries *entries, Err *err)
 {
+    if (!joint_kind_check(entries, err)) {
+        return false;
+    }
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
         const SchemaRow *row = &SCHEMA_ROWS[i];
         const size_t members = row->is_required ? entries_family_size(entries, row) : 0;
@@ -87,63 +93,6 @@ bool check_required(const Entries *entries, Err *err)
                 return refuse_missing(entries, row, index, err);
             }
         }
-    }
-    return true;
-}
-
-// Whether the law's force depends on the length of the cylinders.
-static bool needs_width(const Scenario *scenario)
-{
-    const ContactOptions *contact = &scenario->contact;
-    return law_get(contact->law)->needs_width && contact->stiffness == 0.0 &&
-           contact->model == CONTACT_IMPACT;
-}
-
-static bool check_sizes(const Entries *entries, size_t index, const Joint *joint, Err *err)
-{
-    const Entry *hole = entries_find(entries, "joints.*.hole", index);
-    const Entry *pin = entries_find(entries, "joints.*.pin", index);
-    if (hole == NULL || pin == NULL || linkage_radial_clearance(joint) > 0.0) {
-        return true;
-    }
-    const Entry *culprit = entries_blame(entries, "joints.*.pin joints.*.hole", index);
-    const bool hole_is_new = culprit == hole;
-    return entries_refuse(
-        culprit, err, "the pin (%.60s) must be smaller than the hole (%.60s)\nallowed: %s %.60s",
-        pin->node->text, hole->node->text, hole_is_new ? "a hole above" : "a pin below",
-        hole_is_new ? pin->node->text : hole->node->text);
-}
-
-static bool check_joint(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
-{
-    const Joint *joint = &scenario->linkage.joints[index];
-    const EntryGroup *group = entries_group(entries, "joints.*", index);
-    if (joint->kind != JOINT_CLEARANCE) {
-        return true;
-    }
-    if (!check_sizes(entries, index, joint, err)) {
-        return false;
-    }
-    const double radial = linkage_radial_clearance(joint);
-    const double start = vec2_length(joint->clearance.start);
-    if (!(start <= radial)) {
-        return entries_refuse(
-            entries_blame(entries,
-                          "joints.*.start joints.*.radial-clearance joints.*.hole joints.*.pin",
-                          index),
-            err,
-            "the pin starts %.6g um off the centre, inside the metal\n"
-            "allowed: up to the radial clearance, %.6g um",
-            1e6 * start, 1e6 * radial);
-    }
-    if (needs_width(scenario) && joint->clearance.width == 0.0) {
-        const Entry *law = entries_find(entries, "contact.law", 0);
-        static const char FORMAT[] = "the law %s needs the width of joint %s\n"
-                                     "allowed: width: 13 mm, or a law without it";
-        const char *name = OPTIONS_LAWS[scenario->contact.law];
-        return law != NULL && law->source->is_override
-                   ? entries_refuse(law, err, FORMAT, name, joint->name)
-                   : entries_refuse_group(group, err, FORMAT, name, joint->name);
     }
     return true;
 }
@@ -354,17 +303,21 @@ static bool check_drive(const Entries *entries, const Linkage *linkage, Err *err
         return true;
     }
     const Joint *driven = &linkage->joints[linkage->driver.joint];
-    const bool has_play = driven->kind == JOINT_CLEARANCE;
-    if (!has_play && linkage->torque.count > 0) {
+    const bool has_play = linkage_kind_has_play(driven->kind);
+    const bool turns = driven->kind == JOINT_REVOLUTE;
+    if (turns && linkage->torque.count > 0) {
         return true;
     }
-    if (!has_play && (driven->body_a == LINKAGE_GROUND || driven->body_b == LINKAGE_GROUND)) {
+    if (turns && (driven->body_a == LINKAGE_GROUND || driven->body_b == LINKAGE_GROUND)) {
         return true;
     }
     return entries_refuse(entry, err,
                           "the drive cannot turn a body about joint '%s', which %s\nallowed: an "
                           "ideal joint with the ground",
-                          driven->name, has_play ? "has play" : "is not with the ground");
+                          driven->name,
+                          has_play ? "has play"
+                          : turns  ? "is not with the ground"
+                                   : "does not turn");
 }
 
 // Speeds at the start are the drive's where it determines them.
@@ -387,13 +340,8 @@ bool check_values(const Entries *entries, const Scenario *scenario, Err *err)
                                     "a case needs a body\nallowed: pin: {mass: 0.1 kg, inertia: 2 "
                                     "kg mm^2, at: [0 mm, 0 mm]}");
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (!check_joint(entries, i, scenario, err)) {
-            return false;
-        }
-    }
-    return check_space(entries, scenario, err) && check_forces(entries, scenario, err) &&
-           check_drive(entries, linkage, err) && check_speeds(entries, linkage, err) &&
-           check_contact(entries, scenario, err) && check_run(entries, scenario, err) &&
-           check_collider(entries, scenario, err);
+    return check_joints(entries, scenario, err) && check_space(entries, scenario, err) &&
+           check_forces(entries, scenario, err) && check_drive(entries, linkage, err) &&
+           check_speeds(entries, linkage, err) && check_contact(entries, scenario, err) &&
+           check_run(entries, scenario, err) && check_collider(entries, scenario, err);
 }

@@ -119,7 +119,7 @@ static double total_play(const Linkage *linkage)
     double play = 0.0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        play += joint->kind == JOINT_CLEARANCE ? linkage_radial_clearance(joint) : 0.0;
+        play += linkage_radial_clearance(joint);
     }
     return play;
 }
@@ -248,6 +248,9 @@ static double shortest_link(const Entries *entries, const Scenario *scenario, si
     }
     double shortest = INFINITY;
     for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage->joints[i].kind == JOINT_STOP) {
+            continue;
+        }
         // in a case with bodies every joint still stands at its place in the world
         const double distance =
             vec2_length(vec2_sub(linkage->joints[i].anchor_a, linkage->joints[number].anchor_a));

@@ -71,14 +71,31 @@ static void describe_range(const SchemaRow *row, Text *text)
                 row->low, digits, row->high, unit[0] != '\0' ? " " : "", unit);
 }
 
+// Of which joints a key is required.
+static void append_kinds(const SchemaRow *row, Text *text)
+{
+    const bool is_of_hinges = schema_is_of_kind(row, JOINT_REVOLUTE);
+    const bool is_of_stops = schema_is_of_kind(row, JOINT_STOP);
+    if (row->family != SCHEMA_JOINT || row->rivalry != SCHEMA_NO_RIVAL ||
+        (is_of_hinges && is_of_stops)) {
+        return;
+    }
+    text_append(text, is_of_hinges                              ? " but of a stop"
+                      : is_of_stops                             ? " of a stop"
+                      : schema_is_of_kind(row, JOINT_PRISMATIC) ? " of a prismatic joint or guide"
+                                                                : " of a guide");
+}
+
 // The default, as the program's own default scenario has it.
 static void describe_default(size_t row_number, Text *text)
 {
     const SchemaRow *row = &SCHEMA_ROWS[row_number];
     if (row->is_required) {
-        text_append(text, row->rivalry == SCHEMA_SIZES     ? "required without radial-clearance"
-                          : row->rivalry == SCHEMA_DRIVING ? "required without torque"
-                                                           : "required");
+        text_append(text, row->rivalry == SCHEMA_SIZES      ? "required without radial-clearance"
+                          : row->rivalry == SCHEMA_DRIVING  ? "required without torque"
+                          : row->rivalry == SCHEMA_STOPPING ? "required of a stop, or discs"
+                                                            : "required");
+        append_kinds(row, text);
         return;
     }
     if (row->default_words != NULL) {

@@ -115,15 +115,6 @@ const EntryGroup *entries_group(const Entries *entries, const char *path, size_t
     return NULL;
 }
 
-bool entries_has_play(const Entries *entries, size_t joint)
-{
-    static const char KEYS[] = "joints.*.hole joints.*.pin joints.*.radial-clearance "
-                               "joints.*.width joints.*.start";
-    const bool is_named = entries_group(entries, "joints.*", joint) != NULL;
-    return is_named &&
-           (entries->form == SCHEMA_SHORT || entries_blame(entries, KEYS, joint) != NULL);
-}
-
 bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFamily family,
                          bool may_be_ground, const char *name, Span span, Err *err)
 {

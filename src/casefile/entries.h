@@ -6,7 +6,7 @@
 #include "casefile/schema.h"
 
 // every key of every body, joint, point and spring, and every group
-enum { ENTRIES_MAX = 896, ENTRIES_GROUP_MAX = 112 };
+enum { ENTRIES_MAX = 1280, ENTRIES_GROUP_MAX = 112 };
 
 // One key that was given. Borrows node and source.
 typedef struct Entry {
@@ -85,6 +85,3 @@ size_t entries_family_size(const Entries *entries, const SchemaRow *row);
 int entries_number(const Entries *entries, SchemaFamily family, const char *name);
 bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFamily family,
                          bool may_be_ground, const char *name, Span span, Err *err);
-
-// Whether the case gives a key of that joint which only a joint with play has.
-bool entries_has_play(const Entries *entries, size_t joint);

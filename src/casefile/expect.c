@@ -177,8 +177,9 @@ static bool find_number(const Path *path, ExpectGroup group, const Scenario *sce
                         Expectation *expectation, Err *err)
 {
     const size_t last = path->count - 1;
-    const bool is_ideal = group == EXPECT_JOINTS &&
-                          scenario->linkage.joints[expectation->member].kind != JOINT_CLEARANCE;
+    const bool is_ideal =
+        group == EXPECT_JOINTS &&
+        !linkage_kind_has_play(scenario->linkage.joints[expectation->member].kind);
     const char *choices[CHOICE_MAX];
     size_t count = 0;
     for (int i = 0; i < EXPECTED_NUMBER_COUNT; i++) {

@@ -7,8 +7,10 @@
 #include "casefile/assemble.h"
 #include "casefile/check.h"
 #include "casefile/input.h"
+#include "casefile/joint_kind.h"
 #include "casefile/keys.h"
 #include "casefile/store.h"
+#include "casefile/target.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -60,6 +62,8 @@ static ProbeKind kind_of(SchemaType type)
     case SCHEMA_TEXT:
     case SCHEMA_VECTOR:
     case SCHEMA_DIRECTION:
+    case SCHEMA_START:
+    case SCHEMA_DISCS:
     case SCHEMA_ANCHOR:
     case SCHEMA_BETWEEN:
     case SCHEMA_EXPECT:
@@ -105,6 +109,9 @@ bool probe_check(const Probe *probe, const Source *source, const ProbeKey *key, 
     Scenario *scratch = malloc(sizeof *scratch);
     assert(scratch != NULL);
     *scratch = scenario_default();
+    if (key->row->family == SCHEMA_JOINT) {
+        scratch->linkage.joints[key->index].kind = joint_kind_find(&probe->entries, key->index);
+    }
     const bool is_good = store_value(&probe->entries, &entry, scratch, err);
     free(scratch);
     return is_good;
@@ -114,13 +121,13 @@ bool probe_number(const Source *source, const ProbeKey *key, const Node *value, 
                   Err *err)
 {
     const SchemaRow *row = key->row;
-    StoredNumber read;
+    TargetNumber read;
     Complaint complaint = {0};
     if (value->kind != NODE_SCALAR || value->text[0] == '\0') {
         return source_error(source, keys_span(value), units_example(row->dimension), err,
                             "expected a single value");
     }
-    if (!store_read(row, value->text, &read, &complaint)) {
+    if (!target_read(row, value->text, &read, &complaint)) {
         return source_error(source, value->span, complaint.allowed, err, "%s", complaint.text);
     }
     if (read.length.lower < read.length.upper) {
@@ -144,9 +151,9 @@ bool probe_is_whole(const Probe *probe, Err *err)
     return check_required(&probe->entries, err);
 }
 
-bool probe_has_play(const Probe *probe, size_t joint)
+JointKind probe_joint_kind(const Probe *probe, size_t joint)
 {
-    return entries_has_play(&probe->entries, joint);
+    return joint_kind_find(&probe->entries, joint);
 }
 
 bool probe_scenario(const Probe *probe, Scenario *scenario, Err *err)

@@ -58,8 +58,8 @@ bool probe_number(const Source *source, const ProbeKey *key, const Node *value, 
 // Whether the keys that are there make a whole case, whatever their values. Fails on a missing one.
 bool probe_is_whole(const Probe *probe, Err *err);
 
-// Whether a joint has play, by the keys that are given of it.
-bool probe_has_play(const Probe *probe, size_t joint);
+// The kind of a joint by the keys that are given of it.
+JointKind probe_joint_kind(const Probe *probe, size_t joint);
 
 // The scenario of the case with all that was set.
 bool probe_scenario(const Probe *probe, Scenario *scenario, Err *err);

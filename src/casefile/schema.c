@@ -81,6 +81,9 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         [SCHEMA_TEXT] = {"text", "text on one line"},
         [SCHEMA_INTEGER] = {"a whole number", "a whole number such as 100"},
         [SCHEMA_DIRECTION] = {"[x, y, z]", "a direction such as [0, 0, 1]"},
+        [SCHEMA_START] = {"centred, or a length in [x, y], or [distance, tilt]",
+                          "centred, or [x, y] such as [5 um, 0 um]"},
+        [SCHEMA_DISCS] = {"[length, length]", "two diameters such as [20 mm, 20 mm]"},
         [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},
         [SCHEMA_BODY_NAME] = {"a body", "a body"},
         [SCHEMA_JOINT_NAME] = {"a joint", "a joint"},
@@ -111,6 +114,8 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         break;
     case SCHEMA_TEXT:
     case SCHEMA_DIRECTION:
+    case SCHEMA_START:
+    case SCHEMA_DISCS:
     case SCHEMA_BETWEEN:
     case SCHEMA_BODY_NAME:
     case SCHEMA_JOINT_NAME:
@@ -127,6 +132,11 @@ bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other)
 {
     return row->rivalry != SCHEMA_NO_RIVAL && other->rivalry == row->rivalry &&
            other->side != row->side;
+}
+
+bool schema_is_of_kind(const SchemaRow *row, JointKind kind)
+{
+    return row->kinds == 0 || (row->kinds & SCHEMA_OF(kind)) != 0;
 }
 
 bool schema_knows(const char *path, SchemaForm form)

@@ -6,7 +6,7 @@
 #include "casefile/units.h"
 #include "model/scenario.h"
 
-enum { SCHEMA_PATH_SIZE = 160, SCHEMA_CHILD_MAX = 16 };
+enum { SCHEMA_PATH_SIZE = 160, SCHEMA_CHILD_MAX = 24 };
 
 // How a value is written, and what it becomes in the scenario.
 typedef enum SchemaType {
@@ -17,10 +17,13 @@ typedef enum SchemaType {
     SCHEMA_CHOICE,           // one of the words -> enumeration
     SCHEMA_BACKENDS,         // list of words -> run.backends and run.backend_count
     SCHEMA_TEXT,             // text -> title
-    SCHEMA_STIFFNESS,        // N/m^n -> contact.stiffness and contact.exponent
+    SCHEMA_STIFFNESS,        // N/m^n -> stiffness and exponent of the contact or of a joint
     SCHEMA_SPAN,             // time or turns of the driver -> run.report_from
     SCHEMA_VECTOR,           // [x, y], or `centred` where the row has it as default -> Vec2
     SCHEMA_DIRECTION,        // [x, y, z] without units, of any length -> Vec3 of length 1
+    SCHEMA_START,            // [x, y] of a pin, [distance, tilt] of a block, or `centred`
+    SCHEMA_DISCS,            // [diameter, diameter] -> the radii of a Stop
+    SCHEMA_HEADING,          // angle of the world -> Joint.direction, of body a once it is placed
     SCHEMA_RADIAL_CLEARANCE, // length -> Clearance: both radii
     SCHEMA_ALONG,            // length from a link's first joint -> double from its centre of mass
     SCHEMA_ANCHOR,           // [x, y] of the world -> an anchor, of a body once it is placed
@@ -53,7 +56,11 @@ typedef enum SchemaRivalry {
     SCHEMA_SIZES,      // hole and pin against radial-clearance
     SCHEMA_ELASTICITY, // law against stiffness
     SCHEMA_DRIVING,    // speed against torque
+    SCHEMA_STOPPING,   // the normal of a line, and a radius, against two discs
 } SchemaRivalry;
+
+// The bit of a kind of joint.
+#define SCHEMA_OF(kind) (1U << (kind))
 
 typedef struct SchemaRow {
     const char *path;
@@ -72,6 +79,7 @@ typedef struct SchemaRow {
     const char *const *words;  // of a choice, ends in NULL
     const char *zero_word;     // what may be written for the number 0; NULL: nothing
     const char *default_words; // in place of the default's number; NULL: the number says it
+    unsigned kinds;            // of joints: SCHEMA_OF each kind that has the key; 0: all
     unsigned needs;            // what a scenario must have for the key to matter
     const char *doc;
 } SchemaRow;
@@ -115,6 +123,9 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text);
 
 // Whether two rows are the two ways to say one thing, so that a member may have only one of them.
 bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other);
+
+// Whether a row is of joints of that kind; of all other rows that is true as well.
+bool schema_is_of_kind(const SchemaRow *row, JointKind kind);
 
 // Whether a scenario makes use of a row, of that member of its family.
 bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index);

@@ -10,8 +10,12 @@ const SchemaGroup SCHEMA_GROUPS[] = {
                "digits, - and _."},
     {"joints", "With four-bar, the joints with play, by name: crank-coupler, coupler-follower, "
                "follower-ground; a joint that is not named is ideal, and the drive joint "
-               "ground-crank always is. With bodies, every joint, up to 24, with any name; a joint "
-               "without sizes is ideal."},
+               "ground-crank always is. With bodies, every joint, up to 24, with any name. Its keys "
+               "make its kind: without sizes it is an ideal pivot; with hole and pin, or "
+               "radial-clearance, a pin with play; with along an ideal prismatic joint; with guide, "
+               "block and length as well a block with play between guides, or a sleeve round a "
+               "rod; with at-a and at-b a stop, where two bodies touch that are not joined. "
+               "Prismatic joints, guides and stops are for the plane."},
     {"springs", "With bodies: springs with dampers along the line between two points, at most 16, "
                 "with names of letters, digits, - and _. In the plane only."},
     {"torsion-springs", "With bodies: springs with dampers that turn the two bodies of a joint "

@@ -2,6 +2,7 @@
 #include "casefile/schema_needs.h"
 
 #include "casefile/build.h"
+#include "contact/law.h"
 
 static unsigned bit(unsigned need, bool is_met)
 {
@@ -35,15 +36,17 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
     const bool has_play = scenario_has_clearance(scenario);
     const bool is_impact = has_play && contact->model == CONTACT_IMPACT;
     const bool is_poisson = has_play && contact->model == CONTACT_POISSON;
-    const bool has_law = is_impact && contact->stiffness == 0.0;
+    const bool has_law = is_impact && law_is_asked(scenario);
+    const Joint *joint = is_joint ? &linkage->joints[index] : NULL;
     unsigned met = bit(MEMBER, is_member) |
-                   bit(LOOSE, is_joint && linkage->joints[index].kind == JOINT_CLEARANCE) |
+                   bit(OWN_STIFFNESS, is_joint && joint->contact.stiffness > 0.0) |
+                   bit(OWN_RESTITUTION, is_joint && joint->contact.has_restitution) |
                    bit(FREE, !build_is_determined(linkage)) |
                    bit(DRIVE, linkage->driver.is_present) | bit(TORQUE, linkage->torque.count > 0) |
                    bit(DRIVEN, linkage->driver.is_present || linkage->torque.count > 0) |
                    bit(NO_DRIVE, !linkage->driver.is_present) | bit(PLAY, has_play) |
                    bit(IDEAL, !has_play) | bit(IMPACT, is_impact) | bit(POISSON, is_poisson) |
-                   bit(LAW, has_law) | bit(STIFFNESS, is_impact && !has_law) |
+                   bit(LAW, has_law) | bit(STIFFNESS, is_impact && contact->stiffness > 0.0) |
                    bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
                    bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
                    bit(FRICTION, has_play && contact->friction > 0.0) |
@@ -56,5 +59,6 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
         met |= bit(ODE, scenario->run.backends[i] == BACKEND_ODE);
     }
     const SchemaForm form = scenario->has_fourbar ? SCHEMA_SHORT : SCHEMA_LONG;
-    return (row->needs & ~met) == 0 && (row->form == SCHEMA_BOTH || row->form == form);
+    return (row->needs & ~met) == 0 && (!is_joint || schema_is_of_kind(row, joint->kind)) &&
+           (row->form == SCHEMA_BOTH || row->form == form);
 }

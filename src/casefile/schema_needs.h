@@ -5,10 +5,10 @@
 
 // A row asks for all of its bits.
 enum {
-    MEMBER = 1 << 0, // the body, joint or point is there
-    LOOSE = 1 << 1,  // the joint has play
-    FREE = 1 << 2,   // no drive determines how the bodies move
-    DRIVE = 1 << 3,  // there is a drive
+    MEMBER = 1 << 0,        // the body, joint or point is there
+    OWN_STIFFNESS = 1 << 1, // the joint has a stiffness of its own
+    FREE = 1 << 2,          // no drive determines how the bodies move
+    DRIVE = 1 << 3,         // there is a drive
     NO_DRIVE = 1 << 4,
     PLAY = 1 << 5,   // some joint has play
     IMPACT = 1 << 6, // and the contact is of that model
@@ -26,10 +26,11 @@ enum {
     CHOSEN_STEP = 1 << 18,
     PLAIN = 1 << 19, // the stepping of a given step
     EXTRAPOLATED = 1 << 20,
-    LOCAL = 1 << 21,   // the contact is integrated within the step
-    LATER = 1 << 22,   // what is reported begins after the start
-    FACETED = 1 << 23, // the collider takes holes for polygons
-    SPATIAL = 1 << 24, // bodies move in space
-    TORQUE = 1 << 25,  // a torque drives
-    DRIVEN = 1 << 26,  // there is a drive or a torque
+    LOCAL = 1 << 21,           // the contact is integrated within the step
+    LATER = 1 << 22,           // what is reported begins after the start
+    FACETED = 1 << 23,         // the collider takes holes for polygons
+    SPATIAL = 1 << 24,         // bodies move in space
+    TORQUE = 1 << 25,          // a torque drives
+    DRIVEN = 1 << 26,          // there is a drive or a torque
+    OWN_RESTITUTION = 1 << 27, // the joint has a restitution of its own
 };

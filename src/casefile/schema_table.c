@@ -64,8 +64,17 @@ static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};
 #define SPACE_LINK .form = SCHEMA_SHORT, .needs = SPATIAL
 #define BODY .family = SCHEMA_BODY, .form = SCHEMA_LONG
 #define SPACE_BODY BODY, .needs = MEMBER | SPATIAL
-#define JOINT(field) \
-    .family = SCHEMA_JOINT, AT(linkage.joints[0].clearance.field), .needs = LOOSE
+#define JOINT(field) .family = SCHEMA_JOINT, AT(linkage.joints[0].field)
+#define PIN(field) JOINT(clearance.field), .needs = MEMBER, .kinds = SCHEMA_OF(JOINT_CLEARANCE)
+#define GUIDE(field) \
+    JOINT(guide.field), .form = SCHEMA_LONG, .dimension = DIMENSION_LENGTH, .low = 1e-6, \
+    .high = 1e2, .is_required = true, .needs = MEMBER, .kinds = SCHEMA_OF(JOINT_GUIDE)
+#define SLIDING (SCHEMA_OF(JOINT_PRISMATIC) | SCHEMA_OF(JOINT_GUIDE))
+#define STOP .form = SCHEMA_LONG, .needs = MEMBER, .kinds = SCHEMA_OF(JOINT_STOP)
+#define PIVOT (SCHEMA_OF(JOINT_REVOLUTE) | SCHEMA_OF(JOINT_CLEARANCE))
+#define HELD (PIVOT | SLIDING)
+#define TOUCHING \
+    (SCHEMA_OF(JOINT_CLEARANCE) | SCHEMA_OF(JOINT_GUIDE) | SCHEMA_OF(JOINT_STOP))
 #define SPRING(field) \
     .family = SCHEMA_SPRING, .form = SCHEMA_LONG, AT(linkage.springs[0].field), .needs = MEMBER
 #define TORSION(field) \
@@ -128,51 +137,7 @@ const SchemaRow SCHEMA_ROWS[] = {
      .needs = MEMBER | FREE | SPATIAL,
      .doc = "with space: spatial, angular velocity about the world's y axis at time zero"},
 
-    {.path = "joints.*.between", .type = SCHEMA_BETWEEN, .family = SCHEMA_JOINT,
-     .form = SCHEMA_LONG, AT(linkage.joints[0]), .is_required = true,
-     .needs = MEMBER,
-     .doc = "[body with the hole, body with the pin]: two bodies, or a body and ground"},
-    {.path = "joints.*.at", .type = SCHEMA_ANCHOR, .family = SCHEMA_JOINT, .form = SCHEMA_LONG,
-     .dimension = DIMENSION_LENGTH, AT(linkage.joints[0].anchor_a), .low = -1e3, .high = 1e3,
-     .is_required = true, .needs = MEMBER,
-     .doc = "position [x, y] in the world at time zero, with hole and pin concentric; a start "
-            "off the centre then moves the bodies"},
-    {.path = "joints.*.hole", .type = SCHEMA_DIAMETER, .dimension = DIMENSION_LENGTH,
-     JOINT(hole_radius), .low = 1e-6, .high = 1e2, .is_required = true,
-     .rivalry = SCHEMA_SIZES, .side = 0,
-     .doc = "diameter of the hole, without tolerance; instead of radial-clearance"},
-    {.path = "joints.*.pin", .type = SCHEMA_DIAMETER, .dimension = DIMENSION_LENGTH,
-     JOINT(pin_radius), .low = 1e-6, .high = 1e2, .is_required = true,
-     .rivalry = SCHEMA_SIZES, .side = 0,
-     .doc = "diameter of the pin, smaller than the hole; instead of radial-clearance"},
-    {.path = "joints.*.radial-clearance", .type = SCHEMA_RADIAL_CLEARANCE,
-     .dimension = DIMENSION_LENGTH, .family = SCHEMA_JOINT,
-     AT(linkage.joints[0].clearance), .low = 1e-9, .high = 0.1, .needs = LOOSE,
-     .rivalry = SCHEMA_SIZES, .side = 1, .default_words = "from hole and pin",
-     .doc = "hole radius minus pin radius, instead of hole and pin; the pin then has a diameter "
-            "of 10 mm and the hole twice this more"},
-    {.path = "joints.*.width", .dimension = DIMENSION_LENGTH, JOINT(width),
-     .low = 1e-6, .high = 1e2, .default_words = "none",
-     .doc = "length over which pin and hole touch; required by the laws of cylinders and with "
-            "space: spatial"},
-    {.path = "joints.*.start", .type = SCHEMA_VECTOR, .dimension = DIMENSION_LENGTH,
-     JOINT(start), .low = -0.1, .high = 0.1, .default_words = "centred",
-     .doc = "pin centre minus hole centre at time zero: centred, or [x, y], no longer than the "
-            "radial clearance"},
-
-    {.path = "joints.*.axial-clearance", .dimension = DIMENSION_LENGTH, .family = SCHEMA_JOINT,
-     AT(linkage.joints[0].space.axial_clearance), .low = 1e-9, .high = 1e2,
-     .default_words = "none: no collars", .needs = LOOSE | SPATIAL,
-     .doc = "with space: spatial, how far the pin can slide along its hole to either side of the "
-            "middle before a collar stops it"},
-    {.path = "joints.*.offset", .dimension = DIMENSION_LENGTH, .family = SCHEMA_JOINT,
-     AT(linkage.joints[0].space.height), .low = -1e3, .high = 1e3, .needs = MEMBER | SPATIAL,
-     .doc = "with space: spatial, z of the joint's middle at time zero"},
-    {.path = "joints.*.axis", .type = SCHEMA_DIRECTION, .family = SCHEMA_JOINT,
-     .form = SCHEMA_LONG, AT(linkage.joints[0].space.axis), .low = -1e6, .high = 1e6,
-     .default_words = "[0, 0, 1]", .needs = MEMBER | SPATIAL,
-     .doc = "with space: spatial, direction [x, y, z] of the joint's axis at time zero, of any "
-            "length"},
+#include "casefile/schema_joints.inc"
 
     {.path = "springs.*.between", .type = SCHEMA_BETWEEN, SPRING(body_a), .is_required = true,
      .doc = "[body, body]: two bodies, or a body and ground"},

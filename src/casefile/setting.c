@@ -59,13 +59,25 @@ static void set_tolerated(CasefileSetting *setting, const ToleratedLength *lengt
     setting->number_count = length->lower < 0.0 || length->upper > 0.0 ? 3 : 1;
 }
 
-static void set_stiffness(CasefileSetting *setting, const ContactOptions *contact)
+static void set_stiffness(CasefileSetting *setting, double stiffness, double exponent)
 {
-    set_number(setting, contact->stiffness);
-    if (contact->exponent == 1.0) {
+    set_number(setting, stiffness);
+    if (exponent == 1.0) {
         text_copy(setting->unit, sizeof setting->unit, "N/m");
     } else {
-        snprintf(setting->unit, sizeof setting->unit, "N/m^%.6g", contact->exponent);
+        snprintf(setting->unit, sizeof setting->unit, "N/m^%.6g", exponent);
+    }
+}
+
+// That of the contact, or a joint's own.
+static void set_own_stiffness(CasefileSetting *setting, const SchemaRow *row,
+                              const Scenario *scenario, size_t index)
+{
+    if (row->family == SCHEMA_JOINT) {
+        const JointContact *own = &scenario->linkage.joints[index].contact;
+        set_stiffness(setting, own->stiffness, own->exponent);
+    } else {
+        set_stiffness(setting, scenario->contact.stiffness, scenario->contact.exponent);
     }
 }
 
@@ -103,13 +115,30 @@ static void set_direction(CasefileSetting *setting, Vec3 direction)
     setting->number_count = 3;
 }
 
+// Where a pin starts in its hole, or a block between its guides.
+static void set_start(CasefileSetting *setting, const Joint *joint)
+{
+    const bool is_guide = joint->kind == JOINT_GUIDE;
+    set_vector(setting, is_guide ? joint->guide.start : joint->clearance.start);
+    if (is_guide) {
+        text_copy(setting->unit, sizeof setting->unit, "m, rad");
+    }
+}
+
+// The direction of a joint's line in the world at time zero.
+static double heading(const Linkage *linkage, const Joint *joint)
+{
+    const bool is_ground = joint->body_a == LINKAGE_GROUND;
+    return joint->direction + (is_ground ? 0.0 : linkage->bodies[joint->body_a].start.angle);
+}
+
 // The spring of a row of theirs, NULL for one of joints.
 static const Spring *spring_of(const SchemaRow *row, const Linkage *linkage, size_t index)
 {
     return row->family == SCHEMA_SPRING ? &linkage->springs[index] : NULL;
 }
 
-// Where a joint's hole, or an end of a spring, stands at time zero.
+// Where a joint's hole, or an end of a stop or spring, stands at time zero.
 static Vec2 anchor_place(const SchemaRow *row, const Linkage *linkage, size_t index)
 {
     const Joint *joint = &linkage->joints[index];
@@ -118,9 +147,11 @@ static Vec2 anchor_place(const SchemaRow *row, const Linkage *linkage, size_t in
     for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
         motions[i] = linkage->bodies[i].start;
     }
-    return spring == NULL ? linkage_point(motions, joint->body_a, joint->anchor_a)
-                          : linkage_point(motions, row->side == 0 ? spring->body_a : spring->body_b,
-                                          row->side == 0 ? spring->anchor_a : spring->anchor_b);
+    return spring == NULL && row->side == 1 ? linkage_point(motions, joint->body_b, joint->anchor_b)
+           : spring == NULL
+               ? linkage_point(motions, joint->body_a, joint->anchor_a)
+               : linkage_point(motions, row->side == 0 ? spring->body_a : spring->body_b,
+                               row->side == 0 ? spring->anchor_a : spring->anchor_b);
 }
 
 static const char *body_name(const Linkage *linkage, int body)
@@ -192,7 +223,7 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         set_words(setting, field, NULL);
         break;
     case SCHEMA_STIFFNESS:
-        set_stiffness(setting, field);
+        set_own_stiffness(setting, row, scenario, index);
         break;
     case SCHEMA_SPAN:
         set_number(setting, scenario_report_from(scenario));
@@ -202,6 +233,16 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         break;
     case SCHEMA_DIRECTION:
         set_direction(setting, *(const Vec3 *)field);
+        break;
+    case SCHEMA_START:
+        set_start(setting, &linkage->joints[index]);
+        break;
+    case SCHEMA_DISCS:
+        set_vector(setting, (Vec2){2.0 * linkage->joints[index].stop.radius_a,
+                                   2.0 * linkage->joints[index].stop.radius_b});
+        break;
+    case SCHEMA_HEADING:
+        set_number(setting, heading(linkage, &linkage->joints[index]));
         break;
     case SCHEMA_ANCHOR:
         set_vector(setting, anchor_place(row, linkage, index));

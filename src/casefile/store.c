@@ -1,12 +1,12 @@
 // What does a value mean, and is it in its range?
 #include "casefile/store.h"
 
-#include "base/printable.h"
 #include "casefile/expect.h"
+#include "casefile/target.h"
 #include "casefile/torque_table.h"
 
 #include <float.h>
-#include <stdarg.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,132 +14,18 @@ static const double PIN_RADIUS = 5e-3; // m, where only the radial clearance is 
 
 static const double ROUNDING = 1e-9; // of a radial clearance, and far below a nanometre
 
-// Whatever a store function needs to know.
-typedef struct Target {
-    const Entries *entries;
-    const Entry *entry;
-    char path[SCHEMA_PATH_SIZE]; // of the key, for messages
-    void *field;
-    Err *err;
-} Target;
-
-void store_describe(const Entries *entries, const SchemaRow *row, Text *text)
+// That of the contact, or a joint's own.
+static void store_stiffness(const SchemaRow *row, const TargetNumber *number, size_t index,
+                            Scenario *scenario)
 {
-    if (row->type != SCHEMA_BODY_NAME && row->type != SCHEMA_JOINT_NAME) {
-        schema_describe(row, true, text);
+    if (row->family == SCHEMA_JOINT) {
+        JointContact *own = &scenario->linkage.joints[index].contact;
+        own->stiffness = number->value;
+        own->exponent = number->exponent;
         return;
     }
-    const EntryNames *names =
-        &entries->names[row->type == SCHEMA_JOINT_NAME ? SCHEMA_JOINT : SCHEMA_BODY];
-    for (size_t i = 0; i < names->count; i++) {
-        text_append(text, "%s%s", i > 0 ? ", " : "", names->names[i]);
-    }
-}
-
-// Refuses a node with what its row takes.
-__attribute__((format(printf, 3, 4))) static bool refuse(const Target *target, Span span,
-                                                         const char *format, ...)
-{
-    char message[QUANTITY_TEXT_SIZE];
-    va_list arguments;
-    va_start(arguments, format);
-    shorten_list(message, sizeof message, format, arguments);
-    va_end(arguments);
-    Text allowed;
-    text_init(&allowed);
-    store_describe(target->entries, target->entry->row, &allowed);
-    source_error(target->entry->source, span, allowed.data, target->err, "%s", message);
-    text_finish(&allowed);
-    return false;
-}
-
-// A node that is one value; a missing one is shown at its key.
-static bool check_scalar(const Target *target, const Node *node)
-{
-    const SchemaRow *row = target->entry->row;
-    const bool is_scalar = node->kind == NODE_SCALAR;
-    if (is_scalar && (node->text[0] != '\0' || row->type == SCHEMA_TEXT)) {
-        return true;
-    }
-    const Span span = is_scalar && node->key != NULL ? node->key->span : node->span;
-    return refuse(target, span, is_scalar ? "%s has no value" : "%s takes a single value",
-                  target->path);
-}
-
-// The row's range in words, such as "above 0 and up to 1 s".
-static void describe_range(const SchemaRow *row, char allowed[QUANTITY_TEXT_SIZE])
-{
-    const char *unit = row->plain_unit == NULL ? units_si(row->dimension) : "";
-    const char *blank = unit[0] != '\0' ? " " : "";
-    snprintf(allowed, QUANTITY_TEXT_SIZE,
-             row->low_is_open ? "above %g and up to %g%s%s" : "%g to %g%s%s", row->low, row->high,
-             blank, unit);
-}
-
-static bool check_range(const Target *target, const Node *node, double value)
-{
-    const SchemaRow *row = target->entry->row;
-    if (value <= row->high && (row->low_is_open ? value > row->low : value >= row->low)) {
-        return true;
-    }
-    char allowed[QUANTITY_TEXT_SIZE];
-    describe_range(row, allowed);
-    return source_error(target->entry->source, node->span, allowed, target->err,
-                        "%s is out of range: %.60s", target->path, node->text);
-}
-
-bool store_read(const SchemaRow *row, const char *text, StoredNumber *number, Complaint *complaint)
-{
-    size_t whole = 0;
-    bool is_read = false;
-    *number = (StoredNumber){.value = 0.0};
-    switch (row->type) {
-    case SCHEMA_INTEGER:
-        is_read = quantity_integer(text, &whole, complaint);
-        number->value = (double)whole; // exact: it is at most 2^53
-        return is_read;
-    case SCHEMA_STIFFNESS:
-        return quantity_stiffness(text, &number->value, &number->exponent, complaint);
-    case SCHEMA_SPAN:
-        return quantity_span(text, &number->value, &number->is_in_turns, complaint);
-    case SCHEMA_TOLERATED:
-        is_read = quantity_tolerated(text, &number->length, complaint);
-        number->value = number->length.nominal;
-        return is_read;
-    default:
-        return quantity_parse(text, row->dimension, &number->value, complaint);
-    }
-}
-
-// One number, from its node or from one of a pair, in the range of its row.
-static bool read_number(const Target *target, const Node *node, StoredNumber *number)
-{
-    const SchemaRow *row = target->entry->row;
-    Complaint complaint;
-    if (!check_scalar(target, node)) {
-        return false;
-    }
-    if (store_read(row, node->text, number, &complaint)) {
-        return check_range(target, node, number->value);
-    }
-    const bool is_special = row->type == SCHEMA_INTEGER || row->type == SCHEMA_STIFFNESS ||
-                            row->type == SCHEMA_SPAN || row->type == SCHEMA_TOLERATED;
-    // a size with a tolerance is a fair thing to try
-    const char *sign = is_special                         ? NULL
-                       : strstr(node->text, "+-") != NULL ? "+-"
-                       : strstr(node->text, "±") != NULL  ? "±"
-                                                          : NULL;
-    if (sign != NULL) {
-        return source_error(target->entry->source, node->span, "a value without tolerance",
-                            target->err, "%s takes no tolerance (%s)", target->path, sign);
-    }
-    if (row->type == SCHEMA_INTEGER) {
-        char range[QUANTITY_TEXT_SIZE];
-        describe_range(row, range);
-        snprintf(complaint.allowed, sizeof complaint.allowed, "a whole number, %.64s", range);
-    }
-    return source_error(target->entry->source, node->span, complaint.allowed, target->err, "%s",
-                        complaint.text);
+    scenario->contact.stiffness = number->value;
+    scenario->contact.exponent = number->exponent;
 }
 
 // A number of any kind, or the word that stands for 0.
@@ -148,13 +34,14 @@ static bool store_number(const Target *target, Scenario *scenario)
     const Node *node = target->entry->node;
     const SchemaRow *row = target->entry->row;
     const char *word = row->zero_word;
-    StoredNumber number = {.value = 0.0};
+    TargetNumber number = {.value = 0.0};
     const bool is_word = word != NULL && node->kind == NODE_SCALAR && strcmp(node->text, word) == 0;
     if (word != NULL && !is_word && node->kind == NODE_SCALAR &&
         strcspn(node->text, "0123456789") > 1) {
-        return refuse(target, node->span, "'%.40s' is no choice for %s", node->text, target->path);
+        return target_refuse(target, node->span, "'%.40s' is no choice for %s", node->text,
+                             target->path);
     }
-    if (!is_word && !read_number(target, node, &number)) {
+    if (!is_word && !target_number(target, node, &number)) {
         return false;
     }
     switch (row->type) {
@@ -170,8 +57,7 @@ static bool store_number(const Target *target, Scenario *scenario)
         *(ToleratedLength *)target->field = number.length;
         break;
     case SCHEMA_STIFFNESS:
-        scenario->contact.stiffness = number.value;
-        scenario->contact.exponent = number.exponent;
+        store_stiffness(row, &number, target->entry->index, scenario);
         break;
     case SCHEMA_SPAN:
         scenario->run.report_from = number.value;
@@ -190,7 +76,7 @@ static bool store_number(const Target *target, Scenario *scenario)
 // Finds the number of a word in the row's list.
 static bool find_word(const Target *target, const Node *node, int *number)
 {
-    if (!check_scalar(target, node)) {
+    if (!target_check_scalar(target, node)) {
         return false;
     }
     const char *const *words = target->entry->row->words;
@@ -202,9 +88,9 @@ static bool find_word(const Target *target, const Node *node, int *number)
         }
     }
     const char *nearest = text_nearest(node->text, words, count);
-    return refuse(target, node->span, "'%.40s' is no choice for %s%s%s%s", node->text, target->path,
-                  nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-                  nearest != NULL ? "'?" : "");
+    return target_refuse(target, node->span, "'%.40s' is no choice for %s%s%s%s", node->text,
+                         target->path, nearest != NULL ? "; did you mean '" : "",
+                         nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
 }
 
 static bool store_backends(const Target *target, RunOptions *run)
@@ -238,7 +124,7 @@ static bool store_backends(const Target *target, RunOptions *run)
 static bool store_text(const Target *target, char *field, size_t size)
 {
     const Node *node = target->entry->node;
-    if (!check_scalar(target, node)) {
+    if (!target_check_scalar(target, node)) {
         return false;
     }
     if (strlen(node->text) >= size) {
@@ -251,36 +137,95 @@ static bool store_text(const Target *target, char *field, size_t size)
     return true;
 }
 
-// The two items of a list of two; false for anything else.
-static bool find_pair(const Node *node, const Node *pair[2])
-{
-    pair[0] = node->kind == NODE_LIST ? node->first : NULL;
-    pair[1] = pair[0] != NULL ? pair[0]->next : NULL;
-    return pair[1] != NULL && pair[1]->next == NULL;
-}
-
 static bool store_vector(const Target *target)
 {
     const Node *node = target->entry->node;
     const SchemaRow *row = target->entry->row;
-    StoredNumber x = {.value = 0.0};
-    StoredNumber y = x;
+    TargetNumber x = {.value = 0.0};
+    TargetNumber y = x;
     const bool is_word = row->default_words != NULL && node->kind == NODE_SCALAR &&
                          strcmp(node->text, row->default_words) == 0;
     const Node *pair[2];
     if (!is_word && row->default_words != NULL && node->kind == NODE_SCALAR &&
         text_nearest(node->text, &row->default_words, 1) != NULL) {
-        return refuse(target, node->span, "'%.40s' is no place; did you mean '%s'?", node->text,
-                      row->default_words);
+        return target_refuse(target, node->span, "'%.40s' is no place; did you mean '%s'?",
+                             node->text, row->default_words);
     }
-    if (!is_word && !find_pair(node, pair)) {
-        return refuse(target, node->span, "%s takes %s", target->path,
-                      row->dimension == DIMENSION_SPEED ? "two speeds" : "a place");
+    if (!is_word && !target_pair(node, pair)) {
+        return target_refuse(target, node->span, "%s takes %s", target->path,
+                             row->dimension == DIMENSION_SPEED ? "two speeds" : "a place");
     }
-    if (!is_word && (!read_number(target, pair[0], &x) || !read_number(target, pair[1], &y))) {
+    if (!is_word && (!target_number(target, pair[0], &x) || !target_number(target, pair[1], &y))) {
         return false;
     }
     *(Vec2 *)target->field = (Vec2){x.value, y.value};
+    return true;
+}
+
+// A pin at the wall is at the wall, though the difference of two radii is rounded.
+static void seat_pin(Clearance *clearance)
+{
+    const double radial = clearance->hole_radius - clearance->pin_radius;
+    const double start = vec2_length(clearance->start);
+    if (start > radial && start <= radial * (1.0 + ROUNDING)) {
+        clearance->start = vec2_scale(radial / start * (1.0 - DBL_EPSILON), clearance->start);
+    }
+}
+
+// Where a pin starts in its hole, or a block between its guides: there the second number is an
+// angle.
+static bool store_start(const Target *target, Joint *joint)
+{
+    static const SchemaRow TILT = {.path = "joints.*.start",
+                                   .type = SCHEMA_START,
+                                   .dimension = DIMENSION_ANGLE,
+                                   .low = -0.5 * M_PI,
+                                   .high = 0.5 * M_PI};
+    const Node *node = target->entry->node;
+    const Node *pair[2];
+    if (joint->kind != JOINT_GUIDE) {
+        const bool is_stored = store_vector(target);
+        seat_pin(&joint->clearance);
+        return is_stored;
+    }
+    if (node->kind == NODE_SCALAR && strcmp(node->text, target->entry->row->default_words) == 0) {
+        return true;
+    }
+    if (!target_pair(node, pair)) {
+        return source_error(target->entry->source, node->span,
+                            "centred, or [distance, tilt] such as [0.1 mm, 0.05 deg]", target->err,
+                            "%s takes a distance and an angle", target->path);
+    }
+    const Entry tilt = {&TILT, target->entry->index, pair[1], target->entry->source};
+    Target of_tilt = *target;
+    of_tilt.entry = &tilt;
+    TargetNumber distance = {.value = 0.0};
+    TargetNumber angle = distance;
+    if (!target_number(target, pair[0], &distance) || !target_number(&of_tilt, pair[1], &angle)) {
+        return false;
+    }
+    joint->guide.start = (Vec2){distance.value, angle.value};
+    return true;
+}
+
+// Two diameters, kept as radii.
+static bool store_discs(const Target *target, Stop *stop)
+{
+    const Node *node = target->entry->node;
+    const Node *pair[2];
+    TargetNumber first = {.value = 0.0};
+    TargetNumber second = first;
+    if (!target_pair(node, pair)) {
+        return target_refuse(target, node->span, "%s takes the two diameters", target->path);
+    }
+    if (!target_number(target, pair[0], &first) || !target_number(target, pair[1], &second)) {
+        return false;
+    }
+    if (first.value + second.value == 0.0) {
+        return target_refuse(target, node->span, "of two discs one must have a size");
+    }
+    stop->radius_a = 0.5 * first.value;
+    stop->radius_b = 0.5 * second.value;
     return true;
 }
 
@@ -292,16 +237,16 @@ static bool store_direction(const Target *target)
     double parts[3] = {0.0, 0.0, 0.0};
     int count = 0;
     for (; item != NULL && count < 3; item = item->next) {
-        StoredNumber number;
-        if (!read_number(target, item, &number)) {
+        TargetNumber number;
+        if (!target_number(target, item, &number)) {
             return false;
         }
         parts[count++] = number.value;
     }
     const Vec3 along = {parts[0], parts[1], parts[2]};
     if (count < 3 || item != NULL || !(vec3_length(along) > 0.0)) {
-        return refuse(target, node->span, "%s takes a direction of three numbers, not all 0",
-                      target->path);
+        return target_refuse(target, node->span, "%s takes a direction of three numbers, not all 0",
+                             target->path);
     }
     *(Vec3 *)target->field = vec3_scale(1.0 / vec3_length(along), along);
     return true;
@@ -311,7 +256,7 @@ static bool store_direction(const Target *target)
 static bool find_name(const Target *target, const Node *node, SchemaFamily family,
                       bool may_be_ground, int *number)
 {
-    if (!check_scalar(target, node)) {
+    if (!target_check_scalar(target, node)) {
         return false;
     }
     *number = entries_number(target->entries, family, node->text);
@@ -326,9 +271,9 @@ static bool store_between(const Target *target, int *body_a, int *body_b)
 {
     const Node *node = target->entry->node;
     const Node *pair[2];
-    if (!find_pair(node, pair)) {
-        return refuse(target, node->span, "%s takes the two bodies of the %s", target->path,
-                      SCHEMA_FAMILIES[target->entry->row->family].what);
+    if (!target_pair(node, pair)) {
+        return target_refuse(target, node->span, "%s takes the two bodies of the %s", target->path,
+                             SCHEMA_FAMILIES[target->entry->row->family].what);
     }
     if (!find_name(target, pair[0], SCHEMA_BODY, true, body_a) ||
         !find_name(target, pair[1], SCHEMA_BODY, true, body_b)) {
@@ -337,16 +282,6 @@ static bool store_between(const Target *target, int *body_a, int *body_b)
     return *body_a != *body_b ||
            source_error(target->entry->source, pair[1]->span, "two different bodies", target->err,
                         "%s names %s twice", target->path, pair[1]->text);
-}
-
-// A pin at the wall is at the wall, though the difference of two radii is rounded.
-static void seat_pin(Clearance *clearance)
-{
-    const double radial = clearance->hole_radius - clearance->pin_radius;
-    const double start = vec2_length(clearance->start);
-    if (start > radial && start <= radial * (1.0 + ROUNDING)) {
-        clearance->start = vec2_scale(radial / start * (1.0 - DBL_EPSILON), clearance->start);
-    }
 }
 
 bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
@@ -365,13 +300,11 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return store_text(&target, target.field, SCENARIO_TITLE_SIZE);
     case SCHEMA_VECTOR:
     case SCHEMA_ANCHOR: // moved to its body's frame once the bodies are placed
-        if (!store_vector(&target)) {
-            return false;
-        }
-        if (entry->row->family == SCHEMA_JOINT) {
-            seat_pin(&scenario->linkage.joints[entry->index].clearance);
-        }
-        return true;
+        return store_vector(&target);
+    case SCHEMA_START:
+        return store_start(&target, &scenario->linkage.joints[entry->index]);
+    case SCHEMA_DISCS:
+        return store_discs(&target, target.field);
     case SCHEMA_DIRECTION:
         return store_direction(&target);
     case SCHEMA_BETWEEN:

@@ -38,8 +38,14 @@ ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material
 bool law_build(const ContactOptions *contact, const MaterialOptions *material,
                const Clearance *clearance, double speed, ForceLaw *law, Err *err);
 
+// The contact's options with what the joint has of its own in their place.
+ContactOptions law_options(const ContactOptions *contact, const Joint *joint);
+
+// Whether the stiffness of any joint with play is that of the law that the options name.
+bool law_is_asked(const Scenario *scenario);
+
 // The law of a joint with play of a scenario. Fails as law_make does, with the joint's name in
-// front.
+// front, and where a joint that is no pin in its hole has no stiffness that is given.
 bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, Err *err);
 
 // The deepest penetration, m, at which a law of a pin of this radius, m, still means anything: a

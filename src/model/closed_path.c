@@ -1,6 +1,7 @@
 // Which positions can a linkage with ideal joints take, one after the other?
 //
-//     Phi(q) = 0 for every joint, q = (x / L, y / L, phi) per body, L the size of the linkage
+//     Phi(q) = 0 for every joint, q = (x / L, y / L, phi) per body, L the size of the linkage;
+//     rows that are lengths are divided by L, those that are angles are not
 //     tangent:   J t = 0, |t| = 1                  J = dPhi/dq / L
 //     step:      q' = q + s t, then Newton's method on Phi(q') = 0, t . (q' - q) = s
 // Both by least squares, (J^T J + t t^T) x = J^T r + c t, so that redundant joints do no harm.
@@ -10,6 +11,7 @@
 #include "model/closed_path.h"
 
 #include "base/dense.h"
+#include "model/joint_rows.h"
 
 #include <string.h>
 
@@ -57,14 +59,18 @@ static double evaluate(const ClosedPath *path, const double *at, Jacobian *jacob
         motions[i].angle = at[3 * i + 2];
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Vec2 opening = linkage_joint_gap(linkage, motions, (int)i).position;
+        const Vec2 opening = kinematics_opening(linkage, motions, (int)i);
+        const bool is_angle = joint_rows_is_angle(linkage->joints[i].kind, 1);
         missing[2 * i] = -opening.x / path->size;
-        missing[2 * i + 1] = -opening.y / path->size;
-        largest = fmax(largest, vec2_length(opening) / path->size);
+        missing[2 * i + 1] = is_angle ? -opening.y : -opening.y / path->size;
+        largest = fmax(largest, is_angle ? hypot(missing[2 * i], missing[2 * i + 1])
+                                         : vec2_length(opening) / path->size);
     }
     kinematics_jacobian(linkage, motions, NULL, false, jacobian);
     for (size_t row = 0; row < jacobian->rows; row++) {
-        for (size_t column = 2; column < jacobian->columns; column += 3) {
+        const JointKind kind = linkage->joints[row / 2].kind;
+        for (size_t column = 2; column < jacobian->columns && !joint_rows_is_angle(kind, row % 2);
+             column += 3) {
             jacobian->entries[row * jacobian->columns + column] /= path->size;
         }
     }

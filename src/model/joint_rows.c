@@ -35,6 +35,41 @@ static void find_ends(const Linkage *linkage, const Motion *motions, int joint, 
     }
 }
 
+size_t joint_rows_total(const Linkage *linkage)
+{
+    size_t total = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        total += joint_rows_count(linkage->joints[i].kind);
+    }
+    return total;
+}
+
+double joint_rows_size(const Linkage *linkage, int joint, Vec2 rows)
+{
+    const Joint *of = &linkage->joints[joint];
+    if (!joint_rows_is_angle(of->kind, 1)) {
+        return vec2_length(rows);
+    }
+    double reach = 0.0;
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(of, side).body;
+        reach = body == LINKAGE_GROUND ? reach : fmax(reach, linkage_reach(linkage, body));
+    }
+    return hypot(rows.x, reach * rows.y);
+}
+
+Vec2 joint_rows_start(const Joint *joint)
+{
+    switch (joint->kind) {
+    case JOINT_CLEARANCE:
+        return joint->clearance.start;
+    case JOINT_GUIDE:
+        return joint->guide.start;
+    default:
+        return (Vec2){0.0, 0.0};
+    }
+}
+
 // From the anchor on body a to that on body b, its rate, and the rate's without accelerations.
 typedef struct Distance {
     Vec2 position;

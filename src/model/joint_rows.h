@@ -38,6 +38,16 @@ static inline bool joint_rows_is_angle(JointKind kind, size_t row)
     return row == 1 && (kind == JOINT_PRISMATIC || kind == JOINT_GUIDE);
 }
 
+// The number of rows of all joints, the drive's apart.
+size_t joint_rows_total(const Linkage *linkage);
+
+// How far a joint's rows are from what is asked of them, m: of two lengths the length of the
+// vector; an angle counts as the arc that it is at the reach of the joint's bodies.
+double joint_rows_size(const Linkage *linkage, int joint, Vec2 rows);
+
+// Where a joint starts, in its rows: 0 of an ideal one.
+Vec2 joint_rows_start(const Joint *joint);
+
 // Writes the rows of a joint where the bodies are and as they move.
 void joint_rows_find(const Linkage *linkage, const Motion *motions, int joint, JointRows *rows);
 

@@ -5,11 +5,13 @@
 //     Phi_drive = phi_crank - (start + speed t) = 0               one row
 // Positions by Newton's method on Phi = 0; velocities from J qdot = -dPhi/dt; accelerations from
 //     J qddot = gamma,   gamma = sum over bodies of  +-omega^2 R s   (the centripetal terms).
+// Of a prismatic joint Phi and gamma are those of model/joint_rows.c, a stop has none.
 // q = (x, y, phi) per body; J = dPhi/dq. Source: E. J. Haug, Computer Aided Kinematics and Dynamics
 // of Mechanical Systems, 1989, chapter 3.
 #include "model/kinematics.h"
 
 #include "base/dense.h"
+#include "model/joint_rows.h"
 
 #include <string.h>
 
@@ -22,6 +24,45 @@ static const double CLOSED = 1e-13;
 // pivots of a linkage that moves freely are above 1e-3 of the largest; below this it is stuck
 static const double LOOP_INDEPENDENT = 1e-9;
 
+// The rows of a pivot, two from the first: x and y of its second anchor against its first.
+static void add_pivot(const Linkage *linkage, const Motion *motions, size_t joint, double *first,
+                      size_t columns)
+{
+    for (int side = 0; side < 2; side++) {
+        const JointEnd end = linkage_end(&linkage->joints[joint], side);
+        if (end.body == LINKAGE_GROUND) {
+            continue;
+        }
+        const double sign = side == 0 ? -1.0 : 1.0;
+        const Vec2 arm = vec2_rotate(motions[end.body].angle, end.anchor);
+        double *x_row = first + 3 * end.body;
+        double *y_row = x_row + columns;
+        x_row[0] = sign;
+        x_row[2] = -sign * arm.y;
+        y_row[1] = sign;
+        y_row[2] = sign * arm.x;
+    }
+}
+
+// The rows of any joint that has some.
+static void add_joint(const Linkage *linkage, const Motion *motions, size_t joint, double *first,
+                      size_t columns)
+{
+    JointRows rows;
+    joint_rows_find(linkage, motions, (int)joint, &rows);
+    for (size_t i = 0; i < JOINT_ROWS; i++) {
+        for (int side = 0; side < 2; side++) {
+            const int body = linkage_end(&linkage->joints[joint], side).body;
+            if (body != LINKAGE_GROUND) {
+                double *entries = first + i * columns + 3 * body;
+                entries[0] = rows.rows[i].x[side];
+                entries[1] = rows.rows[i].y[side];
+                entries[2] = rows.rows[i].turn[side];
+            }
+        }
+    }
+}
+
 void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bool *include,
                          bool with_driver, Jacobian *jacobian)
 {
@@ -29,22 +70,15 @@ void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bo
     jacobian->columns = 3 * linkage->body_count;
     memset(jacobian->entries, 0, sizeof jacobian->entries);
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (include != NULL && !include[i]) {
+        const JointKind kind = linkage->joints[i].kind;
+        if (kind == JOINT_STOP || (include != NULL && !include[i])) {
             continue;
         }
-        for (int side = 0; side < 2; side++) {
-            const JointEnd end = linkage_end(&linkage->joints[i], side);
-            if (end.body == LINKAGE_GROUND) {
-                continue;
-            }
-            const double sign = side == 0 ? -1.0 : 1.0;
-            const Vec2 arm = vec2_rotate(motions[end.body].angle, end.anchor);
-            double *x_row = jacobian->entries + jacobian->rows * jacobian->columns + 3 * end.body;
-            double *y_row = x_row + jacobian->columns;
-            x_row[0] = sign;
-            x_row[2] = -sign * arm.y;
-            y_row[1] = sign;
-            y_row[2] = sign * arm.x;
+        double *first = jacobian->entries + jacobian->rows * jacobian->columns;
+        if (joint_rows_is_angle(kind, 1)) {
+            add_joint(linkage, motions, i, first, jacobian->columns);
+        } else {
+            add_pivot(linkage, motions, i, first, jacobian->columns);
         }
         jacobian->rows += 2;
     }
@@ -68,7 +102,7 @@ size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool i
 {
     bool include[LINKAGE_JOINT_MAX];
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        include[i] = !ideal_only || linkage->joints[i].kind == JOINT_REVOLUTE;
+        include[i] = !ideal_only || linkage_kind_is_ideal(linkage->joints[i].kind);
     }
     Jacobian jacobian;
     kinematics_jacobian(linkage, motions, include, false, &jacobian);
@@ -77,11 +111,24 @@ size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool i
     return jacobian.columns - rank;
 }
 
+Vec2 kinematics_opening(const Linkage *linkage, const Motion *motions, int joint)
+{
+    const JointKind kind = linkage->joints[joint].kind;
+    if (!joint_rows_is_angle(kind, 1)) {
+        return kind == JOINT_STOP ? (Vec2){0.0, 0.0}
+                                  : linkage_joint_gap(linkage, motions, joint).position;
+    }
+    JointRows rows;
+    joint_rows_find(linkage, motions, joint, &rows);
+    return (Vec2){rows.position[0], rows.position[1]};
+}
+
 double kinematics_closure_error(const Linkage *linkage, const Motion *motions)
 {
     double largest = 0.0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        largest = fmax(largest, vec2_length(linkage_joint_gap(linkage, motions, (int)i).position));
+        const Vec2 opening = kinematics_opening(linkage, motions, (int)i);
+        largest = fmax(largest, joint_rows_size(linkage, (int)i, opening));
     }
     return largest;
 }
@@ -110,12 +157,15 @@ static bool newton(const Linkage *linkage, double crank_angle, Motion *motions)
     const double size = linkage_size(linkage);
     for (int iteration = 0; iteration < ITERATION_MAX; iteration++) {
         double residual[KINEMATICS_ROW_MAX] = {0.0};
+        double *row = residual;
         for (size_t i = 0; i < linkage->joint_count; i++) {
-            const Vec2 gap = linkage_joint_gap(linkage, motions, (int)i).position;
-            residual[2 * i] = -gap.x;
-            residual[2 * i + 1] = -gap.y;
+            if (joint_rows_count(linkage->joints[i].kind) > 0) {
+                const Vec2 opening = kinematics_opening(linkage, motions, (int)i);
+                *row++ = -opening.x;
+                *row++ = -opening.y;
+            }
         }
-        double *turn = &residual[2 * linkage->joint_count];
+        double *turn = row;
         *turn = crank_angle - motions[linkage_driven_body(linkage)].angle;
         if (fabs(*turn) <= CLOSED && kinematics_closure_error(linkage, motions) <= CLOSED * size) {
             return true;
@@ -131,7 +181,7 @@ static bool newton(const Linkage *linkage, double crank_angle, Motion *motions)
 static bool solve_velocities(const Linkage *linkage, Motion *motions)
 {
     double rates[KINEMATICS_ROW_MAX] = {0.0};
-    rates[2 * linkage->joint_count] = linkage->driver.speed;
+    rates[joint_rows_total(linkage)] = linkage->driver.speed;
     const bool is_solved = solve_rows(linkage, motions, rates);
     for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
         motions[i].velocity = (Vec2){rates[3 * i], rates[3 * i + 1]};
@@ -149,15 +199,29 @@ static Vec2 centripetal(const Motion *motions, int body, Vec2 local)
     return vec2_scale(omega * omega, vec2_rotate(motions[body].angle, local));
 }
 
+// What the accelerations of a joint's bodies have to make up for.
+static Vec2 joint_gamma(const Linkage *linkage, const Motion *motions, int number)
+{
+    const Joint *joint = &linkage->joints[number];
+    if (joint_rows_is_angle(joint->kind, 1)) {
+        JointRows rows;
+        joint_rows_find(linkage, motions, number, &rows);
+        return (Vec2){-rows.bias[0], -rows.bias[1]};
+    }
+    return vec2_sub(centripetal(motions, joint->body_b, joint->anchor_b),
+                    centripetal(motions, joint->body_a, joint->anchor_a));
+}
+
 static bool solve_accelerations(const Linkage *linkage, Motion *motions)
 {
     double rates[KINEMATICS_ROW_MAX] = {0.0};
+    double *row = rates;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        const Vec2 gamma = vec2_sub(centripetal(motions, joint->body_b, joint->anchor_b),
-                                    centripetal(motions, joint->body_a, joint->anchor_a));
-        rates[2 * i] = gamma.x;
-        rates[2 * i + 1] = gamma.y;
+        if (joint_rows_count(linkage->joints[i].kind) > 0) {
+            const Vec2 gamma = joint_gamma(linkage, motions, (int)i);
+            *row++ = gamma.x;
+            *row++ = gamma.y;
+        }
     }
     const bool is_solved = solve_rows(linkage, motions, rates);
     for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
@@ -169,7 +233,7 @@ static bool solve_accelerations(const Linkage *linkage, Motion *motions)
 
 bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err)
 {
-    if (!linkage->driver.is_present || 2 * linkage->joint_count + 1 != 3 * linkage->body_count) {
+    if (!linkage->driver.is_present || joint_rows_total(linkage) + 1 != 3 * linkage->body_count) {
         return err_set(err, ERR_SOLVER,
                        "the driver alone does not determine the motion of this linkage: %zu "
                        "bodies, %zu joints%s",

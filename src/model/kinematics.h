@@ -16,8 +16,8 @@ typedef struct Jacobian {
     double entries[KINEMATICS_ROW_MAX * KINEMATICS_COLUMN_MAX];
 } Jacobian;
 
-// The constraint Jacobian: two rows a joint for which `include` is true (all where it is NULL),
-// then one row for the driver if there is one and `with_driver` is set.
+// The constraint Jacobian: two rows a joint for which `include` is true (all where it is NULL; a
+// stop has none), then one row for the driver if there is one and `with_driver` is set.
 void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bool *include,
                          bool with_driver, Jacobian *jacobian);
 
@@ -34,5 +34,9 @@ size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool i
 // one freedom; the motions are then untouched.
 bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err);
 
-// The largest distance between the two anchors of any joint, m.
+// What a joint misses of being closed, in its rows: x and y of the second anchor against the first,
+// m; of a prismatic joint or a guide the distance from its line, m, and its tilt, rad; 0 of a stop.
+Vec2 kinematics_opening(const Linkage *linkage, const Motion *motions, int joint);
+
+// The largest of what any joint misses of being closed, m; see joint_rows_size.
 double kinematics_closure_error(const Linkage *linkage, const Motion *motions);

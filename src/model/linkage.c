@@ -16,6 +16,14 @@ double linkage_radial_clearance(const Joint *joint)
     }
 }
 
+double linkage_guide_gap(const Guide *guide, double offset, double tilt)
+{
+    const double end = 0.5 * guide->length * fabs(sin(tilt));
+    const double side = 0.5 * guide->height * cos(tilt);
+    return guide->height > guide->opening ? side - end - fabs(offset) - 0.5 * guide->opening
+                                          : 0.5 * guide->opening - fabs(offset) - side - end;
+}
+
 bool linkage_is_ideal(const Linkage *linkage, size_t joint)
 {
     return linkage_kind_is_ideal(linkage->joints[joint].kind) &&
@@ -155,22 +163,8 @@ static bool check_bodies(const Linkage *linkage, Err *err)
     return true;
 }
 
-static bool check_joint(const Linkage *linkage, size_t number, Err *err)
+static bool check_pin(const Joint *joint, Err *err)
 {
-    const Joint *joint = &linkage->joints[number];
-    const int count = (int)linkage->body_count;
-    if (linkage_find_joint(linkage, joint->name) != (int)number) {
-        return err_set(err, ERR_CASE, "two joints are named '%s'", joint->name);
-    }
-    if (joint->body_a < LINKAGE_GROUND || joint->body_a >= count ||
-        joint->body_b < LINKAGE_GROUND || joint->body_b >= count ||
-        joint->body_a == joint->body_b) {
-        return err_set(err, ERR_CASE, "joint '%s' must join two different bodies of the linkage",
-                       joint->name);
-    }
-    if (joint->kind == JOINT_REVOLUTE) {
-        return true;
-    }
     const Clearance *clearance = &joint->clearance;
     if (!(clearance->pin_radius > 0.0) || !(clearance->hole_radius > clearance->pin_radius)) {
         return err_set(err, ERR_CASE,
@@ -185,6 +179,80 @@ static bool check_joint(const Linkage *linkage, size_t number, Err *err)
                        joint->name, vec2_length(clearance->start), linkage_radial_clearance(joint));
     }
     return true;
+}
+
+static bool check_guide(const Joint *joint, Err *err)
+{
+    const Guide *guide = &joint->guide;
+    if (!(guide->opening > 0.0) || !(guide->height > 0.0) || guide->opening == guide->height ||
+        !(guide->length > 0.0) || !isfinite(guide->opening + guide->height + guide->length)) {
+        return err_set(err, ERR_CASE,
+                       "joint '%s': guide %.9g m, block %.9g m and its length %.9g m, allowed: all "
+                       "above 0, and a block that is not as high as the guide is wide",
+                       joint->name, guide->opening, guide->height, guide->length);
+    }
+    const double gap = linkage_guide_gap(guide, guide->start.x, guide->start.y);
+    if (!(gap >= -LINKAGE_SEATED * linkage_radial_clearance(joint))) {
+        return err_set(err, ERR_CASE, "joint '%s': the block starts %.9g m inside the metal",
+                       joint->name, -gap);
+    }
+    return true;
+}
+
+static bool check_stop(const Joint *joint, Err *err)
+{
+    const Stop *stop = &joint->stop;
+    const double size = stop->radius_b + (stop->is_disc ? stop->radius_a : 0.0);
+    return (stop->radius_a >= 0.0 && stop->radius_b >= 0.0 && isfinite(size) &&
+            (!stop->is_disc || size > 0.0)) ||
+           err_set(err, ERR_CASE,
+                   "joint '%s': discs of radius %.9g m and %.9g m, allowed: 0 or more, and one of "
+                   "two discs above 0",
+                   joint->name, stop->radius_a, stop->radius_b);
+}
+
+static bool check_own_contact(const Joint *joint, Err *err)
+{
+    const JointContact *own = &joint->contact;
+    const bool is_stiffness =
+        own->stiffness == 0.0 || (own->stiffness > 0.0 && own->exponent > 0.0);
+    return (is_stiffness && own->restitution >= 0.0 && own->restitution <= 1.0) ||
+           err_set(err, ERR_CASE,
+                   "joint '%s': stiffness %g and restitution %g of its own, allowed: above 0, and "
+                   "0 to 1",
+                   joint->name, own->stiffness, own->restitution);
+}
+
+static bool check_joint(const Linkage *linkage, size_t number, Err *err)
+{
+    const Joint *joint = &linkage->joints[number];
+    const int count = (int)linkage->body_count;
+    if (linkage_find_joint(linkage, joint->name) != (int)number) {
+        return err_set(err, ERR_CASE, "two joints are named '%s'", joint->name);
+    }
+    if (joint->body_a < LINKAGE_GROUND || joint->body_a >= count ||
+        joint->body_b < LINKAGE_GROUND || joint->body_b >= count ||
+        joint->body_a == joint->body_b) {
+        return err_set(err, ERR_CASE, "joint '%s' must join two different bodies of the linkage",
+                       joint->name);
+    }
+    if (!isfinite(joint->direction + joint->held_angle)) {
+        return err_set(err, ERR_CASE, "joint '%s': its direction is no number", joint->name);
+    }
+    if (linkage->is_spatial && joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE) {
+        return err_set(err, ERR_CASE, "joint '%s': guides and stops are for the plane",
+                       joint->name);
+    }
+    switch (joint->kind) {
+    case JOINT_CLEARANCE:
+        return check_pin(joint, err) && check_own_contact(joint, err);
+    case JOINT_GUIDE:
+        return check_guide(joint, err) && check_own_contact(joint, err);
+    case JOINT_STOP:
+        return check_stop(joint, err) && check_own_contact(joint, err);
+    default:
+        return true;
+    }
 }
 
 static bool check_driver(const Linkage *linkage, Err *err)

@@ -21,6 +21,10 @@ enum {
     LINKAGE_NAME_SIZE = 48,
 };
 
+// Of a clearance: how much deeper than its wall something may start that is to touch it, for the
+// difference of two sizes is rounded.
+static const double LINKAGE_SEATED = 1e-9;
+
 // How a body moves at one instant, in the world's frame.
 typedef struct Motion {
     Vec2 position;     // of the centre of mass, m
@@ -92,6 +96,14 @@ typedef struct Stop {
     double radius_b; // m, of the disc about the anchor of body b; 0: a point
 } Stop;
 
+// What a joint with play has of its own in place of what the contact's options say.
+typedef struct JointContact {
+    double stiffness;     // N/m^exponent; 0: none of its own
+    double exponent;      // 1, of that stiffness
+    bool has_restitution; // whether it has its own
+    double restitution;   // 1
+} JointContact;
+
 // What a joint has only in space.
 typedef struct JointSpace {
     double height;          // m, z of its middle at time zero
@@ -113,6 +125,7 @@ typedef struct Joint {
     Clearance clearance; // of a JOINT_CLEARANCE
     Guide guide;         // of a JOINT_GUIDE
     Stop stop;           // of a JOINT_STOP
+    JointContact contact;
     JointSpace space;
 } Joint;
 
@@ -187,6 +200,17 @@ static inline bool linkage_kind_is_ideal(JointKind kind)
 {
     return kind == JOINT_REVOLUTE || kind == JOINT_PRISMATIC;
 }
+
+// Whether bodies touch in a joint of that kind: a pin in its hole, a block between its guides, a
+// stop.
+static inline bool linkage_kind_has_play(JointKind kind)
+{
+    return !linkage_kind_is_ideal(kind);
+}
+
+// The least gap of a block's corners to the guides (of a sleeve's to the rod), m, negative inside
+// the metal: the block's middle at a distance from the middle line, m, and tilted, rad.
+double linkage_guide_gap(const Guide *guide, double offset, double tilt);
 
 // How far the middle of a pin or block can go from the middle of its hole or guides before it
 // touches, not tilted: hole radius minus pin radius, or half of what a block's height is less than

@@ -9,6 +9,7 @@
 
 #include "base/dense.h"
 #include "model/closed_path.h"
+#include "model/joint_rows.h"
 #include "model/nearest.h"
 #include "model/space.h"
 
@@ -36,7 +37,8 @@ static Linkage idealised(const Linkage *linkage, LockJoints joints)
     ideal.joint_count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (joint->kind != JOINT_REVOLUTE && joints == LOCK_IDEAL_ONLY) {
+        const bool is_ideal = linkage_kind_is_ideal(joint->kind);
+        if (joint->kind == JOINT_STOP || (!is_ideal && joints == LOCK_IDEAL_ONLY)) {
             continue;
         }
         if ((int)i == linkage->driver.joint) {
@@ -44,7 +46,7 @@ static Linkage idealised(const Linkage *linkage, LockJoints joints)
         }
         Joint *kept = &ideal.joints[ideal.joint_count++];
         *kept = *joint;
-        kept->kind = JOINT_REVOLUTE;
+        kept->kind = joint_rows_is_angle(joint->kind, 1) ? JOINT_PRISMATIC : JOINT_REVOLUTE;
         kept->clearance = (Clearance){0};
     }
     return ideal;

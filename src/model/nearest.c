@@ -7,6 +7,7 @@
 #include "model/nearest.h"
 
 #include "base/dense.h"
+#include "model/joint_rows.h"
 #include "model/kinematics.h"
 
 enum { STEP_MAX = 12 }; // Newton doubles the digits: from a clearance to rounding takes about 3
@@ -24,13 +25,14 @@ typedef struct Demand {
     double distance; // the largest that is missing at any joint, m or m/s
 } Demand;
 
-// Asks for two more rows; true where more is missing there than anywhere before.
-static bool add_demand_rows(Demand *demand, Vec2 missing)
+// Asks for the two rows of a joint; true where more is missing there than anywhere before.
+static bool add_demand_rows(const Linkage *linkage, int joint, Vec2 missing, Demand *demand)
 {
     demand->wanted[demand->rows++] = missing.x;
     demand->wanted[demand->rows++] = missing.y;
-    const bool is_worst = vec2_length(missing) > demand->distance;
-    demand->distance = fmax(demand->distance, vec2_length(missing));
+    const double size = joint_rows_size(linkage, joint, missing);
+    const bool is_worst = size > demand->distance;
+    demand->distance = fmax(demand->distance, size);
     return is_worst;
 }
 
@@ -94,9 +96,15 @@ static bool demand_positions(const Linkage *linkage, const Motion *motions, Dema
         const Vec2 hole = linkage_point(motions, joint->body_a, joint->anchor_a);
         const Vec2 pin = linkage_point(motions, joint->body_b, joint->anchor_b);
         size = fmax(size, vec2_length(hole));
-        demand->include[i] = true;
-        // an ideal joint starts at 0
-        add_demand_rows(demand, vec2_sub(joint->clearance.start, vec2_sub(pin, hole)));
+        demand->include[i] = joint->kind != JOINT_STOP;
+        if (joint_rows_is_angle(joint->kind, 1)) {
+            const Vec2 opening = kinematics_opening(linkage, motions, (int)i);
+            add_demand_rows(linkage, (int)i, vec2_sub(joint_rows_start(joint), opening), demand);
+        } else if (demand->include[i]) {
+            // an ideal joint starts at 0
+            const Vec2 missing = vec2_sub(joint->clearance.start, vec2_sub(pin, hole));
+            add_demand_rows(linkage, (int)i, missing, demand);
+        }
     }
     if (linkage->driver.is_present) {
         const double angle = motions[linkage_driven_body(linkage)].angle;
@@ -131,9 +139,16 @@ static int demand_speeds(const Linkage *linkage, const Motion *motions, bool wit
         const Joint *joint = &linkage->joints[i];
         const Vec2 a = linkage_point_velocity(motions, joint->body_a, joint->anchor_a);
         const Vec2 b = linkage_point_velocity(motions, joint->body_b, joint->anchor_b);
-        demand->include[i] = with_play || joint->kind == JOINT_REVOLUTE;
+        demand->include[i] =
+            joint->kind != JOINT_STOP && (with_play || linkage_kind_is_ideal(joint->kind));
         largest = fmax(largest, fmax(vec2_length(a), vec2_length(b)));
-        if (demand->include[i] && add_demand_rows(demand, vec2_sub(a, b))) {
+        Vec2 missing = vec2_sub(a, b);
+        if (joint_rows_is_angle(joint->kind, 1)) {
+            JointRows rows;
+            joint_rows_find(linkage, motions, (int)i, &rows);
+            missing = (Vec2){-rows.rate[0], -rows.rate[1]};
+        }
+        if (demand->include[i] && add_demand_rows(linkage, (int)i, missing, demand)) {
             worst = (int)i;
         }
     }

@@ -61,7 +61,7 @@ double scenario_sample_time(const Scenario *scenario, size_t sample)
 bool scenario_has_clearance(const Scenario *scenario)
 {
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        if (scenario->linkage.joints[i].kind == JOINT_CLEARANCE) {
+        if (linkage_kind_has_play(scenario->linkage.joints[i].kind)) {
             return true;
         }
     }

@@ -178,14 +178,12 @@ static bool check_count(const Reading *reading)
     return true;
 }
 
-// The joints that have play in the runs have it by the keys that are there, whatever their values.
-static void loosen_joints(const Reading *reading)
+// The kinds of the joints in the runs follow from the keys that are there, whatever their values.
+static void set_joint_kinds(const Reading *reading)
 {
     Linkage *linkage = &reading->spec->base->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (probe_has_play(reading->probe, i)) {
-            linkage->joints[i].kind = JOINT_CLEARANCE;
-        }
+        linkage->joints[i].kind = probe_joint_kind(reading->probe, i);
     }
 }
 
@@ -199,7 +197,7 @@ static bool read_parts(Reading *reading, const Node *root)
                                 "vary: or draw: with the keys that differ from run to run",
                                 "nothing varies");
     }
-    loosen_joints(reading);
+    set_joint_kinds(reading);
     order_variables(reading->spec);
     return probe_is_whole(reading->probe, reading->err) && spec_read_check_schemes(reading) &&
            check_count(reading);

@@ -1,0 +1,150 @@
+// Do the values of a joint with play fit together?
+#include "casefile/check_joints.h"
+
+#include "contact/damping.h"
+#include "contact/law.h"
+
+#include <math.h>
+
+// Whether the law's force depends on the length of the cylinders.
+static bool needs_width(const Scenario *scenario, const Joint *joint)
+{
+    const ContactOptions *contact = &scenario->contact;
+    return law_get(contact->law)->needs_width && contact->stiffness == 0.0 &&
+           joint->contact.stiffness == 0.0 && contact->model == CONTACT_IMPACT;
+}
+
+static bool check_sizes(const Entries *entries, size_t index, const Joint *joint, Err *err)
+{
+    const Entry *hole = entries_find(entries, "joints.*.hole", index);
+    const Entry *pin = entries_find(entries, "joints.*.pin", index);
+    if (hole == NULL || pin == NULL || linkage_radial_clearance(joint) > 0.0) {
+        return true;
+    }
+    const Entry *culprit = entries_blame(entries, "joints.*.pin joints.*.hole", index);
+    const bool hole_is_new = culprit == hole;
+    return entries_refuse(
+        culprit, err, "the pin (%.60s) must be smaller than the hole (%.60s)\nallowed: %s %.60s",
+        pin->node->text, hole->node->text, hole_is_new ? "a hole above" : "a pin below",
+        hole_is_new ? pin->node->text : hole->node->text);
+}
+
+static bool check_pin(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[index];
+    const EntryGroup *group = entries_group(entries, "joints.*", index);
+    if (!check_sizes(entries, index, joint, err)) {
+        return false;
+    }
+    const double radial = linkage_radial_clearance(joint);
+    const double start = vec2_length(joint->clearance.start);
+    if (!(start <= radial)) {
+        return entries_refuse(
+            entries_blame(entries,
+                          "joints.*.start joints.*.radial-clearance joints.*.hole joints.*.pin",
+                          index),
+            err,
+            "the pin starts %.6g um off the centre, inside the metal\n"
+            "allowed: up to the radial clearance, %.6g um",
+            1e6 * start, 1e6 * radial);
+    }
+    if (needs_width(scenario, joint) && joint->clearance.width == 0.0) {
+        const Entry *law = entries_find(entries, "contact.law", 0);
+        static const char FORMAT[] = "the law %s needs the width of joint %s\n"
+                                     "allowed: width: 13 mm, or a law without it";
+        const char *name = OPTIONS_LAWS[scenario->contact.law];
+        return law != NULL && law->source->is_override
+                   ? entries_refuse(law, err, FORMAT, name, joint->name)
+                   : entries_refuse_group(group, err, FORMAT, name, joint->name);
+    }
+    return true;
+}
+
+// Blocks between guides and stops touch with a stiffness that is given: the laws of pins need the
+// radii of pin and hole.
+static bool check_stiffness(const Entries *entries, size_t index, const Scenario *scenario,
+                            Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[index];
+    const EntryGroup *group = entries_group(entries, "joints.*", index);
+    const char *what = joint->kind == JOINT_GUIDE ? "a block between guides" : "a stop";
+    if (scenario->contact.model != CONTACT_IMPACT) {
+        return entries_refuse(entries_find(entries, "contact.model", 0), err,
+                              "the poisson model is for pins in holes, and joint '%s' is "
+                              "%s\nallowed: impact",
+                              joint->name, what);
+    }
+    return joint->contact.stiffness > 0.0 || scenario->contact.stiffness > 0.0 ||
+           entries_refuse_group(group, err,
+                                "joint '%s', %s, needs a stiffness: the law %s is for pins in "
+                                "holes\nallowed: stiffness: 1e8 N/m here or in contact",
+                                joint->name, what, OPTIONS_LAWS[scenario->contact.law]);
+}
+
+static bool check_guide(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[index];
+    const Guide *guide = &joint->guide;
+    if (guide->opening == guide->height) {
+        return entries_refuse(
+            entries_blame(entries, "joints.*.block joints.*.guide", index), err,
+            "the block is as high as the guide is wide: there is no play\nallowed: a block below "
+            "%.6g mm, above it for a sleeve round a rod, or no guide, block and length",
+            1e3 * guide->opening);
+    }
+    const double play = linkage_radial_clearance(joint);
+    const double gap = linkage_guide_gap(guide, guide->start.x, guide->start.y);
+    if (!(gap >= -LINKAGE_SEATED * play)) {
+        return entries_refuse(entries_blame(entries,
+                                            "joints.*.start joints.*.block joints.*.guide "
+                                            "joints.*.length",
+                                            index),
+                              err,
+                              "the block starts %.6g um inside the metal\nallowed: up to %.6g um "
+                              "off the middle where it is not tilted, or centred",
+                              -1e6 * gap, 1e6 * play);
+    }
+    return check_stiffness(entries, index, scenario, err);
+}
+
+// A joint's own restitution needs a damping that has a factor for it.
+static bool check_restitution(const Entries *entries, size_t index, const Scenario *scenario,
+                              Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[index];
+    const Entry *own = entries_find(entries, "joints.*.restitution", index);
+    return own == NULL || joint->contact.restitution > 0.0 ||
+           scenario->contact.model != CONTACT_IMPACT ||
+           isfinite(damping_factor(scenario->contact.damping, 0.0)) ||
+           entries_refuse(own, err,
+                          "damping %s has no finite factor at restitution 0\nallowed: above 0 "
+                          "and up to 1, or another damping",
+                          OPTIONS_DAMPINGS[scenario->contact.damping]);
+}
+
+static bool check_joint(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
+{
+    switch (scenario->linkage.joints[index].kind) {
+    case JOINT_CLEARANCE:
+        return check_pin(entries, index, scenario, err) &&
+               check_restitution(entries, index, scenario, err);
+    case JOINT_GUIDE:
+        return check_guide(entries, index, scenario, err) &&
+               check_restitution(entries, index, scenario, err);
+    case JOINT_STOP:
+        return check_stiffness(entries, index, scenario, err) &&
+               check_restitution(entries, index, scenario, err);
+    default:
+        return true;
+    }
+}
+
+bool check_joints(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        if (!check_joint(entries, i, scenario, err)) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,76 @@
+// Which kind of joint do the keys of a case make, and do they go together?
+#include "casefile/joint_kind.h"
+
+#include <string.h>
+
+JointKind joint_kind_find(const Entries *entries, size_t joint)
+{
+    // the keys that only joints of a kind have; of several kinds the first counts
+    static const struct {
+        JointKind kind;
+        const char *keys;
+    } KINDS[] = {
+        {JOINT_STOP, "joints.*.at-a joints.*.at-b joints.*.normal joints.*.radius joints.*.discs"},
+        {JOINT_GUIDE, "joints.*.guide joints.*.block joints.*.length"},
+        {JOINT_PRISMATIC, "joints.*.along"},
+        {JOINT_CLEARANCE, "joints.*.hole joints.*.pin joints.*.radial-clearance joints.*.width "
+                          "joints.*.start"},
+    };
+    const bool is_named = entries_group(entries, "joints.*", joint) != NULL;
+    if (entries->form == SCHEMA_SHORT) {
+        return is_named ? JOINT_CLEARANCE : JOINT_REVOLUTE;
+    }
+    for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++) {
+        if (entries_blame(entries, KINDS[i].keys, joint) != NULL) {
+            return KINDS[i].kind;
+        }
+    }
+    return JOINT_REVOLUTE;
+}
+
+static const char *describe_kind(JointKind kind)
+{
+    static const char *const WORDS[] = {
+        [JOINT_REVOLUTE] = "which has no play",
+        [JOINT_CLEARANCE] = "a pin in a hole",
+        [JOINT_PRISMATIC] = "a prismatic joint without play",
+        [JOINT_GUIDE] = "a block between guides",
+        [JOINT_STOP] = "a stop",
+    };
+    return WORDS[kind];
+}
+
+// Refuses a key of another kind with those that the joint may have.
+static bool refuse_key(const Entries *entries, const Entry *entry, JointKind kind, Err *err)
+{
+    Text allowed;
+    text_init(&allowed);
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        const SchemaRow *row = &SCHEMA_ROWS[i];
+        if (row->family == SCHEMA_JOINT && schema_is_of_kind(row, kind) &&
+            (row->form == SCHEMA_BOTH || row->form == entries->form)) {
+            text_append(&allowed, "%s%s", allowed.length > 0 ? ", " : "",
+                        strrchr(row->path, '.') + 1);
+        }
+    }
+    entries_refuse(entry, err, "'%s' is no key of joint '%s', %s\nallowed: %s",
+                   strrchr(entry->row->path, '.') + 1,
+                   entries_name(entries, entry->row, entry->index), describe_kind(kind),
+                   allowed.data);
+    text_finish(&allowed);
+    return false;
+}
+
+bool joint_kind_check(const Entries *entries, Err *err)
+{
+    for (size_t i = 0; i < entries->count; i++) {
+        const Entry *entry = &entries->entries[i];
+        if (entry->row->family == SCHEMA_JOINT) {
+            const JointKind kind = joint_kind_find(entries, entry->index);
+            if (!schema_is_of_kind(entry->row, kind)) {
+                return refuse_key(entries, entry, kind, err);
+            }
+        }
+    }
+    return true;
+}

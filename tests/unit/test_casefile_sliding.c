@@ -1,0 +1,184 @@
+// Do the keys of prismatic joints, guides and stops become the joints they describe?
+#include "casefile/casefile.h"
+
+#include "close.h"
+#include "contact/law.h"
+#include "model/joint_rows.h"
+
+#include <string.h>
+
+// A slider-crank whose line is 20 mm below the pivot and inclined by 10 deg; the block starts off
+// the middle, tilted, where `guide` says so.
+#define SLIDER_CRANK(slide)                                                                        \
+    "bodies:\n"                                                                                    \
+    "  crank:  {mass: 0.3 kg, inertia: 1e-4 kg m^2, at: [30 mm, 40 mm]}\n"                         \
+    "  rod:    {mass: 0.2 kg, inertia: 1e-3 kg m^2, at: [200 mm, 0 mm], angle: 30 deg}\n"          \
+    "  slider: {mass: 0.5 kg, inertia: 1e-3 kg m^2, at: [300 mm, 10 mm], angle: 15 deg}\n"         \
+    "joints:\n"                                                                                    \
+    "  main:  {between: [ground, crank], at: [0 mm, 0 mm]}\n"                                      \
+    "  big:   {between: [crank, rod], at: [60 mm, 80 mm]}\n"                                       \
+    "  small: {between: [rod, slider], at: [300 mm, 0 mm]}\n"                                      \
+    "  slide: {between: [ground, slider], at: [310 mm, -20 mm], along: 10 deg" slide "}\n"         \
+    "drive: {joint: main, speed: 1000 rpm}\n"
+
+#define GUIDE                                                                                      \
+    ", guide: 52 mm, block: 50 mm, length: 100 mm,\n"                                              \
+    "          start: [-0.2 mm, 0.1 deg], stiffness: 2e8 N/m, restitution: 0.5"
+
+static const char BALLS[] =
+    "bodies:\n"
+    "  first:  {mass: 0.1 kg, inertia: 1e-5 kg m^2, at: [1 mm, 11 mm], angle: 90 deg}\n"
+    "  second: {mass: 0.1 kg, inertia: 1e-5 kg m^2, at: [0 mm, 40 mm]}\n"
+    "joints:\n"
+    "  floor: {between: [ground, first], at-a: [0 mm, 0 mm], at-b: [1 mm, 11 mm],\n"
+    "          normal: 90 deg, radius: 10 mm}\n"
+    "  tip: {between: [first, second], at-a: [1 mm, 21 mm], at-b: [0 mm, 40 mm], normal: 90 deg}\n"
+    "  discs: {between: [first, second], at-a: [1 mm, 11 mm], at-b: [0 mm, 40 mm],\n"
+    "          discs: [20 mm, 30 mm], stiffness: 1e9 N/m^1.5}\n"
+    "contact: {stiffness: 1e6 N/m, restitution: 0.9}\n"
+    "run: {duration: 10 ms, samples: 50}\n";
+
+static Scenario load(const char *text)
+{
+    Scenario scenario;
+    Err err = {0};
+    if (!casefile_load_text("memory", text, strlen(text), NULL, 0, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+    return scenario;
+}
+
+static JointRows rows_at_start(const Linkage *linkage, int joint)
+{
+    Motion motions[LINKAGE_BODY_MAX];
+    JointRows rows;
+    linkage_start(linkage, motions);
+    joint_rows_find(linkage, motions, joint, &rows);
+    return rows;
+}
+
+static void a_prismatic_joint_keeps_the_angle_that_the_bodies_are_given(void **state)
+{
+    (void)state;
+    const Scenario scenario = load(SLIDER_CRANK(""));
+    const Joint *slide = &scenario.linkage.joints[3];
+    assert_int_equal(slide->kind, JOINT_PRISMATIC);
+    assert_near(slide->direction, M_PI / 18.0, 1e-16);
+    assert_near(slide->held_angle, M_PI / 12.0, 1e-16);
+    assert_near(scenario.linkage.bodies[2].start.angle, M_PI / 12.0, 1e-16);
+    const JointRows rows = rows_at_start(&scenario.linkage, 3);
+    assert_near(rows.position[0], 0.0, 1e-16);
+    assert_near(rows.position[1], 0.0, 1e-16);
+    // the drive takes the slider along its line
+    const Vec2 along = {cos(M_PI / 18.0), sin(M_PI / 18.0)};
+    const Motion *slider = &scenario.linkage.bodies[2].start;
+    assert_near(vec2_cross(along, slider->velocity), 0.0, 1e-15);
+    assert_true(vec2_length(slider->velocity) > 0.1);
+    assert_near(slider->omega, 0.0, 1e-14);
+}
+
+static void a_block_starts_off_the_middle_and_tilted_as_the_case_says(void **state)
+{
+    (void)state;
+    const Scenario scenario = load(SLIDER_CRANK(GUIDE));
+    const Joint *slide = &scenario.linkage.joints[3];
+    assert_int_equal(slide->kind, JOINT_GUIDE);
+    assert_near(linkage_radial_clearance(slide), 1e-3, 1e-17);
+    const JointRows rows = rows_at_start(&scenario.linkage, 3);
+    assert_near(rows.position[0], -0.2e-3, 1e-16);
+    assert_near(rows.position[1], 0.1 * M_PI / 180.0, 1e-16);
+    // at rest between its guides
+    assert_near(rows.rate[0], 0.0, 1e-14);
+    assert_near(rows.rate[1], 0.0, 1e-14);
+    ForceLaw law;
+    Err err = {0};
+    assert_true(law_of_joint(&scenario, slide, &law, &err));
+    assert_near(force_law_elastic(&law, 1e-6), 200.0, 1e-12);
+}
+
+static void a_stop_is_between_the_places_that_the_case_gives(void **state)
+{
+    (void)state;
+    const Scenario scenario = load(BALLS);
+    const Joint *joints = scenario.linkage.joints;
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(joints[i].kind, JOINT_STOP);
+    }
+    assert_near(joints[0].direction, 0.5 * M_PI, 1e-16);
+    assert_near(joints[0].stop.radius_b, 0.01, 1e-18);
+    assert_false(joints[0].stop.is_disc);
+    // the line and its normal turn with the first body, which stands at 90 deg
+    assert_near(joints[1].direction, 0.0, 1e-16);
+    assert_near(joints[1].anchor_a.x, 0.01, 1e-17);
+    assert_near(joints[1].anchor_a.y, 0.0, 1e-17);
+    assert_near(joints[1].anchor_b.y, 0.0, 1e-17);
+    assert_true(joints[2].stop.is_disc);
+    assert_near(joints[2].stop.radius_a, 0.01, 1e-18);
+    assert_near(joints[2].stop.radius_b, 0.015, 1e-18);
+}
+
+static void a_joints_own_stiffness_and_restitution_go_before_those_of_the_contact(void **state)
+{
+    (void)state;
+    const Scenario balls = load(BALLS);
+    const Scenario slider = load(SLIDER_CRANK(GUIDE));
+    ForceLaw law;
+    Err err = {0};
+    assert_true(law_of_joint(&balls, &balls.linkage.joints[0], &law, &err));
+    assert_near(force_law_elastic(&law, 1e-4), 100.0, 1e-12);
+    assert_true(law_of_joint(&balls, &balls.linkage.joints[2], &law, &err));
+    assert_near(force_law_elastic(&law, 1e-4), 1000.0, 1e-11);
+    assert_near(law_options(&slider.contact, &slider.linkage.joints[3]).restitution, 0.5, 0.0);
+    assert_near(law_options(&balls.contact, &balls.linkage.joints[2]).restitution, 0.9, 0.0);
+}
+
+static bool is_setting(const Scenario *scenario, const char *key, CasefileSetting *setting)
+{
+    for (size_t i = 0; casefile_setting(scenario, i, setting); i++) {
+        if (strcmp(setting->key, key) == 0) {
+            return setting->applies;
+        }
+    }
+    return false;
+}
+
+static void settings_hold_what_the_case_says(void **state)
+{
+    (void)state;
+    const Scenario slider = load(SLIDER_CRANK(GUIDE));
+    const Scenario balls = load(BALLS);
+    CasefileSetting setting;
+    assert_true(is_setting(&slider, "joints.slide.along", &setting));
+    assert_near(setting.numbers[0], M_PI / 18.0, 1e-16);
+    assert_true(is_setting(&slider, "joints.slide.start", &setting));
+    assert_near(setting.numbers[0], -0.2e-3, 1e-18);
+    assert_near(setting.numbers[1], 0.1 * M_PI / 180.0, 1e-18);
+    assert_string_equal(setting.unit, "m, rad");
+    assert_true(is_setting(&slider, "joints.slide.stiffness", &setting));
+    assert_string_equal(setting.unit, "N/m");
+    assert_false(is_setting(&slider, "joints.slide.hole", &setting));
+    assert_false(is_setting(&slider, "joints.small.stiffness", &setting));
+    // the guide's stiffness is its own, so that no law is asked
+    assert_false(is_setting(&slider, "contact.law", &setting));
+    assert_true(is_setting(&balls, "joints.tip.at-a", &setting));
+    assert_near(setting.numbers[1], 0.021, 1e-17);
+    assert_true(is_setting(&balls, "joints.tip.at-b", &setting));
+    assert_near(setting.numbers[1], 0.04, 1e-17);
+    assert_true(is_setting(&balls, "joints.tip.normal", &setting));
+    assert_near(setting.numbers[0], 0.5 * M_PI, 1e-16);
+    assert_true(is_setting(&balls, "joints.discs.discs", &setting));
+    assert_near(setting.numbers[1], 0.03, 1e-18);
+    assert_false(is_setting(&balls, "joints.discs.at", &setting));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_prismatic_joint_keeps_the_angle_that_the_bodies_are_given),
+        cmocka_unit_test(a_block_starts_off_the_middle_and_tilted_as_the_case_says),
+        cmocka_unit_test(a_stop_is_between_the_places_that_the_case_gives),
+        cmocka_unit_test(a_joints_own_stiffness_and_restitution_go_before_those_of_the_contact),
+        cmocka_unit_test(settings_hold_what_the_case_says),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
