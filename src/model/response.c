@@ -15,6 +15,8 @@
 // Mechanics, 3rd ed., Springer 2016, ch. 5.
 #include "model/response.h"
 
+#include "model/joint_rows.h"
+
 #include <string.h>
 
 // the share of a row that must be left when the rows before it are taken out: rounding leaves
@@ -242,11 +244,10 @@ void response_openings(const Response *response, const Motion *motions, double *
 {
     const Linkage *linkage = response->linkage;
     for (size_t row = 0; row < response->ideal_rows; row += 2) {
-        const JointGap gap = linkage_joint_gap(linkage, motions, response->joint_of[row]);
-        positions[row] = gap.position.x;
-        positions[row + 1] = gap.position.y;
-        rates[row] = gap.velocity.x;
-        rates[row + 1] = gap.velocity.y;
+        JointRows joint;
+        joint_rows_find(linkage, motions, response->joint_of[row], &joint);
+        memcpy(positions + row, joint.position, sizeof joint.position);
+        memcpy(rates + row, joint.rate, sizeof joint.rate);
     }
 }
 

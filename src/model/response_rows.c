@@ -1,14 +1,16 @@
 // Where do the rows of a linkage's response stand, and how fast do their rates change by
 // themselves?
 //
-// Ideal joints and pins: x and y of anchor b less anchor a.
-// At a line of body a with normal n and tangent t = perp n, d from anchor a to anchor b, r the
-// radius of body b's circle; w, alpha turning and its rate:
+// Revolute joints and pins: x and y of anchor b less anchor a. Prismatic joints:
+// model/joint_rows.h. At a line of body a with normal n and tangent t = perp n, d from anchor a to
+// anchor b, r the radius of body b's circle; w, alpha turning and its rate:
 //     rates     n . d' + w_a t . d                           of the gap
 //               t . d' - w_a (n . d - r) - w_b r             of sliding
 //     theirs    n . d'' + 2 w_a t . d' - w_a^2 n . d + alpha_a t . d
 //               t . d'' - 2 w_a n . d' - w_a^2 t . d - alpha_a (n . d - r) - alpha_b r
 #include "model/response_rows.h"
+
+#include "model/joint_rows.h"
 
 static bool is_fixed(const Linkage *linkage, int body)
 {
@@ -31,6 +33,22 @@ static void place_point(Response *response, size_t row, const JointEnd ends[2],
         x_row->turn[side] = -sign * arm.y;
         y_row->y[side] = sign;
         y_row->turn[side] = sign * arm.x;
+    }
+}
+
+static void place_prismatic(Response *response, size_t row, int joint, const Motion *motions)
+{
+    JointRows rows;
+    joint_rows_find(response->linkage, motions, joint, &rows);
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(&response->linkage->joints[joint], side).body;
+        for (size_t i = 0; i < JOINT_ROWS; i++) {
+            ResponseRow *of = &response->rows[row + i];
+            of->body[side] = is_fixed(response->linkage, body) ? LINKAGE_GROUND : body;
+            of->x[side] = rows.rows[i].x[side];
+            of->y[side] = rows.rows[i].y[side];
+            of->turn[side] = rows.rows[i].turn[side];
+        }
     }
 }
 
@@ -80,6 +98,10 @@ void response_rows_place(Response *response, const Motion *motions)
     size_t row = 0;
     for (; row < response->ideal_rows; row += 2) {
         const Joint *joint = &joints[response->joint_of[row]];
+        if (joint->kind == JOINT_PRISMATIC) {
+            place_prismatic(response, row, response->joint_of[row], motions);
+            continue;
+        }
         place_point(response, row, (JointEnd[]){linkage_end(joint, 0), linkage_end(joint, 1)},
                     motions);
     }
@@ -159,6 +181,33 @@ static void line_free(const Linkage *linkage, const ResponsePlace *place, const 
                load_turning(linkage, b, loads) * place->radius;
 }
 
+// The rates of the rates of a prismatic joint's rows: their own and those of the bodies.
+static void prismatic_free(const Linkage *linkage, int joint, const Motion *motions, double gravity,
+                           const BodyLoad *loads, double *gamma)
+{
+    JointRows rows;
+    joint_rows_find(linkage, motions, joint, &rows);
+    gamma[0] = rows.bias[0];
+    gamma[1] = rows.bias[1];
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(&linkage->joints[joint], side).body;
+        if (body == LINKAGE_GROUND) {
+            continue;
+        }
+        const bool is_driven = body == linkage_driven_body(linkage);
+        Vec2 centre = is_driven ? motions[body].acceleration : (Vec2){0.0, -gravity};
+        if (loads != NULL && !is_driven) {
+            const double mass = linkage->bodies[body].mass;
+            centre = vec2_add(centre, vec2_scale(1.0 / mass, loads[body].force));
+        }
+        for (size_t i = 0; i < JOINT_ROWS; i++) {
+            const JointRow *row = &rows.rows[i];
+            gamma[i] += row->x[side] * centre.x + row->y[side] * centre.y +
+                        row->turn[side] * load_turning(linkage, body, loads);
+        }
+    }
+}
+
 void response_rows_loose(const Response *response, const Motion *motions, double gravity,
                          const BodyLoad *loads, double *gamma)
 {
@@ -167,6 +216,10 @@ void response_rows_loose(const Response *response, const Motion *motions, double
     for (; row < response->ideal_rows; row += 2) {
         const int number = response->joint_of[row];
         const Joint *joint = &linkage->joints[number];
+        if (joint->kind == JOINT_PRISMATIC) {
+            prismatic_free(linkage, number, motions, gravity, loads, gamma + row);
+            continue;
+        }
         const Vec2 relative = relative_acceleration(linkage, motions, number, joint->anchor_a,
                                                     joint->anchor_b, gravity, loads);
         gamma[row] = relative.x;

@@ -327,6 +327,7 @@ void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
 void contact_rows_offsets(const ContactRows *rows, int body, Vec2 offsets[LINKAGE_JOINT_MAX])
 {
     memset(offsets, 0, LINKAGE_JOINT_MAX * sizeof *offsets);
+    world_offsets(rows->world, body, offsets);
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         const ContactRow *row = &rows->rows[i];
         const int number = rows->world->pairs[i].joint;

@@ -35,7 +35,7 @@ bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, dou
                        Err *err);
 
 // By joint, from the centre of the hole or pin that a body carries to the point where the contact's
-// force acts, m; zero for a joint without a row in this step.
+// force acts, m; zero for a joint without a row in this step. Of a prismatic joint from the anchor.
 void contact_rows_offsets(const ContactRows *rows, int body, Vec2 offsets[LINKAGE_JOINT_MAX]);
 
 // What all contacts together lost in the step along the normal and in sliding, and store after it,

@@ -143,8 +143,8 @@ static bool work_out(const Extrapolated *own, double time_s, Sample *sample, Pow
     powers->drive = forces_torque_power(linkage, sample->bodies, time_s);
     powers->damping = forces_damping_power(linkage, sample->bodies);
     if (own->driven >= 0) {
-        // an ideal joint's force acts at its anchor
-        const Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
+        Vec2 offsets[LINKAGE_JOINT_MAX];
+        stepping_offsets(linkage, sample->bodies, own->driven, offsets);
         powers->drive = stepping_drive(own->scenario, &sample->bodies[own->driven],
                                        &loads[own->driven], offsets, sample->joints);
     }

@@ -4,8 +4,11 @@
 //     M (a - g) - f = J' lambda,   so that   D lambda = J (a - g - M^-1 f),   D = J M^-1 J'
 // f: springs, dampers, torque. a holds the angular accelerations too. J a is the bodies' part alone
 // and without centripetal terms: this is a balance of forces, and says nothing of whether the
-// joints stay closed. lambda is the force on body b of each joint.
+// joints stay closed. lambda is the force on body b of each revolute joint; of a prismatic joint
+// the force across its line and the couple.
 #include "ode/ideal_forces.h"
+
+#include "model/joint_rows.h"
 
 // One row of J (a - g - M^-1 f).
 static double row_acceleration(const ResponseRow *row, const Linkage *linkage,
@@ -25,6 +28,19 @@ static double row_acceleration(const ResponseRow *row, const Linkage *linkage,
     return sum;
 }
 
+static void set_force(const Linkage *linkage, const Motion *motions, int number,
+                      const double *lambda, JointState *joint)
+{
+    joint->force_on_b = (Vec2){lambda[0], lambda[1]};
+    joint->moment_on_b = 0.0;
+    if (linkage->joints[number].kind == JOINT_PRISMATIC) {
+        const Vec2 across = vec2_perp(joint_rows_along(linkage, motions, number));
+        joint->force_on_b = vec2_scale(lambda[0], across);
+        joint->moment_on_b = lambda[1];
+    }
+    joint->force = vec2_length(joint->force_on_b);
+}
+
 bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, const BodyLoad *loads,
                         Response *response, JointState *joints)
 {
@@ -38,10 +54,9 @@ bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, const B
                                      scenario->gravity, loads);
     }
     response_solve(response, lambda);
-    for (size_t i = 0; i < count; i += 2) {
-        JointState *joint = &joints[response->joint_of[i]];
-        joint->force_on_b = (Vec2){lambda[i], lambda[i + 1]};
-        joint->force = vec2_length(joint->force_on_b);
+    for (size_t i = 0; i < count; i += JOINT_ROWS) {
+        const int number = response->joint_of[i];
+        set_force(&scenario->linkage, motions, number, lambda + i, &joints[number]);
     }
     return true;
 }

@@ -5,8 +5,8 @@
 #include "model/scenario.h"
 #include "model/trajectory.h"
 
-// Fills in force and force_on_b of the ideal joints, the drive's joint apart, from positions and
-// accelerations. The response must have been prepared for the scenario's linkage. Returns false
-// where the forces are not determined; the joints are then untouched.
+// Fills in force, force_on_b and moment_on_b of the ideal joints, the drive's joint apart, from
+// positions and accelerations. The response must have been prepared for the scenario's linkage.
+// Returns false where the forces are not determined; the joints are then untouched.
 bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, const BodyLoad *loads,
                         Response *response, JointState *joints);

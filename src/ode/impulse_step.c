@@ -16,7 +16,6 @@
 #include "ode/impulse_step.h"
 
 #include "contact/law.h"
-#include "ode/engine.h"
 #include "ode/stepping.h"
 
 #include <assert.h>
@@ -187,7 +186,7 @@ static bool step_world(ImpulseStep *step, const Motion *middle, Err *err)
         }
         world_place(&step->world, i, &placed);
     }
-    return engine_step(step->world.id, width_s, step->scenario->ode.solver == ODE_QUICK, err) &&
+    return world_step(&step->world, width_s, step->scenario->ode.solver == ODE_QUICK, err) &&
            world_check(&step->world, err);
 }
 

@@ -22,7 +22,6 @@
 
 #include "base/dense.h"
 #include "model/kinematics.h"
-#include "ode/engine.h"
 #include "ode/stepping.h"
 
 #include <assert.h>
@@ -118,7 +117,7 @@ static bool step_level(Nodes *nodes, NodesLevel *level, long direction, Err *err
     }
     const bool is_quick = scenario->ode.solver == ODE_QUICK;
     nodes->steps++;
-    if (!engine_step(level->world.id, level->step_s, is_quick, err) ||
+    if (!world_step(&level->world, level->step_s, is_quick, err) ||
         !world_check(&level->world, err)) {
         return stepping_fail(scenario, start_s, nodes->steps, level->step_s, err);
     }

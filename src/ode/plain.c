@@ -8,7 +8,6 @@
 // Where every joint is ideal the run starts `settle_steps` early: the joint rows lag behind the
 // start by a share (1 - ERP)^n, which would stand in the accelerations at any step size.
 #include "ode/contact_rows.h"
-#include "ode/engine.h"
 #include "ode/stepping.h"
 
 #include <assert.h>
@@ -79,7 +78,7 @@ static bool advance(Plain *plain, Err *err)
     applied_push(&plain->world.applied, start_s, plain->step_s, APPLIED_AT_END, 1);
     const bool is_quick = plain->scenario->ode.solver == ODE_QUICK;
     if (!contact_rows_make(&plain->contacts, plain->step_s, plain->joints, plain->approach, err) ||
-        !engine_step(plain->world.id, plain->step_s, is_quick, err)) {
+        !world_step(&plain->world, plain->step_s, is_quick, err)) {
         return stepping_fail(plain->scenario, start_s, plain->steps + 1, plain->step_s, err);
     }
     contact_rows_clear(&plain->contacts, plain->step_s, plain->joints);

@@ -7,18 +7,19 @@
 // both bodies at t, the driven body's speed in the row at t + h. The joint rows' error is carried
 // off with ERP 1, which makes them a linearised SHAKE: second order.
 //
-// Its steady state leaves each ideal joint open by phi = (h^2/2) c, c = -(w^2 r)_b + (w^2 r)_a with
-// the arms r of the joint on its bodies, for a step keeps phi + h J v' = 0 and arms turn meanwhile.
-// The run starts half a step on, moved to that opening along M^-1 J', the directions of the joints'
-// own forces: speeds are then right from the first step. Where the drive determines the motion it
-// starts four steps early, and accelerations are, too.
+// Its steady state leaves each row phi of an ideal joint open by phi = (h^2/2) (dJ/dt) v, for a
+// step keeps phi + h J v' = 0 and bodies turn meanwhile; of a revolute joint that is the difference
+// of its arms' centripetal accelerations. The run starts half a step on, moved to that opening
+// along M^-1 J', the directions of the joints' own forces: speeds are then right from the first
+// step. Where the drive determines the motion it starts four steps early, and accelerations are,
+// too.
 //
 // Read between: speeds linear in each step, positions their integral, accelerations linear between
 // mid-steps. That needs the step after: the run is one step ahead of what it hands on.
 // Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. 2006, VII.1.4 on SHAKE.
+#include "model/joint_rows.h"
 #include "model/response.h"
 #include "ode/contact_rows.h"
-#include "ode/engine.h"
 #include "ode/stepping.h"
 
 #include <assert.h>
@@ -68,23 +69,6 @@ static void staggered_close(void *state)
     free(staggered);
 }
 
-// What the arms of a joint add to its opening in a step, per h^2 / 2.
-static Vec2 arm_turning(const Linkage *linkage, const Motion *motions, int joint)
-{
-    const Joint *data = &linkage->joints[joint];
-    const int bodies[2] = {data->body_a, data->body_b};
-    const Vec2 anchors[2] = {data->anchor_a, data->anchor_b};
-    Vec2 sum = {0.0, 0.0};
-    for (int end = 0; end < 2; end++) {
-        if (bodies[end] != LINKAGE_GROUND) {
-            const Motion *motion = &motions[bodies[end]];
-            const double rate = (end == 0 ? 1.0 : -1.0) * motion->omega * motion->omega;
-            sum = vec2_add(sum, vec2_scale(rate, vec2_rotate(motion->angle, anchors[end])));
-        }
-    }
-    return sum;
-}
-
 // The bodies half a step on, with the speeds of the start, each ideal joint as far open as it
 // stays.
 static bool move_on(const Scenario *scenario, double start_s, Response *response, Motion *motions,
@@ -109,10 +93,11 @@ static bool move_on(const Scenario *scenario, double start_s, Response *response
     double rates[RESPONSE_ROW_MAX];
     double changes[3 * LINKAGE_BODY_MAX];
     response_openings(response, motions, openings, rates);
-    for (size_t row = 0; row < response->ideal_rows; row += 2) {
-        const Vec2 turning = arm_turning(linkage, motions, response->joint_of[row]);
-        openings[row] -= 0.5 * step_s * step_s * turning.x;
-        openings[row + 1] -= 0.5 * step_s * step_s * turning.y;
+    for (size_t row = 0; row < response->ideal_rows; row += JOINT_ROWS) {
+        JointRows joint;
+        joint_rows_find(linkage, motions, response->joint_of[row], &joint);
+        openings[row] -= 0.5 * step_s * step_s * joint.bias[0];
+        openings[row + 1] -= 0.5 * step_s * step_s * joint.bias[1];
     }
     response_close(response, openings, rates, changes);
     for (size_t i = 0; i < linkage->body_count; i++) {
@@ -211,7 +196,7 @@ static bool advance(Staggered *staggered, Stride *stride, Err *err)
     }
     place_driven(staggered, &middle, end_s);
     const bool is_quick = staggered->scenario->ode.solver == ODE_QUICK;
-    if (!engine_step(world->id, step_s, is_quick, err) || !world_check(world, err)) {
+    if (!world_step(world, step_s, is_quick, err) || !world_check(world, err)) {
         return stepping_fail(staggered->scenario, stride->start_s, staggered->steps + 1, step_s,
                              err);
     }

@@ -2,9 +2,11 @@
 //
 // On the driven body, whose motion is given: m a = m g + F_drive + sum of F_i, so that the drive's
 // force follows from the others, and its power is what they and gravity do not deliver:
-//     P = m (a - g) . v - sum F_i . v_i,    v_i velocity of the point where F_i acts
+//     P = m (a - g) . v - sum (F_i . v_i + M_i omega),    v_i velocity of the point where F_i acts
 #include "ode/stepping.h"
 
+#include "contact/touch.h"
+#include "model/joint_rows.h"
 #include "model/kinematics.h"
 
 #include <math.h>
@@ -43,6 +45,17 @@ long stepping_start(const Scenario *scenario, double step_s, long steps_back, Mo
     return steps_back;
 }
 
+void stepping_offsets(const Linkage *linkage, const Motion *motions, int body,
+                      Vec2 offsets[LINKAGE_JOINT_MAX])
+{
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const bool is_elsewhere = joint->kind == JOINT_PRISMATIC && joint->body_a == body;
+        offsets[i] =
+            is_elsewhere ? linkage_joint_gap(linkage, motions, i).position : (Vec2){0.0, 0.0};
+    }
+}
+
 double stepping_drive(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
                       const Vec2 *offsets, JointState *joints)
 {
@@ -62,12 +75,13 @@ double stepping_drive(const Scenario *scenario, const Motion *driven, const Body
         if (i == linkage->driver.joint || (!is_on_a && joint->body_b != body)) {
             continue;
         }
-        const Vec2 force = vec2_scale(is_on_a ? -1.0 : 1.0, joints[i].force_on_b);
+        const double sign = is_on_a ? -1.0 : 1.0;
+        const Vec2 force = vec2_scale(sign, joints[i].force_on_b);
         const Vec2 anchor = vec2_rotate(driven->angle, is_on_a ? joint->anchor_a : joint->anchor_b);
         const Vec2 arm = vec2_add(anchor, offsets[i]);
         const Vec2 velocity = vec2_add(driven->velocity, vec2_scale(driven->omega, vec2_perp(arm)));
         others = vec2_add(others, force);
-        power -= vec2_dot(force, velocity);
+        power -= vec2_dot(force, velocity) + sign * joints[i].moment_on_b * driven->omega;
     }
     JointState *drive = &joints[linkage->driver.joint];
     drive->force_on_b = vec2_sub(needed, others);
@@ -100,14 +114,46 @@ void stepping_label(const Scenario *scenario, const char *stepping, const char *
              has_collider ? OPTIONS_ODE_COLLIDERS[scenario->ode.collider] : "");
 }
 
+// Where a block is in its guides, or the slider of a prismatic joint on its line.
+static void observe_sliding(const Linkage *linkage, int joint, const Motion *motions,
+                            JointState *state)
+{
+    JointRows rows;
+    joint_rows_find(linkage, motions, joint, &rows);
+    const Vec2 offset = linkage_joint_gap(linkage, motions, joint).position;
+    const double along = vec2_dot(joint_rows_along(linkage, motions, joint), offset);
+    state->eccentricity = (Vec2){along, rows.position[0]};
+    state->tilt = remainder(rows.position[1], 2.0 * M_PI);
+}
+
+// The smallest gap of a joint's places, m; infinite where it has none.
+static double smallest_gap(const Linkage *linkage, int joint, const Motion *motions)
+{
+    Touch places[TOUCH_CORNERS];
+    const size_t count = touch_places(&linkage->joints[joint], joint, places);
+    double gap = INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        gap = fmin(gap, touch_pose(linkage, &places[i], motions).gap);
+    }
+    return gap;
+}
+
 void stepping_observe_joint(const Linkage *linkage, size_t joint, Sample *sample)
 {
     const Joint *data = &linkage->joints[joint];
     const Vec2 hole = linkage_point(sample->bodies, data->body_a, data->anchor_a);
     const Vec2 pin = linkage_point(sample->bodies, data->body_b, data->anchor_b);
-    const bool is_ideal = data->kind == JOINT_REVOLUTE;
+    const bool is_ideal = linkage_kind_is_ideal(data->kind);
     JointState *state = &sample->joints[joint];
     state->eccentricity = vec2_sub(pin, hole);
-    state->gap = is_ideal ? 0.0 : linkage_radial_clearance(data) - vec2_length(state->eccentricity);
+    if (data->kind == JOINT_PRISMATIC || data->kind == JOINT_GUIDE) {
+        observe_sliding(linkage, (int)joint, sample->bodies, state);
+    }
+    if (data->kind == JOINT_GUIDE || data->kind == JOINT_STOP) {
+        state->gap = smallest_gap(linkage, (int)joint, sample->bodies);
+    } else {
+        state->gap =
+            is_ideal ? 0.0 : linkage_radial_clearance(data) - vec2_length(state->eccentricity);
+    }
     state->is_touching = is_ideal || state->gap < 0.0;
 }

@@ -18,10 +18,15 @@ Motion stepping_driven(const Linkage *linkage, double time_s);
 // determines the motion, and not further back than the linkage closes. Returns how many steps.
 long stepping_start(const Scenario *scenario, double step_s, long steps_back, Motion *motions);
 
+// By joint, from the anchor on a body to where the force of an ideal joint acts, m: that of a
+// prismatic joint at the anchor on its body b.
+void stepping_offsets(const Linkage *linkage, const Motion *motions, int body,
+                      Vec2 offsets[LINKAGE_JOINT_MAX]);
+
 // The force in the driven joint, N, and the power of the drive, W, from the body's own equations:
-// all other forces on it are known. `joints` holds those forces and receives the driven joint's;
-// `offsets` lead, by joint, from the driven body's anchor to where the force acts, m; `load` is of
-// springs and dampers on the driven body.
+// all other forces on it are known. `joints` holds those forces and couples, and receives the
+// driven joint's; `offsets` lead, by joint, from the driven body's anchor to where the force acts,
+// m; `load` is of springs and dampers on the driven body.
 double stepping_drive(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
                       const Vec2 *offsets, JointState *joints);
 
@@ -33,5 +38,5 @@ bool stepping_fail(const Scenario *scenario, double time_s, size_t step, double 
 void stepping_label(const Scenario *scenario, const char *stepping, const char *map,
                     char label[TRAJECTORY_LABEL_SIZE]);
 
-// The state of a joint's pin in a sample whose bodies are filled in; force and force_on_b stay.
+// Where a joint stands in a sample whose bodies are filled in; its forces stay.
 void stepping_observe_joint(const Linkage *linkage, size_t joint, Sample *sample);

@@ -3,7 +3,8 @@
 // Every centre of mass, anchor and force lies in the plane z = 0 and every axis along z. Then
 // nothing in the equations reaches z, omega_x or omega_y: they stay zero to the last bit, and no
 // row has to hold them. An ideal joint is a ball (3 rows, its z row idle), a driven body is
-// kinematic (no rows), and a joint with play is nothing but a contact row while it touches.
+// kinematic (no rows), a prismatic joint has two rows (ode/sliding.c), and a joint with play is
+// nothing but a contact row while it touches.
 // Four hinges in a loop would be 20 rows on 18 freedoms, which ODE cannot solve with CFM 0.
 //
 // Jacobian rows of a ball between bodies a and b, arm r from each centre to the anchor:
@@ -36,7 +37,26 @@ static void fill_block(double *row, size_t columns, int body, Vec2 arm, double s
     z[4] = -sign * arm.x;
 }
 
-// Counts the balls' rows and makes sure that none follows from the others.
+// The two rows of a prismatic joint.
+static void fill_sliding(double *matrix, size_t columns, const Linkage *linkage,
+                         const Motion *motions, int joint)
+{
+    JointRows rows;
+    joint_rows_find(linkage, motions, joint, &rows);
+    for (size_t k = 0; k < JOINT_ROWS; k++) {
+        for (int side = 0; side < 2; side++) {
+            const int body = linkage_end(&linkage->joints[joint], side).body;
+            if (body != LINKAGE_GROUND && body != linkage_driven_body(linkage)) {
+                double *row = matrix + k * columns + BODY_FREEDOMS * (size_t)body;
+                row[0] = rows.rows[k].x[side];
+                row[1] = rows.rows[k].y[side];
+                row[5] = rows.rows[k].turn[side];
+            }
+        }
+    }
+}
+
+// Counts the ideal joints' rows and makes sure that none follows from the others.
 static bool check_rows(const Scenario *scenario, const Motion *motions, size_t *row_count, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
@@ -46,6 +66,11 @@ static bool check_rows(const Scenario *scenario, const Motion *motions, size_t *
     size_t rows = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (!linkage_is_ideal(linkage, i)) {
+            continue;
+        }
+        if (linkage->joints[i].kind == JOINT_PRISMATIC) {
+            fill_sliding(matrix + rows * columns, columns, linkage, motions, (int)i);
+            rows += JOINT_ROWS;
             continue;
         }
         for (int side = 0; side < 2; side++) {
@@ -118,6 +143,13 @@ static void make_ball(const Linkage *linkage, const Motion *motions, size_t numb
     dJointSetFeedback(ball, &world->feedback[number]);
 }
 
+static void make_sliding(const Linkage *linkage, int number, const OdeOptions *options,
+                         World *world)
+{
+    sliding_make(linkage, number, world->id, world->bodies, joint_erp(options), options->cfm,
+                 &world->sliding[world->sliding_count++]);
+}
+
 static void attach_geom(const World *world, dGeomID geom, int body, Vec2 anchor)
 {
     if (body == LINKAGE_GROUND) {
@@ -181,7 +213,9 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
     make_bodies(scenario, motions, world);
     const Linkage *linkage = &scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage_is_ideal(linkage, i)) {
+        if (linkage->joints[i].kind == JOINT_PRISMATIC) {
+            make_sliding(linkage, (int)i, &scenario->ode, world);
+        } else if (linkage_is_ideal(linkage, i)) {
             make_ball(linkage, motions, i, &scenario->ode, world);
         } else if (linkage->joints[i].kind == JOINT_CLEARANCE &&
                    !make_pair(scenario, (int)i, world, err)) {
@@ -203,6 +237,24 @@ void world_finish(World *world)
         dWorldDestroy(world->id);
     }
     memset(world, 0, sizeof *world);
+}
+
+bool world_step(World *world, double step_s, bool is_quick, Err *err)
+{
+    for (size_t i = 0; i < world->sliding_count; i++) {
+        sliding_set(&world->sliding[i], step_s);
+    }
+    return engine_step(world->id, step_s, is_quick, err);
+}
+
+void world_offsets(const World *world, int body, Vec2 offsets[LINKAGE_JOINT_MAX])
+{
+    for (size_t i = 0; i < world->sliding_count; i++) {
+        const int joint = world->sliding[i].joint;
+        if (world->linkage->joints[joint].body_a == body) {
+            offsets[joint] = world->sliding[i].offset;
+        }
+    }
 }
 
 bool world_check(const World *world, Err *err)
@@ -234,6 +286,9 @@ void world_joint_forces(const World *world, JointState *joints)
             joints[i].force_on_b = (Vec2){sign * force[0], sign * force[1]};
             joints[i].force = vec2_length(joints[i].force_on_b);
         }
+    }
+    for (size_t i = 0; i < world->sliding_count; i++) {
+        sliding_force(&world->sliding[i], &joints[world->sliding[i].joint]);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "model/trajectory.h"
 #include "ode/applied.h"
 #include "ode/collider.h"
+#include "ode/sliding.h"
 
 #include <ode/ode.h>
 
@@ -19,8 +20,10 @@ typedef struct World {
     const Linkage *linkage;
     dWorldID id;
     dBodyID bodies[LINKAGE_BODY_MAX];
-    dJointFeedback feedback[LINKAGE_JOINT_MAX]; // of the ideal joints
-    const Collider *collider;                   // of all pairs
+    dJointFeedback feedback[LINKAGE_JOINT_MAX]; // of the revolute joints
+    size_t sliding_count;
+    Sliding sliding[LINKAGE_JOINT_MAX]; // the prismatic joints
+    const Collider *collider;           // of all pairs
     size_t pair_count;
     WorldPair pairs[LINKAGE_JOINT_MAX];
     size_t constraint_rows; // scalar rows of the ideal joints, all independent
@@ -40,11 +43,19 @@ void world_start(const Scenario *scenario, World *world);
 // Destroys what was built; accepts a zeroed world.
 void world_finish(World *world);
 
+// Takes one step of the world, by ODE's direct or its quick solver. Fails as engine_step does.
+bool world_step(World *world, double step_s, bool is_quick, Err *err);
+
+// Fills in, by joint, how far from the anchor on a body the forces of the prismatic joints acted in
+// the last step, m: at the anchor on their body b. Other joints are left alone.
+void world_offsets(const World *world, int body, Vec2 offsets[LINKAGE_JOINT_MAX]);
+
 // Fails with ERR_SOLVER where a velocity is not finite or a body has left the plane, which is kept
 // only as long as nothing ever leaves it.
 bool world_check(const World *world, Err *err);
 
-// Fills in the forces of the ideal joints, the driven one apart, in the last step.
+// Fills in the forces of the ideal joints, and the couples of the prismatic ones, in the last step;
+// the driven one apart.
 void world_joint_forces(const World *world, JointState *joints);
 
 // Puts one body where a motion says, with its velocity.
