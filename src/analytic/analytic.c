@@ -1,10 +1,11 @@
-// How does a four-bar with ideal joints move, sample by sample? (A solver.)
+// How does a four-bar or slider-crank with ideal joints move, sample by sample? (A solver.)
 //
 // Its steps are the sample intervals, a degree of the crank at most. Play is ignored, so that with
 // play the difference of another solver to this one is the effect of the play plus that solver's
 // error.
-#include "analytic/fourbar_motion.h"
+#include "analytic/closed_form.h"
 #include "analytic/inverse_dynamics.h"
+#include "model/joint_rows.h"
 #include "model/solver.h"
 #include "model/space.h"
 
@@ -13,16 +14,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BODIES = 3 };
-
 typedef struct Analytic {
     const Scenario *scenario;
-    FourBarLengths lengths;
     double start_s;
     double end_s;
     size_t steps;
-    double omega[BODIES]; // at end_s
-    double alpha[BODIES];
+    double omega[CLOSED_FORM_BODIES]; // at end_s
+    double alpha[CLOSED_FORM_BODIES];
     JointState joints[LINKAGE_JOINT_MAX];
     double torque;     // N m, of the drive at end_s
     double drive_work; // J, in the last step
@@ -37,11 +35,10 @@ static bool evaluate(const Analytic *analytic, double time_s, Sample *sample, do
     const Linkage *linkage = &analytic->scenario->linkage;
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
-    if (!fourbar_motion_bodies(&analytic->lengths, linkage->driver.speed, sample->crank_rad,
-                               sample->bodies)) {
-        return err_set(err, ERR_SOLVER,
-                       "at %.6g ms, crank angle %.6g deg: the four-bar does not close",
-                       1e3 * time_s, sample->crank_rad * 180.0 / M_PI);
+    if (!closed_form_bodies(analytic->scenario, sample->crank_rad, sample->bodies)) {
+        return err_set(err, ERR_SOLVER, "at %.6g ms, crank angle %.6g deg: the %s does not close",
+                       1e3 * time_s, sample->crank_rad * 180.0 / M_PI,
+                       closed_form_name(analytic->scenario));
     }
     Reactions reactions;
     if (!inverse_dynamics_solve(linkage, sample->bodies, analytic->scenario->gravity, &reactions,
@@ -52,8 +49,15 @@ static bool evaluate(const Analytic *analytic, double time_s, Sample *sample, do
         sample->joints[i] = (JointState){
             .force_on_b = reactions.force_on_b[i],
             .force = vec2_length(reactions.force_on_b[i]),
+            .moment_on_b = reactions.moment_on_b[i],
             .is_touching = true,
         };
+        // a pin is at the centre of its hole, a slider somewhere along its line
+        if (joint_rows_is_angle(linkage->joints[i].kind, 1)) {
+            const Vec2 gap = linkage_joint_gap(linkage, sample->bodies, (int)i).position;
+            const Vec2 along = joint_rows_along(linkage, sample->bodies, (int)i);
+            sample->joints[i].eccentricity.x = vec2_dot(along, gap);
+        }
     }
     *torque = reactions.drive_torque;
     return true;
@@ -66,13 +70,13 @@ static void analytic_close(void *state)
 
 static bool analytic_open(const Scenario *scenario, void **state, Err *err)
 {
-    if (!scenario->has_fourbar) {
-        return err_set(err, ERR_SOLVER, "the analytic solver is for four-bars only");
+    if (!scenario_has_closed_form(scenario)) {
+        return err_set(err, ERR_SOLVER,
+                       "the analytic solver is for four-bars and slider-cranks only");
     }
     Analytic *analytic = calloc(1, sizeof *analytic);
     assert(analytic != NULL);
     analytic->scenario = scenario;
-    analytic->lengths = fourbar_motion_nominal(&scenario->fourbar);
     Sample start;
     if (!evaluate(analytic, 0.0, &start, &analytic->torque, err)) {
         analytic_close(analytic);
@@ -115,7 +119,7 @@ static bool analytic_step(void *state, double stop_s, Err *err)
         return false;
     }
     add_up(analytic, &middle, middle_torque, &end, end_torque, width_s);
-    for (size_t i = 0; i < BODIES; i++) {
+    for (size_t i = 0; i < CLOSED_FORM_BODIES; i++) {
         analytic->omega[i] = end.bodies[i].omega;
         analytic->alpha[i] = end.bodies[i].alpha;
     }
@@ -179,14 +183,10 @@ static void analytic_extremes(const void *state, double from_s, BodyExtremes *bo
     // the motion repeats every turn: its extremes stand in the first one of those
     const double run = linkage_crank_angle(linkage, analytic->end_s) - first;
     const double last = first + copysign(fmin(fabs(run), 2.0 * M_PI), run);
-    for (size_t i = 1; i < BODIES; i++) {
-        const FourBarQuantity omega = i == 1 ? FOURBAR_COUPLER_OMEGA : FOURBAR_FOLLOWER_OMEGA;
-        const FourBarQuantity alpha = i == 1 ? FOURBAR_COUPLER_ALPHA : FOURBAR_FOLLOWER_ALPHA;
-        const double speed = linkage->driver.speed;
-        const FourBarExtreme rate =
-            fourbar_motion_extreme(&analytic->lengths, speed, omega, first, last);
-        const FourBarExtreme change =
-            fourbar_motion_extreme(&analytic->lengths, speed, alpha, first, last);
+    for (size_t i = 1; i < CLOSED_FORM_BODIES; i++) {
+        CurveExtreme rate;
+        CurveExtreme change;
+        closed_form_extremes(analytic->scenario, i, first, last, &rate, &change);
         bodies[i] = (BodyExtremes){
             .omega_max = at_angle(linkage, rate.high, rate.high_angle),
             .omega_min = at_angle(linkage, rate.low, rate.low_angle),

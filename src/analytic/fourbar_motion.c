@@ -10,8 +10,6 @@
 // digits near a dead centre, where b^2 - (p d)^2 loses them. Lengths m, angles rad.
 #include "analytic/fourbar_motion.h"
 
-#include "base/root.h"
-
 #include <math.h>
 
 typedef struct Loop {
@@ -162,49 +160,17 @@ typedef struct Curve {
     const FourBarLengths *lengths;
     double speed;
     FourBarQuantity quantity;
-    double sign;
 } Curve;
 
 static double curve_value(double crank_angle, void *context)
 {
     const Curve *curve = context;
-    return curve->sign *
-           fourbar_motion_quantity(curve->lengths, curve->speed, curve->quantity, crank_angle);
+    return fourbar_motion_quantity(curve->lengths, curve->speed, curve->quantity, crank_angle);
 }
 
-// The smallest value of the curve between two angles and where it stands.
-static double curve_minimum(Curve *curve, double first, double last, double *angle)
+CurveExtreme fourbar_motion_extreme(const FourBarLengths *lengths, double speed,
+                                    FourBarQuantity quantity, double first_angle, double last_angle)
 {
-    const double half_degree = M_PI / 360.0;
-    const size_t count = (size_t)ceil((last - first) / half_degree) + 1;
-    const double width = (last - first) / (double)(count > 1 ? count - 1 : 1);
-    size_t lowest = 0;
-    double value = curve_value(first, curve);
-    for (size_t i = 1; i < count; i++) {
-        const double here = curve_value(first + width * (double)i, curve);
-        if (here < value) {
-            value = here;
-            lowest = i;
-        }
-    }
-    *angle = first + width * (double)lowest;
-    if (lowest > 0 && lowest + 1 < count &&
-        root_minimum(curve_value, curve, *angle - width, *angle, *angle + width, angle)) {
-        value = curve_value(*angle, curve);
-    }
-    return value;
-}
-
-FourBarExtreme fourbar_motion_extreme(const FourBarLengths *lengths, double speed,
-                                      FourBarQuantity quantity, double first_angle,
-                                      double last_angle)
-{
-    FourBarExtreme extreme;
-    const double first = fmin(first_angle, last_angle);
-    const double last = fmax(first_angle, last_angle);
-    Curve curve = {lengths, speed, quantity, 1.0};
-    extreme.low = curve_minimum(&curve, first, last, &extreme.low_angle);
-    curve.sign = -1.0;
-    extreme.high = -curve_minimum(&curve, first, last, &extreme.high_angle);
-    return extreme;
+    Curve curve = {lengths, speed, quantity};
+    return curve_extreme(curve_value, &curve, first_angle, last_angle);
 }

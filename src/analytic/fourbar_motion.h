@@ -1,6 +1,7 @@
 // The closed-form motion of a four-bar with ideal joints, for one crank angle or a whole grid.
 #pragma once
 
+#include "analytic/curve.h"
 #include "model/fourbar.h"
 #include "model/linkage.h"
 
@@ -47,13 +48,6 @@ typedef enum FourBarQuantity {
     FOURBAR_QUANTITY_COUNT,
 } FourBarQuantity;
 
-typedef struct FourBarExtreme {
-    double low;       // smallest value in the interval
-    double low_angle; // rad, the crank angle where it stands
-    double high;
-    double high_angle;
-} FourBarExtreme;
-
 double fourbar_motion_quantity(const FourBarLengths *lengths, double speed,
                                FourBarQuantity quantity, double crank_angle);
 
@@ -61,9 +55,7 @@ double fourbar_motion_quantity(const FourBarLengths *lengths, double speed,
 void fourbar_motion_quantities(const FourBarLengths *lengths, double speed, double crank_angle,
                                double values[FOURBAR_QUANTITY_COUNT]);
 
-// The extremes of one quantity for crank angles from first to last: a grid of half a degree, then
-// Brent's method between its neighbours, so the values are right to rounding for any curve with
-// no two extremes within a degree.
-FourBarExtreme fourbar_motion_extreme(const FourBarLengths *lengths, double speed,
-                                      FourBarQuantity quantity, double first_angle,
-                                      double last_angle);
+// The extremes of one quantity for crank angles from first to last: curve_extreme.
+CurveExtreme fourbar_motion_extreme(const FourBarLengths *lengths, double speed,
+                                    FourBarQuantity quantity, double first_angle,
+                                    double last_angle);

@@ -1,12 +1,27 @@
 // Which torque and which joint forces make a linkage move as it does?
 //
 //     J^T lambda = M qddot - Q,      J the constraint Jacobian with the driver's row
-// lambda: the force on body b of each joint, then the torque on the driven body; M the masses and
+// lambda: of a pin the force on body b, of a prismatic joint the force on body b across the line
+// and the couple (model/joint_rows.h), then the torque on the driven body; M the masses and
 // inertias, Q gravity. Source: Haug 1989, chapter 6 (Lagrange multipliers as reactions).
 #include "analytic/inverse_dynamics.h"
 
 #include "base/dense.h"
+#include "model/joint_rows.h"
 #include "model/kinematics.h"
+
+// Takes the multipliers of a joint's rows for what acts on its body b.
+static void set_reaction(const Linkage *linkage, const Motion *motions, int joint,
+                         const double lambda[JOINT_ROWS], Reactions *reactions)
+{
+    const JointKind kind = linkage->joints[joint].kind;
+    const bool is_guided = joint_rows_is_angle(kind, 1);
+    const Vec2 across =
+        is_guided ? vec2_perp(joint_rows_along(linkage, motions, joint)) : (Vec2){0.0, 0.0};
+    reactions->force_on_b[joint] =
+        is_guided ? vec2_scale(lambda[0], across) : (Vec2){lambda[0], lambda[1]};
+    reactions->moment_on_b[joint] = is_guided ? lambda[1] : 0.0;
+}
 
 bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, double gravity,
                             Reactions *reactions, Err *err)
@@ -39,10 +54,16 @@ bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, doubl
         return err_set(err, ERR_SOLVER,
                        "the joint reactions are not determined: the mechanism is at a dead centre");
     }
+    size_t row = 0;
+    *reactions = (Reactions){.drive_torque = 0.0};
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        reactions->force_on_b[i] = (Vec2){right[2 * i], right[2 * i + 1]};
+        const size_t count = joint_rows_count(linkage->joints[i].kind);
+        if (count > 0) {
+            set_reaction(linkage, motions, (int)i, &right[row], reactions);
+        }
+        row += count;
     }
-    reactions->drive_torque = right[2 * linkage->joint_count];
+    reactions->drive_torque = right[row];
     return true;
 }
 

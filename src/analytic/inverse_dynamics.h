@@ -4,8 +4,10 @@
 #include "model/linkage.h"
 
 typedef struct Reactions {
-    Vec2 force_on_b[LINKAGE_JOINT_MAX]; // N, on body b of each joint; on body a its opposite
-    double drive_torque;                // N m, on the driven body
+    Vec2 force_on_b[LINKAGE_JOINT_MAX];    // N, on body b of each joint, at its anchor there; on
+                                           // body a its opposite at the same point
+    double moment_on_b[LINKAGE_JOINT_MAX]; // N m, likewise, of prismatic joints: the couple
+    double drive_torque;                   // N m, on the driven body
 } Reactions;
 
 // Solves the Newton-Euler equations of every body for the reactions. The motions hold position,

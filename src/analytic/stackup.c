@@ -140,7 +140,7 @@ static double extreme_of(const Search *search, const StackupCombination *combina
                          FourBarQuantity quantity, bool is_high)
 {
     const FourBarLengths lengths = stackup_lengths(search->fourbar, search->play, combination);
-    const FourBarExtreme extreme =
+    const CurveExtreme extreme =
         fourbar_motion_extreme(&lengths, search->speed, quantity, 0.0, 2.0 * M_PI);
     return is_high ? extreme.high : extreme.low;
 }
@@ -186,7 +186,10 @@ static void find_sources(const Scenario *scenario, Stackup *stackup)
 bool stackup_compute(const Scenario *scenario, Stackup *stackup, Err *err)
 {
     if (!scenario->has_fourbar || !fourbar_crank_turns(&scenario->fourbar)) {
-        return err_set(err, ERR_SOLVER, "a stack-up needs a four-bar whose crank turns fully");
+        return err_set(err, ERR_SOLVER, "%s",
+                       scenario->has_slidercrank
+                           ? "it is for four-bars only"
+                           : "a stack-up needs a four-bar whose crank turns fully");
     }
     Stackup made = {.has_sources = false};
     find_sources(scenario, &made);

@@ -1,18 +1,24 @@
-// What does a four-bar do in one turn, and which forces does that take?
+// What does a four-bar or slider-crank do in one turn, and which forces does that take?
 //
 // The follower's two limits stand where crank a and coupler b lie in one line, |P| = b +- a:
 //     cos(angle of P) = ((b +- a)^2 + g^2 - c^2) / (2 g (b +- a))
+// and those of a slider, e the offset of its line, likewise:
+//     sin(angle of P from the line) = e / (b +- a)
 // The crank points along P when stretched (+), against it when folded (-).
 #include "analytic/summary.h"
 
+#include "analytic/closed_form.h"
 #include "analytic/fourbar_motion.h"
 #include "analytic/inverse_dynamics.h"
+#include "analytic/slidercrank_motion.h"
 #include "base/root.h"
 
 #include <math.h>
 
 // a degree encloses every extreme; Brent's method then finds it to rounding
 enum { SUMMARY_STEPS = 360 };
+
+static const double OVERLAP = M_PI / 180.0; // rad, two of the steps of curve_extreme
 
 static double wrapped(double angle)
 {
@@ -40,20 +46,19 @@ static void follower_limits(const FourBarLengths *lengths, AnalyticSummary *summ
 // One force quantity as a curve over the crank angle: the torque, or the force in one joint.
 typedef struct Curve {
     const Scenario *scenario;
-    FourBarLengths lengths;
     int joint;   // -1: the drive torque
     double sign; // -1: upside down, so that its minima are the maxima
     Err *err;
 } Curve;
 
 // Motion and reactions at a crank angle; false with the reason where the loop does not close.
-static bool evaluate(const Curve *curve, double crank, Motion motions[3], Reactions *reactions)
+static bool evaluate(const Curve *curve, double crank, Motion motions[CLOSED_FORM_BODIES],
+                     Reactions *reactions)
 {
     const Linkage *linkage = &curve->scenario->linkage;
-    if (!fourbar_motion_bodies(&curve->lengths, linkage->driver.speed, crank, motions)) {
-        return err_set(curve->err, ERR_SOLVER,
-                       "the four-bar does not close at a crank angle of %.6g deg",
-                       crank * 180.0 / M_PI);
+    if (!closed_form_bodies(curve->scenario, crank, motions)) {
+        return err_set(curve->err, ERR_SOLVER, "the %s does not close at a crank angle of %.6g deg",
+                       closed_form_name(curve->scenario), crank * 180.0 / M_PI);
     }
     return inverse_dynamics_solve(linkage, motions, curve->scenario->gravity, reactions,
                                   curve->err);
@@ -62,7 +67,7 @@ static bool evaluate(const Curve *curve, double crank, Motion motions[3], Reacti
 static double curve_value(double crank, void *context)
 {
     const Curve *curve = context;
-    Motion motions[3];
+    Motion motions[CLOSED_FORM_BODIES];
     Reactions reactions;
     if (!evaluate(curve, crank, motions, &reactions)) {
         return NAN;
@@ -93,7 +98,7 @@ static Extreme lowest(Curve *curve)
 
 static void find_extremes(const Scenario *scenario, AnalyticSummary *summary, Err *err)
 {
-    Curve curve = {scenario, fourbar_motion_nominal(&scenario->fourbar), -1, 1.0, err};
+    Curve curve = {scenario, -1, 1.0, err};
     summary->torque_min = lowest(&curve);
     curve.sign = -1.0;
     summary->torque_max = lowest(&curve);
@@ -109,11 +114,11 @@ static void find_extremes(const Scenario *scenario, AnalyticSummary *summary, Er
 // How well drive power and the bodies' change of energy agree over a turn.
 static double power_residual(const Scenario *scenario, Err *err)
 {
-    const Curve curve = {scenario, fourbar_motion_nominal(&scenario->fourbar), -1, 1.0, err};
+    const Curve curve = {scenario, -1, 1.0, err};
     double power_max = 0.0;
     double residual_max = 0.0;
     for (int i = 0; i < SUMMARY_STEPS; i++) {
-        Motion motions[3];
+        Motion motions[CLOSED_FORM_BODIES];
         Reactions reactions;
         if (!evaluate(&curve, 2.0 * M_PI * i / SUMMARY_STEPS, motions, &reactions)) {
             return NAN;
@@ -126,34 +131,76 @@ static double power_residual(const Scenario *scenario, Err *err)
     return power_max > 0.0 ? residual_max / power_max : residual_max;
 }
 
-bool summary_compute(const Scenario *scenario, AnalyticSummary *summary, Err *err)
+static void set_transmission(CurveExtreme angle, AnalyticSummary *summary)
 {
-    if (!scenario->has_fourbar || !fourbar_crank_turns(&scenario->fourbar)) {
-        return err_set(err, ERR_SOLVER, "%s",
-                       scenario->has_fourbar ? "the crank does not turn fully"
-                                             : "the closed form is for four-bars only");
-    }
-    AnalyticSummary made = {
-        .grashof = fourbar_grashof(&scenario->fourbar),
-    };
+    summary->transmission_low = angle.low;
+    summary->transmission_high = angle.high;
+    summary->transmission_low_crank = angle.low_angle;
+    summary->transmission_high_crank = angle.high_angle;
+}
+
+static void summarize_fourbar(const Scenario *scenario, AnalyticSummary *summary)
+{
     const FourBarLengths lengths = fourbar_motion_nominal(&scenario->fourbar);
     const double speed = scenario->linkage.driver.speed;
-    const FourBarExtreme transmission =
+    summary->grashof = fourbar_grashof(&scenario->fourbar);
+    const CurveExtreme transmission =
         fourbar_motion_extreme(&lengths, speed, FOURBAR_TRANSMISSION, 0.0, 2.0 * M_PI);
-    made.transmission_low = transmission.low;
-    made.transmission_high = transmission.high;
-    made.transmission_low_crank = transmission.low_angle;
-    made.transmission_high_crank = transmission.high_angle;
-    const FourBarExtreme swing =
+    set_transmission(transmission, summary);
+    const CurveExtreme swing =
         fourbar_motion_extreme(&lengths, speed, FOURBAR_FOLLOWER_ANGLE, 0.0, 2.0 * M_PI);
-    made.follower_low = swing.low;
-    made.follower_high = swing.high;
+    summary->follower_low = swing.low;
+    summary->follower_high = swing.high;
+    follower_limits(&lengths, summary);
+}
+
+static void slider_limits(const SliderCrank *mechanism, AnalyticSummary *summary)
+{
+    const double stretched = asin(mechanism->offset / (mechanism->rod + mechanism->crank));
+    const double folded = asin(mechanism->offset / (mechanism->rod - mechanism->crank));
+    const bool is_right = mechanism->side == SLIDER_RIGHT;
+    const double line = mechanism->line;
+    summary->limit_extended = wrapped(line + (is_right ? stretched : M_PI - stretched));
+    summary->limit_folded = wrapped(line + (is_right ? M_PI + folded : -folded));
+    summary->has_limits = true;
+}
+
+static void summarize_slidercrank(const Scenario *scenario, AnalyticSummary *summary)
+{
+    const SliderCrank *mechanism = &scenario->slidercrank;
+    const double speed = scenario->linkage.driver.speed;
+    CurveExtreme found[SLIDERCRANK_QUANTITY_COUNT];
+    for (int i = 0; i < SLIDERCRANK_QUANTITY_COUNT; i++) {
+        // a little more than a turn: what is extreme at its ends lies within as well
+        found[i] = slidercrank_motion_extreme(mechanism, speed, (SliderCrankQuantity)i, -OVERLAP,
+                                              2.0 * M_PI);
+    }
+    set_transmission(found[SLIDERCRANK_TRANSMISSION], summary);
+    summary->slide = found[SLIDERCRANK_POSITION];
+    summary->velocity = found[SLIDERCRANK_VELOCITY];
+    summary->acceleration = found[SLIDERCRANK_ACCELERATION];
+    slider_limits(mechanism, summary);
+}
+
+bool summary_compute(const Scenario *scenario, AnalyticSummary *summary, Err *err)
+{
+    if (!scenario_has_closed_form(scenario) || !closed_form_turns(scenario)) {
+        return err_set(err, ERR_SOLVER, "%s",
+                       scenario_has_closed_form(scenario)
+                           ? "the crank does not turn fully"
+                           : "the closed form is for four-bars and slider-cranks only");
+    }
+    AnalyticSummary made = {.has_limits = false};
+    if (scenario->has_slidercrank) {
+        summarize_slidercrank(scenario, &made);
+    } else {
+        summarize_fourbar(scenario, &made);
+    }
     find_extremes(scenario, &made, err);
     made.power_residual = power_residual(scenario, err);
     if (err->kind != ERR_NONE) {
         return false;
     }
-    follower_limits(&lengths, &made);
     *summary = made;
     return true;
 }

@@ -84,6 +84,7 @@ static void lone_pin(const Scenario *scenario, int joint, double mass, Scenario 
     const Joint *from = &scenario->linkage.joints[joint];
     *lone = *scenario;
     lone->has_fourbar = false;
+    lone->has_slidercrank = false;
     lone->point_count = 0;
     lone->gravity = 0.0;
     memset(&lone->linkage, 0, sizeof lone->linkage);

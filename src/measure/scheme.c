@@ -147,7 +147,7 @@ size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX])
     size_t count = list_ode(scenario, schemes);
     add_chosen(scenario, schemes, &count);
     add_backend(BACKEND_REFERENCE, schemes, &count);
-    if (scenario->has_fourbar && !scenario_has_clearance(scenario)) {
+    if (scenario_has_closed_form(scenario) && !scenario_has_clearance(scenario)) {
         add_backend(BACKEND_ANALYTIC, schemes, &count);
     }
     return count;

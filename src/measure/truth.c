@@ -171,8 +171,9 @@ static void certify(const Scenario *fine, RunWatch watch, Truth *truth)
 
 BackendKind truth_backend(const Scenario *scenario)
 {
-    return scenario->has_fourbar && !scenario_has_clearance(scenario) ? BACKEND_ANALYTIC
-                                                                      : BACKEND_REFERENCE;
+    return scenario_has_closed_form(scenario) && !scenario_has_clearance(scenario)
+               ? BACKEND_ANALYTIC
+               : BACKEND_REFERENCE;
 }
 
 Truth truth_make(const Scenario *scenario, RunWatch watch)

@@ -68,6 +68,11 @@ bool scenario_has_clearance(const Scenario *scenario)
     return false;
 }
 
+bool scenario_has_closed_form(const Scenario *scenario)
+{
+    return scenario->has_fourbar || scenario->has_slidercrank;
+}
+
 bool scenario_is_extrapolable(const Scenario *scenario)
 {
     return !scenario_has_clearance(scenario) && !scenario->linkage.is_spatial;

@@ -5,6 +5,7 @@
 #include "model/fourbar.h"
 #include "model/linkage.h"
 #include "model/options.h"
+#include "model/slidercrank.h"
 
 enum { SCENARIO_TITLE_SIZE = 256, SCENARIO_PATH_SIZE = 4096, SCENARIO_POINT_MAX = 4 };
 
@@ -28,8 +29,10 @@ typedef struct Scenario {
     char path[SCENARIO_PATH_SIZE]; // of the case file, as given; empty where there is none
     ScenarioSpace space;           // linkage.is_spatial is the same
     Linkage linkage;
-    bool has_fourbar; // whether the case used the short form
+    bool has_fourbar; // whether the case used that short form
     FourBar fourbar;
+    bool has_slidercrank; // or that one
+    SliderCrank slidercrank;
     size_t point_count;
     TracedPoint points[SCENARIO_POINT_MAX];
     double gravity; // m/s^2, along -y
@@ -62,6 +65,9 @@ double scenario_sample_time(const Scenario *scenario, size_t sample);
 
 // Whether any joint has play.
 bool scenario_has_clearance(const Scenario *scenario);
+
+// Whether the motion with ideal joints is known in closed form: of the short forms.
+bool scenario_has_closed_form(const Scenario *scenario);
 
 // Whether ODE's motion can be extrapolated from several worlds: all joints ideal, in the plane.
 bool scenario_is_extrapolable(const Scenario *scenario);

@@ -5,7 +5,7 @@
 // in 30 degrees rises by half a percent of itself at most.
 #include "run/spike_scale.h"
 
-#include "analytic/fourbar_motion.h"
+#include "analytic/closed_form.h"
 #include "analytic/inverse_dynamics.h"
 #include "base/dense.h"
 #include "model/kinematics.h"
@@ -30,9 +30,8 @@ static bool moves_freely(const Linkage *linkage, const Motion *motions)
 
 static bool move_to(const Scenario *scenario, double crank_rad, Motion *motions)
 {
-    if (scenario->has_fourbar) {
-        const FourBarLengths lengths = fourbar_motion_nominal(&scenario->fourbar);
-        return fourbar_motion_bodies(&lengths, scenario->linkage.driver.speed, crank_rad, motions);
+    if (scenario_has_closed_form(scenario)) {
+        return closed_form_bodies(scenario, crank_rad, motions);
     }
     Err unused = {ERR_NONE, ""};
     return kinematics_solve(&scenario->linkage, crank_rad, motions, &unused) &&

@@ -136,3 +136,33 @@ Scenario mechanism_parallelogram(void)
     linkage->driver = (Driver){true, 0, 1.0, 0.5 * M_PI};
     return scenario;
 }
+
+Scenario mechanism_slidercrank(double offset, double line, SliderSide side)
+{
+    Scenario scenario = mechanism_default();
+    scenario.has_slidercrank = true;
+    scenario.slidercrank = (SliderCrank){0.05, 0.12, offset, line, side};
+    const double sign = side == SLIDER_RIGHT ? 1.0 : -1.0;
+    const Vec2 along = vec2_rotate(line, (Vec2){1.0, 0.0});
+    const Vec2 start = vec2_scale(offset, vec2_perp(along));
+    Linkage *linkage = &scenario.linkage;
+    // guesses good enough for Newton's method to find the slider on its side
+    const double crank = line + 0.4;
+    const Vec2 pin = vec2_rotate(crank, (Vec2){0.05, 0.0});
+    const Vec2 slider = vec2_add(start, vec2_scale(sign * 0.11, along));
+    const Vec2 rod = vec2_sub(slider, pin);
+    add_body(linkage, "crank", 0.30, 1.0e-4, vec2_scale(0.5, pin), crank);
+    add_body(linkage, "rod", 0.21, 2.5e-4, vec2_scale(0.5, vec2_add(pin, slider)),
+             atan2(rod.y, rod.x));
+    add_body(linkage, "slider", 0.14, 1.0e-4, slider, line);
+    add_joint(linkage, "ground-crank", LINKAGE_GROUND, (Vec2){0.0, 0.0}, 0, (Vec2){-0.025, 0.0});
+    add_joint(linkage, "crank-rod", 0, (Vec2){0.025, 0.0}, 1, (Vec2){-0.06, 0.0});
+    add_joint(linkage, "rod-slider", 1, (Vec2){0.06, 0.0}, 2, (Vec2){0.0, 0.0});
+    add_joint(linkage, "slider-guide", LINKAGE_GROUND, start, 2, (Vec2){0.0, 0.0});
+    linkage->joints[3].kind = JOINT_PRISMATIC;
+    linkage->joints[3].direction = line;
+    linkage->joints[3].held_angle = line;
+    linkage->driver = (Driver){true, 0, 5000.0 * 2.0 * M_PI / 60.0, crank};
+    assemble(&scenario);
+    return scenario;
+}

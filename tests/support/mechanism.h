@@ -25,3 +25,7 @@ Scenario mechanism_pin(double mass, double radial_clearance);
 
 // A parallelogram with three parallel cranks, one of which is redundant; upright, driven.
 Scenario mechanism_parallelogram(void);
+
+// A slider-crank: crank 50 mm, rod 120 mm, 5000 rpm, every joint ideal; with the slider's line and
+// side as given, m and rad.
+Scenario mechanism_slidercrank(double offset, double line, SliderSide side);

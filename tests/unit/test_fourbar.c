@@ -75,8 +75,8 @@ static void extremes_of_the_papers_mechanism_are_those_in_print(void **state)
         {FOURBAR_FOLLOWER_ANGLE, 84.83 * DEGREE, 142.02 * DEGREE, 5e-3 * DEGREE},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        const FourBarExtreme extreme = fourbar_motion_extreme(
-            &lengths, scenario.linkage.driver.speed, rows[i].quantity, 0.0, 2.0 * M_PI);
+        const CurveExtreme extreme = fourbar_motion_extreme(&lengths, scenario.linkage.driver.speed,
+                                                            rows[i].quantity, 0.0, 2.0 * M_PI);
         assert_near(extreme.low, rows[i].low, rows[i].tolerance);
         assert_near(extreme.high, rows[i].high, rows[i].tolerance);
     }
@@ -141,7 +141,7 @@ static void an_extreme_at_the_end_of_the_interval_is_found(void **state)
     (void)state;
     const Scenario scenario = mechanism_paper();
     const FourBarLengths lengths = fourbar_motion_nominal(&scenario.fourbar);
-    const FourBarExtreme part =
+    const CurveExtreme part =
         fourbar_motion_extreme(&lengths, 1.0, FOURBAR_COUPLER_OMEGA, 1.0, 0.9);
     const double ends[2] = {
         fourbar_motion_quantity(&lengths, 1.0, FOURBAR_COUPLER_OMEGA, 0.9),

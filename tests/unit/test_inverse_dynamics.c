@@ -132,7 +132,7 @@ static void a_summary_needs_a_fourbar_whose_crank_turns(void **state)
     Err err = {ERR_NONE, ""};
     const Scenario pin = mechanism_pin(1.0, 1e-4);
     assert_false(summary_compute(&pin, &summary, &err));
-    assert_non_null(strstr(err.text, "four-bars only"));
+    assert_non_null(strstr(err.text, "four-bars and slider-cranks only"));
     Scenario rocker = mechanism_paper();
     rocker.fourbar.ground.nominal = 0.5;
     err = (Err){ERR_NONE, ""};

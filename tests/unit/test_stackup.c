@@ -41,7 +41,7 @@ static void no_random_mechanism_within_tolerance_exceeds_the_worst_case(void **s
                                         within(&fourbar->coupler, draw(&seed)),
                                         within(&fourbar->follower, draw(&seed)), ASSEMBLY_OPEN};
         for (int quantity = 0; quantity < FOURBAR_QUANTITY_COUNT; quantity++) {
-            const FourBarExtreme extreme = fourbar_motion_extreme(
+            const CurveExtreme extreme = fourbar_motion_extreme(
                 &lengths, scenario.linkage.driver.speed, quantity, 0.0, 2.0 * M_PI);
             // rounding only
             const double slack = 1e-12 * fabs(stackup.rows[quantity].high.value);
@@ -62,8 +62,8 @@ static void the_worst_case_is_reached_by_the_combination_it_names(void **state)
         const StackupBound *bound = &stackup.rows[quantity].high;
         const FourBarLengths lengths =
             stackup_lengths(&scenario.fourbar, stackup.play, &bound->combination);
-        const FourBarExtreme extreme = fourbar_motion_extreme(
-            &lengths, scenario.linkage.driver.speed, quantity, 0.0, 2.0 * M_PI);
+        const CurveExtreme extreme = fourbar_motion_extreme(&lengths, scenario.linkage.driver.speed,
+                                                            quantity, 0.0, 2.0 * M_PI);
         assert_near(extreme.high, bound->value, 1e-12 * fabs(bound->value));
     }
 }
@@ -114,8 +114,8 @@ static void the_papers_stackup_lies_within_the_worst_case(void **state)
     const FourBarLengths lengths = stackup_lengths(&scenario.fourbar, no_play, &paper);
     assert_near(lengths.coupler, 0.2799, 1e-15);
     assert_near(lengths.crank, 0.108, 1e-15);
-    const FourBarExtreme omega = fourbar_motion_extreme(&lengths, scenario.linkage.driver.speed,
-                                                        FOURBAR_COUPLER_OMEGA, 0.0, 2.0 * M_PI);
+    const CurveExtreme omega = fourbar_motion_extreme(&lengths, scenario.linkage.driver.speed,
+                                                      FOURBAR_COUPLER_OMEGA, 0.0, 2.0 * M_PI);
     assert_near(omega.low, -78.442, 0.00021 * 78.442);
     assert_true(omega.low > stackup.rows[FOURBAR_COUPLER_OMEGA].low.value);
 }

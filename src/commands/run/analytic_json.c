@@ -3,19 +3,49 @@
 #include "write/json_value.h"
 #include "write/units.h"
 
+static void set_follower(json_t *object, const AnalyticSummary *summary)
+{
+    json_value_set(object, "follower_angle_min_rad", summary->follower_low);
+    json_value_set(object, "follower_angle_max_rad", summary->follower_high);
+}
+
+static void set_slider(json_t *object, const AnalyticSummary *summary)
+{
+    json_value_set(object, "slider_position_min_m", summary->slide.low);
+    json_value_set(object, "slider_position_max_m", summary->slide.high);
+    json_value_set(object, "slider_velocity_min_m_s", summary->velocity.low);
+    json_value_set(object, "slider_velocity_min_crank_deg",
+                   units_wrapped_deg(summary->velocity.low_angle));
+    json_value_set(object, "slider_velocity_max_m_s", summary->velocity.high);
+    json_value_set(object, "slider_velocity_max_crank_deg",
+                   units_wrapped_deg(summary->velocity.high_angle));
+    json_value_set(object, "slider_acceleration_min_m_s2", summary->acceleration.low);
+    json_value_set(object, "slider_acceleration_min_crank_deg",
+                   units_wrapped_deg(summary->acceleration.low_angle));
+    json_value_set(object, "slider_acceleration_max_m_s2", summary->acceleration.high);
+    json_value_set(object, "slider_acceleration_max_crank_deg",
+                   units_wrapped_deg(summary->acceleration.high_angle));
+}
+
 json_t *analytic_json_kinematics(const RunReport *report)
 {
     const AnalyticSummary *summary = report->summary;
+    const bool has_slider = report->scenario->has_slidercrank;
     json_t *object = json_object();
-    json_object_set_new(object, "class", json_string(FOURBAR_GRASHOF_NAMES[summary->grashof]));
+    json_object_set_new(
+        object, "class",
+        json_string(has_slider ? "slider-crank" : FOURBAR_GRASHOF_NAMES[summary->grashof]));
     json_value_set(object, "transmission_angle_min_rad", summary->transmission_low);
     json_value_set(object, "transmission_angle_max_rad", summary->transmission_high);
     json_value_set(object, "transmission_angle_min_crank_deg",
                    units_wrapped_deg(summary->transmission_low_crank));
     json_value_set(object, "transmission_angle_max_crank_deg",
                    units_wrapped_deg(summary->transmission_high_crank));
-    json_value_set(object, "follower_angle_min_rad", summary->follower_low);
-    json_value_set(object, "follower_angle_max_rad", summary->follower_high);
+    if (has_slider) {
+        set_slider(object, summary);
+    } else {
+        set_follower(object, summary);
+    }
     if (summary->has_limits) {
         json_value_set(object, "limit_stretched_crank_deg",
                        units_wrapped_deg(summary->limit_extended));

@@ -1,4 +1,5 @@
 // What does the closed form say of the mechanism, before any solver has taken a step?
+#include "analytic/closed_form.h"
 #include "commands/run/run_report.h"
 #include "write/section.h"
 #include "write/units.h"
@@ -6,33 +7,69 @@
 #include <math.h>
 #include <stdio.h>
 
+static void write_follower(const AnalyticSummary *summary, Text *text)
+{
+    if (!summary->has_limits) {
+        text_append(text, "  follower             turns fully\n");
+        return;
+    }
+    text_append(text, "  follower             %.6g to %.6g deg, a swing of %.6g deg\n",
+                summary->follower_low * UNITS_DEG, summary->follower_high * UNITS_DEG,
+                (summary->follower_high - summary->follower_low) * UNITS_DEG);
+    text_append(text,
+                "  limits of the swing  at crank %.1f deg (crank and coupler stretched) and "
+                "%.1f deg (folded)\n",
+                units_wrapped_deg(summary->limit_extended),
+                units_wrapped_deg(summary->limit_folded));
+}
+
+// One quantity of the slider over a turn, with the digits that a comparison needs.
+static void write_slide(const char *name, const char *unit, CurveExtreme extreme, double per_si,
+                        Text *text)
+{
+    text_append(text, "  %-19s  %.9g to %.9g %s (crank %.3f and %.3f deg)\n", name,
+                extreme.low * per_si, extreme.high * per_si, unit,
+                units_wrapped_deg(extreme.low_angle), units_wrapped_deg(extreme.high_angle));
+}
+
+static void write_slider(const AnalyticSummary *summary, Text *text)
+{
+    text_append(text,
+                "  stroke               %.6g mm, its ends at crank %.1f deg (stretched) and "
+                "%.1f deg (folded)\n",
+                (summary->slide.high - summary->slide.low) * UNITS_MM,
+                units_wrapped_deg(summary->limit_extended),
+                units_wrapped_deg(summary->limit_folded));
+    write_slide("slider position", "mm", summary->slide, UNITS_MM, text);
+    write_slide("slider velocity", "m/s", summary->velocity, 1.0, text);
+    write_slide("slider acceleration", "m/s^2", summary->acceleration, 1.0, text);
+}
+
 void analytic_text_kinematics(const RunReport *report, const Style *style, Text *text)
 {
     const AnalyticSummary *summary = report->summary;
+    const Scenario *scenario = report->scenario;
     if (report->no_summary != NULL) {
-        text_append(text, "\n  no kinematics of the ideal four-bar: %s\n", report->no_summary);
+        text_append(text, "\n  no kinematics of the ideal %s: %s\n", closed_form_name(scenario),
+                    report->no_summary);
     }
     if (summary == NULL) {
         return;
     }
-    text_append(text, "\n%sKinematics of the ideal four-bar%s\n\n", style->heading, style->end);
-    text_append(text, "  class                %s\n", FOURBAR_GRASHOF_NAMES[summary->grashof]);
+    text_append(text, "\n%sKinematics of the ideal %s%s\n\n", style->heading,
+                closed_form_name(scenario), style->end);
+    if (scenario->has_fourbar) {
+        text_append(text, "  class                %s\n", FOURBAR_GRASHOF_NAMES[summary->grashof]);
+    }
     text_append(text, "  transmission angle   %.6g deg (crank %.1f) to %.6g deg (crank %.1f)\n",
                 summary->transmission_low * UNITS_DEG,
                 units_wrapped_deg(summary->transmission_low_crank),
                 summary->transmission_high * UNITS_DEG,
                 units_wrapped_deg(summary->transmission_high_crank));
-    if (!summary->has_limits) {
-        text_append(text, "  follower             turns fully\n");
+    if (scenario->has_slidercrank) {
+        write_slider(summary, text);
     } else {
-        text_append(text, "  follower             %.6g to %.6g deg, a swing of %.6g deg\n",
-                    summary->follower_low * UNITS_DEG, summary->follower_high * UNITS_DEG,
-                    (summary->follower_high - summary->follower_low) * UNITS_DEG);
-        text_append(text,
-                    "  limits of the swing  at crank %.1f deg (crank and coupler stretched) and "
-                    "%.1f deg (folded)\n",
-                    units_wrapped_deg(summary->limit_extended),
-                    units_wrapped_deg(summary->limit_folded));
+        write_follower(summary, text);
     }
 }
 

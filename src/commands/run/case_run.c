@@ -114,7 +114,7 @@ static void run_ensembles(CaseRun *run, Progress *progress)
 static void ask_closed_form(CaseRun *run)
 {
     const Scenario *scenario = &run->scenario;
-    if (find_run(run, BACKEND_ANALYTIC) == NULL || !scenario->has_fourbar) {
+    if (find_run(run, BACKEND_ANALYTIC) == NULL || !scenario_has_closed_form(scenario)) {
         return;
     }
     // a crank that does not turn fully has no turn to sum up: no error, but said

@@ -54,6 +54,9 @@ static void write_mechanism(const RunReport *report, Text *text)
     if (scenario->has_fourbar) {
         text_append(text, ", %s", FOURBAR_GRASHOF_NAMES[fourbar_grashof(&scenario->fourbar)]);
     }
+    if (scenario->has_slidercrank) {
+        text_append(text, ", slider-crank");
+    }
     if (report->summary != NULL) {
         text_append(text, ", transmission angle %.4g to %.4g deg",
                     report->summary->transmission_low * UNITS_DEG,

@@ -68,8 +68,9 @@ void tune_setting_command(const TuneReport *report, const TuneTrial *trial, cons
     // with the reference, which the error is against
     const bool is_ideal = !scenario_has_clearance(report->scenario);
     text_append(text, "%s--set run.backends=%s", separator,
-                is_ideal && report->scenario->has_fourbar ? "'[analytic, reference, ode]'"
-                                                          : "'[reference, ode]'");
+                is_ideal && scenario_has_closed_form(report->scenario)
+                    ? "'[analytic, reference, ode]'"
+                    : "'[reference, ode]'");
     // the program's own words, which hold no quote
     char between[TUNE_SEPARATOR_SIZE + 16];
     snprintf(between, sizeof between, "'%s--set '", separator);
