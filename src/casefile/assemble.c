@@ -7,6 +7,7 @@
 #include "casefile/check.h"
 #include "casefile/closure.h"
 #include "casefile/joint_kind.h"
+#include "casefile/slider.h"
 #include "casefile/store.h"
 #include "model/space.h"
 
@@ -42,10 +43,10 @@ static void store_presence(const Entries *entries, Scenario *scenario)
                   names[SCHEMA_TORSION_SPRING].names[i]);
     }
     const bool has_torque = entries_find(entries, "drive.torque", 0) != NULL;
-    linkage->driver.is_present = entries->form == SCHEMA_SHORT ||
-                                 (entries_group(entries, "drive", 0) != NULL && !has_torque);
+    linkage->driver.is_present =
+        entries->form != SCHEMA_LONG || (entries_group(entries, "drive", 0) != NULL && !has_torque);
     if (entries->form == SCHEMA_LONG) {
-        // the closed form knows four-bars only
+        // the closed form knows the short forms only
         scenario->run.backend_count = 2;
         scenario->run.backends[0] = BACKEND_REFERENCE;
         scenario->run.backends[1] = BACKEND_ODE;
@@ -103,7 +104,9 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
 
 static bool build_short(const Entries *entries, Scenario *scenario, Err *err)
 {
-    return closure_check(entries, scenario, err) && build_fourbar(scenario, err);
+    return entries->form == SCHEMA_SLIDER_CRANK
+               ? slider_check(entries, scenario, err) && slider_build(scenario, err)
+               : closure_check(entries, scenario, err) && build_fourbar(scenario, err);
 }
 
 static bool build_long(const Entries *entries, Scenario *scenario, Err *err)
@@ -118,8 +121,8 @@ static bool build_long(const Entries *entries, Scenario *scenario, Err *err)
 static bool build(const Entries *entries, Scenario *scenario, Err *err)
 {
     Err own = {0};
-    const bool is_built = entries->form == SCHEMA_SHORT ? build_short(entries, scenario, &own)
-                                                        : build_long(entries, scenario, &own);
+    const bool is_built = entries->form != SCHEMA_LONG ? build_short(entries, scenario, &own)
+                                                       : build_long(entries, scenario, &own);
     if (is_built && scenario_check(scenario, &own)) {
         return true;
     }

@@ -35,7 +35,7 @@ static double link_length(const FourBar *fourbar, int body)
     return lengths[body]->nominal;
 }
 
-static void place_joint(Joint *joint, int body_a, Vec2 anchor_a, int body_b, Vec2 anchor_b)
+void build_place_joint(Joint *joint, int body_a, Vec2 anchor_a, int body_b, Vec2 anchor_b)
 {
     joint->body_a = body_a;
     joint->anchor_a = anchor_a;
@@ -53,10 +53,10 @@ static void place_joints(const FourBar *fourbar, Linkage *linkage)
         second[i] = (Vec2){0.5 * link_length(fourbar, i), 0.0};
     }
     Joint *joints = linkage->joints;
-    place_joint(&joints[0], LINKAGE_GROUND, (Vec2){0.0, 0.0}, CRANK, first[CRANK]);
-    place_joint(&joints[1], CRANK, second[CRANK], COUPLER, first[COUPLER]);
-    place_joint(&joints[2], COUPLER, second[COUPLER], FOLLOWER, second[FOLLOWER]);
-    place_joint(&joints[3], FOLLOWER, first[FOLLOWER], LINKAGE_GROUND, ground);
+    build_place_joint(&joints[0], LINKAGE_GROUND, (Vec2){0.0, 0.0}, CRANK, first[CRANK]);
+    build_place_joint(&joints[1], CRANK, second[CRANK], COUPLER, first[COUPLER]);
+    build_place_joint(&joints[2], COUPLER, second[COUPLER], FOLLOWER, second[FOLLOWER]);
+    build_place_joint(&joints[3], FOLLOWER, first[FOLLOWER], LINKAGE_GROUND, ground);
     linkage->driver.joint = 0;
 }
 

@@ -10,6 +10,9 @@
 // ERR_SOLVER where the linkage cannot be solved at the start.
 bool build_fourbar(Scenario *scenario, Err *err);
 
+// Joins two bodies at points of their frames.
+void build_place_joint(Joint *joint, int body_a, Vec2 anchor_a, int body_b, Vec2 anchor_b);
+
 // Whether there is a drive and as many joints as make every body follow from it.
 bool build_is_determined(const Linkage *linkage);
 

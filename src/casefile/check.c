@@ -69,14 +69,14 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
 // Whether a required key of a member is required in this case.
 static bool is_wanted(const Entries *entries, const SchemaRow *row, size_t index)
 {
-    if (row->form != SCHEMA_BOTH && row->form != entries->form) {
+    if (!schema_is_of_form(row, entries->form)) {
         return false;
     }
     if (row->family == SCHEMA_JOINT && !schema_is_of_kind(row, joint_kind_find(entries, index))) {
         return false;
     }
     const bool is_drive = strncmp(row->path, "drive.", strlen("drive.")) == 0;
-    return !is_drive || entries->form == SCHEMA_SHORT || entries_group(entries, "drive", 0) != NULL;
+    return !is_drive || entries->form != SCHEMA_LONG || entries_group(entries, "drive", 0) != NULL;
 }
 
 bool check_required(const Entries *entries, Err *err)
@@ -208,8 +208,9 @@ static bool check_backends(const Entries *entries, const RunOptions *run, Err *e
     for (size_t i = 0; entries->form == SCHEMA_LONG && i < run->backend_count; i++) {
         if (run->backends[i] == BACKEND_ANALYTIC) {
             return entries_refuse(entries_find(entries, "run.backends", 0), err,
-                                  "the analytic backend is for four-bars only, in a case with "
-                                  "four-bar\nallowed: reference, ode");
+                                  "the analytic backend is for four-bars and slider-cranks only, "
+                                  "in a case with four-bar or slider-crank\nallowed: reference, "
+                                  "ode");
         }
     }
     return true;

@@ -8,12 +8,17 @@
 bool check_space(const Entries *entries, const Scenario *scenario, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
+    if (linkage->is_spatial && entries->form == SCHEMA_SLIDER_CRANK) {
+        return entries_refuse(entries_find(entries, "space", 0), err,
+                              "a slider-crank moves in the plane only\nallowed: space: planar");
+    }
     for (size_t i = 0; linkage->is_spatial && i < linkage->body_count; i++) {
         char path[SCHEMA_PATH_SIZE] = "bodies.*";
-        if (entries->form == SCHEMA_SHORT) {
-            snprintf(path, sizeof path, "four-bar.%s", SCHEMA_LINK_NAMES[i]);
+        if (entries->form != SCHEMA_LONG) {
+            const SchemaFormRow *form = schema_form(entries->form);
+            snprintf(path, sizeof path, "%s.%s", form->key, form->links[i]);
         }
-        const size_t index = entries->form == SCHEMA_SHORT ? 0 : i;
+        const size_t index = entries->form != SCHEMA_LONG ? 0 : i;
         if (!space_is_possible(&linkage->bodies[i])) {
             return entries_refuse_group(
                 entries_group(entries, path, index), err,

@@ -241,7 +241,12 @@ static double shortest_link(const Entries *entries, const Scenario *scenario, si
 {
     const FourBar *fourbar = &scenario->fourbar;
     const Linkage *linkage = &scenario->linkage;
-    if (entries->form == SCHEMA_SHORT) {
+    if (entries->form == SCHEMA_SLIDER_CRANK) {
+        const double links[] = {INFINITY, scenario->slidercrank.crank, scenario->slidercrank.rod,
+                                INFINITY};
+        return fmin(links[number], links[(number + 1) % 4]);
+    }
+    if (entries->form == SCHEMA_FOUR_BAR) {
         const double links[] = {fourbar->ground.nominal, fourbar->crank.nominal,
                                 fourbar->coupler.nominal, fourbar->follower.nominal};
         return fmin(links[number], links[(number + 1) % 4]);
@@ -279,7 +284,7 @@ static bool check_play(const Entries *entries, const Scenario *scenario, size_t 
 
 bool closure_check_members(const Entries *entries, const Scenario *scenario, Err *err)
 {
-    // the links of a four-bar are joined by definition
+    // the links of a short form are joined by definition
     if (entries->form == SCHEMA_LONG && !check_bodies(entries, &scenario->linkage, err)) {
         return false;
     }

@@ -42,8 +42,8 @@ static const char EXPECT_EXAMPLE[] = "expect:\n"
 static const char *const RULES[] = {
     "A case is one YAML document of at most 1 MiB. Every quantity has its unit; the decimal "
     "separator is a point.",
-    "A case has either four-bar, for a mechanism of that kind, or bodies, for any planar "
-    "linkage.",
+    "A case has either four-bar or slider-crank, for a mechanism of that kind, or bodies, for "
+    "any planar linkage.",
     "Unknown and doubled keys are errors, as are anchors, aliases and tags.",
     "On the command line, --set KEY=VALUE takes a key's whole path: --set run.step=2us. It "
     "replaces what the file says about the key, and about a key that excludes it.",

@@ -119,8 +119,8 @@ bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFam
                          bool may_be_ground, const char *name, Span span, Err *err)
 {
     const EntryNames *names = &entries->names[family];
-    // a four-bar's driven joint cannot have play, and so cannot be named
-    const size_t first = family == SCHEMA_JOINT && entries->form == SCHEMA_SHORT ? 1 : 0;
+    // the driven joint of a short form cannot have play, and so cannot be named
+    const size_t first = family == SCHEMA_JOINT && entries->form != SCHEMA_LONG ? 1 : 0;
     const char *choices[LINKAGE_JOINT_MAX + 1] = {"ground"};
     size_t count = may_be_ground ? 1 : 0;
     for (size_t i = first; i < names->count; i++) {
@@ -134,10 +134,13 @@ static bool refuse_key(const Walk *walk, const Position *below, const char *grou
                        Span span)
 {
     const SchemaForm form = walk->entries->form;
-    const SchemaForm other = form == SCHEMA_SHORT ? SCHEMA_LONG : SCHEMA_SHORT;
-    if (group[0] == '\0' && strcmp(name, SCHEMA_FORM_KEYS[other]) == 0) {
-        return source_error(walk->source, span, "one of the two", walk->err,
-                            "'%s' and '%s' exclude each other", name, SCHEMA_FORM_KEYS[form]);
+    bool is_of_another = false;
+    for (size_t i = 0; i < SCHEMA_FORM_COUNT; i++) {
+        if (group[0] == '\0' && strcmp(name, SCHEMA_FORMS[i].key) == 0) {
+            return source_error(walk->source, span, "one of the two", walk->err,
+                                "'%s' and '%s' exclude each other", name, schema_form(form)->key);
+        }
+        is_of_another = is_of_another || schema_knows(below->pattern, SCHEMA_FORMS[i].form);
     }
     char names[SCHEMA_CHILD_MAX][LINKAGE_NAME_SIZE];
     const char *choices[SCHEMA_CHILD_MAX];
@@ -146,8 +149,8 @@ static bool refuse_key(const Walk *walk, const Position *below, const char *grou
         choices[i] = names[i];
     }
     char what[LINKAGE_NAME_SIZE] = "key";
-    if (strpbrk(name, ".*") == NULL && schema_knows(below->pattern, other)) {
-        snprintf(what, sizeof what, "key in a case with %s:", SCHEMA_FORM_KEYS[form]);
+    if (strpbrk(name, ".*") == NULL && is_of_another) {
+        snprintf(what, sizeof what, "key in a case with %s:", schema_form(form)->key);
     }
     return keys_refuse(walk->source, span, what, name, choices, count, walk->err);
 }
@@ -159,10 +162,9 @@ static bool find_member(const Walk *walk, SchemaFamily family, const char *name,
     Entries *entries = walk->entries;
     const SchemaFamilyRow *row = &SCHEMA_FAMILIES[family];
     const int number = entries_number(entries, family, name);
-    if (family == SCHEMA_JOINT && entries->form == SCHEMA_SHORT) {
+    if (family == SCHEMA_JOINT && entries->form != SCHEMA_LONG) {
         if (number == 0) {
-            return source_error(walk->source, span,
-                                "crank-coupler, coupler-follower, follower-ground", walk->err,
+            return source_error(walk->source, span, schema_form(entries->form)->loose, walk->err,
                                 "the drive joint ground-crank is ideal always");
         }
         if (number < 0) {
@@ -292,18 +294,18 @@ static bool walk_node(const Walk *walk, const Position *here, const Node *node)
     return true;
 }
 
-// The form whose key stands first in the document: without any it is the short one.
+// The form whose key stands first in the document: without any it is that of a four-bar.
 static SchemaForm find_form(const Node *root)
 {
     for (const Node *child = root->kind == NODE_MAP ? root->first : NULL; child != NULL;
          child = child->next) {
-        for (SchemaForm form = SCHEMA_SHORT; form <= SCHEMA_LONG; form++) {
-            if (strcmp(child->key->text, SCHEMA_FORM_KEYS[form]) == 0) {
-                return form;
+        for (size_t i = 0; i < SCHEMA_FORM_COUNT; i++) {
+            if (strcmp(child->key->text, SCHEMA_FORMS[i].key) == 0) {
+                return SCHEMA_FORMS[i].form;
             }
         }
     }
-    return SCHEMA_SHORT;
+    return SCHEMA_FOUR_BAR;
 }
 
 static void add_names(EntryNames *names, const char *const *words)
@@ -316,9 +318,10 @@ static void add_names(EntryNames *names, const char *const *words)
 bool entries_read(Entries *entries, const Node *root, const Source *source, Err *err)
 {
     entries->form = find_form(root);
-    if (entries->form == SCHEMA_SHORT) {
-        add_names(&entries->names[SCHEMA_BODY], SCHEMA_LINK_NAMES);
-        add_names(&entries->names[SCHEMA_JOINT], SCHEMA_PIVOT_NAMES);
+    if (entries->form != SCHEMA_LONG) {
+        const SchemaFormRow *row = schema_form(entries->form);
+        add_names(&entries->names[SCHEMA_BODY], row->links);
+        add_names(&entries->names[SCHEMA_JOINT], row->pivots);
     }
     const Walk walk = {entries, source, err};
     const Position top = {.pattern = ""};

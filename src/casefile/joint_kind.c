@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+enum { SLIDER_GUIDE = 3 }; // number of the slider-crank's joint that slides
+
 JointKind joint_kind_find(const Entries *entries, size_t joint)
 {
     // the keys that only joints of a kind have; of several kinds the first counts
@@ -17,8 +19,10 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
                           "joints.*.start"},
     };
     const bool is_named = entries_group(entries, "joints.*", joint) != NULL;
-    if (entries->form == SCHEMA_SHORT) {
-        return is_named ? JOINT_CLEARANCE : JOINT_REVOLUTE;
+    if (entries->form != SCHEMA_LONG) {
+        const bool slides = entries->form == SCHEMA_SLIDER_CRANK && joint == SLIDER_GUIDE;
+        return slides ? (is_named ? JOINT_GUIDE : JOINT_PRISMATIC)
+                      : (is_named ? JOINT_CLEARANCE : JOINT_REVOLUTE);
     }
     for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++) {
         if (entries_blame(entries, KINDS[i].keys, joint) != NULL) {
@@ -48,7 +52,7 @@ static bool refuse_key(const Entries *entries, const Entry *entry, JointKind kin
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
         const SchemaRow *row = &SCHEMA_ROWS[i];
         if (row->family == SCHEMA_JOINT && schema_is_of_kind(row, kind) &&
-            (row->form == SCHEMA_BOTH || row->form == entries->form)) {
+            schema_is_of_form(row, entries->form)) {
             text_append(&allowed, "%s%s", allowed.length > 0 ? ", " : "",
                         strrchr(row->path, '.') + 1);
         }

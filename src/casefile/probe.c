@@ -78,7 +78,7 @@ static bool refuse_group(const Probe *probe, const Source *source, const Node *v
 {
     return source_error(source, keys_span(value), "the path of a key, such as drive.speed", err,
                         "'%.60s' is a group of keys in a case with %s", value->key->text,
-                        SCHEMA_FORM_KEYS[probe->entries.form]);
+                        schema_form(probe->entries.form)->key);
 }
 
 bool probe_key(const Probe *probe, const Source *source, const Node *value, ProbeKey *key, Err *err)

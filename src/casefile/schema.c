@@ -30,9 +30,19 @@ static const char *below(const char *path, const char *group)
     return strncmp(path, group, length) == 0 && path[length] == '.' ? path + length + 1 : NULL;
 }
 
-static bool is_of_form(const SchemaRow *row, SchemaForm form)
+const SchemaFormRow *schema_form(SchemaForm form)
 {
-    return row->form == SCHEMA_BOTH || row->form == form;
+    for (size_t i = 0; i < SCHEMA_FORM_COUNT; i++) {
+        if (SCHEMA_FORMS[i].form == form) {
+            return &SCHEMA_FORMS[i];
+        }
+    }
+    return NULL;
+}
+
+bool schema_is_of_form(const SchemaRow *row, SchemaForm form)
+{
+    return row->form == SCHEMA_ALL || (row->form & form) != 0;
 }
 
 const char *schema_unit(const SchemaRow *row)
@@ -143,7 +153,7 @@ bool schema_knows(const char *path, SchemaForm form)
 {
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
         const SchemaRow *row = &SCHEMA_ROWS[i];
-        if (is_of_form(row, form) &&
+        if (schema_is_of_form(row, form) &&
             (strcmp(row->path, path) == 0 || below(row->path, path) != NULL)) {
             return true;
         }
@@ -172,7 +182,7 @@ size_t schema_children(const char *group, SchemaForm form,
     size_t count = 0;
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
         const char *rest = below(SCHEMA_ROWS[i].path, group);
-        if (rest != NULL && rest[0] != '*' && is_of_form(&SCHEMA_ROWS[i], form)) {
+        if (rest != NULL && rest[0] != '*' && schema_is_of_form(&SCHEMA_ROWS[i], form)) {
             count = add_child(names, count, rest, (int)strcspn(rest, "."));
         }
     }

@@ -46,9 +46,26 @@ typedef enum SchemaFamily {
     SCHEMA_FAMILY_COUNT,
 } SchemaFamily;
 
-// A case has either `four-bar`, the short form, or `bodies`, the long one. A key stands in one of
-// them or in both.
-typedef enum SchemaForm { SCHEMA_BOTH, SCHEMA_SHORT, SCHEMA_LONG } SchemaForm;
+// A case has one form: a short one, `four-bar` or `slider-crank`, or the long one, `bodies`. A key
+// stands in some of them, whose bits are added, or in all.
+typedef enum SchemaForm {
+    SCHEMA_ALL = 0,
+    SCHEMA_FOUR_BAR = 1 << 0,
+    SCHEMA_SLIDER_CRANK = 1 << 1,
+    SCHEMA_LONG = 1 << 2,
+    SCHEMA_SHORT = SCHEMA_FOUR_BAR | SCHEMA_SLIDER_CRANK,
+} SchemaForm;
+
+enum { SCHEMA_FORM_COUNT = 3 };
+
+// What a form is called and gives.
+typedef struct SchemaFormRow {
+    SchemaForm form;
+    const char *key;           // that makes a case one of that form
+    const char *const *links;  // bodies of a short form, ending in NULL
+    const char *const *pivots; // its joints, likewise; the first is the driven one
+    const char *loose;         // those that can have play, for messages
+} SchemaFormRow;
 
 // Keys of which only one side may be given.
 typedef enum SchemaRivalry {
@@ -104,12 +121,13 @@ extern const SchemaGroup SCHEMA_GROUPS[];
 extern const size_t SCHEMA_GROUP_COUNT;
 extern const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT];
 
-// The key that makes a case one of that form.
-extern const char *const SCHEMA_FORM_KEYS[];
+extern const SchemaFormRow SCHEMA_FORMS[SCHEMA_FORM_COUNT];
 
-// The bodies and joints of a four-bar; the first joint is the driven one. End in NULL.
-extern const char *const SCHEMA_LINK_NAMES[];
-extern const char *const SCHEMA_PIVOT_NAMES[];
+// The row of a form, which is one alone.
+const SchemaFormRow *schema_form(SchemaForm form);
+
+// Whether a row is one of that form.
+bool schema_is_of_form(const SchemaRow *row, SchemaForm form);
 
 // The SI unit of a row's number, such as "m"; empty where it has none.
 const char *schema_unit(const SchemaRow *row);

@@ -58,7 +58,9 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
         met |= bit(REFERENCE, scenario->run.backends[i] == BACKEND_REFERENCE);
         met |= bit(ODE, scenario->run.backends[i] == BACKEND_ODE);
     }
-    const SchemaForm form = scenario->has_fourbar ? SCHEMA_SHORT : SCHEMA_LONG;
+    const SchemaForm form = scenario->has_fourbar       ? SCHEMA_FOUR_BAR
+                            : scenario->has_slidercrank ? SCHEMA_SLIDER_CRANK
+                                                        : SCHEMA_LONG;
     return (row->needs & ~met) == 0 && (!is_joint || schema_is_of_kind(row, joint->kind)) &&
-           (row->form == SCHEMA_BOTH || row->form == form);
+           schema_is_of_form(row, form);
 }

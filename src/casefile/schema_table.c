@@ -5,10 +5,21 @@
 
 #include <stddef.h>
 
-const char *const SCHEMA_FORM_KEYS[] = {"", "four-bar", "bodies"};
-const char *const SCHEMA_LINK_NAMES[] = {"crank", "coupler", "follower", NULL};
-const char *const SCHEMA_PIVOT_NAMES[] = {
+static const char *const FOUR_BAR_LINKS[] = {"crank", "coupler", "follower", NULL};
+static const char *const FOUR_BAR_PIVOTS[] = {
     "ground-crank", "crank-coupler", "coupler-follower", "follower-ground", NULL,
+};
+static const char *const SLIDER_CRANK_LINKS[] = {"crank", "rod", "slider", NULL};
+static const char *const SLIDER_CRANK_PIVOTS[] = {
+    "ground-crank", "crank-rod", "rod-slider", "slider-guide", NULL,
+};
+
+const SchemaFormRow SCHEMA_FORMS[SCHEMA_FORM_COUNT] = {
+    {SCHEMA_FOUR_BAR, "four-bar", FOUR_BAR_LINKS, FOUR_BAR_PIVOTS,
+     "crank-coupler, coupler-follower, follower-ground"},
+    {SCHEMA_SLIDER_CRANK, "slider-crank", SLIDER_CRANK_LINKS, SLIDER_CRANK_PIVOTS,
+     "crank-rod, rod-slider, slider-guide"},
+    {SCHEMA_LONG, "bodies", NULL, NULL, NULL},
 };
 
 const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
@@ -22,6 +33,7 @@ const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
 };
 
 static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};
+static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 
 // clang-format off
 #define FULL_TURN 6.2831853071795872
@@ -46,14 +58,14 @@ static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};
 #define X_OWN "a hundredth of inertia"
 #define Y_OWN "inertia"
 #define LENGTH(link, words) \
-    {.path = "four-bar." #link ".length", .type = SCHEMA_TOLERATED, .form = SCHEMA_SHORT, \
+    {.path = "four-bar." #link ".length", .type = SCHEMA_TOLERATED, .form = SCHEMA_FOUR_BAR, \
      .dimension = DIMENSION_LENGTH, AT(fourbar.link), .low = 1e-6, .high = 1e3, \
      .is_required = true, .doc = words}
 #define LINK(link, body, words) \
     LENGTH(link, words), \
-    {.path = "four-bar." #link ".mass", .form = SCHEMA_SHORT, MASS(body), \
+    {.path = "four-bar." #link ".mass", .form = SCHEMA_FOUR_BAR, MASS(body), \
      .doc = "mass of the " #link}, \
-    {.path = "four-bar." #link ".inertia", .form = SCHEMA_SHORT, INERTIA(body), \
+    {.path = "four-bar." #link ".inertia", .form = SCHEMA_FOUR_BAR, INERTIA(body), \
      .doc = "moment of inertia about the centre of mass, which is at mid-link"}, \
     {.path = "four-bar." #link ".inertia-x", SPACE_LINK, MOMENT(x, body, X_OWN)}, \
     {.path = "four-bar." #link ".inertia-y", SPACE_LINK, MOMENT(y, body, Y_OWN)}, \
@@ -61,13 +73,19 @@ static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};
     {.path = "four-bar." #link ".product-xz", SPACE_LINK, PRODUCT(xz, body)}, \
     {.path = "four-bar." #link ".product-yz", SPACE_LINK, PRODUCT(yz, body)}, \
     {.path = "four-bar." #link ".offset", SPACE_LINK, OFFSET(body)}
-#define SPACE_LINK .form = SCHEMA_SHORT, .needs = SPATIAL
+#define SPACE_LINK .form = SCHEMA_FOUR_BAR, .needs = SPATIAL
+#define SLIDER_CRANK(field) .form = SCHEMA_SLIDER_CRANK, AT(slidercrank.field)
+#define SLIDER_LINK(link, body, where) \
+    {.path = "slider-crank." #link ".mass", .form = SCHEMA_SLIDER_CRANK, MASS(body), \
+     .doc = "mass of the " #link}, \
+    {.path = "slider-crank." #link ".inertia", .form = SCHEMA_SLIDER_CRANK, INERTIA(body), \
+     .doc = "moment of inertia about the centre of mass, which is at " where}
 #define BODY .family = SCHEMA_BODY, .form = SCHEMA_LONG
 #define SPACE_BODY BODY, .needs = MEMBER | SPATIAL
 #define JOINT(field) .family = SCHEMA_JOINT, AT(linkage.joints[0].field)
 #define PIN(field) JOINT(clearance.field), .needs = MEMBER, .kinds = SCHEMA_OF(JOINT_CLEARANCE)
 #define GUIDE(field) \
-    JOINT(guide.field), .form = SCHEMA_LONG, .dimension = DIMENSION_LENGTH, .low = 1e-6, \
+    JOINT(guide.field), .form = SCHEMA_LONG | SCHEMA_SLIDER_CRANK, .dimension = DIMENSION_LENGTH, .low = 1e-6, \
     .high = 1e2, .is_required = true, .needs = MEMBER, .kinds = SCHEMA_OF(JOINT_GUIDE)
 #define SLIDING (SCHEMA_OF(JOINT_PRISMATIC) | SCHEMA_OF(JOINT_GUIDE))
 #define STOP .form = SCHEMA_LONG, .needs = MEMBER, .kinds = SCHEMA_OF(JOINT_STOP)
@@ -94,10 +112,31 @@ const SchemaRow SCHEMA_ROWS[] = {
     LINK(crank, 0, "from its ground pivot to the crank pin"),
     LINK(coupler, 1, "from the crank pin to the follower pin"),
     LINK(follower, 2, "from its ground pivot to the follower pin"),
-    {.path = "four-bar.assembly", .type = SCHEMA_CHOICE, .form = SCHEMA_SHORT, AT(fourbar.assembly),
+    {.path = "four-bar.assembly", .type = SCHEMA_CHOICE, .form = SCHEMA_FOUR_BAR, AT(fourbar.assembly),
      .words = ASSEMBLIES,
      .doc = "open: the follower pin lies to the left of the line from crank pin to the follower's "
             "ground pivot; crossed: to the right"},
+
+    {.path = "slider-crank.crank.length", SLIDER_CRANK(crank), .dimension = DIMENSION_LENGTH,
+     .low = 1e-6, .high = 1e3, .is_required = true,
+     .doc = "from the ground pivot, the origin, to the crank pin"},
+    SLIDER_LINK(crank, 0, "mid-crank"),
+    {.path = "slider-crank.rod.length", SLIDER_CRANK(rod), .dimension = DIMENSION_LENGTH,
+     .low = 1e-6, .high = 1e3, .is_required = true,
+     .doc = "from the crank pin to the pin in the slider"},
+    SLIDER_LINK(rod, 1, "mid-rod"),
+    SLIDER_LINK(slider, 2, "the pin in the slider, where the middle of its block is as well"),
+    {.path = "slider-crank.offset", SLIDER_CRANK(offset), .dimension = DIMENSION_LENGTH,
+     .low = -1e3, .high = 1e3,
+     .doc = "distance of the slider's line from the crank's ground pivot, to the left of the "
+            "line's direction"},
+    {.path = "slider-crank.angle", SLIDER_CRANK(line), .dimension = DIMENSION_ANGLE,
+     .low = -FULL_TURN, .high = FULL_TURN,
+     .doc = "direction of the slider's line, counter-clockwise from the world's x axis"},
+    {.path = "slider-crank.assembly", .type = SCHEMA_CHOICE, SLIDER_CRANK(side),
+     .words = SLIDER_SIDES,
+     .doc = "right: the slider is ahead of the crank pin in the line's direction; left: behind "
+            "it"},
 
     {.path = "bodies.*.mass", BODY, MASS(0), .needs = MEMBER, .doc = "mass of the body"},
     {.path = "bodies.*.inertia", BODY, INERTIA(0), .needs = MEMBER,
@@ -181,8 +220,8 @@ const SchemaRow SCHEMA_ROWS[] = {
             "ends, at most 32; counter-clockwise positive"},
     {.path = "drive.start", .form = SCHEMA_SHORT, .dimension = DIMENSION_ANGLE,
      AT(linkage.driver.start), .low = -FULL_TURN, .high = FULL_TURN,
-     .doc = "angle of the crank at time zero, counter-clockwise from the ground link; with "
-            "bodies, their angles define it"},
+     .doc = "angle of the crank at time zero, counter-clockwise from the ground link, which is the "
+            "world's x axis; with bodies, their angles define it"},
     {.path = "gravity", .dimension = DIMENSION_ACCELERATION, AT(gravity),
      .low = -1e3, .high = 1e3,
      .doc = "acceleration of gravity, downward, along -y; 0 m/s^2 for none"},
@@ -265,7 +304,8 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "run.backends", .type = SCHEMA_BACKENDS, AT(run.backends),
      .words = OPTIONS_BACKENDS,
      .doc = "the solvers to run, in this order: a word or a list; the default of a case with "
-            "bodies is reference, ode, because analytic supports four-bars only"},
+            "bodies is reference, ode, because analytic supports four-bars and slider-cranks "
+            "only"},
 
     {.path = "reference.tolerance", AT(reference.tolerance), .low = 1e-14, .high = 1e-3,
      .needs = REFERENCE,
@@ -331,8 +371,8 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "the body to which the point belongs"},
     {.path = "points.*.along", .type = SCHEMA_ALONG, .dimension = DIMENSION_LENGTH,
      POINT(local.x), .low = -1e3, .high = 1e3, .is_required = true,
-     .doc = "distance from the link's first joint towards its second; with bodies, from the "
-            "centre of mass along the body's x axis"},
+     .doc = "distance from the link's first joint towards its second; with bodies, and of a "
+            "slider, from the centre of mass along the body's x axis"},
     {.path = "points.*.offset", .dimension = DIMENSION_LENGTH, POINT(local.y), .low = -1e3,
      .high = 1e3, .doc = "distance to the left of that direction"},
 

@@ -1,6 +1,7 @@
 // Which settings does a scenario hold, as a case file would name them?
 #include "casefile/casefile.h"
 #include "casefile/schema.h"
+#include "casefile/slider.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -91,10 +92,13 @@ static void set_backends(CasefileSetting *setting, const RunOptions *run)
     }
 }
 
-// Where along its link a traced point stands: of a four-bar, from the link's first joint.
+// Where along its link a traced point stands: of a short form, from the link's first joint.
 static double point_along(const Scenario *scenario, size_t index)
 {
     const TracedPoint *point = &scenario->points[index];
+    if (scenario->has_slidercrank) {
+        return point->local.x + slider_centre(&scenario->slidercrank, point->body);
+    }
     const ToleratedLength *const lengths[] = {&scenario->fourbar.crank, &scenario->fourbar.coupler,
                                               &scenario->fourbar.follower};
     return point->local.x + (scenario->has_fourbar ? 0.5 * lengths[point->body]->nominal : 0.0);
