@@ -110,6 +110,10 @@ static void shake_world(Scenario *scenario, uint64_t *seed)
         &scenario->ode.push_out,
         &scenario->ode.over_relaxation,
         &scenario->ode.contact_phase,
+        &scenario->slidercrank.crank,
+        &scenario->slidercrank.rod,
+        &scenario->slidercrank.offset,
+        &scenario->slidercrank.line,
     };
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
         shake(values[i], seed);
