@@ -75,7 +75,7 @@ void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch
         trajectory_destroy(trajectory);
     }
     for (size_t i = 0; ensemble->members > 0 && i < scenario->linkage.joint_count; i++) {
-        if (scenario->linkage.joints[i].kind != JOINT_CLEARANCE) {
+        if (!linkage_kind_has_play(scenario->linkage.joints[i].kind)) {
             continue;
         }
         for (int metric = 0; metric < ENSEMBLE_METRIC_COUNT; metric++) {

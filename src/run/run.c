@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "contact/law.h"
 #include "contact/pin_space.h"
+#include "contact/touch.h"
 #include "model/forces.h"
 #include "model/lock.h"
 
@@ -93,7 +94,7 @@ static double mechanical_energy(const Scenario *scenario, const Sample *sample)
            forces_energy(linkage, sample->bodies);
 }
 
-// What the contacts of pins that start inside their walls have stored, J.
+// What contacts that are pressed at the start have stored, J.
 static double stored_energy(const Scenario *scenario, const Sample *sample)
 {
     double sum = 0.0;
@@ -106,9 +107,17 @@ static double stored_energy(const Scenario *scenario, const Sample *sample)
             continue;
         }
         // what the contacts of the velocity-level model press with, they never store
-        if (joint->kind == JOINT_CLEARANCE && scenario->contact.model == CONTACT_IMPACT &&
-            sample->joints[i].gap < 0.0 && law_of_joint(scenario, joint, &law, &unused)) {
-            sum += force_law_energy(&law, -sample->joints[i].gap);
+        if (linkage_kind_is_ideal(joint->kind) || scenario->contact.model != CONTACT_IMPACT ||
+            !(sample->joints[i].gap < 0.0) || !law_of_joint(scenario, joint, &law, &unused)) {
+            continue;
+        }
+        Touch places[TOUCH_CORNERS];
+        const size_t count = touch_places(joint, (int)i, places);
+        for (size_t k = 0; k < count; k++) {
+            const double gap = joint->kind == JOINT_CLEARANCE
+                                   ? sample->joints[i].gap
+                                   : touch_pose(&scenario->linkage, &places[k], sample->bodies).gap;
+            sum += gap < 0.0 ? force_law_energy(&law, -gap) : 0.0;
         }
     }
     return sum;

@@ -47,7 +47,7 @@ json_t *ensemble_joints_json(const Linkage *linkage, const Ensemble *ensemble)
 {
     json_t *joints = json_object();
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_CLEARANCE) {
+        if (linkage_kind_has_play(linkage->joints[i].kind)) {
             json_object_set_new(joints, linkage->joints[i].name,
                                 fields_json(METRIC_FIELDS, FIELD_JSON, ensemble->joints[i]));
         }
@@ -60,7 +60,7 @@ bool ensemble_joints_read(const Linkage *linkage, const json_t *joints, Ensemble
     bool is_right = true;
     for (size_t i = 0; is_right && i < linkage->joint_count; i++) {
         is_right =
-            linkage->joints[i].kind != JOINT_CLEARANCE ||
+            !linkage_kind_has_play(linkage->joints[i].kind) ||
             fields_json_read(METRIC_FIELDS, FIELD_STORE,
                              json_object_get(joints, linkage->joints[i].name), ensemble->joints[i]);
     }

@@ -112,12 +112,12 @@ static void write_damping(const ContactOptions *contact, Text *text)
 
 static void write_impact_law(const Scenario *scenario, const Joint *joint, Text *text)
 {
-    const ContactOptions *contact = &scenario->contact;
+    const ContactOptions own = law_options(&scenario->contact, joint);
     ForceLaw law;
     Err err = {0};
     text_append(text, "  contact     %s: %s", joint->name,
-                contact->stiffness > 0.0 ? "given stiffness" : OPTIONS_LAWS[contact->law]);
-    if (!law_build(contact, &scenario->material, &joint->clearance, scenario->linkage.driver.speed,
+                own.stiffness > 0.0 ? "given stiffness" : OPTIONS_LAWS[own.law]);
+    if (!law_build(&own, &scenario->material, &joint->clearance, scenario->linkage.driver.speed,
                    &law, &err)) {
         text_append(text, " (%s)", err.text);
     } else if (law.family == FORCE_LAW_POWER) {
@@ -126,7 +126,7 @@ static void write_impact_law(const Scenario *scenario, const Joint *joint, Text 
         text_append(text, ", d = A F (B - ln F) with A = %.4g m/N, B = %.4g", law.compliance,
                     law.offset);
     }
-    write_damping(contact, text);
+    write_damping(&own, text);
     text_append(text, "\n");
 }
 
@@ -135,7 +135,7 @@ static void write_contact(const Scenario *scenario, Text *text)
     const ContactOptions *contact = &scenario->contact;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
-        if (joint->kind != JOINT_CLEARANCE) {
+        if (!linkage_kind_has_play(joint->kind)) {
             continue;
         }
         if (contact->model == CONTACT_IMPACT) {

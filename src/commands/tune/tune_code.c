@@ -93,18 +93,46 @@ static void write_body(const Body *body, Text *text)
                 number_shortest(body->start.alpha).text);
 }
 
+// What a joint that slides or stops has beside.
+static void write_sliding(const Joint *joint, Text *text)
+{
+    const Guide *guide = &joint->guide;
+    const Stop *stop = &joint->stop;
+    text_append(text, "         .direction = %s, // rad\n         .held_angle = %s,\n",
+                number_shortest(joint->direction).text, number_shortest(joint->held_angle).text);
+    text_append(text,
+                "         .guide = {.opening = %s, // m\n                   .height = %s,\n"
+                "                   .length = %s,\n",
+                number_shortest(guide->opening).text, number_shortest(guide->height).text,
+                number_shortest(guide->length).text);
+    write_vec2("                   .start = ", guide->start, text);
+    text_append(text,
+                "},\n         .stop = {.is_disc = %s,\n                  .radius_a = %s, // m\n"
+                "                  .radius_b = %s},\n",
+                stop->is_disc ? "true" : "false", number_shortest(stop->radius_a).text,
+                number_shortest(stop->radius_b).text);
+}
+
 static void write_joint(const Joint *joint, Text *text)
 {
+    static const char *const KINDS[] = {
+        [JOINT_REVOLUTE] = "JOINT_REVOLUTE",   [JOINT_CLEARANCE] = "JOINT_CLEARANCE",
+        [JOINT_PRISMATIC] = "JOINT_PRISMATIC", [JOINT_GUIDE] = "JOINT_GUIDE",
+        [JOINT_STOP] = "JOINT_STOP",
+    };
     const Clearance *clearance = &joint->clearance;
     text_append(text, "        {.name = ");
     write_string(joint->name, text);
     text_append(text, ",\n         .kind = %s,\n         .body_a = %d,\n         .body_b = %d,\n",
-                joint->kind == JOINT_CLEARANCE ? "JOINT_CLEARANCE" : "JOINT_REVOLUTE",
-                joint->body_a, joint->body_b);
+                KINDS[joint->kind], joint->body_a, joint->body_b);
     write_vec2("         .anchor_a = ", joint->anchor_a, text);
     write_vec2(",\n         .anchor_b = ", joint->anchor_b, text);
+    text_append(text, ",\n");
+    if (joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE) {
+        write_sliding(joint, text);
+    }
     text_append(text,
-                ",\n         .clearance = {.hole_radius = %s, // m\n"
+                "         .clearance = {.hole_radius = %s, // m\n"
                 "                       .pin_radius = %s,\n"
                 "                       .width = %s,\n",
                 number_shortest(clearance->hole_radius).text,
@@ -243,7 +271,7 @@ static bool write_laws(const Scenario *scenario, Text *text, Err *err)
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         ForceLaw law;
-        if (linkage->joints[i].kind != JOINT_CLEARANCE) {
+        if (!linkage_kind_has_play(linkage->joints[i].kind)) {
             continue;
         }
         if (!law_of_joint(scenario, &linkage->joints[i], &law, err)) {
