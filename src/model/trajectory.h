@@ -17,7 +17,7 @@ typedef struct JointState {
     double tilt;        // rad, of a prismatic joint or a block between guides
     double gap;         // radial clearance less eccentricity, m; negative inside the metal; of a
                         // block the smallest of its corners
-    double force;       // size of the force in the joint, N
+    double force;       // size of the force in the joint, N; of a block the sum of its corners'
     Vec2 force_on_b;    // the force itself, on body b, N
     double moment_on_b; // N m, about the anchor of body b, of prismatic joints and blocks between
                         // guides: the couple that comes with the force
