@@ -1,18 +1,18 @@
-// What happens between pins and holes while the linkage around them hardly changes: contacts
-// integrated by themselves, in steps of their own, within one step of the world.
+// What happens where bodies touch while the linkage around them hardly changes: contacts integrated
+// by themselves, in steps of their own, within one step of the world.
 //
-// The relative motion of each pin in its hole has rows: x and y of the pin's centre less the
-// hole's, and with friction the turns of the hole's and of the pin's body. In space every place at
-// which a pin can touch is a joint of its own, x and y are across the pin's axis, and friction also
-// has rows for the sliding along the axis and for the turns of both bodies about x and y
-// (contact/pin_space_rows.h). What acts in a row moves all rows by the mobility of the linkage
-// (model/response.h).
+// Every place at which a joint with play can touch (contact/touch.h) is a joint here, with rows of
+// its own. Of a pin in its hole: x and y of the pin's centre less the hole's, and with friction the
+// turns of the hole's and of the pin's body; of two discs likewise. Of a circle on a line: the gap
+// along the line's normal, and the sliding along it. In space x and y are across the pin's axis,
+// and friction also has rows for the sliding along the axis and for the turns of both bodies about
+// x and y (contact/pin_space_rows.h). What acts in a row moves all rows by the mobility of the
+// linkage (model/response.h).
 #pragma once
 
 #include "contact/force_law.h"
 #include "contact/pin_hole.h"
-#include "model/linkage.h"
-#include "model/response.h"
+#include "contact/touch.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -24,14 +24,17 @@ enum {
     ENCOUNTER_ROWS_MOST = 9,  // with friction in space; RESPONSE_ROWS_A_JOINT in the plane
 };
 
-// One joint with play. The first five are given; the rest lives on from one step to the next.
+// One place of a joint with play. The first six are given; the rest lives on from one step to the
+// next. A disc outside another is a hole of negative size: the same formulas hold for both.
 typedef struct EncounterJoint {
     ForceLaw law;
-    double radial_clearance; // m
-    double hole_radius;      // m
+    TouchShape shape;
+    double radial_clearance; // m; of a disc less than 0, minus the sum of the radii; not of a line
+    double hole_radius;      // m; of a disc minus the radius of that on body a; not of a line
     int joint;               // number in the linkage
-    int other_end;           // of a hole with two ends in space, where the other one stands among
-                             // the joints from here: 1 or -1; else 0
+    int siblings[2];         // the first and the last place that can touch together with this one,
+                             // counted from here; 0 and 0 where there is none
+    bool has_friction;
     size_t first_row;
     size_t row_count;
     bool is_touching;
@@ -57,7 +60,8 @@ typedef struct Encounter {
     // of the step under way, to be filled in before encounter_run
     double mobility[RESPONSE_ROW_MAX * RESPONSE_ROW_MAX]; // row by row, without gaps
     double free[RESPONSE_ROW_MAX];                        // acceleration while nothing acts
-    double position[RESPONSE_ROW_MAX];                    // at the start, m; not of turns
+    double position[RESPONSE_ROW_MAX];                    // at the start, m; of a line the gap
+                                                          // and 0; not of turns
     double speed[RESPONSE_ROW_MAX];                       // at the start, m/s, rad/s
 
     // what came of it: nodes, the first at the start, two where a contact begins or ends
@@ -70,7 +74,8 @@ typedef struct Encounter {
     size_t evaluations; // of the forces, since the beginning
 } Encounter;
 
-// What stands between pin and hole of one joint at an instant.
+// How one place is at an instant, in its first two rows. The size of the eccentricity is less than
+// 0 of a disc and infinite of a line.
 typedef struct EncounterPose {
     PinHole pose;
     Vec2 force; // N, on the pin, friction included
@@ -80,8 +85,8 @@ typedef struct EncounterPose {
 // An encounter of no joints yet.
 Encounter encounter_start(double friction, double friction_speed, double phase);
 
-// Adds a joint, of which the first five parts are given, with its rows: ENCOUNTER_ROWS_PLAIN, or
-// more of one with friction. Returns false where there is no room for it.
+// Adds a joint, of which the first six parts are given, with its rows: ENCOUNTER_ROWS_PLAIN, or
+// more of one with friction, but for a line's. Returns false where there is no room for it.
 bool encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t rows);
 void encounter_finish(Encounter *encounter);
 

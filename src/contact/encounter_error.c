@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-static const double ROUNDINGS = 8.0 * 0x1p-52; // of the play, in a depth
+static const double ROUNDINGS = 8.0 * 0x1p-52; // of what a depth is the difference of
 
 // By how much impulses move the rows of a joint.
 static void move_rows(const Encounter *encounter, size_t joint, const double *impulse,
@@ -33,9 +33,21 @@ static double along_wall(const Encounter *encounter, size_t joint, Vec2 tangent,
     const EncounterJoint *of = &encounter->joints[joint];
     double sum = fabs(tangent.x * rows[0] + tangent.y * rows[1]);
     for (size_t i = ENCOUNTER_ROWS_PLAIN; i < of->row_count; i++) {
-        sum += (i == ENCOUNTER_ROW_AXIAL ? 1.0 : of->hole_radius) * fabs(rows[i]);
+        sum += (i == ENCOUNTER_ROW_AXIAL ? 1.0 : fabs(of->hole_radius)) * fabs(rows[i]);
     }
     return sum;
+}
+
+// What rounding leaves of a depth, m: the play less an eccentricity, or at a line the gap at the
+// start of the world's step less the way since then.
+static double depth_rounding(const Encounter *encounter, size_t joint, double time_s)
+{
+    const EncounterJoint *of = &encounter->joints[joint];
+    if (of->shape != TOUCH_LINE) {
+        return ROUNDINGS * fabs(of->radial_clearance);
+    }
+    return ROUNDINGS * (fabs(encounter->position[of->first_row]) +
+                        time_s * fabs(encounter->speed[of->first_row]));
 }
 
 static double share_of_joint(const Encounter *encounter, size_t joint, const EncounterPoint *from,
@@ -45,7 +57,7 @@ static double share_of_joint(const Encounter *encounter, size_t joint, const Enc
     const size_t first = encounter->joints[joint].first_row;
     const size_t own = encounter->joints[joint].row_count;
     const double square = encounter->phase * encounter->phase;
-    const double rounding = ROUNDINGS * encounter->joints[joint].radial_clearance;
+    const double rounding = depth_rounding(encounter, joint, from->time_s + width_s);
     const PinHole pose =
         encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
     const Vec2 tangent = vec2_perp(pose.normal);

@@ -4,8 +4,9 @@
 // mu N tanh(v_t / v_s) against the sliding speed
 //     v_t = t . u_e' + R u_a' - (R - |e|) u_b',   t the normal turned by a quarter turn,
 // R the hole's radius, e eccentricity, u_a', u_b' the turning of the hole's and the pin's body
-// about the pin's axis. In space the pin slides along the axis too, with w the turning about x and
-// y,
+// about the pin's axis. Two discs outside each other are a hole of negative radius, and |e| is then
+// -|e|. At a line normal and tangent are the rows. In space the pin slides along the axis too, with
+// w the turning about x and y,
 //     v_z = u_z' - R t . w_a + (R - |e|) t . w_b
 // and friction is mu N tanh(s / v_s) against the direction of (v_t, v_z), s its size.
 #include "contact/encounter_force.h"
@@ -20,7 +21,7 @@ enum { WIDE = 8 };
 static double row_position(const Encounter *encounter, size_t row, double time_s,
                            const double *moment)
 {
-    const size_t width = encounter_rows(encounter);
+    const size_t width = encounter->row_count;
     const double *mobility = encounter->mobility + row * width;
     double position = encounter->position[row] +
                       time_s * (encounter->speed[row] + 0.5 * time_s * encounter->free[row]);
@@ -33,7 +34,7 @@ static double row_position(const Encounter *encounter, size_t row, double time_s
 double encounter_force_row_speed(const Encounter *encounter, size_t row, double time_s,
                                  const double *impulse)
 {
-    const size_t width = encounter_rows(encounter);
+    const size_t width = encounter->row_count;
     const double *mobility = encounter->mobility + row * width;
     double speed = encounter->speed[row] + time_s * encounter->free[row];
     for (size_t k = 0; k < width; k++) {
@@ -42,11 +43,50 @@ double encounter_force_row_speed(const Encounter *encounter, size_t row, double 
     return speed;
 }
 
-static PinHole pose_of(const Encounter *encounter, size_t joint, const double position[2],
-                       const double speed[2])
+static PinHole line_pose(Vec2 position, Vec2 speed)
 {
-    return pin_hole_pose((Vec2){0.0, 0.0}, (Vec2){position[0], position[1]},
-                         (Vec2){speed[0], speed[1]}, encounter->joints[joint].radial_clearance);
+    return (PinHole){
+        .eccentricity = position,
+        .eccentricity_size = INFINITY,
+        .gap = position.x,
+        .penetration = -position.x,
+        .has_normal = true,
+        .normal = {1.0, 0.0},
+        .approach_speed = -speed.x,
+    };
+}
+
+static PinHole disc_pose(Vec2 position, Vec2 speed, double clearance)
+{
+    PinHole pose = pin_hole_pose((Vec2){0.0, 0.0}, position, speed, -clearance);
+    pose.gap = -pose.gap;
+    pose.penetration = -pose.gap;
+    pose.eccentricity_size = -pose.eccentricity_size;
+    if (pose.has_normal) {
+        pose.normal = vec2_scale(-1.0, pose.normal);
+        pose.approach_speed = -pose.approach_speed;
+    }
+    return pose;
+}
+
+// Of all shapes but the one that has to be fast.
+static PinHole other_pose(const EncounterJoint *joint, const double position[2],
+                          const double speed[2])
+{
+    const Vec2 at = {position[0], position[1]};
+    const Vec2 rate = {speed[0], speed[1]};
+    return joint->shape == TOUCH_LINE ? line_pose(at, rate)
+                                      : disc_pose(at, rate, joint->radial_clearance);
+}
+
+static inline PinHole pose_of(const Encounter *encounter, size_t joint, const double position[2],
+                              const double speed[2])
+{
+    const EncounterJoint *of = &encounter->joints[joint];
+    return of->shape == TOUCH_HOLE
+               ? pin_hole_pose((Vec2){0.0, 0.0}, (Vec2){position[0], position[1]},
+                               (Vec2){speed[0], speed[1]}, of->radial_clearance)
+               : other_pose(of, position, speed);
 }
 
 PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double time_s,
@@ -70,7 +110,7 @@ typedef struct AllRows {
 static void find_all_rows(const Encounter *encounter, double time_s, const double *impulse,
                           const double *moment, AllRows *all)
 {
-    const size_t width = encounter_rows(encounter);
+    const size_t width = encounter->row_count;
     for (size_t i = 0; i < width; i++) {
         all->speed[i] = encounter->speed[i] + time_s * encounter->free[i];
         all->position[i] = encounter->position[i] +
@@ -136,6 +176,12 @@ static double add_friction(const Encounter *encounter, size_t joint, const doubl
 {
     const EncounterJoint *of = &encounter->joints[joint];
     const size_t row = of->first_row;
+    if (of->shape == TOUCH_LINE) {
+        const double taken =
+            encounter->friction * normal * tanh(speed[1] / encounter->friction_speed);
+        force[row + 1] -= taken;
+        return taken * speed[1];
+    }
     const double hole_arm = of->hole_radius;
     const double pin_arm = hole_arm - pose->eccentricity_size;
     const Vec2 tangent = vec2_perp(pose->normal);
@@ -199,28 +245,35 @@ void encounter_force_find(Encounter *encounter, double time_s, const double *imp
         own[0] = normal * pose.normal.x;
         own[1] = normal * pose.normal.y;
         powers[0] += (normal - elastic) * pose.approach_speed;
-        if (joint->row_count > ENCOUNTER_ROWS_PLAIN) {
+        if (joint->has_friction) {
             powers[1] += add_friction(encounter, i, at.speed, &pose, normal, force);
         }
     }
 }
 
-// Mobility along the normal of a joint, 1/kg. Two ends of a hole that press alike move each other.
-static double normal_mobility(const Encounter *encounter, size_t joint, Vec2 normal)
+// By how much the places that can press together with one move it along its normal, 1/kg.
+static double mobility_between(const Encounter *encounter, const EncounterJoint *of, Vec2 normal)
 {
-    const size_t width = encounter_rows(encounter);
+    const size_t width = encounter->row_count;
+    double sum = 0.0;
+    for (int k = of->siblings[0]; k <= of->siblings[1]; k++) {
+        const double *other = encounter->mobility + of->first_row * width + of[k].first_row;
+        const double between = normal.x * (other[0] * normal.x + other[1] * normal.y) +
+                               normal.y * (other[width] * normal.x + other[width + 1] * normal.y);
+        sum += k != 0 ? fabs(between) : 0.0;
+    }
+    return sum;
+}
+
+// Mobility along the normal of a joint, 1/kg. Places that press together move each other.
+static inline double normal_mobility(const Encounter *encounter, size_t joint, Vec2 normal)
+{
+    const size_t width = encounter->row_count;
     const EncounterJoint *of = &encounter->joints[joint];
     const double *first = encounter->mobility + of->first_row * width + of->first_row;
     const double own = normal.x * (first[0] * normal.x + 2.0 * first[1] * normal.y) +
                        normal.y * first[width + 1] * normal.y;
-    if (of->other_end == 0) {
-        return own;
-    }
-    const double *other =
-        encounter->mobility + of->first_row * width + (of + of->other_end)->first_row;
-    const double between = normal.x * (other[0] * normal.x + other[1] * normal.y) +
-                           normal.y * (other[width] * normal.x + other[width + 1] * normal.y);
-    return own + fabs(between);
+    return of->siblings[0] == of->siblings[1] ? own : own + mobility_between(encounter, of, normal);
 }
 
 double encounter_force_frequency(const Encounter *encounter, size_t joint, Vec2 normal,
@@ -239,7 +292,7 @@ double encounter_force_decay(const Encounter *encounter, size_t joint, Vec2 norm
 
 double encounter_force_friction_time(const Encounter *encounter, size_t joint, const double *force)
 {
-    const size_t width = encounter_rows(encounter);
+    const size_t width = encounter->row_count;
     const size_t row = encounter->joints[joint].first_row;
     const double arm = encounter->joints[joint].hole_radius;
     double mobility = 0.0;

@@ -1,4 +1,4 @@
-// How do pins and holes meet while the linkage around them hardly changes?
+// How do bodies meet at their joints with play while the linkage around them hardly changes?
 //
 // Rows u of relative motion, W the linkage's mobility and g its free acceleration, both taken as
 // constant over the step, f(u, u') the contacts' forces:
@@ -54,6 +54,8 @@ bool encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t row
     *added = *joint;
     added->first_row = encounter->row_count;
     added->row_count = rows;
+    added->has_friction =
+        encounter->friction > 0.0 && (rows > ENCOUNTER_ROWS_PLAIN || added->shape == TOUCH_LINE);
     for (size_t i = 0; i < rows; i++) {
         encounter->joint_of[encounter->row_count++] = (int)encounter->joint_count;
     }

@@ -3,7 +3,8 @@
 // e eccentricity, v its rate, n the normal (inwards), t = perp n, o = -n, d = |e| - clearance:
 //     d' = o . v            dd = o . de,   dn = -t (t . de) / |e|,   dt = n (t . de) / |e|
 //     N(d, d')              dN = N_d o . de + N_d' (o . dv + (t . v) (t . de) / |e|)
-// and with friction, the letters as in contact/encounter_force.c:
+// of two discs |e| is -|e|, at a line infinite: neither n nor t turns. With friction, the letters
+// as in contact/encounter_force.c:
 //     H = mu N tanh(v_t / v_s)
 //     dv_t = (n . v) (t . de) / |e| + u_b' o . de + t . dv + R du_a' - (R - |e|) du_b'
 //     F = N n - H t,  moments -R H and (R - |e|) H
@@ -123,20 +124,32 @@ static void find_both(const Encounter *encounter, double round, const Gradient *
     held->axial = encounter->friction * normal * share * axial;
 }
 
+// How fast the pin slides round its hole, or a circle along its line, and how that changes.
+static double find_round(const EncounterJoint *joint, const PinHole *pose, const double *speeds,
+                         Gradient *gradient)
+{
+    const Vec2 tangent = vec2_perp(pose->normal);
+    const Vec2 velocity = {speeds[0], speeds[1]};
+    if (joint->shape == TOUCH_LINE) {
+        *gradient = along((Vec2){0.0, 0.0}, tangent);
+        return speeds[1];
+    }
+    const double hole_arm = joint->hole_radius;
+    const double pin_arm = hole_arm - pose->eccentricity_size;
+    const double turning = vec2_dot(pose->normal, velocity) / pose->eccentricity_size;
+    *gradient = along(vec2_add(vec2_scale(turning, tangent), vec2_scale(-speeds[3], pose->normal)),
+                      tangent);
+    gradient->of[PLACES + 2] = hole_arm;
+    gradient->of[PLACES + 3] = -pin_arm;
+    return vec2_dot(tangent, velocity) + hole_arm * speeds[2] - pin_arm * speeds[3];
+}
+
 static void find_friction(const Encounter *encounter, const EncounterJoint *joint,
                           const PinHole *pose, const double *speeds, double normal,
                           const Gradient *by_normal, Held *held)
 {
-    const Vec2 tangent = vec2_perp(pose->normal);
-    const Vec2 velocity = {speeds[0], speeds[1]};
-    const double hole_arm = joint->hole_radius;
-    const double pin_arm = hole_arm - pose->eccentricity_size;
-    const double sliding = vec2_dot(tangent, velocity) + hole_arm * speeds[2] - pin_arm * speeds[3];
-    const double turning = vec2_dot(pose->normal, velocity) / pose->eccentricity_size;
-    Gradient by_sliding = along(
-        vec2_add(vec2_scale(turning, tangent), vec2_scale(-speeds[3], pose->normal)), tangent);
-    by_sliding.of[PLACES + 2] = hole_arm;
-    by_sliding.of[PLACES + 3] = -pin_arm;
+    Gradient by_sliding;
+    const double sliding = find_round(joint, pose, speeds, &by_sliding);
     if (joint->row_count == ENCOUNTER_ROWS_MOST) {
         Gradient by_axial;
         const double axial = find_axial(joint, pose, speeds, &by_axial);
@@ -221,7 +234,7 @@ void encounter_slopes_find(const Encounter *encounter, size_t number, double tim
     const double t[2] = {tangent.x, tangent.y};
     Held held = {.round = 0.0};
     // a wall that pulls rubs on nothing
-    if (joint->row_count > ENCOUNTER_ROWS_PLAIN && normal > 0.0) {
+    if (joint->has_friction && normal > 0.0) {
         find_friction(encounter, joint, &pose, speeds, normal, &by_normal, &held);
     }
     for (size_t i = 0; i < 2; i++) {

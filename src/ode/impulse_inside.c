@@ -5,6 +5,7 @@
 // means of the last two steps, and A f(t). Ideal joints: the mean forces of the step, and how the
 // joints answer what the contacts do beyond theirs.
 #include "ode/impulse_step.h"
+
 #include "ode/stepping.h"
 
 #include <string.h>
@@ -57,23 +58,73 @@ static void find_accelerations(const ImpulseStep *step, const Response *response
     }
 }
 
+// Where the block of a joint is between its guides, or body b of a stop at a line.
+static JointState place_on_line(const Linkage *linkage, const Motion *motions, int joint)
+{
+    JointState state = {.gap = INFINITY};
+    if (linkage->joints[joint].kind == JOINT_GUIDE) {
+        stepping_observe_line(linkage, joint, motions, &state);
+    } else {
+        state.eccentricity = linkage_joint_gap(linkage, motions, joint).position;
+    }
+    return state;
+}
+
+// Adds one place at a line to the state of its joint.
+static void add_line(const Linkage *linkage, const Touch *place, const EncounterPose *pose,
+                     const Motion *motions, JointState *state)
+{
+    const Joint *joint = &linkage->joints[place->joint];
+    const Vec2 normal = touch_pose(linkage, place, motions).normal;
+    const Vec2 force =
+        vec2_add(vec2_scale(pose->force.x, normal), vec2_scale(pose->force.y, vec2_perp(normal)));
+    state->gap = fmin(state->gap, pose->pose.gap);
+    state->force_on_b = vec2_add(state->force_on_b, force);
+    state->force += vec2_length(force);
+    state->is_touching = state->is_touching || pose->is_touching;
+    if (joint->kind == JOINT_GUIDE) {
+        const Vec2 arm = vec2_sub(linkage_point(motions, joint->body_b, place->anchor_b),
+                                  linkage_point(motions, joint->body_b, joint->anchor_b));
+        state->moment_on_b += vec2_cross(arm, force);
+    }
+}
+
+// The states of the joints with play, and how deep each place is.
+static void find_places(const ImpulseStep *step, size_t node, double since_s,
+                        const EncounterSums *sums, const Motion *motions, JointState *joints,
+                        double *depths)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    for (size_t i = 0; i < step->place_count; i++) {
+        const Touch *place = &step->places[i];
+        const EncounterPose pose = encounter_pose(&step->encounter, i, node, since_s, sums);
+        depths[i] = pose.pose.penetration;
+        if (place->shape != TOUCH_LINE) {
+            joints[place->joint] = (JointState){
+                .eccentricity = pose.pose.eccentricity,
+                .gap = pose.pose.gap,
+                .force_on_b = pose.force,
+                .force = vec2_length(pose.force),
+                .is_touching = pose.is_touching,
+            };
+            continue;
+        }
+        if (place->place == 0) {
+            joints[place->joint] = place_on_line(linkage, motions, place->joint);
+        }
+        add_line(linkage, place, &pose, motions, &joints[place->joint]);
+    }
+}
+
 // The states of all joints at a time within the step.
 static void find_joints(const ImpulseStep *step, size_t node, double since_s,
-                        const EncounterSums *sums, const Motion *motions, JointState *joints)
+                        const EncounterSums *sums, const Motion *motions, JointState *joints,
+                        double *depths)
 {
     const Encounter *encounter = &step->encounter;
     const Linkage *linkage = &step->scenario->linkage;
     memcpy(joints, step->mean, linkage->joint_count * sizeof *joints);
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        const EncounterPose pose = encounter_pose(encounter, i, node, since_s, sums);
-        joints[encounter->joints[i].joint] = (JointState){
-            .eccentricity = pose.pose.eccentricity,
-            .gap = pose.pose.gap,
-            .force_on_b = pose.force,
-            .force = vec2_length(pose.force),
-            .is_touching = pose.is_touching,
-        };
-    }
+    find_places(step, node, since_s, sums, motions, joints, depths);
     // the ideal joints' mean forces, and how they answer what the contacts do beyond theirs
     double beyond[RESPONSE_ROW_MAX] = {0.0};
     double reactions[RESPONSE_ROW_MAX];
@@ -82,12 +133,15 @@ static void find_joints(const ImpulseStep *step, size_t node, double since_s,
     }
     response_react(&step->response, beyond, reactions);
     for (size_t row = 0; row < step->response.ideal_rows; row += 2) {
-        JointState *state = &joints[step->response.joint_of[row]];
-        state->force_on_b = vec2_add(state->force_on_b, (Vec2){reactions[row], reactions[row + 1]});
-        state->force = vec2_length(state->force_on_b);
+        impulse_step_add_ideal(step, row, reactions + row, motions,
+                               &joints[step->response.joint_of[row]]);
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        joints[i].is_touching = joints[i].is_touching || linkage->joints[i].kind == JOINT_REVOLUTE;
+        const JointKind kind = linkage->joints[i].kind;
+        joints[i].is_touching = joints[i].is_touching || linkage_kind_is_ideal(kind);
+        if (kind == JOINT_PRISMATIC) {
+            stepping_observe_line(linkage, (int)i, motions, &joints[i]);
+        }
     }
     if (step->driven >= 0) {
         const Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
@@ -97,10 +151,11 @@ static void find_joints(const ImpulseStep *step, size_t node, double since_s,
 }
 
 void impulse_step_inside(const ImpulseStep *step, size_t node, double since_s, bool is_peak,
-                         const EncounterSums *sums, Motion *motions, JointState *joints)
+                         const EncounterSums *sums, Motion *motions, JointState *joints,
+                         double depths[ENCOUNTER_JOINT_MAX])
 {
     find_motions(step, since_s, sums, motions);
     const bool is_placed = is_peak && response_place(step->there, motions);
     find_accelerations(step, is_placed ? step->there : &step->response, since_s, sums, motions);
-    find_joints(step, node, since_s, sums, motions, joints);
+    find_joints(step, node, since_s, sums, motions, joints, depths);
 }

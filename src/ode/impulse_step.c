@@ -15,7 +15,7 @@
 // with a_f, the acceleration beside the contacts', such that v(h) = v'. See docs/stepping.md.
 #include "ode/impulse_step.h"
 
-#include "contact/law.h"
+#include "model/joint_rows.h"
 #include "ode/stepping.h"
 
 #include <assert.h>
@@ -41,28 +41,40 @@ void impulse_step_finish(ImpulseStep *step)
     world_finish(&step->world);
 }
 
+// What an encounter is given of a place.
+static EncounterJoint joint_of(const ImpulseStep *step, const Touch *place)
+{
+    // a disc outside is a hole of negative size
+    const double sign = place->shape == TOUCH_DISC ? -1.0 : 1.0;
+    const bool is_line = place->shape == TOUCH_LINE;
+    const bool has_corners = step->scenario->linkage.joints[place->joint].kind == JOINT_GUIDE;
+    return (EncounterJoint){
+        .law = place->law,
+        .shape = place->shape,
+        .radial_clearance = is_line ? 0.0 : sign * place->clearance,
+        .hole_radius = is_line ? 0.0 : sign * place->radius_a,
+        .joint = place->joint,
+        .siblings = {has_corners ? -place->place : 0,
+                     has_corners ? TOUCH_CORNERS - 1 - place->place : 0},
+    };
+}
+
 static bool init_encounter(ImpulseStep *step, Err *err)
 {
     const Scenario *scenario = step->scenario;
     const ContactOptions *contact = &scenario->contact;
     step->encounter =
         encounter_start(contact->friction, contact->friction_speed, scenario->ode.contact_phase);
-    const size_t rows = contact->friction > 0.0 ? RESPONSE_ROWS_A_JOINT : ENCOUNTER_ROWS_PLAIN;
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        const Joint *joint = &scenario->linkage.joints[i];
-        if (joint->kind != JOINT_CLEARANCE) {
-            continue;
-        }
-        EncounterJoint added = {
-            .joint = (int)i,
-            .radial_clearance = linkage_radial_clearance(joint),
-            .hole_radius = joint->clearance.hole_radius,
-        };
-        if (!law_of_joint(scenario, joint, &added.law, err)) {
-            return false;
-        }
+    if (!touch_list(scenario, step->places, &step->place_count, err) ||
+        !touch_response(&scenario->linkage, step->places, step->place_count,
+                        contact->friction > 0.0, &step->response, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < step->place_count; i++) {
+        const EncounterJoint added = joint_of(step, &step->places[i]);
         // there is room: the response has as many rows
-        const bool is_added = encounter_add(&step->encounter, &added, rows);
+        const bool is_added =
+            encounter_add(&step->encounter, &added, response_place_rows(&step->response.places[i]));
         assert(is_added);
         (void)is_added;
     }
@@ -77,9 +89,7 @@ bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
     step->there = calloc(1, sizeof *step->there);
     assert(step->there != NULL);
     linkage_start(&scenario->linkage, step->after);
-    if (!response_init(&scenario->linkage, scenario->contact.friction > 0.0, &step->response,
-                       err) ||
-        !init_encounter(step, err) || !world_build(scenario, step->after, &step->world, err)) {
+    if (!init_encounter(step, err) || !world_build(scenario, step->after, &step->world, err)) {
         return false;
     }
     *step->there = step->response;
@@ -91,40 +101,58 @@ static void fill_rows(ImpulseStep *step)
 {
     Encounter *encounter = &step->encounter;
     const Linkage *linkage = &step->scenario->linkage;
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        const size_t row = encounter->joints[i].first_row;
-        const Joint *joint = &linkage->joints[encounter->joints[i].joint];
-        const JointGap gap = linkage_joint_gap(linkage, step->before, encounter->joints[i].joint);
-        encounter->position[row] = gap.position.x;
-        encounter->position[row + 1] = gap.position.y;
-        encounter->speed[row] = gap.velocity.x;
-        encounter->speed[row + 1] = gap.velocity.y;
+    for (size_t i = 0; i < step->place_count; i++) {
+        const Touch *place = &step->places[i];
+        const Joint *joint = &linkage->joints[place->joint];
+        double *position = encounter->position + encounter->joints[i].first_row;
+        double *speed = encounter->speed + encounter->joints[i].first_row;
+        if (place->shape == TOUCH_LINE) {
+            const TouchPose pose = touch_pose(linkage, place, step->before);
+            position[0] = pose.gap;
+            position[1] = 0.0;
+            speed[0] = -pose.approach_speed;
+            speed[1] = touch_sliding(linkage, place, &pose, step->before);
+            continue;
+        }
+        const JointGap gap = linkage_joint_gap(linkage, step->before, place->joint);
+        position[0] = gap.position.x;
+        position[1] = gap.position.y;
+        speed[0] = gap.velocity.x;
+        speed[1] = gap.velocity.y;
         if (encounter->joints[i].row_count == RESPONSE_ROWS_A_JOINT) {
             const int bodies[2] = {joint->body_a, joint->body_b};
             for (size_t k = 0; k < 2; k++) {
-                encounter->speed[row + 2 + k] =
-                    bodies[k] == LINKAGE_GROUND ? 0.0 : step->before[bodies[k]].omega;
+                speed[2 + k] = bodies[k] == LINKAGE_GROUND ? 0.0 : step->before[bodies[k]].omega;
             }
         }
     }
 }
 
-// Whether a pin touches or will have come near its wall at the end of a step of that length.
+// The gap of a place at a position in its first two rows.
+static double gap_at(const EncounterJoint *joint, Vec2 position)
+{
+    return joint->shape == TOUCH_LINE   ? position.x
+           : joint->shape == TOUCH_HOLE ? joint->radial_clearance - vec2_length(position)
+                                        : joint->radial_clearance + vec2_length(position);
+}
+
+// Whether a place touches or will have come near its wall at the end of a step of that length.
 static bool is_near_wall(const ImpulseStep *step, double width_s)
 {
     const Encounter *encounter = &step->encounter;
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        const size_t row = encounter->joints[i].first_row;
-        const double clearance = encounter->joints[i].radial_clearance;
+    for (size_t i = 0; i < step->place_count; i++) {
+        const EncounterJoint *joint = &encounter->joints[i];
+        const size_t row = joint->first_row;
         // the free acceleration of the step before will do
         const Vec2 now = {encounter->position[row], encounter->position[row + 1]};
         const Vec2 moved = {
             width_s * (encounter->speed[row] + 0.5 * width_s * encounter->free[row]),
             width_s * (encounter->speed[row + 1] + 0.5 * width_s * encounter->free[row + 1]),
         };
-        const double limit = (1.0 - NEAR) * clearance;
-        if (encounter->joints[i].is_touching || vec2_length(now) > limit ||
-            vec2_length(vec2_add(now, moved)) > limit) {
+        const double near =
+            NEAR * linkage_radial_clearance(&step->scenario->linkage.joints[joint->joint]);
+        if (joint->is_touching || gap_at(joint, now) < near ||
+            gap_at(joint, vec2_add(now, moved)) < near) {
             return true;
         }
     }
@@ -272,53 +300,32 @@ static void prepare_inside(ImpulseStep *step, double width_before_s)
     }
 }
 
+void impulse_step_add_ideal(const ImpulseStep *step, size_t row, const double *values,
+                            const Motion *motions, JointState *state)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    const int joint = step->response.joint_of[row];
+    if (linkage->joints[joint].kind == JOINT_PRISMATIC) {
+        const Vec2 across = vec2_perp(joint_rows_along(linkage, motions, joint));
+        state->force_on_b = vec2_add(state->force_on_b, vec2_scale(values[0], across));
+        state->moment_on_b += values[1];
+    } else {
+        state->force_on_b = vec2_add(state->force_on_b, (Vec2){values[0], values[1]});
+    }
+    state->force = vec2_length(state->force_on_b);
+}
+
 // The mean forces of the ideal joints: those of the step of the world, whose rows stand at
 // mid-step, and those that put the speeds back onto the joints.
-static void find_means(ImpulseStep *step)
+static void find_means(ImpulseStep *step, const Motion *middle)
 {
     const Response *response = &step->response;
     world_joint_forces(&step->world, step->mean);
     for (size_t row = 0; row < response->ideal_rows; row += 2) {
-        JointState *mean = &step->mean[response->joint_of[row]];
-        const Vec2 closing = {step->closing[row], step->closing[row + 1]};
-        mean->force_on_b = vec2_add(mean->force_on_b, vec2_scale(1.0 / step->width_s, closing));
-        mean->force = vec2_length(mean->force_on_b);
+        const double rate = 1.0 / step->width_s;
+        const double closing[2] = {rate * step->closing[row], rate * step->closing[row + 1]};
+        impulse_step_add_ideal(step, row, closing, middle, &step->mean[response->joint_of[row]]);
     }
-}
-
-// The work of the drive in the step: mean forces at mid-step, and what the contacts' force does
-// beyond its mean, as the driven body's speed turns.
-static void find_drive_work(ImpulseStep *step, const Motion *driven)
-{
-    const Encounter *encounter = &step->encounter;
-    const Linkage *linkage = &step->scenario->linkage;
-    const double width_s = step->width_s;
-    const Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
-    double work = 0.0;
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        const size_t row = encounter->joints[i].first_row;
-        const double *sum = step->total.impulse + row;
-        const double *moment = step->total.moment + row;
-        JointState *mean = &step->mean[encounter->joints[i].joint];
-        mean->force_on_b = (Vec2){sum[0] / width_s, sum[1] / width_s};
-        const Joint *joint = &linkage->joints[encounter->joints[i].joint];
-        const bool is_on_a = joint->body_a == step->driven;
-        if (step->driven < 0 || (!is_on_a && joint->body_b != step->driven)) {
-            continue;
-        }
-        const Vec2 early = {0.5 * width_s * sum[0] - moment[0], 0.5 * width_s * sum[1] - moment[1]};
-        const Vec2 arm = vec2_rotate(driven->angle, is_on_a ? joint->anchor_a : joint->anchor_b);
-        const Vec2 turning =
-            vec2_sub(driven->acceleration, vec2_scale(driven->omega * driven->omega, arm));
-        work -= (is_on_a ? -1.0 : 1.0) * vec2_dot(early, turning);
-        const bool has_turns = encounter->joints[i].row_count == RESPONSE_ROWS_A_JOINT;
-        work -= has_turns ? sum[is_on_a ? 2 : 3] * driven->omega : 0.0;
-    }
-    const AppliedWork applied = applied_book(&step->world.applied, width_s);
-    const BodyLoad load = applied_on(&step->world.applied, step->driven);
-    const double power = stepping_drive(step->scenario, driven, &load, offsets, step->mean);
-    step->damped = applied.damping;
-    step->drive_work = work + width_s * power + applied.torque;
 }
 
 // Where the step ends: on the ticks, but not beyond the run, so that no contact is recorded there.
@@ -359,8 +366,8 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
     }
     find_end(step, middle);
     prepare_inside(step, width_before_s);
-    find_means(step);
-    find_drive_work(step, &middle[step->driven >= 0 ? step->driven : 0]);
+    find_means(step, middle);
+    impulse_step_find_work(step, middle);
     step->count++;
     return true;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact/encounter.h"
+#include "contact/touch.h"
 #include "model/trajectory.h"
 #include "ode/world.h"
 
@@ -10,9 +11,11 @@ enum { IMPULSE_CHANGE_MAX = 3 * LINKAGE_BODY_MAX };
 typedef struct ImpulseStep {
     const Scenario *scenario;
     World world;
-    Response response; // at mid-step
-    Response *there;   // at whatever time is looked at; owned
-    Encounter encounter;
+    Response response;   // at mid-step
+    Response *there;     // at whatever time is looked at; owned
+    Encounter encounter; // a joint of it is a place
+    size_t place_count;
+    Touch places[TOUCH_MAX];
     int driven;    // body, or LINKAGE_GROUND
     double tick_s; // the finest step
     size_t tick;   // at the end of the last step
@@ -43,6 +46,15 @@ static inline bool impulse_step_is_free(const ImpulseStep *step, size_t body)
 bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err);
 void impulse_step_finish(ImpulseStep *step);
 
+// Adds what an ideal joint does to its body b: the values of its two rows, forces in N, the first
+// of which is given; a linkage's bodies are where the motions say.
+void impulse_step_add_ideal(const ImpulseStep *step, size_t row, const double *values,
+                            const Motion *motions, JointState *state);
+
+// Finds the mean forces of the joints with play and the works of the drive and of dampers in the
+// step that has just been taken, from the bodies at mid-step.
+void impulse_step_find_work(ImpulseStep *step, const Motion *middle);
+
 // Takes the next step.
 bool impulse_step_take(ImpulseStep *step, Err *err);
 
@@ -52,6 +64,8 @@ void impulse_step_push(ImpulseStep *step, const Motion *middle);
 void impulse_step_push_late(ImpulseStep *step, const Motion *middle);
 
 // How the bodies move and what the joints do at a time since the step's start, from the contacts'
-// sums up to then. Accelerations at a peak are worked out where the bodies are, else at mid-step.
+// sums up to then, and how deep each place is, m. Accelerations at a peak are worked out where the
+// bodies are, else at mid-step.
 void impulse_step_inside(const ImpulseStep *step, size_t node, double since_s, bool is_peak,
-                         const EncounterSums *sums, Motion *motions, JointState *joints);
+                         const EncounterSums *sums, Motion *motions, JointState *joints,
+                         double depths[ENCOUNTER_JOINT_MAX]);

@@ -1,9 +1,9 @@
 // How does a linkage in space move in ODE if its contacts are integrated within the step? (The
 // steps themselves: ode/space_impulse_step.c.)
 //
-// A step is handed on in parts, as in ode/impulse.c.
+// A step is handed on in parts (ode/impulse_part.c).
 #include "contact/law.h"
-#include "ode/marks.h"
+#include "ode/impulse_part.h"
 #include "ode/space_impulse_means.h"
 #include "ode/space_stepping.h"
 #include "ode/stepping.h"
@@ -14,26 +14,17 @@
 
 typedef struct SpaceImpulse {
     SpaceImpulseStep step;
-    Marks marks; // of it
-    size_t most_rows;
-
-    // the part of the step that is handed on
-    double part_start_s;
-    double part_end_s;
-    EncounterSums sums; // at its end
-    double omega[LINKAGE_BODY_MAX];
-    double alpha[LINKAGE_BODY_MAX];
+    ImpulsePart part; // of it, the one that is handed on
     SpaceJoints joints;
-    double impulse[LINKAGE_JOINT_MAX];
-    double approach[LINKAGE_JOINT_MAX];
-    StepRecord record;
+    double depths[PIN_SPACE_MAX]; // m, by place
+    bool are_ends[PIN_SPACE_MAX]; // whether a place is one, and no collar
 } SpaceImpulse;
 
 static void space_impulse_close(void *state)
 {
     SpaceImpulse *impulse = state;
     if (impulse != NULL) {
-        marks_finish(&impulse->marks);
+        impulse_part_finish(&impulse->part);
         space_impulse_step_finish(&impulse->step);
         free(impulse);
     }
@@ -65,109 +56,58 @@ static bool check_depths(const SpaceImpulse *impulse, Err *err)
     for (size_t i = 0; i < impulse->step.place_count; i++) {
         const PinSpace *place = &impulse->step.places[i];
         if (!law_check_depth(&place->law, &impulse->step.scenario->linkage.joints[place->joint],
-                             depth_at(impulse, i), 1.0, err)) {
+                             impulse->depths[i], 1.0, err)) {
             return false;
         }
     }
     return true;
 }
 
-// The impulses of the contacts in the part, by joint, and the speeds at which they began: of the
-// end that touches since the shortest time.
-static void sum_contacts(SpaceImpulse *impulse, uint32_t touching, const EncounterSums *before)
-{
-    const SpaceImpulseStep *step = &impulse->step;
-    double since_s = 0.0;
-    size_t rows = 0;
-    for (size_t i = 0; i < step->place_count; i++) {
-        const PinSpace *place = &step->places[i];
-        const EncounterJoint *joint = &step->encounter.joints[i];
-        const bool is_touching = (touching >> i & 1) != 0;
-        if (is_touching) {
-            impulse->record.elastic += force_law_energy(&place->law, depth_at(impulse, i));
-            rows++;
-        }
-        if (place->place == PIN_SPACE_COLLAR) {
-            continue;
-        }
-        const size_t row = joint->first_row;
-        const double pushed = hypot(impulse->sums.impulse[row] - before->impulse[row],
-                                    impulse->sums.impulse[row + 1] - before->impulse[row + 1]);
-        double *const all = &impulse->impulse[place->joint];
-        *all = place->place == 0 ? pushed : *all + pushed;
-        const double touching_s = is_touching ? joint->touching_s : INFINITY;
-        if (place->place == 0 || touching_s < since_s) {
-            impulse->approach[place->joint] = joint->impact_speed;
-            since_s = touching_s;
-        }
-    }
-    impulse->most_rows = rows > impulse->most_rows ? rows : impulse->most_rows;
-}
-
 // Hands on the part of the step up to its next mark.
-static void take_part(SpaceImpulse *impulse, const Mark *mark, const EncounterSums *before)
+static void take_part(SpaceImpulse *impulse)
 {
     const SpaceImpulseStep *step = &impulse->step;
     const Linkage *linkage = &step->scenario->linkage;
+    ImpulsePart *part = &impulse->part;
     SpaceMotion motions[LINKAGE_BODY_MAX];
-    const bool is_peak = impulse->marks.next < impulse->marks.count;
-    space_impulse_step_inside(step, mark->node, mark->time_s, is_peak, &impulse->sums, motions,
+    const Mark *mark = impulse_part_next(part, &step->encounter, step->start_s, step->end_s);
+    space_impulse_step_inside(step, mark->node, mark->time_s, !part->is_last, &part->sums, motions,
                               &impulse->joints);
-    impulse->record = (StepRecord){
-        .start_s = impulse->part_start_s,
-        .end_s = impulse->part_end_s,
-        .joint_s = impulse->part_end_s,
-        .omega = impulse->omega,
-        .alpha = impulse->alpha,
-        .joints = impulse->joints.plane,
-        .space_joints = impulse->joints.space,
-        .impulse = impulse->impulse,
-        .approach = impulse->approach,
-        .dissipated = impulse->sums.dissipated - before->dissipated,
-        .friction = impulse->sums.friction - before->friction,
-    };
+    impulse_part_record(part, linkage, impulse->joints.plane);
+    part->record.space_joints = impulse->joints.space;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        impulse->omega[i] = motions[i].omega.z;
-        impulse->alpha[i] = motions[i].alpha.z;
+        part->omega[i] = motions[i].omega.z;
+        part->alpha[i] = motions[i].alpha.z;
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        impulse->impulse[i] =
-            impulse->joints.plane[i].force * (impulse->part_end_s - impulse->part_start_s);
+    for (size_t i = 0; i < step->place_count; i++) {
+        impulse->depths[i] = depth_at(impulse, i);
+        impulse->are_ends[i] = step->places[i].place != PIN_SPACE_COLLAR;
     }
-    sum_contacts(impulse, step->encounter.touching[mark->node], before);
+    impulse_part_add_contacts(part, &step->encounter, mark, impulse->depths, impulse->are_ends);
+    part->record.drive_work = part->is_last ? step->drive_work : 0.0;
 }
 
 static bool space_impulse_step(void *state, double stop_s, Err *err)
 {
     (void)stop_s; // samples are looked up inside the step
     SpaceImpulse *impulse = state;
-    Marks *marks = &impulse->marks;
-    EncounterSums before = impulse->sums;
-    if (marks->next == marks->count) {
-        if (!space_impulse_step_take(&impulse->step, err)) {
+    SpaceImpulseStep *step = &impulse->step;
+    if (impulse_part_needs_step(&impulse->part)) {
+        if (!space_impulse_step_take(step, err)) {
             return false;
         }
-        space_impulse_means_find(&impulse->step);
-        marks_find(marks, &impulse->step.encounter);
-        memset(&before, 0, sizeof before);
-        impulse->part_end_s = impulse->step.start_s;
+        space_impulse_means_find(step);
+        impulse_part_begin(&impulse->part, &step->encounter, step->start_s);
     }
-    const Mark *mark = &marks->marks[marks->next++];
-    const bool is_last = marks->next == marks->count;
-    impulse->part_start_s = impulse->part_end_s;
-    impulse->part_end_s = is_last ? impulse->step.end_s : impulse->step.start_s + mark->time_s;
-    encounter_at(&impulse->step.encounter, mark->node, mark->time_s, &impulse->sums);
-    take_part(impulse, mark, &before);
-    impulse->record.drive_work = is_last ? impulse->step.drive_work : 0.0;
+    take_part(impulse);
     return check_depths(impulse, err) ||
-           stepping_fail(impulse->step.scenario, impulse->part_end_s, impulse->step.count,
-                         impulse->step.width_s, err);
+           stepping_fail(step->scenario, impulse->part.end_s, step->count, step->width_s, err);
 }
 
 static StepRecord space_impulse_record(const void *state)
 {
     const SpaceImpulse *impulse = state;
-    return impulse->record;
+    return impulse->part.record;
 }
 
 static void space_impulse_observe(const void *state, double time_s, Sample *sample)
@@ -196,7 +136,7 @@ static SolverModel space_impulse_model(const void *state)
     SolverModel model = {
         .step_s = impulse->step.scenario->run.step,
         .constraint_rows = impulse->step.world.constraint_rows,
-        .contact_rows = impulse->most_rows,
+        .contact_rows = impulse->part.most_rows,
         .steps = impulse->step.count,
         .evaluations = impulse->step.encounter.evaluations,
     };

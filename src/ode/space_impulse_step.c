@@ -50,7 +50,7 @@ static bool init_encounter(SpaceImpulseStep *step, Err *err)
             .radial_clearance = place->clearance,
             .hole_radius = joint->clearance.hole_radius,
             .joint = place->joint,
-            .other_end = place->place == PIN_SPACE_COLLAR ? 0 : 1 - 2 * place->place,
+            .siblings = {place->place == 1 ? -1 : 0, place->place == 0 ? 1 : 0},
         };
         if (!encounter_add(&step->encounter, &added, rows)) {
             return err_set(err, ERR_SOLVER,

@@ -114,9 +114,8 @@ void stepping_label(const Scenario *scenario, const char *stepping, const char *
              has_collider ? OPTIONS_ODE_COLLIDERS[scenario->ode.collider] : "");
 }
 
-// Where a block is in its guides, or the slider of a prismatic joint on its line.
-static void observe_sliding(const Linkage *linkage, int joint, const Motion *motions,
-                            JointState *state)
+void stepping_observe_line(const Linkage *linkage, int joint, const Motion *motions,
+                           JointState *state)
 {
     JointRows rows;
     joint_rows_find(linkage, motions, joint, &rows);
@@ -147,7 +146,7 @@ void stepping_observe_joint(const Linkage *linkage, size_t joint, Sample *sample
     JointState *state = &sample->joints[joint];
     state->eccentricity = vec2_sub(pin, hole);
     if (data->kind == JOINT_PRISMATIC || data->kind == JOINT_GUIDE) {
-        observe_sliding(linkage, (int)joint, sample->bodies, state);
+        stepping_observe_line(linkage, (int)joint, sample->bodies, state);
     }
     if (data->kind == JOINT_GUIDE || data->kind == JOINT_STOP) {
         state->gap = smallest_gap(linkage, (int)joint, sample->bodies);

@@ -38,5 +38,10 @@ bool stepping_fail(const Scenario *scenario, double time_s, size_t step, double 
 void stepping_label(const Scenario *scenario, const char *stepping, const char *map,
                     char label[TRAJECTORY_LABEL_SIZE]);
 
+// Where a block is in its guides, or the slider of a prismatic joint on its line: eccentricity and
+// tilt.
+void stepping_observe_line(const Linkage *linkage, int joint, const Motion *motions,
+                           JointState *state);
+
 // Where a joint stands in a sample whose bodies are filled in; its forces stay.
 void stepping_observe_joint(const Linkage *linkage, size_t joint, Sample *sample);

@@ -1,0 +1,84 @@
+// What does a part of a step say of the contacts that were integrated inside it?
+#include "ode/impulse_part.h"
+
+#include <math.h>
+#include <string.h>
+
+bool impulse_part_needs_step(const ImpulsePart *part)
+{
+    return part->marks.next == part->marks.count;
+}
+
+void impulse_part_begin(ImpulsePart *part, const Encounter *encounter, double start_s)
+{
+    marks_find(&part->marks, encounter);
+    memset(&part->sums, 0, sizeof part->sums);
+    part->end_s = start_s;
+}
+
+const Mark *impulse_part_next(ImpulsePart *part, const Encounter *encounter, double step_start_s,
+                              double step_end_s)
+{
+    const Mark *mark = &part->marks.marks[part->marks.next++];
+    part->is_last = part->marks.next == part->marks.count;
+    part->start_s = part->end_s;
+    part->end_s = part->is_last ? step_end_s : step_start_s + mark->time_s;
+    part->before = part->sums;
+    encounter_at(encounter, mark->node, mark->time_s, &part->sums);
+    return mark;
+}
+
+void impulse_part_record(ImpulsePart *part, const Linkage *linkage, const JointState *joints)
+{
+    part->record = (StepRecord){
+        .start_s = part->start_s,
+        .end_s = part->end_s,
+        .joint_s = part->end_s,
+        .omega = part->omega,
+        .alpha = part->alpha,
+        .joints = joints,
+        .impulse = part->impulse,
+        .approach = part->approach,
+        .dissipated = part->sums.dissipated - part->before.dissipated,
+        .friction = part->sums.friction - part->before.friction,
+    };
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        part->impulse[i] = joints[i].force * (part->end_s - part->start_s);
+    }
+}
+
+void impulse_part_add_contacts(ImpulsePart *part, const Encounter *encounter, const Mark *mark,
+                               const double *depths, const bool *counts)
+{
+    double since_s[LINKAGE_JOINT_MAX];
+    bool is_known[LINKAGE_JOINT_MAX] = {false};
+    size_t touching = 0;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        const EncounterJoint *place = &encounter->joints[i];
+        const bool is_touching = (encounter->touching[mark->node] >> i & 1) != 0;
+        const size_t row = place->first_row;
+        const int joint = place->joint;
+        if (is_touching) {
+            part->record.elastic += force_law_energy(&place->law, depths[i]);
+            touching++;
+        }
+        if (counts != NULL && !counts[i]) {
+            continue;
+        }
+        const double pushed = hypot(part->sums.impulse[row] - part->before.impulse[row],
+                                    part->sums.impulse[row + 1] - part->before.impulse[row + 1]);
+        part->impulse[joint] = is_known[joint] ? part->impulse[joint] + pushed : pushed;
+        const double touching_s = is_touching ? place->touching_s : INFINITY;
+        if (!is_known[joint] || touching_s < since_s[joint]) {
+            part->approach[joint] = place->impact_speed;
+            since_s[joint] = touching_s;
+        }
+        is_known[joint] = true;
+    }
+    part->most_rows = touching > part->most_rows ? touching : part->most_rows;
+}
+
+void impulse_part_finish(ImpulsePart *part)
+{
+    marks_finish(&part->marks);
+}

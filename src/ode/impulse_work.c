@@ -1,0 +1,152 @@
+// What work does the drive do in a step in which contacts are integrated?
+//
+// The mean forces of the step do theirs at the speeds of mid-step. With P a place's impulse and Q
+// its integral, its force does beyond that (h/2 P - Q) times the rate at which the speed of the
+// driven body changes along the row. Of a pin that is the acceleration of its point; of a line with
+// directions e, which turn with body a, and touching point X,
+//     (e . v(X))' = e' . v(X) + e . (acc(X) + w perp (X' - v(X)))
+#include "ode/impulse_step.h"
+
+#include "ode/stepping.h"
+
+// Adds the mean force of a place to that of its joint, with its moment about the anchor of body b
+// where it does not act there.
+static void add_mean(const ImpulseStep *step, size_t number, const Motion *middle, JointState *mean)
+{
+    const Touch *place = &step->places[number];
+    const double *sum = step->total.impulse + step->encounter.joints[number].first_row;
+    const Vec2 force = {sum[0] / step->width_s, sum[1] / step->width_s};
+    if (place->shape != TOUCH_LINE) {
+        mean->force_on_b = force;
+        return;
+    }
+    const Linkage *linkage = &step->scenario->linkage;
+    const Joint *joint = &linkage->joints[place->joint];
+    const TouchPose pose = touch_pose(linkage, place, middle);
+    const Vec2 push =
+        vec2_add(vec2_scale(force.x, pose.normal), vec2_scale(force.y, vec2_perp(pose.normal)));
+    const Vec2 arm = vec2_sub(vec2_sub(linkage_point(middle, joint->body_b, place->anchor_b),
+                                       linkage_point(middle, joint->body_b, joint->anchor_b)),
+                              vec2_scale(place->radius_b, pose.normal));
+    mean->force_on_b = vec2_add(mean->force_on_b, push);
+    mean->moment_on_b += vec2_cross(arm, push);
+}
+
+// The mean forces of the joints with play, and where those on the driven body act, seen from its
+// anchors: at the anchor of body b, of all joints with lines.
+static void find_means(ImpulseStep *step, const Motion *middle, Vec2 *offsets)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    for (size_t i = 0; i < step->place_count; i++) {
+        step->mean[step->places[i].joint] = (JointState){.force = 0.0};
+    }
+    for (size_t i = 0; i < step->place_count; i++) {
+        add_mean(step, i, middle, &step->mean[step->places[i].joint]);
+    }
+    stepping_offsets(linkage, middle, step->driven, offsets);
+    for (size_t i = 0; i < step->place_count; i++) {
+        const int joint = step->places[i].joint;
+        if (step->places[i].shape == TOUCH_LINE && linkage->joints[joint].body_a == step->driven) {
+            offsets[joint] = linkage_joint_gap(linkage, middle, joint).position;
+        }
+    }
+}
+
+// What the force of a pin or disc does on the driven body beyond its mean, J.
+static double work_at_point(const ImpulseStep *step, size_t number, const Motion *driven,
+                            bool is_on_a)
+{
+    const EncounterJoint *at = &step->encounter.joints[number];
+    const Touch *place = &step->places[number];
+    const double *sum = step->total.impulse + at->first_row;
+    const double *moment = step->total.moment + at->first_row;
+    const double half_s = 0.5 * step->width_s;
+    const Vec2 early = {half_s * sum[0] - moment[0], half_s * sum[1] - moment[1]};
+    const Vec2 arm = vec2_rotate(driven->angle, is_on_a ? place->anchor_a : place->anchor_b);
+    const Vec2 turning =
+        vec2_sub(driven->acceleration, vec2_scale(driven->omega * driven->omega, arm));
+    return (is_on_a ? -1.0 : 1.0) * vec2_dot(early, turning);
+}
+
+// What friction's moment about the anchor does on it, J.
+static double work_of_turn(const ImpulseStep *step, size_t number, const Motion *driven,
+                           bool is_on_a)
+{
+    const EncounterJoint *at = &step->encounter.joints[number];
+    const double *sum = step->total.impulse + at->first_row;
+    return at->row_count == RESPONSE_ROWS_A_JOINT ? sum[is_on_a ? 2 : 3] * driven->omega : 0.0;
+}
+
+// Likewise of a line.
+static double work_at_line(const ImpulseStep *step, size_t number, const Motion *motions,
+                           bool is_on_a)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    const Touch *place = &step->places[number];
+    const Joint *joint = &linkage->joints[place->joint];
+    const size_t row = step->encounter.joints[number].first_row;
+    const Motion *driven = &motions[step->driven];
+    const double omega_a = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].omega;
+    const TouchPose pose = touch_pose(linkage, place, motions);
+    const Vec2 directions[2] = {pose.normal, vec2_perp(pose.normal)};
+    const Vec2 point = vec2_sub(linkage_point(motions, joint->body_b, place->anchor_b),
+                                vec2_scale(place->radius_b, pose.normal));
+    const Vec2 moving = vec2_sub(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
+                                 vec2_scale(place->radius_b * omega_a, directions[1]));
+    const Vec2 arm = vec2_sub(point, driven->position);
+    const Vec2 speed = vec2_add(driven->velocity, vec2_scale(driven->omega, vec2_perp(arm)));
+    const Vec2 pushed =
+        vec2_add(vec2_sub(driven->acceleration, vec2_scale(driven->omega * driven->omega, arm)),
+                 vec2_add(vec2_scale(driven->alpha, vec2_perp(arm)),
+                          vec2_scale(driven->omega, vec2_perp(vec2_sub(moving, speed)))));
+    double work = 0.0;
+    for (size_t i = 0; i < 2; i++) {
+        const double early =
+            0.5 * step->width_s * step->total.impulse[row + i] - step->total.moment[row + i];
+        work += early * (omega_a * vec2_dot(vec2_perp(directions[i]), speed) +
+                         vec2_dot(directions[i], pushed));
+    }
+    return is_on_a ? -work : work;
+}
+
+// The bodies at mid-step with the means of their speeds.
+static void find_mean_motions(const ImpulseStep *step, const Motion *middle, Motion *motions)
+{
+    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
+        motions[i] = middle[i];
+        if (impulse_step_is_free(step, i)) {
+            motions[i].velocity =
+                vec2_scale(0.5, vec2_add(step->before[i].velocity, step->after[i].velocity));
+            motions[i].omega = 0.5 * (step->before[i].omega + step->after[i].omega);
+        }
+    }
+}
+
+void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    const Motion *driven = &middle[step->driven >= 0 ? step->driven : 0];
+    Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
+    Motion motions[LINKAGE_BODY_MAX];
+    double work = 0.0;
+    find_means(step, middle, offsets);
+    find_mean_motions(step, middle, motions);
+    for (size_t i = 0; step->driven >= 0 && i < step->place_count; i++) {
+        const Joint *joint = &linkage->joints[step->places[i].joint];
+        const bool is_on_a = joint->body_a == step->driven;
+        if (!is_on_a && joint->body_b != step->driven) {
+            continue;
+        }
+        if (step->places[i].shape == TOUCH_LINE) {
+            work -= work_at_line(step, i, motions, is_on_a);
+        } else {
+            work -= work_at_point(step, i, driven, is_on_a);
+            work -= work_of_turn(step, i, driven, is_on_a);
+        }
+    }
+    const AppliedWork applied = applied_book(&step->world.applied, step->width_s);
+    const BodyLoad load = applied_on(&step->world.applied, step->driven);
+    const double power = stepping_drive(step->scenario, driven, &load, offsets, step->mean);
+    step->damped = applied.damping;
+    step->drive_work = work + step->width_s * power + applied.torque;
+}
