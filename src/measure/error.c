@@ -34,15 +34,15 @@ static void add_body(const Trajectory *trajectory, const Trajectory *reference, 
                      const DistanceScale *scales, double horizon_s, TrajectoryError *error,
                      Sums *sums)
 {
-    const bool is_velocity = distance_is_by_velocity(reference);
+    const DistanceMeasure measure = distance_measure(reference, body);
     for (size_t k = 0; k < reference->sample_count; k++) {
         const Motion *truth = trajectory_motion(reference, k, body);
         const Motion *motion = trajectory_motion(trajectory, k, body);
-        const double omega = distance_between(distance_rate(trajectory, k, body, is_velocity),
-                                              distance_rate(reference, k, body, is_velocity)) /
+        const double omega = distance_between(distance_rate(trajectory, k, body, measure),
+                                              distance_rate(reference, k, body, measure)) /
                              scales->omega;
-        const double alpha = distance_between(distance_change(trajectory, k, body, is_velocity),
-                                              distance_change(reference, k, body, is_velocity)) /
+        const double alpha = distance_between(distance_change(trajectory, k, body, measure),
+                                              distance_change(reference, k, body, measure)) /
                              scales->alpha;
         if (omega > error->omega_max) {
             error->omega_max = omega;

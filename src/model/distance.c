@@ -5,7 +5,9 @@
 // with which its furthest joint would move at a thousandth of the speed of the fastest point of the
 // linkage: its own would be rounding. Sizes are those of the body itself, so that a pivot far away
 // changes nothing. Where no drive turns anything, bodies may not turn at all: the speeds of their
-// centres then take the place of omega, and their accelerations that of alpha.
+// centres then take the place of omega, and their accelerations that of alpha. How a body turns
+// that slides on another, or stops at it, does not say how it moves: it is measured by the velocity
+// (x, y, omega reach) of its points.
 #include "model/distance.h"
 
 enum { LEAST_SAMPLES = 1000 }; // fewer steps of a horizon would say little
@@ -13,44 +15,51 @@ enum { LEAST_SAMPLES = 1000 }; // fewer steps of a horizon would say little
 static const double SMALLEST_SCALE =
     1e-3; // of the fastest point's: below it lies no motion to speak of
 
-bool distance_is_by_velocity(const Trajectory *reference)
+DistanceMeasure distance_measure(const Trajectory *reference, size_t body)
 {
-    return reference->driven_body == LINKAGE_GROUND;
+    return (DistanceMeasure){
+        .by_velocity = reference->driven_body == LINKAGE_GROUND || reference->slides[body],
+        .reach = reference->slides[body] ? reference->reach[body] : 0.0,
+    };
 }
 
-static Vec3 planar_rate(const Motion *motion, bool is_velocity)
+// A rate of the centre with that of turning at some reach.
+static Vec3 planar_rate(Vec2 moving, double turning, DistanceMeasure measure)
 {
-    return is_velocity ? (Vec3){motion->velocity.x, motion->velocity.y, 0.0}
-                       : (Vec3){motion->omega, 0.0, 0.0};
+    const double at_reach = measure.reach > 0.0 ? measure.reach * turning : 0.0;
+    return measure.by_velocity ? (Vec3){moving.x, moving.y, at_reach} : (Vec3){turning, 0.0, 0.0};
 }
 
-Vec3 distance_rate(const Trajectory *trajectory, size_t sample, size_t body, bool is_velocity)
+Vec3 distance_rate(const Trajectory *trajectory, size_t sample, size_t body,
+                   DistanceMeasure measure)
 {
     if (trajectory->space_motions == NULL) {
-        return planar_rate(trajectory_motion(trajectory, sample, body), is_velocity);
+        const Motion *planar = trajectory_motion(trajectory, sample, body);
+        return planar_rate(planar->velocity, planar->omega, measure);
     }
     const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, body);
-    return is_velocity ? motion->velocity : motion->omega;
+    return measure.by_velocity ? motion->velocity : motion->omega;
 }
 
-Vec3 distance_sample_rate(const Sample *sample, bool is_spatial, size_t body, bool is_velocity)
+Vec3 distance_sample_rate(const Sample *sample, bool is_spatial, size_t body,
+                          DistanceMeasure measure)
 {
     if (!is_spatial) {
-        return planar_rate(&sample->bodies[body], is_velocity);
+        return planar_rate(sample->bodies[body].velocity, sample->bodies[body].omega, measure);
     }
     const SpaceMotion *motion = &sample->space_bodies[body];
-    return is_velocity ? motion->velocity : motion->omega;
+    return measure.by_velocity ? motion->velocity : motion->omega;
 }
 
-Vec3 distance_change(const Trajectory *trajectory, size_t sample, size_t body, bool is_velocity)
+Vec3 distance_change(const Trajectory *trajectory, size_t sample, size_t body,
+                     DistanceMeasure measure)
 {
     if (trajectory->space_motions == NULL) {
         const Motion *motion = trajectory_motion(trajectory, sample, body);
-        return is_velocity ? (Vec3){motion->acceleration.x, motion->acceleration.y, 0.0}
-                           : (Vec3){motion->alpha, 0.0, 0.0};
+        return planar_rate(motion->acceleration, motion->alpha, measure);
     }
     const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, body);
-    return is_velocity ? motion->acceleration : motion->alpha;
+    return measure.by_velocity ? motion->acceleration : motion->alpha;
 }
 
 double distance_between(Vec3 a, Vec3 b)
@@ -67,20 +76,21 @@ double distance_between(Vec3 a, Vec3 b)
 static DistanceScale body_scale(const Trajectory *reference, size_t body)
 {
     const Vec3 still = {0.0, 0.0, 0.0};
-    const bool is_velocity = distance_is_by_velocity(reference);
+    const DistanceMeasure own = distance_measure(reference, body);
+    const DistanceMeasure centre = {.by_velocity = true};
+    const DistanceMeasure turn = {.by_velocity = false};
     const double reach = reference->reach[body];
-    DistanceScale scale = {.omega = 0.0};
+    DistanceScale scale = {.by_velocity = own.by_velocity};
     for (size_t k = 0; k < reference->sample_count; k++) {
-        const Vec3 velocity = distance_rate(reference, k, body, true);
-        const Vec3 omega = distance_rate(reference, k, body, false);
-        const Vec3 acceleration = distance_change(reference, k, body, true);
-        const Vec3 alpha = distance_change(reference, k, body, false);
-        const double moving = distance_between(velocity, still);
-        const double changing = distance_between(acceleration, still);
-        const double turning = distance_between(omega, still);
-        const double speeding = distance_between(alpha, still);
-        scale.omega = fmax(scale.omega, is_velocity ? moving : turning);
-        scale.alpha = fmax(scale.alpha, is_velocity ? changing : speeding);
+        const double moving = distance_between(distance_rate(reference, k, body, centre), still);
+        const double turning = distance_between(distance_rate(reference, k, body, turn), still);
+        const double changing =
+            distance_between(distance_change(reference, k, body, centre), still);
+        const double speeding = distance_between(distance_change(reference, k, body, turn), still);
+        const double rate = distance_between(distance_rate(reference, k, body, own), still);
+        const double change = distance_between(distance_change(reference, k, body, own), still);
+        scale.omega = fmax(scale.omega, rate);
+        scale.alpha = fmax(scale.alpha, change);
         scale.moving = fmax(scale.moving, moving + turning * reach);
         scale.changing = fmax(scale.changing, changing + speeding * reach);
     }
@@ -95,7 +105,6 @@ static double least_rate(double fastest, double reach, bool is_velocity)
 
 void distance_scales(const Trajectory *reference, DistanceScale scales[LINKAGE_BODY_MAX])
 {
-    const bool is_velocity = distance_is_by_velocity(reference);
     double moving = 0.0;
     double changing = 0.0;
     for (size_t i = 0; i < reference->body_count; i++) {
@@ -106,8 +115,8 @@ void distance_scales(const Trajectory *reference, DistanceScale scales[LINKAGE_B
     for (size_t i = 0; i < reference->body_count; i++) {
         const double reach = reference->reach[i];
         DistanceScale *scale = &scales[i];
-        scale->omega = fmax(scale->omega, least_rate(moving, reach, is_velocity));
-        scale->alpha = fmax(scale->alpha, least_rate(changing, reach, is_velocity));
+        scale->omega = fmax(scale->omega, least_rate(moving, reach, scale->by_velocity));
+        scale->alpha = fmax(scale->alpha, least_rate(changing, reach, scale->by_velocity));
         scale->moving = fmax(scale->moving, least_rate(moving, reach, true));
         scale->turning = scale->moving / reach;
         if ((int)i == reference->driven_body) {
@@ -120,12 +129,12 @@ void distance_scales(const Trajectory *reference, DistanceScale scales[LINKAGE_B
 double distance_at(const Trajectory *trajectory, const Trajectory *reference, size_t sample,
                    const DistanceScale *scales)
 {
-    const bool is_velocity = distance_is_by_velocity(reference);
     double largest = 0.0;
     for (size_t i = 0; i < reference->body_count; i++) {
         if (scales[i].omega > 0.0) {
-            const double apart = distance_between(distance_rate(trajectory, sample, i, is_velocity),
-                                                  distance_rate(reference, sample, i, is_velocity));
+            const DistanceMeasure measure = distance_measure(reference, i);
+            const double apart = distance_between(distance_rate(trajectory, sample, i, measure),
+                                                  distance_rate(reference, sample, i, measure));
             largest = fmax(largest, apart / scales[i].omega);
         }
     }

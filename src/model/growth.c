@@ -133,7 +133,6 @@ static double largest_singular(Gram gram)
 static bool find_at(const GrowthWork *work, Runs *runs, size_t k, double *found, Growth *growth)
 {
     const Trajectory *beside = work->beside;
-    const bool is_velocity = distance_is_by_velocity(beside);
     const bool is_spatial = work->scenario->linkage.is_spatial;
     Gram grams[LINKAGE_BODY_MAX] = {{.xx = 0.0}};
     for (size_t i = 0; i < runs->count; i++) {
@@ -142,8 +141,9 @@ static bool find_at(const GrowthWork *work, Runs *runs, size_t k, double *found,
             return false;
         }
         for (size_t body = 0; body < beside->body_count; body++) {
-            add_difference(vec3_sub(distance_sample_rate(&sample, is_spatial, body, is_velocity),
-                                    distance_rate(beside, k, body, is_velocity)),
+            const DistanceMeasure measure = distance_measure(beside, body);
+            add_difference(vec3_sub(distance_sample_rate(&sample, is_spatial, body, measure),
+                                    distance_rate(beside, k, body, measure)),
                            &grams[body]);
         }
     }

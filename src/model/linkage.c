@@ -66,6 +66,18 @@ double linkage_period(const Linkage *linkage)
     return driver->is_present ? 2.0 * M_PI / fabs(driver->speed) : 0.0;
 }
 
+// How far a body goes beyond its anchor in a joint that slides or stops, m.
+static double size_beyond(const Joint *joint, int side)
+{
+    if (joint->kind == JOINT_GUIDE && side == 1) {
+        return 0.5 * hypot(joint->guide.height, joint->guide.length);
+    }
+    if (joint->kind == JOINT_STOP) {
+        return side == 0 ? joint->stop.radius_a : joint->stop.radius_b;
+    }
+    return 0.0;
+}
+
 double linkage_reach(const Linkage *linkage, int body)
 {
     const Body *own = &linkage->bodies[body];
@@ -75,9 +87,22 @@ double linkage_reach(const Linkage *linkage, int body)
         const double above =
             linkage->is_spatial ? linkage->joints[i / 2].space.height - own->space.height : 0.0;
         const double length = hypot(vec2_length(end.anchor), above);
-        reach = end.body == body ? fmax(reach, length) : reach;
+        const double beyond = size_beyond(&linkage->joints[i / 2], i % 2);
+        reach = end.body == body ? fmax(reach, length + beyond) : reach;
     }
     return reach;
+}
+
+bool linkage_slides(const Linkage *linkage, int body)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const bool is_its = joint->body_a == body || joint->body_b == body;
+        if (is_its && joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE) {
+            return true;
+        }
+    }
+    return false;
 }
 
 int linkage_find_body(const Linkage *linkage, const char *name)

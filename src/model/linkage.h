@@ -240,8 +240,12 @@ void linkage_describe_instant(const Linkage *linkage, double time_s,
 double linkage_period(const Linkage *linkage);
 
 // How far a body's points go from its centre of mass, m: the distance of its furthest joint, at
-// least its radius of gyration.
+// least its radius of gyration; of a block between guides with its corners, of a stop with its
+// disc.
 double linkage_reach(const Linkage *linkage, int body);
+
+// Whether a body slides on another or stops at it: how it turns then does not say how it moves.
+bool linkage_slides(const Linkage *linkage, int body);
 
 // The number of a body or joint by its name, or -1.
 int linkage_find_body(const Linkage *linkage, const char *name);

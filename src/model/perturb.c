@@ -38,10 +38,10 @@ static void allow_change(const Linkage *linkage, const Motion *motions, SpeedCha
 }
 
 // As errors are measured, and what errors do not measure by the speed of the body's points.
-static Unit unit_of(const Linkage *linkage, const DistanceScale *scale)
+static Unit unit_of(const DistanceScale *scale)
 {
-    return linkage->driver.is_present ? (Unit){scale->moving, scale->omega}
-                                      : (Unit){scale->omega, scale->turning};
+    return scale->by_velocity ? (Unit){scale->omega, scale->turning}
+                              : (Unit){scale->moving, scale->omega};
 }
 
 static double change_size(const Linkage *linkage, const DistanceScale *scales,
@@ -50,7 +50,7 @@ static double change_size(const Linkage *linkage, const DistanceScale *scales,
     double size = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         if ((int)i != linkage_driven_body(linkage)) {
-            const Unit unit = unit_of(linkage, &scales[i]);
+            const Unit unit = unit_of(&scales[i]);
             size = fmax(size, vec2_length(changes[i].velocity) / unit.moving);
             size = fmax(size, fabs(changes[i].omega) / unit.turning);
             if (linkage->is_spatial) {
@@ -94,7 +94,7 @@ static void draw_changes(const Scenario *scenario, const DistanceScale *scales,
     for (size_t i = 0; i < linkage->body_count; i++) {
         changes[i] = (SpeedChange){.omega = 0.0};
         if ((int)i != linkage_driven_body(linkage)) {
-            const Unit unit = unit_of(linkage, &scales[i]);
+            const Unit unit = unit_of(&scales[i]);
             const Vec2 along = vec2_scale(unit.moving, own_direction(scenario, motions, i));
             const double ahead = lcg_draw(&seed);
             const double aside = lcg_draw(&seed);
@@ -147,7 +147,7 @@ static double product(const Linkage *linkage, const DistanceScale *scales, const
     double sum = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         if ((int)i != linkage_driven_body(linkage)) {
-            const Unit unit = unit_of(linkage, &scales[i]);
+            const Unit unit = unit_of(&scales[i]);
             sum += vec2_dot(a[i].velocity, b[i].velocity) / (unit.moving * unit.moving) +
                    a[i].omega * b[i].omega / (unit.turning * unit.turning);
             // these are 0 in the plane
@@ -189,7 +189,7 @@ static size_t allow_each(const Linkage *linkage, const DistanceScale *scales, Pe
     double trace = 0.0;
     each->count = 0;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        const Unit unit = unit_of(linkage, &scales[i]);
+        const Unit unit = unit_of(&scales[i]);
         for (int rate = 0; rate < rates && (int)i != linkage_driven_body(linkage); rate++) {
             SpeedChange *changes = each->changes[each->count++];
             for (size_t k = 0; k < linkage->body_count; k++) {

@@ -54,6 +54,28 @@ static void shake_body(Body *body, uint64_t *seed)
     shake(&body->start.omega, seed);
 }
 
+// What a joint has beside where it slides or stops, or has a contact of its own.
+static void shake_sliding(Joint *joint, uint64_t *seed)
+{
+    if (joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE) {
+        shake(&joint->direction, seed);
+        shake(&joint->held_angle, seed);
+        shake(&joint->guide.opening, seed);
+        shake(&joint->guide.height, seed);
+        shake(&joint->guide.length, seed);
+        shake_vector(&joint->guide.start, seed);
+        shake(&joint->stop.radius_a, seed);
+        shake(&joint->stop.radius_b, seed);
+    }
+    if (joint->contact.stiffness > 0.0) {
+        shake(&joint->contact.stiffness, seed);
+    }
+    if (joint->contact.has_restitution) {
+        shake(&joint->contact.restitution, seed);
+        joint->contact.restitution = fmin(joint->contact.restitution, 1.0);
+    }
+}
+
 static void shake_joint(Joint *joint, uint64_t *seed)
 {
     shake_vector(&joint->anchor_a, seed);
@@ -62,6 +84,7 @@ static void shake_joint(Joint *joint, uint64_t *seed)
     shake(&joint->clearance.pin_radius, seed);
     shake(&joint->clearance.width, seed);
     shake_vector(&joint->clearance.start, seed);
+    shake_sliding(joint, seed);
 }
 
 static void shake_forces(Linkage *linkage, uint64_t *seed)

@@ -26,6 +26,7 @@ Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
     trajectory->driven_body = linkage_driven_body(&scenario->linkage);
     for (size_t i = 0; i < trajectory->body_count; i++) {
         trajectory->reach[i] = linkage_reach(&scenario->linkage, (int)i);
+        trajectory->slides[i] = linkage_slides(&scenario->linkage, (int)i);
     }
     trajectory->sample_count = samples;
     trajectory->times = calloc(samples, sizeof *trajectory->times);

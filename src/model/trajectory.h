@@ -105,6 +105,7 @@ typedef struct Trajectory {
     size_t joint_count;
     int driven_body;                // whose motion is prescribed, or LINKAGE_GROUND
     double reach[LINKAGE_BODY_MAX]; // m, of each body's points from its centre: linkage_reach
+    bool slides[LINKAGE_BODY_MAX];  // linkage_slides
     size_t sample_count;
     double *times;              // s, by sample; owned, like the three below
     double *crank_angles;       // rad, by sample, not wrapped

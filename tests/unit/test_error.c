@@ -2,6 +2,7 @@
 #include "close.h"
 
 #include "mechanism.h"
+#include "slider.h"
 
 #include "measure/error.h"
 
@@ -44,6 +45,40 @@ static void the_largest_relative_error_of_any_free_body_counts(void **state)
     trajectory_destroy(other);
 }
 
+// A slider whose velocity is off by some, and whose block turns by some.
+static Trajectory *made_sliding(const Scenario *scenario, double faster, double turning)
+{
+    Trajectory *trajectory = made(scenario, 0.0, 0.0);
+    for (size_t k = 0; k < trajectory->sample_count; k++) {
+        Sample sample = {.time_s = scenario_sample_time(scenario, k)};
+        sample.bodies[1].omega = 10.0;
+        sample.bodies[2].velocity.x = 5.0 + faster;
+        sample.bodies[2].omega = turning;
+        trajectory_store(trajectory, k, &sample);
+    }
+    return trajectory;
+}
+
+// Its omega is 0 whatever its error.
+static void a_body_that_slides_is_measured_by_the_speed_of_its_points(void **state)
+{
+    (void)state;
+    Scenario scenario = slider_driven(&SLIDER_USUAL, 100.0);
+    scenario.run.revolutions = 1.0;
+    scenario.run.samples = 20;
+    slider_loosen_guide(&scenario, 0.061, 0.06, 0.08);
+    Trajectory *truth = made_sliding(&scenario, 0.0, 0.0);
+    Trajectory *faster = made_sliding(&scenario, 0.01, 0.0);
+    Trajectory *turning = made_sliding(&scenario, 0.0, 2.0);
+    // half a diagonal of the block
+    assert_near(linkage_reach(&scenario.linkage, 2), 0.05, 1e-17);
+    assert_near(error_against(faster, truth, INFINITY).omega_max, 0.01 / 5.0, 1e-15);
+    assert_near(error_against(turning, truth, INFINITY).omega_max, 2.0 * 0.05 / 5.0, 1e-15);
+    trajectory_destroy(truth);
+    trajectory_destroy(faster);
+    trajectory_destroy(turning);
+}
+
 static void a_failed_run_has_no_error(void **state)
 {
     (void)state;
@@ -74,6 +109,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_largest_relative_error_of_any_free_body_counts),
+        cmocka_unit_test(a_body_that_slides_is_measured_by_the_speed_of_its_points),
         cmocka_unit_test(a_failed_run_has_no_error),
         cmocka_unit_test(a_number_that_is_not_finite_is_no_small_error),
     };
