@@ -188,14 +188,15 @@ static void bury(Child *child)
     child->end = is_whole ? CHILD_DONE : without;
 }
 
-// The pipe is closed: the process is ending, or something in it went wrong.
+// The pipe is closed: the process is ending, or something in it went wrong. With the whole result
+// here there is nothing left that could: a busy machine has not let the process end yet.
 static void see_off(Child *child)
 {
     if (is_leaving(child->process)) {
         bury(child);
     } else {
         child_kill(child);
-        child->end = CHILD_CLOSED;
+        child->end = child->received == child->result_size ? CHILD_DONE : CHILD_CLOSED;
     }
 }
 
