@@ -35,8 +35,24 @@ static bool check_lines(const Entries *entries, const Linkage *linkage, Err *err
     return true;
 }
 
+// Bodies that keep their angle to one another have none that a spring could turn.
+static bool check_turns(const Entries *entries, const Linkage *linkage, Err *err)
+{
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const Joint *joint = &linkage->joints[linkage->torsions[i].joint];
+        if (joint->kind == JOINT_PRISMATIC) {
+            return entries_refuse(entries_find(entries, "torsion-springs.*.joint", i), err,
+                                  "the bodies of the prismatic joint '%s' do not turn against each "
+                                  "other\nallowed: a joint that turns, or springs along the line",
+                                  joint->name);
+        }
+    }
+    return true;
+}
+
 bool check_forces(const Entries *entries, const Scenario *scenario, Err *err)
 {
     return check_space(entries, &scenario->linkage, err) &&
-           check_lines(entries, &scenario->linkage, err);
+           check_lines(entries, &scenario->linkage, err) &&
+           check_turns(entries, &scenario->linkage, err);
 }

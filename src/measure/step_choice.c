@@ -7,8 +7,8 @@
 // go.
 #include "measure/step_choice.h"
 
-#include "contact/law.h"
-#include "model/response.h"
+#include "contact/touch.h"
+#include "model/scale.h"
 
 #include <math.h>
 
@@ -33,29 +33,45 @@ static const double FIRST_PHASE_UNTIL = 1.0 / 16.0;
 static const double PHASE_POWER = 0.75;
 static const double LEAST_PHASE = 1e-3;
 
-// The half-period of the stiffest contact at a tenth of its clearance, s.
-static double contact_time(const Scenario *scenario)
+// A depth of a contact: a tenth of the clearance, or of a stop, which has none, what the fastest
+// point of the linkage would press in. Laws of stops are powers.
+static double contact_depth(const Scenario *scenario, const Touch *place, double mass)
 {
     static const double DEPTH = 0.1;
-    const Linkage *linkage = &scenario->linkage;
+    const Joint *joint = &scenario->linkage.joints[place->joint];
+    if (joint->kind != JOINT_STOP) {
+        return fmin(DEPTH * linkage_radial_clearance(joint),
+                    0.5 * force_law_depth_limit(&place->law));
+    }
+    const double speed = scale_speeds(scenario).moving;
+    const double power = place->law.exponent + 1.0;
+    return pow(0.5 * power * mass * speed * speed / place->law.stiffness, 1.0 / power);
+}
+
+// The half-period of the stiffest contact, s.
+static double contact_time(const Scenario *scenario)
+{
     Motion motions[LINKAGE_BODY_MAX];
+    Touch places[TOUCH_MAX];
+    size_t count = 0;
     Response response;
     Err unused = {ERR_NONE, ""};
-    linkage_start(linkage, motions);
-    if (!response_init(linkage, false, &response, &unused) || !response_place(&response, motions)) {
+    linkage_start(&scenario->linkage, motions);
+    if (!touch_list(scenario, places, &count, &unused) ||
+        !touch_response(&scenario->linkage, places, count, false, &response, &unused) ||
+        !response_place(&response, motions)) {
         return INFINITY; // opening the world says what is wrong
     }
     double shortest_s = INFINITY;
-    for (size_t row = 0; row < response_play_rows(&response); row += 2) {
-        const Joint *joint = &linkage->joints[response_joint(&response, row)];
-        ForceLaw law;
-        if (law_of_joint(scenario, joint, &law, &unused)) {
-            const double mass = fmin(response_mass(&response, row, (Vec2){1.0, 0.0}),
-                                     response_mass(&response, row, (Vec2){0.0, 1.0}));
-            const double depth =
-                fmin(DEPTH * linkage_radial_clearance(joint), 0.5 * force_law_depth_limit(&law));
-            shortest_s = fmin(shortest_s, M_PI * sqrt(mass / force_law_tangent(&law, depth)));
-        }
+    for (size_t i = 0; i < count; i++) {
+        const size_t row = response_first_row(&response, i);
+        // the first row of a line is along its normal
+        const double along = response_mass(&response, row, (Vec2){1.0, 0.0});
+        const double mass = places[i].shape == TOUCH_LINE
+                                ? along
+                                : fmin(along, response_mass(&response, row, (Vec2){0.0, 1.0}));
+        const double depth = contact_depth(scenario, &places[i], mass);
+        shortest_s = fmin(shortest_s, M_PI * sqrt(mass / force_law_tangent(&places[i].law, depth)));
     }
     return shortest_s;
 }
