@@ -72,6 +72,14 @@ size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
     }
 }
 
+bool touch_too_many(Err *err)
+{
+    return err_set(err, ERR_CASE,
+                   "the joints with play touch at more places than the %d allowed: one a pin or "
+                   "stop, four a block between guides",
+                   TOUCH_MAX);
+}
+
 bool touch_list(const Scenario *scenario, Touch places[TOUCH_MAX], size_t *count, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
@@ -84,10 +92,7 @@ bool touch_list(const Scenario *scenario, Touch places[TOUCH_MAX], size_t *count
             return false;
         }
         if (*count + own_count > TOUCH_MAX) {
-            return err_set(err, ERR_CASE,
-                           "the joints with play touch at more places than the %d allowed: one a "
-                           "pin or stop, four a block between guides",
-                           TOUCH_MAX);
+            return touch_too_many(err);
         }
         for (size_t k = 0; k < own_count; k++) {
             places[*count] = own[k];
@@ -97,34 +102,41 @@ bool touch_list(const Scenario *scenario, Touch places[TOUCH_MAX], size_t *count
     return true;
 }
 
-TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions)
+TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 line, double omega_a)
 {
-    const Joint *joint = &linkage->joints[place->joint];
-    TouchPose pose = {
-        .offset = vec2_sub(linkage_point(motions, joint->body_b, place->anchor_b),
-                           linkage_point(motions, joint->body_a, place->anchor_a)),
-        .velocity = vec2_sub(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
-                             linkage_point_velocity(motions, joint->body_a, place->anchor_a)),
-    };
+    TouchPose pose = {.offset = offset, .velocity = velocity};
     if (place->shape == TOUCH_LINE) {
-        const bool is_ground = joint->body_a == LINKAGE_GROUND;
-        const double angle = is_ground ? 0.0 : motions[joint->body_a].angle;
-        const double omega = is_ground ? 0.0 : motions[joint->body_a].omega;
         pose.has_normal = true;
-        pose.normal = vec2_rotate(angle + place->direction, (Vec2){1.0, 0.0});
-        pose.gap = vec2_dot(pose.normal, pose.offset) - place->clearance;
-        pose.approach_speed = -vec2_dot(pose.normal, pose.velocity) -
-                              omega * vec2_dot(vec2_perp(pose.normal), pose.offset);
+        pose.normal = line;
+        pose.gap = vec2_dot(line, offset) - place->clearance;
+        pose.approach_speed =
+            -vec2_dot(line, velocity) - omega_a * vec2_dot(vec2_perp(line), offset);
         return pose;
     }
     const double outside = place->shape == TOUCH_DISC ? 1.0 : -1.0;
-    const double distance = vec2_length(pose.offset);
+    const double distance = vec2_length(offset);
     pose.gap = outside * (distance - place->clearance);
     pose.has_normal = distance > 0.0;
-    pose.normal = pose.has_normal ? vec2_scale(outside / distance, pose.offset) : (Vec2){0.0, 0.0};
+    pose.normal = pose.has_normal ? vec2_scale(outside / distance, offset) : (Vec2){0.0, 0.0};
     pose.approach_speed =
-        pose.has_normal ? -vec2_dot(pose.normal, pose.velocity) : vec2_length(pose.velocity);
+        pose.has_normal ? -vec2_dot(pose.normal, velocity) : vec2_length(velocity);
     return pose;
+}
+
+TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions)
+{
+    const Joint *joint = &linkage->joints[place->joint];
+    const Vec2 offset = vec2_sub(linkage_point(motions, joint->body_b, place->anchor_b),
+                                 linkage_point(motions, joint->body_a, place->anchor_a));
+    const Vec2 velocity = vec2_sub(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
+                                   linkage_point_velocity(motions, joint->body_a, place->anchor_a));
+    const bool is_ground = joint->body_a == LINKAGE_GROUND;
+    const double angle = is_ground ? 0.0 : motions[joint->body_a].angle;
+    const double omega = is_ground ? 0.0 : motions[joint->body_a].omega;
+    const Vec2 line = place->shape == TOUCH_LINE
+                          ? vec2_rotate(angle + place->direction, (Vec2){1.0, 0.0})
+                          : (Vec2){0.0, 0.0};
+    return touch_pose_of(place, offset, velocity, line, omega);
 }
 
 void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 *from_b)

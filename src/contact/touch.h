@@ -51,11 +51,18 @@ typedef struct TouchPose {
 // ERR_CASE where a law does not fit a joint, or there are more than TOUCH_MAX places.
 bool touch_list(const Scenario *scenario, Touch places[TOUCH_MAX], size_t *count, Err *err);
 
+// Says that there are more places than TOUCH_MAX; returns false.
+bool touch_too_many(Err *err);
+
 // Writes the places of one joint without their laws; returns how many there are, 0 of an ideal one.
 size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS]);
 
 // The pose of a place whose bodies move so.
 TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions);
+
+// The same from what it is made of: the offset and the velocity, and of a line its normal in the
+// world and the angular velocity of body a, rad/s.
+TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 line, double omega_a);
 
 // The point at which the force acts, seen from the anchor on body a and from that on body b, m.
 // Without friction the anchors themselves serve as well where both are circles.

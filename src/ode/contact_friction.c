@@ -24,11 +24,12 @@ static const double CONVERGED = 1e-7; // of the largest force: the step's own er
 static const double FLAT = 1e-9;      // slope of tanh, below which the row is at its bound
 static const double SATURATED = 12.0; // tanh of it is 1 less 1e-10
 
-enum { UNKNOWN_MAX = 2 * LINKAGE_JOINT_MAX };
+enum { UNKNOWN_MAX = 2 * TOUCH_MAX };
 
 // One row's part in a step.
 typedef struct Share {
-    double along[RESPONSE_ROWS_A_JOINT];  // a unit of speed along the normal, by the joint's rows
+    size_t row_count;                     // of the place in the response
+    double along[RESPONSE_ROWS_A_JOINT];  // a unit of speed along the normal, by those rows
     double across[RESPONSE_ROWS_A_JOINT]; // likewise along the wall
     double asked;                         // m/s: what the forces must change along the normal
     double drift;                         // m/s: v' if no contact pressed
@@ -46,63 +47,49 @@ typedef struct System {
     double forces[UNKNOWN_MAX];              // N: N and F of each row in turn
 } System;
 
-Vec2 geom_position(dGeomID geom)
-{
-    const dReal *position = dGeomGetPosition(geom);
-    return (Vec2){position[0], position[1]};
-}
-
-Vec2 geom_velocity(dGeomID geom, Vec2 point)
-{
-    const dBodyID body = dGeomGetBody(geom);
-    if (body == NULL) {
-        return (Vec2){0.0, 0.0};
-    }
-    const dReal *at = dBodyGetPosition(body);
-    const dReal *speed = dBodyGetLinearVel(body);
-    const double omega = dBodyGetAngularVel(body)[2];
-    return (Vec2){speed[0] - omega * (point.y - at[1]), speed[1] + omega * (point.x - at[0])};
-}
-
-static Vec2 wall_point(const FrictionRow *row)
-{
-    return vec2_sub(geom_position(row->pair->hole), vec2_scale(row->hole_radius, row->normal));
-}
-
 double contact_friction_sliding(const FrictionRow *row)
 {
-    const Vec2 point = wall_point(row);
-    const Vec2 velocity =
-        vec2_sub(geom_velocity(row->pair->pin, point), geom_velocity(row->pair->hole, point));
-    return vec2_dot(vec2_perp(row->normal), velocity);
+    const Vec2 point = pair_point(row->pair, row->normal);
+    return vec2_dot(vec2_perp(row->normal), pair_velocity(row->pair, point));
 }
 
-static double dot_rows(const double *a, const double *b)
+static double dot_rows(const Share *share, const double *a, const double *b)
 {
     double sum = 0.0;
-    for (size_t i = 0; i < RESPONSE_ROWS_A_JOINT; i++) {
+    for (size_t i = 0; i < share->row_count; i++) {
         sum += a[i] * b[i];
     }
     return sum;
 }
 
+// What the rows of a place make of the speeds along and across the wall.
+static void set_rows(const FrictionRow *row, Share *share)
+{
+    const Touch *touch = &row->pair->touch;
+    if (touch->shape == TOUCH_LINE) {
+        // which are its rows
+        share->row_count = 2;
+        share->along[0] = share->across[1] = 1.0;
+        return;
+    }
+    const Vec2 tangent = vec2_perp(row->normal);
+    const Vec2 arm = vec2_sub(pair_point(row->pair, row->normal), pair_anchor_b(row->pair));
+    const double radius = touch->shape == TOUCH_HOLE ? touch->radius_a : -touch->radius_a;
+    *share = (Share){
+        .row_count = RESPONSE_ROWS_A_JOINT,
+        .along = {row->normal.x, row->normal.y, 0.0, 0.0},
+        .across = {tangent.x, tangent.y, radius, vec2_dot(row->normal, arm)},
+    };
+}
+
 static Share start_share(const FrictionRow *row, const double *free, double step_s)
 {
-    const Vec2 tangent = vec2_perp(row->normal);
-    const Vec2 pin_arm = vec2_sub(wall_point(row), geom_position(row->pair->pin));
-    Share share = {
-        .along = {row->normal.x, row->normal.y, 0.0, 0.0},
-        .across = {tangent.x, tangent.y, row->hole_radius, vec2_dot(row->normal, pin_arm)},
-        .theta = 0.5,
-    };
-    const Vec2 hole = geom_position(row->pair->hole);
-    const Vec2 pin = geom_position(row->pair->pin);
-    const Vec2 moving =
-        vec2_sub(geom_velocity(row->pair->pin, pin), geom_velocity(row->pair->hole, hole));
+    Share share = {.row_count = 0};
+    set_rows(row, &share);
+    share.theta = 0.5;
     const double *rates = free + row->first_row;
-    share.asked =
-        row->target - vec2_dot(row->normal, moving) - step_s * dot_rows(share.along, rates);
-    share.drift = row->sliding + step_s * dot_rows(share.across, rates);
+    share.asked = row->target + row->closing - step_s * dot_rows(&share, share.along, rates);
+    share.drift = row->sliding + step_s * dot_rows(&share, share.across, rates);
     return share;
 }
 
@@ -209,8 +196,8 @@ void contact_friction_find(const ContactOptions *contact, const Response *respon
                            double step_s, FrictionRow *rows, size_t count)
 {
     double free[RESPONSE_ROW_MAX];
-    Share shares[LINKAGE_JOINT_MAX];
-    double alone[LINKAGE_JOINT_MAX];
+    Share shares[TOUCH_MAX];
+    double alone[TOUCH_MAX];
     System system; // large, and filled in as far as it is used
     system.contact = contact;
     system.rows = rows;

@@ -1,33 +1,28 @@
-// Friction of pins on their walls, as rows of ODE that follow the law of the other solvers.
+// Friction where bodies touch, as rows of ODE that follow the law of the other solvers.
 #pragma once
 
 #include "model/options.h"
 #include "model/response.h"
 #include "ode/world.h"
 
-// Where the centre of a geom is, m, and how fast its body moves at a point, m/s; zero of the
-// ground.
-Vec2 geom_position(dGeomID geom);
-Vec2 geom_velocity(dGeomID geom, Vec2 point);
-
-// A pin on its wall in a step. The first six are given.
+// Two bodies that touch in a step. The first six are given.
 typedef struct FrictionRow {
     const WorldPair *pair;
-    size_t first_row;   // of the joint in the response
-    Vec2 normal;        // unit: direction of the force on the pin
-    double hole_radius; // m
-    double target;      // m/s: separating speed that the row along the normal asks for, (ERP / h) d
-    double cfm;         // s/kg, of that row
-    double sliding;     // m/s, of the pin along vec2_perp of the normal, before the step
-    double bound;       // 1: what ODE's bound has to be as a share of what presses without friction
-    double slip;        // s/kg: speed for each newton along the wall; INFINITY: as the bound allows
-    double surface;     // m/s, sliding speed at which nothing holds
+    size_t first_row; // of the place in the response
+    Vec2 normal;      // unit: direction of the force on body b
+    double closing;   // m/s, along it, before the step
+    double target;    // m/s: separating speed that the row along the normal asks for, (ERP / h) d
+    double cfm;       // s/kg, of that row
+    double sliding;   // m/s, of body b along vec2_perp of the normal, before the step
+    double bound;     // 1: what ODE's bound has to be as a share of what presses without friction
+    double slip;      // s/kg: speed for each newton along the wall; INFINITY: as the bound allows
+    double surface;   // m/s, sliding speed at which nothing holds
 } FrictionRow;
 
-// The speed at which a pin slides on the wall's point that it touches, m/s.
+// The speed at which body b slides on body a's point that it touches, m/s.
 double contact_friction_sliding(const FrictionRow *row);
 
-// Finds the friction of all pins that touch, for a step of ODE's direct solver. The response is
+// Finds the friction of all places that touch, for a step of ODE's direct solver. The response is
 // placed, has turns, and has the motions before the step; gravity in m/s^2 along -y; loads on the
 // bodies, NULL where there are none.
 void contact_friction_find(const ContactOptions *contact, const Response *response,

@@ -1,20 +1,37 @@
-// Does a pin touch its wall, how deep, and since which speed?
+// Do the bodies of a joint touch at a place, how deep, and since which speed?
 //
-// Depth, normal and point of a contact are the collider's, with whatever is wrong with them. Where
-// the pin is (gap, eccentricity) is known exactly from the bodies, and so is the rate of any depth.
+// Depth, normal and point of a pin's contact are the collider's, with whatever is wrong with them.
+// Where the pin is (gap, eccentricity) is known exactly from the bodies, and so is the rate of any
+// depth. Of all other places everything is.
 #include "ode/contact_row.h"
 
-#include "ode/contact_friction.h"
-
-PinHole contact_row_pose(const ContactRow *row, const WorldPair *pair, Vec2 *velocity)
+// The contact of a pair. Where no collider is asked it is exact.
+static bool find_collision(const World *world, const WorldPair *pair, const TouchPose *pose,
+                           ContactRow *row)
 {
-    const Vec2 hole = geom_position(pair->hole);
-    const Vec2 pin = geom_position(pair->pin);
-    *velocity = vec2_sub(geom_velocity(pair->pin, pin), geom_velocity(pair->hole, hole));
-    return pin_hole_pose(hole, pin, *velocity, row->radial_clearance);
+    if (pair->hole == NULL) {
+        if (!(pose->gap < 0.0) || !pose->has_normal) {
+            return false;
+        }
+        row->depth = -pose->gap;
+        row->normal = pose->normal;
+        row->point = pair_point(pair, pose->normal);
+        pair_arms(pair, pose, row->arms, &row->lever);
+        return true;
+    }
+    Collision collision;
+    if (!world->collider->find(pair->collision, pair->hole, pair->pin, &collision)) {
+        return false;
+    }
+    row->depth = collision.depth;
+    row->normal = collision.normal;
+    row->arms[0] = collision.arm_hole;
+    row->arms[1] = collision.arm_pin;
+    row->point = vec2_add(pair_centre(pair), collision.arm_hole);
+    return true;
 }
 
-// The speed at which a pin that overlaps its wall for the first time came to it, m/s: as found now,
+// The speed at which bodies that overlap for the first time came to it, m/s: as found now,
 // or, where the steps before show it, its mean over the last step, taken on to the crossing by its
 // change from step to step.
 static double onset_speed(const ContactRow *row, bool is_staggered, double gap, double step_s)
@@ -31,7 +48,7 @@ static double onset_speed(const ContactRow *row, bool is_staggered, double gap, 
     return mean + change * (0.5 - row->depth / (mean * step_s));
 }
 
-// Keeps the gaps that a pin had while nothing acted on it.
+// Keeps the gaps that there were while nothing acted.
 static void note_gap(ContactRow *row, double gap)
 {
     row->gaps_known = row->is_touching ? 0 : row->gaps_known + (row->gaps_known < 2 ? 1 : 0);
@@ -42,25 +59,21 @@ static void note_gap(ContactRow *row, double gap)
 void contact_row_find(ContactRow *row, const World *world, const WorldPair *pair, bool is_staggered,
                       double step_s, JointState *state)
 {
-    Collision collision;
-    Vec2 velocity;
     const bool was_touching = row->is_touching;
-    row->is_touching = world->collider->find(pair->collision, pair->hole, pair->pin, &collision);
-    const PinHole pose = contact_row_pose(row, pair, &velocity);
+    const TouchPose pose = pair_pose(pair);
+    row->is_touching = find_collision(world, pair, &pose, row);
     *state = (JointState){
-        .eccentricity = pose.eccentricity,
+        .eccentricity = pose.offset,
         .gap = pose.gap,
         .is_touching = row->is_touching,
     };
     if (!row->is_touching) {
         row->impact_speed = pose.approach_speed;
     } else {
-        row->depth = collision.depth;
-        row->excess = collision.depth - pose.penetration;
-        row->normal = collision.normal;
-        row->arm_hole = collision.arm_hole;
-        row->arm_pin = collision.arm_pin;
-        row->closing = -vec2_dot(row->normal, velocity);
+        // of a polygon's side the circles' penetration and its rate are not the row's
+        row->excess = row->depth + pose.gap;
+        row->closing =
+            pair->hole == NULL ? pose.approach_speed : -vec2_dot(row->normal, pose.velocity);
         row->faster = row->closing - pose.approach_speed;
         if (!was_touching) {
             row->impact_speed = onset_speed(row, is_staggered, pose.gap, step_s);

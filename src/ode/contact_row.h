@@ -1,41 +1,39 @@
-// The contact of one joint with play, as the world's collider finds it.
+// The contact at one place of a joint with play; of a pin in its hole as the world's collider finds
+// it.
 #pragma once
 
 #include "contact/force_law.h"
-#include "contact/pin_hole.h"
 #include "ode/world.h"
 
 typedef struct ContactRow {
     ForceLaw law;
-    double radial_clearance; // m
-    double impact_speed;     // m/s, closing speed when the present contact began
-    double mass;             // kg, effective along the normal that it was worked out for
+    double impact_speed; // m/s, closing speed when the present contact began
+    double mass;         // kg, effective along the normal that it was worked out for
     Vec2 mass_normal;
     bool falls_back;   // the map is not stable at this step: the row is the textbook's
     double gaps[2];    // m, of the last step and of the one before it
-    size_t gaps_known; // how many of them the pin was free in
+    size_t gaps_known; // how many of them nothing touched in
     bool is_touching;  // whether the present step has a row
     double depth;      // m, of the row, as the collider has it
     double excess;     // m, by how much that is more than the exact penetration
-    Vec2 normal;       // of the row: unit, direction of the force on the pin
-    Vec2 arm_hole;     // m, from the hole's centre to where the force acts
-    Vec2 arm_pin;      // m, from the pin's centre to there
-    double damping;    // N s/m, of the row; not of CONTACT_POISSON
-    double closing;    // m/s, before the step, along the normal
-    double faster;     // m/s, by how much that is more than the rate of the exact penetration
-    double sliding;    // m/s, along the wall before the step, where there is friction
-    double elastic;    // J, stored in the contact after the step
+    Vec2 normal;       // of the row: unit, direction of the force on body b
+    Vec2 point;        // m, in the world, where the force acts
+    Vec2 arms[2];   // m, from the joint's anchors on bodies a and b to where its force is said to
+                    // act (ode/pair.h)
+    Vec2 lever;     // m, from there to the point
+    double damping; // N s/m, of the row; not of CONTACT_POISSON
+    double closing; // m/s, before the step, along the normal
+    double faster;  // m/s, by how much that is more than the rate of the exact penetration
+    double sliding; // m/s, along the wall before the step, where there is friction
+    double elastic; // J, stored in the contact after the step
     double dissipated; // J, lost along the normal in the step
     double friction;   // J, lost in sliding in the step
     dContact contact;  // as ODE is given it
     dJointFeedback feedback;
 } ContactRow;
 
-// Where the pin of a pair is, exactly, and the velocity of its centre less that of the hole's, m/s.
-PinHole contact_row_pose(const ContactRow *row, const WorldPair *pair, Vec2 *velocity);
-
-// Asks the world's collider about a pair, and notes how the contact is, or that there is none; of a
-// staggered world the speed at its onset is located between steps. Fills in the joint's state:
-// eccentricity, gap, and whether the pin touches.
+// Looks for the contact of a pair, and notes how it is, or that there is none; of a staggered world
+// the speed at its onset is located between steps. Fills in the state of this place: eccentricity
+// (the pose's offset), gap, and whether it touches.
 void contact_row_find(ContactRow *row, const World *world, const WorldPair *pair, bool is_staggered,
                       double step_s, JointState *state);

@@ -24,19 +24,18 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
     if (scenario->contact.model == CONTACT_IMPACT && world->pair_count > 0) {
         rows->map = map_get(scenario->ode.map);
     }
-    if (!response_init(&scenario->linkage, scenario->contact.friction > 0.0, &rows->response,
-                       err)) {
+    Touch places[TOUCH_MAX];
+    size_t count = 0;
+    if (!touch_list(scenario, places, &count, err) ||
+        !touch_response(&scenario->linkage, places, count, scenario->contact.friction > 0.0,
+                        &rows->response, err)) {
         return false;
     }
     rows->penalty = scenario->contact.penalty > 0.0
                         ? scenario->contact.penalty
                         : penalty_estimate(scenario->linkage.driver.speed, &scenario->material);
     for (size_t i = 0; i < world->pair_count; i++) {
-        const Joint *joint = &scenario->linkage.joints[world->pairs[i].joint];
-        rows->rows[i].radial_clearance = linkage_radial_clearance(joint);
-        if (!law_of_joint(scenario, joint, &rows->rows[i].law, err)) {
-            return false;
-        }
+        rows->rows[i].law = places[i].law;
     }
     rows->group = dJointGroupCreate(0);
     return true;
@@ -102,7 +101,7 @@ static FrictionRow friction_row(const ContactRows *rows, size_t number)
         .pair = pair,
         .first_row = response_row(rows, number),
         .normal = row->normal,
-        .hole_radius = rows->scenario->linkage.joints[pair->joint].clearance.hole_radius,
+        .closing = row->closing,
         .cfm = row->contact.surface.soft_cfm,
         .bound = rows->scenario->contact.friction,
         .slip = INFINITY,
@@ -119,7 +118,7 @@ static void add_friction(ContactRow *row, const FrictionRow *friction)
     row->sliding = friction->sliding;
     if (isfinite(friction->slip)) {
         // ODE's row is the speed of the first body attached: the hole's, if it is no ground
-        const double sign = dGeomGetBody(friction->pair->hole) != NULL ? -1.0 : 1.0;
+        const double sign = friction->pair->bodies[0] != NULL ? -1.0 : 1.0;
         surface->mode |= dContactSlip1 | dContactMotion1;
         surface->slip1 = friction->slip;
         surface->motion1 = sign * friction->surface;
@@ -131,8 +130,8 @@ static void add_friction(ContactRow *row, const FrictionRow *friction)
 static void find_friction(ContactRows *rows, double step_s)
 {
     const ContactOptions *options = &rows->scenario->contact;
-    FrictionRow found[LINKAGE_JOINT_MAX];
-    size_t numbers[LINKAGE_JOINT_MAX];
+    FrictionRow found[TOUCH_MAX];
+    size_t numbers[TOUCH_MAX];
     size_t count = 0;
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         if (rows->rows[i].is_touching) {
@@ -159,11 +158,11 @@ static void make_row(ContactRows *rows, size_t number)
     ContactRow *row = &rows->rows[number];
     const dJointID joint = dJointCreateContact(rows->world->id, rows->group, &row->contact);
     const WorldPair *pair = &rows->world->pairs[number];
-    dJointAttach(joint, dGeomGetBody(pair->hole), dGeomGetBody(pair->pin));
+    dJointAttach(joint, pair->bodies[0], pair->bodies[1]);
     dJointSetFeedback(joint, &row->feedback);
 }
 
-// Makes the rows of all pins that touch.
+// Makes the rows of all places that touch.
 static void make_contact_rows(ContactRows *rows, double step_s)
 {
     const bool has_friction = rows->scenario->contact.friction > 0.0;
@@ -189,18 +188,22 @@ static bool check_depth(const ContactRows *rows, size_t number, Err *err)
     return law_check_depth(&row->law, joint, row->depth, 1.0, err);
 }
 
-// The effective mass along the normal of a row. It changes as slowly as the linkage turns.
+// The effective mass along the normal of a row. Of a pin it changes as slowly as the linkage turns,
+// and its normal with it; a line's normal may stay while the linkage turns.
 static void find_mass(ContactRows *rows, size_t number)
 {
     static const double SAME_NORMAL = 0.995; // the cosine of 6 degrees
     ContactRow *row = &rows->rows[number];
-    const bool is_known = vec2_dot(row->mass_normal, row->normal) > SAME_NORMAL;
+    const bool is_line = rows->world->pairs[number].touch.shape == TOUCH_LINE;
+    const bool is_known = !is_line && vec2_dot(row->mass_normal, row->normal) > SAME_NORMAL;
     if (is_known && !rows->map->needs_mass) {
         return;
     }
     Motion motions[LINKAGE_BODY_MAX];
     if (place_response(rows, motions)) {
-        row->mass = response_mass(&rows->response, response_row(rows, number), row->normal);
+        // at a line the rows are along the normal and across
+        const Vec2 along = is_line ? (Vec2){1.0, 0.0} : row->normal;
+        row->mass = response_mass(&rows->response, response_row(rows, number), along);
         row->mass_normal = row->normal;
     }
 }
@@ -219,15 +222,14 @@ static void check_stability(ContactRows *rows, size_t number, double step_s)
     rows->fallback_count += row->falls_back ? 1 : 0;
 }
 
-// A contact as ODE wants it: its normal is that of the force on the hole.
+// A contact as ODE wants it: its normal is that of the force on body a.
 static dContact contact_of(ContactRows *rows, size_t number, double step_s)
 {
     ContactRow *row = &rows->rows[number];
     const WorldPair *pair = &rows->world->pairs[number];
-    const Vec2 point = vec2_add(geom_position(pair->hole), row->arm_hole);
     return (dContact){
         .surface = surface_of(rows, row, step_s),
-        .geom = {.pos = {point.x, point.y, 0.0},
+        .geom = {.pos = {row->point.x, row->point.y, 0.0},
                  .normal = {-row->normal.x, -row->normal.y, 0.0},
                  .depth = row->depth,
                  .g1 = pair->hole,
@@ -238,15 +240,40 @@ static dContact contact_of(ContactRows *rows, size_t number, double step_s)
     };
 }
 
+// Whether a pair is the first of its joint's.
+static bool is_first(const ContactRows *rows, size_t number)
+{
+    const WorldPair *pairs = rows->world->pairs;
+    return number == 0 || pairs[number - 1].joint != pairs[number].joint;
+}
+
+// Looks for the contact at a place and adds it to the state of its joint.
+static void find_row(ContactRows *rows, size_t number, double step_s, JointState *states,
+                     double *approach)
+{
+    const WorldPair *pair = &rows->world->pairs[number];
+    ContactRow *row = &rows->rows[number];
+    JointState *state = &states[pair->joint];
+    JointState place;
+    contact_row_find(row, rows->world, pair, rows->is_staggered, step_s, &place);
+    if (is_first(rows, number)) {
+        *state = place;
+        approach[pair->joint] = pair->is_corner && !row->is_touching ? 0.0 : row->impact_speed;
+        return;
+    }
+    state->gap = fmin(state->gap, place.gap);
+    state->is_touching = state->is_touching || row->is_touching;
+    if (row->is_touching) {
+        approach[pair->joint] = fmax(approach[pair->joint], row->impact_speed);
+    }
+}
+
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err)
 {
     for (size_t i = 0; i < rows->world->pair_count; i++) {
-        const int joint = rows->world->pairs[i].joint;
         ContactRow *row = &rows->rows[i];
-        contact_row_find(row, rows->world, &rows->world->pairs[i], rows->is_staggered, step_s,
-                         &states[joint]);
-        approach[joint] = row->impact_speed;
+        find_row(rows, i, step_s, states, approach);
         if (!row->is_touching) {
             continue;
         }
@@ -283,10 +310,9 @@ static void book_energy(ContactRows *rows, size_t number, Vec2 force, double ste
     if (!row->is_touching) {
         return;
     }
-    Vec2 velocity;
-    const PinHole pose = contact_row_pose(row, &rows->world->pairs[number], &velocity);
+    const TouchPose pose = pair_pose(&rows->world->pairs[number]);
     // a polygon's side stays what it is within a step
-    const double penetration = pose.penetration + row->excess;
+    const double penetration = row->excess - pose.gap;
     const double speed = pose.approach_speed + row->faster;
     const double pressing = vec2_dot(row->normal, force);
     // of a staggered world the step stands in the middle between its two speeds, and its end
@@ -304,20 +330,41 @@ static void book_energy(ContactRows *rows, size_t number, Vec2 force, double ste
     }
 }
 
+// The force of a row on body b, as ODE has it.
+static Vec2 row_force(const ContactRows *rows, size_t number)
+{
+    const ContactRow *row = &rows->rows[number];
+    if (!row->is_touching) {
+        return (Vec2){0.0, 0.0};
+    }
+    // ODE gives the force on the first body attached: a, if it is no ground
+    const double sign = rows->world->pairs[number].bodies[0] != NULL ? -1.0 : 1.0;
+    return (Vec2){sign * row->feedback.f1[0], sign * row->feedback.f1[1]};
+}
+
+// Adds the force at a corner to that of its joint.
+static void add_force(const ContactRow *row, Vec2 force, JointState *state)
+{
+    state->force_on_b = vec2_add(state->force_on_b, force);
+    state->force += vec2_length(force);
+    state->moment_on_b += vec2_cross(row->lever, force);
+}
+
 void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
 {
     bool any = false;
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         const ContactRow *row = &rows->rows[i];
         JointState *state = &states[rows->world->pairs[i].joint];
-        if (row->is_touching) {
-            // ODE gives the force on the first body attached: the hole's, if it is no ground
-            const double sign = dGeomGetBody(rows->world->pairs[i].hole) != NULL ? -1.0 : 1.0;
-            state->force_on_b = (Vec2){sign * row->feedback.f1[0], sign * row->feedback.f1[1]};
-            state->force = vec2_length(state->force_on_b);
-            any = true;
+        const Vec2 force = row_force(rows, i);
+        if (row->is_touching && rows->world->pairs[i].is_corner) {
+            add_force(row, force, state);
+        } else if (row->is_touching) {
+            state->force_on_b = force;
+            state->force = vec2_length(force);
         }
-        book_energy(rows, i, state->force_on_b, step_s);
+        any = any || row->is_touching;
+        book_energy(rows, i, force, step_s);
     }
     if (any) {
         dJointGroupEmpty(rows->group);
@@ -333,7 +380,7 @@ void contact_rows_offsets(const ContactRows *rows, int body, Vec2 offsets[LINKAG
         const int number = rows->world->pairs[i].joint;
         const Joint *joint = &rows->scenario->linkage.joints[number];
         if (row->is_touching) {
-            offsets[number] = joint->body_a == body ? row->arm_hole : row->arm_pin;
+            offsets[number] = row->arms[joint->body_a == body ? 0 : 1];
         }
     }
 }

@@ -1,4 +1,5 @@
-// The contacts of the joints with play: looked for before each step, one row each while they last.
+// The contacts of the joints with play: looked for before each step at each place where they may
+// be, one row each while they last.
 #pragma once
 
 #include "contact/map.h"
@@ -12,12 +13,12 @@ typedef struct ContactRows {
     const Map *map;
     double penalty; // N s/m, of CONTACT_POISSON: given, or the paper's estimate
     dJointGroupID group;
-    ContactRow rows[LINKAGE_JOINT_MAX]; // by pair of the world
-    size_t most_rows;                   // at any step so far
-    size_t row_count;                   // made so far
-    size_t fallback_count;              // of those, where the map would not have been stable
-    bool is_staggered;                  // positions stand half a step behind the speeds
-    Response response;                  // for effective masses
+    ContactRow rows[TOUCH_MAX]; // by pair of the world
+    size_t most_rows;           // at any step so far
+    size_t row_count;           // made so far
+    size_t fallback_count;      // of those, where the map would not have been stable
+    bool is_staggered;          // positions stand half a step behind the speeds
+    Response response;          // for effective masses
 } ContactRows;
 
 // Prepares the laws of all pairs. Fails with ERR_CASE where a law does not fit a joint. The rows
@@ -29,13 +30,15 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
 void contact_rows_finish(ContactRows *rows);
 
 // Looks for contacts where the bodies stand now and makes a row for each; fills the states (gap,
-// eccentricity, touching) and the closing speeds at which their contacts began, by joint. Fails
+// touching, and the eccentricity of joints with one place) and the closing speeds at which their
+// contacts began, by joint: of several places the least gap and the highest speed. Fails
 // with ERR_SOLVER where a pin is deeper in its wall than any contact law holds.
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err);
 
-// By joint, from the centre of the hole or pin that a body carries to the point where the contact's
-// force acts, m; zero for a joint without a row in this step. Of a prismatic joint from the anchor.
+// By joint, from the anchor on a body to where the joint's force is said to act, m: of a pin or
+// stop at the contact, of a block or a prismatic joint at the anchor on body b. Zero for a joint
+// with play that has no row in this step.
 void contact_rows_offsets(const ContactRows *rows, int body, Vec2 offsets[LINKAGE_JOINT_MAX]);
 
 // What all contacts together lost in the step along the normal and in sliding, and store after it,

@@ -12,27 +12,7 @@
 // force goes through the anchor on body b.
 #include "ode/sliding.h"
 
-// Where a side of the joint is.
-typedef struct Side {
-    Vec2 centre;    // m
-    Vec2 direction; // unit: where the body's x axis points
-} Side;
-
-static Side side_of(dBodyID body)
-{
-    if (body == NULL) {
-        return (Side){{0.0, 0.0}, {1.0, 0.0}};
-    }
-    const dReal *position = dBodyGetPosition(body);
-    const dReal *rotation = dBodyGetRotation(body);
-    return (Side){{position[0], position[1]}, {rotation[0], rotation[4]}};
-}
-
-// A vector given in a frame whose x axis points so.
-static Vec2 turned(Vec2 axis, Vec2 local)
-{
-    return (Vec2){axis.x * local.x - axis.y * local.y, axis.y * local.x + axis.x * local.y};
-}
+#include "ode/snapshot.h"
 
 // The number of ODE's first body: not the ground.
 static int first_of(const Sliding *sliding)
@@ -86,9 +66,9 @@ static void set_across(Sliding *sliding, const Vec2 *points, Vec2 normal)
     dJointSetDBallDistance(sliding->across, length - open);
 }
 
-static void set_turn(Sliding *sliding, const Side *sides, double step_s)
+static void set_turn(Sliding *sliding, const Snapshot *sides, double step_s)
 {
-    const Vec2 square = turned(sides[0].direction, sliding->held);
+    const Vec2 square = snapshot_turn(&sides[0], sliding->held);
     const double tilt =
         atan2(vec2_cross(square, sides[1].direction), vec2_dot(square, sides[1].direction));
     // of the first body against the second
@@ -98,15 +78,15 @@ static void set_turn(Sliding *sliding, const Side *sides, double step_s)
 
 void sliding_set(Sliding *sliding, double step_s)
 {
-    Side sides[2];
+    Snapshot sides[2];
     Vec2 points[2];
     for (int side = 0; side < 2; side++) {
-        sides[side] = side_of(sliding->ids[side]);
+        sides[side] = snapshot_of(sliding->ids[side]);
         points[side] =
-            vec2_add(sides[side].centre, turned(sides[side].direction, sliding->anchors[side]));
+            vec2_add(sides[side].position, snapshot_turn(&sides[side], sliding->anchors[side]));
     }
     sliding->offset = vec2_sub(points[1], points[0]);
-    set_across(sliding, points, vec2_perp(turned(sides[0].direction, sliding->direction)));
+    set_across(sliding, points, vec2_perp(snapshot_turn(&sides[0], sliding->direction)));
     set_turn(sliding, sides, step_s);
 }
 

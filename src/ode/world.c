@@ -13,7 +13,6 @@
 
 #include "base/dense.h"
 #include "ode/engine.h"
-#include "ode/hole_geom.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -150,31 +149,21 @@ static void make_sliding(const Linkage *linkage, int number, const OdeOptions *o
                  &world->sliding[world->sliding_count++]);
 }
 
-static void attach_geom(const World *world, dGeomID geom, int body, Vec2 anchor)
-{
-    if (body == LINKAGE_GROUND) {
-        dGeomSetPosition(geom, anchor.x, anchor.y, 0.0);
-        return;
-    }
-    dGeomSetBody(geom, world->bodies[body]);
-    dGeomSetOffsetPosition(geom, anchor.x, anchor.y, 0.0);
-}
-
-static bool make_pair(const Scenario *scenario, int number, World *world, Err *err)
+static bool make_pairs(const Scenario *scenario, int number, World *world, Err *err)
 {
     const Joint *joint = &scenario->linkage.joints[number];
-    const Clearance *clearance = &joint->clearance;
-    WorldPair *pair = &world->pairs[world->pair_count++];
-    pair->joint = number;
-    pair->hole = hole_geom_create(clearance->hole_radius);
-    pair->pin = dCreateCylinder(0, clearance->pin_radius, hole_geom_width(clearance));
-    attach_geom(world, pair->hole, joint->body_a, joint->anchor_a);
-    attach_geom(world, pair->pin, joint->body_b, joint->anchor_b);
-    Err own = {0};
-    if (world->collider->check != NULL && !world->collider->check(scenario, number, &own)) {
-        return err_set(err, ERR_SOLVER, "%s; use collider pin-hole or staves", own.text);
+    Touch places[TOUCH_CORNERS];
+    const size_t count = touch_places(joint, number, places);
+    if (world->pair_count + count > TOUCH_MAX) {
+        return touch_too_many(err);
     }
-    pair->collision = world->collider->open(scenario, number);
+    const dBodyID bodies[2] = {body_of(world, joint->body_a), body_of(world, joint->body_b)};
+    for (size_t i = 0; i < count; i++) {
+        WorldPair *pair = &world->pairs[world->pair_count++];
+        if (!pair_make(scenario, &places[i], bodies, world->collider, pair, err)) {
+            return false;
+        }
+    }
     return true;
 }
 
@@ -217,8 +206,8 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
             make_sliding(linkage, (int)i, &scenario->ode, world);
         } else if (linkage_is_ideal(linkage, i)) {
             make_ball(linkage, motions, i, &scenario->ode, world);
-        } else if (linkage->joints[i].kind == JOINT_CLEARANCE &&
-                   !make_pair(scenario, (int)i, world, err)) {
+        } else if (linkage_kind_has_play(linkage->joints[i].kind) &&
+                   !make_pairs(scenario, (int)i, world, err)) {
             return false;
         }
     }
@@ -229,9 +218,7 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
 void world_finish(World *world)
 {
     for (size_t i = 0; i < world->pair_count; i++) {
-        world->collider->close(world->pairs[i].collision);
-        dGeomDestroy(world->pairs[i].hole);
-        dGeomDestroy(world->pairs[i].pin);
+        pair_finish(world->collider, &world->pairs[i]);
     }
     if (world->id != NULL) {
         dWorldDestroy(world->id);
@@ -304,16 +291,7 @@ void world_place(World *world, size_t body, const Motion *motion)
 
 Snapshot world_snapshot(const World *world, size_t body)
 {
-    const dBodyID id = world->bodies[body];
-    const dReal *position = dBodyGetPosition(id);
-    const dReal *rotation = dBodyGetRotation(id);
-    const dReal *velocity = dBodyGetLinearVel(id);
-    return (Snapshot){
-        .position = {position[0], position[1]},
-        .direction = {rotation[0], rotation[4]},
-        .velocity = {velocity[0], velocity[1]},
-        .omega = dBodyGetAngularVel(id)[2],
-    };
+    return snapshot_of(world->bodies[body]);
 }
 
 void world_motions(const World *world, Motion *motions)

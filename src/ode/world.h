@@ -1,20 +1,15 @@
-// A linkage built in ODE: bodies, ideal joints, pins and holes. Only what the plane needs.
+// A linkage built in ODE: bodies, ideal joints, places of joints with play. Only what the plane
+// needs.
 #pragma once
 
 #include "model/trajectory.h"
 #include "ode/applied.h"
 #include "ode/collider.h"
+#include "ode/pair.h"
 #include "ode/sliding.h"
+#include "ode/snapshot.h"
 
 #include <ode/ode.h>
-
-// One joint with play, as geometry: a cylinder on one body, a hole on the other.
-typedef struct WorldPair {
-    int joint; // number in the linkage
-    dGeomID hole;
-    dGeomID pin;
-    void *collision; // what the world's collider keeps of the joint; owned
-} WorldPair;
 
 typedef struct World {
     const Linkage *linkage;
@@ -25,9 +20,9 @@ typedef struct World {
     Sliding sliding[LINKAGE_JOINT_MAX]; // the prismatic joints
     const Collider *collider;           // of all pairs
     size_t pair_count;
-    WorldPair pairs[LINKAGE_JOINT_MAX];
-    size_t constraint_rows; // scalar rows of the ideal joints, all independent
-    Applied applied;        // springs, dampers, torque
+    WorldPair pairs[TOUCH_MAX]; // in the order of touch_list
+    size_t constraint_rows;     // scalar rows of the ideal joints, all independent
+    Applied applied;            // springs, dampers, torque
 } World;
 
 // Builds the world of a scenario with its bodies in the motions given. Fails with ERR_SOLVER where
@@ -61,14 +56,7 @@ void world_joint_forces(const World *world, JointState *joints);
 // Puts one body where a motion says, with its velocity.
 void world_place(World *world, size_t body, const Motion *motion);
 
-// The state of one body as the engine holds it, cheap enough to be kept at every step.
-typedef struct Snapshot {
-    Vec2 position;  // m
-    Vec2 direction; // unit: where the body's x axis points
-    Vec2 velocity;  // m/s
-    double omega;   // rad/s
-} Snapshot;
-
+// The state of one body as the engine holds it.
 Snapshot world_snapshot(const World *world, size_t body);
 
 // The positions and velocities of all bodies; angles in one turn.

@@ -1,0 +1,167 @@
+// Where do the bodies of a joint with play touch in ODE's world, and at which speed?
+#include "ode/pair.h"
+
+#include "contact/pin_hole.h"
+#include "ode/hole_geom.h"
+#include "ode/snapshot.h"
+
+static void attach_geom(dGeomID geom, dBodyID body, Vec2 anchor)
+{
+    if (body == NULL) {
+        dGeomSetPosition(geom, anchor.x, anchor.y, 0.0);
+        return;
+    }
+    dGeomSetBody(geom, body);
+    dGeomSetOffsetPosition(geom, anchor.x, anchor.y, 0.0);
+}
+
+static bool make_geoms(const Scenario *scenario, const Collider *collider, WorldPair *pair,
+                       Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[pair->joint];
+    const Clearance *clearance = &joint->clearance;
+    pair->hole = hole_geom_create(clearance->hole_radius);
+    pair->pin = dCreateCylinder(0, clearance->pin_radius, hole_geom_width(clearance));
+    attach_geom(pair->hole, pair->bodies[0], joint->anchor_a);
+    attach_geom(pair->pin, pair->bodies[1], joint->anchor_b);
+    Err own = {0};
+    if (collider->check != NULL && !collider->check(scenario, pair->joint, &own)) {
+        return err_set(err, ERR_SOLVER, "%s; use collider pin-hole or staves", own.text);
+    }
+    pair->collision = collider->open(scenario, pair->joint);
+    return true;
+}
+
+bool pair_make(const Scenario *scenario, const Touch *touch, const dBodyID bodies[2],
+               const Collider *collider, WorldPair *pair, Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[touch->joint];
+    *pair = (WorldPair){
+        .joint = touch->joint,
+        .touch = *touch,
+        .bodies = {bodies[0], bodies[1]},
+    };
+    if (touch->shape == TOUCH_HOLE) {
+        return make_geoms(scenario, collider, pair, err);
+    }
+    if (scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) {
+        return err_set(err, ERR_SOLVER,
+                       "collider %s sees pins in their holes only, and joint '%s' is a %s; use "
+                       "collider pin-hole",
+                       OPTIONS_ODE_COLLIDERS[scenario->ode.collider], joint->name,
+                       joint->kind == JOINT_GUIDE ? "block between guides" : "stop");
+    }
+    pair->line = (Vec2){cos(touch->direction), sin(touch->direction)};
+    pair->is_corner = joint->kind == JOINT_GUIDE;
+    pair->beside[0] = vec2_sub(touch->anchor_a, joint->anchor_a);
+    pair->beside[1] = vec2_sub(touch->anchor_b, joint->anchor_b);
+    return true;
+}
+
+void pair_finish(const Collider *collider, WorldPair *pair)
+{
+    if (pair->hole != NULL) {
+        collider->close(pair->collision);
+        dGeomDestroy(pair->hole);
+        dGeomDestroy(pair->pin);
+    }
+}
+
+static Vec2 geom_position(dGeomID geom)
+{
+    const dReal *position = dGeomGetPosition(geom);
+    return (Vec2){position[0], position[1]};
+}
+
+// The velocity of a body's point, m/s; zero of the ground.
+static Vec2 velocity_at(dBodyID body, Vec2 point)
+{
+    if (body == NULL) {
+        return (Vec2){0.0, 0.0};
+    }
+    const dReal *at = dBodyGetPosition(body);
+    const dReal *speed = dBodyGetLinearVel(body);
+    const double omega = dBodyGetAngularVel(body)[2];
+    return (Vec2){speed[0] - omega * (point.y - at[1]), speed[1] + omega * (point.x - at[0])};
+}
+
+Vec2 pair_velocity(const WorldPair *pair, Vec2 point)
+{
+    return vec2_sub(velocity_at(pair->bodies[1], point), velocity_at(pair->bodies[0], point));
+}
+
+static TouchPose hole_pose(const WorldPair *pair)
+{
+    const Vec2 hole = geom_position(pair->hole);
+    const Vec2 pin = geom_position(pair->pin);
+    const Vec2 velocity =
+        vec2_sub(velocity_at(pair->bodies[1], pin), velocity_at(pair->bodies[0], hole));
+    const PinHole pose = pin_hole_pose(hole, pin, velocity, pair->touch.clearance);
+    return (TouchPose){
+        .offset = pose.eccentricity,
+        .velocity = velocity,
+        .gap = pose.gap,
+        .has_normal = pose.has_normal,
+        .normal = pose.normal,
+        .approach_speed = pose.approach_speed,
+    };
+}
+
+TouchPose pair_pose(const WorldPair *pair)
+{
+    if (pair->hole != NULL) {
+        return hole_pose(pair);
+    }
+    const Snapshot a = snapshot_of(pair->bodies[0]);
+    const Snapshot b = snapshot_of(pair->bodies[1]);
+    const Vec2 arm_a = snapshot_turn(&a, pair->touch.anchor_a);
+    const Vec2 arm_b = snapshot_turn(&b, pair->touch.anchor_b);
+    const Vec2 offset = vec2_sub(vec2_add(b.position, arm_b), vec2_add(a.position, arm_a));
+    const Vec2 velocity = vec2_sub(snapshot_velocity(&b, arm_b), snapshot_velocity(&a, arm_a));
+    return touch_pose_of(&pair->touch, offset, velocity, snapshot_turn(&a, pair->line), a.omega);
+}
+
+Vec2 pair_centre(const WorldPair *pair)
+{
+    return geom_position(pair->hole);
+}
+
+// Where an anchor is.
+static Vec2 anchor_of(const WorldPair *pair, int side)
+{
+    const Snapshot body = snapshot_of(pair->bodies[side]);
+    const Vec2 anchor = side == 0 ? pair->touch.anchor_a : pair->touch.anchor_b;
+    return vec2_add(body.position, snapshot_turn(&body, anchor));
+}
+
+Vec2 pair_anchor_b(const WorldPair *pair)
+{
+    return pair->pin != NULL ? geom_position(pair->pin) : anchor_of(pair, 1);
+}
+
+Vec2 pair_point(const WorldPair *pair, Vec2 normal)
+{
+    const Touch *touch = &pair->touch;
+    switch (touch->shape) {
+    case TOUCH_HOLE:
+        return vec2_sub(pair_centre(pair), vec2_scale(touch->radius_a, normal));
+    case TOUCH_DISC:
+        return vec2_add(anchor_of(pair, 0), vec2_scale(touch->radius_a, normal));
+    default:
+        return vec2_sub(anchor_of(pair, 1), vec2_scale(touch->radius_b, normal));
+    }
+}
+
+void pair_arms(const WorldPair *pair, const TouchPose *pose, Vec2 arms[2], Vec2 *lever)
+{
+    touch_points(&pair->touch, pose, &arms[0], &arms[1]);
+    *lever = (Vec2){0.0, 0.0};
+    if (pair->is_corner) {
+        const Snapshot a = snapshot_of(pair->bodies[0]);
+        const Snapshot b = snapshot_of(pair->bodies[1]);
+        const Vec2 to_corner = snapshot_turn(&b, pair->beside[1]);
+        *lever = vec2_add(to_corner, arms[1]);
+        arms[0] = vec2_add(vec2_sub(pose->offset, to_corner), snapshot_turn(&a, pair->beside[0]));
+        arms[1] = (Vec2){0.0, 0.0};
+    }
+}
