@@ -92,6 +92,51 @@ static void slopes_are_those_of_the_force(void **state)
     }
 }
 
+static void slopes_at_lines_and_discs_are_those_of_the_force(void **state)
+{
+    (void)state;
+    for (unsigned number = 0; number < 20; number++) {
+        uint64_t seed = lcg_stirred(number);
+        const double friction = number % 2 == 0 ? 0.0 : 0.3;
+        const bool is_line = number / 2 % 2 == 0;
+        const bool has_turns = !is_line && friction > 0.0;
+        Encounter pin =
+            pressed(&seed, friction, has_turns ? RESPONSE_ROWS_A_JOINT : ENCOUNTER_ROWS_PLAIN);
+        EncounterJoint *joint = &pin.joints[0];
+        joint->shape = is_line ? TOUCH_LINE : TOUCH_DISC;
+        joint->has_friction = friction > 0.0;
+        if (is_line) {
+            pin.position[0] = -DEPTH;
+            pin.position[1] = 0.0;
+            pin.speed[0] = -0.02;
+        } else {
+            // as deep in the other disc as the pin was in its wall, and on its way in
+            joint->radial_clearance *= -1.0;
+            joint->hole_radius *= -1.0;
+            for (size_t i = 0; i < 2; i++) {
+                pin.position[i] *= (CLEARANCE - DEPTH) / (CLEARANCE + DEPTH);
+                pin.speed[i] *= -1.0;
+            }
+        }
+        EncounterSlopes slopes;
+        double force[ROWS];
+        double powers[2];
+        encounter_force_find(&pin, 0.0, NOTHING, NOTHING, force, powers);
+        encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, 0.0, &slopes);
+        assert_true(hypot(force[0], force[1]) > 1.0);
+        for (size_t i = 0; i < pin.row_count; i++) {
+            assert_near(slopes.force[i], force[i], 1e-13 * hypot(force[0], force[1]));
+        }
+        for (size_t row = 0; row < pin.row_count; row++) {
+            // without friction nothing changes with sliding on a line
+            const bool is_idle = is_line && row == 1;
+            assert_true((is_idle && friction == 0.0) || mismatch(&pin, row, false) < 1e-7);
+            assert_true(row >= 2 || is_idle || mismatch(&pin, row, true) < 1e-6);
+        }
+        encounter_finish(&pin);
+    }
+}
+
 // Going out so fast that the damper would pull.
 static void a_force_that_would_pull_is_none_unless_it_is_smooth(void **state)
 {
@@ -141,6 +186,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slopes_are_those_of_the_force),
+        cmocka_unit_test(slopes_at_lines_and_discs_are_those_of_the_force),
         cmocka_unit_test(a_force_that_would_pull_is_none_unless_it_is_smooth),
         cmocka_unit_test(a_smooth_force_goes_on_below_a_depth),
     };

@@ -1,0 +1,201 @@
+// Do contacts at lines and outside discs do what the closed forms and the balances say?
+#include "lone_pin.h"
+
+static const double DURATION_S = 2e-4; // flight, contact of 60 us, and flight again
+static const double RADIUS_A = 0.03;   // m
+static const double RADIUS_B = 0.02;
+
+static void run(Encounter *encounter)
+{
+    assert_true(encounter_run(encounter, DURATION_S));
+}
+
+// The pin of lone_pin.h against a line. Its rows: the gap, and sliding.
+static Encounter at_line(ForceLaw law, double friction, double sliding)
+{
+    Encounter pin = encounter_start(friction, 5e-3, LONE_PIN_PHASE);
+    const EncounterJoint joint = {.law = law, .shape = TOUCH_LINE};
+    assert_true(encounter_add(&pin, &joint, ENCOUNTER_ROWS_PLAIN));
+    pin.mobility[0] = 1.0 / ONE_IMPACT_MASS;
+    pin.mobility[3] = 3.0 / ONE_IMPACT_MASS; // a disc, with its turning
+    pin.position[0] = LONE_PIN_GAP;
+    pin.speed[0] = -ONE_IMPACT_SPEED;
+    pin.speed[1] = sliding;
+    return pin;
+}
+
+// A disc that flies at one that stands still, along x, off the line of centres by a share of the
+// sum of radii. Rows: x, y, and the turns of both where there is friction.
+static Encounter at_disc(ForceLaw law, double friction, double off)
+{
+    const double reach = RADIUS_A + RADIUS_B;
+    const size_t rows = friction > 0.0 ? RESPONSE_ROWS_A_JOINT : ENCOUNTER_ROWS_PLAIN;
+    Encounter pin = encounter_start(friction, 5e-3, LONE_PIN_PHASE);
+    const EncounterJoint joint = {
+        .law = law, .shape = TOUCH_DISC, .radial_clearance = -reach, .hole_radius = -RADIUS_A};
+    assert_true(encounter_add(&pin, &joint, rows));
+    for (size_t i = 0; i < rows; i++) {
+        pin.mobility[i * rows + i] = 1.0 / ONE_IMPACT_MASS;
+    }
+    if (friction > 0.0) {
+        pin.mobility[10] = 2.0 / (ONE_IMPACT_MASS * RADIUS_A * RADIUS_A);
+        pin.mobility[15] = 2.0 / (ONE_IMPACT_MASS * RADIUS_B * RADIUS_B);
+    }
+    pin.position[0] = -reach * sqrt(1.0 - off * off) - LONE_PIN_GAP;
+    pin.position[1] = off * reach;
+    pin.speed[0] = ONE_IMPACT_SPEED;
+    return pin;
+}
+
+static double span_of_contact(const Encounter *encounter)
+{
+    double begin_s = 0.0;
+    double end_s = 0.0;
+    for (size_t node = 0; node + 1 < encounter->node_count; node++) {
+        if (encounter->times[node + 1] == encounter->times[node]) {
+            (encounter->touching[node + 1] != 0 ? (begin_s = encounter->times[node])
+                                                : (end_s = encounter->times[node]));
+        }
+    }
+    return end_s - begin_s;
+}
+
+static void head_on_all_shapes_are_hertz_closed_form(void **state)
+{
+    (void)state;
+    Encounter pins[2] = {at_line(lone_pin_hertz(0.0), 0.0, 0.0),
+                         at_disc(lone_pin_hertz(0.0), 0.0, 0.0)};
+    for (int i = 0; i < 2; i++) {
+        run(&pins[i]);
+        const EncounterSums end = lone_pin_end(&pins[i]);
+        const double pressed = 2.0 * ONE_IMPACT_MASS * ONE_IMPACT_SPEED;
+        assert_close(fabs(end.impulse[0]), pressed, 1e-7);
+        assert_near(end.impulse[1], 0.0, 1e-15);
+        assert_close(span_of_contact(&pins[i]), lone_pin_duration(), 1e-7);
+        // a line pushes along its normal, the disc back where it came from
+        assert_true(i == 0 ? end.impulse[0] > 0.0 : end.impulse[0] < 0.0);
+        encounter_finish(&pins[i]);
+    }
+}
+
+static void damping_gives_back_what_its_closed_form_says(void **state)
+{
+    (void)state;
+    // the last is overdamped: implicit steps
+    static const double FACTORS[3] = {0.3, 2.0, 1e3};
+    for (int k = 0; k < 3; k++) {
+        Encounter pins[2] = {at_line(lone_pin_hertz(FACTORS[k]), 0.0, 0.0),
+                             at_disc(lone_pin_hertz(FACTORS[k]), 0.0, 0.0)};
+        for (int i = 0; i < 2; i++) {
+            run(&pins[i]);
+            const double pressed = fabs(lone_pin_end(&pins[i]).impulse[0]);
+            const double given = pressed / (ONE_IMPACT_MASS * ONE_IMPACT_SPEED) - 1.0;
+            const double left = pins[i].joints[0].is_touching ? 0.0 : 1.0;
+            assert_near(given, damping_delivered(FACTORS[k]), left > 0.0 ? 2e-6 : 1e-3);
+            encounter_finish(&pins[i]);
+        }
+    }
+}
+
+// A disc that slides on a line stops sliding where 3 mu P / m reaches its speed.
+static void a_disc_on_a_line_is_braked_until_it_rolls(void **state)
+{
+    (void)state;
+    int rolling = 0;
+    for (double sliding = -0.3; sliding < 0.31; sliding += 0.2) {
+        for (double friction = 0.02; friction < 0.7; friction *= 5.0) {
+            Encounter pin = at_line(lone_pin_hertz(0.3), friction, sliding);
+            run(&pin);
+            const EncounterSums end = lone_pin_end(&pin);
+            const double needed = ONE_IMPACT_MASS / 3.0 * fabs(sliding);
+            const double braked = fmin(friction * end.impulse[0], needed);
+            // of friction's law near rest: a fifth of the least speed is its own
+            const double tolerance = 5e-4 * end.impulse[0];
+            assert_near(end.impulse[1], copysign(braked, -sliding), tolerance);
+            const double left = fabs(sliding) - 3.0 * braked / ONE_IMPACT_MASS;
+            assert_near(end.friction, 0.5 * braked * (fabs(sliding) + left),
+                        tolerance * fabs(sliding));
+            rolling += braked == needed ? 1 : 0;
+            encounter_finish(&pin);
+        }
+    }
+    assert_int_equal(rolling, 6);
+}
+
+// Off the line of centres: energy and angular momentum are those before, but for what friction
+// took, and the impulse is along the centres without it.
+static void discs_that_graze_keep_energy_and_angular_momentum(void **state)
+{
+    (void)state;
+    static const double FRICTION[2] = {0.0, 0.3};
+    for (int i = 0; i < 2; i++) {
+        Encounter pin = at_disc(lone_pin_hertz(0.0), FRICTION[i], 0.6);
+        run(&pin);
+        const EncounterSums end = lone_pin_end(&pin);
+        assert_false(pin.joints[0].is_touching);
+        const double vx = ONE_IMPACT_SPEED + end.impulse[0] / ONE_IMPACT_MASS;
+        const double vy = end.impulse[1] / ONE_IMPACT_MASS;
+        const double turns = i == 0 ? 0.0
+                                    : pin.mobility[10] * pow(end.impulse[2], 2.0) +
+                                          pin.mobility[15] * pow(end.impulse[3], 2.0);
+        const double before = 0.5 * ONE_IMPACT_MASS * ONE_IMPACT_SPEED * ONE_IMPACT_SPEED;
+        const double behind = 0.5 * ONE_IMPACT_MASS * (vx * vx + vy * vy) + 0.5 * turns;
+        assert_near(behind + end.friction, before, 1e-7 * before);
+        assert_int_equal(end.friction > 0.01 * before, i);
+        // about the centre of the disc that stands still: force times arm and both turns
+        const double x =
+            pin.position[0] + DURATION_S * ONE_IMPACT_SPEED + end.moment[0] / ONE_IMPACT_MASS;
+        const double y = pin.position[1] + end.moment[1] / ONE_IMPACT_MASS;
+        const double spin = ONE_IMPACT_MASS * (x * vy - y * vx);
+        const double first = -ONE_IMPACT_MASS * pin.position[1] * ONE_IMPACT_SPEED;
+        const double own = i == 0 ? 0.0 : end.impulse[2] + end.impulse[3];
+        assert_near(spin + own, first, 1e-7 * fabs(first));
+        // control: without the turns it is another
+        assert_int_equal(fabs(spin - first) > 1e-2 * fabs(first), i);
+        if (i == 0) {
+            // the centres' line turns by a few 1e-4 in the contact
+            assert_close(end.impulse[1] / end.impulse[0], -0.6 / 0.8, 1e-3);
+        } else {
+            // the rims slide: disc b is turned by R_b times what turns disc a by R_a
+            assert_close(end.impulse[3] / end.impulse[2], RADIUS_B / RADIUS_A, 1e-3);
+        }
+        encounter_finish(&pin);
+    }
+}
+
+// Two corners of one light block that meet a line together: the block does not turn, and each feels
+// half its mass.
+static void two_corners_at_once_share_the_impact(void **state)
+{
+    (void)state;
+    Encounter pin = encounter_start(0.0, 5e-3, LONE_PIN_PHASE);
+    for (int i = 0; i < 2; i++) {
+        const EncounterJoint joint = {
+            .law = lone_pin_hertz(0.0), .shape = TOUCH_LINE, .siblings = {-i, 1 - i}};
+        assert_true(encounter_add(&pin, &joint, ENCOUNTER_ROWS_PLAIN));
+        pin.position[2 * i] = LONE_PIN_GAP;
+        pin.speed[2 * i] = -ONE_IMPACT_SPEED;
+    }
+    // turning is fifty times as easy as moving
+    pin.mobility[0] = pin.mobility[10] = 51.0 / ONE_IMPACT_MASS;
+    pin.mobility[2] = pin.mobility[8] = -49.0 / ONE_IMPACT_MASS;
+    run(&pin);
+    const EncounterSums end = lone_pin_end(&pin);
+    assert_near(end.impulse[0], end.impulse[2], 1e-15);
+    assert_close(end.impulse[0], ONE_IMPACT_MASS * ONE_IMPACT_SPEED, 1e-7);
+    // half the mass each: 2 / m of mobility
+    assert_close(span_of_contact(&pin), lone_pin_duration() * pow(0.5, 0.4), 1e-7);
+    encounter_finish(&pin);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(head_on_all_shapes_are_hertz_closed_form),
+        cmocka_unit_test(damping_gives_back_what_its_closed_form_says),
+        cmocka_unit_test(a_disc_on_a_line_is_braked_until_it_rolls),
+        cmocka_unit_test(discs_that_graze_keep_energy_and_angular_momentum),
+        cmocka_unit_test(two_corners_at_once_share_the_impact),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
