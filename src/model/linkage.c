@@ -24,6 +24,16 @@ double linkage_guide_gap(const Guide *guide, double offset, double tilt)
                                           : 0.5 * guide->opening - fabs(offset) - side - end;
 }
 
+// h cos t + l sin t = opening of a block, h cos t - l sin t = opening of a sleeve.
+double linkage_guide_tilt(const Guide *guide)
+{
+    const double diagonal = hypot(guide->length, guide->height);
+    if (!(guide->opening < diagonal)) {
+        return M_PI;
+    }
+    return fabs(atan2(guide->length, guide->height) - acos(guide->opening / diagonal));
+}
+
 bool linkage_is_ideal(const Linkage *linkage, size_t joint)
 {
     return linkage_kind_is_ideal(linkage->joints[joint].kind) &&

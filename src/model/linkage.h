@@ -212,6 +212,10 @@ static inline bool linkage_kind_has_play(JointKind kind)
 // the metal: the block's middle at a distance from the middle line, m, and tilted, rad.
 double linkage_guide_gap(const Guide *guide, double offset, double tilt);
 
+// The tilt at which opposite corners of a block on the middle line touch, rad: it cannot tilt
+// further. A half turn where it is short enough to turn between its guides.
+double linkage_guide_tilt(const Guide *guide);
+
 // How far the middle of a pin or block can go from the middle of its hole or guides before it
 // touches, not tilted: hole radius minus pin radius, or half of what a block's height is less than
 // the opening (of a sleeve more), m; 0 of other kinds.

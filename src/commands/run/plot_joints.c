@@ -137,7 +137,8 @@ static double farthest(const RunReport *report, double per_metre)
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
             const Joint *shape = &report->scenario->linkage.joints[joint];
-            const bool is_shown = trajectory_feels_play(trajectory, shape);
+            const bool is_shown =
+                shape->kind == JOINT_CLEARANCE && trajectory_feels_play(trajectory, shape);
             for (size_t i = 0; is_shown && i < trajectory->sample_count; i++) {
                 const Vec2 e = trajectory_state(trajectory, i, joint)->eccentricity;
                 const double scale =
@@ -174,7 +175,8 @@ void plot_joints_paths(const RunReport *report, PlotPanel panel)
     plot_enter(&panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-            if (trajectory_feels_play(report->runs[run], &linkage->joints[joint])) {
+            if (linkage->joints[joint].kind == JOINT_CLEARANCE &&
+                trajectory_feels_play(report->runs[run], &linkage->joints[joint])) {
                 const double per_metre = linkage_radial_clearance(&linkage->joints[joint]);
                 draw_path(report, &panel, run, joint, is_one ? UNITS_UM : 1.0 / per_metre);
             }

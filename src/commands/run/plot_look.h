@@ -63,5 +63,14 @@ void plot_joints_paths(const RunReport *report, PlotPanel panel);
 void plot_pins_tilts(const RunReport *report, PlotPanel panel);
 void plot_pins_ends(const RunReport *report, PlotPanel panel);
 
+// Of blocks between guides: the path of each over its play and its tilt, both over the crank angle,
+// and where its corners touch; of any slider its acceleration along its line; of stops how far the
+// bodies are from them.
+void plot_slides_paths(const RunReport *report, PlotPanel panel);
+void plot_slides_accelerations(const RunReport *report, PlotPanel panel);
+void plot_slides_offsets(const RunReport *report, PlotPanel panel);
+void plot_slides_tilts(const RunReport *report, PlotPanel panel);
+void plot_slides_stops(const RunReport *report, PlotPanel panel);
+
 // Where no joint has play: how far omega is from the run that is taken as the truth.
 void plot_joints_errors(const RunReport *report, PlotPanel panel);

@@ -10,11 +10,11 @@
 
 static const double PICTURE_WIDTH = 1000.0; // pixels, as all that follow
 static const double PICTURE_HEIGHT = 880.0;
-static const double ROW_HEIGHT = 384.0; // of a third row of panels
+static const double ROW_HEIGHT = 384.0; // of every row of panels after the second
 static const double PANEL_WIDTH = 390.0;
 static const double PANEL_HEIGHT = 290.0;
 static const double PANEL_LEFT[2] = {84.0, 584.0};
-static const double PANEL_TOP[3] = {146.0, 530.0, 914.0};
+static const double PANEL_TOP = 146.0; // of the first row
 static const double LEGEND_TOP = 62.0;
 static const double LEGEND_ROW = 22.0;
 
@@ -83,7 +83,7 @@ static PlotPanel place_panel(const RunReport *report, Text *svg, int row, int co
         .svg = svg,
         .title = title,
         .left = PANEL_LEFT[column],
-        .top = PANEL_TOP[row],
+        .top = PANEL_TOP + row * ROW_HEIGHT,
         .width = PANEL_WIDTH,
         .height = PANEL_HEIGHT,
         .x = plot_look_x_axis(report),
@@ -270,26 +270,66 @@ static void draw_motions(const RunReport *report, Text *svg)
     draw_motion(report, panel, turns ? ALPHA : ACCELERATION, turns);
 }
 
+// What is drawn from the second panel of the second row on.
+typedef void (*DrawPanel)(const RunReport *report, PlotPanel panel);
+
+enum { PANEL_MAX = 10 };
+
+static bool has_joint(const RunReport *report, JointKind kind)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage->joints[i].kind == kind) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// The panels of the joints that the mechanism has.
+static size_t choose_panels(const RunReport *report, DrawPanel panels[PANEL_MAX])
+{
+    size_t count = 0;
+    if (!scenario_has_clearance(report->scenario)) {
+        panels[count++] = plot_joints_errors;
+    }
+    if (has_joint(report, JOINT_CLEARANCE)) {
+        panels[count++] = plot_joints_paths;
+    }
+    if (has_joint(report, JOINT_CLEARANCE) && report->scenario->linkage.is_spatial) {
+        panels[count++] = plot_pins_tilts;
+        panels[count++] = plot_pins_ends;
+    }
+    if (has_joint(report, JOINT_GUIDE)) {
+        panels[count++] = plot_slides_paths;
+        panels[count++] = plot_slides_offsets;
+        panels[count++] = plot_slides_tilts;
+    }
+    if (has_joint(report, JOINT_GUIDE) || has_joint(report, JOINT_PRISMATIC)) {
+        panels[count++] = plot_slides_accelerations;
+    }
+    if (has_joint(report, JOINT_STOP)) {
+        panels[count++] = plot_slides_stops;
+    }
+    return count;
+}
+
 void plot_run_write(const void *of, Text *svg)
 {
     const RunReport *report = of;
     const char *title = report->scenario->title;
-    const bool has_pins =
-        report->scenario->linkage.is_spatial && scenario_has_clearance(report->scenario);
-    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT + (has_pins ? ROW_HEIGHT : 0.0), title);
+    DrawPanel panels[PANEL_MAX];
+    const size_t count = choose_panels(report, panels);
+    const int more_rows = (int)count / 2;
+    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT + more_rows * ROW_HEIGHT, title);
     plot_text(svg, PANEL_LEFT[0], 34.0, "start", "title", title);
     draw_legend(report, svg);
     draw_motions(report, svg);
     plot_joints_forces(report, place_panel(report, svg, 1, 0, "Force in the joint"));
-    const PlotPanel panel = place_panel(report, svg, 1, 1, "");
-    if (scenario_has_clearance(report->scenario)) {
-        plot_joints_paths(report, panel);
-    } else {
-        plot_joints_errors(report, panel);
-    }
-    if (has_pins) {
-        plot_pins_tilts(report, place_panel(report, svg, 2, 0, ""));
-        plot_pins_ends(report, place_panel(report, svg, 2, 1, ""));
+    for (size_t i = 0; i < count; i++) {
+        // the first stands beside the forces
+        const int place = (int)i + 1;
+        panels[i](report, place_panel(report, svg, 1 + place / 2, place % 2, ""));
     }
     plot_end(svg);
 }

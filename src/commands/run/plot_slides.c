@@ -1,0 +1,231 @@
+// Where were the blocks between their guides, how did the sliders accelerate, and how far from
+// their stops were the bodies?
+//
+// A block of length l between guides with play c to either side, its middle y off the middle line
+// and tilted by t, touches with a corner where
+//     |y| + (l/2) |sin t| - (h/2) (1 - cos t) = c        h the height of the block
+// which in y / c and t / limit is all but the square |y / c| + |t / limit| = 1 on its tip: its
+// corners are both corners of one side (y = +-c), or two opposite ones (t = +-limit).
+#include "commands/run/plot_look.h"
+#include "model/joint_rows.h"
+#include "write/units.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+static const PlotStyle WALL = {"#222222", 1.4, 1.0, "6 4"};
+
+static const Joint *joint_of(const RunReport *report, size_t joint)
+{
+    return &report->scenario->linkage.joints[joint];
+}
+
+// Whether a run shows the play of a joint of that kind.
+static bool shows(const RunReport *report, size_t run, size_t joint, JointKind kind)
+{
+    const Joint *of = joint_of(report, joint);
+    return of->kind == kind && trajectory_feels_play(report->runs[run], of);
+}
+
+static bool shows_acceleration(const RunReport *report, size_t run, size_t joint)
+{
+    return report->runs[run]->is_complete && joint_rows_is_angle(joint_of(report, joint)->kind, 1);
+}
+
+static double offset_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
+{
+    (void)report;
+    return trajectory_state(run, sample, joint)->eccentricity.y * UNITS_UM;
+}
+
+static double tilt_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
+{
+    (void)report;
+    return trajectory_state(run, sample, joint)->tilt * UNITS_MRAD;
+}
+
+static double gap_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
+{
+    (void)report;
+    return trajectory_state(run, sample, joint)->gap * UNITS_MM;
+}
+
+// Of the sliding body along its line.
+static double acceleration_of(const RunReport *report, const Trajectory *run, size_t sample,
+                              size_t joint)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    const Motion *motions = trajectory_motion(run, sample, 0);
+    const int turned = linkage->joints[joint].body_b;
+    const int body = turned == LINKAGE_GROUND ? linkage->joints[joint].body_a : turned;
+    return vec2_dot(joint_rows_along(linkage, motions, (int)joint), motions[body].acceleration);
+}
+
+// A quantity of every joint that a panel shows, with lines at the limits of each.
+typedef struct SlidePanel {
+    PlotQuantity quantity;
+    JointKind kind;
+    double (*limit)(const Joint *joint); // NULL: none
+    bool (*shows)(const RunReport *report, size_t run, size_t joint);
+} SlidePanel;
+
+static bool panel_shows(const SlidePanel *slide, const RunReport *report, size_t run, size_t joint)
+{
+    return slide->shows != NULL ? slide->shows(report, run, joint)
+                                : shows(report, run, joint, slide->kind);
+}
+
+static void widen(const SlidePanel *slide, const RunReport *report, PlotPanel *panel)
+{
+    for (size_t run = 0; run < report->run_count; run++) {
+        const Trajectory *trajectory = report->runs[run];
+        for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
+            const bool is_shown = panel_shows(slide, report, run, joint);
+            const double limit =
+                is_shown && slide->limit != NULL ? slide->limit(joint_of(report, joint)) : 0.0;
+            panel->y.high = fmax(panel->y.high, 1.08 * limit);
+            panel->y.low = fmin(panel->y.low, -1.08 * limit);
+            for (size_t i = 0; is_shown && i < trajectory->sample_count; i++) {
+                const double value = slide->quantity.at(report, trajectory, i, joint);
+                panel->y.high = fmax(panel->y.high, value);
+                panel->y.low = fmin(panel->y.low, value);
+            }
+        }
+    }
+    axis_round(&panel->y.low, &panel->y.high);
+}
+
+static void draw_limits(const SlidePanel *slide, const RunReport *report, const PlotPanel *panel)
+{
+    for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
+        for (int side = -1;
+             slide->limit != NULL && joint_of(report, joint)->kind == slide->kind && side <= 1;
+             side += 2) {
+            const double limit = side * slide->limit(joint_of(report, joint));
+            plot_line(panel, 2, (const double[]){panel->x.low, panel->x.high},
+                      (const double[]){limit, limit}, WALL);
+        }
+    }
+}
+
+static void draw(const SlidePanel *slide, const RunReport *report, PlotPanel panel)
+{
+    widen(slide, report, &panel);
+    plot_enter(&panel);
+    plot_look_shade(report, &panel);
+    draw_limits(slide, report, &panel);
+    for (size_t run = 0; run < report->run_count; run++) {
+        for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
+            if (panel_shows(slide, report, run, joint)) {
+                plot_look_draw(report, &panel, run, slide->quantity, joint);
+            }
+        }
+    }
+    plot_leave(&panel);
+}
+
+static double offset_limit(const Joint *joint)
+{
+    return linkage_radial_clearance(joint) * UNITS_UM;
+}
+
+static double tilt_limit(const Joint *joint)
+{
+    return linkage_guide_tilt(&joint->guide) * UNITS_MRAD;
+}
+
+void plot_slides_offsets(const RunReport *report, PlotPanel panel)
+{
+    static const SlidePanel OFFSET = {
+        {"offset, um", true, -1, offset_of}, JOINT_GUIDE, offset_limit, NULL};
+    panel.title = "Block across its guides; dashed: not tilted";
+    panel.y.title = "off the middle line, um";
+    draw(&OFFSET, report, panel);
+}
+
+void plot_slides_tilts(const RunReport *report, PlotPanel panel)
+{
+    static const SlidePanel TILT = {
+        {"tilt, mrad", true, -1, tilt_of}, JOINT_GUIDE, tilt_limit, NULL};
+    panel.title = "Tilt of the block; dashed: opposite corners touch";
+    panel.y.title = "tilt, mrad";
+    draw(&TILT, report, panel);
+}
+
+void plot_slides_accelerations(const RunReport *report, PlotPanel panel)
+{
+    static const SlidePanel ACCELERATION = {
+        {"acceleration", true, -1, acceleration_of}, JOINT_GUIDE, NULL, shows_acceleration};
+    panel.title = "Acceleration of the slider along its line";
+    panel.y.title = "acceleration, m/s^2";
+    draw(&ACCELERATION, report, panel);
+}
+
+void plot_slides_stops(const RunReport *report, PlotPanel panel)
+{
+    static const SlidePanel GAP = {{"gap, mm", true, -1, gap_of}, JOINT_STOP, NULL, NULL};
+    panel.title = "Distance from the stop";
+    panel.y.title = "gap, mm";
+    draw(&GAP, report, panel);
+}
+
+// The path of one block: its offset over the play, its tilt over the tilt at which it jams.
+static void draw_path(const RunReport *report, const PlotPanel *panel, size_t run, size_t joint)
+{
+    const Trajectory *trajectory = report->runs[run];
+    const double offset = offset_limit(joint_of(report, joint));
+    const double tilt = tilt_limit(joint_of(report, joint));
+    double *x = calloc(trajectory->sample_count, sizeof *x);
+    double *y = calloc(trajectory->sample_count, sizeof *y);
+    assert(x != NULL && y != NULL);
+    for (size_t i = 0; i < trajectory->sample_count; i++) {
+        x[i] = offset_of(report, trajectory, i, joint) / offset;
+        y[i] = tilt_of(report, trajectory, i, joint) / tilt;
+    }
+    PlotStyle style = plot_style(1, plot_look_colour(report, true, joint));
+    style.width = 1.0;
+    style.opacity = 0.8;
+    plot_line(panel, trajectory->sample_count, x, y, style);
+    free(x);
+    free(y);
+}
+
+// How far any block goes in either direction, of its limits.
+static double farthest(const RunReport *report)
+{
+    double most = 1.15;
+    for (size_t run = 0; run < report->run_count; run++) {
+        const Trajectory *trajectory = report->runs[run];
+        for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
+            const Joint *of = joint_of(report, joint);
+            for (size_t i = 0;
+                 shows(report, run, joint, JOINT_GUIDE) && i < trajectory->sample_count; i++) {
+                const double offset = fabs(offset_of(report, trajectory, i, joint));
+                const double tilt = fabs(tilt_of(report, trajectory, i, joint));
+                most = fmax(most, 1.06 * offset / offset_limit(of));
+                most = fmax(most, 1.06 * tilt / tilt_limit(of));
+            }
+        }
+    }
+    return most;
+}
+
+void plot_slides_paths(const RunReport *report, PlotPanel panel)
+{
+    const double high = farthest(report);
+    panel.title = "Block between its guides; dashed: corners touch";
+    panel.x = (Axis){.title = "offset / play to either side", .low = -high, .high = high};
+    panel.y = (Axis){.title = "tilt / largest tilt", .low = -high, .high = high};
+    plot_enter(&panel);
+    for (size_t run = 0; run < report->run_count; run++) {
+        for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
+            if (shows(report, run, joint, JOINT_GUIDE)) {
+                draw_path(report, &panel, run, joint);
+            }
+        }
+    }
+    plot_line(&panel, 5, (const double[]){1.0, 0.0, -1.0, 0.0, 1.0},
+              (const double[]){0.0, 1.0, 0.0, -1.0, 0.0}, WALL);
+    plot_leave(&panel);
+}
