@@ -71,8 +71,8 @@ typedef struct JointExtremes {
     double contact_time;                // s
     size_t spike_count;                 // of those kept below
     Spike spikes[TRAJECTORY_SPIKE_MAX]; // the strongest by force, strongest first
+    Extreme tilt_max;                   // rad, of a pin in space and of a block between guides
     // in space only
-    Extreme tilt_max;  // rad
     Extreme axial_max; // m, distance of the pin's middle from the hole's along the axis
 } JointExtremes;
 

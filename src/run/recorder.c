@@ -189,6 +189,15 @@ static void raise_joint(Recorder *recorder, size_t number, const JointState *sta
     raise_to(&joint->penetration_max, recorder->is_empty, depth, 1.0, time_s);
 }
 
+// Of a block between guides.
+static void raise_tilt(Recorder *recorder, size_t number, const JointState *state, double time_s)
+{
+    if (recorder->scenario->linkage.joints[number].kind == JOINT_GUIDE) {
+        raise_to(&recorder->trajectory->joints[number].tilt_max, recorder->is_empty,
+                 fabs(state->tilt), 1.0, time_s);
+    }
+}
+
 static void raise_joint_space(Recorder *recorder, size_t number, const SpaceJointState *state,
                               double time_s)
 {
@@ -207,6 +216,7 @@ static void raise_all(Recorder *recorder, const StepRecord *step)
     }
     for (size_t i = 0; i < recorder->trajectory->joint_count; i++) {
         raise_joint(recorder, i, &step->joints[i], step->joint_s);
+        raise_tilt(recorder, i, &step->joints[i], step->joint_s);
     }
     recorder->is_empty = false;
 }
@@ -259,6 +269,7 @@ void recorder_see(Recorder *recorder, const Sample *sample)
     }
     for (size_t i = 0; i < trajectory->joint_count; i++) {
         raise_joint(recorder, i, &sample->joints[i], time_s);
+        raise_tilt(recorder, i, &sample->joints[i], time_s);
         if (recorder->scenario->linkage.is_spatial) {
             raise_joint_space(recorder, i, &sample->space_joints[i], time_s);
         }

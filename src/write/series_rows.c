@@ -1,6 +1,7 @@
 // What stands in a row of a series?
 #include "write/series_rows.h"
 
+#include "model/joint_rows.h"
 #include "write/csv.h"
 #include "write/units.h"
 
@@ -42,6 +43,40 @@ static void write_ranges(const Trajectory *trajectory, size_t sample, FILE *stre
     for (size_t i = 0; i < trajectory->joint_count; i++) {
         write_range(trajectory_joint_range(trajectory, sample, i, RANGES_GAP), stream);
         write_range(trajectory_joint_range(trajectory, sample, i, RANGES_FORCE), stream);
+    }
+}
+
+// What a slider has more than a pin: its tilt, and the couple with the force on it.
+static bool slides(const Joint *joint)
+{
+    return joint->kind == JOINT_PRISMATIC || joint->kind == JOINT_GUIDE;
+}
+
+static void write_slide_heads(const Linkage *linkage, FILE *stream)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const char *name = linkage->joints[i].name;
+        if (slides(&linkage->joints[i])) {
+            fprintf(stream, ",%s_tilt_rad,%s_moment_N_m", name, name);
+            fprintf(stream, ",%s_slide_acceleration_m_s2", name);
+        }
+    }
+}
+
+static void write_slides(const Linkage *linkage, const Trajectory *trajectory, size_t sample,
+                         FILE *stream)
+{
+    const Motion *motions = trajectory_motion(trajectory, sample, 0);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (slides(joint)) {
+            const JointState *state = trajectory_state(trajectory, sample, i);
+            const int body = joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b;
+            const Vec2 along = joint_rows_along(linkage, motions, (int)i);
+            const double numbers[] = {state->tilt, state->moment_on_b,
+                                      vec2_dot(along, motions[body].acceleration)};
+            write_cells(numbers, 3, stream);
+        }
     }
 }
 
@@ -98,6 +133,7 @@ static void write_head(const Scenario *scenario, const Trajectory *trajectory, F
         const char *name = scenario->points[i].name;
         fprintf(stream, ",%s_x_m,%s_y_m", name, name);
     }
+    write_slide_heads(linkage, stream);
     if (linkage->is_spatial) {
         write_space_heads(linkage, stream);
     }
@@ -129,6 +165,7 @@ static void write_row(const Scenario *scenario, const Trajectory *trajectory, si
         const Vec2 position = linkage_point(motions, point->body, point->local);
         write_cells((const double[]){position.x, position.y}, 2, stream);
     }
+    write_slides(&scenario->linkage, trajectory, sample, stream);
     if (scenario->linkage.is_spatial) {
         write_space(&scenario->linkage, trajectory, sample, stream);
     }

@@ -7,7 +7,7 @@
 // which in y / c and t / limit is all but the square |y / c| + |t / limit| = 1 on its tip: its
 // corners are both corners of one side (y = +-c), or two opposite ones (t = +-limit).
 #include "commands/run/plot_look.h"
-#include "model/joint_rows.h"
+#include "commands/run/slide_range.h"
 #include "write/units.h"
 
 #include <assert.h>
@@ -30,7 +30,7 @@ static bool shows(const RunReport *report, size_t run, size_t joint, JointKind k
 
 static bool shows_acceleration(const RunReport *report, size_t run, size_t joint)
 {
-    return report->runs[run]->is_complete && joint_rows_is_angle(joint_of(report, joint)->kind, 1);
+    return report->runs[run]->is_complete && slide_range_has(joint_of(report, joint));
 }
 
 static double offset_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
@@ -51,15 +51,10 @@ static double gap_of(const RunReport *report, const Trajectory *run, size_t samp
     return trajectory_state(run, sample, joint)->gap * UNITS_MM;
 }
 
-// Of the sliding body along its line.
 static double acceleration_of(const RunReport *report, const Trajectory *run, size_t sample,
                               size_t joint)
 {
-    const Linkage *linkage = &report->scenario->linkage;
-    const Motion *motions = trajectory_motion(run, sample, 0);
-    const int turned = linkage->joints[joint].body_b;
-    const int body = turned == LINKAGE_GROUND ? linkage->joints[joint].body_a : turned;
-    return vec2_dot(joint_rows_along(linkage, motions, (int)joint), motions[body].acceleration);
+    return slide_range_acceleration(&report->scenario->linkage, run, sample, joint);
 }
 
 // A quantity of every joint that a panel shows, with lines at the limits of each.

@@ -1,5 +1,6 @@
 // What do other programs read of the runs of a case?
 #include "commands/run/run_report.h"
+#include "commands/run/slide_range.h"
 #include "write/json_value.h"
 #include "write/settings_json.h"
 #include "write/units.h"
@@ -29,6 +30,24 @@ static json_t *contacts_array(const JointExtremes *extremes, bool is_felt)
     return contacts;
 }
 
+// Of a slider, at the samples; and of a block how it tilts.
+static void set_slide(json_t *object, const Linkage *linkage, const Trajectory *run, size_t number,
+                      bool is_felt)
+{
+    const Joint *joint = &linkage->joints[number];
+    const SlideRange range = slide_range_find(linkage, run, number);
+    json_value_set(object, "slide_min_m", range.position[0].value);
+    json_value_set(object, "slide_max_m", range.position[1].value);
+    json_value_set(object, "slide_velocity_min_m_s", range.velocity[0].value);
+    json_value_set(object, "slide_velocity_max_m_s", range.velocity[1].value);
+    json_value_set(object, "slide_acceleration_min_m_s2", range.acceleration[0].value);
+    json_value_set(object, "slide_acceleration_max_m_s2", range.acceleration[1].value);
+    if (joint->kind == JOINT_GUIDE) {
+        json_value_set(object, "tilt_max_rad", is_felt ? run->joints[number].tilt_max.value : NAN);
+        json_value_set(object, "tilt_limit_rad", linkage_guide_tilt(&joint->guide));
+    }
+}
+
 static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
 {
     json_t *joints = json_object();
@@ -48,9 +67,12 @@ static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
             json_value_set(joint, "tilt_max_rad", is_felt ? extremes->tilt_max.value : NAN);
             json_value_set(joint, "axial_max_m", is_felt ? extremes->axial_max.value : NAN);
         }
+        if (slide_range_has(&linkage->joints[i])) {
+            set_slide(joint, linkage, run, i, is_felt);
+        }
         json_value_set(joint, "contact_fraction", is_felt ? trajectory_contact_share(run, i) : NAN);
         json_object_set_new(joint, "has_play", json_boolean(has_play));
-        if (has_play) {
+        if (has_play && linkage->joints[i].kind != JOINT_STOP) {
             json_value_set(joint, "radial_clearance_m",
                            linkage_radial_clearance(&linkage->joints[i]));
         }

@@ -109,12 +109,14 @@ json_t *run_json_build(const void *report);
 void plot_run_write(const void *report, Text *svg);
 
 // The parts of the text, each of which appends nothing where it has nothing to say. Extremes of
-// each body that is not driven; the contacts of each joint with play, how its pin tilts and slides
-// in space, and at most `limit` of the
+// each body that is not driven; how sliders move along their lines; the contacts of each joint
+// with play, how its pin tilts and slides in space, how its block tilts, and at most `limit` of the
 // strongest, of the last backend that has any; steps and time, and why runs failed.
 void run_tables_extremes(const RunReport *report, const Style *style, Text *text);
 void run_tables_contacts(const RunReport *report, const Style *style, Text *text);
 void run_tables_pins(const RunReport *report, const Style *style, Text *text);
+void run_slides_motion(const RunReport *report, const Style *style, Text *text);
+void run_slides_blocks(const RunReport *report, const Style *style, Text *text);
 void run_tables_spikes(const RunReport *report, size_t limit, const Style *style, Text *text);
 void run_tables_cost(const RunReport *report, const Style *style, Text *text);
 

@@ -47,6 +47,63 @@ static void write_room(const Joint *joint, Text *text)
     }
 }
 
+static void write_pin(const Joint *joint, bool is_spatial, Text *text)
+{
+    text_append(text, "  play        %s: hole %.7g mm, pin %.7g mm, radial clearance %.4g um\n",
+                joint->name, 2.0 * joint->clearance.hole_radius * UNITS_MM,
+                2.0 * joint->clearance.pin_radius * UNITS_MM,
+                linkage_radial_clearance(joint) * UNITS_UM);
+    if (is_spatial) {
+        write_room(joint, text);
+    }
+}
+
+static void write_guide(const Joint *joint, Text *text)
+{
+    const Guide *guide = &joint->guide;
+    const bool is_sleeve = guide->height > guide->opening;
+    text_append(text,
+                "  play        %s: %s %.7g mm, length %.7g mm, %s %.7g mm, %.4g um either way\n",
+                joint->name, is_sleeve ? "sleeve" : "block", guide->height * UNITS_MM,
+                guide->length * UNITS_MM, is_sleeve ? "rod" : "guide", guide->opening * UNITS_MM,
+                linkage_radial_clearance(joint) * UNITS_UM);
+    text_append(text, "              tilts up to %.4g mrad, where opposite corners touch\n",
+                linkage_guide_tilt(guide) * UNITS_MRAD);
+}
+
+static void write_stop(const Joint *joint, Text *text)
+{
+    const Stop *stop = &joint->stop;
+    text_append(text, "  stop        %s: ", joint->name);
+    if (stop->radius_b > 0.0) {
+        text_append(text, "disc of %.7g mm", 2.0 * stop->radius_b * UNITS_MM);
+    } else {
+        text_append(text, "point");
+    }
+    if (stop->is_disc) {
+        text_append(text, " against a disc of %.7g mm\n", 2.0 * stop->radius_a * UNITS_MM);
+    } else {
+        text_append(text, " against a line\n");
+    }
+}
+
+static void write_joint(const Joint *joint, bool is_spatial, Text *text)
+{
+    switch (joint->kind) {
+    case JOINT_CLEARANCE:
+        write_pin(joint, is_spatial, text);
+        break;
+    case JOINT_GUIDE:
+        write_guide(joint, text);
+        break;
+    case JOINT_STOP:
+        write_stop(joint, text);
+        break;
+    default:
+        break;
+    }
+}
+
 static void write_mechanism(const RunReport *report, Text *text)
 {
     const Scenario *scenario = report->scenario;
@@ -64,17 +121,7 @@ static void write_mechanism(const RunReport *report, Text *text)
     }
     text_append(text, "\n");
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        const Joint *joint = &scenario->linkage.joints[i];
-        if (joint->kind == JOINT_CLEARANCE) {
-            text_append(text,
-                        "  play        %s: hole %.7g mm, pin %.7g mm, radial clearance %.4g um\n",
-                        joint->name, 2.0 * joint->clearance.hole_radius * UNITS_MM,
-                        2.0 * joint->clearance.pin_radius * UNITS_MM,
-                        linkage_radial_clearance(joint) * UNITS_UM);
-            if (scenario->linkage.is_spatial) {
-                write_room(joint, text);
-            }
-        }
+        write_joint(&scenario->linkage.joints[i], scenario->linkage.is_spatial, text);
     }
 }
 
@@ -185,8 +232,10 @@ void run_text_write(const void *of, const Style *style, Text *text)
     // what was asked comes first, how far it can be believed beside it, and theory last
     run_truth_errors(report, style, text);
     run_tables_extremes(report, style, text);
+    run_slides_motion(report, style, text);
     run_tables_contacts(report, style, text);
     run_tables_pins(report, style, text);
+    run_slides_blocks(report, style, text);
     run_tables_spikes(report, RUN_TEXT_SPIKES, style, text);
     spike_tables_write(report, RUN_TEXT_SPIKES, style, text);
     run_truth_matches(report, style, text);

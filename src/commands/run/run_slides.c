@@ -1,0 +1,113 @@
+// How did sliders move along their lines, and how did blocks tilt between their guides?
+#include "commands/run/run_report.h"
+#include "commands/run/slide_range.h"
+#include "write/units.h"
+
+#include <math.h>
+
+static void when_cell(Table *table, const RunReport *report, Extreme extreme)
+{
+    if (report->scenario->linkage.driver.is_present) {
+        table_cell(table, "%.1f", extreme.crank_rad * UNITS_DEG);
+    } else {
+        table_cell(table, "%.4f", extreme.time_s * UNITS_MS);
+    }
+}
+
+static void head_when(Table *table, size_t column, const RunReport *report)
+{
+    const bool is_driven = report->scenario->linkage.driver.is_present;
+    table_head(table, column, is_driven ? "at crank" : "at time", is_driven ? "deg" : "ms",
+               TABLE_RIGHT);
+}
+
+static void slider_row(Table *table, const RunReport *report, const Trajectory *run, size_t joint,
+                       const char *word, int end)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    const SlideRange range = slide_range_find(linkage, run, joint);
+    table_cell(table, "%s", linkage->joints[joint].name);
+    table_cell(table, "%s", run->backend);
+    table_cell(table, "%s", word);
+    table_cell(table, "%.6g", range.position[end].value * UNITS_MM);
+    table_cell(table, "%.6g", range.velocity[end].value);
+    when_cell(table, report, range.velocity[end]);
+    table_cell(table, "%.6g", range.acceleration[end].value);
+    when_cell(table, report, range.acceleration[end]);
+}
+
+void run_slides_motion(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"joint", "", TABLE_LEFT},
+        {"backend", "", TABLE_LEFT},
+        {"", "", TABLE_LEFT},
+        {"position", "mm", TABLE_RIGHT},
+        {"velocity", "m/s", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
+        {"accel.", "m/s^2", TABLE_RIGHT},
+        {"", "", TABLE_RIGHT},
+    };
+    const Linkage *linkage = &report->scenario->linkage;
+    Table *table = NULL;
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        for (size_t i = 0; i < report->run_count; i++) {
+            const Trajectory *run = report->runs[i];
+            if (!run->is_complete || !slide_range_has(&linkage->joints[joint])) {
+                continue;
+            }
+            if (table == NULL) {
+                table = section_begin("Sliders along their lines, at the samples", 8, HEADS, style,
+                                      text);
+                head_when(table, 5, report);
+                head_when(table, 7, report);
+            }
+            slider_row(table, report, run, joint, "max", 1);
+            slider_row(table, report, run, joint, "min", 0);
+        }
+    }
+    if (table != NULL) {
+        section_end(table, text);
+    }
+}
+
+static void block_row(Table *table, const RunReport *report, const Trajectory *run, size_t number)
+{
+    const Joint *joint = &report->scenario->linkage.joints[number];
+    const JointExtremes *extremes = &run->joints[number];
+    const double limit = linkage_guide_tilt(&joint->guide);
+    table_cell(table, "%s", joint->name);
+    table_cell(table, "%s", run->backend);
+    section_number(table, extremes->tilt_max.value * UNITS_MRAD);
+    when_cell(table, report, extremes->tilt_max);
+    section_number(table, limit * UNITS_MRAD);
+    table_cell(table, "%.1f", extremes->tilt_max.value / limit * UNITS_PERCENT);
+}
+
+void run_slides_blocks(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"joint", "", TABLE_LEFT},         {"backend", "", TABLE_LEFT},
+        {"tilt max", "mrad", TABLE_RIGHT}, {"", "", TABLE_RIGHT},
+        {"limit", "mrad", TABLE_RIGHT},    {"of limit", "%", TABLE_RIGHT},
+    };
+    const Linkage *linkage = &report->scenario->linkage;
+    Table *table = NULL;
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        for (size_t i = 0; i < report->run_count; i++) {
+            const Trajectory *run = report->runs[i];
+            if (linkage->joints[joint].kind != JOINT_GUIDE ||
+                !trajectory_feels_play(run, &linkage->joints[joint])) {
+                continue;
+            }
+            if (table == NULL) {
+                table = section_begin("Blocks between their guides", 6, HEADS, style, text);
+                head_when(table, 3, report);
+            }
+            block_row(table, report, run, joint);
+        }
+    }
+    if (table != NULL) {
+        section_end(table, text);
+    }
+}
