@@ -222,6 +222,15 @@ static void every_key_of_run_is_listed(void **state)
                "run -q --json \"$cases\"/literature/four-bar-half-mm.yaml --step '4 us' "
                "--set run.revolutions=0.18",
                "deviation");
+    // a slider with ideal joints, and a block between guides
+    check_keys(state, "run",
+               "run -q --json \"$cases\"/mechanisms/slider-crank.yaml "
+               "--set run.backends=analytic",
+               "slider_velocity_max_crank_deg");
+    check_keys(state, "run",
+               "run -q --json --backend reference \"$cases\"/mechanisms/slider-crank-guide.yaml "
+               "--set 'run.duration=3 ms'",
+               "tilt_limit_rad");
 }
 
 static void every_key_of_compare_is_listed(void **state)
@@ -281,6 +290,10 @@ static void every_column_of_a_table_is_listed(void **state)
                   "run -q --backend reference --series table.csv "
                   "\"$cases\"/literature/pin-in-hole-drop.yaml --set 'run.duration=1 ms'",
                   "_gap_max_m", " hole_gap_max_m ");
+    check_columns(state, "run",
+                  "run -q --backend reference --series table.csv "
+                  "\"$cases\"/mechanisms/slider-crank-guide.yaml --set 'run.duration=1 ms'",
+                  "_moment_N_m", " slider-guide_moment_N_m ");
     check_columns(state, "map", "map -q --csv table.csv --steps '1 us' " FIRST_CONTACTS,
                   "longest_valid_step_s", " longest_valid_step_s ");
     check_columns(state, "compare",
