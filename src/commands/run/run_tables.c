@@ -65,7 +65,7 @@ static void contact_row(Table *table, const RunReport *report, const Trajectory 
 }
 
 // The farthest that a pin was from the centre of its hole at the samples, m.
-static double farthest(const Trajectory *run, size_t joint)
+static double farthest_pin(const Trajectory *run, size_t joint)
 {
     double distance = 0.0;
     for (size_t i = 0; i < run->sample_count; i++) {
@@ -74,28 +74,39 @@ static double farthest(const Trajectory *run, size_t joint)
     return distance;
 }
 
+// How far a pin came in its play.
+static void write_still(const RunReport *report, const Trajectory *run, size_t joint, Text *text)
+{
+    const Joint *of = &report->scenario->linkage.joints[joint];
+    const double clearance = linkage_radial_clearance(of) * UNITS_UM;
+    const double share = farthest_pin(run, joint) * UNITS_UM / clearance;
+    text_append(
+        text,
+        share < UNTOUCHED_STILL
+            ? " The pin stays at %.2g of its %.4g um of play: nothing pushes it, or the run "
+              "of %.4g ms is too short."
+            : " The pin comes no farther than %.2g of its %.4g um of play: the run of "
+              "%.4g ms is too short, or the play too large for it.",
+        share, clearance, run->duration_s * UNITS_MS);
+}
+
 // A run without a single contact has no spikes, and is hardly what was wanted.
 static void write_untouched(const RunReport *report, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-        const double clearance = linkage_radial_clearance(&linkage->joints[joint]) * UNITS_UM;
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
             if (!trajectory_feels_play(run, &linkage->joints[joint]) ||
                 run->joints[joint].impacts > 0 || run->joints[joint].contact_time > 0.0) {
                 continue;
             }
-            const double share = farthest(run, joint) * UNITS_UM / clearance;
-            text_append(text, "  %s, %s: no contact in the whole run. ",
-                        linkage->joints[joint].name, run->backend);
-            text_append(text,
-                        share < UNTOUCHED_STILL
-                            ? "The pin stays at %.2g of its %.4g um of play: nothing pushes it, "
-                              "or the run of %.4g ms is too short.\n"
-                            : "The pin comes no farther than %.2g of its %.4g um of play: the run "
-                              "of %.4g ms is too short, or the play too large for it.\n",
-                        share, clearance, run->duration_s * UNITS_MS);
+            text_append(text, "  %s, %s: no contact in the whole run.", linkage->joints[joint].name,
+                        run->backend);
+            if (linkage->joints[joint].kind == JOINT_CLEARANCE) {
+                write_still(report, run, joint, text);
+            }
+            text_append(text, "\n");
         }
     }
 }
