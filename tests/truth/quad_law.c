@@ -121,8 +121,11 @@ static QuadLaw named_law(const Scenario *scenario, const Joint *joint)
 QuadLaw quad_law(const Scenario *scenario, const Joint *joint)
 {
     const ContactOptions *contact = &scenario->contact;
-    QuadLaw law = contact->stiffness > 0.0 ? power_law(contact->stiffness, contact->exponent)
-                                           : named_law(scenario, joint);
+    const bool is_given = contact->stiffness > 0.0;
+    QuadLaw law = joint->contact.stiffness > 0.0
+                      ? power_law(joint->contact.stiffness, joint->contact.exponent)
+                  : is_given ? power_law(contact->stiffness, contact->exponent)
+                             : named_law(scenario, joint);
     law.viscous = contact->damping == DAMPING_VISCOUS ? contact->viscous_coefficient : 0.0;
     return law;
 }

@@ -19,16 +19,38 @@ typedef struct QuadBody {
     Quad inertia; // kg m^2
 } QuadBody;
 
+// When a joint's two rows hold: those of a pin in its hole and of a block between its guides are
+// where the run starts.
+typedef enum QuadHeld {
+    QUAD_HELD_NEVER,
+    QUAD_HELD_ALWAYS,
+    QUAD_HELD_AT_START,
+} QuadHeld;
+
+typedef enum QuadShape {
+    QUAD_HOLE, // a pin on body b in a hole of body a
+    QUAD_DISC, // a disc on body b outside a disc of body a
+    QUAD_LINE, // a disc or point on body b at a line of body a
+} QuadShape;
+
+// A joint of the linkage, or behind those a corner of a block between its guides.
 typedef struct QuadJoint {
-    bool has_play;
-    int body_a; // carries the hole; LINKAGE_GROUND for the ground
-    int body_b; // carries the pin
+    QuadHeld held;
+    bool is_sliding; // whether its rows are a distance from a line and a tilt
+    bool has_play;   // whether bodies touch in it
+    QuadShape shape; // where they do
+    int body_a;      // carries the hole; LINKAGE_GROUND for the ground
+    int body_b;      // carries the pin
     QuadVec anchor_a;
     QuadVec anchor_b;
-    Quad clearance;   // m, radial
-    Quad hole_radius; // m
-    QuadLaw law;      // of the contact
-    QuadVec start;    // m, pin centre minus hole centre at time zero
+    Quad direction;  // rad, in body a's frame: of the line that it slides on, or of the normal of
+                     // the line that it touches
+    Quad held_angle; // rad, of body b against body a where they slide
+    Quad clearance;  // m, radial; the sum of the radii outside
+    Quad radius_a;   // m, of hole or disc
+    Quad radius_b;   // m
+    QuadLaw law;     // of the contact
+    QuadVec start;   // of the rows at time zero: m, or m and rad
 } QuadJoint;
 
 // The contact force is F = F_el(d) (1 + chi d'/v0) + c d', v0 = max(share * d' at the onset,
@@ -64,13 +86,13 @@ typedef struct QuadContacts {
     Quad speed[LINKAGE_JOINT_MAX]; // v0, m/s, of a joint that is not free
 } QuadContacts;
 
-// How a pin lies in its hole.
+// How two bodies stand where they can touch.
 typedef struct QuadGap {
     Quad penetration; // d, m; negative in the free play
     Quad rate;        // d', m/s
-    QuadVec outward;  // unit, from hole centre to pin centre
-    QuadVec hole_arm; // from the centre of mass of body a to the hole's centre, m
-    QuadVec pin_arm;  // from the centre of mass of body b to the pin's centre, m
+    QuadVec outward;  // unit, against the force on body b
+    QuadVec arm_a;    // from the centre of mass of body a to where they touch, m
+    QuadVec arm_b;    // likewise of body b
 } QuadGap;
 
 // The problem of a scenario. With a driver the start

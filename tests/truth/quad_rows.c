@@ -1,8 +1,12 @@
 // How do the ideal joints of a mechanism hold its bodies?
 //
-// Coordinates q = (x, y, phi) of each body, diagonal masses M. A joint's two rows are
-//     Phi = r_b + s_b - r_a - s_a,   s the anchor's arm in the world, m
-// and a body's part in J = dPhi/dq is +-[1 | perp s], perp (x, y) = (-y, x). A right hand side b is
+// Coordinates q = (x, y, phi) of each body, diagonal masses M. With s the anchor's arm in the
+// world, m, d = r_b + s_b - r_a - s_a, t the direction on body a of the line that body b slides on
+// and n = perp t, perp (x, y) = (-y, x), a joint's two rows and the rates of their rates are
+//     revolute   d                     w_a^2 s_a - w_b^2 s_b + J q''
+//     sliding    n d                   n (w_a^2 s_a - w_b^2 s_b) - 2 w_a t d' - w_a^2 n d + J q''
+//                phi_b - phi_a - held  J q''
+// with J = dPhi/dq. A right hand side b is
 // met by the change M^-1 J^T lambda of the coordinates, (J M^-1 J^T) lambda = b: with b = -Phi
 // it closes the joints (again and again, as Newton's method), with b = -J q' it rids the
 // velocities of what would open them. The change is the smallest one in the norm of M.
@@ -55,16 +59,15 @@ QuadVec quad_point_velocity(const Quad *velocity, int body, QuadVec arm)
     return (QuadVec){velocity[3 * body] - omega * arm.y, velocity[3 * body + 1] + omega * arm.x};
 }
 
-QuadVec quad_point_acceleration(const Quad *acceleration, const Quad *velocity, int body,
-                                QuadVec arm)
+QuadVec quad_along(const Quad *position, int body, Quad direction)
 {
-    if (body == LINKAGE_GROUND) {
-        return (QuadVec){0, 0};
-    }
-    const Quad alpha = acceleration[3 * body + 2];
-    const Quad square = velocity[3 * body + 2] * velocity[3 * body + 2];
-    return (QuadVec){acceleration[3 * body] - alpha * arm.y - square * arm.x,
-                     acceleration[3 * body + 1] + alpha * arm.x - square * arm.y};
+    const Quad angle = body == LINKAGE_GROUND ? direction : position[3 * body + 2] + direction;
+    return (QuadVec){cosq(angle), sinq(angle)};
+}
+
+Quad quad_omega(const Quad *velocity, int body)
+{
+    return body == LINKAGE_GROUND ? 0 : velocity[3 * body + 2];
 }
 
 static bool is_free(const QuadProblem *problem, int body)
@@ -82,17 +85,64 @@ void quad_push(const QuadProblem *problem, int body, QuadVec arm, QuadVec force,
     }
 }
 
-// Adds to the block (i, j) of J M^-1 J^T what one body gives, whose arms are s and t.
-static void add_block(const QuadProblem *problem, QuadRows *rows, size_t i, size_t j, int body,
-                      QuadVec s, QuadVec t, bool is_same_side)
+// What two sides of rows on one body give to J M^-1 J^T.
+static Quad product(const QuadProblem *problem, int body, const QuadRow *first,
+                    const QuadRow *second)
 {
-    const Quad sign = is_same_side ? 1 : -1;
-    const Quad light = sign / problem->bodies[body].mass;
-    const Quad turning = sign / problem->bodies[body].inertia;
-    rows->factor[2 * i][2 * j] += light + turning * s.y * t.y;
-    rows->factor[2 * i][2 * j + 1] -= turning * s.y * t.x;
-    rows->factor[2 * i + 1][2 * j] -= turning * s.x * t.y;
-    rows->factor[2 * i + 1][2 * j + 1] += light + turning * s.x * t.x;
+    return (first->x * second->x + first->y * second->y) / problem->bodies[body].mass +
+           first->turn * second->turn / problem->bodies[body].inertia;
+}
+
+static QuadVec perp(QuadVec a)
+{
+    return (QuadVec){-a.y, a.x};
+}
+
+static Quad cross(QuadVec a, QuadVec b)
+{
+    return a.x * b.y - a.y * b.x;
+}
+
+// From the anchor on body a to that on body b.
+static QuadVec distance_of(const QuadJoint *joint, const Quad *position)
+{
+    const QuadVec a = quad_arm(position, joint->body_a, joint->anchor_a);
+    const QuadVec b = quad_arm(position, joint->body_b, joint->anchor_b);
+    return quad_difference(quad_point(position, joint->body_b, b),
+                           quad_point(position, joint->body_a, a));
+}
+
+static void make_rows(const QuadJoint *joint, const Quad *position, QuadRow rows[2][2])
+{
+    const QuadVec a = quad_arm(position, joint->body_a, joint->anchor_a);
+    const QuadVec b = quad_arm(position, joint->body_b, joint->anchor_b);
+    if (!joint->is_sliding) {
+        rows[0][0] = (QuadRow){-1, 0, a.y};
+        rows[0][1] = (QuadRow){1, 0, -b.y};
+        rows[1][0] = (QuadRow){0, -1, -a.x};
+        rows[1][1] = (QuadRow){0, 1, b.x};
+        return;
+    }
+    const QuadVec n = perp(quad_along(position, joint->body_a, joint->direction));
+    const QuadVec d = distance_of(joint, position);
+    rows[0][0] = (QuadRow){-n.x, -n.y, -cross((QuadVec){a.x + d.x, a.y + d.y}, n)};
+    rows[0][1] = (QuadRow){n.x, n.y, cross(b, n)};
+    rows[1][0] = (QuadRow){0, 0, -1};
+    rows[1][1] = (QuadRow){0, 0, 1};
+}
+
+// The rows' values.
+static void values_of(const QuadJoint *joint, const Quad *position, Quad values[2])
+{
+    const QuadVec d = distance_of(joint, position);
+    values[0] = d.x;
+    values[1] = d.y;
+    if (joint->is_sliding) {
+        const Quad a = joint->body_a == LINKAGE_GROUND ? 0 : position[3 * joint->body_a + 2];
+        const Quad b = joint->body_b == LINKAGE_GROUND ? 0 : position[3 * joint->body_b + 2];
+        values[0] = quad_dot(perp(quad_along(position, joint->body_a, joint->direction)), d);
+        values[1] = b - a - joint->held_angle;
+    }
 }
 
 static void factorise(QuadRows *rows)
@@ -117,28 +167,29 @@ QuadRows quad_rows_make(const QuadProblem *problem, const Quad *position, bool w
     rows.joint_count = 0;
     for (size_t k = 0; k < problem->joint_count; k++) {
         const QuadJoint *joint = &problem->joints[k];
-        if ((int)k != problem->driver_joint && (with_play || !joint->has_play)) {
+        const bool is_held =
+            joint->held == QUAD_HELD_ALWAYS || (with_play && joint->held == QUAD_HELD_AT_START);
+        if ((int)k != problem->driver_joint && is_held) {
             const size_t row = rows.joint_count++;
             rows.joints[row] = k;
-            rows.arm[row][0] = quad_arm(position, joint->body_a, joint->anchor_a);
-            rows.arm[row][1] = quad_arm(position, joint->body_b, joint->anchor_b);
+            make_rows(joint, position, rows.row + 2 * row);
         }
     }
     for (size_t i = 0; i < 2 * rows.joint_count; i++) {
         memset(rows.factor[i], 0, 2 * rows.joint_count * sizeof rows.factor[i][0]);
     }
-    // the lower triangle of blocks: every pair of joints that share a free body
-    for (size_t i = 0; i < rows.joint_count; i++) {
-        const QuadJoint *first = &problem->joints[rows.joints[i]];
+    // the lower triangle: every pair of rows whose joints share a free body
+    for (size_t i = 0; i < 2 * rows.joint_count; i++) {
+        const QuadJoint *first = &problem->joints[rows.joints[i / 2]];
         const int firsts[2] = {first->body_a, first->body_b};
         for (size_t j = 0; j <= i; j++) {
-            const QuadJoint *second = &problem->joints[rows.joints[j]];
+            const QuadJoint *second = &problem->joints[rows.joints[j / 2]];
             const int seconds[2] = {second->body_a, second->body_b};
             for (int s = 0; s < 2; s++) {
                 for (int t = 0; t < 2; t++) {
                     if (firsts[s] == seconds[t] && is_free(problem, firsts[s])) {
-                        add_block(problem, &rows, i, j, firsts[s], rows.arm[i][s], rows.arm[j][t],
-                                  s == t);
+                        rows.factor[i][j] +=
+                            product(problem, firsts[s], &rows.row[i][s], &rows.row[j][t]);
                     }
                 }
             }
@@ -163,14 +214,59 @@ void quad_rows_apply(const QuadProblem *problem, const QuadRows *rows, Quad *rig
             right[i] -= rows->factor[k][i] * right[k];
         }
     }
-    for (size_t i = 0; i < rows->joint_count; i++) {
-        const QuadJoint *joint = &problem->joints[rows->joints[i]];
+    for (size_t i = 0; i < n; i++) {
+        const QuadJoint *joint = &problem->joints[rows->joints[i / 2]];
         const int bodies[2] = {joint->body_a, joint->body_b};
         for (int side = 0; side < 2; side++) {
             const int body = bodies[side];
-            const Quad sign = side == 0 ? -1 : 1;
-            quad_push(problem, body, rows->arm[i][side],
-                      (QuadVec){sign * right[2 * i], sign * right[2 * i + 1]}, coordinates);
+            const QuadRow *row = &rows->row[i][side];
+            if (is_free(problem, body)) {
+                const QuadBody *moved = &problem->bodies[body];
+                coordinates[3 * body] += row->x * right[i] / moved->mass;
+                coordinates[3 * body + 1] += row->y * right[i] / moved->mass;
+                coordinates[3 * body + 2] += row->turn * right[i] / moved->inertia;
+            }
+        }
+    }
+}
+
+void quad_rows_of(const QuadProblem *problem, const QuadRows *rows, const Quad *coordinates,
+                  Quad *values)
+{
+    for (size_t i = 0; i < 2 * rows->joint_count; i++) {
+        const QuadJoint *joint = &problem->joints[rows->joints[i / 2]];
+        const int bodies[2] = {joint->body_a, joint->body_b};
+        values[i] = 0;
+        for (int side = 0; side < 2; side++) {
+            const QuadRow *row = &rows->row[i][side];
+            if (bodies[side] != LINKAGE_GROUND) {
+                const Quad *of = coordinates + 3 * bodies[side];
+                values[i] += row->x * of[0] + row->y * of[1] + row->turn * of[2];
+            }
+        }
+    }
+}
+
+void quad_rows_bias(const QuadProblem *problem, const QuadRows *rows, const Quad *position,
+                    const Quad *velocity, Quad *values)
+{
+    for (size_t i = 0; i < rows->joint_count; i++) {
+        const QuadJoint *joint = &problem->joints[rows->joints[i]];
+        const QuadVec a = quad_arm(position, joint->body_a, joint->anchor_a);
+        const QuadVec b = quad_arm(position, joint->body_b, joint->anchor_b);
+        const Quad omega_a = quad_omega(velocity, joint->body_a);
+        const Quad omega_b = quad_omega(velocity, joint->body_b);
+        const QuadVec second = {omega_a * omega_a * a.x - omega_b * omega_b * b.x,
+                                omega_a * omega_a * a.y - omega_b * omega_b * b.y};
+        values[2 * i] = second.x;
+        values[2 * i + 1] = second.y;
+        if (joint->is_sliding) {
+            const QuadVec t = quad_along(position, joint->body_a, joint->direction);
+            const QuadVec moving = quad_difference(quad_point_velocity(velocity, joint->body_b, b),
+                                                   quad_point_velocity(velocity, joint->body_a, a));
+            values[2 * i] = quad_dot(perp(t), second) - 2 * omega_a * quad_dot(t, moving) -
+                            omega_a * omega_a * quad_dot(perp(t), distance_of(joint, position));
+            values[2 * i + 1] = 0;
         }
     }
 }
@@ -184,10 +280,10 @@ Quad quad_rows_project(const QuadProblem *problem, bool with_play, Quad *positio
         Quad largest = 0;
         for (size_t i = 0; i < rows.joint_count; i++) {
             const QuadJoint *joint = &problem->joints[rows.joints[i]];
-            const QuadVec a = quad_point(position, joint->body_a, rows.arm[i][0]);
-            const QuadVec b = quad_point(position, joint->body_b, rows.arm[i][1]);
-            right[2 * i] = a.x + joint->start.x - b.x;
-            right[2 * i + 1] = a.y + joint->start.y - b.y;
+            Quad values[2];
+            values_of(joint, position, values);
+            right[2 * i] = joint->start.x - values[0];
+            right[2 * i + 1] = joint->start.y - values[1];
             largest = fmaxq(largest, hypotq(right[2 * i], right[2 * i + 1]));
         }
         open = count == 0 ? largest : open;
@@ -197,12 +293,9 @@ Quad quad_rows_project(const QuadProblem *problem, bool with_play, Quad *positio
         quad_rows_apply(problem, &rows, right, position);
     }
     const QuadRows rows = quad_rows_make(problem, position, with_play);
-    for (size_t i = 0; i < rows.joint_count; i++) {
-        const QuadJoint *joint = &problem->joints[rows.joints[i]];
-        const QuadVec a = quad_point_velocity(velocity, joint->body_a, rows.arm[i][0]);
-        const QuadVec b = quad_point_velocity(velocity, joint->body_b, rows.arm[i][1]);
-        right[2 * i] = a.x - b.x;
-        right[2 * i + 1] = a.y - b.y;
+    quad_rows_of(problem, &rows, velocity, right);
+    for (size_t i = 0; i < 2 * rows.joint_count; i++) {
+        right[i] = -right[i];
     }
     quad_rows_apply(problem, &rows, right, velocity);
     return open;

@@ -297,11 +297,11 @@ static void friction_acts_where_the_wall_is(void **state)
     run_until(&problem, 1e-16, 0.0, start, &figures);
     run_until(&problem, 1e-16, 5e-3, end, &figures);
     const QuadJoint *joint = &problem.joints[0];
-    const Quad pin_radius = joint->hole_radius - joint->clearance;
+    const Quad pin_radius = joint->radius_a - joint->clearance;
     assert_true(figures.depth_max < 1e-2 * pin_radius);
     const Quad turn_a = problem.bodies[0].inertia * (end[0].omega - start[0].omega);
     const Quad turn_b = problem.bodies[1].inertia * (end[1].omega - start[1].omega);
-    assert_quad(-turn_a / turn_b, joint->hole_radius / pin_radius, 1e-2);
+    assert_quad(-turn_a / turn_b, joint->radius_a / pin_radius, 1e-2);
     // the control: at one point for both, but not on the wall, it would be another ratio
     assert_true(fabsq(-turn_a / turn_b - 1) > 0.1);
 }
