@@ -53,6 +53,10 @@ bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, E
 // before, or the law's own limit.
 double law_depth_max(const ForceLaw *law, double pin_radius);
 
+// The radius, m, of what touches in a joint with play: of a pin its own, of a block half its height
+// or half of what it slides in, of a stop the smaller disc. Infinite of a point at a line.
+double law_touching_radius(const Joint *joint);
+
 // Fails with ERR_SOLVER where the pin of a joint is deeper, m, in its wall than a share of that, or
 // its depth is no number.
 bool law_check_depth(const ForceLaw *law, const Joint *joint, double depth, double share, Err *err);

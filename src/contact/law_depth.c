@@ -10,9 +10,7 @@ double law_depth_max(const ForceLaw *law, double radius)
     return fmin(share * radius, force_law_depth_limit(law));
 }
 
-// The radius of what touches: of a block half its height or half of what it slides in, of a stop
-// the smaller disc. A point at a line has none, and any depth.
-static double touching_radius(const Joint *joint)
+double law_touching_radius(const Joint *joint)
 {
     const Stop *stop = &joint->stop;
     const double other = stop->is_disc && stop->radius_a > 0.0 ? stop->radius_a : INFINITY;
@@ -28,7 +26,7 @@ static double touching_radius(const Joint *joint)
 
 bool law_check_depth(const ForceLaw *law, const Joint *joint, double depth, double share, Err *err)
 {
-    const double allowed = law_depth_max(law, touching_radius(joint));
+    const double allowed = law_depth_max(law, law_touching_radius(joint));
     if (depth <= share * allowed) {
         return true;
     }

@@ -1,5 +1,7 @@
 // What does one impact of a lone pin give in ODE, and what was to be expected of it?
 //
+// Of a block between guides or a stop a disc stands for the pin, and a line for the wall.
+//
 // The pin starts so far from the wall that it overlaps it for the first time at a depth that the
 // phase chooses: whole steps of flight, and a share of one more. The shares are the middles of
 // equal parts, (i + 1/2) / 16. Plain stepping finds the first overlap at (1 - share) of a step's
@@ -7,6 +9,7 @@
 // are the same sixteen overlaps as those of the prediction.
 #include "measure/impact.h"
 
+#include "contact/law.h"
 #include "run/registry.h"
 #include "run/run.h"
 
@@ -78,10 +81,40 @@ ImpactFigures impact_predict(const MapImpactCase *impact)
     return figures;
 }
 
+// The joint of the lone body: its pin in its hole, or a disc against a line across the x axis that
+// touches as far from the origin as the pin would.
+static Joint lone_joint(const Joint *from, double play)
+{
+    Joint joint = {
+        .kind = JOINT_CLEARANCE,
+        .body_a = LINKAGE_GROUND,
+        .body_b = 0,
+        .clearance = from->clearance,
+        .contact = from->contact,
+    };
+    if (from->kind != JOINT_CLEARANCE) {
+        const double radius = law_touching_radius(from);
+        joint.kind = JOINT_STOP;
+        joint.stop.radius_b = isfinite(radius) ? radius : 0.0;
+        joint.anchor_a.x = play + joint.stop.radius_b;
+        joint.direction = M_PI;
+    }
+    memcpy(joint.name, from->name, sizeof from->name);
+    return joint;
+}
+
+// How far the lone body flies from the middle to the wall, m. A stop has no wall on the other side.
+static double lone_play(const Joint *from)
+{
+    return from->kind == JOINT_STOP ? INFINITY : linkage_radial_clearance(from);
+}
+
 // The scenario's world with nothing in it but the pin.
 static void lone_pin(const Scenario *scenario, int joint, double mass, Scenario *lone)
 {
     const Joint *from = &scenario->linkage.joints[joint];
+    const double radius = law_touching_radius(from);
+    const double size = isfinite(radius) ? radius : 1e-2; // m: it does not turn
     *lone = *scenario;
     lone->has_fourbar = false;
     lone->has_slidercrank = false;
@@ -92,16 +125,11 @@ static void lone_pin(const Scenario *scenario, int joint, double mass, Scenario 
     lone->linkage.bodies[0] = (Body){
         .name = "pin",
         .mass = mass,
-        .inertia = 0.5 * mass * from->clearance.pin_radius * from->clearance.pin_radius,
+        .inertia = 0.5 * mass * size * size,
     };
+    const double play = lone_play(from);
     lone->linkage.joint_count = 1;
-    lone->linkage.joints[0] = (Joint){
-        .kind = JOINT_CLEARANCE,
-        .body_a = LINKAGE_GROUND,
-        .body_b = 0,
-        .clearance = from->clearance,
-    };
-    memcpy(lone->linkage.joints[0].name, from->name, sizeof from->name);
+    lone->linkage.joints[0] = lone_joint(from, isfinite(play) ? play : 0.0);
     lone->run.samples = 2;
 }
 
@@ -138,7 +166,8 @@ ImpactDelivered impact_deliver(const Scenario *scenario, int joint, double mass,
     Scenario lone;
     lone_pin(scenario, joint, mass, &lone);
     const double step_s = scenario->run.step;
-    const double play = linkage_radial_clearance(&lone.linkage.joints[0]);
+    const double play = lone_play(&scenario->linkage.joints[joint]);
+    const double wall = isfinite(play) ? play : 0.0;                  // m
     const double room = 2.0 * FLIGHT_SHARE * play / (speed * step_s); // steps
     const double whole = fmin(FLIGHT_STEPS, floor(room) - 1.0);
     const double rest_s = contact_s + STEPS_BEHIND * step_s;
@@ -156,7 +185,7 @@ ImpactDelivered impact_deliver(const Scenario *scenario, int joint, double mass,
     for (int i = 0; i < MAP_IMPACT_PHASES; i++) {
         const double flight_s = (whole + map_impact_phase(i)) * step_s;
         Motion *start = &lone.linkage.bodies[0].start;
-        start->position.x = play - speed * flight_s;
+        start->position.x = wall - speed * flight_s;
         start->velocity.x = speed;
         lone.run.duration = flight_s + rest_s;
         MapImpact impact;

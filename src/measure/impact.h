@@ -1,5 +1,5 @@
-// One impact of a lone pin on the wall of its hole: what is asked of it, what ODE is predicted to
-// deliver, and what it delivers when it is run.
+// One impact of a lone pin on the wall of its hole, or of a corner or stop on its line: what is
+// asked of it, what ODE is predicted to deliver, and what it delivers when it is run.
 #pragma once
 
 #include "contact/map_impact.h"
@@ -43,10 +43,11 @@ typedef struct ImpactDelivered {
     ImpactFigures figures;
 } ImpactDelivered;
 
-// Runs a lone pin of a mass, kg, in the hole of a joint of the scenario, without gravity, at a
-// closing speed, m/s, and the scenario's own step, contact and map, over all phases. `contact_s` is
-// the longest that the contact is expected to last, s. Nothing is measured, and the message says
-// why, where a step takes the pin across the hole, a run would be too long or failed, or had
-// another number of contacts than one.
+// Runs a lone pin of a mass, kg, in the hole of a joint of the scenario, or a lone body against a
+// wall where the joint is no pin in a hole, without gravity, at a closing speed, m/s, and the
+// scenario's own step, contact and map, over all phases. `contact_s` is the longest that the
+// contact is expected to last, s. Nothing is measured, and the message says why, where a step takes
+// the pin across the hole, a run would be too long or failed, or had another number of contacts
+// than one.
 ImpactDelivered impact_deliver(const Scenario *scenario, int joint, double mass, double speed,
                                double contact_s);

@@ -46,7 +46,7 @@ static void add_contact(Mapping *mapping, const Scenario *scenario, const Mappin
     if (!mapping_contact_make(scenario, joint, mass, speed, contact, &lack)) {
         *contact = (MappingContact){
             .joint = *joint,
-            .law_name = mapping_law_name(scenario),
+            .law_name = mapping_law_name(scenario, &scenario->linkage.joints[joint->joint]),
             .scenario = *scenario,
             .impact = {.mass = mass, .speed = speed},
             .lack_kind = lack.kind,
@@ -116,7 +116,7 @@ static bool make_contacts(Mapping *mapping, MappingWatch watch, Err *err)
         }
     } else {
         for (size_t i = 0; i < linkage->joint_count; i++) {
-            if (linkage->joints[i].kind == JOINT_CLEARANCE) {
+            if (linkage_kind_has_play(linkage->joints[i].kind)) {
                 joints[count++].joint = (int)i;
             }
         }

@@ -39,8 +39,8 @@ MapImpactCase mapping_case(const MappingContact *contact, OdeMap map, double ste
     const ContactOptions *options = &contact->scenario.contact;
     impact.step = step_s;
     // where the engine ends a run
-    impact.end = law_depth_max(
-        &impact.law, contact->scenario.linkage.joints[contact->joint.joint].clearance.pin_radius);
+    const Joint *at = &contact->scenario.linkage.joints[contact->joint.joint];
+    impact.end = law_depth_max(&impact.law, law_touching_radius(at));
     if (mapping_contact_is_poisson(contact)) {
         impact.rows = (MapImpactRows){
             .cfm = map_poisson_cfm(options->penalty),
@@ -78,16 +78,17 @@ static void fill_deepest(MappingContact *contact)
     contact->equivalent = 2.0 * ratio * sqrt(contact->secant * contact->impact.mass);
 }
 
-const char *mapping_law_name(const Scenario *scenario)
+const char *mapping_law_name(const Scenario *scenario, const Joint *joint)
 {
-    return scenario->contact.stiffness > 0.0 ? "stiffness" : OPTIONS_LAWS[scenario->contact.law];
+    const ContactOptions own = law_options(&scenario->contact, joint);
+    return own.stiffness > 0.0 ? "stiffness" : OPTIONS_LAWS[own.law];
 }
 
 // The law's own impact, with and without damping.
 static bool ask(MappingContact *contact, const Joint *at, Err *err)
 {
     const MapImpactCase *impact = &contact->impact;
-    const double holds = law_depth_max(&impact->law, at->clearance.pin_radius); // m
+    const double holds = law_depth_max(&impact->law, law_touching_radius(at)); // m
     MapImpactCase undamped = *impact;
     undamped.law.viscous = undamped.law.hysteresis = 0.0;
     contact->asked = map_impact_law(impact);
@@ -112,7 +113,7 @@ bool mapping_contact_make(const Scenario *scenario, const MappingJoint *joint, d
 {
     const Joint *at = &scenario->linkage.joints[joint->joint];
     MappingContact made = {.joint = *joint, .scenario = *scenario};
-    made.law_name = mapping_law_name(scenario);
+    made.law_name = mapping_law_name(scenario, at);
     made.impact.mass = mass;
     made.impact.speed = speed;
     if (mapping_contact_is_poisson(&made)) {

@@ -57,7 +57,7 @@ extern const double MAPPING_STEPS_MOST;
 ImpactFigures mapping_predict(const MappingContact *contact, OdeMap map, double step_s);
 
 // What the law of a scenario's contacts is called.
-const char *mapping_law_name(const Scenario *scenario);
+const char *mapping_law_name(const Scenario *scenario, const Joint *joint);
 
 // Fills in a contact's law, mass and speed and all that follows from them. Fails with ERR_CASE
 // where the law does not fit the joint, and with ERR_SOLVER where it has no such impact.

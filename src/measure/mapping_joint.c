@@ -1,16 +1,17 @@
-// With which mass, and how fast, do pin and hole of a joint meet?
+// With which mass, and how fast, do the bodies of a joint meet?
 //
-// The mass along a normal n is 1 / (n W n), W the joint's block of the linkage's mobility
-// (model/response.h), the ideal joints holding and the other joints with play free. It is looked up
-// at instants spread over the run, in directions spread over half a turn: which of them contacts
-// choose is known only after a run, and changes with the setting that is sought.
+// The mass along a normal n is 1 / (n W n), W the block of one place of the joint in the linkage's
+// mobility (model/response.h), the ideal joints holding and all other places free. It is looked up
+// at instants spread over the run. Of a pin in directions spread over half a turn: which of them
+// contacts choose is known only after a run, and changes with the setting that is sought. Of a
+// block's corners and of stops along the normals that they have.
 //
 // The closing speeds are those at the onsets of the reference's contacts, every one of them.
 #include "measure/mapping_joint.h"
 
 #include "base/clock.h"
 #include "base/sorted.h"
-#include "model/response.h"
+#include "contact/touch.h"
 #include "model/space.h"
 #include "run/registry.h"
 
@@ -23,11 +24,13 @@ enum { INSTANT_COUNT = 120, DIRECTION_COUNT = 24, MASS_COUNT = INSTANT_COUNT * D
 typedef struct Gathering {
     const Scenario *scenario;
     Response response;
+    size_t place_count;
+    Touch places[TOUCH_MAX];
     size_t play_count;
     int play[LINKAGE_JOINT_MAX]; // numbers of the joints with play
     bool was_touching[LINKAGE_JOINT_MAX];
     double *masses[LINKAGE_JOINT_MAX]; // owned, as the next
-    size_t mass_count;                 // of each
+    size_t mass_counts[LINKAGE_JOINT_MAX];
     double *speeds[LINKAGE_JOINT_MAX];
     size_t speed_counts[LINKAGE_JOINT_MAX];
     size_t speed_rooms[LINKAGE_JOINT_MAX];
@@ -50,7 +53,7 @@ static Gathering *gathering_start(const Scenario *scenario)
     assert(gathering != NULL);
     gathering->scenario = scenario;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        if (scenario->linkage.joints[i].kind == JOINT_CLEARANCE) {
+        if (linkage_kind_has_play(scenario->linkage.joints[i].kind)) {
             gathering->masses[gathering->play_count] = calloc(MASS_COUNT, sizeof(double));
             assert(gathering->masses[gathering->play_count] != NULL);
             gathering->play[gathering->play_count++] = (int)i;
@@ -59,20 +62,41 @@ static Gathering *gathering_start(const Scenario *scenario)
     return gathering;
 }
 
+static void add_mass(Gathering *gathering, size_t play, size_t place, Vec2 along)
+{
+    const size_t row = response_first_row(&gathering->response, place);
+    gathering->masses[play][gathering->mass_counts[play]++] =
+        response_mass(&gathering->response, row, along);
+}
+
+// The masses at one place, as the bodies stand.
+static void add_place(Gathering *gathering, size_t play, size_t place, const Motion *motions)
+{
+    const Touch *touch = &gathering->places[place];
+    if (touch->shape == TOUCH_LINE) {
+        // its rows are along the normal and across
+        add_mass(gathering, play, place, (Vec2){1.0, 0.0});
+    } else if (touch->shape == TOUCH_DISC) {
+        const TouchPose pose = touch_pose(&gathering->scenario->linkage, touch, motions);
+        add_mass(gathering, play, place, pose.has_normal ? pose.normal : (Vec2){1.0, 0.0});
+    } else {
+        for (int k = 0; k < DIRECTION_COUNT; k++) {
+            const double angle = M_PI * k / DIRECTION_COUNT;
+            add_mass(gathering, play, place, (Vec2){cos(angle), sin(angle)});
+        }
+    }
+}
+
 static void add_masses(Gathering *gathering, const Motion *motions)
 {
     // in a position where the ideal joints lock, no mass is defined
     if (!response_place(&gathering->response, motions)) {
         return;
     }
-    for (int k = 0; k < DIRECTION_COUNT; k++) {
-        const double angle = M_PI * k / DIRECTION_COUNT;
-        const Vec2 normal = {cos(angle), sin(angle)};
-        for (size_t i = 0; i < gathering->play_count; i++) {
-            gathering->masses[i][gathering->mass_count] =
-                response_mass(&gathering->response, 2 * i, normal);
-        }
-        gathering->mass_count++;
+    size_t play = 0;
+    for (size_t place = 0; place < gathering->place_count; place++) {
+        play += gathering->places[place].joint != gathering->play[play] ? 1 : 0;
+        add_place(gathering, play, place, motions);
     }
 }
 
@@ -155,7 +179,7 @@ static void conclude(Gathering *gathering, MappingJoint *joints)
     for (size_t i = 0; i < gathering->play_count; i++) {
         double *masses = gathering->masses[i];
         double *speeds = gathering->speeds[i];
-        const size_t mass_count = gathering->mass_count;
+        const size_t mass_count = gathering->mass_counts[i];
         const size_t speed_count = gathering->speed_counts[i];
         sorted_make(masses, mass_count);
         joints[i] = (MappingJoint){
@@ -184,9 +208,11 @@ bool mapping_joint_measure(const Scenario *scenario, RunWatch watch,
                        "along z; run and compare show what each map makes of it");
     }
     Gathering *gathering = gathering_start(scenario);
-    bool is_right = response_init(&scenario->linkage, false, &gathering->response, err) &&
+    bool is_right = touch_list(scenario, gathering->places, &gathering->place_count, err) &&
+                    touch_response(&scenario->linkage, gathering->places, gathering->place_count,
+                                   false, &gathering->response, err) &&
                     gather(gathering, watch, err);
-    if (is_right && gathering->mass_count == 0) {
+    if (is_right && gathering->mass_counts[0] == 0) {
         is_right = err_set(err, ERR_SOLVER, "the ideal joints are redundant throughout the run");
     }
     if (is_right) {

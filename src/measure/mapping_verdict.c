@@ -168,9 +168,8 @@ double verdict_least_penalty(const MappingContact *contact, double step_s)
 
 static double law_end(const MappingContact *contact)
 {
-    const int joint = contact->joint.joint;
-    return law_depth_max(&contact->impact.law,
-                         contact->scenario.linkage.joints[joint].clearance.pin_radius);
+    const Joint *at = &contact->scenario.linkage.joints[contact->joint.joint];
+    return law_depth_max(&contact->impact.law, law_touching_radius(at));
 }
 
 static void say_fault(const MappingContact *contact, const MappingRow *row, Text *words)

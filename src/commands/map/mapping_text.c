@@ -19,6 +19,18 @@ void mapping_report_law(const MappingContact *contact, char law[MAPPING_REPORT_L
     }
 }
 
+// Whether a joint with play is no pin in its hole.
+static bool has_lines(const Linkage *linkage)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const JointKind kind = linkage->joints[i].kind;
+        if (linkage_kind_has_play(kind) && kind != JOINT_CLEARANCE) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void write_head(const MappingReport *report, const Style *style, Text *text)
 {
     const Scenario *scenario = report->scenario;
@@ -32,11 +44,24 @@ static void write_head(const MappingReport *report, const Style *style, Text *te
                 "  delivered   by ODE: a lone pin of the joint's effective mass in its hole, means "
                 "over %d phases; other joints that are hit or hold meanwhile are left out\n",
                 MAP_IMPACT_PHASES);
+    if (has_lines(&scenario->linkage)) {
+        text_append(text,
+                    "  at a line   the corner of a block, or a stop, is run as a disc against "
+                    "a line; a block's other corners are left out\n");
+    }
     if (scenario->linkage.is_spatial) {
         text_append(text, "  in space    the pin is taken to stand straight: both ends of its hole "
                           "together. An end that it hits alone has half of the stiffness and the "
                           "damping, and the pin gives way to it by tilting\n");
     }
+}
+
+// Where else than in one position a joint's mass was looked up.
+static const char *mass_words(const Joint *joint)
+{
+    return joint->kind == JOINT_GUIDE  ? " and all corners"
+           : joint->kind == JOINT_STOP ? ""
+                                       : " and all directions";
 }
 
 static const char *source_words(MappingSource source)
@@ -58,9 +83,10 @@ static void write_sources(const MappingReport *report, const MappingContact *con
     Text words;
     text_init(&words);
     if (joint->mass_most > 0.0) {
-        text_append(&words, "%s %.4g to %.4g kg over the run and all directions",
+        text_append(&words, "%s %.4g to %.4g kg over the run%s",
                     settings->mass_source == MAPPING_GIVEN ? "; the joint's is" : " of",
-                    joint->mass_least, joint->mass_most);
+                    joint->mass_least, joint->mass_most,
+                    mass_words(&report->scenario->linkage.joints[joint->joint]));
     }
     text_append(text, "  mass        %.4g kg, %s%s\n", contact->impact.mass,
                 source_words(settings->mass_source), words.data);
