@@ -17,6 +17,7 @@ static const double PANEL_LEFT[2] = {84.0, 584.0};
 static const double PANEL_TOP = 146.0; // of the first row
 static const double LEGEND_TOP = 62.0;
 static const double LEGEND_ROW = 22.0;
+static const double LEGEND_END = 106.0; // the last row that leaves the panels where they are
 
 // a symmetric logarithmic scale is used where one backend exceeds another by this factor, or
 // exceeds what it stays below for most of its run
@@ -76,14 +77,20 @@ static bool any_turns(const RunReport *report)
     return false;
 }
 
-static PlotPanel place_panel(const RunReport *report, Text *svg, int row, int column,
+// The part of a picture that is drawn below its legend.
+typedef struct Sheet {
+    Text *svg;
+    double top; // of the first row of panels
+} Sheet;
+
+static PlotPanel place_panel(const RunReport *report, Sheet sheet, int row, int column,
                              const char *title)
 {
     return (PlotPanel){
-        .svg = svg,
+        .svg = sheet.svg,
         .title = title,
         .left = PANEL_LEFT[column],
-        .top = PANEL_TOP + row * ROW_HEIGHT,
+        .top = sheet.top + row * ROW_HEIGHT,
         .width = PANEL_WIDTH,
         .height = PANEL_HEIGHT,
         .x = plot_look_x_axis(report),
@@ -225,7 +232,8 @@ static void add_colour(Legend *legend, const RunReport *report, bool is_joint, s
     }
 }
 
-static void draw_legend(const RunReport *report, Text *svg)
+// Returns where its last row stands.
+static double draw_legend(const RunReport *report, Text *svg)
 {
     Legend legend = {svg, PANEL_LEFT[0], LEGEND_TOP};
     for (size_t i = 0; i < report->run_count; i++) {
@@ -249,10 +257,11 @@ static void draw_legend(const RunReport *report, Text *svg)
     if (spiky != NULL) {
         add_marks(&legend, spiky);
     }
+    return legend.y;
 }
 
 // The rotation of the bodies, or the motion of their centres where nothing turns.
-static void draw_motions(const RunReport *report, Text *svg)
+static void draw_motions(const RunReport *report, Sheet sheet)
 {
     static const PlotQuantity OMEGA = {"omega", false, RANGES_OMEGA, omega_of};
     static const PlotQuantity ALPHA = {"alpha", false, RANGES_ALPHA, alpha_of};
@@ -260,11 +269,11 @@ static void draw_motions(const RunReport *report, Text *svg)
     static const PlotQuantity ACCELERATION = {"acceleration", false, RANGES_ACCELERATION,
                                               acceleration_of};
     const bool turns = report->scenario->linkage.driver.is_present || any_turns(report);
-    PlotPanel panel =
-        place_panel(report, svg, 0, 0, turns ? "Angular velocity" : "Speed of the centre of mass");
+    PlotPanel panel = place_panel(report, sheet, 0, 0,
+                                  turns ? "Angular velocity" : "Speed of the centre of mass");
     panel.y.title = turns ? "omega, rad/s" : "speed, m/s";
     draw_motion(report, panel, turns ? OMEGA : SPEED, false);
-    panel = place_panel(report, svg, 0, 1,
+    panel = place_panel(report, sheet, 0, 1,
                         turns ? "Angular acceleration" : "Acceleration of the centre of mass");
     panel.y.title = turns ? "alpha, rad/s^2" : "acceleration, m/s^2";
     draw_motion(report, panel, turns ? ALPHA : ACCELERATION, turns);
@@ -321,15 +330,20 @@ void plot_run_write(const void *of, Text *svg)
     DrawPanel panels[PANEL_MAX];
     const size_t count = choose_panels(report, panels);
     const int more_rows = (int)count / 2;
-    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT + more_rows * ROW_HEIGHT, title);
+    Text legend;
+    text_init(&legend);
+    const double pushed = fmax(0.0, draw_legend(report, &legend) - LEGEND_END);
+    const Sheet sheet = {svg, PANEL_TOP + pushed};
+    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT + pushed + more_rows * ROW_HEIGHT, title);
     plot_text(svg, PANEL_LEFT[0], 34.0, "start", "title", title);
-    draw_legend(report, svg);
-    draw_motions(report, svg);
-    plot_joints_forces(report, place_panel(report, svg, 1, 0, "Force in the joint"));
+    text_append(svg, "%s", legend.data);
+    text_finish(&legend);
+    draw_motions(report, sheet);
+    plot_joints_forces(report, place_panel(report, sheet, 1, 0, "Force in the joint"));
     for (size_t i = 0; i < count; i++) {
         // the first stands beside the forces
         const int place = (int)i + 1;
-        panels[i](report, place_panel(report, svg, 1 + place / 2, place % 2, ""));
+        panels[i](report, place_panel(report, sheet, 1 + place / 2, place % 2, ""));
     }
     plot_end(svg);
 }
