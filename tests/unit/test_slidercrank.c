@@ -8,6 +8,7 @@
 #include "analytic/inverse_dynamics.h"
 #include "analytic/slidercrank_motion.h"
 #include "analytic/summary.h"
+#include "casefile/casefile.h"
 #include "model/kinematics.h"
 
 #include <string.h>
@@ -230,6 +231,85 @@ static void a_rod_that_is_too_short_has_no_turn(void **state)
     assert_true(isinf(slidercrank_travel(&scenario.slidercrank, 0.0801, 0.0, 1.0)));
 }
 
+static Scenario load_text(const char *text)
+{
+    Scenario scenario;
+    Err err = {ERR_NONE, ""};
+    if (!casefile_load_text("text", text, strlen(text), NULL, 0, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+    return scenario;
+}
+
+static void the_short_form_makes_the_same_linkage(void **state)
+{
+    (void)state;
+    const Scenario expected = mechanism_slidercrank(0.02, 0.4, SLIDER_LEFT);
+    const Scenario scenario =
+        load_text("slider-crank:\n"
+                  "  crank: {length: 50 mm, mass: 0.3 kg, inertia: 100 kg mm^2}\n"
+                  "  rod: {length: 120 mm, mass: 0.21 kg, inertia: 250 kg mm^2}\n"
+                  "  slider: {mass: 0.14 kg, inertia: 100 kg mm^2}\n"
+                  "  offset: 20 mm\n"
+                  "  angle: 0.4 rad\n"
+                  "  assembly: left\n"
+                  "drive: {speed: 5000 rpm, start: 0.8 rad}\n");
+    assert_true(scenario.has_slidercrank && !scenario.has_fourbar);
+    assert_memory_equal(&scenario.slidercrank, &expected.slidercrank, sizeof(SliderCrank));
+    for (int i = 0; i < 3; i++) {
+        const Body *body = &scenario.linkage.bodies[i];
+        const Body *other = &expected.linkage.bodies[i];
+        assert_string_equal(body->name, other->name);
+        assert_near(body->mass, other->mass, 1e-15);
+        assert_near(body->inertia, other->inertia, 1e-18);
+        assert_near(body->start.position.x, other->start.position.x, 1e-15);
+        assert_near(body->start.velocity.y, other->start.velocity.y, 1e-12);
+        assert_near(body->start.omega, other->start.omega, 1e-11);
+    }
+    for (int i = 0; i < 4; i++) {
+        const Joint *joint = &scenario.linkage.joints[i];
+        const Joint *other = &expected.linkage.joints[i];
+        assert_string_equal(joint->name, other->name);
+        assert_int_equal(joint->kind, other->kind);
+        assert_int_equal(joint->body_a, other->body_a);
+        assert_int_equal(joint->body_b, other->body_b);
+        assert_near(joint->direction, other->direction, 1e-15);
+        assert_near(joint->held_angle, other->held_angle, 1e-15);
+        assert_true(worst_of(0.0, joint->anchor_a, other->anchor_a, 1.0) <= 1e-15);
+        assert_true(worst_of(0.0, joint->anchor_b, other->anchor_b, 1.0) <= 1e-15);
+    }
+}
+
+// The play of each joint that can have some, and a block's start, by which it begins aside.
+static void joints_of_the_short_form_can_have_play(void **state)
+{
+    (void)state;
+    const Scenario scenario =
+        load_text("slider-crank:\n"
+                  "  crank: {length: 50 mm, mass: 0.3 kg, inertia: 100 kg mm^2}\n"
+                  "  rod: {length: 120 mm, mass: 0.21 kg, inertia: 250 kg mm^2}\n"
+                  "  slider: {mass: 0.14 kg, inertia: 100 kg mm^2}\n"
+                  "joints:\n"
+                  "  crank-rod: {hole: 20 mm, pin: 19.9 mm}\n"
+                  "  rod-slider: {radial-clearance: 0.1 mm}\n"
+                  "  slider-guide: {guide: 52 mm, block: 50 mm, length: 100 mm,\n"
+                  "                 start: [0.5 mm, 0.3 deg]}\n"
+                  "drive: {speed: 5000 rpm, start: 60 deg}\n"
+                  "contact: {stiffness: 1e8 N/m}\n");
+    const Joint *joints = scenario.linkage.joints;
+    assert_int_equal(joints[0].kind, JOINT_REVOLUTE);
+    assert_int_equal(joints[1].kind, JOINT_CLEARANCE);
+    assert_int_equal(joints[2].kind, JOINT_CLEARANCE);
+    assert_int_equal(joints[3].kind, JOINT_GUIDE);
+    assert_near(linkage_radial_clearance(&joints[3]), 1e-3, 1e-17);
+    const Motion *slider = &scenario.linkage.bodies[2].start;
+    assert_near(slider->position.y, 0.5e-3, 1e-12);
+    assert_near(slider->angle, 0.3 * DEGREE, 1e-12);
+    // the rod still reaches from the crank's pin to the slider's
+    const double rise = 0.05 * sin(60.0 * DEGREE) - 0.5e-3;
+    assert_near(slider->position.x, 0.025 + sqrt(0.12 * 0.12 - rise * rise), 1e-12);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -239,6 +319,8 @@ int main(void)
         cmocka_unit_test(reactions_are_those_of_newtons_laws_body_by_body),
         cmocka_unit_test(a_guide_away_from_the_pin_takes_a_couple),
         cmocka_unit_test(a_rod_that_is_too_short_has_no_turn),
+        cmocka_unit_test(the_short_form_makes_the_same_linkage),
+        cmocka_unit_test(joints_of_the_short_form_can_have_play),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,7 +58,7 @@ void analytic_text_kinematics(const RunReport *report, const Style *style, Text 
     }
     text_append(text, "\n%sKinematics of the ideal %s%s\n\n", style->heading,
                 closed_form_name(scenario), style->end);
-    if (scenario->has_fourbar) {
+    if (!scenario->has_slidercrank) {
         text_append(text, "  class                %s\n", FOURBAR_GRASHOF_NAMES[summary->grashof]);
     }
     text_append(text, "  transmission angle   %.6g deg (crank %.1f) to %.6g deg (crank %.1f)\n",
