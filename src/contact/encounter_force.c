@@ -43,16 +43,17 @@ double encounter_force_row_speed(const Encounter *encounter, size_t row, double 
     return speed;
 }
 
-static PinHole line_pose(Vec2 position, Vec2 speed)
+// What goes on along the line changes nothing.
+static PinHole line_pose(double gap, double rate)
 {
     return (PinHole){
-        .eccentricity = position,
+        .eccentricity = {gap, 0.0},
         .eccentricity_size = INFINITY,
-        .gap = position.x,
-        .penetration = -position.x,
+        .gap = gap,
+        .penetration = -gap,
         .has_normal = true,
         .normal = {1.0, 0.0},
-        .approach_speed = -speed.x,
+        .approach_speed = -rate,
     };
 }
 
@@ -73,10 +74,10 @@ static PinHole disc_pose(Vec2 position, Vec2 speed, double clearance)
 static PinHole other_pose(const EncounterJoint *joint, const double position[2],
                           const double speed[2])
 {
-    const Vec2 at = {position[0], position[1]};
-    const Vec2 rate = {speed[0], speed[1]};
-    return joint->shape == TOUCH_LINE ? line_pose(at, rate)
-                                      : disc_pose(at, rate, joint->radial_clearance);
+    return joint->shape == TOUCH_LINE
+               ? line_pose(position[0], speed[0])
+               : disc_pose((Vec2){position[0], position[1]}, (Vec2){speed[0], speed[1]},
+                           joint->radial_clearance);
 }
 
 static inline PinHole pose_of(const Encounter *encounter, size_t joint, const double position[2],
@@ -93,6 +94,10 @@ PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double ti
                              const double *impulse, const double *moment)
 {
     const size_t row = encounter->joints[joint].first_row;
+    if (encounter->joints[joint].shape == TOUCH_LINE) {
+        return line_pose(row_position(encounter, row, time_s, moment),
+                         encounter_force_row_speed(encounter, row, time_s, impulse));
+    }
     const double position[2] = {row_position(encounter, row, time_s, moment),
                                 row_position(encounter, row + 1, time_s, moment)};
     const double speed[2] = {encounter_force_row_speed(encounter, row, time_s, impulse),

@@ -34,7 +34,7 @@ static void add_mean(const ImpulseStep *step, size_t number, const Motion *middl
 
 // The mean forces of the joints with play, and where those on the driven body act, seen from its
 // anchors: at the anchor of body b, of all joints with lines.
-static void find_means(ImpulseStep *step, const Motion *middle, Vec2 *offsets)
+static void find_play_means(ImpulseStep *step, const Motion *middle, Vec2 *offsets)
 {
     const Linkage *linkage = &step->scenario->linkage;
     for (size_t i = 0; i < step->place_count; i++) {
@@ -129,7 +129,7 @@ void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
     Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
     Motion motions[LINKAGE_BODY_MAX];
     double work = 0.0;
-    find_means(step, middle, offsets);
+    find_play_means(step, middle, offsets);
     find_mean_motions(step, middle, motions);
     for (size_t i = 0; step->driven >= 0 && i < step->place_count; i++) {
         const Joint *joint = &linkage->joints[step->places[i].joint];
