@@ -4,6 +4,8 @@
 
 #include "slider.h"
 
+#include <stdio.h>
+
 // The ways of listing the joints of one mechanism, which make other trees of it, with the frame of
 // body 2 turned by some angle, rad.
 static Scenario relisted(const Scenario *scenario, const int *order, bool is_turned_round)
@@ -185,6 +187,112 @@ static void a_free_mechanism_keeps_its_energy_however_it_is_listed(void **state)
     trajectory_destroy(trajectory);
 }
 
+// A train in free flight: a spinning body, one that slides on it, one that hangs on that, and one
+// that slides on that one in turn, off its centre and at an angle.
+static Scenario train(bool is_turned_round)
+{
+    Scenario scenario = scenario_default();
+    scenario.gravity = 0.0;
+    scenario.run.duration = 1.0;
+    scenario.run.samples = 100;
+    scenario.reference.tolerance = 1e-12;
+    Linkage *linkage = &scenario.linkage;
+    const Motion starts[] = {
+        {.position = {0.1, 0.2}, .angle = 0.3, .velocity = {0.2, -0.1}, .omega = 3.0},
+        {.angle = 1.0, .omega = 3.0},
+        {.angle = -0.4, .omega = -5.0},
+        {.angle = 0.6, .omega = -5.0},
+    };
+    const double slides[] = {0.25, 0.0, -0.15}; // m, and their speeds, m/s
+    const double speeds[] = {-0.7, 0.0, 0.9};
+    linkage->body_count = 4;
+    linkage->joint_count = 3;
+    for (int i = 0; i < 4; i++) {
+        linkage->bodies[i] = (Body){.mass = 0.2 + 0.1 * i, .inertia = 1e-3, .start = starts[i]};
+        snprintf(linkage->bodies[i].name, LINKAGE_NAME_SIZE, "body-%d", i);
+    }
+    for (int i = 0; i < 3; i++) {
+        Joint *joint = &linkage->joints[i];
+        *joint = (Joint){
+            .kind = i == 1 ? JOINT_REVOLUTE : JOINT_PRISMATIC,
+            .body_a = i,
+            .body_b = i + 1,
+            .anchor_a = {0.03, 0.02},
+            .anchor_b = {-0.01, 0.04},
+            .direction = 0.8,
+            .held_angle = starts[i + 1].angle - starts[i].angle,
+        };
+        snprintf(joint->name, LINKAGE_NAME_SIZE, "joint-%d", i);
+        // the second body where the joint has it, and as fast
+        const Motion *a = &linkage->bodies[i].start;
+        Motion *b = &linkage->bodies[i + 1].start;
+        const Vec2 along = vec2_rotate(a->angle + joint->direction, (Vec2){1.0, 0.0});
+        const Vec2 to =
+            vec2_add(vec2_rotate(a->angle, joint->anchor_a), vec2_scale(slides[i], along));
+        const Vec2 back = vec2_rotate(b->angle, joint->anchor_b);
+        b->position = vec2_add(a->position, vec2_sub(to, back));
+        b->velocity =
+            vec2_add(vec2_add(a->velocity, vec2_scale(a->omega, vec2_perp(to))),
+                     vec2_sub(vec2_scale(speeds[i], along), vec2_scale(b->omega, vec2_perp(back))));
+        if (is_turned_round) {
+            joint->direction += a->angle - b->angle;
+            joint->held_angle = -joint->held_angle;
+            const Vec2 anchor = joint->anchor_a;
+            joint->anchor_a = joint->anchor_b;
+            joint->anchor_b = anchor;
+            joint->body_a = i + 1;
+            joint->body_b = i;
+        }
+    }
+    return scenario;
+}
+
+// Energy, momentum along x and y, and momentum about the origin.
+static void find_kept(const Linkage *linkage, const Motion *motions, double kept[4])
+{
+    kept[0] = linkage_kinetic_energy(linkage, motions);
+    kept[1] = kept[2] = kept[3] = 0.0;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Body *body = &linkage->bodies[i];
+        kept[1] += body->mass * motions[i].velocity.x;
+        kept[2] += body->mass * motions[i].velocity.y;
+        kept[3] += body->mass * vec2_cross(motions[i].position, motions[i].velocity) +
+                   body->inertia * motions[i].omega;
+    }
+}
+
+static void bodies_that_slide_on_one_another_in_flight_keep_their_momentum(void **state)
+{
+    (void)state;
+    double omega[2];
+    for (int way = 0; way < 2; way++) {
+        const Scenario scenario = train(way == 1);
+        Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
+        double first[4];
+        find_kept(&scenario.linkage, trajectory_motion(trajectory, 0, 0), first);
+        for (size_t k = 0; k < trajectory->sample_count; k++) {
+            const Motion *motions = trajectory_motion(trajectory, k, 0);
+            const JointState *states = trajectory_state(trajectory, k, 0);
+            double kept[4];
+            find_kept(&scenario.linkage, motions, kept);
+            for (int i = 0; i < 4; i++) {
+                assert_near(kept[i], first[i], 1e-10);
+            }
+            assert_true(slider_unbalanced(&scenario, motions, states) < 1e-9);
+            for (size_t j = 0; j < 3; j += 2) {
+                assert_near(states[j].eccentricity.y, 0.0, 1e-13);
+                assert_near(states[j].tilt, 0.0, 1e-13);
+                assert_near(motions[j + 1].omega, motions[j].omega, 1e-12);
+            }
+        }
+        omega[way] = trajectory_motion(trajectory, 100, 0)->omega;
+        // it has not just flown on
+        assert_true(fabs(omega[way] - 3.0) > 0.1);
+        trajectory_destroy(trajectory);
+    }
+    assert_near(omega[1], omega[0], 1e-9);
+}
+
 // Control of the balance: without the couple it does not hold.
 static void without_the_couple_the_forces_do_not_balance(void **state)
 {
@@ -209,6 +317,7 @@ int main(void)
         cmocka_unit_test(the_largest_accelerations_are_those_published),
         cmocka_unit_test(a_block_on_a_turning_lever_follows_the_closed_form),
         cmocka_unit_test(a_free_mechanism_keeps_its_energy_however_it_is_listed),
+        cmocka_unit_test(bodies_that_slide_on_one_another_in_flight_keep_their_momentum),
         cmocka_unit_test(without_the_couple_the_forces_do_not_balance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
