@@ -42,7 +42,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         text_copy(linkage->torsions[i].name, LINKAGE_NAME_SIZE,
                   names[SCHEMA_TORSION_SPRING].names[i]);
     }
-    const bool has_torque = entries_find(entries, "drive.torque", 0) != NULL;
+    const bool has_torque = entries_blame(entries, "drive.torque drive.force", 0) != NULL;
     linkage->driver.is_present =
         entries->form != SCHEMA_LONG || (entries_group(entries, "drive", 0) != NULL && !has_torque);
     if (entries->form == SCHEMA_LONG) {

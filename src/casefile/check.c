@@ -171,7 +171,9 @@ static bool check_length(const Entries *entries, bool is_driven, Err *err)
                                 "a run with a drive has no duration of its own\n"
                                 "allowed: revolutions of the drive, such as revolutions: 1")
                : entries_refuse(wrong, err, "%s\nallowed: a duration, such as duration: 60 ms",
-                                entries_find(entries, "drive.torque", 0) != NULL
+                                entries_find(entries, "drive.force", 0) != NULL
+                                    ? "a force turns nothing by given revolutions"
+                                : entries_find(entries, "drive.torque", 0) != NULL
                                     ? "a torque turns nothing by given revolutions"
                                     : "without a drive there are no revolutions");
 }
@@ -306,6 +308,13 @@ static bool check_drive(const Entries *entries, const Linkage *linkage, Err *err
     const Joint *driven = &linkage->joints[linkage->driver.joint];
     const bool has_play = linkage_kind_has_play(driven->kind);
     const bool turns = driven->kind == JOINT_REVOLUTE;
+    if (entries_find(entries, "drive.force", 0) != NULL) {
+        return driven->kind == JOINT_PRISMATIC ||
+               entries_refuse(entry, err,
+                              "a force cannot push along joint '%s', which %s\nallowed: an ideal "
+                              "prismatic joint",
+                              driven->name, has_play ? "has play" : "has no line");
+    }
     if (turns && linkage->torque.count > 0) {
         return true;
     }

@@ -6,7 +6,7 @@ static bool check_space(const Entries *entries, const Linkage *linkage, Err *err
     static const char FORMAT[] = "%s not available in space\nallowed: space: planar, or none";
     const EntryGroup *springs = entries_group(entries, "springs", 0);
     const EntryGroup *torsions = entries_group(entries, "torsion-springs", 0);
-    const Entry *torque = entries_find(entries, "drive.torque", 0);
+    const Entry *torque = entries_blame(entries, "drive.torque drive.force", 0);
     if (!linkage->is_spatial) {
         return true;
     }
@@ -16,7 +16,9 @@ static bool check_space(const Entries *entries, const Linkage *linkage, Err *err
     if (linkage->torsion_count > 0) {
         return entries_refuse_group(torsions, err, FORMAT, "torsion springs are");
     }
-    return torque == NULL || entries_refuse(torque, err, FORMAT, "a torque is");
+    return torque == NULL ||
+           entries_refuse(torque, err, FORMAT,
+                          torque->row->dimension == DIMENSION_FORCE ? "a force is" : "a torque is");
 }
 
 // Points that coincide have no line between them, along which a spring could pull.

@@ -92,7 +92,7 @@ static void describe_default(size_t row_number, Text *text)
     const SchemaRow *row = &SCHEMA_ROWS[row_number];
     if (row->is_required) {
         text_append(text, row->rivalry == SCHEMA_SIZES      ? "required without radial-clearance"
-                          : row->rivalry == SCHEMA_DRIVING  ? "required without torque"
+                          : row->rivalry == SCHEMA_DRIVING  ? "required without torque or force"
                           : row->rivalry == SCHEMA_STOPPING ? "required of a stop, or discs"
                                                             : "required");
         append_kinds(row, text);

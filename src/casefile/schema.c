@@ -84,6 +84,20 @@ static void describe_vector(const SchemaRow *row, bool with_example, Text *text)
     }
 }
 
+// A torque or a force over time.
+static void describe_torque(const SchemaRow *row, bool with_example, Text *text)
+{
+    const bool is_force = row->dimension == DIMENSION_FORCE;
+    if (with_example) {
+        text_append(text, "%s such as %s, or points [[0 s, 1 %s], [10 ms, 0 %s]]",
+                    units_dimension_name(row->dimension), units_example(row->dimension),
+                    units_si(row->dimension), units_si(row->dimension));
+    } else {
+        text_append(text, "%s, or a list of [time, %s]", units_dimension_name(row->dimension),
+                    is_force ? "force" : "torque");
+    }
+}
+
 void schema_describe(const SchemaRow *row, bool with_example, Text *text)
 {
     // what a page says of a type, and what a message says
@@ -97,8 +111,6 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},
         [SCHEMA_BODY_NAME] = {"a body", "a body"},
         [SCHEMA_JOINT_NAME] = {"a joint", "a joint"},
-        [SCHEMA_TORQUE] = {"a torque, or a list of [time, torque]",
-                           "a torque such as 0.1 N m, or points [[0 s, 1 N m], [10 ms, 0 N m]]"},
         [SCHEMA_EXPECT] = {"a mapping of paths to limits", "a mapping of paths to limits"},
     };
     switch (row->type) {
@@ -110,6 +122,9 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
     case SCHEMA_VECTOR:
     case SCHEMA_ANCHOR:
         describe_vector(row, with_example, text);
+        break;
+    case SCHEMA_TORQUE:
+        describe_torque(row, with_example, text);
         break;
     case SCHEMA_SPAN:
         text_append(text, with_example ? "a time such as 60 ms, or 1 revolution" : "a time in ");
@@ -129,7 +144,6 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
     case SCHEMA_BETWEEN:
     case SCHEMA_BODY_NAME:
     case SCHEMA_JOINT_NAME:
-    case SCHEMA_TORQUE:
     case SCHEMA_EXPECT:
         text_append(text, "%s", WORDS[row->type][with_example]);
         break;

@@ -27,7 +27,7 @@ const SchemaGroup SCHEMA_GROUPS[] = {
     {"torsion-springs", "With bodies: springs with dampers that turn the two bodies of a joint "
                         "against each other, at most 16. In the plane only."},
     {"drive", "How the crank turns; optional with bodies. At a constant speed, or with bodies by a "
-              "torque: they then start with their own speeds, at rest by default, and the run has "
+              "torque or a force: they then start with their own speeds, at rest by default, and the run has "
               "a duration."},
     {"material", "Material of pins and holes; steel by default."},
     {"contact", "The contact between pin and hole."},

@@ -31,6 +31,7 @@ enum {
     FACETED = 1 << 23,         // the collider takes holes for polygons
     SPATIAL = 1 << 24,         // bodies move in space
     TORQUE = 1 << 25,          // a torque drives
-    DRIVEN = 1 << 26,          // there is a drive or a torque
+    FORCE = 1 << 28,           // or a force
+    DRIVEN = 1 << 26,          // there is a drive, a torque or a force
     OWN_RESTITUTION = 1 << 27, // the joint has a restitution of its own
 };

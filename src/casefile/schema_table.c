@@ -208,7 +208,8 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "drive.joint", .type = SCHEMA_JOINT_NAME, .form = SCHEMA_LONG,
      AT(linkage.driver.joint), .is_required = true, .needs = DRIVEN,
      .doc = "the ideal joint with the ground about which the drive turns a body; of a torque any "
-            "ideal joint: it acts on the second body, and against it on the first"},
+            "ideal pivot: it acts on the second body, and against it on the first; of a force an "
+            "ideal prismatic joint"},
     {.path = "drive.speed", .dimension = DIMENSION_ANGULAR_SPEED, AT(linkage.driver.speed),
      .low = -1e6, .high = 1e6, .is_required = true, .rivalry = SCHEMA_DRIVING, .side = 0,
      .needs = DRIVE,
@@ -218,6 +219,11 @@ const SchemaRow SCHEMA_ROWS[] = {
      .rivalry = SCHEMA_DRIVING, .side = 1, .default_words = "none", .needs = TORQUE,
      .doc = "instead of speed: a torque, constant, or linear in time between points with constant "
             "ends, at most 32; counter-clockwise positive"},
+    {.path = "drive.force", .type = SCHEMA_TORQUE, .form = SCHEMA_LONG,
+     .dimension = DIMENSION_FORCE, AT(linkage.torque), .low = -1e9, .high = 1e9,
+     .rivalry = SCHEMA_DRIVING, .side = 2, .default_words = "none", .needs = FORCE,
+     .doc = "instead of speed, at an ideal prismatic joint: a force along its line on the second "
+            "body, and the other way on the first, constant or over time as a torque"},
     {.path = "drive.start", .form = SCHEMA_SHORT, .dimension = DIMENSION_ANGLE,
      AT(linkage.driver.start), .low = -FULL_TURN, .high = FULL_TURN,
      .doc = "angle of the crank at time zero, counter-clockwise from the ground link, which is the "

@@ -179,8 +179,8 @@ static void set_between(CasefileSetting *setting, const SchemaRow *row, const Li
               body_name(linkage, is_spring ? spring->body_b : joint->body_b));
 }
 
-// A constant torque is one number, in N m; one over time pairs of s and N m.
-static void set_torque(CasefileSetting *setting, const Torque *torque)
+// A constant torque is one number, in N m; one over time pairs of s and N m. A force is in N.
+static void set_torque(CasefileSetting *setting, const SchemaRow *row, const Torque *torque)
 {
     if (torque->count <= 1) {
         set_number(setting, torque->values[0]);
@@ -192,7 +192,7 @@ static void set_torque(CasefileSetting *setting, const Torque *torque)
         setting->numbers[2 * i] = torque->times[i];
         setting->numbers[2 * i + 1] = torque->values[i];
     }
-    text_copy(setting->unit, sizeof setting->unit, "s, N m");
+    snprintf(setting->unit, sizeof setting->unit, "s, %s", units_si(row->dimension));
 }
 
 static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scenario *scenario,
@@ -262,7 +262,7 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         set_words(setting, linkage->joints[number].name, NULL);
         break;
     case SCHEMA_TORQUE:
-        set_torque(setting, field);
+        set_torque(setting, row, field);
         break;
     case SCHEMA_RADIAL_CLEARANCE:
         set_number(setting, linkage_radial_clearance(&linkage->joints[index]));

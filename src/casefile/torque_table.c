@@ -1,17 +1,33 @@
-// How does a torque over time stand in a case?
+// How does a torque or a force over time stand in a case?
 #include "casefile/torque_table.h"
 
 #include "casefile/quantity.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 
-static const char ALLOWED[] = "a torque such as 0.1 N m, or points [time, torque] in the order of "
-                              "time: [[0 s, 1 N m], [10 ms, 0 N m]]";
-
-static bool refuse(const Entry *entry, const Node *node, const char *what, Err *err)
+// What the key takes, a torque or a force.
+static const char *word_of(const Entry *entry)
 {
-    return source_error(entry->source, node->span, ALLOWED, err, "%s", what);
+    return entry->row->dimension == DIMENSION_FORCE ? "force" : "torque";
+}
+
+__attribute__((format(printf, 4, 5))) static bool refuse(const Entry *entry, const Node *node,
+                                                         Err *err, const char *format, ...)
+{
+    char message[QUANTITY_TEXT_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    const char *unit = units_si(entry->row->dimension);
+    char allowed[QUANTITY_TEXT_SIZE];
+    snprintf(allowed, sizeof allowed,
+             "a %s such as %s, or points [time, %s] in the order of time: [[0 s, 1 %s], [10 ms, "
+             "0 %s]]",
+             word_of(entry), units_example(entry->row->dimension), word_of(entry), unit, unit);
+    return source_error(entry->source, node->span, allowed, err, "%s", message);
 }
 
 static bool read_number(const Entry *entry, const Node *node, Dimension dimension, double *number,
@@ -19,8 +35,8 @@ static bool read_number(const Entry *entry, const Node *node, Dimension dimensio
 {
     Complaint complaint;
     if (node->kind != NODE_SCALAR || node->text[0] == '\0') {
-        return refuse(entry, node, "drive.torque takes a torque, or points of time and torque",
-                      err);
+        return refuse(entry, node, err, "%s takes a %s, or points of time and %s", entry->row->path,
+                      word_of(entry), word_of(entry));
     }
     return quantity_parse(node->text, dimension, number, &complaint) ||
            source_error(entry->source, node->span, complaint.allowed, err, "%s", complaint.text);
@@ -28,12 +44,15 @@ static bool read_number(const Entry *entry, const Node *node, Dimension dimensio
 
 static bool read_torque(const Entry *entry, const Node *node, double *torque, Err *err)
 {
-    const double most = entry->row->high;
-    if (!read_number(entry, node, DIMENSION_TORQUE, torque, err)) {
+    const SchemaRow *row = entry->row;
+    if (!read_number(entry, node, row->dimension, torque, err)) {
         return false;
     }
-    return fabs(*torque) <= most || source_error(entry->source, node->span, "-1e9 to 1e9 N m", err,
-                                                 "drive.torque is out of range: %.60s", node->text);
+    char allowed[64];
+    snprintf(allowed, sizeof allowed, "%g to %g %s", row->low, row->high, units_si(row->dimension));
+    return fabs(*torque) <= row->high ||
+           source_error(entry->source, node->span, allowed, err, "%s is out of range: %.60s",
+                        row->path, node->text);
 }
 
 static bool read_point(const Entry *entry, const Node *node, Torque *torque, Err *err)
@@ -42,13 +61,14 @@ static bool read_point(const Entry *entry, const Node *node, Torque *torque, Err
     const Node *value = time != NULL ? time->next : NULL;
     const size_t number = torque->count;
     if (value == NULL || value->next != NULL) {
-        return refuse(entry, node, "a point of drive.torque is a time and a torque", err);
+        return refuse(entry, node, err, "a point of %s is a time and a %s", entry->row->path,
+                      word_of(entry));
     }
     if (number == LINKAGE_TORQUE_MAX) {
         char allowed[64];
         snprintf(allowed, sizeof allowed, "at most %d points", LINKAGE_TORQUE_MAX);
-        return source_error(entry->source, node->span, allowed, err,
-                            "one point of drive.torque too many");
+        return source_error(entry->source, node->span, allowed, err, "one point of %s too many",
+                            entry->row->path);
     }
     if (!read_number(entry, time, DIMENSION_TIME, &torque->times[number], err) ||
         !read_torque(entry, value, &torque->values[number], err)) {
@@ -56,8 +76,8 @@ static bool read_point(const Entry *entry, const Node *node, Torque *torque, Err
     }
     if (!(torque->times[number] >= 0.0) ||
         (number > 0 && !(torque->times[number] > torque->times[number - 1]))) {
-        return refuse(entry, time, "the times of drive.torque must increase, from 0 s or later",
-                      err);
+        return refuse(entry, time, err, "the times of %s must increase, from 0 s or later",
+                      entry->row->path);
     }
     torque->count++;
     return true;
@@ -81,7 +101,7 @@ bool torque_table_store(const Entry *entry, Torque *torque, Err *err)
         }
     }
     if (read.count == 0) {
-        return refuse(entry, node, "drive.torque has no point", err);
+        return refuse(entry, node, err, "%s has no point", entry->row->path);
     }
     *torque = read;
     return true;

@@ -1,4 +1,4 @@
-// A torque, constant or over time, as a case writes it.
+// A torque or a force, constant or over time, as a case writes it.
 #pragma once
 
 #include "casefile/entries.h"

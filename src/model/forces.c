@@ -4,9 +4,12 @@
 //     tension  T = k (|d| - l) + c d|d|/dt,   force T n on body a, -T n on body b
 // At a joint, angle phi of its turned body against the other:
 //     moment  M = -k (phi - phi_0) - c dphi/dt  on the turned body, -M on the other
-// Torque of the drive: M(t) on the turned body of its joint, -M(t) on the other.
+// Torque of the drive: M(t) on the turned body of its joint, -M(t) on the other. At a prismatic
+// joint it is a force F(t) along the line on body b at its anchor, -F(t) on body a at that point.
 //     energy  sum k (|d| - l)^2 / 2 + sum k (phi - phi_0)^2 / 2
 #include "model/forces.h"
+
+#include "model/joint_rows.h"
 
 bool forces_any(const Linkage *linkage)
 {
@@ -112,11 +115,57 @@ void forces_add_dampers(const Linkage *linkage, const Motion *motions, BodyLoad 
     }
 }
 
-void forces_add_torque(const Linkage *linkage, double torque, BodyLoad *loads)
+// The line of the prismatic joint that a force drives.
+typedef struct DriveLine {
+    int body_a;
+    int body_b;
+    Vec2 along;  // unit, of body b
+    Vec2 point;  // anchor of body b, at which the force acts, m
+    double rate; // m/s, of that point against the point of body a under it
+} DriveLine;
+
+static DriveLine drive_line(const Linkage *linkage, const Motion *motions)
 {
-    if (linkage->torque.count > 0) {
-        forces_add_moment(linkage, linkage->torque.joint, torque, loads);
+    const int number = linkage->torque.joint;
+    const Joint *joint = &linkage->joints[number];
+    const JointGap gap = linkage_joint_gap(linkage, motions, number);
+    const double omega = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].omega;
+    const Vec2 along = joint_rows_along(linkage, motions, number);
+    const Vec2 carried = vec2_scale(omega, vec2_perp(gap.position));
+    return (DriveLine){
+        .body_a = joint->body_a,
+        .body_b = joint->body_b,
+        .along = along,
+        .point = linkage_point(motions, joint->body_b, joint->anchor_b),
+        .rate = vec2_dot(along, vec2_sub(gap.velocity, carried)),
+    };
+}
+
+static bool is_force(const Linkage *linkage)
+{
+    return linkage->joints[linkage->torque.joint].kind == JOINT_PRISMATIC;
+}
+
+double forces_drive_rate(const Linkage *linkage, const Motion *motions)
+{
+    return is_force(linkage) ? drive_line(linkage, motions).rate
+                             : forces_turn(linkage, linkage->torque.joint, motions).rate;
+}
+
+void forces_add_torque(const Linkage *linkage, const Motion *motions, double torque,
+                       BodyLoad *loads)
+{
+    if (linkage->torque.count == 0) {
+        return;
     }
+    if (is_force(linkage)) {
+        const DriveLine line = drive_line(linkage, motions);
+        const Vec2 force = vec2_scale(torque, line.along);
+        add_force(line.body_a, line.point, vec2_scale(-1.0, force), motions, loads);
+        add_force(line.body_b, line.point, force, motions, loads);
+        return;
+    }
+    forces_add_moment(linkage, linkage->torque.joint, torque, loads);
 }
 
 void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, BodyLoad *loads)
@@ -126,7 +175,7 @@ void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, 
     }
     forces_add_springs(linkage, motions, loads);
     forces_add_dampers(linkage, motions, loads);
-    forces_add_torque(linkage, forces_torque_at(&linkage->torque, time_s), loads);
+    forces_add_torque(linkage, motions, forces_torque_at(&linkage->torque, time_s), loads);
 }
 
 double forces_energy(const Linkage *linkage, const Motion *motions)
@@ -162,9 +211,9 @@ double forces_damping_power(const Linkage *linkage, const Motion *motions)
 double forces_torque_power(const Linkage *linkage, const Motion *motions, double time_s)
 {
     const Torque *torque = &linkage->torque;
-    return torque->count == 0 ? 0.0
-                              : forces_torque_at(torque, time_s) *
-                                    forces_turn(linkage, torque->joint, motions).rate;
+    return torque->count == 0
+               ? 0.0
+               : forces_torque_at(torque, time_s) * forces_drive_rate(linkage, motions);
 }
 
 double forces_load_power(const BodyLoad *load, const Motion *motion)

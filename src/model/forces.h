@@ -32,10 +32,16 @@ typedef struct JointTurn {
 
 JointTurn forces_turn(const Linkage *linkage, int joint, const Motion *motions);
 
-// Add the loads, by body, of all springs, all dampers, and a torque, N m, at the drive's joint.
+// How fast a torque over time moves what it pushes: the rate of its joint's angle, rad/s, or of the
+// way along its line, m/s.
+double forces_drive_rate(const Linkage *linkage, const Motion *motions);
+
+// Add the loads, by body, of all springs, all dampers, and a torque, N m, at the drive's joint (a
+// force, N, along its line).
 void forces_add_springs(const Linkage *linkage, const Motion *motions, BodyLoad *loads);
 void forces_add_dampers(const Linkage *linkage, const Motion *motions, BodyLoad *loads);
-void forces_add_torque(const Linkage *linkage, double torque, BodyLoad *loads);
+void forces_add_torque(const Linkage *linkage, const Motion *motions, double torque,
+                       BodyLoad *loads);
 
 // Add the load of one damper that pulls along a spring's line with a tension, N.
 void forces_add_tension(const Spring *spring, const SpringLine *line, const Motion *motions,

@@ -153,12 +153,14 @@ typedef struct TorsionSpring {
 } TorsionSpring;
 
 // Pushes the turned body of a joint, and the other one the other way (linkage_turning), by a torque
-// over time: linear between its points, constant before the first and after the last.
+// over time: linear between its points, constant before the first and after the last. At a
+// prismatic joint it is a force on body b along the joint's line, at the anchor of body b, and the
+// other way on body a.
 typedef struct Torque {
     int joint;                         // number of the joint, which is ideal
     size_t count;                      // of points; 0: there is no torque
     double times[LINKAGE_TORQUE_MAX];  // s, increasing
-    double values[LINKAGE_TORQUE_MAX]; // N m, counter-clockwise positive
+    double values[LINKAGE_TORQUE_MAX]; // N m, counter-clockwise positive; or N
 } Torque;
 
 // Turns one body at constant speed about its joint with the ground.

@@ -4,7 +4,8 @@
 //     m)) A = max(V max |w|, g),   of a body  turning = V / reach,  speeding = A / reach
 // reach: of a body's furthest joint from its centre; span: of the driven body's furthest point from
 // its pivot; T: period of the drive, in which gravity alone makes no more than g T; E: stored in
-// springs at the start, and what a torque gives in one radian; m: of all bodies.
+// springs at the start, and what a torque gives in one radian, a force along the largest reach; m:
+// of all bodies.
 #include "model/scale.h"
 
 #include "model/forces.h"
@@ -34,8 +35,14 @@ static double pushed_speed(const Linkage *linkage)
     for (size_t i = 0; i < torque->count; i++) {
         largest = fmax(largest, fabs(torque->values[i]));
     }
+    double reach = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         mass += linkage->bodies[i].mass;
+        reach = fmax(reach, linkage_reach(linkage, (int)i));
+    }
+    // a force works along a line
+    if (torque->count > 0 && linkage->joints[torque->joint].kind == JOINT_PRISMATIC) {
+        largest *= reach;
     }
     return sqrt(2.0 * (energy + largest) / mass);
 }

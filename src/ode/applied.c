@@ -140,9 +140,9 @@ void applied_push_at(Applied *applied, const Motion *motions, double start_s, do
         applied->lines[i] = forces_line(&linkage->springs[i], motions);
     }
     applied->torque = forces_torque_mean(torque, fmin(start_s, end_s), fmax(start_s, end_s));
-    applied->turning = torque->count > 0 ? forces_turn(linkage, torque->joint, motions).rate : 0.0;
+    applied->turning = torque->count > 0 ? forces_drive_rate(linkage, motions) : 0.0;
     forces_add_springs(linkage, motions, applied->loads);
-    forces_add_torque(linkage, applied->torque, applied->loads);
+    forces_add_torque(linkage, motions, applied->torque, applied->loads);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const BodyLoad *load = &applied->loads[i];
         dBodyAddForce(applied->bodies[i], load->force.x, load->force.y, 0.0);
@@ -204,12 +204,12 @@ AppliedWork applied_book(Applied *applied, double step_s)
         applied->loads[i] = (BodyLoad){{0.0, 0.0}, 0.0};
     }
     forces_add_springs(linkage, applied->motions, applied->loads);
-    forces_add_torque(linkage, applied->torque, applied->loads);
+    forces_add_torque(linkage, applied->motions, applied->torque, applied->loads);
     work.damping = take_dampers(applied, step_s);
     if (linkage->torque.count > 0) {
         Motion after[LINKAGE_BODY_MAX];
         read_motions(applied, after);
-        const double turning = forces_turn(linkage, linkage->torque.joint, after).rate;
+        const double turning = forces_drive_rate(linkage, after);
         work.torque = step_s * applied->torque * 0.5 * (applied->turning + turning);
     }
     return work;

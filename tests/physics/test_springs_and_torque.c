@@ -189,6 +189,91 @@ static void a_torque_over_time_turns_as_its_integral(void **state)
     trajectory_destroy(run);
 }
 
+// The same table as a force on a mass of 0.5 kg, along a line.
+static void a_force_over_time_pushes_a_slider_as_its_integral(void **state)
+{
+    (void)state;
+    Scenario scenario = turned_by_a_table();
+    Linkage *linkage = &scenario.linkage;
+    const Vec2 along = {cos(0.6), sin(0.6)};
+    linkage->joints[0].kind = JOINT_PRISMATIC;
+    linkage->joints[0].direction = 0.6;
+    linkage->bodies[0].mass = 0.5;
+    Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
+    for (size_t k = 0; k < run->sample_count; k++) {
+        const Vec2 moved =
+            vec2_sub(trajectory_motion(run, k, 0)->position, linkage->bodies[0].start.position);
+        assert_near(vec2_dot(along, moved), table_angle(run->times[k]), 1e-12);
+        assert_near(vec2_cross(along, moved), 0.0, 1e-14);
+    }
+    assert_near(run->energy.residual, 0.0, 1e-11);
+    trajectory_destroy(run);
+    scenario.ode.stepping = ODE_STAGGERED;
+    run = complete_run(&scenario, BACKEND_ODE);
+    const Vec2 moved = vec2_sub(at_end(run, 0)->position, linkage->bodies[0].start.position);
+    assert_near(vec2_dot(along, moved), table_angle(2.0), 1e-4);
+    assert_near(run->energy.residual, 0.0, 1e-9);
+    trajectory_destroy(run);
+}
+
+// A lever that spins about the origin pushes a block out along itself: what is between the two
+// changes no angular momentum, and all of the work is in the speeds.
+static Scenario spinning_lever(void)
+{
+    Scenario scenario = arm();
+    Linkage *linkage = &scenario.linkage;
+    linkage->body_count = linkage->joint_count = 2;
+    linkage->bodies[0].start =
+        (Motion){.position = {0.5, 0.0}, .velocity = {0.0, 1.0}, .omega = 2.0};
+    linkage->bodies[1] = (Body){.name = "block", .mass = 0.3, .inertia = 0.01};
+    linkage->bodies[1].start =
+        (Motion){.position = {0.2, 0.0}, .velocity = {0.0, 0.4}, .omega = 2.0};
+    linkage->joints[1] = (Joint){.name = "line", .kind = JOINT_PRISMATIC, .body_a = 0, .body_b = 1};
+    linkage->torque = (Torque){.joint = 1, .count = 1, .values = {0.7}};
+    scenario.run.duration = 1.0;
+    return scenario;
+}
+
+static double momentum_about_origin(const Linkage *linkage, const Trajectory *run)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Motion *motion = at_end(run, i);
+        sum += linkage->bodies[i].mass * vec2_cross(motion->position, motion->velocity) +
+               linkage->bodies[i].inertia * motion->omega;
+    }
+    return sum;
+}
+
+static void a_force_between_lever_and_block_keeps_their_angular_momentum(void **state)
+{
+    (void)state;
+    Scenario scenario = spinning_lever();
+    const Linkage *linkage = &scenario.linkage;
+    Trajectory *truth = complete_run(&scenario, BACKEND_REFERENCE);
+    const double out = vec2_length(at_end(truth, 1)->position);
+    // 0.5 kg m^2 of the lever, 0.01 + 0.3 * 0.2^2 of the block, at 2 rad/s
+    assert_near(momentum_about_origin(linkage, truth), 2.0 * (0.5 + 0.01 + 0.3 * 0.04), 1e-12);
+    assert_near(truth->energy.drive_work, 0.7 * (out - 0.2), 1e-12);
+    assert_near(truth->energy.residual, 0.0, 1e-12);
+    double errors[2];
+    scenario.ode.stepping = ODE_STAGGERED;
+    for (int i = 0; i < 2; i++) {
+        scenario.run.step = i == 0 ? 4e-3 : 2e-3;
+        Trajectory *run = complete_run(&scenario, BACKEND_ODE);
+        errors[i] = fabs(vec2_length(at_end(run, 1)->position) - out);
+        trajectory_destroy(run);
+    }
+    assert_near(ode_order(errors[0], errors[1], 2.0), 2.0, 0.1);
+    assert_true(errors[1] < 1e-4);
+    // without the force it goes elsewhere
+    scenario.linkage.torque.values[0] = 0.0;
+    Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
+    assert_true(fabs(vec2_length(at_end(run, 1)->position) - out) > 0.1);
+    trajectory_destroy(run);
+    trajectory_destroy(truth);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -196,6 +281,8 @@ int main(void)
         cmocka_unit_test(a_damped_oscillator_decays_as_its_closed_form),
         cmocka_unit_test(a_strong_damper_is_stable_at_any_step),
         cmocka_unit_test(a_torque_over_time_turns_as_its_integral),
+        cmocka_unit_test(a_force_over_time_pushes_a_slider_as_its_integral),
+        cmocka_unit_test(a_force_between_lever_and_block_keeps_their_angular_momentum),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

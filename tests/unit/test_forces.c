@@ -85,10 +85,48 @@ static void dampers_take_their_power_and_the_torque_gives_its(void **state)
     const Linkage linkage = two_bodies(motions);
     forces_add_dampers(&linkage, motions, damping);
     assert_close(power_of(damping, motions), -forces_damping_power(&linkage, motions), 1e-14);
-    forces_add_torque(&linkage, 2.5, pushing);
+    forces_add_torque(&linkage, motions, 2.5, pushing);
     assert_close(power_of(pushing, motions), forces_torque_power(&linkage, motions, 1.0), 1e-14);
     // by hand: 2.5 N m on body 0, which turns at 2 rad/s, against body 1 at -5 rad/s
     assert_close(power_of(pushing, motions), 2.5 * 7.0, 1e-14);
+}
+
+// At a prismatic joint the drive's torque is a force along the line, which turns with body a.
+static void a_force_along_a_line_gives_its_power_and_no_momentum(void **state)
+{
+    (void)state;
+    Motion motions[2];
+    BodyLoad loads[2] = {{{0.0, 0.0}, 0.0}};
+    Linkage linkage = two_bodies(motions);
+    linkage.joints[1] = (Joint){.kind = JOINT_PRISMATIC,
+                                .body_a = 0,
+                                .body_b = 1,
+                                .anchor_a = {0.1, 0.02},
+                                .anchor_b = {-0.03, 0.05},
+                                .direction = 0.4};
+    forces_add_torque(&linkage, motions, 2.5, loads);
+    assert_near(loads[1].force.x, 2.5 * cos(1.1), 1e-15);
+    assert_near(loads[1].force.y, 2.5 * sin(1.1), 1e-15);
+    assert_close(power_of(loads, motions), forces_torque_power(&linkage, motions, 1.0), 1e-13);
+    // the rate is that of the way along the line, a central difference
+    const double width_s = 1e-5;
+    double ways[2];
+    for (int i = 0; i < 2; i++) {
+        Motion moved[2];
+        move(motions, i == 0 ? -width_s : width_s, moved);
+        ways[i] = vec2_dot(vec2_rotate(moved[0].angle + 0.4, (Vec2){1.0, 0.0}),
+                           linkage_joint_gap(&linkage, moved, 1).position);
+    }
+    assert_close(forces_drive_rate(&linkage, motions), (ways[1] - ways[0]) / (2.0 * width_s), 1e-8);
+    const Vec2 sum = vec2_add(loads[0].force, loads[1].force);
+    const double moment = loads[0].moment + loads[1].moment +
+                          vec2_cross(motions[0].position, loads[0].force) +
+                          vec2_cross(motions[1].position, loads[1].force);
+    assert_near(vec2_length(sum), 0.0, 1e-15);
+    assert_near(moment, 0.0, 1e-15);
+    // a torque is another load
+    linkage.joints[1].kind = JOINT_REVOLUTE;
+    assert_true(fabs(power_of(loads, motions) - forces_torque_power(&linkage, motions, 1.0)) > 0.1);
 }
 
 static void bodies_that_nothing_else_holds_keep_their_momentum(void **state)
@@ -134,6 +172,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(springs_give_what_their_energy_loses),
         cmocka_unit_test(dampers_take_their_power_and_the_torque_gives_its),
+        cmocka_unit_test(a_force_along_a_line_gives_its_power_and_no_momentum),
         cmocka_unit_test(bodies_that_nothing_else_holds_keep_their_momentum),
         cmocka_unit_test(a_torque_over_time_is_linear_between_its_points),
     };
