@@ -63,7 +63,7 @@ static double dot_rows(const Share *share, const double *a, const double *b)
 }
 
 // What the rows of a place make of the speeds along and across the wall.
-static void set_rows(const FrictionRow *row, Share *share)
+static void share_rows(const FrictionRow *row, Share *share)
 {
     const Touch *touch = &row->pair->touch;
     if (touch->shape == TOUCH_LINE) {
@@ -85,7 +85,7 @@ static void set_rows(const FrictionRow *row, Share *share)
 static Share start_share(const FrictionRow *row, const double *free, double step_s)
 {
     Share share = {.row_count = 0};
-    set_rows(row, &share);
+    share_rows(row, &share);
     share.theta = 0.5;
     const double *rates = free + row->first_row;
     share.asked = row->target + row->closing - step_s * dot_rows(&share, share.along, rates);

@@ -343,7 +343,7 @@ static Vec2 row_force(const ContactRows *rows, size_t number)
 }
 
 // Adds the force at a corner to that of its joint.
-static void add_force(const ContactRow *row, Vec2 force, JointState *state)
+static void add_corner_force(const ContactRow *row, Vec2 force, JointState *state)
 {
     state->force_on_b = vec2_add(state->force_on_b, force);
     state->force += vec2_length(force);
@@ -358,7 +358,7 @@ void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
         JointState *state = &states[rows->world->pairs[i].joint];
         const Vec2 force = row_force(rows, i);
         if (row->is_touching && rows->world->pairs[i].is_corner) {
-            add_force(row, force, state);
+            add_corner_force(row, force, state);
         } else if (row->is_touching) {
             state->force_on_b = force;
             state->force = vec2_length(force);
