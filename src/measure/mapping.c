@@ -234,6 +234,17 @@ static void make_rows(Mapping *mapping, MappingWatch watch)
     }
 }
 
+// The name of the first pin that is not the drive's.
+static const char *pin_that_could_have_play(const Linkage *linkage)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage->joints[i].kind == JOINT_REVOLUTE && linkage_is_ideal(linkage, i)) {
+            return linkage->joints[i].name;
+        }
+    }
+    return "pin";
+}
+
 bool mapping_make(const Scenario *scenario, const MappingSettings *settings, MappingWatch watch,
                   Mapping *mapping, Err *err)
 {
@@ -241,8 +252,9 @@ bool mapping_make(const Scenario *scenario, const MappingSettings *settings, Map
     if (!scenario_has_clearance(scenario)) {
         return err_set(err, ERR_CASE,
                        "no joint of %s has play, so there is no contact to map; give one its "
-                       "sizes, such as joints.crank-coupler.radial-clearance=20 um",
-                       scenario->path[0] != '\0' ? scenario->path : "the case");
+                       "sizes, such as joints.%s.radial-clearance=20 um",
+                       scenario->path[0] != '\0' ? scenario->path : "the case",
+                       pin_that_could_have_play(&scenario->linkage));
     }
     if (!make_contacts(mapping, watch, err)) {
         return false;
