@@ -10,7 +10,8 @@
 
 static const CaseKind *const KINDS[] = {&CASE_FOUR_BAR,  &CASE_BODIES,     &CASE_PENDULA,
                                         &CASE_FOUR_BARS, &CASE_LOCK,       &CASE_CHANGE_POINT,
-                                        &CASE_TOUCHING,  &CASE_SEPARATING, &CASE_SPRUNG};
+                                        &CASE_TOUCHING,  &CASE_SEPARATING, &CASE_SPRUNG,
+                                        &CASE_SLIDERS,   &CASE_BALLS};
 
 enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 

@@ -14,6 +14,8 @@ typedef struct CaseKind {
 extern const CaseKind CASE_FOUR_BAR;
 extern const CaseKind CASE_BODIES;
 extern const CaseKind CASE_SPRUNG;
+extern const CaseKind CASE_SLIDERS;
+extern const CaseKind CASE_BALLS;
 
 extern const CaseKind CASE_PENDULA;
 extern const CaseKind CASE_FOUR_BARS;

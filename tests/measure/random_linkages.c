@@ -51,7 +51,8 @@ static const char *const PART_NAMES[] = {"case file", "closed form", "reference"
 
 static const CaseKind *const KINDS[] = {&CASE_FOUR_BAR,  &CASE_BODIES,     &CASE_PENDULA,
                                         &CASE_FOUR_BARS, &CASE_LOCK,       &CASE_CHANGE_POINT,
-                                        &CASE_TOUCHING,  &CASE_SEPARATING, &CASE_SPRUNG};
+                                        &CASE_TOUCHING,  &CASE_SEPARATING, &CASE_SPRUNG,
+                                        &CASE_SLIDERS,   &CASE_BALLS};
 
 // every way of stepping ODE; the others' keys are the case's own
 static const char *const SCHEMES[][2] = {
