@@ -256,7 +256,8 @@ void encounter_force_find(Encounter *encounter, double time_s, const double *imp
     }
 }
 
-// By how much the places that can press together with one move it along its normal, 1/kg.
+// By how much the places that can press together with one move it along its normal, 1/kg; of a
+// block only the corners that touch, for most of its impacts are of one.
 static double mobility_between(const Encounter *encounter, const EncounterJoint *of, Vec2 normal)
 {
     const size_t width = encounter->row_count;
@@ -265,7 +266,8 @@ static double mobility_between(const Encounter *encounter, const EncounterJoint 
         const double *other = encounter->mobility + of->first_row * width + of[k].first_row;
         const double between = normal.x * (other[0] * normal.x + other[1] * normal.y) +
                                normal.y * (other[width] * normal.x + other[width + 1] * normal.y);
-        sum += k != 0 ? fabs(between) : 0.0;
+        const bool presses = of[k].is_touching || of[k].shape != TOUCH_LINE;
+        sum += k != 0 && presses ? fabs(between) : 0.0;
     }
     return sum;
 }
