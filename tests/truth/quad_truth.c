@@ -101,6 +101,27 @@ static void begin_contacts(Truth *truth, size_t joint)
     }
 }
 
+static void end_contact(Truth *truth, size_t joint)
+{
+    truth->contacts.mode[joint] = QUAD_FREE;
+    truth->figures.ends++;
+    truth->figures.end_s = truth->time_s;
+    truth->figures.end_speed = -gap_now(truth, joint).rate;
+}
+
+static void end_contacts(Truth *truth, size_t joint)
+{
+    end_contact(truth, joint);
+    for (size_t k = 0; k < truth->problem->joint_count; k++) {
+        if (truth->problem->joints[k].has_play && truth->contacts.mode[k] != QUAD_FREE) {
+            const QuadGap gap = gap_now(truth, k);
+            if (fabsq(gap.penetration) < SAME_MOMENT && gap.rate < 0) {
+                end_contact(truth, k);
+            }
+        }
+    }
+}
+
 static void pass_event(Truth *truth, const QuadEvent *event)
 {
     switch (event->kind) {
@@ -108,10 +129,7 @@ static void pass_event(Truth *truth, const QuadEvent *event)
         begin_contacts(truth, event->joint);
         break;
     case QUAD_EVENT_END:
-        truth->contacts.mode[event->joint] = QUAD_FREE;
-        truth->figures.ends++;
-        truth->figures.end_s = truth->time_s;
-        truth->figures.end_speed = -gap_now(truth, event->joint).rate;
+        end_contacts(truth, event->joint);
         break;
     case QUAD_EVENT_CLAMP:
         truth->contacts.mode[event->joint] = QUAD_CLAMPED;
