@@ -29,7 +29,7 @@ static void list_coordinates(Dynamics *dynamics)
         }
         *own = (SystemCoordinate){
             .turning = node->body,
-            .reach = linkage_reach(tree->linkage, node->body),
+            .reach = dynamics->reach[node->body],
             .inertia = body->inertia,
         };
         if (node->joint < 0) {
@@ -83,6 +83,9 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
     *dynamics = (Dynamics){.system = {.scenario = scenario, .torn = -1}};
     dynamics->has_forces = forces_any(&scenario->linkage);
     tree_build(&scenario->linkage, &dynamics->tree);
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        dynamics->reach[i] = linkage_reach(&scenario->linkage, (int)i);
+    }
     list_coordinates(dynamics);
     const Tree *tree = &dynamics->tree;
     dynamics->may_branch = tree->loop_count > 0 && tree->coordinate_count > 2 * tree->loop_count;

@@ -23,11 +23,12 @@ typedef struct ContactForce {
 typedef struct Dynamics {
     System system; // the first
     Tree tree;
-    PlanePlace places[TOUCH_MAX]; // by contact
-    bool has_forces;              // whether springs, dampers or a torque act
-    bool may_branch;              // whether loops move freely, and may come to a change point
-    double start_energy;          // J, of such a linkage: what it has, less what it was given
-    double greatest_energy;       // J, kinetic, so far
+    PlanePlace places[TOUCH_MAX];   // by contact
+    double reach[LINKAGE_BODY_MAX]; // m, of each body's points
+    bool has_forces;                // whether springs, dampers or a torque act
+    bool may_branch;                // whether loops move freely, and may come to a change point
+    double start_energy;            // J, of such a linkage: what it has, less what it was given
+    double greatest_energy;         // J, kinetic, so far
 } Dynamics;
 
 // Everything at one instant.

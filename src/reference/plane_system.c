@@ -121,13 +121,14 @@ static double plane_crossing(const System *system, const SystemState *state, siz
 
 static double plane_fastest(const System *system, const SystemState *state)
 {
-    const Tree *tree = &dynamics_of(system)->tree;
+    const Dynamics *dynamics = dynamics_of(system);
+    const Tree *tree = &dynamics->tree;
     double fastest = 0.0;
     for (size_t i = 0; i < tree->node_count; i++) {
         const int body = tree->nodes[i].body;
         const Motion *motion = &state_of(state)->tree.motions[body];
         const double speed = sqrt(vec2_dot(motion->velocity, motion->velocity));
-        fastest = fmax(fastest, speed + fabs(motion->omega) * linkage_reach(tree->linkage, body));
+        fastest = fmax(fastest, speed + fabs(motion->omega) * dynamics->reach[body]);
     }
     return fastest;
 }
