@@ -23,6 +23,19 @@ static const char EXAMPLE[] =
     "run: {revolutions: 1, samples: 3600, step: 1 us, backends: [analytic, ode]}\n"
     "ode: {solver: direct, map: textbook}\n";
 
+static const char SLIDER_EXAMPLE[] =
+    "title: Slider-crank at 1000 rpm with play in a pin and in the guide\n"
+    "slider-crank:\n"
+    "  crank:  {length: 50 mm,  mass: 0.30 kg, inertia: 100 kg mm^2}\n"
+    "  rod:    {length: 120 mm, mass: 0.21 kg, inertia: 250 kg mm^2}\n"
+    "  slider: {mass: 0.14 kg, inertia: 100 kg mm^2}\n"
+    "joints:\n"
+    "  rod-slider:   {hole: 20.1 mm, pin: 20 mm, width: 20 mm}\n"
+    "  slider-guide: {guide: 40.2 mm, block: 40 mm, length: 60 mm}\n"
+    "drive: {speed: 1000 rpm}\n"
+    "contact: {stiffness: 1e9 N/m, damping: exact, restitution: 0.5}\n"
+    "run: {revolutions: 0.1, samples: 3600}\n";
+
 static const char LONG_EXAMPLE[] =
     "title: Pin circling in its hole\n"
     "bodies:\n"
@@ -299,7 +312,8 @@ void casefile_describe(Text *text)
     for (size_t i = 0; i < RULE_COUNT; i++) {
         append_wrapped(RULES[i], 0, text);
     }
-    text_append(text, "\n%s\nOr, for any other linkage:\n\n%s", EXAMPLE, LONG_EXAMPLE);
+    text_append(text, "\n%s\nOr, for a slider-crank:\n\n%s\nOr, for any other linkage:\n\n%s",
+                EXAMPLE, SLIDER_EXAMPLE, LONG_EXAMPLE);
     describe_groups(false, text);
     describe_expect(false, text);
 }
@@ -312,8 +326,11 @@ void casefile_describe_markdown(Text *text)
     for (size_t i = 0; i < RULE_COUNT; i++) {
         text_append(text, "- %s\n", RULES[i]);
     }
-    text_append(text, "\n```yaml\n%s```\n\nOr, for any other linkage:\n\n```yaml\n%s```\n", EXAMPLE,
-                LONG_EXAMPLE);
+    text_append(
+        text,
+        "\n```yaml\n%s```\n\nOr, for a slider-crank:\n\n```yaml\n%s```\n\nOr, for any other "
+        "linkage:\n\n```yaml\n%s```\n",
+        EXAMPLE, SLIDER_EXAMPLE, LONG_EXAMPLE);
     describe_groups(true, text);
     describe_expect(true, text);
 }

@@ -62,13 +62,11 @@ static void write_guide(const Joint *joint, Text *text)
 {
     const Guide *guide = &joint->guide;
     const bool is_sleeve = guide->height > guide->opening;
-    text_append(text,
-                "  play        %s: %s %.7g mm, length %.7g mm, %s %.7g mm, %.4g um either way\n",
-                joint->name, is_sleeve ? "sleeve" : "block", guide->height * UNITS_MM,
-                guide->length * UNITS_MM, is_sleeve ? "rod" : "guide", guide->opening * UNITS_MM,
-                linkage_radial_clearance(joint) * UNITS_UM);
-    text_append(text, "              tilts up to %.4g mrad, where opposite corners touch\n",
-                linkage_guide_tilt(guide) * UNITS_MRAD);
+    text_append(text, "  play        %s: %s %.7g mm, length %.7g mm, %s %.7g mm:\n", joint->name,
+                is_sleeve ? "sleeve" : "block", guide->height * UNITS_MM, guide->length * UNITS_MM,
+                is_sleeve ? "rod" : "guide", guide->opening * UNITS_MM);
+    text_append(text, "              %.4g um either way, tilts up to %.4g mrad\n",
+                linkage_radial_clearance(joint) * UNITS_UM, linkage_guide_tilt(guide) * UNITS_MRAD);
 }
 
 static void write_stop(const Joint *joint, Text *text)
