@@ -244,8 +244,15 @@ static bool check_collider(const Entries *entries, const Scenario *scenario, Err
     }
     for (int i = 0; i < (int)scenario->linkage.joint_count; i++) {
         Err own = {0};
-        if (scenario->linkage.joints[i].kind == JOINT_CLEARANCE &&
-            !facets_check(scenario, i, &own)) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (joint->kind == JOINT_GUIDE || joint->kind == JOINT_STOP) {
+            return entries_refuse(entries_blame(entries, "ode.collider", 0), err,
+                                  "collider %s sees pins in their holes only, and '%s' is a %s\n"
+                                  "allowed: pin-hole",
+                                  OPTIONS_ODE_COLLIDERS[ode->collider], joint->name,
+                                  joint->kind == JOINT_GUIDE ? "block between guides" : "stop");
+        }
+        if (joint->kind == JOINT_CLEARANCE && !facets_check(scenario, i, &own)) {
             return entries_refuse(entries_blame(entries, "ode.facets ode.collider", 0), err,
                                   "%s\nallowed: pin-hole, which is exact, or staves", own.text);
         }
