@@ -9,6 +9,7 @@ typedef struct ContactRow {
     ForceLaw law;
     double impact_speed; // m/s, closing speed when the present contact began
     double mass;         // kg, effective along the normal that it was worked out for
+    double stiff_mass;   // kg, with which the stiffest motion of the joint's places meets it
     Vec2 mass_normal;
     bool falls_back;   // the map is not stable at this step: the row is the textbook's
     double gaps[2];    // m, of the last step and of the one before it

@@ -4,8 +4,8 @@
 //     v_out + CFM F = (ERP / h) d
 // IMPACT: (ERP, CFM) from the secant stiffness k and damping c of the force law at d, by the map
 // chosen, anew each step; where omega h is beyond the map's limit, with omega^2 = (dF/dd) / m and m
-// the linkage's effective mass along the normal, by the textbook's, and counted. POISSON: CFM = 1 /
-// p and bounce e, the paper's Eq. (2) F = p dg/dt.
+// the linkage's effective mass along the normal (ode/contact_mass.c), by the textbook's, and
+// counted. POISSON: CFM = 1 / p and bounce e, the paper's Eq. (2) F = p dg/dt.
 #include "ode/contact_rows.h"
 
 #include "contact/law.h"
@@ -20,6 +20,7 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
     memset(rows, 0, sizeof *rows);
     rows->scenario = scenario;
     rows->world = world;
+    rows->mass.world = world;
     rows->is_staggered = is_staggered;
     if (scenario->contact.model == CONTACT_IMPACT && world->pair_count > 0) {
         rows->map = map_get(scenario->ode.map);
@@ -28,7 +29,7 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
     size_t count = 0;
     if (!touch_list(scenario, places, &count, err) ||
         !touch_response(&scenario->linkage, places, count, scenario->contact.friction > 0.0,
-                        &rows->response, err)) {
+                        &rows->mass.response, err)) {
         return false;
     }
     rows->penalty = scenario->contact.penalty > 0.0
@@ -47,19 +48,6 @@ void contact_rows_finish(ContactRows *rows)
         dJointGroupDestroy(rows->group);
     }
     memset(rows, 0, sizeof *rows);
-}
-
-// Brings the response to where the bodies are, and writes how they move.
-static bool place_response(ContactRows *rows, Motion motions[LINKAGE_BODY_MAX])
-{
-    world_motions(rows->world, motions);
-    return response_place(&rows->response, motions);
-}
-
-// The first of a pair's rows in the response.
-static size_t response_row(const ContactRows *rows, size_t number)
-{
-    return response_first_row(&rows->response, number);
 }
 
 static dSurfaceParameters surface_of(const ContactRows *rows, ContactRow *row, double step_s)
@@ -99,7 +87,7 @@ static FrictionRow friction_row(const ContactRows *rows, size_t number)
     const WorldPair *pair = &rows->world->pairs[number];
     return (FrictionRow){
         .pair = pair,
-        .first_row = response_row(rows, number),
+        .first_row = response_first_row(&rows->mass.response, number),
         .normal = row->normal,
         .closing = row->closing,
         .cfm = row->contact.surface.soft_cfm,
@@ -141,11 +129,12 @@ static void find_friction(ContactRows *rows, double step_s)
             numbers[count++] = i;
         }
     }
-    Motion motions[LINKAGE_BODY_MAX];
-    if (options->model == CONTACT_IMPACT && rows->scenario->ode.solver == ODE_DIRECT && count > 0 &&
-        place_response(rows, motions)) {
+    const bool is_solved =
+        options->model == CONTACT_IMPACT && rows->scenario->ode.solver == ODE_DIRECT && count > 0;
+    const Motion *motions = is_solved ? contact_mass_place(&rows->mass) : NULL;
+    if (motions != NULL) {
         const Applied *applied = &rows->world->applied;
-        contact_friction_find(options, &rows->response, motions, rows->scenario->gravity,
+        contact_friction_find(options, &rows->mass.response, motions, rows->scenario->gravity,
                               applied->is_any ? applied->loads : NULL, step_s, found, count);
     }
     for (size_t i = 0; i < count; i++) {
@@ -188,26 +177,6 @@ static bool check_depth(const ContactRows *rows, size_t number, Err *err)
     return law_check_depth(&row->law, joint, row->depth, 1.0, err);
 }
 
-// The effective mass along the normal of a row. Of a pin it changes as slowly as the linkage turns,
-// and its normal with it; a line's normal may stay while the linkage turns.
-static void find_mass(ContactRows *rows, size_t number)
-{
-    static const double SAME_NORMAL = 0.995; // the cosine of 6 degrees
-    ContactRow *row = &rows->rows[number];
-    const bool is_line = rows->world->pairs[number].touch.shape == TOUCH_LINE;
-    const bool is_known = !is_line && vec2_dot(row->mass_normal, row->normal) > SAME_NORMAL;
-    if (is_known && !rows->map->needs_mass) {
-        return;
-    }
-    Motion motions[LINKAGE_BODY_MAX];
-    if (place_response(rows, motions)) {
-        // at a line the rows are along the normal and across
-        const Vec2 along = is_line ? (Vec2){1.0, 0.0} : row->normal;
-        row->mass = response_mass(&rows->response, response_row(rows, number), along);
-        row->mass_normal = row->normal;
-    }
-}
-
 // Whether the row would not be stable under the map at this step.
 static void check_stability(ContactRows *rows, size_t number, double step_s)
 {
@@ -216,8 +185,8 @@ static void check_stability(ContactRows *rows, size_t number, double step_s)
     if (rows->map == NULL || isinf(rows->map->stability_limit)) {
         return;
     }
-    find_mass(rows, number);
-    const double frequency = sqrt(force_law_tangent(&row->law, row->depth) / row->mass);
+    contact_mass_find(&rows->mass, rows->rows, number, rows->map->needs_mass);
+    const double frequency = sqrt(force_law_tangent(&row->law, row->depth) / row->stiff_mass);
     row->falls_back = !(frequency * step_s < rows->map->stability_limit);
     rows->fallback_count += row->falls_back ? 1 : 0;
 }
@@ -271,17 +240,19 @@ static void find_row(ContactRows *rows, size_t number, double step_s, JointState
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err)
 {
-    for (size_t i = 0; i < rows->world->pair_count; i++) {
-        ContactRow *row = &rows->rows[i];
+    const size_t count = rows->world->pair_count;
+    rows->mass.is_placed = false;
+    for (size_t i = 0; i < count; i++) {
         find_row(rows, i, step_s, states, approach);
-        if (!row->is_touching) {
-            continue;
-        }
-        if (!check_depth(rows, i, err)) {
+        if (rows->rows[i].is_touching && !check_depth(rows, i, err)) {
             return false;
         }
-        check_stability(rows, i, step_s);
-        row->contact = contact_of(rows, i, step_s);
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (rows->rows[i].is_touching) {
+            check_stability(rows, i, step_s);
+            rows->rows[i].contact = contact_of(rows, i, step_s);
+        }
     }
     make_contact_rows(rows, step_s);
     return true;

@@ -3,9 +3,8 @@
 #pragma once
 
 #include "contact/map.h"
-#include "model/response.h"
 #include "model/trajectory.h"
-#include "ode/contact_row.h"
+#include "ode/contact_mass.h"
 
 typedef struct ContactRows {
     const Scenario *scenario;
@@ -18,7 +17,7 @@ typedef struct ContactRows {
     size_t row_count;           // made so far
     size_t fallback_count;      // of those, where the map would not have been stable
     bool is_staggered;          // positions stand half a step behind the speeds
-    Response response;          // for effective masses
+    ContactMass mass;           // of the linkage at the places
 } ContactRows;
 
 // Prepares the laws of all pairs. Fails with ERR_CASE where a law does not fit a joint. The rows

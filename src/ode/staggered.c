@@ -124,7 +124,7 @@ static bool staggered_open(const Scenario *scenario, void **state, Err *err)
     // built closed, so that every joint gets its anchors where they belong, and moved then
     if (world_build(scenario, motions, &staggered->world, err) &&
         contact_rows_init(&staggered->contacts, scenario, &staggered->world, true, err) &&
-        move_on(scenario, start_s, &staggered->contacts.response, motions, err)) {
+        move_on(scenario, start_s, &staggered->contacts.mass.response, motions, err)) {
         for (size_t i = 0; i < scenario->linkage.body_count; i++) {
             world_place(&staggered->world, i, &motions[i]);
         }

@@ -348,6 +348,62 @@ static void a_bouncing_ball_keeps_the_share_of_its_speed_that_is_asked_for(void 
     }
 }
 
+// A block that falls on a guide with two corners at once, the law linear.
+static Scenario flat_block(double inertia, double restitution)
+{
+    Scenario scenario = free_run(8e-3, 100);
+    scenario.gravity = 0.0;
+    scenario.contact.stiffness = 1e6;
+    scenario.contact.exponent = 1.0;
+    scenario.contact.damping = DAMPING_EXACT;
+    scenario.contact.restitution = restitution;
+    set_body(&scenario, "block", 0.2, inertia,
+             (Motion){.position = {0.0, -0.9e-3}, .velocity = {0.0, -0.1}});
+    Joint *guide =
+        set_joint(&scenario, JOINT_GUIDE, LINKAGE_GROUND, (Vec2){0.0, 0.0}, 0, (Vec2){0.0, 0.0});
+    guide->guide = (Guide){.opening = 0.022, .height = 0.02, .length = 0.06};
+    return scenario;
+}
+
+static double rebound(const Scenario *scenario, const Scheme *scheme, double step_s)
+{
+    Trajectory *run = ode_run(*scenario, scheme, step_s);
+    const double speed = trajectory_motion(run, run->sample_count - 1, 0)->velocity.y;
+    trajectory_destroy(run);
+    return speed;
+}
+
+// The map exact needs the mass that a corner meets, and two that press together share the block:
+// with it a rebound is the same at any step. The mass that one corner alone would meet makes these
+// two differ by 8e-5 m/s.
+static void corners_that_press_together_share_the_mass(void **state)
+{
+    (void)state;
+    const Scenario scenario = flat_block(2e-3, 0.999999);
+    const Scheme exact = {ODE_STAGGERED, ODE_MAP_EXACT, 1.0};
+    const double fine = rebound(&scenario, &exact, 5e-5);
+    assert_close(fine, 0.1, 5e-4);
+    assert_near(rebound(&scenario, &exact, 2e-4), fine, 1e-6);
+}
+
+// A thin block rocks on its two corners faster than one of them alone would let it: that motion is
+// the limit of stability, beyond which the map's rows would return 1.2 times the speed.
+static void the_stiffest_motion_of_a_block_limits_the_map(void **state)
+{
+    (void)state;
+    Scenario scenario = flat_block(1.5e-5, 0.999999);
+    scenario.linkage.bodies[0].start.angle = 1e-6;
+    const double of_one = sqrt(1e6 * (1.0 / 0.2 + 0.03 * 0.03 / 1.5e-5)); // rad/s, at one corner
+    Trajectory *below = ode_run(scenario, &SCHEMES[1], 1.4 / of_one);
+    Trajectory *above = ode_run(scenario, &SCHEMES[1], 1.8 / of_one);
+    assert_int_equal(below->fallback_rows, 0);
+    assert_true(above->fallback_rows > 0);
+    assert_true(above->energy.residual > -1e-6);
+    assert_true(trajectory_motion(above, above->sample_count - 1, 0)->velocity.y < 0.1);
+    trajectory_destroy(below);
+    trajectory_destroy(above);
+}
+
 static void colliders_of_pins_refuse_guides_and_stops(void **state)
 {
     (void)state;
@@ -378,6 +434,8 @@ int main(void)
         cmocka_unit_test(the_first_contact_has_the_published_approach_speed),
         cmocka_unit_test(force_and_couple_are_sums_over_the_corners),
         cmocka_unit_test(a_bouncing_ball_keeps_the_share_of_its_speed_that_is_asked_for),
+        cmocka_unit_test(corners_that_press_together_share_the_mass),
+        cmocka_unit_test(the_stiffest_motion_of_a_block_limits_the_map),
         cmocka_unit_test(colliders_of_pins_refuse_guides_and_stops),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
