@@ -4,6 +4,7 @@
 // play the difference of another solver to this one is the effect of the play plus that solver's
 // error.
 #include "analytic/closed_form.h"
+#include "analytic/driven_extremes.h"
 #include "analytic/inverse_dynamics.h"
 #include "model/joint_rows.h"
 #include "model/solver.h"
@@ -28,14 +29,25 @@ typedef struct Analytic {
     double approach[LINKAGE_JOINT_MAX];
 } Analytic;
 
-// The state at any time, angles in the turn of the principal value.
-static bool evaluate(const Analytic *analytic, double time_s, Sample *sample, double *torque,
-                     Err *err)
+static bool place_bodies(const Analytic *analytic, double from_s, Sample *sample)
+{
+    const Driver *driver = &analytic->scenario->linkage.driver;
+    if (drive_is_steady(driver)) {
+        return closed_form_bodies(analytic->scenario, sample->crank_rad, sample->bodies);
+    }
+    const DriveState drive = drive_since(driver, from_s, sample->time_s);
+    return closed_form_driven(analytic->scenario, &drive, sample->bodies);
+}
+
+// The state at any time, angles in the turn of the principal value. Where the drive's speed has a
+// kink it goes on as from the earlier time given.
+static bool evaluate(const Analytic *analytic, double from_s, double time_s, Sample *sample,
+                     double *torque, Err *err)
 {
     const Linkage *linkage = &analytic->scenario->linkage;
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
-    if (!closed_form_bodies(analytic->scenario, sample->crank_rad, sample->bodies)) {
+    if (!place_bodies(analytic, from_s, sample)) {
         return err_set(err, ERR_SOLVER, "at %.6g ms, crank angle %.6g deg: the %s does not close",
                        1e3 * time_s, sample->crank_rad * 180.0 / M_PI,
                        closed_form_name(analytic->scenario));
@@ -78,7 +90,7 @@ static bool analytic_open(const Scenario *scenario, void **state, Err *err)
     assert(analytic != NULL);
     analytic->scenario = scenario;
     Sample start;
-    if (!evaluate(analytic, 0.0, &start, &analytic->torque, err)) {
+    if (!evaluate(analytic, 0.0, 0.0, &start, &analytic->torque, err)) {
         analytic_close(analytic);
         return false;
     }
@@ -93,8 +105,18 @@ static void add_up(Analytic *analytic, const Sample *middle, double middle_torqu
                    const Sample *end, double end_torque, double width_s)
 {
     const Linkage *linkage = &analytic->scenario->linkage;
-    analytic->drive_work = linkage->driver.speed * width_s *
-                           (analytic->torque + 4.0 * middle_torque + end_torque) / 6.0;
+    const Driver *driver = &linkage->driver;
+    if (drive_is_steady(driver)) {
+        analytic->drive_work =
+            driver->speed * width_s * (analytic->torque + 4.0 * middle_torque + end_torque) / 6.0;
+    } else {
+        const double first = drive_at(driver, analytic->end_s).omega;
+        analytic->drive_work =
+            width_s *
+            (first * analytic->torque + 4.0 * middle->bodies[0].omega * middle_torque +
+             end->bodies[0].omega * end_torque) /
+            6.0;
+    }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         analytic->impulse[i] =
             width_s *
@@ -103,19 +125,36 @@ static void add_up(Analytic *analytic, const Sample *middle, double middle_torqu
     }
 }
 
+// The forces after a kink of the drive's speed: they jump there.
+static bool start_piece(Analytic *analytic, Err *err)
+{
+    Sample start;
+    if (drive_is_steady(&analytic->scenario->linkage.driver)) {
+        return true;
+    }
+    if (!evaluate(analytic, analytic->end_s, analytic->end_s, &start, &analytic->torque, err)) {
+        return false;
+    }
+    memcpy(analytic->joints, start.joints, sizeof analytic->joints);
+    return true;
+}
+
 static bool analytic_step(void *state, double stop_s, Err *err)
 {
     Analytic *analytic = state;
     // a degree of the crank at most: extremes of the forces stand between two samples, too
-    const double degree_s = linkage_period(&analytic->scenario->linkage) / 360.0;
-    stop_s = fmin(stop_s, analytic->end_s + degree_s);
+    const Driver *driver = &analytic->scenario->linkage.driver;
+    const double degree_s = 2.0 * M_PI / fabs(driver->speed) / 360.0;
+    const double start_s = analytic->end_s;
+    stop_s = fmin(fmin(stop_s, start_s + degree_s), drive_next_kink(driver, start_s));
     Sample middle;
     Sample end;
     double middle_torque;
     double end_torque;
-    const double width_s = stop_s - analytic->end_s;
-    if (!evaluate(analytic, analytic->end_s + 0.5 * width_s, &middle, &middle_torque, err) ||
-        !evaluate(analytic, stop_s, &end, &end_torque, err)) {
+    const double width_s = stop_s - start_s;
+    if (!start_piece(analytic, err) ||
+        !evaluate(analytic, start_s, start_s + 0.5 * width_s, &middle, &middle_torque, err) ||
+        !evaluate(analytic, start_s, stop_s, &end, &end_torque, err)) {
         return false;
     }
     add_up(analytic, &middle, middle_torque, &end, end_torque, width_s);
@@ -152,7 +191,8 @@ static void analytic_observe(const void *state, double time_s, Sample *sample)
     Err err = {ERR_NONE, ""};
     // the step before has evaluated the loop at the end of this interval
     double torque;
-    const bool is_closed = evaluate(state, time_s, sample, &torque, &err);
+    const bool is_closed =
+        evaluate(state, ((const Analytic *)state)->start_s, time_s, sample, &torque, &err);
     assert(is_closed);
     (void)is_closed;
     const Linkage *linkage = &((const Analytic *)state)->scenario->linkage;
@@ -179,6 +219,12 @@ static void analytic_extremes(const void *state, double from_s, BodyExtremes *bo
 {
     const Analytic *analytic = state;
     const Linkage *linkage = &analytic->scenario->linkage;
+    if (!drive_is_steady(&linkage->driver)) {
+        for (size_t i = 1; i < CLOSED_FORM_BODIES; i++) {
+            bodies[i] = driven_extremes(analytic->scenario, i, from_s, analytic->end_s);
+        }
+        return;
+    }
     const double first = linkage_crank_angle(linkage, from_s);
     // the motion repeats every turn: its extremes stand in the first one of those
     const double run = linkage_crank_angle(linkage, analytic->end_s) - first;

@@ -15,15 +15,40 @@ bool closed_form_turns(const Scenario *scenario)
                                      : fourbar_crank_turns(&scenario->fourbar);
 }
 
-bool closed_form_bodies(const Scenario *scenario, double crank_angle,
-                        Motion motions[CLOSED_FORM_BODIES])
+static bool bodies_at(const Scenario *scenario, double speed, double crank_angle,
+                      Motion motions[CLOSED_FORM_BODIES])
 {
-    const double speed = scenario->linkage.driver.speed;
     if (scenario->has_slidercrank) {
         return slidercrank_motion_bodies(&scenario->slidercrank, speed, crank_angle, motions);
     }
     const FourBarLengths lengths = fourbar_motion_nominal(&scenario->fourbar);
     return fourbar_motion_bodies(&lengths, speed, crank_angle, motions);
+}
+
+bool closed_form_bodies(const Scenario *scenario, double crank_angle,
+                        Motion motions[CLOSED_FORM_BODIES])
+{
+    return bodies_at(scenario, scenario->linkage.driver.speed, crank_angle, motions);
+}
+
+// With k the velocities at a speed of 1 and k' the accelerations there:
+//     v = k omega,   a = k' omega^2 + k alpha
+bool closed_form_driven(const Scenario *scenario, const DriveState *drive,
+                        Motion motions[CLOSED_FORM_BODIES])
+{
+    if (!bodies_at(scenario, 1.0, drive->angle, motions)) {
+        return false;
+    }
+    const double square = drive->omega * drive->omega;
+    for (size_t i = 0; i < CLOSED_FORM_BODIES; i++) {
+        Motion *motion = &motions[i];
+        motion->acceleration = vec2_add(vec2_scale(square, motion->acceleration),
+                                        vec2_scale(drive->alpha, motion->velocity));
+        motion->alpha = square * motion->alpha + drive->alpha * motion->omega;
+        motion->velocity = vec2_scale(drive->omega, motion->velocity);
+        motion->omega *= drive->omega;
+    }
+    return true;
 }
 
 static void slidercrank_extremes(const Scenario *scenario, size_t body, double first_angle,

@@ -17,6 +17,10 @@ bool closed_form_turns(const Scenario *scenario);
 bool closed_form_bodies(const Scenario *scenario, double crank_angle,
                         Motion motions[CLOSED_FORM_BODIES]);
 
+// The same at any speed and acceleration of the crank, 0 too.
+bool closed_form_driven(const Scenario *scenario, const DriveState *drive,
+                        Motion motions[CLOSED_FORM_BODIES]);
+
 // The extremes of a body's angular velocity, rad/s, and acceleration, rad/s^2, for crank angles
 // from first to last; not of the crank.
 void closed_form_extremes(const Scenario *scenario, size_t body, double first_angle,

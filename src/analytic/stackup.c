@@ -191,6 +191,9 @@ bool stackup_compute(const Scenario *scenario, Stackup *stackup, Err *err)
                            ? "it is for four-bars only"
                            : "a stack-up needs a four-bar whose crank turns fully");
     }
+    if (!drive_is_steady(&scenario->linkage.driver)) {
+        return err_set(err, ERR_SOLVER, "it is for drives of constant speed");
+    }
     Stackup made = {.has_sources = false};
     find_sources(scenario, &made);
     Search search = {

@@ -190,6 +190,10 @@ bool summary_compute(const Scenario *scenario, AnalyticSummary *summary, Err *er
                            ? "the crank does not turn fully"
                            : "the closed form is for four-bars and slider-cranks only");
     }
+    if (!drive_is_steady(&scenario->linkage.driver)) {
+        return err_set(err, ERR_SOLVER,
+                       "the speed of the drive changes: there is no turn at one speed");
+    }
     AnalyticSummary made = {.has_limits = false};
     if (scenario->has_slidercrank) {
         summarize_slidercrank(scenario, &made);

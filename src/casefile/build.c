@@ -121,13 +121,13 @@ bool build_is_determined(const Linkage *linkage)
 
 bool build_start(Linkage *linkage, Motion *motions, Err *err)
 {
-    const double start = linkage->driver.start;
-    if (!kinematics_solve(linkage, start, motions, err)) {
+    const DriveState start = drive_at(&linkage->driver, 0.0);
+    if (!kinematics_solve_driven(linkage, &start, motions, err)) {
         return false;
     }
     for (int i = 0; i < PASS_COUNT; i++) {
         const Linkage shifted = shift_holes(linkage, motions);
-        if (!kinematics_solve(&shifted, start, motions, err)) {
+        if (!kinematics_solve_driven(&shifted, &start, motions, err)) {
             return false;
         }
     }
@@ -224,8 +224,9 @@ static void turn_driven_body(const Entries *entries, const Linkage *linkage, Mot
         entries_find(entries, "bodies.*.spin", (size_t)body) == NULL) {
         const Vec2 pivot = linkage->joints[linkage->driver.joint].anchor_a;
         const Vec2 arm = vec2_sub(motions[body].position, pivot);
-        motions[body].omega = linkage->driver.speed;
-        motions[body].velocity = vec2_scale(linkage->driver.speed, vec2_perp(arm));
+        const double speed = drive_at(&linkage->driver, 0.0).omega;
+        motions[body].omega = speed;
+        motions[body].velocity = vec2_scale(speed, vec2_perp(arm));
     }
 }
 

@@ -38,7 +38,7 @@ typedef enum CasefileKind {
     CASEFILE_WORD,    // one of a list of words
     CASEFILE_WORDS,   // several of a list of words, separated by ", "
     CASEFILE_TEXT,    // free text, or names separated by ", "
-    CASEFILE_POINTS,  // numbers in pairs: times and torques
+    CASEFILE_POINTS,  // numbers in pairs: times and torques or speeds
 } CasefileKind;
 
 // One resolved setting of a scenario.
@@ -47,10 +47,10 @@ typedef struct CasefileSetting {
     CasefileKind kind;
     size_t number_count; // of CASEFILE_NUMBER: 1; 2: a vector x, y; 3: nominal, lower and upper
                          // limit of a length with a tolerance, the limits as deviations
-    double numbers[2 * LINKAGE_TORQUE_MAX]; // SI
-    char unit[CASEFILE_UNIT_SIZE];          // SI, empty for plain numbers
-    char text[CASEFILE_TEXT_SIZE];          // of a word, words or text
-    bool applies;                           // the scenario makes use of it
+    double numbers[2 * TIME_TABLE_MAX]; // SI
+    char unit[CASEFILE_UNIT_SIZE];      // SI, empty for plain numbers
+    char text[CASEFILE_TEXT_SIZE];      // of a word, words or text
+    bool applies;                       // the scenario makes use of it
 } CasefileSetting;
 
 // The number of settings, the same for every scenario, and each of them in the schema's order.

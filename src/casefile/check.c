@@ -125,7 +125,7 @@ static bool check_contact(const Entries *entries, const Scenario *scenario, Err 
 }
 
 static bool check_steps(const Entries *entries, const RunOptions *run, double duration,
-                        bool is_driven, Err *err)
+                        bool is_turning, Err *err)
 {
     const Entry *entry =
         entries_blame(entries, "run.step run.revolutions run.duration drive.speed", 0);
@@ -138,7 +138,7 @@ static bool check_steps(const Entries *entries, const RunOptions *run, double du
                               "the run of %.4g s takes %.3g steps of %.3g s\n"
                               "allowed: at most %g steps: here a step of %.3g s or more, or %s",
                               duration, steps, run->step, STEPS_MAX, duration / STEPS_MAX,
-                              is_driven ? "fewer revolutions" : "a shorter run");
+                              is_turning ? "fewer revolutions" : "a shorter run");
     }
     return run->step <= duration || entries_refuse(entry, err,
                                                    "the step (%.3g s) is longer than the run\n"
@@ -159,43 +159,52 @@ static bool check_samples(const Entries *entries, const RunOptions *run, Err *er
                           samples, run->revolutions, run->samples, SAMPLES_MAX);
 }
 
-// With a drive a run is counted in its revolutions, without one in seconds.
-static bool check_length(const Entries *entries, bool is_driven, Err *err)
+// Why a run is not counted in revolutions.
+static const char *no_revolutions(const Entries *entries)
 {
-    const Entry *wrong = entries_find(entries, is_driven ? "run.duration" : "run.revolutions", 0);
+    return entries_find(entries, "drive.force", 0) != NULL
+               ? "a force turns nothing by given revolutions"
+           : entries_find(entries, "drive.torque", 0) != NULL
+               ? "a torque turns nothing by given revolutions"
+           : entries_find(entries, "drive.speed", 0) != NULL
+               ? "a drive whose speed changes has no revolutions to count by"
+               : "without a drive there are no revolutions";
+}
+
+// A drive of constant speed counts a run in its revolutions; else it is counted in seconds.
+static bool check_length(const Entries *entries, bool is_turning, Err *err)
+{
+    const Entry *wrong = entries_find(entries, is_turning ? "run.duration" : "run.revolutions", 0);
     if (wrong == NULL) {
         return true;
     }
-    return is_driven
+    return is_turning
                ? entries_refuse(wrong, err,
-                                "a run with a drive has no duration of its own\n"
+                                "a run with a drive of constant speed has no duration of its own\n"
                                 "allowed: revolutions of the drive, such as revolutions: 1")
                : entries_refuse(wrong, err, "%s\nallowed: a duration, such as duration: 60 ms",
-                                entries_find(entries, "drive.force", 0) != NULL
-                                    ? "a force turns nothing by given revolutions"
-                                : entries_find(entries, "drive.torque", 0) != NULL
-                                    ? "a torque turns nothing by given revolutions"
-                                    : "without a drive there are no revolutions");
+                                no_revolutions(entries));
 }
 
 // What is reported begins before the run ends.
-static bool check_report(const Entries *entries, const Scenario *scenario, bool is_driven, Err *err)
+static bool check_report(const Entries *entries, const Scenario *scenario, bool is_turning,
+                         Err *err)
 {
     const RunOptions *run = &scenario->run;
     const Entry *own = entries_find(entries, "run.report-from", 0);
     if (own == NULL) {
         return true;
     }
-    if (run->is_report_from_in_turns && !is_driven) {
-        return entries_refuse(
-            own, err, "without a drive there are no revolutions\nallowed: a time, such as 60 ms");
+    if (run->is_report_from_in_turns && !is_turning) {
+        return entries_refuse(own, err, "%s\nallowed: a time, such as 60 ms",
+                              no_revolutions(entries));
     }
     if (scenario_reports_any(scenario)) {
         return true;
     }
     const Entry *entry = entries_blame(entries, "run.report-from run.revolutions run.duration", 0);
     char turns[64] = "";
-    if (is_driven) {
+    if (is_turning) {
         snprintf(turns, sizeof turns, "%g revolution%s or ", run->revolutions,
                  run->revolutions == 1.0 ? "" : "s");
     }
@@ -283,6 +292,11 @@ static bool check_stepping(const Entries *entries, const Scenario *scenario, Err
                               "extrapolated stepping is for linkages in the plane\nallowed: "
                               "stepping: plain or staggered, or space: planar");
     }
+    if (scenario->linkage.driver.speeds.count > 0 && ode->stepping == ODE_EXTRAPOLATED) {
+        return entries_refuse(entries_blame(entries, "ode.stepping drive.speed", 0), err,
+                              "extrapolated stepping is for drives of constant speed: a speed over "
+                              "time has kinks\nallowed: plain, staggered");
+    }
     if (is_impact && ode->map == ODE_MAP_IMPULSE && ode->stepping != ODE_STAGGERED) {
         return entries_refuse(
             entries_blame(entries, "ode.map ode.stepping", 0), err,
@@ -298,11 +312,12 @@ static bool check_run(const Entries *entries, const Scenario *scenario, Err *err
         return entries_refuse(entries_find(entries, "drive.speed", 0), err,
                               "the crank does not turn\nallowed: any speed but 0");
     }
-    return check_length(entries, is_driven, err) &&
-           check_report(entries, scenario, is_driven, err) &&
+    const bool is_turning = drive_is_steady(&scenario->linkage.driver);
+    return check_length(entries, is_turning, err) &&
+           check_report(entries, scenario, is_turning, err) &&
            check_backends(entries, &scenario->run, err) && check_stepping(entries, scenario, err) &&
-           check_steps(entries, &scenario->run, scenario_duration(scenario), is_driven, err) &&
-           (!is_driven || check_samples(entries, &scenario->run, err));
+           check_steps(entries, &scenario->run, scenario_duration(scenario), is_turning, err) &&
+           (!is_turning || check_samples(entries, &scenario->run, err));
 }
 
 // The drive of a case with bodies turns about an ideal joint with the ground.
@@ -322,7 +337,7 @@ static bool check_drive(const Entries *entries, const Linkage *linkage, Err *err
                               "prismatic joint",
                               driven->name, has_play ? "has play" : "has no line");
     }
-    if (turns && linkage->torque.count > 0) {
+    if (turns && linkage->torque.table.count > 0) {
         return true;
     }
     if (turns && (driven->body_a == LINKAGE_GROUND || driven->body_b == LINKAGE_GROUND)) {

@@ -42,5 +42,10 @@ bool check_space(const Entries *entries, const Scenario *scenario, Err *err)
                                         joint->name);
         }
     }
+    if (linkage->is_spatial && linkage->driver.speeds.count > 0) {
+        return entries_refuse(entries_blame(entries, "space drive.speed", 0), err,
+                              "in space a drive turns at constant speed\nallowed: a speed such as "
+                              "1000 rpm, or space: planar");
+    }
     return true;
 }

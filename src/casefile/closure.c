@@ -142,65 +142,94 @@ static double travel_to(double cosine, double start, double direction)
 }
 
 // How far the crank turns from its start to a dead centre, rad.
-static double free_travel(const Reach *reach, const Driver *driver)
+static double free_travel(const Reach *reach, const Driver *driver, double direction)
 {
-    const double direction = driver->speed < 0.0 ? -1.0 : 1.0;
     return fmin(travel_to(reach->cos_low, driver->start, direction),
                 travel_to(reach->cos_high, driver->start, direction));
 }
 
-bool closure_check(const Entries *entries, const Scenario *scenario, Err *err)
+// How far the drive turns in the run, rad.
+static DriveExtent run_extent(const Scenario *scenario)
+{
+    const Driver *driver = &scenario->linkage.driver;
+    const double turned = 2.0 * M_PI * scenario->run.revolutions;
+    return driver->speeds.count > 0 ? drive_extent(driver, scenario->run.duration)
+           : driver->speed < 0.0    ? (DriveExtent){.back = -turned}
+                                    : (DriveExtent){.forth = turned};
+}
+
+// What keeps the drive away from an angle that is so many revolutions from its start.
+static void describe_less(const Driver *driver, double turns, char *text, size_t size)
+{
+    snprintf(text, size,
+             driver->speeds.count == 0 ? "less than %.4g revolutions"
+                                       : "speeds that turn it by less than %.4g revolutions",
+             turns);
+}
+
+static bool check_way(const Entries *entries, const Scenario *scenario, const Reach *reach,
+                      const Reach *most, double direction, double turned, Err *err)
 {
     const FourBar *fourbar = &scenario->fourbar;
     const Driver *driver = &scenario->linkage.driver;
-    const Reach reach = find_reach(fourbar, 0.0);
-    if (!check_start(entries, scenario, &reach, err)) {
-        return false;
-    }
-    const double direction = driver->speed < 0.0 ? -1.0 : 1.0;
-    const double travel = free_travel(&reach, driver);
-    const double turns = travel / (2.0 * M_PI);
-    // play may be enough to let the crank pass: then the run shows whether it does
-    const Reach most = find_reach(fourbar, total_play(&scenario->linkage));
-    if (!(free_travel(&most, driver) / (2.0 * M_PI) <= scenario->run.revolutions)) {
+    const double travel = free_travel(reach, driver, direction);
+    if (!(free_travel(most, driver, direction) / (2.0 * M_PI) <= turned / (2.0 * M_PI))) {
         return true;
     }
-    const Entry *entry = entries_blame(entries, BLAMED " run.revolutions", 0);
+    char less[STARTS_SIZE];
+    describe_less(driver, travel / (2.0 * M_PI), less, sizeof less);
+    const Entry *entry = entries_blame(entries, BLAMED " run.revolutions run.duration", 0);
     return entries_refuse(
         entry, err,
         "the crank cannot turn through the run: from %.4g deg it reaches a dead centre at %.4g deg "
-        "(the mechanism is a %s)\nallowed: less than %.4g revolutions, or a crank that turns fully "
+        "(the mechanism is a %s)\nallowed: %s, or a crank that turns fully "
         "(crank or ground the shortest link, and with the longest shorter than the other two "
         "together)",
         driver->start / DEGREE, (driver->start + direction * travel) / DEGREE,
-        FOURBAR_GRASHOF_NAMES[fourbar_grashof(fourbar)], turns);
+        FOURBAR_GRASHOF_NAMES[fourbar_grashof(fourbar)], less);
+}
+
+bool closure_check(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    const Reach reach = find_reach(&scenario->fourbar, 0.0);
+    if (!check_start(entries, scenario, &reach, err)) {
+        return false;
+    }
+    // play may be enough to let the crank pass: then the run shows whether it does
+    const Reach most = find_reach(&scenario->fourbar, total_play(&scenario->linkage));
+    const DriveExtent extent = run_extent(scenario);
+    return (extent.forth == 0.0 ||
+            check_way(entries, scenario, &reach, &most, 1.0, extent.forth, err)) &&
+           (extent.back == 0.0 ||
+            check_way(entries, scenario, &reach, &most, -1.0, -extent.back, err));
 }
 
 bool closure_check_ideal(const Entries *entries, const Scenario *scenario, Err *err)
 {
     const Driver *driver = &scenario->linkage.driver;
-    const Lock lock =
-        lock_find(&scenario->linkage, LOCK_IDEAL_ONLY, 2.0 * M_PI * scenario->run.revolutions);
-    const Entry *entry = entries_blame(entries, "run.revolutions drive.speed", 0);
-    if (lock.has_crossing &&
-        fabs(lock.crossing - driver->start) <= 2.0 * M_PI * scenario->run.revolutions) {
+    const DriveExtent extent = run_extent(scenario);
+    const Lock lock = lock_find_between(&scenario->linkage, LOCK_IDEAL_ONLY, extent);
+    const Entry *entry = entries_blame(entries, "run.revolutions run.duration drive.speed", 0);
+    char less[STARTS_SIZE];
+    const double crossed = lock.crossing - driver->start;
+    if (lock.has_crossing && crossed >= extent.back && crossed <= extent.forth) {
+        describe_less(driver, fabs(crossed) / (2.0 * M_PI), less, sizeof less);
         return entries_refuse(entry, err,
                               "ideal joints do not say how the mechanism goes on: from %.4g deg it "
                               "reaches a change point at %.4g deg, where it can continue in two "
-                              "ways\nallowed: less than %.4g revolutions, or play in one of the "
+                              "ways\nallowed: %s, or play in one of the "
                               "joints that are in line there",
-                              driver->start / DEGREE, lock.crossing / DEGREE,
-                              fabs(lock.crossing - driver->start) / (2.0 * M_PI));
+                              driver->start / DEGREE, lock.crossing / DEGREE, less);
     }
     if (lock.state != LOCK_FOUND) {
         return true;
     }
+    describe_less(driver, fabs(lock.crank_angle - driver->start) / (2.0 * M_PI), less, sizeof less);
     return entries_refuse(entry, err,
                           "the crank cannot turn through the run: from %.4g deg it turns up to "
-                          "%.6g deg, where the mechanism locks\nallowed: less than %.4g "
-                          "revolutions, or lengths with which it turns",
-                          driver->start / DEGREE, lock.crank_angle / DEGREE,
-                          fabs(lock.crank_angle - driver->start) / (2.0 * M_PI));
+                          "%.6g deg, where the mechanism locks\nallowed: %s, or lengths with which "
+                          "it turns",
+                          driver->start / DEGREE, lock.crank_angle / DEGREE, less);
 }
 
 static bool has_joint(const Linkage *linkage, int body)

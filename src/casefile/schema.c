@@ -111,6 +111,8 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},
         [SCHEMA_BODY_NAME] = {"a body", "a body"},
         [SCHEMA_JOINT_NAME] = {"a joint", "a joint"},
+        [SCHEMA_SPEED] = {"an angular speed, or a list of [time, speed]",
+                          "a speed such as 1000 rpm, or points [[0 s, 0 rpm], [10 ms, 1000 rpm]]"},
         [SCHEMA_EXPECT] = {"a mapping of paths to limits", "a mapping of paths to limits"},
     };
     switch (row->type) {
@@ -144,6 +146,7 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
     case SCHEMA_BETWEEN:
     case SCHEMA_BODY_NAME:
     case SCHEMA_JOINT_NAME:
+    case SCHEMA_SPEED:
     case SCHEMA_EXPECT:
         text_append(text, "%s", WORDS[row->type][with_example]);
         break;

@@ -30,7 +30,8 @@ typedef enum SchemaType {
     SCHEMA_BETWEEN,          // [body, body] -> body_a and body_b of a joint or spring
     SCHEMA_BODY_NAME,        // name of a body -> int
     SCHEMA_JOINT_NAME,       // name of a joint -> int
-    SCHEMA_TORQUE,           // torque, or list of [time, torque] -> Torque
+    SCHEMA_TORQUE,           // torque, or list of [time, torque] -> TimeTable
+    SCHEMA_SPEED,            // speed, or list of [time, speed] -> Driver
     SCHEMA_EXPECT,           // mapping of paths to limits -> expectations; no setting of a run
 } SchemaType;
 

@@ -43,12 +43,13 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
         bit(MEMBER, is_member) | bit(OWN_STIFFNESS, is_joint && joint->contact.stiffness > 0.0) |
         bit(OWN_RESTITUTION, is_joint && joint->contact.has_restitution) |
         bit(FREE, !build_is_determined(linkage)) | bit(DRIVE, linkage->driver.is_present) |
-        bit(TORQUE, linkage->torque.count > 0 && !is_force) |
-        bit(FORCE, linkage->torque.count > 0 && is_force) |
-        bit(DRIVEN, linkage->driver.is_present || linkage->torque.count > 0) |
-        bit(NO_DRIVE, !linkage->driver.is_present) | bit(PLAY, has_play) | bit(IDEAL, !has_play) |
-        bit(IMPACT, is_impact) | bit(POISSON, is_poisson) | bit(LAW, has_law) |
-        bit(STIFFNESS, is_impact && contact->stiffness > 0.0) |
+        bit(TORQUE, linkage->torque.table.count > 0 && !is_force) |
+        bit(FORCE, linkage->torque.table.count > 0 && is_force) |
+        bit(DRIVEN, linkage->driver.is_present || linkage->torque.table.count > 0) |
+        bit(TURNING, drive_is_steady(&linkage->driver)) |
+        bit(TIMED, !drive_is_steady(&linkage->driver)) | bit(PLAY, has_play) |
+        bit(IDEAL, !has_play) | bit(IMPACT, is_impact) | bit(POISSON, is_poisson) |
+        bit(LAW, has_law) | bit(STIFFNESS, is_impact && contact->stiffness > 0.0) |
         bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
         bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
         bit(FRICTION, has_play && contact->friction > 0.0) |

@@ -9,9 +9,9 @@ enum {
     OWN_STIFFNESS = 1 << 1, // the joint has a stiffness of its own
     FREE = 1 << 2,          // no drive determines how the bodies move
     DRIVE = 1 << 3,         // there is a drive
-    NO_DRIVE = 1 << 4,
-    PLAY = 1 << 5,   // some joint has play
-    IMPACT = 1 << 6, // and the contact is of that model
+    TIMED = 1 << 4,         // its speed is not constant, or there is none: seconds measure the run
+    PLAY = 1 << 5,          // some joint has play
+    IMPACT = 1 << 6,        // and the contact is of that model
     POISSON = 1 << 7,
     LAW = 1 << 8,       // its stiffness is that of a law
     STIFFNESS = 1 << 9, // or given
@@ -34,4 +34,5 @@ enum {
     FORCE = 1 << 28,           // or a force
     DRIVEN = 1 << 26,          // there is a drive, a torque or a force
     OWN_RESTITUTION = 1 << 27, // the joint has a restitution of its own
+    TURNING = 1 << 28,         // the drive's speed is constant: revolutions measure the run
 };

@@ -210,17 +210,18 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "the ideal joint with the ground about which the drive turns a body; of a torque any "
             "ideal pivot: it acts on the second body, and against it on the first; of a force an "
             "ideal prismatic joint"},
-    {.path = "drive.speed", .dimension = DIMENSION_ANGULAR_SPEED, AT(linkage.driver.speed),
-     .low = -1e6, .high = 1e6, .is_required = true, .rivalry = SCHEMA_DRIVING, .side = 0,
-     .needs = DRIVE,
-     .doc = "angular velocity of the driven body, constant, counter-clockwise positive; not 0"},
+    {.path = "drive.speed", .type = SCHEMA_SPEED, .dimension = DIMENSION_ANGULAR_SPEED,
+     AT(linkage.driver), .low = -1e6, .high = 1e6, .is_required = true,
+     .rivalry = SCHEMA_DRIVING, .side = 0, .needs = DRIVE,
+     .doc = "angular velocity of the driven body, counter-clockwise positive: constant and not 0, "
+            "or linear in time between points with constant ends, at most 32, not all 0"},
     {.path = "drive.torque", .type = SCHEMA_TORQUE, .form = SCHEMA_LONG,
-     .dimension = DIMENSION_TORQUE, AT(linkage.torque), .low = -1e9, .high = 1e9,
+     .dimension = DIMENSION_TORQUE, AT(linkage.torque.table), .low = -1e9, .high = 1e9,
      .rivalry = SCHEMA_DRIVING, .side = 1, .default_words = "none", .needs = TORQUE,
      .doc = "instead of speed: a torque, constant, or linear in time between points with constant "
             "ends, at most 32; counter-clockwise positive"},
     {.path = "drive.force", .type = SCHEMA_TORQUE, .form = SCHEMA_LONG,
-     .dimension = DIMENSION_FORCE, AT(linkage.torque), .low = -1e9, .high = 1e9,
+     .dimension = DIMENSION_FORCE, AT(linkage.torque.table), .low = -1e9, .high = 1e9,
      .rivalry = SCHEMA_DRIVING, .side = 2, .default_words = "none", .needs = FORCE,
      .doc = "instead of speed, at an ideal prismatic joint: a force along its line on the second "
             "body, and the other way on the first, constant or over time as a torque"},
@@ -277,13 +278,14 @@ const SchemaRow SCHEMA_ROWS[] = {
      .needs = IMPACT, .doc = "smallest impact speed by which the damping laws divide"},
 
     {.path = "run.revolutions", AT(run.revolutions), .low = 0.0, .high = 1e6,
-     .low_is_open = true, .needs = DRIVE,
-     .doc = "revolutions of the drive in the run; may be a fraction"},
-    {.path = "run.duration", .form = SCHEMA_LONG, .dimension = DIMENSION_TIME, AT(run.duration),
-     .low = 0.0, .high = 1e6, .low_is_open = true, .needs = NO_DRIVE,
-     .doc = "duration of a run without a speed of the drive, instead of revolutions"},
+     .low_is_open = true, .needs = TURNING,
+     .doc = "revolutions of a drive of constant speed in the run; may be a fraction"},
+    {.path = "run.duration", .dimension = DIMENSION_TIME, AT(run.duration),
+     .low = 0.0, .high = 1e6, .low_is_open = true, .needs = TIMED,
+     .doc = "duration of a run without a constant speed of the drive, instead of revolutions"},
     {.path = "run.samples", .type = SCHEMA_INTEGER, AT(run.samples), .low = 1.0, .high = 1e7,
-     .doc = "samples written per revolution of the drive, or in the whole run without one"},
+     .doc = "samples written per revolution of the drive, or in the whole run where run.duration says "
+     "how long it is"},
     {.path = "run.step", .dimension = DIMENSION_TIME, AT(run.step), .low = 0.0, .high = 1.0,
      .low_is_open = true, .zero_word = "auto", .needs = ODE,
      .default_words = "auto; 1 us where ode.stepping, ode.map or a collider but pin-hole is given, "

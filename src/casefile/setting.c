@@ -179,20 +179,29 @@ static void set_between(CasefileSetting *setting, const SchemaRow *row, const Li
               body_name(linkage, is_spring ? spring->body_b : joint->body_b));
 }
 
-// A constant torque is one number, in N m; one over time pairs of s and N m. A force is in N.
-static void set_torque(CasefileSetting *setting, const SchemaRow *row, const Torque *torque)
+// What is constant is one number; over time it is pairs of s and its unit.
+static void set_over_time(CasefileSetting *setting, const SchemaRow *row, const TimeTable *table)
 {
-    if (torque->count <= 1) {
-        set_number(setting, torque->values[0]);
+    if (table->count <= 1) {
+        set_number(setting, table->values[0]);
         return;
     }
     setting->kind = CASEFILE_POINTS;
-    setting->number_count = 2 * torque->count;
-    for (size_t i = 0; i < torque->count; i++) {
-        setting->numbers[2 * i] = torque->times[i];
-        setting->numbers[2 * i + 1] = torque->values[i];
+    setting->number_count = 2 * table->count;
+    for (size_t i = 0; i < table->count; i++) {
+        setting->numbers[2 * i] = table->times[i];
+        setting->numbers[2 * i + 1] = table->values[i];
     }
     snprintf(setting->unit, sizeof setting->unit, "s, %s", units_si(row->dimension));
+}
+
+static void set_speed(CasefileSetting *setting, const SchemaRow *row, const Driver *driver)
+{
+    if (driver->speeds.count > 0) {
+        set_over_time(setting, row, &driver->speeds);
+    } else {
+        set_number(setting, driver->speed);
+    }
 }
 
 static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scenario *scenario,
@@ -262,7 +271,10 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         set_words(setting, linkage->joints[number].name, NULL);
         break;
     case SCHEMA_TORQUE:
-        set_torque(setting, row, field);
+        set_over_time(setting, row, field);
+        break;
+    case SCHEMA_SPEED:
+        set_speed(setting, row, field);
         break;
     case SCHEMA_RADIAL_CLEARANCE:
         set_number(setting, linkage_radial_clearance(&linkage->joints[index]));

@@ -2,8 +2,8 @@
 #include "casefile/store.h"
 
 #include "casefile/expect.h"
+#include "casefile/over_time.h"
 #include "casefile/target.h"
-#include "casefile/torque_table.h"
 
 #include <float.h>
 #include <math.h>
@@ -284,6 +284,22 @@ static bool store_between(const Target *target, int *body_a, int *body_b)
                         "%s names %s twice", target->path, pair[1]->text);
 }
 
+// One number, with the messages of one, or points.
+static bool store_speed(const Target *target)
+{
+    Driver *driver = target->field;
+    TargetNumber number;
+    if (target->entry->node->kind == NODE_LIST) {
+        return over_time_store_speed(target->entry, driver, target->err);
+    }
+    if (!target_number(target, target->entry->node, &number)) {
+        return false;
+    }
+    driver->speed = number.value;
+    driver->speeds.count = 0;
+    return true;
+}
+
 bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
 {
     Target target = {.entries = entries, .entry = entry, .err = err};
@@ -320,7 +336,9 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
     case SCHEMA_JOINT_NAME:
         return find_name(&target, entry->node, SCHEMA_JOINT, false, target.field);
     case SCHEMA_TORQUE:
-        return torque_table_store(entry, target.field, err);
+        return over_time_store(entry, target.field, err);
+    case SCHEMA_SPEED:
+        return store_speed(&target);
     case SCHEMA_EXPECT:
         return expect_store(entries, entry, scenario, err);
     default:

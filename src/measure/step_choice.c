@@ -80,7 +80,7 @@ StepChoice step_choice_begin(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
     const double duration_s = scenario_duration(scenario);
-    const double turn_s = linkage->driver.is_present ? linkage_period(linkage) : duration_s;
+    const double turn_s = drive_is_steady(&linkage->driver) ? linkage_period(linkage) : duration_s;
     const double first_s = fmin(turn_s / FIRST_STEPS, duration_s / LEAST_STEPS);
     return (StepChoice){
         .scenario = scenario,

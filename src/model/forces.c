@@ -13,7 +13,8 @@
 
 bool forces_any(const Linkage *linkage)
 {
-    return linkage->spring_count > 0 || linkage->torsion_count > 0 || linkage->torque.count > 0;
+    return linkage->spring_count > 0 || linkage->torsion_count > 0 ||
+           linkage->torque.table.count > 0;
 }
 
 bool forces_damp(const Linkage *linkage)
@@ -155,7 +156,7 @@ double forces_drive_rate(const Linkage *linkage, const Motion *motions)
 void forces_add_torque(const Linkage *linkage, const Motion *motions, double torque,
                        BodyLoad *loads)
 {
-    if (linkage->torque.count == 0) {
+    if (linkage->torque.table.count == 0) {
         return;
     }
     if (is_force(linkage)) {
@@ -175,7 +176,7 @@ void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, 
     }
     forces_add_springs(linkage, motions, loads);
     forces_add_dampers(linkage, motions, loads);
-    forces_add_torque(linkage, motions, forces_torque_at(&linkage->torque, time_s), loads);
+    forces_add_torque(linkage, motions, time_table_at(&linkage->torque.table, time_s), loads);
 }
 
 double forces_energy(const Linkage *linkage, const Motion *motions)
@@ -211,57 +212,12 @@ double forces_damping_power(const Linkage *linkage, const Motion *motions)
 double forces_torque_power(const Linkage *linkage, const Motion *motions, double time_s)
 {
     const Torque *torque = &linkage->torque;
-    return torque->count == 0
+    return torque->table.count == 0
                ? 0.0
-               : forces_torque_at(torque, time_s) * forces_drive_rate(linkage, motions);
+               : time_table_at(&torque->table, time_s) * forces_drive_rate(linkage, motions);
 }
 
 double forces_load_power(const BodyLoad *load, const Motion *motion)
 {
     return vec2_dot(load->force, motion->velocity) + load->moment * motion->omega;
-}
-
-// The line between two points of the table, at a time on it or beyond it.
-static double on_line(const Torque *torque, size_t first, double time_s)
-{
-    const double width_s = torque->times[first + 1] - torque->times[first];
-    const double share = (time_s - torque->times[first]) / width_s;
-    return torque->values[first] + share * (torque->values[first + 1] - torque->values[first]);
-}
-
-double forces_torque_at(const Torque *torque, double time_s)
-{
-    if (torque->count == 0) {
-        return 0.0;
-    }
-    // what goes on before time zero is the piece that holds at and after it
-    size_t after = 0;
-    while (after < torque->count && torque->times[after] <= fmax(time_s, 0.0)) {
-        after++;
-    }
-    return after == 0               ? torque->values[0]
-           : after == torque->count ? torque->values[after - 1]
-                                    : on_line(torque, after - 1, time_s);
-}
-
-double forces_next_bend(const Torque *torque, double time_s)
-{
-    for (size_t i = 0; i < torque->count; i++) {
-        if (torque->times[i] > time_s) {
-            return torque->times[i];
-        }
-    }
-    return INFINITY;
-}
-
-double forces_torque_mean(const Torque *torque, double from_s, double to_s)
-{
-    // piece by piece: the mean of a line is its value in the middle
-    double sum = 0.0;
-    for (double start_s = from_s; start_s < to_s;) {
-        const double end_s = fmin(to_s, fmax(forces_next_bend(torque, start_s), 0.0));
-        sum += (end_s - start_s) * forces_torque_at(torque, 0.5 * (start_s + end_s));
-        start_s = end_s;
-    }
-    return sum / (to_s - from_s);
 }

@@ -59,10 +59,3 @@ double forces_energy(const Linkage *linkage, const Motion *motions);
 double forces_damping_power(const Linkage *linkage, const Motion *motions);
 double forces_torque_power(const Linkage *linkage, const Motion *motions, double time_s);
 double forces_load_power(const BodyLoad *load, const Motion *motion);
-
-// The drive's torque at a time, its mean between two times, N m, and the first time after the one
-// given at which it bends, s: INFINITY where there is none. Before time zero the line at time zero
-// goes on.
-double forces_torque_at(const Torque *torque, double time_s);
-double forces_torque_mean(const Torque *torque, double from_s, double to_s);
-double forces_next_bend(const Torque *torque, double time_s);

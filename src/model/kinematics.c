@@ -178,10 +178,10 @@ static bool newton(const Linkage *linkage, double crank_angle, Motion *motions)
     return false;
 }
 
-static bool solve_velocities(const Linkage *linkage, Motion *motions)
+static bool solve_velocities(const Linkage *linkage, double speed, Motion *motions)
 {
     double rates[KINEMATICS_ROW_MAX] = {0.0};
-    rates[joint_rows_total(linkage)] = linkage->driver.speed;
+    rates[joint_rows_total(linkage)] = speed;
     const bool is_solved = solve_rows(linkage, motions, rates);
     for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
         motions[i].velocity = (Vec2){rates[3 * i], rates[3 * i + 1]};
@@ -212,7 +212,7 @@ static Vec2 joint_gamma(const Linkage *linkage, const Motion *motions, int numbe
                     centripetal(motions, joint->body_a, joint->anchor_a));
 }
 
-static bool solve_accelerations(const Linkage *linkage, Motion *motions)
+static bool solve_accelerations(const Linkage *linkage, double alpha, Motion *motions)
 {
     double rates[KINEMATICS_ROW_MAX] = {0.0};
     double *row = rates;
@@ -223,6 +223,7 @@ static bool solve_accelerations(const Linkage *linkage, Motion *motions)
             *row++ = gamma.y;
         }
     }
+    *row = alpha;
     const bool is_solved = solve_rows(linkage, motions, rates);
     for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
         motions[i].acceleration = (Vec2){rates[3 * i], rates[3 * i + 1]};
@@ -233,6 +234,13 @@ static bool solve_accelerations(const Linkage *linkage, Motion *motions)
 
 bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err)
 {
+    const DriveState drive = {.angle = crank_angle, .omega = linkage->driver.speed};
+    return kinematics_solve_driven(linkage, &drive, motions, err);
+}
+
+bool kinematics_solve_driven(const Linkage *linkage, const DriveState *drive, Motion *motions,
+                             Err *err)
+{
     if (!linkage->driver.is_present || joint_rows_total(linkage) + 1 != 3 * linkage->body_count) {
         return err_set(err, ERR_SOLVER,
                        "the driver alone does not determine the motion of this linkage: %zu "
@@ -242,15 +250,16 @@ bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motion
     }
     Motion solved[LINKAGE_BODY_MAX];
     memcpy(solved, motions, linkage->body_count * sizeof *motions);
-    if (!newton(linkage, crank_angle, solved)) {
+    if (!newton(linkage, drive->angle, solved)) {
         return err_set(err, ERR_SOLVER, "the linkage does not close at a crank angle of %.6g deg",
-                       crank_angle * 180.0 / M_PI);
+                       drive->angle * 180.0 / M_PI);
     }
-    if (!solve_velocities(linkage, solved) || !solve_accelerations(linkage, solved)) {
+    if (!solve_velocities(linkage, drive->omega, solved) ||
+        !solve_accelerations(linkage, drive->alpha, solved)) {
         return err_set(err, ERR_SOLVER,
                        "the linkage is at a dead centre at a crank angle of %.6g deg: its "
                        "velocities are not determined",
-                       crank_angle * 180.0 / M_PI);
+                       drive->angle * 180.0 / M_PI);
     }
     memcpy(motions, solved, linkage->body_count * sizeof *motions);
     return true;

@@ -34,6 +34,10 @@ size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool i
 // one freedom; the motions are then untouched.
 bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err);
 
+// The same for the driver's speed and acceleration at a time.
+bool kinematics_solve_driven(const Linkage *linkage, const DriveState *drive, Motion *motions,
+                             Err *err);
+
 // What a joint misses of being closed, in its rows: x and y of the second anchor against the first,
 // m; of a prismatic joint or a guide the distance from its line, m, and its tilt, rad; 0 of a stop.
 Vec2 kinematics_opening(const Linkage *linkage, const Motion *motions, int joint);

@@ -57,7 +57,7 @@ int linkage_driven_body(const Linkage *linkage)
 double linkage_crank_angle(const Linkage *linkage, double time_s)
 {
     const Driver *driver = &linkage->driver;
-    return driver->is_present ? driver->start + driver->speed * time_s : 0.0;
+    return driver->is_present ? drive_angle(driver, time_s) : 0.0;
 }
 
 void linkage_describe_instant(const Linkage *linkage, double time_s,
@@ -72,8 +72,7 @@ void linkage_describe_instant(const Linkage *linkage, double time_s,
 
 double linkage_period(const Linkage *linkage)
 {
-    const Driver *driver = &linkage->driver;
-    return driver->is_present ? 2.0 * M_PI / fabs(driver->speed) : 0.0;
+    return drive_is_steady(&linkage->driver) ? 2.0 * M_PI / fabs(linkage->driver.speed) : 0.0;
 }
 
 // How far a body goes beyond its anchor in a joint that slides or stops, m.
@@ -310,7 +309,12 @@ static bool check_driver(const Linkage *linkage, Err *err)
         return err_set(err, ERR_CASE, "drive speed %g rad/s, allowed: any speed but 0",
                        driver->speed);
     }
-    return true;
+    if (driver->speeds.count > 0 && driver->speed != time_table_largest(&driver->speeds)) {
+        return err_set(err, ERR_CASE, "drive speed %g rad/s is not the largest of its table",
+                       driver->speed);
+    }
+    return time_table_is_ordered(&driver->speeds) ||
+           err_set(err, ERR_CASE, "the times of a speed must increase");
 }
 
 static bool check_springs(const Linkage *linkage, Err *err)
@@ -344,16 +348,12 @@ static bool check_springs(const Linkage *linkage, Err *err)
 static bool check_torque(const Linkage *linkage, Err *err)
 {
     const Torque *torque = &linkage->torque;
-    for (size_t i = 0; i < torque->count; i++) {
-        if (!isfinite(torque->values[i]) || !isfinite(torque->times[i]) ||
-            (i > 0 && !(torque->times[i] > torque->times[i - 1]))) {
-            return err_set(err, ERR_CASE, "the times of a torque must increase");
-        }
-    }
-    if (torque->count > 0 && (torque->joint < 0 || torque->joint >= (int)linkage->joint_count)) {
+    if (torque->table.count > 0 &&
+        (torque->joint < 0 || torque->joint >= (int)linkage->joint_count)) {
         return err_set(err, ERR_CASE, "the joint of the torque does not exist");
     }
-    return true;
+    return time_table_is_ordered(&torque->table) ||
+           err_set(err, ERR_CASE, "the times of a torque must increase");
 }
 
 bool linkage_check(const Linkage *linkage, Err *err)

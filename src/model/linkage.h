@@ -8,6 +8,7 @@
 #include "base/err.h"
 #include "base/vec2.h"
 #include "base/vec3.h"
+#include "model/drive.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -17,7 +18,6 @@ enum {
     LINKAGE_BODY_MAX = 16,
     LINKAGE_JOINT_MAX = 24,
     LINKAGE_SPRING_MAX = 16, // of each kind
-    LINKAGE_TORQUE_MAX = 32, // points of a torque over time
     LINKAGE_NAME_SIZE = 48,
 };
 
@@ -153,23 +153,12 @@ typedef struct TorsionSpring {
 } TorsionSpring;
 
 // Pushes the turned body of a joint, and the other one the other way (linkage_turning), by a torque
-// over time: linear between its points, constant before the first and after the last. At a
-// prismatic joint it is a force on body b along the joint's line, at the anchor of body b, and the
-// other way on body a.
+// over time. At a prismatic joint it is a force on body b along the joint's line, at the anchor of
+// body b, and the other way on body a.
 typedef struct Torque {
-    int joint;                         // number of the joint, which is ideal
-    size_t count;                      // of points; 0: there is no torque
-    double times[LINKAGE_TORQUE_MAX];  // s, increasing
-    double values[LINKAGE_TORQUE_MAX]; // N m, counter-clockwise positive; or N
+    int joint;       // number of the joint, which is ideal
+    TimeTable table; // N m, counter-clockwise positive, or N; without points there is no torque
 } Torque;
-
-// Turns one body at constant speed about its joint with the ground.
-typedef struct Driver {
-    bool is_present;
-    int joint;    // number of the driven joint, which is ideal; its body_a is the ground
-    double speed; // rad/s, counter-clockwise positive
-    double start; // angle of the driven body at time zero, rad
-} Driver;
 
 typedef struct Linkage {
     bool is_spatial; // whether bodies leave the plane: model/space.h
@@ -242,7 +231,7 @@ enum { LINKAGE_INSTANT_SIZE = 64 };
 void linkage_describe_instant(const Linkage *linkage, double time_s,
                               char text[LINKAGE_INSTANT_SIZE]);
 
-// Time of one turn of the driver, s; 0 where there is no driver.
+// Time of one turn of the driver, s; 0 where there is no driver, or its speed is not constant.
 double linkage_period(const Linkage *linkage);
 
 // How far a body's points go from its centre of mass, m: the distance of its furthest joint, at

@@ -293,11 +293,34 @@ Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
     return walk(&path, fmin(turn, TURNS_MAX * 2.0 * M_PI));
 }
 
+Lock lock_find_between(const Linkage *linkage, LockJoints joints, DriveExtent extent)
+{
+    Linkage one_way = *linkage;
+    one_way.driver.speeds.count = 0;
+    one_way.driver.speed = -fabs(linkage->driver.speed);
+    Lock back = {.state = LOCK_NONE};
+    if (extent.back < 0.0) {
+        back = lock_find(&one_way, joints, -extent.back);
+    }
+    if (back.state == LOCK_FOUND || !(extent.forth > 0.0)) {
+        return back;
+    }
+    one_way.driver.speed = fabs(linkage->driver.speed);
+    const Lock forth = lock_find(&one_way, joints, extent.forth);
+    return forth.state != LOCK_FOUND && back.has_crossing ? back : forth;
+}
+
 Lock lock_met(const Scenario *scenario, double time_s)
 {
     const Linkage *linkage = &scenario->linkage;
-    const double turned = fabs(linkage->driver.speed) * time_s + NEAR_LOCK;
-    return lock_find(linkage, LOCK_ALL_AS_IDEAL, turned);
+    if (linkage->driver.speeds.count == 0) {
+        const double turned = fabs(linkage->driver.speed) * time_s + NEAR_LOCK;
+        return lock_find(linkage, LOCK_ALL_AS_IDEAL, turned);
+    }
+    DriveExtent extent = drive_extent(&linkage->driver, time_s);
+    extent.back -= NEAR_LOCK;
+    extent.forth += NEAR_LOCK;
+    return lock_find_between(linkage, LOCK_ALL_AS_IDEAL, extent);
 }
 
 void lock_explain(const Scenario *scenario, double time_s, Err *err)

@@ -28,6 +28,9 @@ typedef enum LockJoints {
 // that of a change point to 1e-5 rad. Takes some milliseconds.
 Lock lock_find(const Linkage *linkage, LockJoints joints, double turn);
 
+// The same as far as the driver turns to either side; what lies on its way back first.
+Lock lock_find_between(const Linkage *linkage, LockJoints joints, DriveExtent extent);
+
 // The lock that a run which failed at a time, s, had reached or nearly reached by then. A run that
 // locks presses its pins into their walls some degrees before or, with play, beyond that angle.
 Lock lock_met(const Scenario *scenario, double time_s);

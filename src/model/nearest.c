@@ -154,7 +154,7 @@ static int demand_speeds(const Linkage *linkage, const Motion *motions, bool wit
     }
     if (linkage->driver.is_present) {
         const double omega = motions[linkage_driven_body(linkage)].omega;
-        demand->wanted[demand->rows] = linkage->driver.speed - omega;
+        demand->wanted[demand->rows] = drive_at(&linkage->driver, 0.0).omega - omega;
     }
     return demand->distance <= AGREES * largest ? -1 : worst;
 }

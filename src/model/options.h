@@ -123,9 +123,9 @@ typedef struct ContactOptions {
 } ContactOptions;
 
 typedef struct RunOptions {
-    double revolutions;     // of the driver
-    double duration;        // s, where there is no driver
-    size_t samples;         // per revolution of the driver, or in the whole run without one
+    double revolutions;     // of a driver of constant speed
+    double duration;        // s, where there is none
+    size_t samples;         // per revolution of that driver, or in the whole run without it
     double step;            // s; 0: chosen for the tolerance
     double tolerance;       // 1, largest error in omega wanted of a step that is chosen
     size_t most_steps;      // world steps of all trials of a step that is chosen

@@ -123,12 +123,17 @@ void response_rows_place(Response *response, const Motion *motions)
     }
 }
 
-// By how much loads speed up the turning of a body whose motion is free, rad/s^2.
-static double load_turning(const Linkage *linkage, int body, const BodyLoad *loads)
+// The rate of a body's turning under loads, rad/s^2; of the driven body that of the drive.
+static double free_turning(const Linkage *linkage, const Motion *motions, int body,
+                           const BodyLoad *loads)
 {
-    return loads == NULL || body == LINKAGE_GROUND || body == linkage_driven_body(linkage)
-               ? 0.0
-               : loads[body].moment / linkage->bodies[body].inertia;
+    if (body == LINKAGE_GROUND) {
+        return 0.0;
+    }
+    if (body == linkage_driven_body(linkage)) {
+        return motions[body].alpha;
+    }
+    return loads == NULL ? 0.0 : loads[body].moment / linkage->bodies[body].inertia;
 }
 
 // Acceleration of the end of a joint on one body under gravity and loads.
@@ -140,12 +145,15 @@ static Vec2 end_acceleration(const Linkage *linkage, const Motion *motions, int 
     }
     const Motion *motion = &motions[body];
     const bool is_driven = body == linkage_driven_body(linkage);
+    const double alpha = free_turning(linkage, motions, body, loads);
     Vec2 centre = is_driven ? motion->acceleration : (Vec2){0.0, -gravity};
     const Vec2 arm = vec2_rotate(motion->angle, anchor);
     if (loads != NULL && !is_driven) {
         const double mass = linkage->bodies[body].mass;
-        const Vec2 turning = vec2_scale(load_turning(linkage, body, loads), vec2_perp(arm));
+        const Vec2 turning = vec2_scale(alpha, vec2_perp(arm));
         centre = vec2_add(centre, vec2_add(vec2_scale(1.0 / mass, loads[body].force), turning));
+    } else if (alpha != 0.0) {
+        centre = vec2_add(centre, vec2_scale(alpha, vec2_perp(arm)));
     }
     return vec2_sub(centre, vec2_scale(motion->omega * motion->omega, arm));
 }
@@ -167,7 +175,7 @@ static void line_free(const Linkage *linkage, const ResponsePlace *place, const 
     const int a = linkage->joints[place->joint].body_a;
     const int b = linkage->joints[place->joint].body_b;
     const double omega = a == LINKAGE_GROUND ? 0.0 : motions[a].omega;
-    const double alpha = load_turning(linkage, a, loads);
+    const double alpha = free_turning(linkage, motions, a, loads);
     const Vec2 n = line_normal(place, a, motions);
     const Vec2 t = vec2_perp(n);
     const Vec2 d = vec2_sub(linkage_point(motions, b, place->anchor_b),
@@ -178,7 +186,7 @@ static void line_free(const Linkage *linkage, const ResponsePlace *place, const 
                omega * omega * vec2_dot(n, d) + alpha * vec2_dot(t, d);
     gamma[1] = vec2_dot(t, relative) - 2.0 * omega * vec2_dot(n, rate) -
                omega * omega * vec2_dot(t, d) - alpha * (vec2_dot(n, d) - place->radius) -
-               load_turning(linkage, b, loads) * place->radius;
+               free_turning(linkage, motions, b, loads) * place->radius;
 }
 
 // The rates of the rates of a prismatic joint's rows: their own and those of the bodies.
@@ -203,7 +211,7 @@ static void prismatic_free(const Linkage *linkage, int joint, const Motion *moti
         for (size_t i = 0; i < JOINT_ROWS; i++) {
             const JointRow *row = &rows.rows[i];
             gamma[i] += row->x[side] * centre.x + row->y[side] * centre.y +
-                        row->turn[side] * load_turning(linkage, body, loads);
+                        row->turn[side] * free_turning(linkage, motions, body, loads);
         }
     }
 }
@@ -237,8 +245,8 @@ void response_rows_loose(const Response *response, const Motion *motions, double
         }
         row += 2;
         if (place->has_turns) {
-            gamma[row++] = load_turning(linkage, joint->body_a, loads);
-            gamma[row++] = load_turning(linkage, joint->body_b, loads);
+            gamma[row++] = free_turning(linkage, motions, joint->body_a, loads);
+            gamma[row++] = free_turning(linkage, motions, joint->body_b, loads);
         }
     }
 }

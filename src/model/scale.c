@@ -28,20 +28,17 @@ static double pushed_speed(const Linkage *linkage)
 {
     Motion motions[LINKAGE_BODY_MAX];
     linkage_start(linkage, motions);
-    const Torque *torque = &linkage->torque;
     double energy = forces_energy(linkage, motions);
     double mass = 0.0;
-    double largest = 0.0;
-    for (size_t i = 0; i < torque->count; i++) {
-        largest = fmax(largest, fabs(torque->values[i]));
-    }
+    double largest = fabs(time_table_largest(&linkage->torque.table));
     double reach = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         mass += linkage->bodies[i].mass;
         reach = fmax(reach, linkage_reach(linkage, (int)i));
     }
     // a force works along a line
-    if (torque->count > 0 && linkage->joints[torque->joint].kind == JOINT_PRISMATIC) {
+    const Torque *torque = &linkage->torque;
+    if (torque->table.count > 0 && linkage->joints[torque->joint].kind == JOINT_PRISMATIC) {
         largest *= reach;
     }
     return sqrt(2.0 * (energy + largest) / mass);
@@ -78,7 +75,7 @@ SpeedScale scale_speeds(const Scenario *scenario)
         const double speed = fabs(linkage->driver.speed);
         turning = fmax(turning, speed);
         scale.moving = fmax(scale.moving, speed * driven_span(linkage));
-        fall = fmin(fall, gravity * linkage_period(linkage));
+        fall = fmin(fall, gravity * (2.0 * M_PI / speed));
     }
     scale.moving = fmax(scale.moving, fall);
     scale.moving = fmax(scale.moving, forces_any(linkage) ? pushed_speed(linkage) : 0.0);

@@ -17,7 +17,7 @@ Scenario scenario_default(void)
 
 double scenario_duration(const Scenario *scenario)
 {
-    return scenario->linkage.driver.is_present
+    return drive_is_steady(&scenario->linkage.driver)
                ? scenario->run.revolutions * linkage_period(&scenario->linkage)
                : scenario->run.duration;
 }
@@ -26,7 +26,7 @@ double scenario_duration(const Scenario *scenario)
 static size_t interval_count(const Scenario *scenario)
 {
     const double samples = (double)scenario->run.samples;
-    if (!scenario->linkage.driver.is_present) {
+    if (!drive_is_steady(&scenario->linkage.driver)) {
         return scenario->run.samples;
     }
     // 1e-9 of an interval: a whole number of intervals stays whole in spite of rounding
@@ -53,8 +53,9 @@ bool scenario_reports_any(const Scenario *scenario)
 
 double scenario_sample_time(const Scenario *scenario, size_t sample)
 {
-    const double turn = scenario->linkage.driver.is_present ? linkage_period(&scenario->linkage)
-                                                            : scenario->run.duration;
+    const double turn = drive_is_steady(&scenario->linkage.driver)
+                            ? linkage_period(&scenario->linkage)
+                            : scenario->run.duration;
     return turn * (double)sample / (double)scenario->run.samples;
 }
 
@@ -75,7 +76,8 @@ bool scenario_has_closed_form(const Scenario *scenario)
 
 bool scenario_is_extrapolable(const Scenario *scenario)
 {
-    return !scenario_has_clearance(scenario) && !scenario->linkage.is_spatial;
+    return !scenario_has_clearance(scenario) && !scenario->linkage.is_spatial &&
+           scenario->linkage.driver.speeds.count == 0;
 }
 
 bool scenario_integrates_contacts(const Scenario *scenario)

@@ -69,7 +69,8 @@ bool scenario_has_clearance(const Scenario *scenario);
 // Whether the motion with ideal joints is known in closed form: of the short forms.
 bool scenario_has_closed_form(const Scenario *scenario);
 
-// Whether ODE's motion can be extrapolated from several worlds: all joints ideal, in the plane.
+// Whether ODE's motion can be extrapolated from several worlds: all joints ideal, in the plane, and
+// the drive's speed without kinks.
 bool scenario_is_extrapolable(const Scenario *scenario);
 
 // Whether ODE integrates the contacts within its steps, by the map that makes no rows.

@@ -102,9 +102,13 @@ static void shake_forces(Linkage *linkage, uint64_t *seed)
         shake(&linkage->torsions[i].angle, seed);
         shake(&linkage->torsions[i].damping, seed);
     }
-    for (size_t i = 0; i < linkage->torque.count; i++) {
-        shake(&linkage->torque.values[i], seed);
+    for (size_t i = 0; i < linkage->torque.table.count; i++) {
+        shake(&linkage->torque.table.values[i], seed);
     }
+    for (size_t i = 0; i < linkage->driver.speeds.count; i++) {
+        shake(&linkage->driver.speeds.values[i], seed);
+    }
+    drive_take_largest(&linkage->driver);
 }
 
 static void shake_world(Scenario *scenario, uint64_t *seed)

@@ -139,8 +139,8 @@ void applied_push_at(Applied *applied, const Motion *motions, double start_s, do
     for (size_t i = 0; i < linkage->spring_count; i++) {
         applied->lines[i] = forces_line(&linkage->springs[i], motions);
     }
-    applied->torque = forces_torque_mean(torque, fmin(start_s, end_s), fmax(start_s, end_s));
-    applied->turning = torque->count > 0 ? forces_drive_rate(linkage, motions) : 0.0;
+    applied->torque = time_table_mean(&torque->table, fmin(start_s, end_s), fmax(start_s, end_s));
+    applied->turning = torque->table.count > 0 ? forces_drive_rate(linkage, motions) : 0.0;
     forces_add_springs(linkage, motions, applied->loads);
     forces_add_torque(linkage, motions, applied->torque, applied->loads);
     for (size_t i = 0; i < linkage->body_count; i++) {
@@ -206,7 +206,7 @@ AppliedWork applied_book(Applied *applied, double step_s)
     forces_add_springs(linkage, applied->motions, applied->loads);
     forces_add_torque(linkage, applied->motions, applied->torque, applied->loads);
     work.damping = take_dampers(applied, step_s);
-    if (linkage->torque.count > 0) {
+    if (linkage->torque.table.count > 0) {
         Motion after[LINKAGE_BODY_MAX];
         read_motions(applied, after);
         const double turning = forces_drive_rate(linkage, after);

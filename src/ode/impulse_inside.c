@@ -35,7 +35,8 @@ static void find_motions(const ImpulseStep *step, double since_s, const Encounte
             .position = {q[0], q[1]}, .angle = q[2], .velocity = {w[0], w[1]}, .omega = w[2]};
     }
     if (step->driven >= 0) {
-        motions[step->driven] = stepping_driven(&step->scenario->linkage, step->start_s + since_s);
+        motions[step->driven] =
+            stepping_driven_since(&step->scenario->linkage, step->start_s, step->start_s + since_s);
     }
 }
 

@@ -328,21 +328,31 @@ static void find_means(ImpulseStep *step, const Motion *middle)
     }
 }
 
-// Where the step ends: on the ticks, but not beyond the run, so that no contact is recorded there.
-static void set_end(ImpulseStep *step)
+// Where the step ends: on the ticks, but not beyond the run, so that no contact is recorded there,
+// nor beyond a kink of the drive's speed.
+static void set_end(ImpulseStep *step, size_t ticks)
 {
     static const double ROUNDING = 1e-6; // of a step: less is no step of its own
+    const double rounding_s = ROUNDING * step->tick_s;
     const double duration_s = scenario_duration(step->scenario);
+    const double kink_s = drive_next_kink(&step->scenario->linkage.driver, step->start_s);
+    step->tick += ticks;
     step->end_s = (double)step->tick * step->tick_s;
-    if (step->start_s < duration_s && step->end_s > duration_s - ROUNDING * step->tick_s) {
+    if (step->start_s < duration_s && step->end_s > duration_s - rounding_s) {
         step->end_s = duration_s;
+    }
+    step->is_kink = kink_s < step->end_s + rounding_s;
+    if (step->is_kink) {
+        step->end_s = kink_s;
+        step->tick = (size_t)floor((kink_s + rounding_s) / step->tick_s);
     }
 }
 
 bool impulse_step_take(ImpulseStep *step, Err *err)
 {
     const OdeOptions *options = &step->scenario->ode;
-    const double width_before_s = step->width_s;
+    // accelerations before a kink say nothing of those after it
+    const double width_before_s = step->is_kink ? 0.0 : step->width_s;
     Motion middle[LINKAGE_BODY_MAX];
     step->start_s = step->end_s;
     memcpy(step->before, step->after, sizeof step->before);
@@ -353,11 +363,11 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
     const double coarse_s = (double)options->gear * step->tick_s;
     const size_t ticks =
         options->gear > 1 && (step->count == 0 || is_near_wall(step, coarse_s)) ? 1 : options->gear;
-    step->tick += ticks;
-    set_end(step);
+    set_end(step, ticks);
     step->width_s = step->end_s - step->start_s;
     if (step->driven >= 0) {
-        step->after[step->driven] = stepping_driven(&step->scenario->linkage, step->end_s);
+        step->after[step->driven] =
+            stepping_driven_since(&step->scenario->linkage, step->start_s, step->end_s);
     }
     find_middle(step, middle);
     impulse_step_push(step, middle);

@@ -18,7 +18,8 @@ typedef struct ImpulseStep {
     Touch places[TOUCH_MAX];
     int driven;    // body, or LINKAGE_GROUND
     double tick_s; // the finest step
-    size_t tick;   // at the end of the last step
+    size_t tick;   // at the end of the last step, or before it
+    bool is_kink;  // whether the last step ends at a kink of the drive's speed
     double end_s;  // likewise
     size_t count;
     double start_s; // of the last step

@@ -9,6 +9,15 @@
 
 #include "ode/stepping.h"
 
+// The acceleration of a point of the driven body, by its arm from the centre.
+static Vec2 arm_acceleration(const Motion *driven, Vec2 arm)
+{
+    const Vec2 steady =
+        vec2_sub(driven->acceleration, vec2_scale(driven->omega * driven->omega, arm));
+    return driven->alpha == 0.0 ? steady
+                                : vec2_add(steady, vec2_scale(driven->alpha, vec2_perp(arm)));
+}
+
 // Adds the mean force of a place to that of its joint, with its moment about the anchor of body b
 // where it does not act there.
 static void add_mean(const ImpulseStep *step, size_t number, const Motion *middle, JointState *mean)
@@ -63,8 +72,7 @@ static double work_at_point(const ImpulseStep *step, size_t number, const Motion
     const double half_s = 0.5 * step->width_s;
     const Vec2 early = {half_s * sum[0] - moment[0], half_s * sum[1] - moment[1]};
     const Vec2 arm = vec2_rotate(driven->angle, is_on_a ? place->anchor_a : place->anchor_b);
-    const Vec2 turning =
-        vec2_sub(driven->acceleration, vec2_scale(driven->omega * driven->omega, arm));
+    const Vec2 turning = arm_acceleration(driven, arm);
     return (is_on_a ? -1.0 : 1.0) * vec2_dot(early, turning);
 }
 
@@ -96,7 +104,7 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     const Vec2 arm = vec2_sub(point, driven->position);
     const Vec2 speed = vec2_add(driven->velocity, vec2_scale(driven->omega, vec2_perp(arm)));
     const Vec2 pushed =
-        vec2_add(vec2_sub(driven->acceleration, vec2_scale(driven->omega * driven->omega, arm)),
+        vec2_add(arm_acceleration(driven, arm),
                  vec2_add(vec2_scale(driven->alpha, vec2_perp(arm)),
                           vec2_scale(driven->omega, vec2_perp(vec2_sub(moving, speed)))));
     double work = 0.0;

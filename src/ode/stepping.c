@@ -2,7 +2,8 @@
 //
 // On the driven body, whose motion is given: m a = m g + F_drive + sum of F_i, so that the drive's
 // force follows from the others, and its power is what they and gravity do not deliver:
-//     P = m (a - g) . v - sum (F_i . v_i + M_i omega),    v_i velocity of the point where F_i acts
+//     P = m (a - g) . v + I alpha omega - sum (F_i . v_i + M_i omega),
+// v_i velocity of the point where F_i acts.
 #include "ode/stepping.h"
 
 #include "contact/touch.h"
@@ -12,19 +13,38 @@
 #include <math.h>
 #include <stdio.h>
 
+static Motion driven_motion(const Linkage *linkage, const DriveState *drive)
+{
+    const Joint *joint = &linkage->joints[linkage->driver.joint];
+    const double omega = drive->omega;
+    Motion motion = {.angle = drive->angle, .omega = omega, .alpha = drive->alpha};
+    const Vec2 arm = vec2_scale(-1.0, vec2_rotate(motion.angle, joint->anchor_b));
+    motion.position = vec2_add(joint->anchor_a, arm);
+    motion.velocity = vec2_scale(omega, vec2_perp(arm));
+    motion.acceleration = vec2_scale(-omega * omega, arm);
+    if (drive->alpha != 0.0) {
+        motion.acceleration =
+            vec2_add(motion.acceleration, vec2_scale(drive->alpha, vec2_perp(arm)));
+    }
+    return motion;
+}
+
 Motion stepping_driven(const Linkage *linkage, double time_s)
 {
     if (!linkage->driver.is_present) {
         return (Motion){.angle = 0.0};
     }
-    const Joint *joint = &linkage->joints[linkage->driver.joint];
-    const double omega = linkage->driver.speed;
-    Motion motion = {.angle = linkage_crank_angle(linkage, time_s), .omega = omega};
-    const Vec2 arm = vec2_scale(-1.0, vec2_rotate(motion.angle, joint->anchor_b));
-    motion.position = vec2_add(joint->anchor_a, arm);
-    motion.velocity = vec2_scale(omega, vec2_perp(arm));
-    motion.acceleration = vec2_scale(-omega * omega, arm);
-    return motion;
+    const DriveState drive = drive_at(&linkage->driver, time_s);
+    return driven_motion(linkage, &drive);
+}
+
+Motion stepping_driven_since(const Linkage *linkage, double from_s, double time_s)
+{
+    if (linkage->driver.speeds.count == 0) {
+        return stepping_driven(linkage, time_s);
+    }
+    const DriveState drive = drive_since(&linkage->driver, from_s, time_s);
+    return driven_motion(linkage, &drive);
 }
 
 long stepping_start(const Scenario *scenario, double step_s, long steps_back, Motion *motions)
@@ -37,8 +57,8 @@ long stepping_start(const Scenario *scenario, double step_s, long steps_back, Mo
     // step by step backwards, so that the loop stays closed the same way round
     for (long back = 1; back <= steps_back; back++) {
         Err unused = {ERR_NONE, ""};
-        const double crank = linkage_crank_angle(linkage, -(double)back * step_s);
-        if (!kinematics_solve(linkage, crank, motions, &unused)) {
+        const DriveState drive = drive_at(&linkage->driver, -(double)back * step_s);
+        if (!kinematics_solve_driven(linkage, &drive, motions, &unused)) {
             return back - 1;
         }
     }
@@ -64,11 +84,12 @@ double stepping_drive(const Scenario *scenario, const Motion *driven, const Body
     if (body < 0) {
         return 0.0;
     }
-    const double mass = linkage->bodies[body].mass;
+    const Body *own = &linkage->bodies[body];
     const Vec2 needed =
-        vec2_scale(mass, vec2_add(driven->acceleration, (Vec2){0.0, scenario->gravity}));
+        vec2_scale(own->mass, vec2_add(driven->acceleration, (Vec2){0.0, scenario->gravity}));
     Vec2 others = load->force;
-    double power = vec2_dot(needed, driven->velocity) - forces_load_power(load, driven);
+    double power = vec2_dot(needed, driven->velocity) +
+                   own->inertia * driven->alpha * driven->omega - forces_load_power(load, driven);
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const bool is_on_a = joint->body_a == body;

@@ -14,6 +14,10 @@ extern const Solver STEPPING_IMPULSE; // where contacts are integrated within th
 // where there is no driver.
 Motion stepping_driven(const Linkage *linkage, double time_s);
 
+// The same within a step: with the acceleration that holds from its start on, also where the step
+// ends at a kink of the drive's speed.
+Motion stepping_driven_since(const Linkage *linkage, double from_s, double time_s);
+
 // Where the bodies stand at the start of a run, or at most so many steps earlier: where the drive
 // determines the motion, and not further back than the linkage closes. Returns how many steps.
 long stepping_start(const Scenario *scenario, double step_s, long steps_back, Motion *motions);

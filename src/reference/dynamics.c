@@ -255,11 +255,12 @@ static void find_drive(const Dynamics *dynamics, const Loads *loads, DynamicsSta
     if (tree->driven < 0) {
         return;
     }
-    const double mass = tree->linkage->bodies[tree->driven].mass;
+    const Body *driven = &tree->linkage->bodies[tree->driven];
     const Motion *motion = &state->tree.motions[tree->driven];
-    const Vec2 needed = vec2_scale(
-        mass, vec2_add(motion->acceleration, (Vec2){0.0, dynamics->system.scenario->gravity}));
-    state->drive_power = vec2_dot(needed, motion->velocity) - loads->driven_power;
+    const Vec2 upward = {0.0, dynamics->system.scenario->gravity};
+    const Vec2 needed = vec2_scale(driven->mass, vec2_add(motion->acceleration, upward));
+    state->drive_power = vec2_dot(needed, motion->velocity) +
+                         driven->inertia * motion->alpha * motion->omega - loads->driven_power;
     state->reactions[tree->linkage->driver.joint] = vec2_sub(needed, loads->driven_force);
 }
 

@@ -18,8 +18,8 @@ enum { EVENTS_MOST = 1000, STEPS_COUNTED = 50000 };
 static double turn_of(const System *system)
 {
     const Scenario *scenario = system->scenario;
-    return scenario->linkage.driver.is_present ? linkage_period(&scenario->linkage)
-                                               : scenario_duration(scenario);
+    return drive_is_steady(&scenario->linkage.driver) ? linkage_period(&scenario->linkage)
+                                                      : scenario_duration(scenario);
 }
 
 static const char *joint_name(const System *system, size_t contact)

@@ -156,10 +156,12 @@ static bool plane_rebase(System *system, double since_s, double *y)
 {
     Dynamics *dynamics = (Dynamics *)system;
     Tree *tree = &dynamics->tree;
+    const double alpha = tree->base_drive.alpha;
     plane_project(system, since_s, y);
     tree_rebase(tree, since_s, y);
     system->is_astray = dynamics->may_branch && has_gone_astray(dynamics, y);
-    return tree->loop_count > 0;
+    // the rates jump at a kink of the drive's speed
+    return tree->loop_count > 0 || tree->base_drive.alpha != alpha;
 }
 
 static double plane_time(const System *system, double since_s)

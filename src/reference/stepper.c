@@ -6,7 +6,6 @@
 // is from the pivot that it turns about. Work and losses are allowed the tolerance times m v^2.
 #include "reference/stepper.h"
 
-#include "model/forces.h"
 #include "reference/plane_system.h"
 #include "reference/space_system.h"
 
@@ -203,15 +202,16 @@ static void take_over(Stepper *stepper)
                      stepper->events.count > 0, integrator);
 }
 
-// The longest step to the end of the run, or to where a torque over time bends: across it the rates
-// are not smooth.
+// The longest step to the end of the run, or to where a torque or a speed over time bends: across
+// it the rates are not smooth.
 static double smooth_limit(const Stepper *stepper)
 {
     const System *system = stepper->system;
-    const Torque *torque = &stepper->scenario->linkage.torque;
+    const Linkage *linkage = &stepper->scenario->linkage;
     const double time_s = system->kind->time(system, 0.0);
     const double least_s = SHORTEST * time_s; // a bend nearer than this has been reached
-    const double bend_s = forces_next_bend(torque, time_s + least_s);
+    const double bend_s = fmin(time_table_next_bend(&linkage->torque.table, time_s + least_s),
+                               drive_next_kink(&linkage->driver, time_s + least_s));
     return fmin(stepper->duration_s, bend_s) - time_s;
 }
 

@@ -44,6 +44,7 @@ static void add_node(Tree *tree, int body, int joint, int parent)
         node->is_sliding = of->kind == JOINT_PRISMATIC;
         if (node->is_sliding) {
             node->angle_column = parent == LINKAGE_GROUND ? -1 : tree->angle_column[parent];
+            tree->is_carried[body] = parent != LINKAGE_GROUND && tree->is_carried[parent];
         }
         tree->is_driven_hung_on = tree->is_driven_hung_on || parent == tree->driven;
     }
@@ -149,6 +150,7 @@ void tree_build(const Linkage *linkage, Tree *tree)
     if (tree->driven >= 0) {
         tree->angle_column[tree->driven] = -1;
         tree->node_of[tree->driven] = -1;
+        tree->is_carried[tree->driven] = true;
         is_known[tree->driven + 1] = true;
         is_used[linkage->driver.joint] = true;
     }
@@ -194,19 +196,23 @@ static inline void set_arms(const Tree *tree, int body, double d, TreeState *sta
 
 static void set_driven(const Tree *tree, double since_s, TreeState *state)
 {
-    const Driver *driver = &tree->linkage->driver;
+    const DriveState *base = &tree->base_drive;
     Motion *motion = &state->motions[tree->driven];
-    const double turned = driver->speed * since_s;
+    const double turned = (base->omega + 0.5 * base->alpha * since_s) * since_s;
     motion->angle = (double)tree->base_angle[tree->driven] + turned;
-    motion->omega = driver->speed;
-    motion->alpha = 0.0;
+    motion->omega = base->omega + base->alpha * since_s;
+    motion->alpha = base->alpha;
     state->turn[tree->driven] = turned;
     set_arms(tree, tree->driven, turned, state);
-    const int end = 2 * driver->joint + 1;
+    const int end = 2 * tree->linkage->driver.joint + 1;
     const Vec2 arm = state->arms[end];
     tree_set_centre(tree, tree->driven, vec2_scale(-1.0, state->turned[end]), state);
-    motion->velocity = vec2_scale(-driver->speed, vec2_perp(arm));
-    motion->acceleration = vec2_scale(driver->speed * driver->speed, arm);
+    motion->velocity = vec2_scale(-motion->omega, vec2_perp(arm));
+    motion->acceleration = vec2_scale(motion->omega * motion->omega, arm);
+    if (base->alpha != 0.0) {
+        motion->acceleration =
+            vec2_sub(motion->acceleration, vec2_scale(base->alpha, vec2_perp(arm)));
+    }
     state->bias[tree->driven] = motion->acceleration;
 }
 

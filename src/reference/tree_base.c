@@ -8,6 +8,11 @@
 #include "model/joint_rows.h"
 #include "reference/tree_line.h"
 
+#include <float.h>
+
+// of the time at a base: the stepper takes a kink that is no further for reached, too
+static const double REACHED = 16.0 * DBL_EPSILON;
+
 static TreePoint add(TreePoint a, TreePoint b)
 {
     return (TreePoint){a.x + b.x, a.y + b.y};
@@ -123,11 +128,20 @@ static void settle(Tree *tree)
     measure(tree, arms);
 }
 
+// The driven body at the base. A kink of its speed that is nearer than rounding has been reached.
+static void put_drive(Tree *tree)
+{
+    const Driver *driver = &tree->linkage->driver;
+    const double time_s = (double)tree->base_time_s;
+    tree->base_angle[tree->driven] = drive_angle_exact(driver, tree->base_time_s);
+    tree->base_drive = drive_at(driver, time_s * (1.0 + REACHED));
+}
+
 void tree_start(Tree *tree, const Motion *motions, double *u)
 {
     tree->base_time_s = 0.0L;
     if (tree->driven >= 0) {
-        tree->base_angle[tree->driven] = tree->linkage->driver.start;
+        put_drive(tree);
     }
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
@@ -154,8 +168,7 @@ void tree_rebase(Tree *tree, double since_s, double *q)
 {
     tree->base_time_s += since_s;
     if (tree->driven >= 0) {
-        const Driver *driver = &tree->linkage->driver;
-        tree->base_angle[tree->driven] = driver->start + driver->speed * tree->base_time_s;
+        put_drive(tree);
     }
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];

@@ -44,9 +44,12 @@ double tree_line_second(const Tree *tree, const TreeState *state, int pair)
 
 double tree_line_bias(const Tree *tree, const TreeState *state, int pair)
 {
-    return second_of(
-        tree, state, pair,
-        vec2_sub(tree_end_bias(tree, state, 2 * pair + 1), tree_end_bias(tree, state, 2 * pair)));
+    const Vec2 across = vec2_perp(tree_normal(tree, state, pair));
+    return second_of(tree, state, pair,
+                     vec2_sub(tree_end_bias(tree, state, 2 * pair + 1),
+                              tree_end_bias(tree, state, 2 * pair))) +
+           tree_bias_alpha(tree, tree->end_bodies[2 * pair]) *
+               vec2_dot(across, tree_pair_gap(tree, state, pair));
 }
 
 static double turn_of(const TreeState *state, int body)

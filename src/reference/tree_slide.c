@@ -34,6 +34,11 @@ void tree_slide_move(const Tree *tree, const TreeNode *node, const double *q, co
     state->bias[node->body] = vec2_add(
         vec2_sub(tree_end_bias(tree, state, node->parent_end), vec2_scale(omega * omega, behind)),
         vec2_scale(2.0 * omega * speed, vec2_perp(along)));
+    const double alpha = tree_bias_alpha(tree, node->body);
+    if (alpha != 0.0) {
+        state->bias[node->body] =
+            vec2_add(state->bias[node->body], vec2_scale(alpha, vec2_perp(behind)));
+    }
     tree_copy_chain(tree, node, columns, state);
     if (node->parent_angle >= 0) {
         const Vec2 lever = vec2_add(state->arms[node->parent_end], behind);

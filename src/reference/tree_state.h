@@ -68,11 +68,13 @@ typedef struct Tree {
     size_t end_counts[LINKAGE_BODY_MAX]; // how many ends each body has, and which
     int ends[LINKAGE_BODY_MAX][TREE_END_MAX];
     size_t coordinate_count;
-    bool is_driven_hung_on; // whether a body hangs on the driven one by an ideal joint
+    bool is_carried[LINKAGE_BODY_MAX]; // whether its angle is the driven body's, and follows it
+    bool is_driven_hung_on;            // whether a body hangs on the driven one by an ideal joint
     size_t loop_count;
     int loops[TREE_LOOP_MAX]; // ideal joints that close loops
     // the base
     long double base_time_s;
+    DriveState base_drive;                     // its acceleration holds through the step
     long double base_angle[LINKAGE_BODY_MAX];  // rad
     TreePoint base_position[LINKAGE_BODY_MAX]; // of the centres
     long double base_slide[LINKAGE_BODY_MAX];  // m, of bodies that slide
@@ -115,6 +117,14 @@ static inline Vec2 tree_pair_gap(const Tree *tree, const TreeState *state, int p
     return vec2_add(tree->base_gaps[pair], tree_pair_moved(tree, state, pair));
 }
 
+// How fast a body's speed of turning changes with all coordinates' rates steady, rad/s^2: as the
+// drive's where the body turns with it.
+static inline double tree_bias_alpha(const Tree *tree, int body)
+{
+    const double alpha = tree->base_drive.alpha;
+    return alpha != 0.0 && body != LINKAGE_GROUND && tree->is_carried[body] ? alpha : 0.0;
+}
+
 // An end of a joint: its position, velocity, bias and (after tree_accelerate) acceleration.
 static inline Vec2 tree_end_point(const Tree *tree, const TreeState *state, int end)
 {
@@ -140,7 +150,9 @@ static inline Vec2 tree_end_bias(const Tree *tree, const TreeState *state, int e
         return (Vec2){0.0, 0.0};
     }
     const double omega = state->motions[body].omega;
-    return vec2_sub(state->bias[body], vec2_scale(omega * omega, state->arms[end]));
+    const Vec2 bias = vec2_sub(state->bias[body], vec2_scale(omega * omega, state->arms[end]));
+    const double alpha = tree_bias_alpha(tree, body);
+    return alpha != 0.0 ? vec2_add(bias, vec2_scale(alpha, vec2_perp(state->arms[end]))) : bias;
 }
 
 static inline Vec2 tree_end_acceleration(const Tree *tree, const TreeState *state, int end)

@@ -220,7 +220,7 @@ static void show_extreme(const Scenario *scenario, Trajectory *trajectory, size_
 {
     const double end_s = trajectory->duration_s;
     const double turn_s =
-        scenario->linkage.driver.is_present ? linkage_period(&scenario->linkage) : INFINITY;
+        drive_is_steady(&scenario->linkage.driver) ? linkage_period(&scenario->linkage) : INFINITY;
     for (double time_s = extreme->time_s; time_s <= end_s; time_s += turn_s) {
         ranges_add(&trajectory->ranges, signal, time_s, extreme->value);
     }

@@ -13,7 +13,7 @@
 
 #include <math.h>
 
-enum { ANGLES = 360 };
+enum { ANGLES = 360, POSES_MAX = 100 * ANGLES };
 
 // of the largest pivot: a linkage that moves freely has none below 1e-3; at a change point, where a
 // joint is found to the root of rounding alone, they are some 1e-8, now more and now less
@@ -28,14 +28,35 @@ static bool moves_freely(const Linkage *linkage, const Motion *motions)
            jacobian.columns;
 }
 
-static bool move_to(const Scenario *scenario, double crank_rad, Motion *motions)
+static bool move_to(const Scenario *scenario, const DriveState *drive, Motion *motions)
 {
+    const bool is_steady = drive_is_steady(&scenario->linkage.driver);
     if (scenario_has_closed_form(scenario)) {
-        return closed_form_bodies(scenario, crank_rad, motions);
+        return is_steady ? closed_form_bodies(scenario, drive->angle, motions)
+                         : closed_form_driven(scenario, drive, motions);
     }
     Err unused = {ERR_NONE, ""};
-    return kinematics_solve(&scenario->linkage, crank_rad, motions, &unused) &&
+    return kinematics_solve_driven(&scenario->linkage, drive, motions, &unused) &&
            moves_freely(&scenario->linkage, motions);
+}
+
+// How many poses are looked at: of a turn, or of what a speed over time turns at most.
+static int pose_count(const Scenario *scenario)
+{
+    const Driver *driver = &scenario->linkage.driver;
+    const double turns = fabs(driver->speed) * scenario_duration(scenario) / (2.0 * M_PI);
+    return drive_is_steady(driver) ? ANGLES
+                                   : (int)fmin(fmax(ANGLES, ceil(ANGLES * turns)), POSES_MAX);
+}
+
+static DriveState pose(const Scenario *scenario, int number, int count)
+{
+    const Driver *driver = &scenario->linkage.driver;
+    if (drive_is_steady(driver)) {
+        return (DriveState){.angle = driver->start + 2.0 * M_PI * number / ANGLES,
+                            .omega = driver->speed};
+    }
+    return drive_at(driver, scenario_duration(scenario) * number / count);
 }
 
 SpikeScale spike_scale(const Scenario *scenario)
@@ -47,12 +68,13 @@ SpikeScale spike_scale(const Scenario *scenario)
     double most[LINKAGE_BODY_MAX] = {0.0};
     Motion motions[LINKAGE_BODY_MAX];
     linkage_start(linkage, motions);
-    for (int k = 0; scale.is_known && k < ANGLES; k++) {
+    const int count = scale.is_known ? pose_count(scenario) : 0;
+    for (int k = 0; scale.is_known && k < count; k++) {
         Err unused = {ERR_NONE, ""};
         Reactions reactions;
-        const double crank_rad = linkage->driver.start + 2.0 * M_PI * k / ANGLES;
+        const DriveState drive = pose(scenario, k, count);
         scale.is_known =
-            move_to(scenario, crank_rad, motions) &&
+            move_to(scenario, &drive, motions) &&
             inverse_dynamics_solve(linkage, motions, scenario->gravity, &reactions, &unused);
         for (size_t i = 0; scale.is_known && i < linkage->body_count; i++) {
             least[i] = fmin(least[i], motions[i].alpha);

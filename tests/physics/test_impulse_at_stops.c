@@ -277,7 +277,7 @@ static void the_drive_pays_for_what_its_disc_strikes(void **state)
                              .anchor_a = {0.05, 0.0},
                              .stop = {.is_disc = true, .radius_a = 0.01, .radius_b = 0.02}};
         add_joint(linkage, i / 2 == 0 ? line : discs);
-        linkage->driver = (Driver){true, 0, 10.0, 0.0};
+        linkage->driver = (Driver){.is_present = true, .joint = 0, .speed = 10.0, .start = 0.0};
         scenario.contact.friction = i % 2 == 0 ? 0.0 : 0.2;
         scenario.contact.damping = DAMPING_EXACT;
         scenario.contact.restitution = 0.7;

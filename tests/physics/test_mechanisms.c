@@ -119,8 +119,8 @@ static void a_driven_body_pays_for_its_springs(void **state)
     for (size_t i = 0; i < linkage->joint_count; i++) {
         linkage->joints[i].kind = JOINT_REVOLUTE;
     }
-    linkage->torque.count = 0;
-    linkage->driver = (Driver){true, 0, 1000.0 * 2.0 * M_PI / 60.0, 0.0};
+    linkage->torque.table.count = 0;
+    linkage->driver = (Driver){.is_present = true, .speed = 1000.0 * 2.0 * M_PI / 60.0};
     linkage_start(linkage, motions);
     assert_true(kinematics_solve(linkage, 0.0, motions, &err));
     for (size_t i = 0; i < linkage->body_count; i++) {

@@ -144,7 +144,8 @@ static Scenario turned_by_a_table(void)
 {
     Scenario scenario = arm();
     scenario.linkage.torque = (Torque){
-        .joint = 0, .count = 4, .times = {0.1, 0.4, 0.9, 1.3}, .values = {0.0, 3.0, 3.0, -1.0}};
+        .joint = 0,
+        .table = {.count = 4, .times = {0.1, 0.4, 0.9, 1.3}, .values = {0.0, 3.0, 3.0, -1.0}}};
     return scenario;
 }
 
@@ -183,7 +184,7 @@ static void a_torque_over_time_turns_as_its_integral(void **state)
     }
     assert_near(ode_order(errors[0], errors[1], 2.0), 2.0, 0.1);
     assert_true(errors[1] < 2e-4);
-    scenario.linkage.torque.values[3] = 3.0;
+    scenario.linkage.torque.table.values[3] = 3.0;
     run = complete_run(&scenario, BACKEND_ODE);
     assert_true(fabs(at_end(run, 0)->angle - table_angle(2.0)) > 0.1);
     trajectory_destroy(run);
@@ -229,7 +230,7 @@ static Scenario spinning_lever(void)
     linkage->bodies[1].start =
         (Motion){.position = {0.2, 0.0}, .velocity = {0.0, 0.4}, .omega = 2.0};
     linkage->joints[1] = (Joint){.name = "line", .kind = JOINT_PRISMATIC, .body_a = 0, .body_b = 1};
-    linkage->torque = (Torque){.joint = 1, .count = 1, .values = {0.7}};
+    linkage->torque = (Torque){.joint = 1, .table = {.count = 1, .values = {0.7}}};
     scenario.run.duration = 1.0;
     return scenario;
 }
@@ -267,7 +268,7 @@ static void a_force_between_lever_and_block_keeps_their_angular_momentum(void **
     assert_near(ode_order(errors[0], errors[1], 2.0), 2.0, 0.1);
     assert_true(errors[1] < 1e-4);
     // without the force it goes elsewhere
-    scenario.linkage.torque.values[0] = 0.0;
+    scenario.linkage.torque.table.values[0] = 0.0;
     Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
     assert_true(fabs(vec2_length(at_end(run, 1)->position) - out) > 0.1);
     trajectory_destroy(run);

@@ -70,7 +70,7 @@ Scenario mechanism_paper(void)
     add_joint(linkage, "coupler-follower", 1, (Vec2){0.1397, 0.0}, 2, (Vec2){0.13525, 0.0});
     add_joint(linkage, "follower-ground", 2, (Vec2){-0.13525, 0.0}, LINKAGE_GROUND,
               (Vec2){0.254, 0.0});
-    linkage->driver = (Driver){true, 0, 1000.0 * 2.0 * M_PI / 60.0, 0.0};
+    linkage->driver = (Driver){.is_present = true, .speed = 1000.0 * 2.0 * M_PI / 60.0};
     assemble(&scenario);
     return scenario;
 }
@@ -133,7 +133,7 @@ Scenario mechanism_parallelogram(void)
         snprintf(name, sizeof name, "head-%d", i);
         add_joint(linkage, name, i, (Vec2){0.5, 0.0}, 3, (Vec2){i - 1.0, 0.0});
     }
-    linkage->driver = (Driver){true, 0, 1.0, 0.5 * M_PI};
+    linkage->driver = (Driver){.is_present = true, .speed = 1.0, .start = 0.5 * M_PI};
     return scenario;
 }
 
@@ -162,7 +162,8 @@ Scenario mechanism_slidercrank(double offset, double line, SliderSide side)
     linkage->joints[3].kind = JOINT_PRISMATIC;
     linkage->joints[3].direction = line;
     linkage->joints[3].held_angle = line;
-    linkage->driver = (Driver){true, 0, 5000.0 * 2.0 * M_PI / 60.0, crank};
+    linkage->driver =
+        (Driver){.is_present = true, .speed = 5000.0 * 2.0 * M_PI / 60.0, .start = crank};
     assemble(&scenario);
     return scenario;
 }

@@ -83,7 +83,8 @@ Scenario slider_crank(const SliderSizes *sizes, double crank_omega)
 Scenario slider_driven(const SliderSizes *sizes, double speed)
 {
     Scenario scenario = slider_crank(sizes, speed);
-    scenario.linkage.driver = (Driver){true, SLIDER_CRANK, speed, 0.0};
+    scenario.linkage.driver =
+        (Driver){.is_present = true, .joint = SLIDER_CRANK, .speed = speed, .start = 0.0};
     return scenario;
 }
 
@@ -128,7 +129,7 @@ Scenario slider_lever(double speed)
     // the lever's line goes through its pivot and the pin, the anchor of the block is off its
     // centre
     linkage->joints[3] = joint("slide", JOINT_PRISMATIC, at(1, 0.05, 0.0), at(2, 0.02, 0.0));
-    linkage->driver = (Driver){true, 0, speed, 0.0};
+    linkage->driver = (Driver){.is_present = true, .joint = 0, .speed = speed, .start = 0.0};
     return scenario;
 }
 

@@ -34,7 +34,7 @@ static Linkage two_bodies(Motion *motions)
         (TorsionSpring){.joint = 0, .stiffness = 5.0, .angle = 0.2, .damping = 0.3};
     linkage.torsions[1] =
         (TorsionSpring){.joint = 1, .stiffness = 4.0, .angle = -1.0, .damping = 0.1};
-    linkage.torque = (Torque){.joint = 1, .count = 1, .values = {2.5}};
+    linkage.torque = (Torque){.joint = 1, .table = {.count = 1, .values = {2.5}}};
     motions[0] =
         (Motion){.position = {0.1, 0.2}, .angle = 0.7, .velocity = {0.4, -0.3}, .omega = 2.0};
     motions[1] =
@@ -150,21 +150,21 @@ static void bodies_that_nothing_else_holds_keep_their_momentum(void **state)
 static void a_torque_over_time_is_linear_between_its_points(void **state)
 {
     (void)state;
-    const Torque torque = {.count = 3, .times = {1.0, 2.0, 4.0}, .values = {3.0, 5.0, -1.0}};
-    assert_near(forces_torque_at(&torque, 0.5), 3.0, 0.0);
-    assert_near(forces_torque_at(&torque, 1.5), 4.0, 1e-15);
-    assert_near(forces_torque_at(&torque, 3.0), 2.0, 1e-15);
-    assert_near(forces_torque_at(&torque, 9.0), -1.0, 0.0);
+    const TimeTable torque = {.count = 3, .times = {1.0, 2.0, 4.0}, .values = {3.0, 5.0, -1.0}};
+    assert_near(time_table_at(&torque, 0.5), 3.0, 0.0);
+    assert_near(time_table_at(&torque, 1.5), 4.0, 1e-15);
+    assert_near(time_table_at(&torque, 3.0), 2.0, 1e-15);
+    assert_near(time_table_at(&torque, 9.0), -1.0, 0.0);
     // 3 to t = 1, mean 4 to 2, mean 2 to 4, -1 to 5: (3 + 4 + 4 - 1) / 5
-    assert_near(forces_torque_mean(&torque, 0.0, 5.0), 2.0, 1e-15);
-    assert_near(forces_torque_mean(&torque, 1.25, 1.75), 4.0, 1e-15);
-    assert_near(forces_next_bend(&torque, 0.0), 1.0, 0.0);
-    assert_near(forces_next_bend(&torque, 2.0), 4.0, 0.0);
-    assert_true(isinf(forces_next_bend(&torque, 4.0)));
+    assert_near(time_table_mean(&torque, 0.0, 5.0), 2.0, 1e-15);
+    assert_near(time_table_mean(&torque, 1.25, 1.75), 4.0, 1e-15);
+    assert_near(time_table_next_bend(&torque, 0.0), 1.0, 0.0);
+    assert_near(time_table_next_bend(&torque, 2.0), 4.0, 0.0);
+    assert_true(isinf(time_table_next_bend(&torque, 4.0)));
     // worlds that start before time zero see the line at time zero going on
-    const Torque ramp = {.count = 2, .times = {0.0, 1.0}, .values = {1.0, 3.0}};
-    assert_near(forces_torque_at(&ramp, -1.0), -1.0, 1e-15);
-    assert_near(forces_torque_mean(&ramp, -1.0, 1.0), 1.0, 1e-15);
+    const TimeTable ramp = {.count = 2, .times = {0.0, 1.0}, .values = {1.0, 3.0}};
+    assert_near(time_table_at(&ramp, -1.0), -1.0, 1e-15);
+    assert_near(time_table_mean(&ramp, -1.0, 1.0), 1.0, 1e-15);
 }
 
 int main(void)

@@ -139,7 +139,7 @@ static Scenario cut_short(const Scenario *scenario, double horizon_s)
     const double share = horizon_s / scenario_duration(scenario);
     cut.run.revolutions *= share;
     cut.run.duration *= share;
-    if (!cut.linkage.driver.is_present) {
+    if (!drive_is_steady(&cut.linkage.driver)) {
         // samples are those of the whole run there
         cut.run.samples = (size_t)round(share * (double)cut.run.samples);
     }

@@ -26,7 +26,7 @@ enum { TABLE_FORCE, TABLE_PENALTY, TABLE_APPROACH };
 
 bool penalty_map_fits(const Scenario *scenario, PrintedPin *pin)
 {
-    for (int i = 0; i < PRINTED_PIN_COUNT && scenario->linkage.driver.is_present; i++) {
+    for (int i = 0; i < PRINTED_PIN_COUNT && drive_is_steady(&scenario->linkage.driver); i++) {
         const int joint = linkage_find_joint(&scenario->linkage, PRINTED_PIN_NAMES[i]);
         if (joint >= 0 && scenario->linkage.joints[joint].kind == JOINT_CLEARANCE) {
             *pin = (PrintedPin)i;
@@ -43,6 +43,7 @@ static Scenario at_speed(const Scenario *scenario, double rpm)
     Driver *driver = &turned.linkage.driver;
     const double ratio = rpm * RAD_PER_S_PER_RPM / fabs(driver->speed);
     driver->speed *= ratio;
+    driver->speeds.count = 0;
     for (size_t i = 0; i < turned.linkage.body_count; i++) {
         Motion *start = &turned.linkage.bodies[i].start;
         start->velocity = vec2_scale(ratio, start->velocity);

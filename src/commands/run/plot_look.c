@@ -35,7 +35,7 @@ size_t plot_look_colour(const RunReport *report, bool is_joint, size_t index)
 Axis plot_look_x_axis(const RunReport *report)
 {
     const Scenario *scenario = report->scenario;
-    if (!scenario->linkage.driver.is_present) {
+    if (!drive_is_steady(&scenario->linkage.driver)) {
         return (Axis){.title = "time, ms", .high = scenario_duration(scenario) * UNITS_MS};
     }
     const double turns = scenario->run.revolutions;
@@ -50,8 +50,9 @@ Axis plot_look_x_axis(const RunReport *report)
 
 double plot_look_x(const RunReport *report, double crank_rad, double time_s)
 {
-    const Driver *driver = &report->scenario->linkage.driver;
-    return driver->is_present ? fabs(crank_rad - driver->start) * UNITS_DEG : time_s * UNITS_MS;
+    const Linkage *linkage = &report->scenario->linkage;
+    return drive_is_steady(&linkage->driver) ? fabs(crank_rad - linkage->driver.start) * UNITS_DEG
+                                             : time_s * UNITS_MS;
 }
 
 static const char *name_of(const RunReport *report, PlotQuantity quantity, size_t index)

@@ -30,7 +30,7 @@ bool plot_look_shows(const RunReport *report, bool is_joint, size_t index);
 // The number of the colour of a body or joint.
 size_t plot_look_colour(const RunReport *report, bool is_joint, size_t index);
 
-// The axis of the crank angle from the start, or of time where there is no driver.
+// The axis of the crank angle from the start, or of time where no driver turns at constant speed.
 Axis plot_look_x_axis(const RunReport *report);
 
 // Where on it an instant stands.

@@ -90,7 +90,8 @@ enum {
 // The columns of a table of this mechanism.
 static inline unsigned run_report_columns(const RunReport *report)
 {
-    return FIELD_TABLE | (report->scenario->linkage.driver.is_present ? RUN_DRIVEN : RUN_FREE);
+    return FIELD_TABLE |
+           (drive_is_steady(&report->scenario->linkage.driver) ? RUN_DRIVEN : RUN_FREE);
 }
 
 // The fields of Trajectory, BodyExtremes, Spike, SignalSpike and Energy.

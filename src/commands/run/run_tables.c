@@ -12,14 +12,14 @@ static const double UNTOUCHED_STILL = 1e-3;
 // When something was: by the crank's angle, or by the time where nothing drives a crank.
 static void head_when(Table *table, size_t column, const RunReport *report)
 {
-    const bool is_driven = report->scenario->linkage.driver.is_present;
+    const bool is_driven = drive_is_steady(&report->scenario->linkage.driver);
     table_head(table, column, is_driven ? "at crank" : "at time", is_driven ? "deg" : "ms",
                TABLE_RIGHT);
 }
 
 static void when_cell(Table *table, const RunReport *report, Extreme extreme)
 {
-    if (report->scenario->linkage.driver.is_present) {
+    if (drive_is_steady(&report->scenario->linkage.driver)) {
         table_cell(table, "%.1f", extreme.crank_rad * UNITS_DEG);
     } else {
         table_cell(table, "%.4f", extreme.time_s * UNITS_MS);

@@ -123,17 +123,30 @@ static void write_mechanism(const RunReport *report, Text *text)
     }
 }
 
+static void write_speeds(const Driver *driver, Text *text)
+{
+    const TimeTable *speeds = &driver->speeds;
+    const size_t last = speeds->count - 1;
+    text_append(text, "  drive       from %.6g rpm to %.6g rpm by %zu points over time\n",
+                speeds->values[0] * UNITS_RPM, speeds->values[last] * UNITS_RPM, speeds->count);
+    text_append(text, "              largest %.6g rpm, %.6g rad/s, from %.4g deg\n",
+                driver->speed * UNITS_RPM, driver->speed, driver->start * UNITS_DEG);
+}
+
 static void write_drive(const Scenario *scenario, Text *text)
 {
     const Driver *driver = &scenario->linkage.driver;
-    if (driver->is_present) {
+    const bool is_steady = drive_is_steady(driver);
+    if (is_steady) {
         text_append(text, "  drive       %.6g rpm %s, %.6g rad/s, from %.4g deg\n",
                     fabs(driver->speed) * UNITS_RPM,
                     driver->speed < 0.0 ? "clockwise" : "counter-clockwise", fabs(driver->speed),
                     driver->start * UNITS_DEG);
+    } else if (driver->is_present) {
+        write_speeds(driver, text);
     }
     text_append(text, "  run         ");
-    if (driver->is_present) {
+    if (is_steady) {
         text_append(text, "%.6g revolution%s, ", scenario->run.revolutions,
                     scenario->run.revolutions == 1.0 ? "" : "s");
     }

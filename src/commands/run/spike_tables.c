@@ -22,7 +22,7 @@ static bool looked_for_any(const RunReport *report, const Trajectory *run)
 
 static void when_cell(Table *table, const RunReport *report, const SignalSpike *spike)
 {
-    if (report->scenario->linkage.driver.is_present) {
+    if (drive_is_steady(&report->scenario->linkage.driver)) {
         table_cell(table, "%.1f", spike->crank_rad * UNITS_DEG);
     } else {
         table_cell(table, "%.4f", spike->time_s * UNITS_MS);
@@ -62,7 +62,7 @@ static void write_counts(const RunReport *report, const Style *style, Text *text
     };
     const Linkage *linkage = &report->scenario->linkage;
     const bool has_bands = spike_bands_apply(report);
-    const bool is_driven = linkage->driver.is_present;
+    const bool is_driven = drive_is_steady(&linkage->driver);
     Table *table = section_begin("Spikes of the signals", has_bands ? 9 : 7, HEADS, style, text);
     table_head(table, 6, is_driven ? "at crank" : "at time", is_driven ? "deg" : "ms", TABLE_RIGHT);
     for (size_t body = 0; body < linkage->body_count; body++) {

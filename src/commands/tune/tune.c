@@ -77,8 +77,9 @@ static int first_index(const Scenario *scenario, const Scheme *scheme, double ta
         return index_below(fmin(TOLERANCE_MOST, COARSEST_TOLERANCE * target));
     }
     const double duration_s = scenario_duration(scenario);
-    const double turn_s =
-        scenario->linkage.driver.is_present ? linkage_period(&scenario->linkage) : duration_s;
+    const double turn_s = drive_is_steady(&scenario->linkage.driver)
+                              ? linkage_period(&scenario->linkage)
+                              : duration_s;
     return index_below(fmin(duration_s, turn_s) / COARSEST_STEPS);
 }
 

@@ -165,6 +165,9 @@ static void write_linkage(const Linkage *linkage, Text *text)
                     driver->joint, number_shortest(driver->speed).text,
                     number_shortest(driver->start).text);
     }
+    if (driver->speeds.count > 0) {
+        tune_code_table("linkage.driver.speeds", &driver->speeds, "rad/s", text);
+    }
 }
 
 static void write_points(const Scenario *scenario, Text *text)

@@ -41,17 +41,22 @@ static void write_torsions(const Linkage *linkage, Text *text)
     }
 }
 
+void tune_code_table(const char *name, const TimeTable *table, const char *unit, Text *text)
+{
+    text_append(text, "    .%s.count = %zu,\n", name, table->count);
+    for (size_t i = 0; i < table->count; i++) {
+        text_append(text,
+                    "    .%s.times[%zu] = %s, // s\n"
+                    "    .%s.values[%zu] = %s, // %s\n",
+                    name, i, number_shortest(table->times[i]).text, name, i,
+                    number_shortest(table->values[i]).text, unit);
+    }
+}
+
 static void write_torque(const Torque *torque, Text *text)
 {
-    text_append(text, "    .linkage.torque.joint = %d,\n    .linkage.torque.count = %zu,\n",
-                torque->joint, torque->count);
-    for (size_t i = 0; i < torque->count; i++) {
-        text_append(text,
-                    "    .linkage.torque.times[%zu] = %s, // s\n"
-                    "    .linkage.torque.values[%zu] = %s, // N m\n",
-                    i, number_shortest(torque->times[i]).text, i,
-                    number_shortest(torque->values[i]).text);
-    }
+    text_append(text, "    .linkage.torque.joint = %d,\n", torque->joint);
+    tune_code_table("linkage.torque.table", &torque->table, "N m", text);
 }
 
 void tune_code_forces(const Linkage *linkage, Text *text)

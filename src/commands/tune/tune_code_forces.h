@@ -6,3 +6,6 @@
 
 // Appends them as designated initialisers; nothing where there are none.
 void tune_code_forces(const Linkage *linkage, Text *text);
+
+// Appends a table over time that is the member of that name; the unit is that of its values.
+void tune_code_table(const char *name, const TimeTable *table, const char *unit, Text *text);

@@ -1,0 +1,11 @@
+// A torque or a speed, constant or over time, as a case writes it.
+#pragma once
+
+#include "casefile/entries.h"
+
+// Reads one value, or a list of times and values `[[0 s, 1 N m], [10 ms, 0 N m]]`, into points. A
+// wrong value is an error with its place and what would be allowed.
+bool over_time_store(const Entry *entry, TimeTable *table, Err *err);
+
+// The same for the speed of a drive: the same value at all times is a constant speed.
+bool over_time_store_speed(const Entry *entry, Driver *driver, Err *err);

@@ -1,0 +1,43 @@
+// A quantity over time: linear between its points, constant before the first and after the last.
+//
+// A run may look a little behind time zero. There the piece that holds at and after time zero goes
+// on, so that no bend lies in its past.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { TIME_TABLE_MAX = 32 };
+
+typedef struct TimeTable {
+    size_t count;                  // of points; 0: there is no table, and every value is 0
+    double times[TIME_TABLE_MAX];  // s, increasing
+    double values[TIME_TABLE_MAX]; // in the quantity's unit
+} TimeTable;
+
+// A piece of a table: value + slope (t - time_s).
+typedef struct TimePiece {
+    double time_s;
+    double value;
+    double slope; // of the value, per s
+} TimePiece;
+
+// Whether all numbers are finite and the times increase.
+bool time_table_is_ordered(const TimeTable *table);
+
+double time_table_at(const TimeTable *table, double time_s);
+
+// The piece that holds from a time on: at a bend the one after it.
+TimePiece time_table_piece(const TimeTable *table, double time_s);
+
+// The first time after the one given at which the table bends, s; INFINITY after the last.
+double time_table_next_bend(const TimeTable *table, double time_s);
+
+// The mean between two different times, the earlier one first.
+double time_table_mean(const TimeTable *table, double from_s, double to_s);
+
+// The integral from time zero to a time, of a table with points.
+long double time_table_integral(const TimeTable *table, long double time_s);
+
+// The value of the largest size, with its sign; 0 without points.
+double time_table_largest(const TimeTable *table);
