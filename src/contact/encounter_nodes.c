@@ -2,13 +2,16 @@
 //
 // Between two nodes the integral Q of the impulse is Hermite's quintic through Q, P = Q' and f =
 // Q'' at both; its derivatives are impulse and force, right to the orders 4 and 3 of the local
-// step.
+// step. Where two contacts that should end together do so a rounding apart, the force is linear
+// between the nodes: a difference of integrals over the square of that time would be rounding.
 #include "contact/encounter_force.h"
 #include "contact/encounter_stiff.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+
+static const double NARROW = 1e-7; // of the step of the world, that the quintic is used for
 
 void encounter_finish(Encounter *encounter)
 {
@@ -81,6 +84,7 @@ void encounter_at(const Encounter *encounter, size_t node, double time_s, Encoun
     const double *last = encounter->values + 3 * rows * next;
     const double width = encounter->times[next] - encounter->times[node];
     const double s = width > 0.0 ? (time_s - encounter->times[node]) / width : 0.0;
+    const bool is_short = width < NARROW * encounter->times[encounter->node_count - 1];
     for (size_t i = 0; i < rows; i++) {
         // Hermite's quintic for the moment, whose derivatives are impulse and force
         const double p0 = width * first[i];
@@ -97,7 +101,9 @@ void encounter_at(const Encounter *encounter, size_t node, double time_s, Encoun
         const double impulse = p0 + s * (f0 + s * (3.0 * a + s * (4.0 * b + s * 5.0 * c)));
         const double force = f0 + s * (6.0 * a + s * (12.0 * b + s * 20.0 * c));
         sums->impulse[i] = width > 0.0 ? impulse / width : first[i];
-        sums->force[i] = width > 0.0 ? force / (width * width) : first[2 * rows + i];
+        sums->force[i] = is_short || width == 0.0
+                             ? first[2 * rows + i] + s * (last[2 * rows + i] - first[2 * rows + i])
+                             : force / (width * width);
     }
     const double *before = encounter->losses + 2 * node;
     const double *after = encounter->losses + 2 * next;

@@ -188,6 +188,42 @@ static void two_corners_at_once_share_the_impact(void **state)
     encounter_finish(&pin);
 }
 
+// Contacts that end a rounding apart leave an interval in which differences are rounding.
+static void forces_between_nodes_are_no_rounding(void **state)
+{
+    (void)state;
+    Encounter pin = encounter_start(0.0, 5e-3, LONE_PIN_PHASE);
+    for (int i = 0; i < 2; i++) {
+        const EncounterJoint joint = {.law = lone_pin_hertz(0.3), .shape = TOUCH_LINE};
+        assert_true(encounter_add(&pin, &joint, ENCOUNTER_ROWS_PLAIN));
+        pin.mobility[10 * i] = 1.0 / ONE_IMPACT_MASS;
+        pin.position[2 * i] = LONE_PIN_GAP * (1.0 + i * 1e-8);
+        pin.speed[2 * i] = -ONE_IMPACT_SPEED;
+    }
+    run(&pin);
+    double shortest_s = DURATION_S;
+    double strongest = 0.0;
+    for (size_t node = 0; node + 1 < pin.node_count; node++) {
+        EncounterSums sums[5];
+        const double width_s = pin.times[node + 1] - pin.times[node];
+        shortest_s = width_s > 0.0 ? fmin(shortest_s, width_s) : shortest_s;
+        for (int i = 0; i < 5; i++) {
+            encounter_at(&pin, node, pin.times[node] + 0.25 * i * width_s, &sums[i]);
+        }
+        for (size_t row = 0; row < 4; row += 2) {
+            const double most =
+                fmax(pin.values[12 * node + 8 + row], pin.values[12 * (node + 1) + 8 + row]);
+            strongest = fmax(strongest, most);
+            for (int i = 0; i < 5; i++) {
+                assert_true(fabs(sums[i].force[row]) <= 2.0 * most + 0.1);
+            }
+        }
+    }
+    // control: there is such an interval, whose differences of impulses are rounding
+    assert_true(shortest_s < 1e-11 && strongest > 1000.0);
+    encounter_finish(&pin);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -195,6 +231,7 @@ int main(void)
         cmocka_unit_test(damping_gives_back_what_its_closed_form_says),
         cmocka_unit_test(a_disc_on_a_line_is_braked_until_it_rolls),
         cmocka_unit_test(discs_that_graze_keep_energy_and_angular_momentum),
+        cmocka_unit_test(forces_between_nodes_are_no_rounding),
         cmocka_unit_test(two_corners_at_once_share_the_impact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
