@@ -239,8 +239,7 @@ static void find_constants(const Search *search, double *stiffness, double *damp
 void held_apply(const HeldSetting *setting, Scenario *scenario)
 {
     ContactOptions *options = &scenario->contact;
-    options->stiffness = setting->stiffness;
-    options->exponent = 1.0;
+    scenario_set_stiffness(scenario, setting->stiffness, 1.0);
     options->damping = DAMPING_VISCOUS;
     options->viscous_coefficient = setting->damping;
     if (setting->map != ODE_MAP_MIDPOINT) {

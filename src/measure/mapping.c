@@ -84,7 +84,7 @@ static bool add_joint(Mapping *mapping, const MappingJoint *joint, Err *err)
     for (size_t i = 0; i < count; i++) {
         Scenario scenario = *mapping->scenario;
         if (settings->law_count > 0 && !is_poisson_case) {
-            scenario.contact.stiffness = 0.0;
+            scenario_set_stiffness(&scenario, 0.0, scenario.contact.exponent);
             scenario.contact.law = settings->laws[i];
         }
         if (mapping->contact_count == MAPPING_CONTACT_MAX) {

@@ -45,7 +45,7 @@ MapImpactCase mapping_case(const MappingContact *contact, OdeMap map, double ste
         impact.rows = (MapImpactRows){
             .cfm = map_poisson_cfm(options->penalty),
             .push_out = contact->scenario.ode.push_out,
-            .restitution = options->restitution,
+            .restitution = scenario_restitution(&contact->scenario, at),
             .bounce_speed = options->bounce_speed,
         };
     } else {
@@ -125,7 +125,7 @@ bool mapping_contact_make(const Scenario *scenario, const MappingJoint *joint, d
                 penalty_estimate(scenario->linkage.driver.speed, &scenario->material);
         }
         made.asked = (MapImpact){
-            .restitution = options->restitution,
+            .restitution = scenario_restitution(&made.scenario, at),
             .force_max = NAN,
             .penetration_max = NAN,
             .duration = NAN,
@@ -140,8 +140,7 @@ bool mapping_contact_make(const Scenario *scenario, const MappingJoint *joint, d
     }
     if (made.impact.law.family == FORCE_LAW_POWER) {
         // the law as it is, in whatever world the pin is run
-        made.scenario.contact.stiffness = made.impact.law.stiffness;
-        made.scenario.contact.exponent = made.impact.law.exponent;
+        scenario_set_stiffness(&made.scenario, made.impact.law.stiffness, made.impact.law.exponent);
     }
     if (!ask(&made, at, err)) {
         return false;

@@ -59,6 +59,15 @@ double scenario_sample_time(const Scenario *scenario, size_t sample)
     return turn * (double)sample / (double)scenario->run.samples;
 }
 
+void scenario_set_stiffness(Scenario *scenario, double stiffness, double exponent)
+{
+    scenario->contact.stiffness = stiffness;
+    scenario->contact.exponent = exponent;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        scenario->linkage.joints[i].contact.stiffness = 0.0;
+    }
+}
+
 bool scenario_has_clearance(const Scenario *scenario)
 {
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {

@@ -63,6 +63,17 @@ bool scenario_reports_any(const Scenario *scenario);
 // Time of one sample: an exact multiple of the sample interval, s.
 double scenario_sample_time(const Scenario *scenario, size_t sample);
 
+// The restitution of a joint with play: its own, or the contact's.
+static inline double scenario_restitution(const Scenario *scenario, const Joint *joint)
+{
+    return joint->contact.has_restitution ? joint->contact.restitution
+                                          : scenario->contact.restitution;
+}
+
+// Gives every joint with play one stiffness, N/m^exponent, in place of the contact's and of its
+// own; 0 where the contact's law is to say it.
+void scenario_set_stiffness(Scenario *scenario, double stiffness, double exponent);
+
 // Whether any joint has play.
 bool scenario_has_clearance(const Scenario *scenario);
 

@@ -50,14 +50,17 @@ void contact_rows_finish(ContactRows *rows)
     memset(rows, 0, sizeof *rows);
 }
 
-static dSurfaceParameters surface_of(const ContactRows *rows, ContactRow *row, double step_s)
+static dSurfaceParameters surface_of(const ContactRows *rows, size_t number, ContactRow *row,
+                                     double step_s)
 {
     const ContactOptions *options = &rows->scenario->contact;
     // mu 0 makes one row, along the normal
     dSurfaceParameters surface = {.mode = dContactSoftERP | dContactSoftCFM, .mu = 0.0};
     if (options->model == CONTACT_POISSON) {
         surface.mode |= dContactBounce;
-        surface.bounce = options->restitution;
+        const int joint = rows->world->pairs[number].joint;
+        surface.bounce =
+            scenario_restitution(rows->scenario, &rows->scenario->linkage.joints[joint]);
         surface.bounce_vel = options->bounce_speed;
         surface.soft_erp = rows->scenario->ode.push_out;
         surface.soft_cfm = map_poisson_cfm(rows->penalty);
@@ -197,7 +200,7 @@ static dContact contact_of(ContactRows *rows, size_t number, double step_s)
     ContactRow *row = &rows->rows[number];
     const WorldPair *pair = &rows->world->pairs[number];
     return (dContact){
-        .surface = surface_of(rows, row, step_s),
+        .surface = surface_of(rows, number, row, step_s),
         .geom = {.pos = {row->point.x, row->point.y, 0.0},
                  .normal = {-row->normal.x, -row->normal.y, 0.0},
                  .depth = row->depth,

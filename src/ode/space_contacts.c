@@ -183,7 +183,8 @@ static dSurfaceParameters surface_of(SpaceContacts *contacts, size_t number, dou
     if (options->model == CONTACT_POISSON) {
         const bool is_end = place->place != PIN_SPACE_COLLAR;
         surface.mode |= dContactBounce;
-        surface.bounce = options->restitution;
+        surface.bounce = scenario_restitution(contacts->scenario,
+                                              &contacts->scenario->linkage.joints[place->joint]);
         surface.bounce_vel = options->bounce_speed;
         surface.soft_erp = contacts->scenario->ode.push_out;
         surface.soft_cfm =

@@ -132,6 +132,21 @@ static void a_joints_own_stiffness_and_restitution_go_before_those_of_the_contac
     assert_near(law_options(&balls.contact, &balls.linkage.joints[2]).restitution, 0.9, 0.0);
 }
 
+// What tune and map try goes before both.
+static void one_stiffness_for_all_joints_goes_before_their_own(void **state)
+{
+    (void)state;
+    Scenario balls = load(BALLS);
+    const Scenario slider = load(SLIDER_CRANK(GUIDE));
+    ForceLaw law;
+    Err err = {0};
+    scenario_set_stiffness(&balls, 3e6, 1.0);
+    assert_true(law_of_joint(&balls, &balls.linkage.joints[2], &law, &err));
+    assert_near(force_law_elastic(&law, 1e-4), 300.0, 1e-11);
+    assert_near(scenario_restitution(&slider, &slider.linkage.joints[3]), 0.5, 0.0);
+    assert_near(scenario_restitution(&balls, &balls.linkage.joints[2]), 0.9, 0.0);
+}
+
 static bool is_setting(const Scenario *scenario, const char *key, CasefileSetting *setting)
 {
     for (size_t i = 0; casefile_setting(scenario, i, setting); i++) {
@@ -178,6 +193,7 @@ int main(void)
         cmocka_unit_test(a_block_starts_off_the_middle_and_tilted_as_the_case_says),
         cmocka_unit_test(a_stop_is_between_the_places_that_the_case_gives),
         cmocka_unit_test(a_joints_own_stiffness_and_restitution_go_before_those_of_the_contact),
+        cmocka_unit_test(one_stiffness_for_all_joints_goes_before_their_own),
         cmocka_unit_test(settings_hold_what_the_case_says),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -205,7 +205,7 @@ static void write_contact(const Scenario *scenario, Text *text)
             text, "  contact     %s: poisson, p = %.4g N s/m (%s), restitution %.4g\n", joint->name,
             is_given ? contact->penalty
                      : penalty_estimate(scenario->linkage.driver.speed, &scenario->material),
-            is_given ? "given" : "the paper's estimate", contact->restitution);
+            is_given ? "given" : "the paper's estimate", scenario_restitution(scenario, joint));
     }
 }
 

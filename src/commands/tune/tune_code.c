@@ -131,6 +131,10 @@ static void write_joint(const Joint *joint, Text *text)
     if (joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE) {
         write_sliding(joint, text);
     }
+    if (joint->contact.has_restitution) {
+        text_append(text, "         .contact = {.has_restitution = true, .restitution = %s},\n",
+                    number_shortest(joint->contact.restitution).text);
+    }
     text_append(text,
                 "         .clearance = {.hole_radius = %s, // m\n"
                 "                       .pin_radius = %s,\n"

@@ -44,8 +44,7 @@ Scenario tune_linear_scenario(const Scenario *scenario, const TuneLinear *linear
                                      .damping = linear->damping};
         held_apply(&setting, &changed);
     } else {
-        changed.contact.stiffness = linear->stiffness;
-        changed.contact.exponent = 1.0;
+        scenario_set_stiffness(&changed, linear->stiffness, 1.0);
         changed.contact.damping = DAMPING_VISCOUS;
         changed.contact.viscous_coefficient = linear->damping;
     }
