@@ -249,7 +249,7 @@ bool dynamics_factor(const Dynamics *dynamics, const TreeState *state, double *m
 }
 
 // Power of the drive and force of the driven joint, from the driven body's own equations.
-static void find_drive(const Dynamics *dynamics, const Loads *loads, DynamicsState *state)
+static inline void find_drive(const Dynamics *dynamics, const Loads *loads, DynamicsState *state)
 {
     const Tree *tree = &dynamics->tree;
     if (tree->driven < 0) {
@@ -259,8 +259,10 @@ static void find_drive(const Dynamics *dynamics, const Loads *loads, DynamicsSta
     const Motion *motion = &state->tree.motions[tree->driven];
     const Vec2 upward = {0.0, dynamics->system.scenario->gravity};
     const Vec2 needed = vec2_scale(driven->mass, vec2_add(motion->acceleration, upward));
-    state->drive_power = vec2_dot(needed, motion->velocity) +
-                         driven->inertia * motion->alpha * motion->omega - loads->driven_power;
+    state->drive_power = vec2_dot(needed, motion->velocity) - loads->driven_power;
+    if (motion->alpha != 0.0) {
+        state->drive_power += driven->inertia * motion->alpha * motion->omega;
+    }
     state->reactions[tree->linkage->driver.joint] = vec2_sub(needed, loads->driven_force);
 }
 
