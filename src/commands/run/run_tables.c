@@ -98,7 +98,7 @@ static void write_untouched(const RunReport *report, Text *text)
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
             if (!trajectory_feels_play(run, &linkage->joints[joint]) ||
-                run->joints[joint].impacts > 0 || run->joints[joint].contact_time > 0.0) {
+                run->joints[joint].contact_time > 0.0) {
                 continue;
             }
             text_append(text, "  %s, %s: no contact in the whole run.", linkage->joints[joint].name,
