@@ -12,6 +12,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 // Forces on the bodies, by body: at the centre, and the moment about it.
 typedef struct SpaceLoads {
@@ -178,14 +179,13 @@ static void append_loops(const SpaceDynamics *dynamics, const SpaceTreeState *st
     }
 }
 
-// Forces and moments of the loop joints on their bodies b: the multipliers' negatives.
+// Forces and moments of the loop joints on their bodies b: the multipliers' negatives. The other
+// joints have no reaction yet.
 static void load_loops(const SpaceDynamics *dynamics, const double *lambda, SpaceState *state,
                        SpaceLoads *loads)
 {
     const SpaceTree *tree = &dynamics->tree;
-    for (size_t i = 0; i < tree->loop_count; i++) {
-        state->reactions[tree->loops[i]] = (Vec3){0.0, 0.0, 0.0};
-    }
+    memset(state->reactions, 0, sizeof state->reactions);
     for (size_t row = 0; row < dynamics->loops.row_count; row++) {
         const SpaceLoopRow *which = &dynamics->loops.rows[row];
         const int end = 2 * which->joint;
