@@ -1,4 +1,5 @@
-// In space, are the derivatives that the implicit integrator works with those of the accelerations?
+// In space, are the derivatives that the implicit integrator works with those of the accelerations,
+// and are these not numbers where nothing determines them?
 #include "close.h"
 #include "mechanism.h"
 
@@ -120,10 +121,32 @@ static void derivatives_are_those_of_the_places_forces(void **state)
     }
 }
 
+// Bodies without mass can have any accelerations.
+static void rates_that_are_not_determined_are_not_numbers(void **state)
+{
+    (void)state;
+    Pressed *pressed = press(2);
+    const size_t size = system_size(&pressed->dynamics.system);
+    double rates[SIZE] = {0.0};
+    space_dynamics_rates(0.0, pressed->y, rates, &pressed->dynamics);
+    for (size_t i = 0; i < size; i++) {
+        assert_true(isfinite(rates[i]));
+    }
+    for (size_t i = 0; i < pressed->scenario.linkage.body_count; i++) {
+        pressed->scenario.linkage.bodies[i].mass = 0.0;
+    }
+    space_dynamics_rates(0.0, pressed->y, rates, &pressed->dynamics);
+    for (size_t i = 0; i < size; i++) {
+        assert_true(isnan(rates[i]));
+    }
+    release(pressed);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(derivatives_are_those_of_the_places_forces),
+        cmocka_unit_test(rates_that_are_not_determined_are_not_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
