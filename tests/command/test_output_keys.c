@@ -294,6 +294,11 @@ static void every_column_of_a_table_is_listed(void **state)
                   "run -q --backend reference --series table.csv "
                   "\"$cases\"/mechanisms/slider-crank-guide.yaml --set 'run.duration=1 ms'",
                   "_moment_N_m", " slider-guide_moment_N_m ");
+    // what a linkage in space has more than one in the plane
+    check_columns(state, "run",
+                  "run -q --backend reference --series table.csv "
+                  "\"$cases\"/space/overhung-pin.yaml --set 'run.duration=1 ms'",
+                  "_axial_force_N", " hole_axial_force_N ");
     check_columns(state, "map", "map -q --csv table.csv --steps '1 us' " FIRST_CONTACTS,
                   "longest_valid_step_s", " longest_valid_step_s ");
     check_columns(state, "compare",
