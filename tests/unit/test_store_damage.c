@@ -431,6 +431,52 @@ static void a_folder_that_may_not_be_written_is_told(void **state)
     assert_true(is_read_right());
 }
 
+static int deny_key(void *context, int action, const char *table, const char *column,
+                    const char *base, const char *trigger)
+{
+    (void)context;
+    (void)column;
+    (void)base;
+    (void)trigger;
+    return action == SQLITE_INSERT && strcmp(table, "study") == 0 ? SQLITE_DENY : SQLITE_OK;
+}
+
+// What SQLite calls for every file that is opened from now on.
+static int deny_in(sqlite3 *base, char **message, const void *routines)
+{
+    (void)message;
+    (void)routines;
+    return sqlite3_set_authorizer(base, deny_key, NULL);
+}
+
+static void expect_denied(void)
+{
+    Err err;
+    const Layout layout = study_layout();
+    assert_int_equal(sqlite3_auto_extension((void (*)(void))deny_in), SQLITE_OK);
+    Store *store = open_study(&layout, false, &err);
+    sqlite3_reset_auto_extension();
+    assert_null(store);
+    assert_int_equal(err.kind, ERR_FILE);
+    assert_non_null(strstr(err.text, "not authorized"));
+}
+
+// Its tables can be made, but nothing put into the one that holds the key.
+static void a_store_that_cannot_hold_its_key_is_not_begun(void **state)
+{
+    (void)state;
+    expect_denied();
+    assert_int_not_equal(access(path, F_OK), 0);
+    make_store(FEW);
+    assert_int_equal(count_right_rows(), FEW);
+    // an empty file stays empty, and does not get tables without a key
+    write_content(0);
+    expect_denied();
+    assert_int_equal(access(path, F_OK), 0);
+    make_store(FEW);
+    assert_int_equal(count_right_rows(), FEW);
+}
+
 #define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -446,6 +492,7 @@ int main(void)
         STORE_TEST(a_place_that_is_no_file_is_told),
         STORE_TEST(what_was_committed_outlives_a_full_disk),
         STORE_TEST(a_store_that_has_no_space_is_not_begun),
+        STORE_TEST(a_store_that_cannot_hold_its_key_is_not_begun),
         STORE_TEST(a_store_that_may_not_be_written_can_be_looked_at),
         STORE_TEST(a_folder_that_may_not_be_written_is_told),
     };
