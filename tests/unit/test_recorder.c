@@ -3,7 +3,9 @@
 
 #include "mechanism.h"
 
-#include "run/recorder.h"
+#include "run/look.h"
+
+#include <string.h>
 
 typedef struct Steps {
     double omega[3];
@@ -208,6 +210,57 @@ static void every_step_is_in_the_range_of_its_stretch(void **state)
     }
 }
 
+// A joint's force and a body's angular velocity go through swings.
+static void observe_swings(const void *solver_state, double time_s, Sample *sample)
+{
+    (void)solver_state;
+    memset(sample, 0, sizeof *sample);
+    sample->time_s = time_s;
+    sample->bodies[1].alpha = 5.0 * cos(time_s);
+    sample->bodies[1].omega = 5.0 * sin(time_s);
+    sample->joints[1].force = 7.0 * sin(time_s);
+}
+
+// One step over half a swing shows nothing of its top at its ends.
+static void tops_within_a_step_that_is_looked_into_are_extremes(void **state)
+{
+    (void)state;
+    const Scenario scenario = mechanism_paper();
+    const Solver solver = {.name = "swings", .observe = observe_swings};
+    Trajectory *trajectory = trajectory_create(&scenario, "test");
+    Recorder recorder = recorder_start(&scenario, trajectory);
+    const Looker looker = {&scenario, &solver, NULL, &recorder};
+    Sample ends[2];
+    Look looks[LOOK_MAX];
+    const double first_s = 0.25;
+    const double last_s = M_PI - 0.25;
+    observe_swings(NULL, first_s, &ends[0]);
+    observe_swings(NULL, last_s, &ends[1]);
+    Steps steps = {.approach = {0.0}};
+    steps.omega[1] = ends[1].bodies[1].omega;
+    steps.alpha[1] = ends[1].bodies[1].alpha;
+    add_step(&recorder, &steps, 0, ends[1].joints[1].force, 0.0);
+    const Look before = look_inside(&looker, first_s);
+    const StepRecord record = {.start_s = first_s,
+                               .end_s = last_s,
+                               .omega = steps.omega,
+                               .alpha = steps.alpha,
+                               .joints = steps.joints};
+    looks[0] = look_at_end(&looker, &record);
+    const JointExtremes *joint = &trajectory->joints[1];
+    const BodyExtremes *body = &trajectory->bodies[1];
+    // the control: the ends of the step
+    assert_near(joint->force_max.value, 7.0 * sin(0.25), 1e-12);
+    assert_near(body->omega_max.value, 5.0 * sin(0.25), 1e-12);
+    look_for_extremes(&looker, &before, 1, looks);
+    assert_close(joint->force_max.value, 7.0, 1e-10);
+    assert_near(joint->force_max.time_s, 0.5 * M_PI, 1e-4);
+    // where omega turns, alpha is zero: found to a thousandth of the step
+    assert_close(body->omega_max.value, 5.0, 1e-5);
+    assert_close(body->alpha_max.value, 5.0 * cos(0.25), 1e-12);
+    trajectory_destroy(trajectory);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -216,6 +269,7 @@ int main(void)
         cmocka_unit_test(extremes_hold_a_single_step),
         cmocka_unit_test(a_start_that_is_not_reported_leaves_no_extremes),
         cmocka_unit_test(every_step_is_in_the_range_of_its_stretch),
+        cmocka_unit_test(tops_within_a_step_that_is_looked_into_are_extremes),
         cmocka_unit_test(the_order_of_steps_is_part_of_the_hash),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
