@@ -2,7 +2,8 @@
 // do leave it?
 //
 // Outside truths: the planar runs, whose law each end of a hole has half of; Euler's equations of a
-// free body; statics of a pin that is pressed off its middle; the restitution asked for.
+// free body; statics of a pin that is pressed off its middle; the restitution asked for; Newton's
+// law for a crank.
 #include "complete_run.h"
 #include "load_case.h"
 
@@ -126,12 +127,55 @@ static void a_body_between_two_pins_tilts_only_where_its_mass_is_off_the_plane(v
     }
 }
 
+// The largest part of Newton's law for the driven crank that the forces in its two joints leave
+// over at any sample, over the largest force; `share` is of the force of the second that is
+// counted.
+static double crank_is_off(const Trajectory *run, const Scenario *scenario, double share)
+{
+    const double mass = scenario->linkage.bodies[0].mass;
+    double worst = 0.0;
+    double largest = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        const Vec2 drive = trajectory_state(run, i, 0)->force_on_b;
+        const Vec2 taken = vec2_scale(share, trajectory_state(run, i, 1)->force_on_b);
+        const Vec2 weight = {0.0, -mass * scenario->gravity};
+        const Vec2 sum = vec2_add(vec2_sub(drive, taken), weight);
+        const Vec2 moved = vec2_scale(mass, trajectory_motion(run, i, 0)->acceleration);
+        worst = fmax(worst, vec2_length(vec2_sub(moved, sum)));
+        largest = fmax(largest, vec2_length(drive));
+    }
+    return worst / largest;
+}
+
+// The play is at the far end of the coupler: an ideal joint hands on to the crank what the contacts
+// do within a step.
+static void the_drive_bears_what_an_ideal_joint_hands_on(void **state)
+{
+    (void)state;
+    Scenario scenario = paper(ODE_STAGGERED, ODE_MAP_IMPULSE, 20e-6);
+    scenario.run.samples = 2000;
+    Joint *joints = scenario.linkage.joints;
+    joints[2].kind = JOINT_CLEARANCE;
+    joints[2].clearance = joints[1].clearance;
+    joints[1].kind = JOINT_REVOLUTE;
+    Trajectory *run = complete_run(&scenario, BACKEND_ODE);
+    assert_true(run->joints[2].impacts > 0);
+    const double off = crank_is_off(run, &scenario, 1.0);
+    if (!(off < 1e-9)) {
+        fail_msg("the crank's forces leave over %.3g", off);
+    }
+    // the control: a force off by a thousandth
+    assert_true(crank_is_off(run, &scenario, 1.001) > 1e-4);
+    trajectory_destroy(run);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_planar_mechanism_moves_in_space_as_in_the_plane),
         cmocka_unit_test(friction_is_that_of_the_plane),
         cmocka_unit_test(a_body_between_two_pins_tilts_only_where_its_mass_is_off_the_plane),
+        cmocka_unit_test(the_drive_bears_what_an_ideal_joint_hands_on),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
