@@ -321,6 +321,30 @@ static void spikes_are_listed_with_what_stands_in_the_bands(void **state)
     text_finish(&text);
 }
 
+// The bodies behind the first three are the fixture's last, by other names.
+static void the_last_of_as_many_bodies_as_there_can_be_has_its_spikes(void **state)
+{
+    Fixture *fixture = *state;
+    Linkage *linkage = &fixture->scenario.linkage;
+    const size_t last = LINKAGE_BODY_MAX - 1;
+    for (size_t i = linkage->body_count; i <= last; i++) {
+        linkage->bodies[i] = linkage->bodies[2];
+        snprintf(linkage->bodies[i].name, sizeof linkage->bodies[i].name, "link-%zu", i);
+    }
+    Text text;
+    text_init(&text);
+    linkage->body_count = LINKAGE_BODY_MAX;
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    assert_null(strstr(text.data, "Spikes of the signals"));
+    text_finish(&text);
+    fixture->runs[1]->alpha_spikes[last] = (SignalSpikes){.is_known = true, .threshold = 2e4};
+    text_init(&text);
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    assert_non_null(strstr(text.data, "Spikes of the signals"));
+    assert_non_null(strstr(text.data, "alpha link-15"));
+    text_finish(&text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -339,6 +363,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(what_the_closed_form_cannot_say_is_said_in_a_line,
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(spikes_are_listed_with_what_stands_in_the_bands,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(the_last_of_as_many_bodies_as_there_can_be_has_its_spikes,
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(an_error_is_told_with_what_limits_it, truth_fixture_set_up,
                                         truth_fixture_tear_down),
