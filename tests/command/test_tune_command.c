@@ -316,6 +316,54 @@ static void a_linear_law_has_one_spring(void **state)
     json_decref(root);
 }
 
+// Where errors fall with the step, 1e-9 takes a million times the steps of 1e-3.
+static void a_search_that_would_take_too_long_says_so(void **state)
+{
+    Program *program = *state;
+    char line[2 * PROGRAM_PATH_SIZE];
+    snprintf(
+        line, sizeof line,
+        "%s --set run.revolutions=0.1 --schemes direct/plain --error 1e-9 --time-limit '0.5 s'",
+        IDEAL);
+    json_t *root = tune(program, line, 1);
+    const json_t *scheme = json_array_get(json_object_get(root, "schemes"), 0);
+    assert_string_equal(words(scheme, "fate"), "too-long");
+    json_decref(root);
+    // the control: an error that its first runs meet
+    snprintf(line, sizeof line, "%s --set run.revolutions=0.1 --schemes direct/plain --error 1e-2",
+             IDEAL);
+    root = tune(program, line, 0);
+    scheme = json_array_get(json_object_get(root, "schemes"), 0);
+    assert_string_equal(words(scheme, "fate"), "meets");
+    json_decref(root);
+}
+
+// In the tables stand the same keys of a case as in JSON, whose run meets the error.
+static void expect_keys_in_tables(Program *program)
+{
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "out/impact-k66-tune.json", path);
+    json_t *root = json_load_file(path, 0, NULL);
+    assert_non_null(root);
+    read_tables(program);
+    char *first = strstr(program->output, "\n  in a case ");
+    assert_non_null(first);
+    char *end = strstr(first, "\n  run it");
+    assert_non_null(end);
+    *end = '\0';
+    json_t *keys = json_object_get(json_object_get(root, "cheapest"), "keys");
+    assert_true(json_object_size(keys) >= 4);
+    const char *key = NULL;
+    json_t *value = NULL;
+    json_object_foreach(keys, key, value)
+    {
+        char row[128];
+        snprintf(row, sizeof row, " %s=%s", key, json_string_value(value));
+        assert_says(first, row);
+    }
+    json_decref(root);
+}
+
 static void files_hold_what_was_asked_for(void **state)
 {
     Program *program = *state;
@@ -338,6 +386,7 @@ static void files_hold_what_was_asked_for(void **state)
         program_path(program, name, path);
         assert_int_equal(access(path, R_OK), 0);
     }
+    expect_keys_in_tables(program);
     // ideal joints have no contact to hand on
     program_run(program, "tune $cases/paper/ideal-nominal.yaml --error 1e-2 --sdf none.sdf");
     assert_int_equal(program->status, 0);
@@ -395,6 +444,8 @@ int main(void)
             where_nothing_at_the_step_will_do_the_longest_that_does_is_named, program_set_up,
             program_tear_down),
         cmocka_unit_test_setup_teardown(a_linear_law_has_one_spring, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(a_search_that_would_take_too_long_says_so, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(files_hold_what_was_asked_for, program_set_up,
                                         program_tear_down),
