@@ -1,5 +1,5 @@
-// Are counts, reasons, values and quantiles of a store those of its rows?
-#include "commands/study/store.h"
+// Are counts, reasons, values, quantiles and points of a store those of its rows?
+#include "commands/study/study_points.h"
 
 #include "base/sorted.h"
 
@@ -27,6 +27,27 @@ static void counts_are_those_of_the_rows(void **state)
     assert_int_equal(count.fates[FATE_REFUSED] + count.fates[FATE_ENDED], 0);
     // sums of one sign differ by rounding alone
     assert_close(count.wall_s, wall_s, 1e-13);
+    store_close(store, &err);
+}
+
+// A setting and a result of each run.
+static void points_are_those_of_the_rows(void **state)
+{
+    (void)state;
+    Err err = {0};
+    StudyPoints points = {0};
+    const Layout layout = study_layout();
+    make_store(3);
+    Store *store = store_view(path, &err);
+    assert_true(study_points_read(store, "run_step_s", "steps", NULL, &points, &err));
+    assert_int_equal(points.count, 3);
+    // by rising step, which rises with the run
+    for (uint64_t run = 0; run < 3; run++) {
+        const Record record = study_record(&layout, run);
+        assert_near(points.points[run].x, record.settings[3].number, 0.0);
+        assert_near(points.points[run].y, record.results[23], 0.0);
+    }
+    study_points_finish(&points);
     store_close(store, &err);
 }
 
@@ -149,6 +170,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         STORE_TEST(counts_are_those_of_the_rows),
+        STORE_TEST(points_are_those_of_the_rows),
         STORE_TEST(an_empty_store_counts_nothing),
         STORE_TEST(reasons_come_with_the_most_frequent_first),
         cmocka_unit_test(columns_are_found_by_name),
