@@ -91,9 +91,10 @@ static void invert_mass(double inverse[COORDINATES][COORDINATES])
 static Model make_model(double lever)
 {
     Model model = {
-        .places = {{L_M + L_G - L_S - R_O, {0.0, 0.0, -H_S}, {1.0, L_M, L_G - L_S}, 1.432751},
-                   {R_M - R_O, {0.0, H_M, 0.0}, {1.0, lever, 0.0}, 19.9999999836},
-                   {R_M - R_O, {0.0, -H_M, 0.0}, {1.0, lever, 0.0}, 19.9999999836}},
+        .places =
+            {{L_M + L_G - L_S - R_O, {0.0, 0.0, -H_S}, {1.0, L_M, L_G - L_S}, 1.432751, 0.0, false},
+             {R_M - R_O, {0.0, H_M, 0.0}, {1.0, lever, 0.0}, 19.9999999836, 0.0, false},
+             {R_M - R_O, {0.0, -H_M, 0.0}, {1.0, lever, 0.0}, 19.9999999836, 0.0, false}},
         .q = {0.0, -0.1036, -0.2788},
         .u = {-0.3411, 0.0, -7.4583},
     };
