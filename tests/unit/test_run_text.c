@@ -334,12 +334,12 @@ static void the_last_of_as_many_bodies_as_there_can_be_has_its_spikes(void **sta
     Text text;
     text_init(&text);
     linkage->body_count = LINKAGE_BODY_MAX;
-    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    spike_tables_write(&fixture->report, RUN_TEXT_SPIKES, &STYLE_PLAIN, &text);
     assert_null(strstr(text.data, "Spikes of the signals"));
     text_finish(&text);
     fixture->runs[1]->alpha_spikes[last] = (SignalSpikes){.is_known = true, .threshold = 2e4};
     text_init(&text);
-    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    spike_tables_write(&fixture->report, RUN_TEXT_SPIKES, &STYLE_PLAIN, &text);
     assert_non_null(strstr(text.data, "Spikes of the signals"));
     assert_non_null(strstr(text.data, "alpha link-15"));
     text_finish(&text);
