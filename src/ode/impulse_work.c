@@ -103,10 +103,8 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
                                  vec2_scale(place->radius_b * omega_a, directions[1]));
     const Vec2 arm = vec2_sub(point, driven->position);
     const Vec2 speed = vec2_add(driven->velocity, vec2_scale(driven->omega, vec2_perp(arm)));
-    const Vec2 pushed =
-        vec2_add(arm_acceleration(driven, arm),
-                 vec2_add(vec2_scale(driven->alpha, vec2_perp(arm)),
-                          vec2_scale(driven->omega, vec2_perp(vec2_sub(moving, speed)))));
+    const Vec2 pushed = vec2_add(arm_acceleration(driven, arm),
+                                 vec2_scale(driven->omega, vec2_perp(vec2_sub(moving, speed))));
     double work = 0.0;
     for (size_t i = 0; i < 2; i++) {
         const double early =
