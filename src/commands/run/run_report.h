@@ -109,6 +109,10 @@ void run_text_write(const void *report, const Style *style, Text *text);
 json_t *run_json_build(const void *report);
 void plot_run_write(const void *report, Text *svg);
 
+// Heads a column of a table for when something was, and fills in a cell of it.
+void run_when_head(Table *table, size_t column, const RunReport *report);
+void run_when_cell(Table *table, const RunReport *report, double time_s, double crank_rad);
+
 // The parts of the text, each of which appends nothing where it has nothing to say. Extremes of
 // each body that is not driven; how sliders move along their lines; the contacts of each joint
 // with play, how its pin tilts and slides in space, how its block tilts, and at most `limit` of the

@@ -5,22 +5,6 @@
 
 #include <math.h>
 
-static void when_cell(Table *table, const RunReport *report, Extreme extreme)
-{
-    if (report->scenario->linkage.driver.is_present) {
-        table_cell(table, "%.1f", extreme.crank_rad * UNITS_DEG);
-    } else {
-        table_cell(table, "%.4f", extreme.time_s * UNITS_MS);
-    }
-}
-
-static void head_when(Table *table, size_t column, const RunReport *report)
-{
-    const bool is_driven = report->scenario->linkage.driver.is_present;
-    table_head(table, column, is_driven ? "at crank" : "at time", is_driven ? "deg" : "ms",
-               TABLE_RIGHT);
-}
-
 static void slider_row(Table *table, const RunReport *report, const Trajectory *run, size_t joint,
                        const char *word, int end)
 {
@@ -31,9 +15,9 @@ static void slider_row(Table *table, const RunReport *report, const Trajectory *
     table_cell(table, "%s", word);
     table_cell(table, "%.6g", range.position[end].value * UNITS_MM);
     table_cell(table, "%.6g", range.velocity[end].value);
-    when_cell(table, report, range.velocity[end]);
+    run_when_cell(table, report, range.velocity[end].time_s, range.velocity[end].crank_rad);
     table_cell(table, "%.6g", range.acceleration[end].value);
-    when_cell(table, report, range.acceleration[end]);
+    run_when_cell(table, report, range.acceleration[end].time_s, range.acceleration[end].crank_rad);
 }
 
 void run_slides_motion(const RunReport *report, const Style *style, Text *text)
@@ -59,8 +43,8 @@ void run_slides_motion(const RunReport *report, const Style *style, Text *text)
             if (table == NULL) {
                 table = section_begin("Sliders along their lines, at the samples", 8, HEADS, style,
                                       text);
-                head_when(table, 5, report);
-                head_when(table, 7, report);
+                run_when_head(table, 5, report);
+                run_when_head(table, 7, report);
             }
             slider_row(table, report, run, joint, "max", 1);
             slider_row(table, report, run, joint, "min", 0);
@@ -79,7 +63,7 @@ static void block_row(Table *table, const RunReport *report, const Trajectory *r
     table_cell(table, "%s", joint->name);
     table_cell(table, "%s", run->backend);
     section_number(table, extremes->tilt_max.value * UNITS_MRAD);
-    when_cell(table, report, extremes->tilt_max);
+    run_when_cell(table, report, extremes->tilt_max.time_s, extremes->tilt_max.crank_rad);
     section_number(table, limit * UNITS_MRAD);
     table_cell(table, "%.1f", extremes->tilt_max.value / limit * UNITS_PERCENT);
 }
@@ -102,7 +86,7 @@ void run_slides_blocks(const RunReport *report, const Style *style, Text *text)
             }
             if (table == NULL) {
                 table = section_begin("Blocks between their guides", 6, HEADS, style, text);
-                head_when(table, 3, report);
+                run_when_head(table, 3, report);
             }
             block_row(table, report, run, joint);
         }

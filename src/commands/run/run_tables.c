@@ -9,23 +9,6 @@
 // Of the clearance: a pin that moves less is at rest in its hole.
 static const double UNTOUCHED_STILL = 1e-3;
 
-// When something was: by the crank's angle, or by the time where nothing drives a crank.
-static void head_when(Table *table, size_t column, const RunReport *report)
-{
-    const bool is_driven = drive_is_steady(&report->scenario->linkage.driver);
-    table_head(table, column, is_driven ? "at crank" : "at time", is_driven ? "deg" : "ms",
-               TABLE_RIGHT);
-}
-
-static void when_cell(Table *table, const RunReport *report, Extreme extreme)
-{
-    if (drive_is_steady(&report->scenario->linkage.driver)) {
-        table_cell(table, "%.1f", extreme.crank_rad * UNITS_DEG);
-    } else {
-        table_cell(table, "%.4f", extreme.time_s * UNITS_MS);
-    }
-}
-
 void run_tables_extremes(const RunReport *report, const Style *style, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
@@ -58,7 +41,7 @@ static void contact_row(Table *table, const RunReport *report, const Trajectory 
     table_cell(table, "%s", run->backend);
     table_cell(table, "%zu", extremes->impacts);
     section_number(table, extremes->force_max.value);
-    when_cell(table, report, extremes->force_max);
+    run_when_cell(table, report, extremes->force_max.time_s, extremes->force_max.crank_rad);
     section_number(table, extremes->impulse);
     section_number(table, extremes->penetration_max.value * UNITS_UM);
     table_cell(table, "%.1f", trajectory_contact_share(run, number) * UNITS_PERCENT);
@@ -129,7 +112,7 @@ void run_tables_contacts(const RunReport *report, const Style *style, Text *text
             }
             if (table == NULL) {
                 table = section_begin("Contacts in the joints with play", 8, HEADS, style, text);
-                head_when(table, 4, report);
+                run_when_head(table, 4, report);
             }
             contact_row(table, report, run, joint);
         }
@@ -149,9 +132,9 @@ static void pin_row(Table *table, const RunReport *report, const Trajectory *run
     table_cell(table, "%s", run->backend);
     section_number(table, extremes->tilt_max.value * UNITS_MRAD);
     table_cell(table, "%.1f", sin(extremes->tilt_max.value) / limit * UNITS_PERCENT);
-    when_cell(table, report, extremes->tilt_max);
+    run_when_cell(table, report, extremes->tilt_max.time_s, extremes->tilt_max.crank_rad);
     section_number(table, extremes->axial_max.value * UNITS_UM);
-    when_cell(table, report, extremes->axial_max);
+    run_when_cell(table, report, extremes->axial_max.time_s, extremes->axial_max.crank_rad);
 }
 
 void run_tables_pins(const RunReport *report, const Style *style, Text *text)
@@ -175,8 +158,8 @@ void run_tables_pins(const RunReport *report, const Style *style, Text *text)
             }
             if (table == NULL) {
                 table = section_begin("Pins in space", 7, HEADS, style, text);
-                head_when(table, 4, report);
-                head_when(table, 6, report);
+                run_when_head(table, 4, report);
+                run_when_head(table, 6, report);
             }
             pin_row(table, report, run, joint);
         }

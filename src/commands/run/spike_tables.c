@@ -20,15 +20,6 @@ static bool looked_for_any(const RunReport *report, const Trajectory *run)
     return false;
 }
 
-static void when_cell(Table *table, const RunReport *report, const SignalSpike *spike)
-{
-    if (drive_is_steady(&report->scenario->linkage.driver)) {
-        table_cell(table, "%.1f", spike->crank_rad * UNITS_DEG);
-    } else {
-        table_cell(table, "%.4f", spike->time_s * UNITS_MS);
-    }
-}
-
 static void count_row(Table *table, const RunReport *report, const Trajectory *run,
                       const char *quantity, const char *name, const char *unit,
                       const SignalSpikes *spikes)
@@ -40,7 +31,7 @@ static void count_row(Table *table, const RunReport *report, const Trajectory *r
     table_cell(table, "%zu", spikes->count);
     section_number_or_dash(table, spikes->kept > 0, spikes->spikes[0].value);
     if (spikes->kept > 0) {
-        when_cell(table, report, &spikes->spikes[0]);
+        run_when_cell(table, report, spikes->spikes[0].time_s, spikes->spikes[0].crank_rad);
     } else {
         table_cell(table, "-");
     }
@@ -62,9 +53,8 @@ static void write_counts(const RunReport *report, const Style *style, Text *text
     };
     const Linkage *linkage = &report->scenario->linkage;
     const bool has_bands = spike_bands_apply(report);
-    const bool is_driven = drive_is_steady(&linkage->driver);
     Table *table = section_begin("Spikes of the signals", has_bands ? 9 : 7, HEADS, style, text);
-    table_head(table, 6, is_driven ? "at crank" : "at time", is_driven ? "deg" : "ms", TABLE_RIGHT);
+    run_when_head(table, 6, report);
     for (size_t body = 0; body < linkage->body_count; body++) {
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
