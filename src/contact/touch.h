@@ -10,6 +10,7 @@
 #pragma once
 
 #include "contact/force_law.h"
+#include "contact/pin_hole.h"
 #include "model/response.h"
 #include "model/scenario.h"
 
@@ -56,6 +57,19 @@ bool touch_too_many(Err *err);
 
 // Writes the places of one joint without their laws; returns how many there are, 0 of an ideal one.
 size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS]);
+
+// The pose of a pin in its hole, with the velocity of its centre less that of the hole's, m/s.
+static inline TouchPose touch_pose_in_hole(const PinHole *pin, Vec2 velocity)
+{
+    return (TouchPose){
+        .offset = pin->eccentricity,
+        .velocity = velocity,
+        .gap = pin->gap,
+        .has_normal = pin->has_normal,
+        .normal = pin->normal,
+        .approach_speed = pin->approach_speed,
+    };
+}
 
 // The pose of a place whose bodies move so.
 TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions);

@@ -97,14 +97,7 @@ static TouchPose hole_pose(const WorldPair *pair)
     const Vec2 velocity =
         vec2_sub(velocity_at(pair->bodies[1], pin), velocity_at(pair->bodies[0], hole));
     const PinHole pose = pin_hole_pose(hole, pin, velocity, pair->touch.clearance);
-    return (TouchPose){
-        .offset = pose.eccentricity,
-        .velocity = velocity,
-        .gap = pose.gap,
-        .has_normal = pose.has_normal,
-        .normal = pose.normal,
-        .approach_speed = pose.approach_speed,
-    };
+    return touch_pose_in_hole(&pose, velocity);
 }
 
 TouchPose pair_pose(const WorldPair *pair)

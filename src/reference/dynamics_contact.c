@@ -49,34 +49,20 @@ static TouchPose pose_in_hole(const Contact *contact, const Tree *tree, const Tr
     const Vec2 velocity = tree_pair_velocity(tree, state, pair);
     const PinHole pin = pin_hole_pose((Vec2){0.0, 0.0}, tree_pair_gap(tree, state, pair), velocity,
                                       contact->clearance);
-    return (TouchPose){
-        .offset = pin.eccentricity,
-        .velocity = velocity,
-        .gap = pin.gap,
-        .has_normal = pin.has_normal,
-        .normal = pin.normal,
-        .approach_speed = pin.approach_speed,
-    };
+    return touch_pose_in_hole(&pin, velocity);
 }
 
-// A point or disc on body b against a line of body a, or a disc against a disc.
+// A point or disc on body b against a line of body a, or a disc against a disc. The gap has the
+// digits of the way since the base.
 static TouchPose pose_outside(const Tree *tree, const TreeState *state, const PlanePlace *place)
 {
-    TouchPose pose = {
-        .offset = tree_pair_gap(tree, state, place->pair),
-        .velocity = tree_pair_velocity(tree, state, place->pair),
-        .gap = tree_distance(tree, state, place->pair),
-        .has_normal = true,
-    };
-    if (place->touch.shape == TOUCH_LINE) {
-        pose.normal = tree_normal(tree, state, place->pair);
-        pose.approach_speed = -tree_line_rate(tree, state, place->pair);
-        return pose;
-    }
-    const double distance = vec2_length(pose.offset);
-    pose.has_normal = distance > 0.0;
-    pose.normal = pose.has_normal ? vec2_scale(1.0 / distance, pose.offset) : (Vec2){0.0, 0.0};
-    pose.approach_speed = -vec2_dot(pose.normal, pose.velocity);
+    const int pair = place->pair;
+    const bool is_line = place->touch.shape == TOUCH_LINE;
+    const Vec2 line = is_line ? tree_normal(tree, state, pair) : (Vec2){0.0, 0.0};
+    TouchPose pose = touch_pose_of(&place->touch, tree_pair_gap(tree, state, pair),
+                                   tree_pair_velocity(tree, state, pair), line,
+                                   tree_omega(state, tree->end_bodies[2 * pair]));
+    pose.gap = tree_distance(tree, state, pair);
     return pose;
 }
 
