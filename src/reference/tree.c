@@ -196,25 +196,6 @@ static inline void set_arms(const Tree *tree, int body, double d, TreeState *sta
 
 static void set_driven(const Tree *tree, double since_s, TreeState *state)
 {
-    const double omega = tree->base_drive.omega;
-    Motion *motion = &state->motions[tree->driven];
-    const double turned = omega * since_s;
-    motion->angle = (double)tree->base_angle[tree->driven] + turned;
-    motion->omega = omega;
-    motion->alpha = 0.0;
-    state->turn[tree->driven] = turned;
-    set_arms(tree, tree->driven, turned, state);
-    const int end = 2 * tree->linkage->driver.joint + 1;
-    const Vec2 arm = state->arms[end];
-    tree_set_centre(tree, tree->driven, vec2_scale(-1.0, state->turned[end]), state);
-    motion->velocity = vec2_scale(-omega, vec2_perp(arm));
-    motion->acceleration = vec2_scale(omega * omega, arm);
-    state->bias[tree->driven] = motion->acceleration;
-}
-
-// The same while the drive's speed changes.
-static void set_driven_faster(const Tree *tree, double since_s, TreeState *state)
-{
     const DriveState *base = &tree->base_drive;
     Motion *motion = &state->motions[tree->driven];
     const double turned = (base->omega + 0.5 * base->alpha * since_s) * since_s;
@@ -269,9 +250,7 @@ static void set_hanging(const Tree *tree, const TreeNode *node, Vec2 *columns, T
 void tree_evaluate(const Tree *tree, double since_s, const double *q, const double *u,
                    TreeState *state)
 {
-    if (tree->driven >= 0 && tree->base_drive.alpha != 0.0) {
-        set_driven_faster(tree, since_s, state);
-    } else if (tree->driven >= 0) {
+    if (tree->driven >= 0) {
         set_driven(tree, since_s, state);
     }
     for (size_t i = 0; i < tree->node_count; i++) {
