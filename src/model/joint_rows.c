@@ -2,10 +2,11 @@
 //
 // d from anchor a to anchor b, t the line's direction on body a, n = perp t; rows, their rates, and
 // the rates' own rates without accelerations:
-//     revolute    d                       d'                       d''
-//     prismatic   n . d                   n . d' - w_a t . d       n . d'' - 2 w_a t . d' - w_a^2 n
-//     . d
-//                 phi_b - phi_a - held    w_b - w_a                0
+//                 row                     rate
+//     revolute    d                       d'
+//     prismatic   n . d                   n . d' - w_a t . d
+//                 phi_b - phi_a - held    w_b - w_a
+// and the rates of these, d'', n . d'' - 2 w_a t . d' - w_a^2 n . d, and 0.
 // The rate of the first prismatic row is the velocity across the line of body b's anchor against
 // the point of body a under it. Source: E. J. Haug, Computer Aided Kinematics and Dynamics of
 // Mechanical Systems, 1989, section 3.3.

@@ -328,19 +328,15 @@ static void find_means(ImpulseStep *step, const Motion *middle)
     }
 }
 
-// Where the step ends: on the ticks, but not beyond the run, so that no contact is recorded there,
-// nor beyond a kink of the drive's speed.
+// Where the step ends: on the ticks, but not beyond the run, nor beyond a kink of the drive's
+// speed.
 static void set_end(ImpulseStep *step, size_t ticks)
 {
-    static const double ROUNDING = 1e-6; // of a step: less is no step of its own
-    const double rounding_s = ROUNDING * step->tick_s;
-    const double duration_s = scenario_duration(step->scenario);
+    const double rounding_s = STEPPING_ROUNDING * step->tick_s;
     const double kink_s = drive_next_kink(&step->scenario->linkage.driver, step->start_s);
     step->tick += ticks;
-    step->end_s = (double)step->tick * step->tick_s;
-    if (step->start_s < duration_s && step->end_s > duration_s - rounding_s) {
-        step->end_s = duration_s;
-    }
+    step->end_s = stepping_end(step->scenario, step->start_s, (double)step->tick * step->tick_s,
+                               step->tick_s);
     step->is_kink = kink_s < step->end_s + rounding_s;
     if (step->is_kink) {
         step->end_s = kink_s;

@@ -296,17 +296,6 @@ static void prepare_inside(SpaceImpulseStep *step, const SpaceChange *pushed, do
     }
 }
 
-// Where the step ends: on the ticks, but not beyond the run, so that no contact is recorded there.
-static void set_end(SpaceImpulseStep *step)
-{
-    static const double ROUNDING = 1e-6; // of a step: less is no step of its own
-    const double duration_s = scenario_duration(step->scenario);
-    step->end_s = (double)step->tick * step->tick_s;
-    if (step->start_s < duration_s && step->end_s > duration_s - ROUNDING * step->tick_s) {
-        step->end_s = duration_s;
-    }
-}
-
 // Sets the length of the next step, and what the drive does in it.
 static void begin_step(SpaceImpulseStep *step)
 {
@@ -320,7 +309,8 @@ static void begin_step(SpaceImpulseStep *step)
     const bool is_fine =
         gear > 1 && (step->count == 0 || is_near_wall(step, (double)gear * step->tick_s));
     step->tick += is_fine ? 1 : gear;
-    set_end(step);
+    step->end_s = stepping_end(step->scenario, step->start_s, (double)step->tick * step->tick_s,
+                               step->tick_s);
     step->width_s = step->end_s - step->start_s;
     if (step->driven >= 0) {
         step->after[step->driven] = space_driven(linkage, step->end_s);

@@ -110,6 +110,13 @@ double stepping_drive(const Scenario *scenario, const Motion *driven, const Body
     return power;
 }
 
+double stepping_end(const Scenario *scenario, double start_s, double end_s, double tick_s)
+{
+    const double duration_s = scenario_duration(scenario);
+    const bool is_last = start_s < duration_s && end_s > duration_s - STEPPING_ROUNDING * tick_s;
+    return is_last ? duration_s : end_s;
+}
+
 bool stepping_fail(const Scenario *scenario, double time_s, size_t step, double step_s, Err *err)
 {
     char instant[LINKAGE_INSTANT_SIZE];

@@ -34,6 +34,11 @@ void stepping_offsets(const Linkage *linkage, const Motion *motions, int body,
 double stepping_drive(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
                       const Vec2 *offsets, JointState *joints);
 
+// Where a step ends that would end on a tick, s: there, but not beyond the run, so that no contact
+// is recorded there. What is left to its end by less than a share of a tick is no step of its own.
+static const double STEPPING_ROUNDING = 1e-6;
+double stepping_end(const Scenario *scenario, double start_s, double end_s, double tick_s);
+
 // Puts time, crank angle and number of the step in front of what went wrong there; returns false.
 bool stepping_fail(const Scenario *scenario, double time_s, size_t step, double step_s, Err *err);
 
