@@ -528,6 +528,12 @@ static void a_comment_is_short_and_folds_the_rest(void **state)
     assert_says(text, "### jointplay check: 1 of 1 cases out of their bands");
     assert_says(text, "| `gravity` | `9.80665 m/s^2` | `9.8");
     assert_says(text, "and ");
+    // a case that cannot be read has a row without numbers
+    write_file(program, "pin.yaml", "title: nothing else\n");
+    program_run(program, "check --baselines b --quick --markdown c.md");
+    assert_true(program->status > 1);
+    read_file(program, "c.md", text);
+    assert_says(text, "| `pin.yaml` | | | | not checked |\n");
 }
 
 static void a_wrong_command_line_is_answered(void **state)

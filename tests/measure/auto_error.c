@@ -6,7 +6,7 @@
 // and in another frame, so that its rounding is another. Every LADDER-th case (0: none) is also run
 // at fixed steps, each 1.26 times finer, for the work of the best of them.
 // One line a run; a summary at the end.
-#include "random_case.h"
+#include "random_scenario.h"
 
 #include "base/clock.h"
 #include "casefile/casefile.h"
@@ -64,42 +64,12 @@ typedef struct Work {
 static bool load(const Work *work, Scenario *scenario, Err *err)
 {
     static const char *const CUT[] = {"run.step=auto", "run.most-steps=300000"};
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    assert(file != NULL);
-    work->kind->write(work->seed, file);
-    fclose(file);
-    const bool is_loaded = casefile_load_text("random case", text, size, CUT, 2, scenario, err);
-    free(text);
+    const bool is_loaded = random_scenario(work->kind, work->seed, CUT, 2, scenario, err);
     scenario->run.revolutions = fmin(scenario->run.revolutions, 0.1);
     if (!scenario->linkage.driver.is_present) {
         scenario->run.duration = fmin(scenario->run.duration, 0.05);
     }
     return is_loaded;
-}
-
-// The same mechanism elsewhere: its coordinates are other numbers.
-static Scenario moved(const Scenario *scenario)
-{
-    static const Vec2 BY = {0.0721, -0.0413}; // m
-    Scenario other = *scenario;
-    Linkage *linkage = &other.linkage;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        linkage->bodies[i].start.position = vec2_add(linkage->bodies[i].start.position, BY);
-    }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        Joint *joint = &linkage->joints[i];
-        if (joint->body_a == LINKAGE_GROUND) {
-            joint->anchor_a = vec2_add(joint->anchor_a, BY);
-        }
-        if (joint->body_b == LINKAGE_GROUND) {
-            joint->anchor_b = vec2_add(joint->anchor_b, BY);
-        }
-    }
-    other.has_fourbar = false;
-    other.reference.tolerance = JUDGE_TOLERANCE;
-    return other;
 }
 
 // Relative to the speeds that the run's own error is relative to: past the horizon the judge may
@@ -180,7 +150,7 @@ static void measure(const void *context, void *target)
     result->truth_s = clock_now_s() - started_s;
     result->uncertainty = truth.uncertainty;
     result->horizon_s = truth.is_limited ? truth.horizon_s : result->duration_s;
-    const Scenario other = moved(&scenario);
+    const Scenario other = moved_scenario(&scenario, JUDGE_TOLERANCE);
     Trajectory *judge =
         run_scenario(&other, registry_solver(BACKEND_REFERENCE), (RunWatch){NULL, NULL});
     if (!judge->is_complete) {

@@ -18,8 +18,8 @@
 //   SILENT    anything else: numbers that are wrong or not finite in a run that says nothing, or a
 //             process that dies
 // Each SILENT one is printed with its seed and kind; status 1 where there is one.
-#include "random_case.h"
 #include "random_draw.h"
+#include "random_scenario.h"
 
 #include "casefile/casefile.h"
 #include "measure/child.h"
@@ -84,17 +84,10 @@ static void tell(Result *result, Part part, Outcome outcome, const char *words, 
 
 static bool load(uint64_t seed, Draw *draw, Scenario *scenario, Err *err)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    assert(file != NULL);
-    KINDS[seed % KIND_TOTAL]->write(seed / KIND_TOTAL, file);
-    fclose(file);
     const char *const *scheme = SCHEMES[draw_below(draw, SCHEME_TOTAL)];
     const char *const settings[] = {scheme[0], scheme[1], MOST_STEPS};
     const bool is_loaded =
-        casefile_load_text("random linkage", text, size, settings, 3, scenario, err);
-    free(text);
+        random_scenario(KINDS[seed % KIND_TOTAL], seed / KIND_TOTAL, settings, 3, scenario, err);
     scenario->run.revolutions = fmin(scenario->run.revolutions, TURNS);
     scenario->run.duration = fmin(scenario->run.duration, LENGTH_S);
     // of a drive counted a turn
@@ -121,32 +114,6 @@ static double horizon_of(const Truth *truth)
     return truth->is_limited ? truth->horizon_s : INFINITY;
 }
 
-// The same mechanism in another frame and at another tolerance: its rounding is another.
-static Scenario moved(const Scenario *scenario)
-{
-    static const Vec2 BY = {0.0721, -0.0413}; // m
-    Scenario other = *scenario;
-    Linkage *linkage = &other.linkage;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        linkage->bodies[i].start.position = vec2_add(linkage->bodies[i].start.position, BY);
-    }
-    for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
-        Joint *joint = &linkage->joints[i / 2];
-        Vec2 *anchor = i % 2 == 0 ? &joint->anchor_a : &joint->anchor_b;
-        const int body = i % 2 == 0 ? joint->body_a : joint->body_b;
-        *anchor = body == LINKAGE_GROUND ? vec2_add(*anchor, BY) : *anchor;
-    }
-    for (size_t i = 0; i < 2 * linkage->spring_count; i++) {
-        Spring *spring = &linkage->springs[i / 2];
-        Vec2 *anchor = i % 2 == 0 ? &spring->anchor_a : &spring->anchor_b;
-        const int body = i % 2 == 0 ? spring->body_a : spring->body_b;
-        *anchor = body == LINKAGE_GROUND ? vec2_add(*anchor, BY) : *anchor;
-    }
-    other.has_fourbar = false;
-    other.reference.tolerance = 1e-14;
-    return other;
-}
-
 static void judge_reference(const Scenario *scenario, const Truth *truth, Result *result)
 {
     const Trajectory *run = truth->trajectory;
@@ -154,7 +121,7 @@ static void judge_reference(const Scenario *scenario, const Truth *truth, Result
         tell(result, REFERENCE, run->steps == 0 ? REFUSED : DETECTED, run->message, 0.0);
         return;
     }
-    const Scenario other = moved(scenario);
+    const Scenario other = moved_scenario(scenario, 1e-14);
     Trajectory *judge =
         run_scenario(&other, registry_solver(BACKEND_REFERENCE), (RunWatch){NULL, NULL});
     if (!is_finite(run)) {

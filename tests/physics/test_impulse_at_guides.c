@@ -20,12 +20,7 @@ static void integrate_contacts(Scenario *scenario, double step_s)
 
 static Scenario flores(double stiffness, double step_s)
 {
-    Scenario scenario = slider_crank(&SLIDER_FLORES, 150.0);
-    slider_loosen_guide(&scenario, 0.052, 0.050, 0.100);
-    scenario.contact.stiffness = stiffness;
-    scenario.contact.exponent = 1.0;
-    scenario.contact.damping = DAMPING_EXACT;
-    scenario.contact.restitution = 0.4;
+    Scenario scenario = slider_flores_loose(stiffness);
     scenario.run.duration = 5e-3;
     scenario.run.samples = 100;
     integrate_contacts(&scenario, step_s);

@@ -10,14 +10,10 @@
 
 #include <stdio.h>
 
+// Its first contact, with friction.
 static Scenario flores(double stiffness, double friction)
 {
-    Scenario scenario = slider_crank(&SLIDER_FLORES, 150.0);
-    slider_loosen_guide(&scenario, 0.052, 0.050, 0.100);
-    scenario.contact.stiffness = stiffness;
-    scenario.contact.exponent = 1.0;
-    scenario.contact.damping = DAMPING_EXACT;
-    scenario.contact.restitution = 0.4;
+    Scenario scenario = slider_flores_loose(stiffness);
     scenario.contact.friction = friction;
     scenario.contact.friction_speed = 1e-3;
     scenario.reference.tolerance = 1e-12;

@@ -95,6 +95,17 @@ void slider_loosen_guide(Scenario *scenario, double opening, double height, doub
     guide->guide = (Guide){.opening = opening, .height = height, .length = length};
 }
 
+Scenario slider_flores_loose(double stiffness)
+{
+    Scenario scenario = slider_crank(&SLIDER_FLORES, 150.0);
+    slider_loosen_guide(&scenario, 0.052, 0.050, 0.100);
+    scenario.contact.stiffness = stiffness;
+    scenario.contact.exponent = 1.0;
+    scenario.contact.damping = DAMPING_EXACT;
+    scenario.contact.restitution = 0.4;
+    return scenario;
+}
+
 void slider_loosen_wrist(Scenario *scenario, double hole_radius, double play)
 {
     Joint *wrist = &scenario->linkage.joints[SLIDER_WRIST];

@@ -29,6 +29,10 @@ Scenario slider_driven(const SliderSizes *sizes, double speed);
 // Gives the guides of the slider play: a block of a length and a height, m, in an opening.
 void slider_loosen_guide(Scenario *scenario, double opening, double height, double length);
 
+// The benchmark of Flores, Leine and Glocker with its guides and restitution, its impacts those of
+// a linear spring of a stiffness, N/m, with exact damping.
+Scenario slider_flores_loose(double stiffness);
+
 // Gives the pin of rod and slider a radial play, m, in a hole of a radius, m.
 void slider_loosen_wrist(Scenario *scenario, double hole_radius, double play);
 

@@ -7,15 +7,12 @@
 #include "close.h"
 
 #include "problems.h"
-#include "quad_truth.h"
+#include "truth_samples.h"
 
 #include "run/registry.h"
 #include "run/run.h"
 
 #include <stdlib.h>
-
-// m/s
-static const double TRUTH_TOLERANCE = 1e-14;
 
 enum { SAMPLES_A_TURN = 480 };
 
@@ -41,25 +38,6 @@ static Scenario claim_scenario(const Claim *claim)
     scenario.reference.tolerance =
         claim->tolerance > 0.0 ? claim->tolerance : scenario.reference.tolerance;
     return scenario;
-}
-
-// The truth at the scenario's samples; the caller frees it.
-static TruthSample *make_truth(const Scenario *scenario, const QuadProblem *problem,
-                               TruthFigures *figures)
-{
-    const size_t count = scenario_sample_count(scenario);
-    double *times = calloc(count, sizeof *times);
-    TruthSample *samples = calloc(count * problem->body_count, sizeof *samples);
-    assert_non_null(times);
-    assert_non_null(samples);
-    for (size_t k = 0; k < count; k++) {
-        times[k] = scenario_sample_time(scenario, k);
-    }
-    TruthOptions options = truth_options_default();
-    options.tolerance = TRUTH_TOLERANCE;
-    assert_true(truth_run(problem, &options, count, times, samples, figures));
-    free(times);
-    return samples;
 }
 
 static double error_of(const Scenario *scenario, const TruthSample *truth)
@@ -94,7 +72,7 @@ static void check(const Claim *claim)
 {
     Scenario scenario = claim_scenario(claim);
     const QuadProblem problem = quad_problem(&scenario);
-    TruthSample *truth = make_truth(&scenario, &problem, NULL);
+    TruthSample *truth = truth_at_samples(&scenario, &problem, NULL);
     const double error = error_of(&scenario, truth);
     print_message("# %s, %.4g turns, tolerance %.3g: error %.3g\n", claim->problem->name,
                   claim->turns, scenario.reference.tolerance, error);
@@ -134,7 +112,7 @@ static void friction_is_right_over_a_quarter_turn(void **state)
     const Scenario scenario = claim_scenario(&claim);
     QuadProblem problem = quad_problem(&scenario);
     problem.friction *= 1 + (Quad)1e-5;
-    TruthSample *truth = make_truth(&scenario, &problem, NULL);
+    TruthSample *truth = truth_at_samples(&scenario, &problem, NULL);
     assert_true(error_of(&scenario, truth) > 1e1 * claim.bound);
     free(truth);
 }
@@ -149,7 +127,7 @@ static void friction_is_right_where_sliding_turns_back(void **state)
     const Scenario scenario = claim_scenario(&claim);
     QuadProblem problem = quad_problem(&scenario);
     problem.friction_speed *= 1 + (Quad)1e-2;
-    TruthSample *truth = make_truth(&scenario, &problem, NULL);
+    TruthSample *truth = truth_at_samples(&scenario, &problem, NULL);
     assert_true(error_of(&scenario, truth) > 1e1 * claim.bound);
     free(truth);
 }
@@ -173,7 +151,7 @@ static void a_contact_whose_force_ends_early_is_right(void **state)
         const Scenario scenario = claim_scenario(&claim);
         const QuadProblem problem = quad_problem(&scenario);
         TruthFigures figures;
-        free(make_truth(&scenario, &problem, &figures));
+        free(truth_at_samples(&scenario, &problem, &figures));
         assert_true(figures.clamps >= 1);
         check(&claim);
     }
@@ -186,13 +164,13 @@ static void an_impact_speed_off_by_a_millionth_is_seen(void **state)
     const Claim claim = {&PROBLEMS[0], 1.0 / 40.0, 1e-13, 1e-10, 0.0};
     const Scenario scenario = claim_scenario(&claim);
     QuadProblem problem = quad_problem(&scenario);
-    TruthSample *truth = make_truth(&scenario, &problem, NULL);
+    TruthSample *truth = truth_at_samples(&scenario, &problem, NULL);
     assert_true(error_of(&scenario, truth) <= claim.bound);
     free(truth);
     const double wrong[] = {0.01, 1e-6};
     for (int i = 0; i < 2; i++) {
         problem.impact_speed_share = 1 + (Quad)wrong[i];
-        truth = make_truth(&scenario, &problem, NULL);
+        truth = truth_at_samples(&scenario, &problem, NULL);
         assert_true(error_of(&scenario, truth) > 1e1 * claim.bound);
         free(truth);
     }

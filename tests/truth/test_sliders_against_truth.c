@@ -6,32 +6,10 @@
 // (test_truth.c).
 #include "complete_run.h"
 
-#include "quad_truth.h"
 #include "slider.h"
+#include "truth_samples.h"
 
 #include <stdlib.h>
-
-// m/s
-static const double TRUTH_TOLERANCE = 1e-14;
-
-// The truth at the scenario's samples; the caller frees it.
-static TruthSample *make_truth(const Scenario *scenario, const QuadProblem *problem,
-                               TruthFigures *figures)
-{
-    const size_t count = scenario_sample_count(scenario);
-    double *times = calloc(count, sizeof *times);
-    TruthSample *samples = calloc(count * problem->body_count, sizeof *samples);
-    assert_non_null(times);
-    assert_non_null(samples);
-    for (size_t k = 0; k < count; k++) {
-        times[k] = scenario_sample_time(scenario, k);
-    }
-    TruthOptions options = truth_options_default();
-    options.tolerance = TRUTH_TOLERANCE;
-    assert_true(truth_run(problem, &options, count, times, samples, figures));
-    free(times);
-    return samples;
-}
 
 // The largest difference of three velocities, over the largest of each.
 typedef struct Apart {
@@ -76,7 +54,7 @@ static void check(const char *name, const Scenario *scenario, double bound)
 {
     const QuadProblem problem = quad_problem(scenario);
     TruthFigures figures;
-    TruthSample *truth = make_truth(scenario, &problem, &figures);
+    TruthSample *truth = truth_at_samples(scenario, &problem, &figures);
     const double error = error_of(scenario, truth);
     print_message("# %s: error %.3g; %zu contacts begun, %zu ended, truth in %zu steps\n", name,
                   error, figures.onsets, figures.ends, figures.steps);

@@ -1,0 +1,54 @@
+#include "random_scenario.h"
+
+#include "casefile/casefile.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+bool random_scenario(const CaseKind *kind, uint64_t seed, const char *const *settings, size_t count,
+                     Scenario *scenario, Err *err)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert(file != NULL);
+    kind->write(seed, file);
+    fclose(file);
+    const bool is_loaded =
+        casefile_load_text("random case", text, size, settings, count, scenario, err);
+    free(text);
+    return is_loaded;
+}
+
+// A point of the ground goes along, one of a body stays where it is in the body.
+static void move_anchor(int body, Vec2 *anchor, Vec2 by)
+{
+    if (body == LINKAGE_GROUND) {
+        *anchor = vec2_add(*anchor, by);
+    }
+}
+
+Scenario moved_scenario(const Scenario *scenario, double tolerance)
+{
+    static const Vec2 BY = {0.0721, -0.0413}; // m
+    Scenario other = *scenario;
+    Linkage *linkage = &other.linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        linkage->bodies[i].start.position = vec2_add(linkage->bodies[i].start.position, BY);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        Joint *joint = &linkage->joints[i];
+        move_anchor(joint->body_a, &joint->anchor_a, BY);
+        move_anchor(joint->body_b, &joint->anchor_b, BY);
+    }
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        Spring *spring = &linkage->springs[i];
+        move_anchor(spring->body_a, &spring->anchor_a, BY);
+        move_anchor(spring->body_b, &spring->anchor_b, BY);
+    }
+    // closed forms are of a pivot at the origin
+    other.has_fourbar = false;
+    other.has_slidercrank = false;
+    other.reference.tolerance = tolerance;
+    return other;
+}

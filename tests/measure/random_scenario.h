@@ -1,0 +1,14 @@
+// Scenarios of random cases, for measurements that run them in their own process.
+#pragma once
+
+#include "random_case.h"
+
+#include "model/scenario.h"
+
+// Loads the case of a kind and a seed with settings, as --set takes them.
+bool random_scenario(const CaseKind *kind, uint64_t seed, const char *const *settings, size_t count,
+                     Scenario *scenario, Err *err);
+
+// The same mechanism elsewhere, for a reference that is to judge: its coordinates are other
+// numbers, and so is their rounding. The tolerance is the reference's.
+Scenario moved_scenario(const Scenario *scenario, double tolerance);
