@@ -6,8 +6,6 @@
 //     L_pp L_pp' = A_pp,   L_ip = A_ip L_pp'^-1,   A_ij := A_ij - L_ip L_jp'
 #include "base/sparse.h"
 
-#include "base/sparse_order.h"
-
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>

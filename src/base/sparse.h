@@ -10,14 +10,10 @@
 // Rows are numbered node by node, in the caller's order.
 #pragma once
 
+#include "base/sparse_order.h"
+
 #include <stdbool.h>
 #include <stddef.h>
-
-// Two nodes whose block may be other than zero.
-typedef struct SparseLink {
-    size_t a;
-    size_t b;
-} SparseLink;
 
 typedef struct Sparse {
     size_t count;      // nodes

@@ -8,6 +8,7 @@
 #include "base/sparse_order.h"
 
 #include <assert.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,7 +1,13 @@
 // In which order the nodes of a sparse matrix are eliminated, and which blocks that leaves.
 #pragma once
 
-#include "base/sparse.h"
+#include <stddef.h>
+
+// Two nodes whose block may be other than zero.
+typedef struct SparseLink {
+    size_t a;
+    size_t b;
+} SparseLink;
 
 // A list of nodes in increasing order; owned.
 typedef struct SparseList {
