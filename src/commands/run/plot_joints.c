@@ -3,7 +3,6 @@
 
 #include "write/units.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -108,24 +107,12 @@ void plot_joints_forces(const RunReport *report, PlotPanel panel)
     plot_leave(&panel);
 }
 
-static void draw_path(const RunReport *report, const PlotPanel *panel, size_t run, size_t joint,
-                      double per_metre)
+static Vec2 pin_at(const RunReport *report, const Trajectory *run, size_t sample,
+                   const PlotPath *path)
 {
-    const Trajectory *trajectory = report->runs[run];
-    double *x = calloc(trajectory->sample_count, sizeof *x);
-    double *y = calloc(trajectory->sample_count, sizeof *y);
-    assert(x != NULL && y != NULL);
-    for (size_t i = 0; i < trajectory->sample_count; i++) {
-        const Vec2 eccentricity = trajectory_state(trajectory, i, joint)->eccentricity;
-        x[i] = eccentricity.x * per_metre;
-        y[i] = eccentricity.y * per_metre;
-    }
-    PlotStyle style = plot_style(1, plot_look_colour(report, true, joint));
-    style.width = 1.0;
-    style.opacity = 0.8;
-    plot_line(panel, trajectory->sample_count, x, y, style);
-    free(x);
-    free(y);
+    (void)report;
+    const Vec2 eccentricity = trajectory_state(run, sample, path->joint)->eccentricity;
+    return vec2_scale(path->per_metre, eccentricity);
 }
 
 // How far from the hole's centre a pin comes in x or y: in a unit given as its number per metre, or
@@ -177,8 +164,10 @@ void plot_joints_paths(const RunReport *report, PlotPanel panel)
         for (size_t joint = 0; joint < linkage->joint_count; joint++) {
             if (linkage->joints[joint].kind == JOINT_CLEARANCE &&
                 trajectory_feels_play(report->runs[run], &linkage->joints[joint])) {
-                const double per_metre = linkage_radial_clearance(&linkage->joints[joint]);
-                draw_path(report, &panel, run, joint, is_one ? UNITS_UM : 1.0 / per_metre);
+                const double play = linkage_radial_clearance(&linkage->joints[joint]);
+                const PlotPath path = {
+                    .joint = joint, .per_metre = is_one ? UNITS_UM : 1.0 / play, .at = pin_at};
+                plot_look_path(report, &panel, run, &path);
             }
         }
     }

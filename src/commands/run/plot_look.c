@@ -150,3 +150,24 @@ void plot_look_draw(const RunReport *report, const PlotPanel *panel, size_t run,
               plot_style(run, plot_look_colour(report, quantity.is_joint, index)));
     free(x);
 }
+
+void plot_look_path(const RunReport *report, const PlotPanel *panel, size_t run,
+                    const PlotPath *path)
+{
+    const Trajectory *trajectory = report->runs[run];
+    const size_t count = trajectory->sample_count;
+    double *x = calloc(2 * count, sizeof *x);
+    assert(x != NULL);
+    double *y = x + count;
+    for (size_t i = 0; i < count; i++) {
+        const Vec2 place = path->at(report, trajectory, i, path);
+        x[i] = place.x;
+        y[i] = place.y;
+    }
+    PlotStyle style = plot_style(1, plot_look_colour(report, true, path->joint));
+    style.width = 1.0;
+    style.opacity = 0.8;
+    style.dash = path->end == 0 ? NULL : "3 2";
+    plot_line(panel, count, x, y, style);
+    free(x);
+}

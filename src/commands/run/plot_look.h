@@ -50,6 +50,19 @@ void plot_look_marks(const RunReport *report, const PlotPanel *panel, const Sign
 void plot_look_draw(const RunReport *report, const PlotPanel *panel, size_t run,
                     PlotQuantity quantity, size_t index);
 
+// Where the path of a joint stands at a sample, in the units of its panel.
+typedef struct PlotPath {
+    size_t joint;
+    int end;          // of a hole in space; 0: the line is not dashed
+    double per_metre; // the panel's unit, of a joint in the plane
+    Vec2 (*at)(const RunReport *report, const Trajectory *run, size_t sample,
+               const struct PlotPath *path);
+} PlotPath;
+
+// Draws the path of one joint of one run.
+void plot_look_path(const RunReport *report, const PlotPanel *panel, size_t run,
+                    const PlotPath *path);
+
 // Joint forces over the crank angle, every step of them, with a dot for the strongest contacts and
 // marks for the spikes of the table.
 void plot_joints_forces(const RunReport *report, PlotPanel panel);

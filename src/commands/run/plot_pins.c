@@ -2,9 +2,7 @@
 #include "commands/run/plot_look.h"
 #include "write/units.h"
 
-#include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 
 static double tilt_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
 {
@@ -63,39 +61,18 @@ void plot_pins_tilts(const RunReport *report, PlotPanel panel)
 
 // Where the pin's axis is at an end of the hole, as a share of the play, in two directions across
 // the hole's axis: x and y where that is z.
-static Vec2 end_place(const RunReport *report, const Trajectory *run, size_t sample, size_t joint,
-                      int end)
+static Vec2 end_at(const RunReport *report, const Trajectory *run, size_t sample,
+                   const PlotPath *path)
 {
     const Linkage *linkage = &report->scenario->linkage;
-    const SpaceEnd hole = space_end(linkage, joint, 0);
+    const SpaceEnd hole = space_end(linkage, path->joint, 0);
     const SpaceMotion *motions = trajectory_space_motion(run, sample, 0);
     const Vec3 axis = space_direction(motions, hole.body, hole.axis);
     const Vec3 first = vec3_normal_to(axis);
-    const Vec3 offset = trajectory_space_state(run, sample, joint)->ends[end];
-    const double scale = 1.0 / linkage_radial_clearance(&linkage->joints[joint]);
+    const Vec3 offset = trajectory_space_state(run, sample, path->joint)->ends[path->end];
+    const double scale = 1.0 / linkage_radial_clearance(&linkage->joints[path->joint]);
     return (Vec2){scale * vec3_dot(first, offset),
                   scale * vec3_dot(vec3_cross(axis, first), offset)};
-}
-
-static void draw_end(const RunReport *report, const PlotPanel *panel, size_t run, size_t joint,
-                     int end)
-{
-    const Trajectory *trajectory = report->runs[run];
-    double *x = calloc(trajectory->sample_count, sizeof *x);
-    double *y = calloc(trajectory->sample_count, sizeof *y);
-    assert(x != NULL && y != NULL);
-    for (size_t i = 0; i < trajectory->sample_count; i++) {
-        const Vec2 place = end_place(report, trajectory, i, joint, end);
-        x[i] = place.x;
-        y[i] = place.y;
-    }
-    PlotStyle style = plot_style(1, plot_look_colour(report, true, joint));
-    style.width = 1.0;
-    style.opacity = 0.8;
-    style.dash = end == 0 ? NULL : "3 2";
-    plot_line(panel, trajectory->sample_count, x, y, style);
-    free(x);
-    free(y);
 }
 
 // How far the axis of any pin comes from the middle of an end of its hole, of its play.
@@ -106,8 +83,10 @@ static double farthest(const RunReport *report)
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
             for (size_t i = 0; shows(report, run, joint) && i < report->runs[run]->sample_count;
                  i++) {
-                most = fmax(most, vec2_length(end_place(report, report->runs[run], i, joint, 0)));
-                most = fmax(most, vec2_length(end_place(report, report->runs[run], i, joint, 1)));
+                for (int end = 0; end < 2; end++) {
+                    const PlotPath path = {.joint = joint, .end = end};
+                    most = fmax(most, vec2_length(end_at(report, report->runs[run], i, &path)));
+                }
             }
         }
     }
@@ -127,7 +106,8 @@ void plot_pins_ends(const RunReport *report, PlotPanel panel)
         bool is_drawn = false;
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
             for (int end = 0; shows(report, run, joint) && end < 2; end++) {
-                draw_end(report, &panel, run, joint, end);
+                plot_look_path(report, &panel, run,
+                               &(PlotPath){.joint = joint, .end = end, .at = end_at});
                 is_drawn = true;
             }
         }

@@ -10,7 +10,6 @@
 #include "commands/run/slide_range.h"
 #include "write/units.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -59,10 +58,12 @@ static double acceleration_of(const RunReport *report, const Trajectory *run, si
 
 // A quantity of every joint that a panel shows, with lines at the limits of each.
 typedef struct SlidePanel {
+    const char *title;
+    const char *axis;
     PlotQuantity quantity;
     JointKind kind;
-    double (*limit)(const Joint *joint); // NULL: none
-    bool (*shows)(const RunReport *report, size_t run, size_t joint);
+    double (*limit)(const Joint *joint);                              // NULL: none
+    bool (*shows)(const RunReport *report, size_t run, size_t joint); // NULL: those of the kind
 } SlidePanel;
 
 static bool panel_shows(const SlidePanel *slide, const RunReport *report, size_t run, size_t joint)
@@ -106,6 +107,8 @@ static void draw_limits(const SlidePanel *slide, const RunReport *report, const 
 
 static void draw(const SlidePanel *slide, const RunReport *report, PlotPanel panel)
 {
+    panel.title = slide->title;
+    panel.y.title = slide->axis;
     widen(slide, report, &panel);
     plot_enter(&panel);
     plot_look_shade(report, &panel);
@@ -133,57 +136,56 @@ static double tilt_limit(const Joint *joint)
 void plot_slides_offsets(const RunReport *report, PlotPanel panel)
 {
     static const SlidePanel OFFSET = {
-        {"offset, um", true, -1, offset_of}, JOINT_GUIDE, offset_limit, NULL};
-    panel.title = "Block across its guides; dashed: not tilted";
-    panel.y.title = "off the middle line, um";
+        .title = "Block across its guides; dashed: not tilted",
+        .axis = "off the middle line, um",
+        .quantity = {"offset, um", true, -1, offset_of},
+        .kind = JOINT_GUIDE,
+        .limit = offset_limit,
+    };
     draw(&OFFSET, report, panel);
 }
 
 void plot_slides_tilts(const RunReport *report, PlotPanel panel)
 {
     static const SlidePanel TILT = {
-        {"tilt, mrad", true, -1, tilt_of}, JOINT_GUIDE, tilt_limit, NULL};
-    panel.title = "Tilt of the block; dashed: opposite corners touch";
-    panel.y.title = "tilt, mrad";
+        .title = "Tilt of the block; dashed: opposite corners touch",
+        .axis = "tilt, mrad",
+        .quantity = {"tilt, mrad", true, -1, tilt_of},
+        .kind = JOINT_GUIDE,
+        .limit = tilt_limit,
+    };
     draw(&TILT, report, panel);
 }
 
 void plot_slides_accelerations(const RunReport *report, PlotPanel panel)
 {
     static const SlidePanel ACCELERATION = {
-        {"acceleration", true, -1, acceleration_of}, JOINT_GUIDE, NULL, shows_acceleration};
-    panel.title = "Acceleration of the slider along its line";
-    panel.y.title = "acceleration, m/s^2";
+        .title = "Acceleration of the slider along its line",
+        .axis = "acceleration, m/s^2",
+        .quantity = {"acceleration", true, -1, acceleration_of},
+        .shows = shows_acceleration,
+    };
     draw(&ACCELERATION, report, panel);
 }
 
 void plot_slides_stops(const RunReport *report, PlotPanel panel)
 {
-    static const SlidePanel GAP = {{"gap, mm", true, -1, gap_of}, JOINT_STOP, NULL, NULL};
-    panel.title = "Distance from the stop";
-    panel.y.title = "gap, mm";
+    static const SlidePanel GAP = {
+        .title = "Distance from the stop",
+        .axis = "gap, mm",
+        .quantity = {"gap, mm", true, -1, gap_of},
+        .kind = JOINT_STOP,
+    };
     draw(&GAP, report, panel);
 }
 
 // The path of one block: its offset over the play, its tilt over the tilt at which it jams.
-static void draw_path(const RunReport *report, const PlotPanel *panel, size_t run, size_t joint)
+static Vec2 block_at(const RunReport *report, const Trajectory *run, size_t sample,
+                     const PlotPath *path)
 {
-    const Trajectory *trajectory = report->runs[run];
-    const double offset = offset_limit(joint_of(report, joint));
-    const double tilt = tilt_limit(joint_of(report, joint));
-    double *x = calloc(trajectory->sample_count, sizeof *x);
-    double *y = calloc(trajectory->sample_count, sizeof *y);
-    assert(x != NULL && y != NULL);
-    for (size_t i = 0; i < trajectory->sample_count; i++) {
-        x[i] = offset_of(report, trajectory, i, joint) / offset;
-        y[i] = tilt_of(report, trajectory, i, joint) / tilt;
-    }
-    PlotStyle style = plot_style(1, plot_look_colour(report, true, joint));
-    style.width = 1.0;
-    style.opacity = 0.8;
-    plot_line(panel, trajectory->sample_count, x, y, style);
-    free(x);
-    free(y);
+    const Joint *joint = joint_of(report, path->joint);
+    return (Vec2){offset_of(report, run, sample, path->joint) / offset_limit(joint),
+                  tilt_of(report, run, sample, path->joint) / tilt_limit(joint)};
 }
 
 // How far any block goes in either direction, of its limits.
@@ -216,7 +218,7 @@ void plot_slides_paths(const RunReport *report, PlotPanel panel)
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
             if (shows(report, run, joint, JOINT_GUIDE)) {
-                draw_path(report, &panel, run, joint);
+                plot_look_path(report, &panel, run, &(PlotPath){.joint = joint, .at = block_at});
             }
         }
     }
