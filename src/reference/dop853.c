@@ -5,29 +5,64 @@
 // Source: Hairer, Norsett, Wanner 1993, section II.10; see reference/dop853_table.c.
 #include "reference/dop853.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { STEP_STAGES = 12, END_STAGE = 12, FIRST_DENSE_STAGE = 13, BLOCK = 8 };
+enum { STEP_STAGES = 12, END_STAGE = 12, FIRST_DENSE_STAGE = 13, BLOCK = 4 };
 
 // Hairer's choices: steps aim at 0.9 of what the error would allow and change by at most these
 static const double SAFETY = 0.9;
 static const double SHRINK_MOST = 0.333;
 static const double GROW_MOST = 6.0;
 
-// The number of equations, rounded up to whole blocks.
-static size_t padded(const Dop853 *integrator)
+// A number of equations, rounded up to whole blocks.
+static size_t padded(size_t size)
 {
-    return (integrator->size + BLOCK - 1) / BLOCK * BLOCK;
+    return (size + BLOCK - 1) / BLOCK * BLOCK;
 }
 
-// Adds factor times a weighted sum of the stages to a vector, in blocks of eight equations that a
-// compiler turns into vector instructions; what lies beyond the last equation is zero.
-static void add_stages(const Dop853 *integrator, const double *weights, int count, double factor,
-                       double *sum)
+void dop853_init(Dop853 *integrator, size_t size, size_t motion_size)
 {
-    for (size_t block = 0; block < integrator->size; block += BLOCK) {
+    *integrator = (Dop853){.size = size, .motion_size = motion_size};
+    double **const vectors[] = {
+        &integrator->fixed,  &integrator->grown,      &integrator->y,         &integrator->carry,
+        &integrator->next,   &integrator->next_carry, &integrator->at,        &integrator->stage_y,
+        &integrator->change, &integrator->errors[0],  &integrator->errors[1],
+    };
+    enum { VECTORS = sizeof vectors / sizeof *vectors };
+    const size_t width = padded(size);
+    integrator->memory =
+        calloc((VECTORS + DOP853_STAGES + DOP853_POLYNOMIAL) * width, sizeof *integrator->memory);
+    assert(integrator->memory != NULL);
+    double *free_from = integrator->memory;
+    for (size_t i = 0; i < VECTORS; i++, free_from += width) {
+        *vectors[i] = free_from;
+    }
+    for (size_t i = 0; i < DOP853_STAGES; i++, free_from += width) {
+        integrator->stages[i] = free_from;
+    }
+    for (size_t i = 0; i < DOP853_POLYNOMIAL; i++, free_from += width) {
+        integrator->polynomial[i] = free_from;
+    }
+    integrator->end_rates = integrator->stages[END_STAGE];
+}
+
+void dop853_finish(Dop853 *integrator)
+{
+    free(integrator->memory);
+    integrator->memory = NULL;
+}
+
+// Adds factor times a weighted sum of the stages to a vector, up to a number of equations, in
+// blocks that a compiler turns into vector instructions; what lies beyond the last equation is
+// zero.
+static void add_stages(const Dop853 *integrator, size_t size, const double *weights, int count,
+                       double factor, double *sum)
+{
+    for (size_t block = 0; block < size; block += BLOCK) {
         double total[BLOCK] = {0.0};
         for (int j = 0; j < count; j++) {
             if (weights[j] == 0.0) {
@@ -48,15 +83,18 @@ static void add_stages(const Dop853 *integrator, const double *weights, int coun
 static void sum_stages(const Dop853 *integrator, const double *weights, int count, double factor,
                        double *sum)
 {
-    memset(sum, 0, padded(integrator) * sizeof *sum);
-    add_stages(integrator, weights, count, factor, sum);
+    memset(sum, 0, padded(integrator->size) * sizeof *sum);
+    add_stages(integrator, integrator->size, weights, count, factor, sum);
 }
 
-// State at the nodes of one stage.
-static void stage_state(const Dop853 *integrator, int stage, double *y)
+// The motion at the nodes of one stage; the sums count for no rate.
+static const double *stage_state(Dop853 *integrator, int stage)
 {
-    memcpy(y, integrator->y, padded(integrator) * sizeof *y);
-    add_stages(integrator, DOP853_COUPLING[stage], stage, integrator->tried, y);
+    const size_t size = integrator->motion_size;
+    memcpy(integrator->stage_y, integrator->y, padded(size) * sizeof *integrator->y);
+    add_stages(integrator, size, DOP853_COUPLING[stage], stage, integrator->tried,
+               integrator->stage_y);
+    return integrator->stage_y;
 }
 
 // The sum of many small steps would lose more by rounding than any of them is wrong by: what is
@@ -120,22 +158,21 @@ double dop853_judge(const Dop853 *integrator, const double *high, const double *
 
 double dop853_try(Dop853 *integrator, double step)
 {
+    integrator->has_end_rates = false;
+    integrator->is_filled = false;
     if (integrator->method != NULL) {
         return integrator->method->try_step(integrator->method, integrator, step);
     }
     integrator->tried = step;
-    double y[DOP853_SIZE_MAX];
     for (int stage = 1; stage < STEP_STAGES; stage++) {
-        stage_state(integrator, stage, y);
-        evaluate(integrator, stage, y);
+        evaluate(integrator, stage, stage_state(integrator, stage));
     }
-    double change[DOP853_SIZE_MAX];
-    double e5[DOP853_SIZE_MAX];
-    double e3[DOP853_SIZE_MAX];
-    sum_stages(integrator, DOP853_COUPLING[END_STAGE], END_STAGE, step, change);
+    double *e5 = integrator->errors[0];
+    double *e3 = integrator->errors[1];
+    sum_stages(integrator, DOP853_COUPLING[END_STAGE], END_STAGE, step, integrator->change);
     sum_stages(integrator, DOP853_ERROR_5, STEP_STAGES, 1.0, e5);
     sum_stages(integrator, DOP853_ERROR_3, STEP_STAGES, 1.0, e3);
-    dop853_end(integrator, change);
+    dop853_end(integrator, integrator->change);
     return dop853_judge(integrator, e5, e3, fabs(step));
 }
 
@@ -164,20 +201,30 @@ bool dop853_attempt(Dop853 *integrator, double longest)
     }
 }
 
+static void find_end_rates(Dop853 *integrator)
+{
+    if (!integrator->has_end_rates) {
+        evaluate(integrator, END_STAGE, integrator->next);
+        integrator->has_end_rates = true;
+    }
+}
+
 void dop853_fill(Dop853 *integrator)
 {
-    const double h = integrator->tried;
-    double y[DOP853_SIZE_MAX];
-    evaluate(integrator, END_STAGE, integrator->next);
+    if (integrator->is_filled) {
+        return;
+    }
+    integrator->is_filled = true;
+    find_end_rates(integrator);
     if (integrator->method != NULL) {
         integrator->method->fill(integrator->method, integrator);
         return;
     }
     for (int stage = FIRST_DENSE_STAGE; stage < DOP853_STAGES; stage++) {
-        stage_state(integrator, stage, y);
-        evaluate(integrator, stage, y);
+        evaluate(integrator, stage, stage_state(integrator, stage));
     }
-    double(*p)[DOP853_SIZE_MAX] = integrator->polynomial;
+    const double h = integrator->tried;
+    double *const *p = integrator->polynomial;
     for (size_t i = 0; i < integrator->size; i++) {
         const double change = integrator->next[i] - integrator->y[i];
         p[0][i] = integrator->y[i];
@@ -194,26 +241,37 @@ void dop853_polynomial(const Dop853 *integrator, double share, double *y)
 {
     const double s = share;
     const double r = 1.0 - s;
-    const double(*p)[DOP853_SIZE_MAX] = integrator->polynomial;
+    double *const *p = integrator->polynomial;
     for (size_t i = 0; i < integrator->size; i++) {
         const double high = p[4][i] + s * (p[5][i] + r * (p[6][i] + s * p[7][i]));
         y[i] = p[0][i] + s * (p[1][i] + r * (p[2][i] + s * (p[3][i] + r * high)));
     }
 }
 
-void dop853_dense(const Dop853 *integrator, double time, double *y)
+const double *dop853_dense(Dop853 *integrator, double time)
 {
+    dop853_fill(integrator);
     // a step cut to nothing by an event at its start is a point
     const double tried = integrator->tried;
-    dop853_polynomial(integrator, tried != 0.0 ? (time - integrator->time) / tried : 0.0, y);
+    const double share = tried != 0.0 ? (time - integrator->time) / tried : 0.0;
+    dop853_polynomial(integrator, share, integrator->at);
+    return integrator->at;
+}
+
+static void swap(double **a, double **b)
+{
+    double *kept = *a;
+    *a = *b;
+    *b = kept;
 }
 
 void dop853_accept(Dop853 *integrator)
 {
+    find_end_rates(integrator);
     integrator->time += integrator->tried;
-    memcpy(integrator->y, integrator->next, integrator->size * sizeof *integrator->y);
-    memcpy(integrator->carry, integrator->next_carry, integrator->size * sizeof *integrator->carry);
-    memcpy(integrator->stages[0], integrator->stages[END_STAGE],
-           integrator->size * sizeof *integrator->y);
+    swap(&integrator->y, &integrator->next);
+    swap(&integrator->carry, &integrator->next_carry);
+    swap(&integrator->stages[0], &integrator->stages[END_STAGE]);
+    integrator->end_rates = integrator->stages[END_STAGE];
     integrator->accepted++;
 }

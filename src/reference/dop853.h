@@ -1,22 +1,19 @@
 // An explicit Runge-Kutta integrator of order 8 with error control and dense output of order 7,
 // made for motion that events interrupt: a step is tried, looked at, shortened, and only then
-// taken.
+// taken. The polynomial through a step is worked out when the first state inside it is asked for.
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 
 // The method's coefficients (reference/dop853_table.c).
-enum { DOP853_STAGES = 16, DOP853_DENSE_ROWS = 4 };
+enum { DOP853_STAGES = 16, DOP853_DENSE_ROWS = 4, DOP853_POLYNOMIAL = 8 };
 
 extern const double DOP853_NODE[DOP853_STAGES];
 extern const double DOP853_COUPLING[DOP853_STAGES][DOP853_STAGES]; // row 12: the step's weights
 extern const double DOP853_ERROR_5[DOP853_STAGES];
 extern const double DOP853_ERROR_3[DOP853_STAGES];
 extern const double DOP853_DENSE[DOP853_DENSE_ROWS][DOP853_STAGES];
-
-// the most equations: in space six coordinates and rates a body, sums; a multiple of eight
-enum { DOP853_SIZE_MAX = 272, DOP853_POLYNOMIAL = 8 };
 
 // Writes dy/dt at a time and state.
 typedef void (*Dop853Rates)(double time, const double *y, double *rates, void *context);
@@ -38,29 +35,44 @@ struct Dop853Method {
 struct Dop853 {
     Dop853Method *method; // takes the steps where it is not NULL
     size_t size;          // number of equations
-    size_t motion_size;   // of those, the first: the errors of the others are judged by themselves
+    // Of those, the first: the others are sums, on which no rate depends; their errors are judged
+    // by themselves.
+    size_t motion_size;
     Dop853Rates rates;
     Dop853Slopes slopes; // for a method that needs them; NULL: from differences of the rates
     void *context;
     // Error allowed in each component of one step: fixed[i] + grown[i] times the step. A component
     // with both 0 is not controlled.
-    double fixed[DOP853_SIZE_MAX];
-    double grown[DOP853_SIZE_MAX];
+    double *fixed;
+    double *grown;
     double time; // where the next step starts
-    double y[DOP853_SIZE_MAX];
-    double carry[DOP853_SIZE_MAX]; // what rounding has left out of y
-    double shortest;               // a step may be no shorter: rounding of the time would show
-    double step;                   // length suggested for the next step
-    double tried;                  // length of the step that is tried
-    double next[DOP853_SIZE_MAX];  // state at the end of the step that is tried
-    double next_carry[DOP853_SIZE_MAX];
-    double stages[DOP853_STAGES][DOP853_SIZE_MAX];
-    double polynomial[DOP853_POLYNOMIAL][DOP853_SIZE_MAX];
+    double *y;
+    double *carry;   // what rounding has left out of y
+    double shortest; // a step may be no shorter: rounding of the time would show
+    double step;     // length suggested for the next step
+    double tried;    // length of the step that is tried
+    double *next;    // state at the end of the step that is tried
+    double *next_carry;
+    double *end_rates; // rates there, where has_end_rates says so; who has them may write them
+    bool has_end_rates;
+    bool is_filled; // whether the polynomial is that of the tried step
+    double *stages[DOP853_STAGES];
+    double *polynomial[DOP853_POLYNOMIAL];
     bool was_rejected; // the step before had to be shortened: the next must not grow
     size_t accepted;
     size_t rejected;
     size_t evaluations;
+    // room to work in
+    double *at; // the state in the step that was asked for last
+    double *stage_y;
+    double *change;
+    double *errors[2];
+    double *memory; // owned: all of the vectors, each of whole blocks
 };
+
+// Makes room for so many equations, zeros, with nothing else set; dop853_finish frees it.
+void dop853_init(Dop853 *integrator, size_t size, size_t motion_size);
+void dop853_finish(Dop853 *integrator);
 
 // Puts the integrator at a time and state; also after the right-hand side has changed.
 void dop853_start(Dop853 *integrator, double time, const double *y);
@@ -74,15 +86,17 @@ double dop853_try(Dop853 *integrator, double step);
 // below the shortest.
 bool dop853_attempt(Dop853 *integrator, double longest);
 
-// Completes the tried step with the polynomial through it (four evaluations); then dop853_dense
-// gives the state at any time in it.
+// The state at a time in the tried step, in memory of the integrator that holds it until the next
+// such call. The first one of a step takes three evaluations, or four.
+const double *dop853_dense(Dop853 *integrator, double time);
+
+// The polynomial through the tried step, if it is not there yet.
 void dop853_fill(Dop853 *integrator);
-void dop853_dense(const Dop853 *integrator, double time, double *y);
 
 // The polynomial at a share of the step; beyond 1 as it goes on.
 void dop853_polynomial(const Dop853 *integrator, double share, double *y);
 
-// Takes the tried and filled step: its end becomes the start of the next.
+// Takes the tried step: its end becomes the start of the next.
 void dop853_accept(Dop853 *integrator);
 
 // For another method that takes the steps: the state at the end of the step that is tried, from how

@@ -266,8 +266,33 @@ static inline void find_drive(const Dynamics *dynamics, const Loads *loads, Dyna
     state->reactions[tree->linkage->driver.joint] = vec2_sub(needed, loads->driven_force);
 }
 
+static void fill_sums(const Dynamics *dynamics, const DynamicsState *state, double *sums)
+{
+    sums[SYSTEM_DRIVE_WORK] = state->drive_power;
+    sums[SYSTEM_DISSIPATED] = state->damping_power;
+    sums[SYSTEM_FRICTION] = 0.0;
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
+        const Vec2 force = state->contacts[i].force;
+        sums[SYSTEM_DISSIPATED] += state->contacts[i].press.damping_power;
+        sums[SYSTEM_FRICTION] += state->contacts[i].press.friction_power;
+        sums[SYSTEM_IMPULSES + i] = sqrt(vec2_dot(force, force));
+    }
+}
+
+// Rates of the integrator's vector, from a state and the coordinates' second rates.
+static void fill_rates(const Dynamics *dynamics, const DynamicsState *state, const double *y,
+                       const double *solved, double *rates)
+{
+    const size_t n = dynamics->tree.coordinate_count;
+    for (size_t i = 0; i < n; i++) {
+        rates[i] = y[n + i];
+        rates[n + i] = solved[i];
+    }
+    fill_sums(dynamics, state, rates + 2 * n);
+}
+
 bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
-                       DynamicsState *state)
+                       DynamicsState *state, double *rates)
 {
     double solved[DYNAMICS_EQUATION_MAX];
     Loads loads;
@@ -278,6 +303,9 @@ bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y
     find_drive(dynamics, &loads, state);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         state->shared.contacts[i] = state->contacts[i].press;
+    }
+    if (rates != NULL) {
+        fill_rates(dynamics, state, y, solved, rates);
     }
     return true;
 }
@@ -293,19 +321,6 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
     return force;
 }
 
-static void fill_sums(const Dynamics *dynamics, const DynamicsState *state, double *sums)
-{
-    sums[SYSTEM_DRIVE_WORK] = state->drive_power;
-    sums[SYSTEM_DISSIPATED] = state->damping_power;
-    sums[SYSTEM_FRICTION] = 0.0;
-    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
-        const Vec2 force = state->contacts[i].force;
-        sums[SYSTEM_DISSIPATED] += state->contacts[i].press.damping_power;
-        sums[SYSTEM_FRICTION] += state->contacts[i].press.friction_power;
-        sums[SYSTEM_IMPULSES + i] = sqrt(vec2_dot(force, force));
-    }
-}
-
 void dynamics_rates(double since_s, const double *y, double *rates, void *context)
 {
     const Dynamics *dynamics = context;
@@ -314,11 +329,11 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
     DynamicsState state;
     Loads loads;
     double solved[DYNAMICS_EQUATION_MAX];
-    double closed[DOP853_SIZE_MAX];
+    double closed[2 * TREE_COORDINATE_MAX];
     if (dynamics->may_branch) {
         // with loops open by the error of a stage, the accelerations are wrong by that over the
         // distance from a change point
-        memcpy(closed, y, system_size(&dynamics->system) * sizeof *y);
+        memcpy(closed, y, 2 * n * sizeof *y);
         loops_project(tree, since_s, closed, closed + n);
         y = closed;
     }
@@ -333,9 +348,5 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
         dynamics_reactions_find(dynamics, solved, &loads, &state);
     }
     find_drive(dynamics, &loads, &state);
-    for (size_t i = 0; i < n; i++) {
-        rates[i] = y[n + i];
-        rates[n + i] = solved[i];
-    }
-    fill_sums(dynamics, &state, rates + 2 * n);
+    fill_rates(dynamics, &state, y, solved, rates);
 }

@@ -24,10 +24,10 @@ bool dynamics_factor(const Dynamics *dynamics, const TreeState *state, double *m
 
 // Times, s, and coordinates are those since the base of the tree.
 //
-// The state at a time from the integrator's vector. Returns false where the accelerations are not
-// determined.
+// The state at a time from the integrator's vector, and the rates of that, which may be NULL: those
+// of loops as open as they are. Returns false where the accelerations are not determined.
 bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
-                       DynamicsState *state);
+                       DynamicsState *state, double *rates);
 
 // Rates of the integrator's vector; NaN where they are not determined. The context is a Dynamics.
 void dynamics_rates(double since_s, const double *y, double *rates, void *context);

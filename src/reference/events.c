@@ -31,7 +31,7 @@ static const double ROUNDINGS = 4.0 * DBL_EPSILON;
 
 typedef struct Margin {
     const System *system;
-    const Dop853 *integrator;
+    Dop853 *integrator;
     size_t contact;
     int which;
 } Margin;
@@ -68,13 +68,19 @@ static double rounding_of(const System *system, const SystemState *state, size_t
     return contact->damping_rate * ROUNDINGS * speed;
 }
 
+// The contact at a time in the step.
+static Press press_at(const Margin *margin, double time)
+{
+    Dop853 *integrator = margin->integrator;
+    const double *y = time == integrator->time ? integrator->y : dop853_dense(integrator, time);
+    return margin->system->kind->press(margin->system, margin->contact, time, y);
+}
+
 static double margin_at(double time, void *context)
 {
     const Margin *margin = context;
-    double y[DOP853_SIZE_MAX];
-    dop853_dense(margin->integrator, time, y);
     const System *system = margin->system;
-    const Press press = system->kind->press(system, margin->contact, time, y);
+    const Press press = press_at(margin, time);
     return margin_of(&press, system->contacts[margin->contact].mode, margin->which);
 }
 
@@ -116,22 +122,24 @@ double events_point_time(const Dop853 *integrator, const EventPoints *points, si
                                       : integrator->time + share * integrator->tried;
 }
 
-bool events_look(const System *system, const Dop853 *integrator, EventPoints *points)
+bool events_look(const System *system, Dop853 *integrator, EventPoints *points)
 {
-    double y[DOP853_SIZE_MAX];
     points->count = EVENTS_POINTS_MAX;
     for (size_t i = 0; i < system->contact_count; i++) {
         points->count = system->contacts[i].mode == CONTACT_PRESSING ? 1 : points->count;
     }
     for (size_t i = 0; i + 1 < points->count; i++) {
         const double time = events_point_time(integrator, points, i);
-        dop853_dense(integrator, time, y);
-        if (!system->kind->evaluate(system, time, y, points->states[i])) {
+        const double *y = dop853_dense(integrator, time);
+        if (!system->kind->evaluate(system, time, y, points->states[i], NULL)) {
             return false;
         }
     }
+    double *rates = integrator->has_end_rates ? NULL : integrator->end_rates;
+    integrator->evaluations += rates != NULL ? 1 : 0;
+    integrator->has_end_rates = true;
     return system->kind->evaluate(system, integrator->time + integrator->tried, integrator->next,
-                                  points->states[points->count - 1]);
+                                  points->states[points->count - 1], rates);
 }
 
 // Takes note of an event of a contact, if it is the first of this contact.
@@ -149,18 +157,15 @@ static void note_event(const Margin *margin, double time, Event *event)
 
 static double approach_at(double time, void *context)
 {
-    const Margin *margin = context;
-    double y[DOP853_SIZE_MAX];
-    dop853_dense(margin->integrator, time, y);
-    return margin->system->kind->press(margin->system, margin->contact, time, y).closing;
+    return press_at(context, time).closing;
 }
 
 // A free pin that went towards its wall and comes back may have been there in between: where the
 // penetration has its maximum it is looked at once more.
-static bool has_been_there(Margin *margin, double first, double first_speed, double last,
-                           double last_speed, double rounding, double *top)
+static bool has_been_there(Margin *margin, double first, double last, double last_speed,
+                           double rounding, double *top)
 {
-    return first_speed > 0.0 && last_speed < 0.0 &&
+    return last_speed < 0.0 && approach_at(first, margin) > 0.0 &&
            root_find(approach_at, margin, first, last, 0.0, top) &&
            margin_at(*top, margin) < -rounding;
 }
@@ -171,15 +176,13 @@ static void look_at(Margin *margin, const EventPoints *points, Event *event)
     const ContactMode mode = system->contacts[margin->contact].mode;
     const bool is_free = mode == CONTACT_APART;
     double before = margin->integrator->time;
-    double speed = is_free ? approach_at(before, margin) : 0.0;
     for (size_t i = 0; i < points->count; i++) {
         const double time = events_point_time(margin->integrator, points, i);
         const SystemState *state = points->states[i];
         const Press *press = &state->contacts[margin->contact];
         const double rounding = rounding_of(system, state, margin->contact, mode, margin->which);
         double top = time;
-        if (is_free &&
-            has_been_there(margin, before, speed, time, press->closing, rounding, &top)) {
+        if (is_free && has_been_there(margin, before, time, press->closing, rounding, &top)) {
             note_event(margin, crossing(margin, before, top), event);
             return;
         }
@@ -188,11 +191,10 @@ static void look_at(Margin *margin, const EventPoints *points, Event *event)
             return;
         }
         before = time;
-        speed = press->closing;
     }
 }
 
-void events_find(const System *system, const Dop853 *integrator, const EventPoints *points,
+void events_find(const System *system, Dop853 *integrator, const EventPoints *points,
                  EventList *found)
 {
     found->count = 0;
@@ -250,18 +252,17 @@ void events_land(const System *system, Dop853 *integrator, Event *event)
     }
     dop853_try(integrator, best);
     event->time = integrator->time + best;
-    dop853_fill(integrator);
 }
 
 void events_gather(const System *system, const Dop853 *integrator, const EventPoints *points,
                    const Event *landed, double same_s, EventList *found)
 {
-    const EventList all = *found;
+    const size_t all = found->count;
     const SystemState *end = points->states[points->count - 1];
     const double time_s = integrator->time + integrator->tried;
     found->count = 0;
-    for (size_t i = 0; i < all.count; i++) {
-        const Event *event = &all.events[i];
+    for (size_t i = 0; i < all; i++) {
+        const Event *event = &found->events[i];
         bool is_now = event->contact == landed->contact || fabs(event->time - time_s) <= same_s;
         if (!is_now && is_at_wall(system, event)) {
             const double rounding = rounding_of(system, end, event->contact, CONTACT_APART, 0);

@@ -12,7 +12,7 @@ typedef struct Event {
 // Events of a step, at most one a contact.
 typedef struct EventList {
     size_t count;
-    Event events[SYSTEM_CONTACT_MAX];
+    Event *events; // owned by the stepper, one a contact
 } EventList;
 
 // A step is looked at in some points, equal parts of it, the last at its end. While nothing presses
@@ -25,21 +25,21 @@ typedef struct EventPoints {
     SystemState *states[EVENTS_POINTS_MAX]; // owned by the stepper
 } EventPoints;
 
-// Evaluates the points of the tried and filled step. Returns false where the accelerations are not
-// determined.
-bool events_look(const System *system, const Dop853 *integrator, EventPoints *points);
+// Evaluates the points of the tried step, and the rates at its end with the last of them. Returns
+// false where the accelerations are not determined.
+bool events_look(const System *system, Dop853 *integrator, EventPoints *points);
 
 // The time of one point.
 double events_point_time(const Dop853 *integrator, const EventPoints *points, size_t point);
 
 // The first event of each contact in the step, as far as there is one.
-void events_find(const System *system, const Dop853 *integrator, const EventPoints *points,
+void events_find(const System *system, Dop853 *integrator, const EventPoints *points,
                  EventList *found);
 
 // The earliest of those that were found; NULL where there is none.
 const Event *events_first(const EventList *found);
 
-// Shortens the tried step so that it ends on the event to rounding, and fills it again.
+// Shortens the tried step so that it ends on the event to rounding.
 void events_land(const System *system, Dop853 *integrator, Event *event);
 
 // Keeps of the events that were found the one that the step has landed on and those that nothing

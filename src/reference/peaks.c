@@ -8,7 +8,8 @@
 
 #include "base/root.h"
 
-#include <stdint.h>
+#include <assert.h>
+#include <stdlib.h>
 
 // of a step: a maximum missed by so much is too low by half the square of it, 1e-10 of itself
 static const double NARROW = 1e-5;
@@ -16,85 +17,101 @@ static const double NARROW = 1e-5;
 // how much higher than both its ends a part of a step can rise: it is a seventh of a swing or so
 static const double OVERSHOOT = 1.5;
 
-typedef struct Peak {
-    const Stepper *stepper;
+typedef struct Search {
+    Stepper *stepper;
     SystemState *scratch;
     size_t contact;
     int which;
-} Peak;
+} Search;
+
+Peaks peaks_create(const System *system, SystemState *scratch)
+{
+    Peaks peaks = {scratch, calloc(2 * system->contact_count + 1, sizeof *peaks.peaks)};
+    assert(peaks.peaks != NULL);
+    return peaks;
+}
+
+void peaks_finish(Peaks *peaks)
+{
+    free(peaks->peaks);
+}
 
 static double peak_rate(double time, void *context)
 {
-    const Peak *peak = context;
-    const System *system = peak->stepper->system;
-    double y[DOP853_SIZE_MAX];
+    const Search *search = context;
+    const System *system = search->stepper->system;
     double values[2];
     double rates[2];
-    dop853_dense(&peak->stepper->integrator, time, y);
-    if (!system->kind->evaluate(system, time, y, peak->scratch)) {
+    const double *y = dop853_dense(&search->stepper->integrator, time);
+    if (!system->kind->evaluate(system, time, y, search->scratch, NULL)) {
         return NAN;
     }
-    system->kind->peak(system, peak->scratch, peak->contact, values, rates);
-    return rates[peak->which];
+    system->kind->peak(system, search->scratch, search->contact, values, rates);
+    return rates[search->which];
 }
 
-// Whether a maximum of one quantity lies between two times, and could be the largest of its
+// Whether a maximum of one quantity lies behind where it was left, and could be the largest of its
 // contact.
-static bool has_peak(const Peaks *peaks, size_t index, double rate, double value)
+static bool has_peak(const Peak *peak)
 {
-    return peaks->was_rising[index] && rate < 0.0 &&
-           OVERSHOOT * fmax(value, peaks->last[index]) > peaks->largest[index];
+    return peak->was_rising && peak->rate < 0.0 &&
+           OVERSHOOT * fmax(peak->value, peak->last) > peak->largest;
 }
 
-// Takes note of where a contact is now.
-static void leave(Peaks *peaks, size_t index, double rate, double value)
+// Leaves a contact where it is now, or at its end.
+static void leave(Peak *peak, bool is_pressing)
 {
-    peaks->was_rising[index] = rate > 0.0;
-    peaks->last[index] = value;
-    peaks->largest[index] = fmax(peaks->largest[index], value);
+    if (is_pressing) {
+        peak->was_rising = peak->rate > 0.0;
+        peak->last = peak->value;
+        peak->largest = fmax(peak->largest, peak->value);
+    } else {
+        // the next contact begins with both rising from nothing
+        *peak = (Peak){.was_rising = true};
+    }
 }
 
-double peaks_next(Peaks *peaks, const Stepper *stepper, double start_s, double end_s,
+// What the quantities of a contact that presses are now.
+static void look_at(Peak pair[2], const System *system, const SystemState *state, size_t contact)
+{
+    double values[2];
+    double rates[2];
+    system->kind->peak(system, state, contact, values, rates);
+    for (int which = 0; which < 2; which++) {
+        pair[which].value = values[which];
+        pair[which].rate = rates[which];
+    }
+}
+
+double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
                   const SystemState *state)
 {
     const System *system = stepper->system;
     double earliest = end_s;
-    size_t passed = SIZE_MAX;
-    double rates[SYSTEM_CONTACT_MAX][2];
-    double values[SYSTEM_CONTACT_MAX][2];
+    Peak *passed = NULL;
     for (size_t i = 0; i < system->contact_count; i++) {
+        Peak *pair = &peaks->peaks[2 * i];
         if (system->contacts[i].mode != CONTACT_PRESSING) {
             continue;
         }
-        system->kind->peak(system, state, i, values[i], rates[i]);
+        look_at(pair, system, state, i);
         for (int which = 0; which < 2; which++) {
-            const size_t index = 2 * i + (size_t)which;
-            Peak peak = {stepper, peaks->scratch, i, which};
+            Search search = {stepper, peaks->scratch, i, which};
             double time = end_s;
-            if (has_peak(peaks, index, rates[i][which], values[i][which]) &&
-                root_find(peak_rate, &peak, start_s, end_s, NARROW * (end_s - start_s), &time) &&
+            if (has_peak(&pair[which]) &&
+                root_find(peak_rate, &search, start_s, end_s, NARROW * (end_s - start_s), &time) &&
                 time < earliest && time > start_s) {
                 earliest = time;
-                passed = index;
+                passed = &pair[which];
             }
         }
     }
-    if (passed != SIZE_MAX) {
-        peaks->was_rising[passed] = false;
+    if (passed != NULL) {
+        passed->was_rising = false;
         return earliest;
     }
-    for (size_t i = 0; i < system->contact_count; i++) {
-        const bool is_pressing = system->contacts[i].mode == CONTACT_PRESSING;
-        for (size_t which = 0; which < 2; which++) {
-            const size_t index = 2 * i + which;
-            if (is_pressing) {
-                leave(peaks, index, rates[i][which], values[i][which]);
-            } else {
-                // the next contact begins with both rising from nothing
-                peaks->was_rising[index] = true;
-                peaks->last[index] = peaks->largest[index] = 0.0;
-            }
-        }
+    for (size_t i = 0; i < 2 * system->contact_count; i++) {
+        leave(&peaks->peaks[i], system->contacts[i / 2].mode == CONTACT_PRESSING);
     }
     return end_s;
 }

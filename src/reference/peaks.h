@@ -3,15 +3,25 @@
 
 #include "reference/stepper.h"
 
-// Force and depth of each contact, where it was left.
+// One quantity of a contact where it was left, and where it is now.
+typedef struct Peak {
+    bool was_rising;
+    double last;
+    double largest; // since the contact began, at the times looked at
+    double rate;
+    double value;
+} Peak;
+
+// Force and depth of each contact.
 typedef struct Peaks {
     SystemState *scratch; // of the stepper's system, owned by whoever has the peaks
-    bool was_rising[2 * SYSTEM_CONTACT_MAX];
-    double last[2 * SYSTEM_CONTACT_MAX];
-    double largest[2 * SYSTEM_CONTACT_MAX]; // since the contact began, at the times looked at
+    Peak *peaks;          // owned: two a contact, of its force and of its depth
 } Peaks;
+
+Peaks peaks_create(const System *system, SystemState *scratch);
+void peaks_finish(Peaks *peaks);
 
 // The earliest maximum of a pressing contact's force or depth between two times of the present
 // step, or the later of them. The state is that at the later time.
-double peaks_next(Peaks *peaks, const Stepper *stepper, double start_s, double end_s,
+double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
                   const SystemState *state);

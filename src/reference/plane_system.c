@@ -68,9 +68,16 @@ static void plane_start(System *system, double *y)
 }
 
 static bool plane_evaluate(const System *system, double since_s, const double *y,
-                           SystemState *state)
+                           SystemState *state, double *rates)
 {
-    return dynamics_evaluate(dynamics_of(system), since_s, y, (DynamicsState *)state);
+    const Dynamics *dynamics = dynamics_of(system);
+    DynamicsState *at = (DynamicsState *)state;
+    if (rates == NULL || !dynamics->may_branch) {
+        return dynamics_evaluate(dynamics, since_s, y, at, rates);
+    }
+    // the rates are those of closed loops, as at every stage
+    dynamics_rates(since_s, y, rates, (void *)dynamics);
+    return dynamics_evaluate(dynamics, since_s, y, at, NULL);
 }
 
 static Press plane_press(const System *system, size_t contact, double since_s, const double *y)

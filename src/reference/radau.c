@@ -10,7 +10,7 @@
 // Source: Hairer and Wanner 1996, sections IV.5 and IV.8; see reference/radau_table.c.
 #include "reference/radau.h"
 
-#include "base/dense.h"
+#include "reference/radau_newton.h"
 
 #include <assert.h>
 #include <math.h>
@@ -42,8 +42,8 @@ static size_t freedoms_of(const Dop853 *integrator)
 void radau_destroy(Radau *radau)
 {
     if (radau != NULL) {
-        free(radau->matrix);
-        free(radau->pivots);
+        radau_newton_finish(&radau->newton);
+        free(radau->memory);
         free(radau);
     }
 }
@@ -54,7 +54,7 @@ static double differentiate(const Radau *radau, Dop853 *integrator, double time,
                             const double *rates, double *by_position, double *by_rate)
 {
     const size_t n = freedoms_of(integrator);
-    double changed[DOP853_SIZE_MAX];
+    double *changed = radau->changed;
     double decay = 0.0;
     for (size_t k = by_position != NULL ? 0 : n; k < 2 * n; k++) {
         const double kept = y[k];
@@ -74,10 +74,9 @@ static double differentiate(const Radau *radau, Dop853 *integrator, double time,
 
 double radau_look(Radau *radau, Dop853 *integrator)
 {
-    double y[DOP853_SIZE_MAX];
-    memcpy(y, integrator->y, sizeof y);
-    radau->decay = differentiate(radau, integrator, integrator->time, y, integrator->stages[0],
-                                 NULL, radau->by_rate[0]);
+    memcpy(radau->y, integrator->y, integrator->size * sizeof *radau->y);
+    radau->decay = differentiate(radau, integrator, integrator->time, radau->y,
+                                 integrator->stages[0], NULL, radau->newton.by_rate[0]);
     radau->before_s = 0.0;
     return radau->decay;
 }
@@ -87,7 +86,7 @@ static void find_stage(Radau *radau, const Dop853 *integrator, double step, size
 {
     const size_t n = freedoms_of(integrator);
     double *moved = radau->moved[stage];
-    memcpy(y, integrator->y, sizeof radau->moved[stage]);
+    memcpy(y, integrator->y, integrator->size * sizeof *y);
     for (size_t k = 0; k < n; k++) {
         double sum = 0.0;
         for (size_t j = 0; j < RADAU_STAGES; j++) {
@@ -103,8 +102,8 @@ static void find_stage(Radau *radau, const Dop853 *integrator, double step, size
 static double find_slopes(Radau *radau, Dop853 *integrator, double time, double *y, size_t stage)
 {
     const size_t n = freedoms_of(integrator);
-    double *by_position = radau->by_position[stage];
-    double *by_rate = radau->by_rate[stage];
+    double *by_position = radau->newton.by_position[stage];
+    double *by_rate = radau->newton.by_rate[stage];
     if (integrator->slopes == NULL) {
         return differentiate(radau, integrator, time, y, radau->rates[stage], by_position, by_rate);
     }
@@ -120,7 +119,7 @@ static double find_slopes(Radau *radau, Dop853 *integrator, double time, double 
 // The rates at all stages, with their derivatives where they are asked for.
 static void evaluate_stages(Radau *radau, Dop853 *integrator, double step, bool with_derivatives)
 {
-    double y[DOP853_SIZE_MAX];
+    double *y = radau->y;
     for (size_t i = 0; i < RADAU_STAGES; i++) {
         const double time = integrator->time + RADAU_NODE[i] * step;
         find_stage(radau, integrator, step, i, y);
@@ -132,124 +131,6 @@ static void evaluate_stages(Radau *radau, Dop853 *integrator, double step, bool 
     }
 }
 
-// Whether one of two coordinates feels the other at any stage.
-static bool are_coupled(const Radau *radau, size_t n, size_t a, size_t b)
-{
-    for (size_t i = 0; i < RADAU_STAGES; i++) {
-        const double *place = radau->by_position[i];
-        const double *rate = radau->by_rate[i];
-        if (place[a * n + b] != 0.0 || place[b * n + a] != 0.0 || rate[a * n + b] != 0.0 ||
-            rate[b * n + a] != 0.0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-// Sorts the coordinates into blocks: each takes in, one after the other, all that its members feel.
-static void find_blocks(Radau *radau, size_t n)
-{
-    bool is_taken[RADAU_FREEDOM_MAX] = {false};
-    size_t count = 0;
-    radau->block_count = 0;
-    for (size_t first = 0; first < n; first++) {
-        if (is_taken[first]) {
-            continue;
-        }
-        const size_t start = count;
-        is_taken[first] = true;
-        radau->members[count++] = first;
-        for (size_t at = start; at < count; at++) {
-            for (size_t k = 0; k < n; k++) {
-                if (!is_taken[k] && are_coupled(radau, n, radau->members[at], k)) {
-                    is_taken[k] = true;
-                    radau->members[count++] = k;
-                }
-            }
-        }
-        radau->sizes[radau->block_count++] = count - start;
-    }
-}
-
-// One part of Newton's matrix of a block of m coordinates: how the equation of a stage depends on
-// the rates of another.
-static void fill_part(const Radau *radau, size_t n, const size_t *members, size_t m, double step,
-                      size_t stage, size_t other, double *matrix)
-{
-    const size_t width = RADAU_STAGES * m;
-    double weights[RADAU_STAGES];
-    for (size_t k = 0; k < RADAU_STAGES; k++) {
-        weights[k] = RADAU_COUPLING[stage][k] * RADAU_COUPLING[k][other];
-    }
-    for (size_t row = 0; row < m; row++) {
-        for (size_t column = 0; column < m; column++) {
-            const size_t at = members[row] * n + members[column];
-            double twice = 0.0;
-            for (size_t k = 0; k < RADAU_STAGES; k++) {
-                twice += weights[k] * radau->by_position[k][at];
-            }
-            const double own = stage == other && row == column ? 1.0 : 0.0;
-            matrix[(stage * m + row) * width + other * m + column] =
-                own - step * RADAU_COUPLING[stage][other] * radau->by_rate[other][at] -
-                step * step * twice;
-        }
-    }
-}
-
-static bool factor(Radau *radau, const Dop853 *integrator, double step)
-{
-    const size_t n = freedoms_of(integrator);
-    if (radau->matrix == NULL) {
-        const size_t width = RADAU_STAGES * n;
-        radau->matrix = malloc(width * width * sizeof *radau->matrix);
-        radau->pivots = malloc(width * sizeof *radau->pivots);
-        assert(radau->matrix != NULL && radau->pivots != NULL);
-    }
-    find_blocks(radau, n);
-    const size_t *members = radau->members;
-    double *matrix = radau->matrix;
-    size_t *pivots = radau->pivots;
-    for (size_t block = 0; block < radau->block_count; block++) {
-        const size_t m = radau->sizes[block];
-        const size_t width = RADAU_STAGES * m;
-        for (size_t i = 0; i < RADAU_STAGES; i++) {
-            for (size_t j = 0; j < RADAU_STAGES; j++) {
-                fill_part(radau, n, members, m, step, i, j, matrix);
-            }
-        }
-        if (!dense_factor(width, matrix, pivots)) {
-            return false;
-        }
-        members += m;
-        matrix += width * width;
-        pivots += width;
-    }
-    return true;
-}
-
-// Solves Newton's equations in place, by stages and coordinates.
-static void substitute(const Radau *radau, size_t n, double *change)
-{
-    const size_t *members = radau->members;
-    const double *matrix = radau->matrix;
-    const size_t *pivots = radau->pivots;
-    double own[RADAU_STAGES * RADAU_FREEDOM_MAX];
-    for (size_t block = 0; block < radau->block_count; block++) {
-        const size_t m = radau->sizes[block];
-        const size_t width = RADAU_STAGES * m;
-        for (size_t i = 0; i < width; i++) {
-            own[i] = change[i / m * n + members[i % m]];
-        }
-        dense_substitute(width, matrix, pivots, own);
-        for (size_t i = 0; i < width; i++) {
-            change[i / m * n + members[i % m]] = own[i];
-        }
-        members += m;
-        matrix += width * width;
-        pivots += width;
-    }
-}
-
 // The rates at the stages to begin with: from the polynomial of the step before, which goes on, or
 // of a longer one from here; else with the accelerations at the start.
 static void guess(Radau *radau, const Dop853 *integrator, double step)
@@ -258,8 +139,8 @@ static void guess(Radau *radau, const Dop853 *integrator, double step)
     const double origin = radau->filled == integrator->accepted ? 0.0 : 1.0;
     const bool is_known = step < FURTHEST * radau->before_s;
     const double share = is_known ? step / radau->before_s : 0.0;
-    double start[DOP853_SIZE_MAX];
-    double y[DOP853_SIZE_MAX];
+    double *start = radau->start;
+    double *y = radau->y;
     dop853_polynomial(integrator, origin, start);
     for (size_t i = 0; i < RADAU_STAGES; i++) {
         dop853_polynomial(integrator, origin + RADAU_NODE[i] * share, y);
@@ -283,7 +164,7 @@ static double correct(const Radau *radau, const Dop853 *integrator, double step,
             change[i * n + k] = step * sum - radau->moved[i][n + k];
         }
     }
-    substitute(radau, n, change);
+    radau_newton_solve(&radau->newton, change);
     double largest = 0.0;
     for (size_t i = 0; i < RADAU_STAGES * n; i++) {
         const double share = fabs(change[i]) / integrator->fixed[n + i % n];
@@ -297,13 +178,13 @@ static double correct(const Radau *radau, const Dop853 *integrator, double step,
 static double solve(Radau *radau, Dop853 *integrator, double step)
 {
     const size_t n = freedoms_of(integrator);
-    double change[RADAU_STAGES * RADAU_FREEDOM_MAX];
+    double *change = radau->change;
     double before = INFINITY;
     guess(radau, integrator, step);
     for (int iteration = 0; iteration < ITERATIONS; iteration++) {
         const bool is_new = iteration % RENEWAL == 0;
         evaluate_stages(radau, integrator, step, is_new);
-        if (is_new && !factor(radau, integrator, step)) {
+        if (is_new && !radau_newton_factor(&radau->newton, step)) {
             return INFINITY;
         }
         const double size = correct(radau, integrator, step, change);
@@ -352,11 +233,11 @@ static double try_step(Dop853Method *method, Dop853 *integrator, double step)
         }
     }
     dop853_end(integrator, radau->moved[RADAU_STAGES - 1]);
-    double last[2][DOP853_SIZE_MAX];
     for (int i = 0; i < 2; i++) {
-        weigh_moved(radau, integrator, RADAU_LAST[i], last[i]);
+        weigh_moved(radau, integrator, RADAU_LAST[i], integrator->errors[i]);
     }
-    const double error = dop853_judge(integrator, last[0], last[1], 1.0);
+    const double error =
+        dop853_judge(integrator, integrator->errors[0], integrator->errors[1], 1.0);
     // a step that was hard to solve for is no reason for a longer one
     return error > 1.0 ? error : fmax(error, fmin(1.0, pow(effort, 8.0)));
 }
@@ -364,9 +245,9 @@ static double try_step(Dop853Method *method, Dop853 *integrator, double step)
 static void fill(Dop853Method *method, Dop853 *integrator)
 {
     Radau *radau = (Radau *)method;
-    double(*p)[DOP853_SIZE_MAX] = integrator->polynomial;
-    memcpy(p[0], integrator->y, sizeof p[0]);
-    memcpy(p[1], radau->moved[RADAU_STAGES - 1], sizeof p[1]);
+    double *const *p = integrator->polynomial;
+    memcpy(p[0], integrator->y, integrator->size * sizeof *p[0]);
+    memcpy(p[1], radau->moved[RADAU_STAGES - 1], integrator->size * sizeof *p[1]);
     for (size_t row = 0; row < RADAU_DENSE_ROWS; row++) {
         weigh_moved(radau, integrator, RADAU_DENSE[row], p[2 + row]);
     }
@@ -374,10 +255,39 @@ static void fill(Dop853Method *method, Dop853 *integrator)
     radau->filled = integrator->accepted;
 }
 
-Radau *radau_create(void)
+// The next so many of the doubles that are left.
+static double *take(double **left, size_t count)
 {
+    double *taken = *left;
+    *left += count;
+    return taken;
+}
+
+// Shares out the memory of the vectors.
+static void take_vectors(Radau *radau, size_t size, size_t n, double *left)
+{
+    radau->nudge = take(&left, size);
+    radau->y = take(&left, size);
+    radau->changed = take(&left, size);
+    radau->start = take(&left, size);
+    radau->change = take(&left, RADAU_STAGES * n);
+    for (size_t i = 0; i < RADAU_STAGES; i++) {
+        radau->moved[i] = take(&left, size);
+        radau->rates[i] = take(&left, size);
+    }
+}
+
+Radau *radau_create(const Dop853 *integrator)
+{
+    const size_t n = freedoms_of(integrator);
+    const size_t size = integrator->size;
+    const size_t count = 4 * size + RADAU_STAGES * (n + 2 * size);
     Radau *radau = calloc(1, sizeof *radau);
     assert(radau != NULL);
     radau->method = (Dop853Method){.try_step = try_step, .fill = fill};
+    radau->memory = calloc(count, sizeof *radau->memory);
+    assert(radau->memory != NULL);
+    radau_newton_init(&radau->newton, n);
+    take_vectors(radau, size, n, radau->memory);
     return radau;
 }

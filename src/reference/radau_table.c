@@ -7,7 +7,7 @@
 // and those of the form in which reference/dop853.h keeps it. Worked out in 60 digits; a test
 // repeats the conditions. Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II,
 // 2nd ed., 1996, IV.5.
-#include "reference/radau.h"
+#include "reference/radau_table.h"
 
 // clang-format off
 const double RADAU_NODE[RADAU_STAGES] = {

@@ -14,16 +14,17 @@
 #include <string.h>
 
 typedef struct Reference {
-    Stepper stepper;
+    Stepper *stepper; // owned, like the next two
     Peaks peaks;
-    SystemState *scratch; // owned
-    size_t point;         // of the step that comes next
-    double since_s;       // end of the part of the step that was handed on, from the step's start
-    double start_s;       // of that part
+    SystemState *scratch;
+    size_t point;   // of the step that comes next
+    double since_s; // end of the part of the step that was handed on, from the step's start
+    double start_s; // of that part
     double end_s;
-    double y[DOP853_SIZE_MAX];      // at end_s
-    double before[DOP853_SIZE_MAX]; // at start_s
-    double elastic;                 // J, stored in the contacts at end_s
+    double *y;      // at end_s; owned, like the next two
+    double *before; // at start_s
+    double *seen;   // at a time that is observed
+    double elastic; // J, stored in the contacts at end_s
     double omega[LINKAGE_BODY_MAX];
     double alpha[LINKAGE_BODY_MAX];
     double impulse[LINKAGE_JOINT_MAX];
@@ -35,7 +36,7 @@ typedef struct Reference {
 static bool fail_at(const Reference *reference, double time_s, Err *err)
 {
     char where[LINKAGE_INSTANT_SIZE];
-    linkage_describe_instant(&reference->stepper.scenario->linkage, time_s, where);
+    linkage_describe_instant(&reference->stepper->scenario->linkage, time_s, where);
     err_prefix(err, where);
     return false;
 }
@@ -44,8 +45,13 @@ static void reference_close(void *state)
 {
     Reference *reference = state;
     if (reference != NULL) {
-        stepper_finish(&reference->stepper);
+        stepper_finish(reference->stepper);
+        peaks_finish(&reference->peaks);
+        free(reference->stepper);
         free(reference->scratch);
+        free(reference->y);
+        free(reference->before);
+        free(reference->seen);
         free(reference);
     }
 }
@@ -54,7 +60,7 @@ static void reference_close(void *state)
 // of its hole, that of the end that came first.
 static void fill_approach(Reference *reference)
 {
-    const System *system = reference->stepper.system;
+    const System *system = reference->stepper->system;
     double since_s[LINKAGE_JOINT_MAX];
     for (size_t i = 0; i < system->contact_count; i++) {
         since_s[system->contacts[i].joint] = INFINITY;
@@ -72,7 +78,7 @@ static void fill_approach(Reference *reference)
 // Books one part of a step that ends in a state.
 static void fill_record(Reference *reference, const SystemState *state)
 {
-    const System *system = reference->stepper.system;
+    const System *system = reference->stepper->system;
     const double *impulses = reference->y + system_sum_index(system, SYSTEM_IMPULSES);
     const double *before = reference->before + system_sum_index(system, SYSTEM_IMPULSES);
     system->kind->turning(system, state, reference->omega, reference->alpha);
@@ -96,11 +102,11 @@ static void fill_record(Reference *reference, const SystemState *state)
 // A part of no length where a contact begins: a viscous damper presses hardest at that instant.
 static bool show_onset(Reference *reference, Err *err)
 {
-    const Stepper *stepper = &reference->stepper;
+    const Stepper *stepper = reference->stepper;
     const System *system = stepper->system;
     memcpy(reference->y, stepper->integrator.y, stepper->integrator.size * sizeof *reference->y);
     memcpy(reference->before, reference->y, stepper->integrator.size * sizeof *reference->y);
-    if (!system->kind->evaluate(system, 0.0, reference->y, reference->scratch)) {
+    if (!system->kind->evaluate(system, 0.0, reference->y, reference->scratch, NULL)) {
         return pace_undetermined(err);
     }
     reference->start_s = reference->end_s;
@@ -110,7 +116,7 @@ static bool show_onset(Reference *reference, Err *err)
 
 static bool advance(Reference *reference, Err *err)
 {
-    Stepper *stepper = &reference->stepper;
+    Stepper *stepper = reference->stepper;
     if (reference->point == stepper->points.count) {
         if (!stepper_next(stepper, err)) {
             return false;
@@ -121,15 +127,17 @@ static bool advance(Reference *reference, Err *err)
             return show_onset(reference, err);
         }
     }
-    const Dop853 *integrator = &stepper->integrator;
+    Dop853 *integrator = &stepper->integrator;
     const double point_s = events_point_time(integrator, &stepper->points, reference->point);
     const System *system = stepper->system;
     const SystemState *state = stepper->points.states[reference->point];
     const double end_s = peaks_next(&reference->peaks, stepper, reference->since_s, point_s, state);
+    const bool is_end = end_s == integrator->time + integrator->tried;
+    const double *y = is_end ? integrator->next : dop853_dense(integrator, end_s);
     memcpy(reference->before, reference->y, integrator->size * sizeof *reference->y);
-    dop853_dense(integrator, end_s, reference->y);
+    memcpy(reference->y, y, integrator->size * sizeof *reference->y);
     if (end_s < point_s) {
-        system->kind->evaluate(system, end_s, reference->y, reference->scratch);
+        system->kind->evaluate(system, end_s, reference->y, reference->scratch, NULL);
         state = reference->scratch;
     } else {
         reference->point++;
@@ -145,15 +153,23 @@ static bool reference_open(const Scenario *scenario, void **state, Err *err)
 {
     Reference *reference = calloc(1, sizeof *reference);
     assert(reference != NULL);
-    if (!stepper_init(&reference->stepper, scenario, err)) {
+    Stepper *stepper = calloc(1, sizeof *stepper);
+    assert(stepper != NULL);
+    reference->stepper = stepper;
+    if (!stepper_init(stepper, scenario, err)) {
         reference_close(reference);
         return false;
     }
-    reference->scratch = system_state_create(reference->stepper.system);
-    reference->peaks.scratch = reference->scratch;
+    const size_t size = stepper->integrator.size;
+    reference->y = calloc(size, sizeof *reference->y);
+    reference->before = calloc(size, sizeof *reference->before);
+    reference->seen = calloc(size, sizeof *reference->seen);
+    assert(reference->y != NULL && reference->before != NULL && reference->seen != NULL);
+    reference->scratch = system_state_create(stepper->system);
+    reference->peaks = peaks_create(stepper->system, reference->scratch);
     // the stepper stands at a point; the first call takes its first step
-    reference->point = reference->stepper.points.count;
-    memcpy(reference->y, reference->stepper.integrator.y, sizeof reference->y);
+    reference->point = stepper->points.count;
+    memcpy(reference->y, stepper->integrator.y, size * sizeof *reference->y);
     *state = reference;
     return true;
 }
@@ -168,8 +184,8 @@ static bool reference_step(void *state, double stop_s, Err *err)
 static StepRecord reference_record(const void *state)
 {
     const Reference *reference = state;
-    const size_t sums = system_sum_index(reference->stepper.system, 0);
-    const bool is_spatial = reference->stepper.scenario->linkage.is_spatial;
+    const size_t sums = system_sum_index(reference->stepper->system, 0);
+    const bool is_spatial = reference->stepper->scenario->linkage.is_spatial;
     const double *now = reference->y + sums;
     const double *then = reference->before + sums;
     return (StepRecord){
@@ -192,16 +208,17 @@ static StepRecord reference_record(const void *state)
 static void reference_observe(const void *state, double time_s, Sample *sample)
 {
     const Reference *reference = state;
-    const Linkage *linkage = &reference->stepper.scenario->linkage;
-    const System *system = reference->stepper.system;
+    const Linkage *linkage = &reference->stepper->scenario->linkage;
+    const System *system = reference->stepper->system;
     SystemState *at = reference->scratch;
-    double y[DOP853_SIZE_MAX];
+    Dop853 *integrator = &reference->stepper->integrator;
+    double *y = reference->seen;
     const double since_s = system->kind->since(system, time_s);
-    dop853_dense(&reference->stepper.integrator, since_s, y);
+    memcpy(y, dop853_dense(integrator, since_s), integrator->size * sizeof *y);
     system->kind->project(system, since_s, y);
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
-    if (!system->kind->evaluate(system, since_s, y, at)) {
+    if (!system->kind->evaluate(system, since_s, y, at, NULL)) {
         // at a change point, where the run ends
         for (size_t i = 0; i < linkage->body_count; i++) {
             sample->bodies[i].omega = NAN;
@@ -215,8 +232,8 @@ static void reference_observe(const void *state, double time_s, Sample *sample)
 static SolverModel reference_model(const void *state)
 {
     const Reference *reference = state;
-    const Dop853 *integrator = &reference->stepper.integrator;
-    const System *system = reference->stepper.system;
+    const Dop853 *integrator = &reference->stepper->integrator;
+    const System *system = reference->stepper->system;
     SolverModel model = {
         .constraint_rows = system->kind->rows(system),
         .contact_rows = system->contact_count,
@@ -224,7 +241,7 @@ static SolverModel reference_model(const void *state)
         .evaluations = integrator->evaluations,
     };
     snprintf(model.label, sizeof model.label, "order 8, tolerance %.3g, %zu coordinates",
-             reference->stepper.scenario->reference.tolerance, system->coordinate_count);
+             reference->stepper->scenario->reference.tolerance, system->coordinate_count);
     return model;
 }
 

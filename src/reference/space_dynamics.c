@@ -303,8 +303,33 @@ bool space_dynamics_factor(const SpaceDynamics *dynamics, double since_s, const 
     return dense_factor(space_dynamics_equations(dynamics), dynamics->matrix, pivots);
 }
 
+static void fill_sums(const SpaceDynamics *dynamics, const SpaceState *state, double *sums)
+{
+    sums[SYSTEM_DRIVE_WORK] = state->drive_power;
+    sums[SYSTEM_DISSIPATED] = 0.0;
+    sums[SYSTEM_FRICTION] = 0.0;
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
+        const SpaceForce *force = &state->forces[i];
+        sums[SYSTEM_DISSIPATED] += force->press.damping_power;
+        sums[SYSTEM_FRICTION] += force->press.friction_power;
+        sums[SYSTEM_IMPULSES + i] = sqrt(vec3_dot(force->force, force->force));
+    }
+}
+
+// Rates of the integrator's vector, from a state whose equations are solved.
+static void fill_rates(const SpaceDynamics *dynamics, const SpaceState *state, const double *y,
+                       double *rates)
+{
+    const size_t n = dynamics->tree.coordinate_count;
+    for (size_t i = 0; i < n; i++) {
+        rates[i] = y[n + i];
+        rates[n + i] = dynamics->right[i];
+    }
+    fill_sums(dynamics, state, rates + 2 * n);
+}
+
 bool space_dynamics_evaluate(const SpaceDynamics *dynamics, double since_s, const double *y,
-                             SpaceState *state)
+                             SpaceState *state, double *rates)
 {
     SpaceLoads loads;
     if (!find_rates(dynamics, since_s, y, state, &loads)) {
@@ -316,6 +341,9 @@ bool space_dynamics_evaluate(const SpaceDynamics *dynamics, double since_s, cons
     find_reactions(&dynamics->tree, &loads, state);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         state->shared.contacts[i] = state->forces[i].press;
+    }
+    if (rates != NULL) {
+        fill_rates(dynamics, state, y, rates);
     }
     return true;
 }
@@ -329,19 +357,6 @@ Press space_dynamics_press(const SpaceDynamics *dynamics, size_t contact, double
     space_contact_find(&dynamics->contacts[contact], &dynamics->system.contacts[contact],
                        &dynamics->system.scenario->contact, &state->tree, &state->forces[contact]);
     return state->forces[contact].press;
-}
-
-static void fill_sums(const SpaceDynamics *dynamics, const SpaceState *state, double *sums)
-{
-    sums[SYSTEM_DRIVE_WORK] = state->drive_power;
-    sums[SYSTEM_DISSIPATED] = 0.0;
-    sums[SYSTEM_FRICTION] = 0.0;
-    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
-        const SpaceForce *force = &state->forces[i];
-        sums[SYSTEM_DISSIPATED] += force->press.damping_power;
-        sums[SYSTEM_FRICTION] += force->press.friction_power;
-        sums[SYSTEM_IMPULSES + i] = sqrt(vec3_dot(force->force, force->force));
-    }
 }
 
 void space_dynamics_rates(double since_s, const double *y, double *rates, void *context)
@@ -362,9 +377,5 @@ void space_dynamics_rates(double since_s, const double *y, double *rates, void *
         load_loops(dynamics, dynamics->right + n, state, &loads);
     }
     find_drive(dynamics, &loads, state);
-    for (size_t i = 0; i < n; i++) {
-        rates[i] = y[n + i];
-        rates[n + i] = dynamics->right[i];
-    }
-    fill_sums(dynamics, state, rates + 2 * n);
+    fill_rates(dynamics, state, y, rates);
 }

@@ -32,10 +32,10 @@ void space_dynamics_finish(SpaceDynamics *dynamics);
 
 // Times, s, and coordinates are those since the base of the tree.
 //
-// The state at a time from the integrator's vector. Returns false where the accelerations are not
-// determined.
+// The state at a time from the integrator's vector, and the rates of that, which may be NULL.
+// Returns false where the accelerations are not determined.
 bool space_dynamics_evaluate(const SpaceDynamics *dynamics, double since_s, const double *y,
-                             SpaceState *state);
+                             SpaceState *state, double *rates);
 
 // Unknowns of the equations for the accelerations: the coordinates' second rates, and a multiplier
 // for each row of the loops.

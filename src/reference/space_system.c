@@ -40,9 +40,9 @@ static void space_begin(System *system, double *y)
 }
 
 static bool space_evaluate(const System *system, double since_s, const double *y,
-                           SystemState *state)
+                           SystemState *state, double *rates)
 {
-    return space_dynamics_evaluate(dynamics_of(system), since_s, y, (SpaceState *)state);
+    return space_dynamics_evaluate(dynamics_of(system), since_s, y, (SpaceState *)state, rates);
 }
 
 static Press space_press(const System *system, size_t contact, double since_s, const double *y)

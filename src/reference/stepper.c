@@ -9,6 +9,7 @@
 #include "reference/plane_system.h"
 #include "reference/space_system.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -130,11 +131,12 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
         return false;
     }
     System *system = stepper->system;
-    double y[DOP853_SIZE_MAX] = {0.0};
-    system->kind->start(system, y);
     Dop853 *integrator = &stepper->integrator;
-    integrator->size = system_size(system);
-    integrator->motion_size = system_sum_index(system, 0);
+    dop853_init(integrator, system_size(system), system_sum_index(system, 0));
+    stepper->events.events = calloc(system->contact_count + 1, sizeof(Event));
+    stepper->found.events = calloc(system->contact_count + 1, sizeof(Event));
+    assert(stepper->events.events != NULL && stepper->found.events != NULL);
+    system->kind->start(system, integrator->y);
     integrator->rates = system->kind->rates;
     integrator->slopes = system->kind->slopes;
     integrator->context = system;
@@ -143,12 +145,12 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     // the first step finds its own length: a thousandth of the run is long enough to be shortened
     integrator->step = 1e-3 * stepper->duration_s;
     stepper->onset_step = integrator->step;
-    dop853_start(integrator, 0.0, y);
+    dop853_start(integrator, 0.0, integrator->y);
     for (size_t i = 0; i < EVENTS_POINTS_MAX; i++) {
         stepper->points.states[i] = system_state_create(system);
     }
     stepper->points.count = 1;
-    if (!system->kind->evaluate(system, 0.0, y, stepper->points.states[0])) {
+    if (!system->kind->evaluate(system, 0.0, integrator->y, stepper->points.states[0], NULL)) {
         return pace_undetermined(err);
     }
     return true;
@@ -160,6 +162,9 @@ void stepper_finish(Stepper *stepper)
     for (size_t i = 0; i < EVENTS_POINTS_MAX; i++) {
         free(stepper->points.states[i]);
     }
+    free(stepper->events.events);
+    free(stepper->found.events);
+    dop853_finish(&stepper->integrator);
     if (stepper->system != NULL) {
         stepper->system->kind->destroy(stepper->system);
     }
@@ -239,7 +244,7 @@ static bool fail_to_step(const Stepper *stepper, Err *err)
     const Dop853 *integrator = &stepper->integrator;
     const System *system = stepper->system;
     SystemState *state = stepper->points.states[0];
-    if (!system->kind->evaluate(system, integrator->time, integrator->y, state)) {
+    if (!system->kind->evaluate(system, integrator->time, integrator->y, state, NULL)) {
         return pace_undetermined(err);
     }
     if (!system_check_depth(system, state, NEARLY, err)) {
@@ -251,7 +256,7 @@ static bool fail_to_step(const Stepper *stepper, Err *err)
                    stepper->scenario->reference.tolerance);
 }
 
-// Tries and fills one step, shortened to the first event in it.
+// Tries one step, shortened to the first event in it.
 static bool step_to_event(Stepper *stepper, Err *err)
 {
     const System *system = stepper->system;
@@ -259,7 +264,6 @@ static bool step_to_event(Stepper *stepper, Err *err)
     if (!dop853_attempt(integrator, flight_limit(stepper))) {
         return fail_to_step(stepper, err);
     }
-    dop853_fill(integrator);
     const double same_s = SAME * integrator->tried;
     Event landed = {.time = INFINITY};
     stepper->events.count = 0;
@@ -268,15 +272,20 @@ static bool step_to_event(Stepper *stepper, Err *err)
             return pace_undetermined(err);
         }
         // a shorter step sees better: it may show an event before the one it was cut to
-        EventList found;
-        events_find(system, integrator, &stepper->points, &found);
-        const Event *first = events_first(&found);
+        events_find(system, integrator, &stepper->points, &stepper->found);
+        const Event *first = events_first(&stepper->found);
         if (first == NULL || first->time >= landed.time - SAME * integrator->tried) {
             break;
         }
         landed = *first;
         events_land(system, integrator, &landed);
-        stepper->events = found;
+        const EventList kept = stepper->events;
+        stepper->events = stepper->found;
+        stepper->found = kept;
+    }
+    if (integrator->method != NULL) {
+        // it begins its next step with this one's polynomial
+        dop853_fill(integrator);
     }
     if (stepper->events.count > 0) {
         events_gather(system, integrator, &stepper->points, &landed, same_s, &stepper->events);

@@ -14,6 +14,7 @@ typedef struct Stepper {
     Dop853 integrator; // its tried step is the present one
     EventPoints points;
     EventList events; // at its end
+    EventList found;  // room for those of a step that is looked at
     Pace pace;
     Stiffness stiffness;
     bool has_step;

@@ -136,7 +136,7 @@ void stiffness_follow(Stiffness *stiffness, const System *system, const SystemSt
     }
     stiffness->steps = 0;
     if (stiffness->radau == NULL) {
-        stiffness->radau = radau_create();
+        stiffness->radau = radau_create(integrator);
     }
     Radau *radau = stiffness->radau;
     set_nudges(system, scale, depth, radau->nudge);

@@ -43,8 +43,10 @@ typedef struct SystemKind {
     size_t state_size; // of what begins with a SystemState
     // Writes the integrator's vector at the scenario's start, with sums of zero.
     void (*start)(System *system, double *y);
-    // The state at a time. Returns false where the accelerations are not determined.
-    bool (*evaluate)(const System *system, double since_s, const double *y, SystemState *state);
+    // The state at a time, with the rates of the integrator's vector where they are not NULL.
+    // Returns false where the accelerations are not determined.
+    bool (*evaluate)(const System *system, double since_s, const double *y, SystemState *state,
+                     double *rates);
     // Rates of the integrator's vector; NaN where they are not determined. The context is a System.
     Dop853Rates rates;
     Dop853Slopes slopes; // or NULL

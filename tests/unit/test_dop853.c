@@ -3,8 +3,6 @@
 
 #include "reference/dop853.h"
 
-#include <string.h>
-
 // The order conditions of pure quadrature: sum b_i c_i^(p-1) = 1/p up to p = 8, and not at p = 9.
 static void the_weights_integrate_polynomials_up_to_the_order(void **state)
 {
@@ -47,11 +45,9 @@ static void pendulum(double time, const double *y, double *rates, void *context)
 
 static void start_at(Dop853 *integrator, double angle)
 {
-    memset(integrator, 0, sizeof *integrator);
-    integrator->size = 2;
-    integrator->motion_size = 2;
+    dop853_init(integrator, 2, 2);
     integrator->rates = pendulum;
-    const double y[DOP853_SIZE_MAX] = {angle, 0.0};
+    const double y[2] = {angle, 0.0};
     dop853_start(integrator, 0.0, y);
 }
 
@@ -60,17 +56,15 @@ static void swing(int steps, double *end, double *between)
 {
     Dop853 integrator;
     start_at(&integrator, 2.0);
-    double y[DOP853_SIZE_MAX];
     for (int i = 0; i < steps; i++) {
         dop853_try(&integrator, 2.0 / steps);
-        dop853_fill(&integrator);
         if (i + 1 == steps) {
-            dop853_dense(&integrator, 2.0 - 0.3 * 2.0 / steps, y);
-            *between = y[0];
+            *between = dop853_dense(&integrator, 2.0 - 0.3 * 2.0 / steps)[0];
         }
         dop853_accept(&integrator);
     }
     *end = integrator.y[0];
+    dop853_finish(&integrator);
 }
 
 static void halving_the_step_divides_the_error_by_two_to_the_eighth(void **state)
@@ -101,10 +95,10 @@ static void the_polynomial_is_as_good_as_the_steps_to_one_order(void **state)
         const double time = 2.0 - 0.3 * 2.0 / steps;
         for (int i = 0; i < 512; i++) {
             dop853_try(&integrator, time / 512);
-            dop853_fill(&integrator);
             dop853_accept(&integrator);
         }
         errors[k] = fabs(between - integrator.y[0]);
+        dop853_finish(&integrator);
     }
     assert_true(log2(errors[0] / errors[1]) > 6.5);
 }
@@ -121,7 +115,6 @@ static void error_control_keeps_to_the_tolerance(void **state)
         integrator.step = 1.0;
         while (integrator.time < 20.0) {
             assert_true(dop853_attempt(&integrator, 20.0 - integrator.time));
-            dop853_fill(&integrator);
             dop853_accept(&integrator);
         }
         const double energy = 0.5 * integrator.y[1] * integrator.y[1] - cos(integrator.y[0]);
@@ -129,7 +122,56 @@ static void error_control_keeps_to_the_tolerance(void **state)
         assert_near(energy, -cos(2.0), 100.0 * tolerance + 1e-14);
         assert_true((double)integrator.evaluations > last);
         last = (double)integrator.evaluations;
+        dop853_finish(&integrator);
     }
+}
+
+static void the_polynomial_costs_nothing_where_nobody_asks_for_it(void **state)
+{
+    (void)state;
+    Dop853 integrator;
+    start_at(&integrator, 2.0);
+    const size_t start = integrator.evaluations;
+    dop853_try(&integrator, 0.25);
+    dop853_accept(&integrator);
+    assert_int_equal(integrator.evaluations - start, 12);
+    dop853_try(&integrator, 0.25);
+    const double early = dop853_dense(&integrator, 0.3)[0];
+    assert_int_equal(integrator.evaluations - start, 12 + 15);
+    // once a step, and of this step
+    assert_true(early > dop853_dense(&integrator, 0.45)[0]);
+    assert_true(dop853_dense(&integrator, 0.3)[0] == early);
+    assert_near(dop853_dense(&integrator, 0.5)[0], integrator.next[0], 1e-15);
+    dop853_accept(&integrator);
+    assert_int_equal(integrator.evaluations - start, 12 + 15);
+    dop853_try(&integrator, 0.25);
+    assert_near(dop853_dense(&integrator, 0.5)[0], integrator.y[0], 0.0);
+    assert_int_equal(integrator.evaluations - start, 12 + 15 + 15);
+    dop853_finish(&integrator);
+}
+
+static void rates_at_the_end_that_are_known_are_not_worked_out_again(void **state)
+{
+    (void)state;
+    Dop853 integrator;
+    start_at(&integrator, 2.0);
+    const size_t start = integrator.evaluations;
+    dop853_try(&integrator, 0.25);
+    pendulum(0.25, integrator.next, integrator.end_rates, NULL);
+    integrator.has_end_rates = true;
+    dop853_accept(&integrator);
+    assert_int_equal(integrator.evaluations - start, 11);
+    // control: the step after it begins with them
+    Dop853 other;
+    start_at(&other, 2.0);
+    dop853_try(&other, 0.25);
+    dop853_accept(&other);
+    dop853_try(&integrator, 0.25);
+    dop853_try(&other, 0.25);
+    assert_true(integrator.next[0] == other.next[0] && integrator.next[1] == other.next[1]);
+    assert_true(integrator.next[0] != integrator.y[0]);
+    dop853_finish(&other);
+    dop853_finish(&integrator);
 }
 
 static void what_is_not_finite(double time, const double *y, double *rates, void *context)
@@ -142,26 +184,23 @@ static void what_is_not_finite(double time, const double *y, double *rates, void
 static void a_right_hand_side_that_ends_stops_the_integrator(void **state)
 {
     (void)state;
-    Dop853 integrator = {
-        .size = 1,
-        .motion_size = 1,
-        .rates = what_is_not_finite,
-        .step = 0.1,
-        .shortest = 1e-14,
-    };
+    Dop853 integrator;
+    dop853_init(&integrator, 1, 1);
+    integrator.rates = what_is_not_finite;
+    integrator.step = 0.1;
+    integrator.shortest = 1e-14;
     integrator.fixed[0] = 1e-9;
-    const double y[DOP853_SIZE_MAX] = {0.0};
-    dop853_start(&integrator, 0.0, y);
+    dop853_start(&integrator, 0.0, integrator.y);
     bool goes_on = true;
     for (int i = 0; i < 1000 && goes_on; i++) {
         goes_on = dop853_attempt(&integrator, 1.0);
         if (goes_on) {
-            dop853_fill(&integrator);
             dop853_accept(&integrator);
         }
     }
     assert_false(goes_on);
     assert_true(integrator.time <= 0.5);
+    dop853_finish(&integrator);
 }
 
 int main(void)
@@ -172,6 +211,8 @@ int main(void)
         cmocka_unit_test(halving_the_step_divides_the_error_by_two_to_the_eighth),
         cmocka_unit_test(the_polynomial_is_as_good_as_the_steps_to_one_order),
         cmocka_unit_test(error_control_keeps_to_the_tolerance),
+        cmocka_unit_test(the_polynomial_costs_nothing_where_nobody_asks_for_it),
+        cmocka_unit_test(rates_at_the_end_that_are_known_are_not_worked_out_again),
         cmocka_unit_test(a_right_hand_side_that_ends_stops_the_integrator),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

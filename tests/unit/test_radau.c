@@ -4,8 +4,6 @@
 
 #include "reference/radau.h"
 
-#include <string.h>
-
 // Couplings: polynomials of degree 6 up to each node; weights: of degree 12, and not of degree 13.
 static void the_coefficients_integrate_polynomials(void **state)
 {
@@ -66,12 +64,11 @@ static void pendulum(double time, const double *y, double *rates, void *context)
     rates[2] = y[1] * y[1];
 }
 
-static void start_at(Dop853 *integrator, Radau *radau, Dop853Rates rates, Stiff *stiff,
-                     double place, double rate)
+static Radau *start_at(Dop853 *integrator, Dop853Rates rates, Stiff *stiff, double place,
+                       double rate)
 {
-    memset(integrator, 0, sizeof *integrator);
-    integrator->size = 3;
-    integrator->motion_size = 2;
+    dop853_init(integrator, 3, 2);
+    Radau *radau = radau_create(integrator);
     integrator->rates = rates;
     integrator->context = stiff;
     integrator->method = &radau->method;
@@ -79,9 +76,16 @@ static void start_at(Dop853 *integrator, Radau *radau, Dop853Rates rates, Stiff 
         integrator->fixed[i] = 1e-13;
     }
     radau->nudge[0] = radau->nudge[1] = 1e-7;
-    const double y[DOP853_SIZE_MAX] = {place, rate, 0.0};
+    const double y[3] = {place, rate, 0.0};
     dop853_start(integrator, 0.0, y);
     radau_look(radau, integrator);
+    return radau;
+}
+
+static void finish(Dop853 *integrator, Radau *radau)
+{
+    radau_destroy(radau);
+    dop853_finish(integrator);
 }
 
 // The pendulum from 2 rad at rest, a second on in so many steps; and where it is in the middle of
@@ -89,18 +93,16 @@ static void start_at(Dop853 *integrator, Radau *radau, Dop853Rates rates, Stiff 
 static double swing(int steps, double *between)
 {
     Dop853 integrator;
-    Radau *radau = radau_create();
-    start_at(&integrator, radau, pendulum, NULL, 2.0, 0.0);
-    double y[DOP853_SIZE_MAX];
+    Radau *radau = start_at(&integrator, pendulum, NULL, 2.0, 0.0);
     for (int i = 0; i < steps; i++) {
         assert_true(dop853_try(&integrator, 2.0 / steps) < INFINITY);
         dop853_fill(&integrator);
-        dop853_dense(&integrator, integrator.time + 0.5 * integrator.tried, y);
+        *between = dop853_dense(&integrator, integrator.time + 0.5 * integrator.tried)[0];
         dop853_accept(&integrator);
     }
-    radau_destroy(radau);
-    *between = y[0];
-    return integrator.y[0];
+    const double end = integrator.y[0];
+    finish(&integrator, radau);
+    return end;
 }
 
 static void halving_the_step_divides_the_error_by_two_to_the_thirteenth(void **state)
@@ -124,8 +126,7 @@ static void the_polynomial_is_of_order_seven(void **state)
         swing(steps, &errors[k]);
         // the middle of the last step is the end of a run of another length
         Dop853 integrator;
-        Radau *radau = radau_create();
-        start_at(&integrator, radau, pendulum, NULL, 2.0, 0.0);
+        Radau *radau = start_at(&integrator, pendulum, NULL, 2.0, 0.0);
         for (int i = 0; i < 32; i++) {
             dop853_try(&integrator, (2.0 - 1.0 / steps) / 32.0);
             dop853_fill(&integrator);
@@ -133,7 +134,7 @@ static void the_polynomial_is_of_order_seven(void **state)
         }
         truth = integrator.y[0];
         errors[k] = fabs(errors[k] - truth);
-        radau_destroy(radau);
+        finish(&integrator, radau);
     }
     assert_true(log2(errors[0] / errors[1]) > 6.5);
 }
@@ -143,8 +144,7 @@ static size_t follow_sine(double decay, bool is_implicit)
 {
     Stiff stiff = {decay};
     Dop853 integrator;
-    Radau *radau = radau_create();
-    start_at(&integrator, radau, held_to_a_sine, &stiff, 0.0, 1.0);
+    Radau *radau = start_at(&integrator, held_to_a_sine, &stiff, 0.0, 1.0);
     integrator.method = is_implicit ? &radau->method : NULL;
     integrator.step = 1e-3;
     while (integrator.time < 3.0 && integrator.accepted < 20000) {
@@ -157,8 +157,9 @@ static size_t follow_sine(double decay, bool is_implicit)
         assert_near(integrator.y[0], sin(3.0), 1e-12);
         assert_near(integrator.y[2], 1.5 + 0.25 * sin(6.0), 1e-11);
     }
-    radau_destroy(radau);
-    return integrator.accepted;
+    const size_t accepted = integrator.accepted;
+    finish(&integrator, radau);
+    return accepted;
 }
 
 static void steps_do_not_see_what_has_died_away(void **state)
@@ -191,10 +192,8 @@ static void systems_side_by_side_move_as_each_alone(void **state)
 {
     (void)state;
     Dop853 integrator;
-    Radau *radau = radau_create();
-    memset(&integrator, 0, sizeof integrator);
-    integrator.size = 7;
-    integrator.motion_size = 6;
+    dop853_init(&integrator, 7, 6);
+    Radau *radau = radau_create(&integrator);
     integrator.rates = pendulum_between_two;
     integrator.method = &radau->method;
     for (int i = 0; i < 7; i++) {
@@ -203,7 +202,7 @@ static void systems_side_by_side_move_as_each_alone(void **state)
     for (int i = 0; i < 6; i++) {
         radau->nudge[i] = 1e-7;
     }
-    const double y[DOP853_SIZE_MAX] = {1.0, 2.0, -1.0};
+    const double y[7] = {1.0, 2.0, -1.0};
     dop853_start(&integrator, 0.0, y);
     radau_look(radau, &integrator);
     for (int i = 0; i < 64; i++) {
@@ -217,10 +216,10 @@ static void systems_side_by_side_move_as_each_alone(void **state)
     assert_near(integrator.y[2], -integrator.y[0], 1e-12);
     // control: they are solved for in two blocks, the larger one of coordinates that are not
     // neighbours
-    assert_int_equal(radau->block_count, 2);
-    assert_int_equal(radau->sizes[0], 2);
-    assert_int_equal(radau->members[1], 2);
-    radau_destroy(radau);
+    assert_int_equal(radau->newton.block_count, 2);
+    assert_int_equal(radau->newton.sizes[0], 2);
+    assert_int_equal(radau->newton.members[1], 2);
+    finish(&integrator, radau);
 }
 
 static void decay_is_measured(void **state)
@@ -228,10 +227,9 @@ static void decay_is_measured(void **state)
     (void)state;
     Stiff stiff = {1e6};
     Dop853 integrator;
-    Radau *radau = radau_create();
-    start_at(&integrator, radau, held_to_a_sine, &stiff, 0.0, 1.0);
+    Radau *radau = start_at(&integrator, held_to_a_sine, &stiff, 0.0, 1.0);
     assert_close(radau_look(radau, &integrator), 1e6, 1e-6);
-    radau_destroy(radau);
+    finish(&integrator, radau);
 }
 
 static void what_cannot_be_solved_for_fails(void **state)
@@ -239,13 +237,12 @@ static void what_cannot_be_solved_for_fails(void **state)
     (void)state;
     Stiff stiff = {NAN};
     Dop853 integrator;
-    Radau *radau = radau_create();
-    start_at(&integrator, radau, held_to_a_sine, &stiff, 0.0, 1.0);
+    Radau *radau = start_at(&integrator, held_to_a_sine, &stiff, 0.0, 1.0);
     integrator.step = 1e-3;
     integrator.shortest = 1e-9;
     assert_false(dop853_attempt(&integrator, 1.0));
     assert_true(isnan(integrator.next[0]));
-    radau_destroy(radau);
+    finish(&integrator, radau);
 }
 
 int main(void)
