@@ -169,6 +169,32 @@ static void the_drive_bears_what_an_ideal_joint_hands_on(void **state)
     trajectory_destroy(run);
 }
 
+// A run with few samples against all steps of it, as the samples of another.
+static void the_largest_tilt_is_that_of_the_steps(void **state)
+{
+    (void)state;
+    Scenario scenario = paper(ODE_STAGGERED, ODE_MAP_MIDPOINT, 2e-6);
+    scenario.run.revolutions = 0.1;
+    scenario.linkage.bodies[1].space.height = 2e-3;
+    scenario.linkage.joints[2].kind = JOINT_CLEARANCE;
+    scenario.linkage.joints[2].clearance = scenario.linkage.joints[1].clearance;
+    scenario.run.samples = 30;
+    Trajectory *run = complete_run(&scenario, BACKEND_ODE);
+    scenario.run.samples = 10000;
+    Trajectory *dense = complete_run(&scenario, BACKEND_ODE);
+    double tilt = 0.0;
+    double axial = 0.0;
+    for (size_t i = 0; i < dense->sample_count; i++) {
+        tilt = fmax(tilt, trajectory_space_state(dense, i, 1)->tilt);
+        axial = fmax(axial, fabs(trajectory_space_state(dense, i, 1)->axial));
+    }
+    assert_true(tilt > 1e-5);
+    assert_close(run->joints[1].tilt_max.value, tilt, 1e-3);
+    assert_close(run->joints[1].axial_max.value, axial, 1e-3);
+    trajectory_destroy(run);
+    trajectory_destroy(dense);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -176,6 +202,7 @@ int main(void)
         cmocka_unit_test(friction_is_that_of_the_plane),
         cmocka_unit_test(a_body_between_two_pins_tilts_only_where_its_mass_is_off_the_plane),
         cmocka_unit_test(the_drive_bears_what_an_ideal_joint_hands_on),
+        cmocka_unit_test(the_largest_tilt_is_that_of_the_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
