@@ -2,7 +2,7 @@
 //
 // As SQLite's amalgamation: the first #include of a file of ours is replaced by the file, and later
 // ones are removed. A header also brings the files that implement it, those that include it first.
-// Names at file scope must then be unique; tests/command/test_tune_command.c compiles the result.
+// Names at file scope must then be unique; tests/command/test_tune_code.c compiles the result.
 #include "commands/tune/tune_sources.h"
 
 #include <assert.h>
