@@ -29,58 +29,6 @@ static const double STEPS_BEHIND = 2.5;
 // of one run: some tens of milliseconds of wall time
 static const double STEPS_MOST = 1e5;
 
-static void widen(ImpactSpread *spread, int number, double value)
-{
-    spread->mean += value / MAP_IMPACT_PHASES;
-    spread->least = number == 0 ? value : fmin(spread->least, value);
-    spread->most = number == 0 ? value : fmax(spread->most, value);
-}
-
-void impact_add_phase(ImpactFigures *figures, int number, const MapImpact *impact)
-{
-    widen(&figures->restitution, number, impact->restitution);
-    widen(&figures->force_max, number, impact->force_max);
-    widen(&figures->penetration_max, number, impact->penetration_max);
-    widen(&figures->duration, number, impact->duration);
-    figures->fallbacks += impact->fallbacks;
-    if (impact->omega_h_max > figures->omega_h_max) {
-        figures->omega_h_max = impact->omega_h_max;
-        figures->omega_h_depth = impact->omega_h_depth;
-    }
-    if (impact->is_past_end) {
-        figures->is_past_end = true;
-        figures->past_end_depth = fmax(figures->past_end_depth, impact->penetration_max);
-    }
-    figures->is_ended = (number == 0 || figures->is_ended) && impact->is_ended;
-}
-
-ImpactFigures impact_figures_of(const MapImpact *impact)
-{
-    const double values[] = {impact->restitution, impact->force_max, impact->penetration_max,
-                             impact->duration};
-    return (ImpactFigures){
-        .restitution = {values[0], values[0], values[0]},
-        .force_max = {values[1], values[1], values[1]},
-        .penetration_max = {values[2], values[2], values[2]},
-        .duration = {values[3], values[3], values[3]},
-        .is_past_end = impact->is_past_end,
-        .is_ended = impact->is_ended,
-    };
-}
-
-ImpactFigures impact_predict(const MapImpactCase *impact)
-{
-    ImpactFigures figures = {.is_ended = true};
-    for (int i = 0; i < MAP_IMPACT_PHASES; i++) {
-        const MapImpact phase = map_impact(impact, map_impact_phase(i));
-        impact_add_phase(&figures, i, &phase);
-        if (!phase.is_ended && !phase.is_past_end) {
-            break; // nor would the others
-        }
-    }
-    return figures;
-}
-
 // The joint of the lone body: its pin in its hole, or a disc against a line across the x axis that
 // touches as far from the origin as the pin would.
 static Joint lone_joint(const Joint *from, double play)

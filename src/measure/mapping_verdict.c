@@ -6,10 +6,6 @@
 // the same judgement on what was delivered is how it is tested. Every number that is judged is a
 // ratio, so that the same impact at another mass, length or time has the same verdict.
 //
-// A step is searched from two steps a contact down to ten thousand, in ratios of 2^(1/4): the
-// longest from which on every step tried over a factor of two is valid, and from there by bisection
-// towards the next longer one. Finer steps than that factor are taken to be no worse.
-//
 // POISSON rows ask for a restitution alone. Bounce beside a CFM gives (e - r) / (1 + r),
 // r = CFM m / h, so that r <= (e - e') / (1 + e') holds for the least e' allowed: there the penalty
 // and the step have a least and not a largest value.
@@ -24,48 +20,29 @@
 // the four laws of a cylinder in a hole give peaks from 972 to 1276 N
 const double MAPPING_VALID_SHARE = 0.05;
 
-// with fewer steps in Tc none need come near the peak: omega h is pi / 2 and more
-static const double COARSE_STEPS = 2.0;
-
 // what rounding may add to the speed of an undamped impact
 static const double GAIN_SHARE = 1e-6;
-
-static const double SEARCH_RATIO = 1.189207115002721; // 2^(1/4)
-static const double SEARCH_FINEST = 1e4;              // steps a contact
-enum { SEARCH_STREAK = 5, SEARCH_BISECTIONS = 12 };   // over a factor of two; to 1e-4 of the step
 
 const char *const VERDICT_NAMES[VERDICT_COUNT] = {
     "valid",       "too-fine",    "past-end",     "unstable", "sticks", "too-coarse",
     "gains-speed", "over-damped", "under-damped", "peak",     "depth",  "scatters",
 };
 
-// Of a number that has a unit: nothing but its own share will do.
 static bool is_off(double value, double asked)
 {
-    return !(fabs(value - asked) <= MAPPING_VALID_SHARE * asked);
+    return !impact_is_near(value, asked, MAPPING_VALID_SHARE);
 }
 
-// Of a restitution, which has no unit; one of 0 has no share of its own.
 static bool is_restitution_off(double value, double asked)
 {
-    return !(fabs(value - asked) <= MAPPING_VALID_SHARE * fmax(asked, MAPPING_VALID_SHARE));
-}
-
-static bool is_spread_off(const ImpactSpread *spread, double asked)
-{
-    return is_off(spread->least, asked) || is_off(spread->most, asked);
+    return !impact_is_restitution_near(value, asked, MAPPING_VALID_SHARE);
 }
 
 static bool is_valid(const MappingContact *contact, const ImpactFigures *figures)
 {
-    const MapImpact *asked = &contact->asked;
-    if (is_restitution_off(figures->restitution.least, asked->restitution) ||
-        is_restitution_off(figures->restitution.most, asked->restitution)) {
-        return false;
-    }
-    return mapping_contact_is_poisson(contact) ||
-           (!is_spread_off(&figures->force_max, asked->force_max) &&
-            !is_spread_off(&figures->penetration_max, asked->penetration_max));
+    return mapping_contact_is_poisson(contact)
+               ? impact_bounces_right(figures, &contact->asked, MAPPING_VALID_SHARE)
+               : impact_is_right(figures, &contact->asked, MAPPING_VALID_SHARE);
 }
 
 VerdictKind verdict_judge(const MappingContact *contact, OdeMap map, double step_s,
@@ -88,7 +65,8 @@ VerdictKind verdict_judge(const MappingContact *contact, OdeMap map, double step
     if (is_valid(contact, figures)) {
         return VERDICT_VALID;
     }
-    if (!is_poisson && map != ODE_MAP_IMPULSE && contact->half_period_s < COARSE_STEPS * step_s) {
+    if (!is_poisson && map != ODE_MAP_IMPULSE &&
+        contact->half_period_s < IMPACT_COARSE_STEPS * step_s) {
         return VERDICT_TOO_COARSE;
     }
     const double restitution = figures->restitution.mean;
@@ -108,10 +86,17 @@ VerdictKind verdict_judge(const MappingContact *contact, OdeMap map, double step
     return VERDICT_SCATTERS;
 }
 
-static bool is_step_valid(const MappingContact *contact, OdeMap map, double step_s)
+// A map of a contact whose steps are tried.
+typedef struct StepTrial {
+    const MappingContact *contact;
+    OdeMap map;
+} StepTrial;
+
+static bool is_step_valid(double step_s, const void *context)
 {
-    const ImpactFigures figures = mapping_predict(contact, map, step_s);
-    return verdict_judge(contact, map, step_s, &figures) == VERDICT_VALID;
+    const StepTrial *trial = context;
+    const ImpactFigures figures = mapping_predict(trial->contact, trial->map, step_s);
+    return verdict_judge(trial->contact, trial->map, step_s, &figures) == VERDICT_VALID;
 }
 
 // To three digits, so that what is printed is as valid as what was found.
@@ -123,28 +108,9 @@ static double rounded(double value, double (*round_to)(double))
 
 static double find_step(const MappingContact *contact, OdeMap map)
 {
-    double step_s = contact->half_period_s / COARSE_STEPS;
-    double first_s = 0.0; // of the streak of valid steps
-    int streak = 0;
-    while (streak < SEARCH_STREAK) {
-        if (contact->half_period_s > SEARCH_FINEST * step_s) {
-            return 0.0;
-        }
-        if (is_step_valid(contact, map, step_s)) {
-            first_s = streak == 0 ? step_s : first_s;
-            streak++;
-        } else {
-            streak = 0;
-        }
-        step_s /= SEARCH_RATIO;
-    }
-    double valid_s = first_s;
-    double wrong_s = first_s * SEARCH_RATIO;
-    for (int i = 0; i < SEARCH_BISECTIONS; i++) {
-        const double middle_s = sqrt(valid_s * wrong_s);
-        *(is_step_valid(contact, map, middle_s) ? &valid_s : &wrong_s) = middle_s;
-    }
-    return rounded(valid_s, floor);
+    const StepTrial trial = {contact, map};
+    const double longest_s = impact_longest_step(contact->half_period_s, is_step_valid, &trial);
+    return longest_s > 0.0 ? rounded(longest_s, floor) : 0.0;
 }
 
 void verdict_find_steps(MappingContact *contact)

@@ -1,0 +1,43 @@
+// Which force law does a joint of a case have?
+#include "contact/law.h"
+
+ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
+{
+    ContactOptions own = *contact;
+    if (joint->contact.stiffness > 0.0) {
+        own.stiffness = joint->contact.stiffness;
+        own.exponent = joint->contact.exponent;
+    }
+    if (joint->contact.has_restitution) {
+        own.restitution = joint->contact.restitution;
+    }
+    return own;
+}
+
+bool law_is_asked(const Scenario *scenario)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (linkage_kind_has_play(joint->kind) &&
+            law_options(&scenario->contact, joint).stiffness == 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, Err *err)
+{
+    const ContactOptions own = law_options(&scenario->contact, joint);
+    if (joint->kind != JOINT_CLEARANCE && own.stiffness == 0.0) {
+        return err_set(err, ERR_CASE,
+                       "joint '%s' needs a stiffness: the law %s is for a pin in its hole",
+                       joint->name, OPTIONS_LAWS[own.law]);
+    }
+    if (!law_build(&own, &scenario->material, &joint->clearance, scenario->linkage.driver.speed,
+                   law, err)) {
+        err_prefix(err, joint->name);
+        return false;
+    }
+    return true;
+}
