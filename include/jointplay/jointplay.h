@@ -1,0 +1,199 @@
+/* jointplay: contacts for any world of the Open Dynamics Engine (ODE), and what an ERP and a CFM
+ * stand for.
+ *
+ * C17 and C++17. Everything is in the units of your world, written here as SI: metres, kilograms,
+ * seconds, radians. What is said of a mass, a force and a length holds of an inertia, a torque and
+ * an angle alike.
+ *
+ * A function that can fail returns a JpStatus, JP_OK being 0, and fills in the JpError behind its
+ * last argument, which may be NULL, with one sentence. What it was to fill in is untouched then. No
+ * function prints, keeps anything outside what you hand it, or ends your program. */
+#ifndef JOINTPLAY_JOINTPLAY_H
+#define JOINTPLAY_JOINTPLAY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define JP_API __attribute__((visibility("default")))
+#else
+#define JP_API
+#endif
+
+typedef enum JpStatus {
+    JP_OK = 0,
+    JP_ERROR_ARGUMENT, /* an argument that no call may have: NULL, NaN, out of range */
+    JP_ERROR_NONE,     /* what is asked for does not exist: no such step, no such spring */
+} JpStatus;
+
+enum { JP_ERROR_SIZE = 256 };
+
+typedef struct JpError {
+    JpStatus status;
+    char text[JP_ERROR_SIZE]; /* one sentence; empty where there is no error */
+} JpError;
+
+/* The version of the library that is running, such as "0.1.0". */
+JP_API const char *jp_version(void);
+
+/* ---- contacts -------------------------------------------------------------------------------
+ *
+ * Two sides that overlap by d press with F = F_el(d) + D(d) d', never below 0. */
+
+/* How energy is lost. The hysteretic kinds have D = chi F_el / v, v the speed of the impact, with
+ * chi from a restitution; JP_DAMPING_EXACT gives back just that restitution, whatever the mass, the
+ * stiffness and the speed. */
+typedef enum JpDamping {
+    JP_DAMPING_NONE,
+    JP_DAMPING_LANKARANI_NIKRAVESH,
+    JP_DAMPING_HUNT_CROSSLEY,
+    JP_DAMPING_FLORES,
+    JP_DAMPING_GONTHIER,
+    JP_DAMPING_HU_GUO,
+    JP_DAMPING_EXACT,
+    JP_DAMPING_VISCOUS, /* D = damper: the spring and damper of kp and kd */
+} JpDamping;
+
+typedef struct JpContact {
+    double stiffness;   /* K of F_el = K d^exponent, N/m^exponent; 0 of a logarithmic law */
+    double exponent;    /* 1 */
+    double compliance;  /* A of d = A F (B - ln F), m/N: a cylinder in a hole; else 0 */
+    double offset;      /* B, 1, F in N */
+    JpDamping damping;
+    double restitution; /* 1, of the hysteretic kinds: 0 to 1; where chi is infinite at 0, above 0 */
+    double damper;      /* N s/m, of JP_DAMPING_VISCOUS */
+    double speed_floor; /* m/s, > 0: slower impacts are damped as if they had this speed */
+} JpContact;
+
+/* No stiffness yet; exponent 1, JP_DAMPING_EXACT, restitution .5, speed floor 1e-6. */
+JP_API JpContact jp_contact_default(void);
+JP_API JpStatus jp_contact_check(const JpContact *contact, JpError *error);
+
+/* The elastic laws of a round pin in a round hole, both of one material. */
+typedef enum JpPinLaw {
+    JP_PIN_HERTZ,
+    JP_PIN_JOHNSON,
+    JP_PIN_RADZIMOVSKY,
+    JP_PIN_ESDU_78035,
+    JP_PIN_DUBOWSKY_FREUDENSTEIN,
+} JpPinLaw;
+
+typedef struct JpPin {
+    double hole_radius;    /* m */
+    double pin_radius;     /* m, smaller */
+    double width;          /* m, over which they touch; not of JP_PIN_HERTZ */
+    double youngs_modulus; /* Pa */
+    double poisson_ratio;  /* 1 */
+} JpPin;
+
+/* Fills in stiffness and exponent, or compliance and offset; the rest of the contact stays. */
+JP_API JpStatus jp_contact_of_pin(JpPinLaw law, const JpPin *pin, JpContact *contact,
+                                  JpError *error);
+
+/* The damper, N s/m, beside a linear spring, N/m, that gives back a restitution, 0 < e <= 1, of an
+ * impact of a mass, kg; and the restitution that a spring and a damper give back. */
+JP_API JpStatus jp_damper_of(double stiffness, double restitution, double mass, double *damper,
+                             JpError *error);
+JP_API JpStatus jp_restitution_of(double stiffness, double damper, double mass,
+                                  double *restitution, JpError *error);
+
+/* ---- from a contact to ERP and CFM, and back ------------------------------------------------
+ *
+ * One row of ODE, be it a contact's with soft_erp and soft_cfm or a joint stop's with dParamStopERP
+ * and dParamStopCFM, F >= 0:  v_out + CFM F = (ERP / h) d,  v_out the speed with which the sides
+ * part after the step of h. */
+
+typedef enum JpMap {
+    JP_MAP_TEXTBOOK,  /* ERP = h k / (h k + c), CFM = 1 / (h k + c): adds a damper h k; any step */
+    JP_MAP_CORRECTED, /* ERP = h k / c, CFM = 1 / c: adds none; omega h < 2 */
+    JP_MAP_MIDPOINT,  /* the damper on the mean of both speeds: for steps whose positions stand at
+                         mid-step; omega h < 2 */
+    JP_MAP_EXACT,     /* frequency and decay of that mass on that spring; omega h < pi */
+} JpMap;
+
+/* The contact as a step finds it. */
+typedef struct JpInstant {
+    double depth;        /* m, > 0 */
+    double closing;      /* m/s, rate of the depth */
+    double impact_speed; /* m/s, with which this contact began */
+    double mass;         /* kg, effective along the normal; jp_row looks at it in JP_MAP_EXACT alone */
+    double step;         /* s */
+} JpInstant;
+
+typedef struct JpRow {
+    double erp;  /* 1; above 1 in every map but the textbook's where damping is weak */
+    double cfm;  /* m/(N s) */
+    double rest; /* 1: 1 - erp with the digits that are lost where erp rounds to 1 */
+} JpRow;
+
+/* The row of a contact at an instant. */
+JP_API JpStatus jp_row(JpMap map, const JpContact *contact, const JpInstant *instant, JpRow *row,
+                       JpError *error);
+
+/* The row of an ERP and a CFM that come from elsewhere. */
+JP_API JpRow jp_row_of(double erp, double cfm);
+
+/* The spring and damper whose row this is. Depth and closing speed are looked at in
+ * JP_MAP_MIDPOINT, the mass in JP_MAP_EXACT. JP_ERROR_NONE where no spring k >= 0 and damper c >= 0
+ * make that row. */
+typedef struct JpSpring {
+    double stiffness; /* N/m */
+    double damper;    /* N s/m */
+} JpSpring;
+JP_API JpStatus jp_spring_of(JpMap map, JpRow row, const JpInstant *instant, JpSpring *spring,
+                             JpError *error);
+
+/* The row that Gazebo makes of its kp and kd at its step, by the textbook's map. What spring and
+ * damper ODE makes of that row jp_spring_of says by JP_MAP_CORRECTED: kp, and kd + h kp. */
+JP_API JpStatus jp_row_of_gazebo(double kp, double kd, double step, JpRow *row, JpError *error);
+
+/* The restitution that ODE's own bounce of a contact or a stop delivers beside a CFM, m/(N s):
+ * (e - r) / (1 + r), r = CFM m / h. Negative: the sides stay together and sink in. */
+JP_API JpStatus jp_bounce_of_row(double bounce, double cfm, double mass, double step,
+                                 double *restitution, JpError *error);
+
+/* ---- what that delivers ---------------------------------------------------------------------- */
+
+/* One impact of a mass, at a speed. */
+typedef struct JpImpact {
+    double restitution; /* 1 */
+    double peak;        /* N */
+    double depth;       /* m, largest */
+    double duration;    /* s, of the overlap */
+} JpImpact;
+
+/* What the contact's own law gives, to 1e-6; JP_ERROR_NONE where it gives no such impact. */
+JP_API JpStatus jp_impact_of_law(const JpContact *contact, double mass, double speed,
+                                 JpImpact *impact, JpError *error);
+
+/* The same, stepped by ODE on rows of a map: over 16 phases, for it is an accident where steps fall.
+ * A row beyond the map's limit is the textbook's, as it is in a world of this library. */
+typedef struct JpDelivered {
+    JpImpact mean;
+    JpImpact least; /* each number by itself */
+    JpImpact most;
+    double omega_h;   /* 1, largest: the contact's own oscillation in a step, rad */
+    size_t fallbacks; /* rows of all phases beyond the map's limit */
+} JpDelivered;
+JP_API JpStatus jp_impact_of_rows(JpMap map, const JpContact *contact, double mass, double speed,
+                                  double step, JpDelivered *delivered, JpError *error);
+
+/* Whether a step is short enough: restitution, peak and depth within a share of the law's in every
+ * phase, and every row within the map's limit. */
+JP_API JpStatus jp_step_is_right(JpMap map, const JpContact *contact, double mass, double speed,
+                                 double step, double share, bool *is_right, JpError *error);
+
+/* The longest such step, s, from which on shorter ones are right, too; JP_ERROR_NONE where none is
+ * found down to a ten-thousandth of the contact. */
+JP_API JpStatus jp_step_longest(JpMap map, const JpContact *contact, double mass, double speed,
+                                double share, double *step, JpError *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,8 @@
+// A caller's contact as the laws of contact/ know it.
+#pragma once
+
+#include "contact/force_law.h"
+#include "world/refusal.h"
+
+// Fails as jp_contact_check does.
+JpStatus contact_law(const JpContact *contact, ForceLaw *law, JpError *error);
