@@ -18,10 +18,16 @@ static void store_presence(const Entries *entries, Scenario *scenario)
 {
     Linkage *linkage = &scenario->linkage;
     const EntryNames *names = entries->names;
+    *linkage = linkage_create((LinkageRoom){
+        .bodies = names[SCHEMA_BODY].count,
+        .joints = names[SCHEMA_JOINT].count,
+        .springs = names[SCHEMA_SPRING].count,
+        .torsions = names[SCHEMA_TORSION_SPRING].count,
+    });
     linkage->body_count = names[SCHEMA_BODY].count;
     linkage->joint_count = names[SCHEMA_JOINT].count;
     scenario->point_count = names[SCHEMA_POINT].count;
-    for (size_t i = 0; i < LINKAGE_JOINT_MAX; i++) {
+    for (size_t i = 0; i < linkage->joint_count; i++) {
         Joint *joint = &linkage->joints[i];
         text_copy(joint->name, LINKAGE_NAME_SIZE, names[SCHEMA_JOINT].names[i]);
         joint->kind = joint_kind_find(entries, i);
@@ -29,16 +35,18 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         joint->contact.has_restitution = entries_find(entries, "joints.*.restitution", i) != NULL;
         joint->space.axis = (Vec3){0.0, 0.0, 1.0};
     }
-    for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
+    for (size_t i = 0; i < linkage->body_count; i++) {
         text_copy(linkage->bodies[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_BODY].names[i]);
     }
-    for (size_t i = 0; i < SCENARIO_POINT_MAX; i++) {
+    for (size_t i = 0; i < scenario->point_count; i++) {
         text_copy(scenario->points[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_POINT].names[i]);
     }
     linkage->spring_count = names[SCHEMA_SPRING].count;
     linkage->torsion_count = names[SCHEMA_TORSION_SPRING].count;
-    for (size_t i = 0; i < LINKAGE_SPRING_MAX; i++) {
+    for (size_t i = 0; i < linkage->spring_count; i++) {
         text_copy(linkage->springs[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_SPRING].names[i]);
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
         text_copy(linkage->torsions[i].name, LINKAGE_NAME_SIZE,
                   names[SCHEMA_TORSION_SPRING].names[i]);
     }
@@ -143,6 +151,7 @@ bool assemble_scenario(const Entries *entries, Scenario *scenario, Err *err)
     if (!check_required(entries, err) || !store_entries(entries, &built, err) ||
         !check_values(entries, &built, err) || !closure_check_members(entries, &built, err) ||
         !build(entries, &built, err)) {
+        scenario_free(&built);
         return false;
     }
     const Source *source = entries_group(entries, "", 0)->source;

@@ -91,10 +91,10 @@ static void guess_positions(const FourBar *fourbar, double crank_angle, Motion *
     motions[FOLLOWER] = link_between(pivot, follower_pin);
 }
 
-// A linkage with ideal joints whose hole anchors stand where the pins start.
+// A linkage with ideal joints whose hole anchors stand where the pins start; for linkage_free.
 static Linkage shift_holes(const Linkage *linkage, const Motion *motions)
 {
-    Linkage shifted = *linkage;
+    Linkage shifted = linkage_copy(linkage);
     for (size_t i = 0; i < shifted.joint_count; i++) {
         Joint *joint = &shifted.joints[i];
         if (joint->kind == JOINT_GUIDE) {
@@ -126,8 +126,10 @@ bool build_start(Linkage *linkage, Motion *motions, Err *err)
         return false;
     }
     for (int i = 0; i < PASS_COUNT; i++) {
-        const Linkage shifted = shift_holes(linkage, motions);
-        if (!kinematics_solve_driven(&shifted, &start, motions, err)) {
+        Linkage shifted = shift_holes(linkage, motions);
+        const bool is_solved = kinematics_solve_driven(&shifted, &start, motions, err);
+        linkage_free(&shifted);
+        if (!is_solved) {
             return false;
         }
     }

@@ -102,6 +102,7 @@ bool casefile_load_text(const char *name, const char *text, size_t size,
         override_finish(&read[i]);
     }
     document_destroy(root);
+    entries_finish(entries);
     free(entries);
     free(read);
     return is_good;

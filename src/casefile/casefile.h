@@ -13,7 +13,7 @@ enum { CASEFILE_KEY_SIZE = 160, CASEFILE_UNIT_SIZE = 24, CASEFILE_TEXT_SIZE = 25
 //
 // Fails with ERR_FILE where the file is missing or unreadable, with ERR_CASE where its content is
 // wrong (a directory, an empty, binary or huge file included), and with ERR_USAGE where the fault
-// lies in an override. The scenario is then untouched.
+// lies in an override. The scenario is then untouched; else it is for scenario_free.
 bool casefile_load(const char *path, const char *const *overrides, size_t override_count,
                    Scenario *scenario, Err *err);
 
@@ -53,7 +53,8 @@ typedef struct CasefileSetting {
     bool applies;                       // the scenario makes use of it
 } CasefileSetting;
 
-// The number of settings, the same for every scenario, and each of them in the schema's order.
+// The number of settings, and each of them in the schema's order: those of every body, joint and
+// spring of the scenario and, with a star for the name, of one that it does not have.
 // casefile_setting returns false for an index beyond the last.
-size_t casefile_setting_count(void);
+size_t casefile_setting_count(const Scenario *scenario);
 bool casefile_setting(const Scenario *scenario, size_t index, CasefileSetting *setting);

@@ -5,6 +5,7 @@
 
 #include <assert.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // Where the walk stands in the tree of keys.
@@ -44,10 +45,12 @@ int entries_number(const Entries *entries, SchemaFamily family, const char *name
 static const Entry *find_entry(const Entries *entries, const char *path, size_t length,
                                size_t index)
 {
-    for (size_t i = 0; i < entries->count; i++) {
-        const Entry *entry = &entries->entries[i];
-        if (entry->index == index && strlen(entry->row->path) == length &&
-            strncmp(entry->row->path, path, length) == 0) {
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        const char *own = SCHEMA_ROWS[i].path;
+        const Entry *entry = strncmp(own, path, length) == 0 && own[length] == '\0'
+                                 ? entries_at(entries, &SCHEMA_ROWS[i], index)
+                                 : NULL;
+        if (entry != NULL) {
             return entry;
         }
     }
@@ -121,12 +124,18 @@ bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFam
     const EntryNames *names = &entries->names[family];
     // the driven joint of a short form cannot have play, and so cannot be named
     const size_t first = family == SCHEMA_JOINT && entries->form != SCHEMA_LONG ? 1 : 0;
-    const char *choices[LINKAGE_JOINT_MAX + 1] = {"ground"};
-    size_t count = may_be_ground ? 1 : 0;
+    const char **choices = calloc(names->count + 1, sizeof *choices);
+    assert(choices != NULL);
+    size_t count = 0;
+    if (may_be_ground) {
+        choices[count++] = "ground";
+    }
     for (size_t i = first; i < names->count; i++) {
         choices[count++] = names->names[i];
     }
-    return keys_refuse(source, span, SCHEMA_FAMILIES[family].what, name, choices, count, err);
+    keys_refuse(source, span, SCHEMA_FAMILIES[family].what, name, choices, count, err);
+    free(choices);
+    return false;
 }
 
 // Refuses what is no key here: of the other form, or of none.
@@ -192,8 +201,7 @@ static bool find_member(const Walk *walk, SchemaFamily family, const char *name,
         snprintf(allowed, sizeof allowed, "at most %zu %s", row->most, row->group);
         return source_error(walk->source, span, allowed, walk->err, "one %s too many", row->what);
     }
-    *index = names->count++;
-    text_copy(names->names[*index], LINKAGE_NAME_SIZE, name);
+    *index = entries_add_name(names, name);
     return true;
 }
 
@@ -225,8 +233,10 @@ static bool descend(const Walk *walk, const Position *here, const char *name, Sp
 static bool settle_rivals(const Walk *walk, const Entry *entry)
 {
     Entries *entries = walk->entries;
-    size_t kept = 0;
-    for (size_t i = 0; i < entries->count; i++) {
+    if (entry->row->rivalry == SCHEMA_NO_RIVAL) {
+        return true;
+    }
+    for (size_t i = 0; i < entries->count;) {
         const Entry *other = &entries->entries[i];
         const bool is_rival =
             other->index == entry->index && schema_are_rivals(entry->row, other->row);
@@ -237,11 +247,12 @@ static bool settle_rivals(const Walk *walk, const Entry *entry)
                                 strrchr(entry->row->path, '.') + 1,
                                 strrchr(other->row->path, '.') + 1, line);
         }
-        if (!is_rival) {
-            entries->entries[kept++] = *other;
+        if (is_rival) {
+            entries_take_away(entries, i);
+        } else {
+            i++;
         }
     }
-    entries->count = kept;
     return true;
 }
 
@@ -251,11 +262,7 @@ static bool add_entry(const Walk *walk, const SchemaRow *row, size_t index, cons
     if (!settle_rivals(walk, &entry)) {
         return false;
     }
-    Entries *entries = walk->entries;
-    const Entry *found = entries_find(entries, row->path, index);
-    const size_t slot = found != NULL ? (size_t)(found - entries->entries) : entries->count++;
-    assert(slot < ENTRIES_MAX);
-    entries->entries[slot] = entry;
+    entries_put(walk->entries, &entry);
     return true;
 }
 
@@ -264,12 +271,9 @@ static void add_group(const Walk *walk, const Position *position, const Node *no
     if (entries_group(walk->entries, position->pattern, position->index) != NULL) {
         return;
     }
-    assert(walk->entries->group_count < ENTRIES_GROUP_MAX);
-    EntryGroup *group = &walk->entries->groups[walk->entries->group_count++];
-    text_copy(group->path, sizeof group->path, position->pattern);
-    group->index = position->index;
-    group->node = node;
-    group->source = walk->source;
+    EntryGroup group = {.index = position->index, .node = node, .source = walk->source};
+    text_copy(group.path, sizeof group.path, position->pattern);
+    entries_add_group(walk->entries, &group);
 }
 
 // Takes what stands at a position: a value, or the keys below a group.
@@ -311,7 +315,7 @@ static SchemaForm find_form(const Node *root)
 static void add_names(EntryNames *names, const char *const *words)
 {
     for (; *words != NULL; words++) {
-        text_copy(names->names[names->count++], LINKAGE_NAME_SIZE, *words);
+        entries_add_name(names, *words);
     }
 }
 

@@ -5,9 +5,6 @@
 #include "casefile/document.h"
 #include "casefile/schema.h"
 
-// every key of every body, joint, point and spring, and every group
-enum { ENTRIES_MAX = 1280, ENTRIES_GROUP_MAX = 112 };
-
 // One key that was given. Borrows node and source.
 typedef struct Entry {
     const SchemaRow *row;
@@ -19,8 +16,15 @@ typedef struct Entry {
 // The names of one family, in the order in which the case gives them.
 typedef struct EntryNames {
     size_t count;
-    char names[LINKAGE_JOINT_MAX][LINKAGE_NAME_SIZE];
+    size_t room;
+    char (*names)[LINKAGE_NAME_SIZE]; // owned
 } EntryNames;
+
+// Where the entries of one row stand: by member, their number and one more; 0 where there is none.
+typedef struct EntrySlots {
+    size_t room;
+    size_t *slots; // owned
+} EntrySlots;
 
 // One group that was given, such as joints.crank-coupler.
 typedef struct EntryGroup {
@@ -30,14 +34,35 @@ typedef struct EntryGroup {
     const Source *source;
 } EntryGroup;
 
+// Zeroed it is empty; for entries_finish.
 typedef struct Entries {
     SchemaForm form; // short or long, as the file says
     size_t count;
-    Entry entries[ENTRIES_MAX];
+    size_t room;
+    Entry *entries;    // owned, as the next two
+    EntrySlots *slots; // by row of the schema; NULL while there is no entry
     size_t group_count;
-    EntryGroup groups[ENTRIES_GROUP_MAX];
+    size_t group_room;
+    EntryGroup *groups;
     EntryNames names[SCHEMA_FAMILY_COUNT]; // a four-bar's from the start
 } Entries;
+
+Entries entries_copy(const Entries *entries);
+void entries_finish(Entries *entries);
+
+// The entry of a row and member, or NULL where the key was not given.
+const Entry *entries_at(const Entries *entries, const SchemaRow *row, size_t index);
+
+// Puts an entry in the place of that of the same row and member, or behind the others.
+void entries_put(Entries *entries, const Entry *entry);
+
+// Takes one away by its place in the list.
+void entries_take_away(Entries *entries, size_t slot);
+
+void entries_add_group(Entries *entries, const EntryGroup *group);
+
+// Adds a name to those of a family; returns its number.
+size_t entries_add_name(EntryNames *names, const char *name);
 
 // Takes the keys of a case and with them its form. Fails on an unknown or doubled key, on rivals
 // given together, and on a value where keys are expected or the other way round. The entries are

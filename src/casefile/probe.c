@@ -39,6 +39,7 @@ void probe_close(Probe *probe)
 {
     if (probe != NULL) {
         document_destroy(probe->root);
+        entries_finish(&probe->entries);
         free(probe);
     }
 }
@@ -84,11 +85,9 @@ static bool refuse_group(const Probe *probe, const Source *source, const Node *v
 bool probe_key(const Probe *probe, const Source *source, const Node *value, ProbeKey *key, Err *err)
 {
     // a name that is new must not stay
-    Entries *entries = malloc(sizeof *entries);
-    assert(entries != NULL);
-    *entries = probe->entries;
+    Entries entries = entries_copy(&probe->entries);
     ProbeKey found = {0};
-    bool is_good = entries_key(entries, value->key->text, keys_text_start(value), source,
+    bool is_good = entries_key(&entries, value->key->text, keys_text_start(value), source,
                                &found.row, &found.index, err);
     if (is_good && found.row == NULL) {
         is_good = refuse_group(probe, source, value, err);
@@ -98,21 +97,35 @@ bool probe_key(const Probe *probe, const Source *source, const Node *value, Prob
         found.kind = kind_of(found.row->type);
         *key = found;
     }
-    free(entries);
+    entries_finish(&entries);
     return is_good;
+}
+
+// A scenario that has the member of a key, and of each other family as many.
+static Scenario *scratch_scenario(const ProbeKey *key)
+{
+    Scenario *scratch = malloc(sizeof *scratch);
+    assert(scratch != NULL);
+    *scratch = scenario_default();
+    const size_t room = key->row->member + key->index + 1;
+    Linkage *linkage = &scratch->linkage;
+    *linkage = linkage_create((LinkageRoom){room, room, room, room});
+    linkage->body_count = linkage->joint_count = room;
+    linkage->spring_count = linkage->torsion_count = room;
+    scratch->point_count = SCENARIO_POINT_MAX;
+    return scratch;
 }
 
 bool probe_check(const Probe *probe, const Source *source, const ProbeKey *key, const Node *value,
                  Err *err)
 {
     const Entry entry = {key->row, key->index, value, source};
-    Scenario *scratch = malloc(sizeof *scratch);
-    assert(scratch != NULL);
-    *scratch = scenario_default();
+    Scenario *scratch = scratch_scenario(key);
     if (key->row->family == SCHEMA_JOINT) {
         scratch->linkage.joints[key->index].kind = joint_kind_find(&probe->entries, key->index);
     }
     const bool is_good = store_value(&probe->entries, &entry, scratch, err);
+    scenario_free(scratch);
     free(scratch);
     return is_good;
 }

@@ -217,18 +217,50 @@ void schema_path(const SchemaRow *row, const char *name, char path[SCHEMA_PATH_S
              star + 1);
 }
 
-static size_t field_offset(const SchemaRow *row, size_t index)
+size_t schema_member_count(const Scenario *scenario, SchemaFamily family)
 {
-    assert(index < SCHEMA_FAMILIES[row->family].most);
-    return row->offset + index * SCHEMA_FAMILIES[row->family].stride;
+    const Linkage *linkage = &scenario->linkage;
+    const size_t counts[SCHEMA_FAMILY_COUNT] = {1,
+                                                linkage->body_count,
+                                                linkage->joint_count,
+                                                scenario->point_count,
+                                                linkage->spring_count,
+                                                linkage->torsion_count};
+    return counts[family];
 }
 
-void *schema_field(const SchemaRow *row, Scenario *scenario, size_t index)
+const void *schema_member(const Scenario *scenario, SchemaFamily family, size_t index)
 {
-    return (char *)scenario + field_offset(row, index);
+    static const Body NO_BODY;
+    static const Joint NO_JOINT = {.space.axis = {0.0, 0.0, 1.0}}; // normal to the plane
+    static const TracedPoint NO_POINT;
+    static const Spring NO_SPRING;
+    static const TorsionSpring NO_TORSION;
+    const Linkage *linkage = &scenario->linkage;
+    const bool is_there = index < schema_member_count(scenario, family);
+    switch (family) {
+    case SCHEMA_BODY:
+        return is_there ? &linkage->bodies[index] : &NO_BODY;
+    case SCHEMA_JOINT:
+        return is_there ? &linkage->joints[index] : &NO_JOINT;
+    case SCHEMA_POINT:
+        return is_there ? &scenario->points[index] : &NO_POINT;
+    case SCHEMA_SPRING:
+        return is_there ? &linkage->springs[index] : &NO_SPRING;
+    case SCHEMA_TORSION_SPRING:
+        return is_there ? &linkage->torsions[index] : &NO_TORSION;
+    default:
+        return scenario;
+    }
 }
 
 const void *schema_field_const(const SchemaRow *row, const Scenario *scenario, size_t index)
 {
-    return (const char *)scenario + field_offset(row, index);
+    return (const char *)schema_member(scenario, row->holder, row->member + index) + row->offset;
+}
+
+void *schema_field(const SchemaRow *row, Scenario *scenario, size_t index)
+{
+    assert(row->member + index < schema_member_count(scenario, row->holder));
+    return (void *)schema_field_const(row, scenario, index);
 }

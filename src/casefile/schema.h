@@ -87,7 +87,9 @@ typedef struct SchemaRow {
     SchemaForm form;
     Dimension dimension;
     const char *plain_unit; // SI unit of a number that is written plain; NULL where it has none
-    size_t offset;          // in a Scenario, of the first of its family
+    SchemaFamily holder;    // whose field it is; SCHEMA_SINGLE: the Scenario's own
+    size_t member;          // the number of the holder, to which that of the family is added
+    size_t offset;          // in the holder
     double low;             // SI; smallest value allowed, or the bound itself where low_is_open
     double high;            // SI; largest value allowed
     bool low_is_open;
@@ -113,7 +115,6 @@ typedef struct SchemaFamilyRow {
     const char *group; // the key above the names
     const char *what;  // one of them
     size_t most;
-    size_t stride; // in a Scenario, bytes from one to the next
 } SchemaFamilyRow;
 
 extern const SchemaRow SCHEMA_ROWS[];
@@ -166,6 +167,13 @@ size_t schema_children(const char *group, SchemaForm form,
 // The path of a row for people: `*` replaced by the name (as it is for SCHEMA_SINGLE).
 void schema_path(const SchemaRow *row, const char *name, char path[SCHEMA_PATH_SIZE]);
 
-// The rows' fields in a scenario; `index` numbers the member of a family.
+// How many members of a family a scenario has; of SCHEMA_SINGLE 1.
+size_t schema_member_count(const Scenario *scenario, SchemaFamily family);
+
+// One of them. A member that the scenario does not have is one with nothing but zeros.
+const void *schema_member(const Scenario *scenario, SchemaFamily family, size_t index);
+
+// The rows' fields in a scenario; `index` numbers the member of a family, which the scenario must
+// have for schema_field.
 void *schema_field(const SchemaRow *row, Scenario *scenario, size_t index);
 const void *schema_field_const(const SchemaRow *row, const Scenario *scenario, size_t index);

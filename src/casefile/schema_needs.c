@@ -25,38 +25,34 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
 {
     const Linkage *linkage = &scenario->linkage;
     const ContactOptions *contact = &scenario->contact;
-    const size_t members[SCHEMA_FAMILY_COUNT] = {1,
-                                                 linkage->body_count,
-                                                 linkage->joint_count,
-                                                 scenario->point_count,
-                                                 linkage->spring_count,
-                                                 linkage->torsion_count};
-    const bool is_member = index < members[row->family];
+    const bool is_member = index < schema_member_count(scenario, row->family);
     const bool is_joint = row->family == SCHEMA_JOINT && is_member;
     const bool has_play = scenario_has_clearance(scenario);
     const bool is_impact = has_play && contact->model == CONTACT_IMPACT;
     const bool is_poisson = has_play && contact->model == CONTACT_POISSON;
     const bool has_law = is_impact && law_is_asked(scenario);
     const Joint *joint = is_joint ? &linkage->joints[index] : NULL;
-    const bool is_force = linkage->joints[linkage->torque.joint].kind == JOINT_PRISMATIC;
-    unsigned met =
-        bit(MEMBER, is_member) | bit(OWN_STIFFNESS, is_joint && joint->contact.stiffness > 0.0) |
-        bit(OWN_RESTITUTION, is_joint && joint->contact.has_restitution) |
-        bit(FREE, !build_is_determined(linkage)) | bit(DRIVE, linkage->driver.is_present) |
-        bit(TORQUE, linkage->torque.table.count > 0 && !is_force) |
-        bit(FORCE, linkage->torque.table.count > 0 && is_force) |
-        bit(DRIVEN, linkage->driver.is_present || linkage->torque.table.count > 0) |
-        bit(TURNING, drive_is_steady(&linkage->driver)) |
-        bit(TIMED, !drive_is_steady(&linkage->driver)) | bit(PLAY, has_play) |
-        bit(IDEAL, !has_play) | bit(IMPACT, is_impact) | bit(POISSON, is_poisson) |
-        bit(LAW, has_law) | bit(STIFFNESS, is_impact && contact->stiffness > 0.0) |
-        bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
-        bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
-        bit(FRICTION, has_play && contact->friction > 0.0) |
-        bit(QUICK, scenario->ode.solver == ODE_QUICK) |
-        bit(FACETED, scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) |
-        bit(SPATIAL, linkage->is_spatial) | bit(LATER, scenario->run.report_from > 0.0) |
-        step_bits(scenario, is_impact);
+    const Joint *pushed = schema_member(scenario, SCHEMA_JOINT, (size_t)linkage->torque.joint);
+    const bool is_force = pushed->kind == JOINT_PRISMATIC;
+    const bool is_own = is_joint && joint->contact.stiffness > 0.0 && !contact->is_for_all;
+    unsigned met = bit(MEMBER, is_member) | bit(OWN_STIFFNESS, is_own) |
+                   bit(OWN_RESTITUTION, is_joint && joint->contact.has_restitution) |
+                   bit(FREE, !build_is_determined(linkage)) |
+                   bit(DRIVE, linkage->driver.is_present) |
+                   bit(TORQUE, linkage->torque.table.count > 0 && !is_force) |
+                   bit(FORCE, linkage->torque.table.count > 0 && is_force) |
+                   bit(DRIVEN, linkage->driver.is_present || linkage->torque.table.count > 0) |
+                   bit(TURNING, drive_is_steady(&linkage->driver)) |
+                   bit(TIMED, !drive_is_steady(&linkage->driver)) | bit(PLAY, has_play) |
+                   bit(IDEAL, !has_play) | bit(IMPACT, is_impact) | bit(POISSON, is_poisson) |
+                   bit(LAW, has_law) | bit(STIFFNESS, is_impact && contact->stiffness > 0.0) |
+                   bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
+                   bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
+                   bit(FRICTION, has_play && contact->friction > 0.0) |
+                   bit(QUICK, scenario->ode.solver == ODE_QUICK) |
+                   bit(FACETED, scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) |
+                   bit(SPATIAL, linkage->is_spatial) | bit(LATER, scenario->run.report_from > 0.0) |
+                   step_bits(scenario, is_impact);
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
         met |= bit(REFERENCE, scenario->run.backends[i] == BACKEND_REFERENCE);
         met |= bit(ODE, scenario->run.backends[i] == BACKEND_ODE);

@@ -23,13 +23,12 @@ const SchemaFormRow SCHEMA_FORMS[SCHEMA_FORM_COUNT] = {
 };
 
 const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
-    [SCHEMA_SINGLE] = {"", "", 1, 0},
-    [SCHEMA_BODY] = {"bodies", "body", LINKAGE_BODY_MAX, sizeof(Body)},
-    [SCHEMA_JOINT] = {"joints", "joint", LINKAGE_JOINT_MAX, sizeof(Joint)},
-    [SCHEMA_POINT] = {"points", "point", SCENARIO_POINT_MAX, sizeof(TracedPoint)},
-    [SCHEMA_SPRING] = {"springs", "spring", LINKAGE_SPRING_MAX, sizeof(Spring)},
-    [SCHEMA_TORSION_SPRING] = {"torsion-springs", "torsion spring", LINKAGE_SPRING_MAX,
-                               sizeof(TorsionSpring)},
+    [SCHEMA_SINGLE] = {"", "", 1},
+    [SCHEMA_BODY] = {"bodies", "body", LINKAGE_BODY_MAX},
+    [SCHEMA_JOINT] = {"joints", "joint", LINKAGE_JOINT_MAX},
+    [SCHEMA_POINT] = {"points", "point", SCENARIO_POINT_MAX},
+    [SCHEMA_SPRING] = {"springs", "spring", LINKAGE_SPRING_MAX},
+    [SCHEMA_TORSION_SPRING] = {"torsion-springs", "torsion spring", LINKAGE_SPRING_MAX},
 };
 
 static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};
@@ -38,22 +37,25 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 // clang-format off
 #define FULL_TURN 6.2831853071795872
 #define AT(field) .offset = offsetof(Scenario, field)
+#define AT_BODY(number, field) \
+    .holder = SCHEMA_BODY, .member = number, .offset = offsetof(Body, field)
+#define AT_JOINT(field) .holder = SCHEMA_JOINT, .offset = offsetof(Joint, field)
 #define MASS(body) \
-    .dimension = DIMENSION_MASS, AT(linkage.bodies[body].mass), \
+    .dimension = DIMENSION_MASS, AT_BODY(body, mass), \
     .low = 1e-9, .high = 1e6, .is_required = true
 #define INERTIA(body) \
-    .dimension = DIMENSION_INERTIA, AT(linkage.bodies[body].inertia), \
+    .dimension = DIMENSION_INERTIA, AT_BODY(body, inertia), \
     .low = 1e-18, .high = 1e9, .is_required = true
 #define MOMENT(axis, member, own) \
-    .dimension = DIMENSION_INERTIA, AT(linkage.bodies[member].space.inertia_##axis), \
+    .dimension = DIMENSION_INERTIA, AT_BODY(member, space.inertia_##axis), \
     .low = 1e-18, .high = 1e9, .default_words = own, .doc = "with space: spatial, moment of " \
     "inertia about the body's " #axis " axis"
 #define PRODUCT(axes, member) \
-    .dimension = DIMENSION_INERTIA, AT(linkage.bodies[member].space.product_##axes), \
+    .dimension = DIMENSION_INERTIA, AT_BODY(member, space.product_##axes), \
     .low = -1e9, .high = 1e9, .doc = "with space: spatial, product of inertia: sum of mass times " \
     "both distances from the centre of mass"
 #define OFFSET(member) \
-    .dimension = DIMENSION_LENGTH, AT(linkage.bodies[member].space.height), .low = -1e3, \
+    .dimension = DIMENSION_LENGTH, AT_BODY(member, space.height), .low = -1e3, \
     .high = 1e3, .doc = "with space: spatial, z of the centre of mass at time zero"
 #define X_OWN "a hundredth of inertia"
 #define Y_OWN "inertia"
@@ -82,7 +84,7 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
      .doc = "moment of inertia about the centre of mass, which is at " where}
 #define BODY .family = SCHEMA_BODY, .form = SCHEMA_LONG
 #define SPACE_BODY BODY, .needs = MEMBER | SPATIAL
-#define JOINT(field) .family = SCHEMA_JOINT, AT(linkage.joints[0].field)
+#define JOINT(field) .family = SCHEMA_JOINT, AT_JOINT(field)
 #define PIN(field) JOINT(clearance.field), .needs = MEMBER, .kinds = SCHEMA_OF(JOINT_CLEARANCE)
 #define GUIDE(field) \
     JOINT(guide.field), .form = SCHEMA_LONG | SCHEMA_SLIDER_CRANK, .dimension = DIMENSION_LENGTH, .low = 1e-6, \
@@ -94,12 +96,13 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 #define TOUCHING \
     (SCHEMA_OF(JOINT_CLEARANCE) | SCHEMA_OF(JOINT_GUIDE) | SCHEMA_OF(JOINT_STOP))
 #define SPRING(field) \
-    .family = SCHEMA_SPRING, .form = SCHEMA_LONG, AT(linkage.springs[0].field), .needs = MEMBER
+    .family = SCHEMA_SPRING, .form = SCHEMA_LONG, \
+    .holder = SCHEMA_SPRING, .offset = offsetof(Spring, field), .needs = MEMBER
 #define TORSION(field) \
-    .family = SCHEMA_TORSION_SPRING, .form = SCHEMA_LONG, AT(linkage.torsions[0].field), \
-    .needs = MEMBER
+    .family = SCHEMA_TORSION_SPRING, .form = SCHEMA_LONG, \
+    .holder = SCHEMA_TORSION_SPRING, .offset = offsetof(TorsionSpring, field), .needs = MEMBER
 #define POINT(field) \
-    .family = SCHEMA_POINT, AT(points[0].field), .needs = MEMBER
+    .family = SCHEMA_POINT, .holder = SCHEMA_POINT, .offset = offsetof(TracedPoint, field), .needs = MEMBER
 
 const SchemaRow SCHEMA_ROWS[] = {
     {.path = "title", .type = SCHEMA_TEXT, AT(title), .default_words = "none",
@@ -142,10 +145,10 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "bodies.*.inertia", BODY, INERTIA(0), .needs = MEMBER,
      .doc = "moment of inertia about the centre of mass"},
     {.path = "bodies.*.at", BODY, .type = SCHEMA_VECTOR, .dimension = DIMENSION_LENGTH,
-     AT(linkage.bodies[0].start.position), .low = -1e3, .high = 1e3, .is_required = true,
+     AT_BODY(0, start.position), .low = -1e3, .high = 1e3, .is_required = true,
      .needs = MEMBER, .doc = "position [x, y] of the centre of mass at time zero"},
     {.path = "bodies.*.angle", BODY, .dimension = DIMENSION_ANGLE,
-     AT(linkage.bodies[0].start.angle), .low = -FULL_TURN, .high = FULL_TURN,
+     AT_BODY(0, start.angle), .low = -FULL_TURN, .high = FULL_TURN,
      .needs = MEMBER,
      .doc = "angle of the body's own x axis at time zero, counter-clockwise from the world's"},
     {.path = "bodies.*.inertia-x", SPACE_BODY, MOMENT(x, 0, X_OWN)},
@@ -155,24 +158,24 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "bodies.*.product-yz", SPACE_BODY, PRODUCT(yz, 0)},
     {.path = "bodies.*.offset", SPACE_BODY, OFFSET(0)},
     {.path = "bodies.*.velocity", BODY, .type = SCHEMA_VECTOR, .dimension = DIMENSION_SPEED,
-     AT(linkage.bodies[0].start.velocity), .low = -1e4, .high = 1e4, .needs = MEMBER | FREE,
+     AT_BODY(0, start.velocity), .low = -1e4, .high = 1e4, .needs = MEMBER | FREE,
      .doc = "velocity [x, y] of the centre of mass at time zero; not allowed if the drive "
             "determines it"},
     {.path = "bodies.*.spin", BODY, .dimension = DIMENSION_ANGULAR_SPEED,
-     AT(linkage.bodies[0].start.omega), .low = -1e6, .high = 1e6, .needs = MEMBER | FREE,
+     AT_BODY(0, start.omega), .low = -1e6, .high = 1e6, .needs = MEMBER | FREE,
      .doc = "angular velocity at time zero, counter-clockwise positive; not allowed if the drive "
             "determines it"},
 
     {.path = "bodies.*.velocity-z", BODY, .dimension = DIMENSION_SPEED,
-     AT(linkage.bodies[0].space.velocity_z), .low = -1e4, .high = 1e4,
+     AT_BODY(0, space.velocity_z), .low = -1e4, .high = 1e4,
      .needs = MEMBER | FREE | SPATIAL,
      .doc = "with space: spatial, velocity of the centre of mass along z at time zero"},
     {.path = "bodies.*.spin-x", BODY, .dimension = DIMENSION_ANGULAR_SPEED,
-     AT(linkage.bodies[0].space.omega_x), .low = -1e6, .high = 1e6,
+     AT_BODY(0, space.omega_x), .low = -1e6, .high = 1e6,
      .needs = MEMBER | FREE | SPATIAL,
      .doc = "with space: spatial, angular velocity about the world's x axis at time zero"},
     {.path = "bodies.*.spin-y", BODY, .dimension = DIMENSION_ANGULAR_SPEED,
-     AT(linkage.bodies[0].space.omega_y), .low = -1e6, .high = 1e6,
+     AT_BODY(0, space.omega_y), .low = -1e6, .high = 1e6,
      .needs = MEMBER | FREE | SPATIAL,
      .doc = "with space: spatial, angular velocity about the world's y axis at time zero"},
 

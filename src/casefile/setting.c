@@ -6,17 +6,19 @@
 #include <stdio.h>
 #include <string.h>
 
-// How many settings a row makes.
-static size_t member_count(const SchemaRow *row)
+// How many settings a row makes: one for each member that the scenario has, and one, named by the
+// star, that stands for any other.
+static size_t member_count(const Scenario *scenario, const SchemaRow *row)
 {
-    return schema_is_setting(row) ? SCHEMA_FAMILIES[row->family].most : 0;
+    const size_t members = schema_member_count(scenario, row->family);
+    return !schema_is_setting(row) ? 0 : row->family == SCHEMA_SINGLE ? members : members + 1;
 }
 
 // The row of a setting and the number of its family's member; NULL beyond the last.
-static const SchemaRow *find_row(size_t setting, size_t *index)
+static const SchemaRow *find_row(const Scenario *scenario, size_t setting, size_t *index)
 {
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-        const size_t members = member_count(&SCHEMA_ROWS[i]);
+        const size_t members = member_count(scenario, &SCHEMA_ROWS[i]);
         if (setting < members) {
             *index = setting;
             return &SCHEMA_ROWS[i];
@@ -26,11 +28,11 @@ static const SchemaRow *find_row(size_t setting, size_t *index)
     return NULL;
 }
 
-size_t casefile_setting_count(void)
+size_t casefile_setting_count(const Scenario *scenario)
 {
     size_t count = 0;
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-        count += member_count(&SCHEMA_ROWS[i]);
+        count += member_count(scenario, &SCHEMA_ROWS[i]);
     }
     return count;
 }
@@ -75,8 +77,8 @@ static void set_own_stiffness(CasefileSetting *setting, const SchemaRow *row,
                               const Scenario *scenario, size_t index)
 {
     if (row->family == SCHEMA_JOINT) {
-        const JointContact *own = &scenario->linkage.joints[index].contact;
-        set_stiffness(setting, own->stiffness, own->exponent);
+        const Joint *joint = schema_member(scenario, SCHEMA_JOINT, index);
+        set_stiffness(setting, joint->contact.stiffness, joint->contact.exponent);
     } else {
         set_stiffness(setting, scenario->contact.stiffness, scenario->contact.exponent);
     }
@@ -95,7 +97,7 @@ static void set_backends(CasefileSetting *setting, const RunOptions *run)
 // Where along its link a traced point stands: of a short form, from the link's first joint.
 static double point_along(const Scenario *scenario, size_t index)
 {
-    const TracedPoint *point = &scenario->points[index];
+    const TracedPoint *point = schema_member(scenario, SCHEMA_POINT, index);
     if (scenario->has_slidercrank) {
         return point->local.x + slider_centre(&scenario->slidercrank, point->body);
     }
@@ -132,35 +134,39 @@ static void set_start(CasefileSetting *setting, const Joint *joint)
 // The direction of a joint's line in the world at time zero.
 static double heading(const Linkage *linkage, const Joint *joint)
 {
-    const bool is_ground = joint->body_a == LINKAGE_GROUND;
-    return joint->direction + (is_ground ? 0.0 : linkage->bodies[joint->body_a].start.angle);
+    const bool is_held = joint->body_a != LINKAGE_GROUND && linkage->body_count > 0;
+    return joint->direction + (is_held ? linkage->bodies[joint->body_a].start.angle : 0.0);
 }
 
-// The spring of a row of theirs, NULL for one of joints.
-static const Spring *spring_of(const SchemaRow *row, const Linkage *linkage, size_t index)
+// A point given in a body's frame, in the world at time zero.
+static Vec2 start_point(const Linkage *linkage, int body, Vec2 local)
 {
-    return row->family == SCHEMA_SPRING ? &linkage->springs[index] : NULL;
+    return body == LINKAGE_GROUND ? local : linkage_point(&linkage->bodies[body].start, 0, local);
 }
 
 // Where a joint's hole, or an end of a stop or spring, stands at time zero.
-static Vec2 anchor_place(const SchemaRow *row, const Linkage *linkage, size_t index)
+static Vec2 anchor_place(const SchemaRow *row, const Scenario *scenario, size_t index)
 {
-    const Joint *joint = &linkage->joints[index];
-    const Spring *spring = spring_of(row, linkage, index);
-    Motion motions[LINKAGE_BODY_MAX];
-    for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
-        motions[i] = linkage->bodies[i].start;
+    const bool is_first = row->side == 0;
+    if (!(index < schema_member_count(scenario, row->family))) {
+        return (Vec2){0.0, 0.0};
     }
-    return spring == NULL && row->side == 1 ? linkage_point(motions, joint->body_b, joint->anchor_b)
-           : spring == NULL
-               ? linkage_point(motions, joint->body_a, joint->anchor_a)
-               : linkage_point(motions, row->side == 0 ? spring->body_a : spring->body_b,
-                               row->side == 0 ? spring->anchor_a : spring->anchor_b);
+    if (row->family == SCHEMA_SPRING) {
+        const Spring *spring = &scenario->linkage.springs[index];
+        return start_point(&scenario->linkage, is_first ? spring->body_a : spring->body_b,
+                           is_first ? spring->anchor_a : spring->anchor_b);
+    }
+    const Joint *joint = &scenario->linkage.joints[index];
+    return start_point(&scenario->linkage, is_first ? joint->body_a : joint->body_b,
+                       is_first ? joint->anchor_a : joint->anchor_b);
 }
 
+// Without bodies there is no first one, which a member that is not there would name.
 static const char *body_name(const Linkage *linkage, int body)
 {
-    return body == LINKAGE_GROUND ? "ground" : linkage->bodies[body].name;
+    return body == LINKAGE_GROUND     ? "ground"
+           : linkage->body_count == 0 ? ""
+                                      : linkage->bodies[body].name;
 }
 
 static void set_words(CasefileSetting *setting, const char *first, const char *second)
@@ -169,12 +175,13 @@ static void set_words(CasefileSetting *setting, const char *first, const char *s
     snprintf(setting->text, sizeof setting->text, second != NULL ? "%s, %s" : "%s", first, second);
 }
 
-static void set_between(CasefileSetting *setting, const SchemaRow *row, const Linkage *linkage,
+static void set_between(CasefileSetting *setting, const SchemaRow *row, const Scenario *scenario,
                         size_t index)
 {
-    const Joint *joint = &linkage->joints[index];
-    const Spring *spring = spring_of(row, linkage, index);
-    const bool is_spring = spring != NULL;
+    const Linkage *linkage = &scenario->linkage;
+    const bool is_spring = row->family == SCHEMA_SPRING;
+    const Spring *spring = is_spring ? schema_member(scenario, SCHEMA_SPRING, index) : NULL;
+    const Joint *joint = is_spring ? NULL : schema_member(scenario, SCHEMA_JOINT, index);
     set_words(setting, body_name(linkage, is_spring ? spring->body_a : joint->body_a),
               body_name(linkage, is_spring ? spring->body_b : joint->body_b));
 }
@@ -209,6 +216,7 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
 {
     const Linkage *linkage = &scenario->linkage;
     const void *field = schema_field_const(row, scenario, index);
+    const Joint *joint = schema_member(scenario, SCHEMA_JOINT, index);
     int number;
     switch (row->type) {
     case SCHEMA_QUANTITY:
@@ -248,27 +256,27 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         set_direction(setting, *(const Vec3 *)field);
         break;
     case SCHEMA_START:
-        set_start(setting, &linkage->joints[index]);
+        set_start(setting, joint);
         break;
     case SCHEMA_DISCS:
-        set_vector(setting, (Vec2){2.0 * linkage->joints[index].stop.radius_a,
-                                   2.0 * linkage->joints[index].stop.radius_b});
+        set_vector(setting, (Vec2){2.0 * joint->stop.radius_a, 2.0 * joint->stop.radius_b});
         break;
     case SCHEMA_HEADING:
-        set_number(setting, heading(linkage, &linkage->joints[index]));
+        set_number(setting, heading(linkage, joint));
         break;
     case SCHEMA_ANCHOR:
-        set_vector(setting, anchor_place(row, linkage, index));
+        set_vector(setting, anchor_place(row, scenario, index));
         break;
     case SCHEMA_BETWEEN:
-        set_between(setting, row, linkage, index);
+        set_between(setting, row, scenario, index);
         break;
     case SCHEMA_BODY_NAME:
-        set_words(setting, body_name(linkage, scenario->points[index].body), NULL);
+        set_words(setting, body_name(linkage, *(const int *)field), NULL);
         break;
     case SCHEMA_JOINT_NAME:
         memcpy(&number, field, sizeof number);
-        set_words(setting, linkage->joints[number].name, NULL);
+        joint = schema_member(scenario, SCHEMA_JOINT, (size_t)number);
+        set_words(setting, joint->name, NULL);
         break;
     case SCHEMA_TORQUE:
         set_over_time(setting, row, field);
@@ -277,7 +285,7 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         set_speed(setting, row, field);
         break;
     case SCHEMA_RADIAL_CLEARANCE:
-        set_number(setting, linkage_radial_clearance(&linkage->joints[index]));
+        set_number(setting, linkage_radial_clearance(joint));
         break;
     case SCHEMA_ALONG:
         set_number(setting, point_along(scenario, index));
@@ -290,19 +298,28 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
 // The name of a family's member; one that the scenario does not have keeps the star.
 static const char *member_name(const Scenario *scenario, SchemaFamily family, size_t member)
 {
-    const char *name = family == SCHEMA_BODY             ? scenario->linkage.bodies[member].name
-                       : family == SCHEMA_JOINT          ? scenario->linkage.joints[member].name
-                       : family == SCHEMA_POINT          ? scenario->points[member].name
-                       : family == SCHEMA_SPRING         ? scenario->linkage.springs[member].name
-                       : family == SCHEMA_TORSION_SPRING ? scenario->linkage.torsions[member].name
-                                                         : "";
-    return name[0] != '\0' ? name : "*";
+    const bool is_there = member < schema_member_count(scenario, family);
+    const void *named = schema_member(scenario, family, member);
+    switch (is_there ? family : SCHEMA_SINGLE) {
+    case SCHEMA_BODY:
+        return ((const Body *)named)->name;
+    case SCHEMA_JOINT:
+        return ((const Joint *)named)->name;
+    case SCHEMA_POINT:
+        return ((const TracedPoint *)named)->name;
+    case SCHEMA_SPRING:
+        return ((const Spring *)named)->name;
+    case SCHEMA_TORSION_SPRING:
+        return ((const TorsionSpring *)named)->name;
+    default:
+        return "*";
+    }
 }
 
 bool casefile_setting(const Scenario *scenario, size_t index, CasefileSetting *setting)
 {
     size_t member = 0;
-    const SchemaRow *row = find_row(index, &member);
+    const SchemaRow *row = find_row(scenario, index, &member);
     if (row == NULL) {
         return false;
     }

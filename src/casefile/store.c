@@ -324,7 +324,6 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
     case SCHEMA_DIRECTION:
         return store_direction(&target);
     case SCHEMA_BETWEEN:
-        // there are more joints than springs: the address of either is formed for its own alone
         if (entry->row->family == SCHEMA_SPRING) {
             spring = &scenario->linkage.springs[entry->index];
             return store_between(&target, &spring->body_a, &spring->body_b);

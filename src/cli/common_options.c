@@ -28,11 +28,11 @@ bool common_options_check_step(const CommonOptions *options, double step_s, Err 
     snprintf(step, sizeof step, "run.step=%.17g s", step_s);
     memcpy(overrides, options->overrides, options->override_count * sizeof *overrides);
     overrides[options->override_count] = step;
-    Scenario *scenario = malloc(sizeof *scenario);
+    Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
     const bool is_right =
         casefile_load(options->path, overrides, options->override_count + 1, scenario, err);
-    free(scenario);
+    scenario_destroy(scenario);
     return is_right;
 }
 

@@ -4,7 +4,7 @@
 ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
 {
     ContactOptions own = *contact;
-    if (joint->contact.stiffness > 0.0) {
+    if (joint->contact.stiffness > 0.0 && !contact->is_for_all) {
         own.stiffness = joint->contact.stiffness;
         own.exponent = joint->contact.exponent;
     }

@@ -48,7 +48,7 @@ static Distribution distribution_of(double *values, size_t count)
 static Trajectory *run_member(const Scenario *scenario, const Solver *solver, RunWatch watch,
                               unsigned member, DistanceScale scales[LINKAGE_BODY_MAX])
 {
-    Scenario beside = *scenario;
+    Scenario beside = scenario_copy(scenario);
     if (member > 0) {
         perturb_start(&beside, scales, ENSEMBLE_PERTURBATION, member);
     }
@@ -56,6 +56,7 @@ static Trajectory *run_member(const Scenario *scenario, const Solver *solver, Ru
     if (member == 0) {
         distance_scales(trajectory, scales);
     }
+    scenario_free(&beside);
     return trajectory;
 }
 

@@ -250,11 +250,12 @@ void held_apply(const HeldSetting *setting, Scenario *scenario)
     }
 }
 
-// A pin in a hole that leaves it room, with the constants.
+// A pin in a hole that leaves it room, with the constants; for scenario_free.
 static Scenario held_scenario(const MappingContact *contact, double step_s,
                               const HeldSetting *setting)
 {
-    Scenario scenario = mapping_scenario(contact, setting->map, step_s);
+    const Scenario shared = mapping_scenario(contact, setting->map, step_s);
+    Scenario scenario = scenario_copy(&shared);
     Clearance *clearance = &scenario.linkage.joints[contact->joint.joint].clearance;
     const double room =
         ROOM * (contact->impact.speed * fmax(step_s, setting->predicted.duration.most) +
@@ -269,9 +270,12 @@ static Scenario held_scenario(const MappingContact *contact, double step_s,
 static ImpactDelivered deliver(const MappingContact *contact, double step_s,
                                const HeldSetting *setting)
 {
-    const Scenario scenario = held_scenario(contact, step_s, setting);
-    return impact_deliver(&scenario, contact->joint.joint, contact->impact.mass,
-                          contact->impact.speed, setting->predicted.duration.most);
+    Scenario scenario = held_scenario(contact, step_s, setting);
+    const ImpactDelivered delivered =
+        impact_deliver(&scenario, contact->joint.joint, contact->impact.mass, contact->impact.speed,
+                       setting->predicted.duration.most);
+    scenario_free(&scenario);
+    return delivered;
 }
 
 ImpactDelivered held_deliver(const MappingContact *contact, double step_s, OdeMap map,

@@ -57,7 +57,7 @@ static double lone_play(const Joint *from)
     return from->kind == JOINT_STOP ? INFINITY : linkage_radial_clearance(from);
 }
 
-// The scenario's world with nothing in it but the pin.
+// The scenario's world with nothing in it but the pin; for scenario_free.
 static void lone_pin(const Scenario *scenario, int joint, double mass, Scenario *lone)
 {
     const Joint *from = &scenario->linkage.joints[joint];
@@ -68,7 +68,7 @@ static void lone_pin(const Scenario *scenario, int joint, double mass, Scenario 
     lone->has_slidercrank = false;
     lone->point_count = 0;
     lone->gravity = 0.0;
-    memset(&lone->linkage, 0, sizeof lone->linkage);
+    lone->linkage = linkage_create((LinkageRoom){.bodies = 1, .joints = 1});
     lone->linkage.body_count = 1;
     lone->linkage.bodies[0] = (Body){
         .name = "pin",
@@ -111,8 +111,6 @@ ImpactDelivered impact_deliver(const Scenario *scenario, int joint, double mass,
                                double contact_s)
 {
     ImpactDelivered delivered = {.figures = {.is_ended = true}};
-    Scenario lone;
-    lone_pin(scenario, joint, mass, &lone);
     const double step_s = scenario->run.step;
     const double play = lone_play(&scenario->linkage.joints[joint]);
     const double wall = isfinite(play) ? play : 0.0;                  // m
@@ -130,18 +128,21 @@ ImpactDelivered impact_deliver(const Scenario *scenario, int joint, double mass,
                  STEPS_MOST);
         return delivered;
     }
-    for (int i = 0; i < MAP_IMPACT_PHASES; i++) {
+    Scenario lone;
+    lone_pin(scenario, joint, mass, &lone);
+    delivered.is_measured = true;
+    for (int i = 0; i < MAP_IMPACT_PHASES && delivered.is_measured; i++) {
         const double flight_s = (whole + map_impact_phase(i)) * step_s;
         Motion *start = &lone.linkage.bodies[0].start;
         start->position.x = wall - speed * flight_s;
         start->velocity.x = speed;
         lone.run.duration = flight_s + rest_s;
         MapImpact impact;
-        if (!run_phase(&lone, speed, &impact, delivered.message)) {
-            return delivered;
+        delivered.is_measured = run_phase(&lone, speed, &impact, delivered.message);
+        if (delivered.is_measured) {
+            impact_add_phase(&delivered.figures, i, &impact);
         }
-        impact_add_phase(&delivered.figures, i, &impact);
     }
-    delivered.is_measured = true;
+    scenario_free(&lone);
     return delivered;
 }

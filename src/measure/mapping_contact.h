@@ -22,7 +22,7 @@ typedef struct MappingContact {
     const char *law_name;     // as in a case, or "stiffness" where the case gives that
     char lack[ERR_TEXT_SIZE]; // why the law has no such impact; then mass and speed alone are set
     ErrKind lack_kind;
-    Scenario scenario;    // with this law
+    Scenario scenario;    // with this law; its linkage is that of the scenario it was made of
     MapImpactCase impact; // mass and speed used; of the step and rows nothing
     MappingSource mass_source;
     MappingSource speed_source;

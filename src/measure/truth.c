@@ -140,7 +140,8 @@ static void certify(const Scenario *fine, RunWatch watch, Truth *truth)
     // the first run is there already where the case's own samples are fine enough
     const bool is_there = scenario_sample_count(fine) == truth->trajectory->sample_count;
     const Scenario tight = with_tolerance(fine, SECOND);
-    Scenario shaken = with_tolerance(fine, THIRD);
+    const Scenario third_one = with_tolerance(fine, THIRD);
+    Scenario shaken = scenario_copy(&third_one);
     shake_inputs(&shaken, THIRD_SEED);
     Trajectory *first = is_there ? truth->trajectory : run_for(fine, watch, truth);
     Trajectory *second = run_for(&tight, watch, truth);
@@ -164,6 +165,7 @@ static void certify(const Scenario *fine, RunWatch watch, Truth *truth)
     }
     trajectory_destroy(third);
     trajectory_destroy(second);
+    scenario_free(&shaken);
     if (!is_there) {
         trajectory_destroy(first);
     }

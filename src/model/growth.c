@@ -64,7 +64,7 @@ static bool open_runs(const GrowthWork *work, Runs *runs, Growth *growth)
     runs->scenarios = calloc(work->basis->count + 1, sizeof *runs->scenarios);
     assert(runs->scenarios != NULL);
     for (size_t i = 0; i < work->basis->count; i++) {
-        runs->scenarios[i] = *work->scenario;
+        runs->scenarios[i] = scenario_copy(work->scenario);
         perturb_along(&runs->scenarios[i], work->basis->changes[i], work->size);
         if (!work->solver->open(&runs->scenarios[i], &runs->walks[i].state, &growth->failure)) {
             return false;
@@ -81,6 +81,10 @@ static void close_runs(const Solver *solver, Runs *runs, Growth *growth)
         growth->steps += model.steps;
         growth->evaluations += model.evaluations;
         solver->close(runs->walks[i].state);
+    }
+    // beyond those that were opened is the one that could not be
+    for (size_t i = 0; i <= runs->count; i++) {
+        scenario_free(&runs->scenarios[i]);
     }
     free(runs->scenarios);
 }

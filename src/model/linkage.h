@@ -160,19 +160,38 @@ typedef struct Torque {
     TimeTable table; // N m, counter-clockwise positive, or N; without points there is no torque
 } Torque;
 
+// Its arrays are as long as the linkage needs. An assignment shares them: it is for another driver
+// or other options of the same bodies. What is to have other bodies or joints needs linkage_copy.
 typedef struct Linkage {
     bool is_spatial; // whether bodies leave the plane: model/space.h
     size_t body_count;
-    Body bodies[LINKAGE_BODY_MAX];
+    Body *bodies; // owned, like the arrays below, by whom linkage_create gave them to
     size_t joint_count;
-    Joint joints[LINKAGE_JOINT_MAX];
+    Joint *joints;
     size_t spring_count;
-    Spring springs[LINKAGE_SPRING_MAX];
+    Spring *springs;
     size_t torsion_count;
-    TorsionSpring torsions[LINKAGE_SPRING_MAX];
+    TorsionSpring *torsions;
     Driver driver;
     Torque torque; // instead of a driver
 } Linkage;
+
+// How many of each a linkage has room for.
+typedef struct LinkageRoom {
+    size_t bodies;
+    size_t joints;
+    size_t springs;
+    size_t torsions;
+} LinkageRoom;
+
+// A linkage without bodies and joints, with room for so many, all zero. For linkage_free.
+Linkage linkage_create(LinkageRoom room);
+
+// One with arrays of its own, of the same contents. For linkage_free.
+Linkage linkage_copy(const Linkage *linkage);
+
+// Frees the arrays; the linkage is then empty.
+void linkage_free(Linkage *linkage);
 
 // One side of a joint: 0 that of body a, 1 that of body b.
 typedef struct JointEnd {

@@ -30,10 +30,10 @@ static const double STANDS = 1e-5;
 // play takes the crank beyond
 static const double NEAR_LOCK = 10.0 * M_PI / 180.0;
 
-// The linkage with the joints that count, all ideal.
+// The linkage with the joints that count, all ideal; for linkage_free.
 static Linkage idealised(const Linkage *linkage, LockJoints joints)
 {
-    Linkage ideal = *linkage;
+    Linkage ideal = linkage_copy(linkage);
     ideal.joint_count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
@@ -117,13 +117,15 @@ static void move_origin(Linkage *part, Motion *motions)
     move_anchors(part, LINKAGE_GROUND, pivot);
 }
 
-// Takes out of the linkage what the driver determines. Returns whether that is more than the driven
-// body.
+// Takes out of the linkage what the driver determines, for linkage_free. Returns whether that is
+// more than the driven body.
 static bool cut_out_part(const Linkage *linkage, const Motion *motions, Linkage *part,
                          Motion *start)
 {
     int numbers[LINKAGE_BODY_MAX];
-    *part = (Linkage){.driver = linkage->driver};
+    *part = linkage_create(
+        (LinkageRoom){.bodies = linkage->body_count, .joints = linkage->joint_count});
+    part->driver = linkage->driver;
     part->body_count = number_determined(linkage, motions, numbers);
     for (size_t i = 0; i < linkage->body_count; i++) {
         if (numbers[i] >= 0) {
@@ -280,17 +282,19 @@ Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
     if (!linkage->driver.is_present || !space_has_plane(linkage)) {
         return unknown;
     }
-    const Linkage ideal = idealised(linkage, joints);
+    Linkage ideal = idealised(linkage, joints);
     Motion motions[LINKAGE_BODY_MAX];
     Motion start[LINKAGE_BODY_MAX];
-    Linkage part;
+    Linkage part = {.body_count = 0};
     ClosedPath path;
     linkage_start(&ideal, motions);
-    if (!nearest_positions(&ideal, motions) || !cut_out_part(&ideal, motions, &part, start) ||
-        !closed_path_start(&part, start, &path)) {
-        return unknown;
-    }
-    return walk(&path, fmin(turn, TURNS_MAX * 2.0 * M_PI));
+    const bool is_open = nearest_positions(&ideal, motions) &&
+                         cut_out_part(&ideal, motions, &part, start) &&
+                         closed_path_start(&part, start, &path);
+    const Lock lock = is_open ? walk(&path, fmin(turn, TURNS_MAX * 2.0 * M_PI)) : unknown;
+    linkage_free(&part);
+    linkage_free(&ideal);
+    return lock;
 }
 
 Lock lock_find_between(const Linkage *linkage, LockJoints joints, DriveExtent extent)

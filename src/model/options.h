@@ -112,6 +112,7 @@ typedef struct ContactOptions {
     LawKind law;
     double stiffness; // N/m^exponent; 0: from the law, the material and the joint
     double exponent;  // 1, of a given stiffness
+    bool is_for_all;  // whether it holds for joints that have a stiffness of their own, too
     DampingKind damping;
     double viscous_coefficient; // N s/m, of DAMPING_VISCOUS
     double restitution;         // 1, asked for

@@ -1,6 +1,8 @@
 // What is to be run, for how long, and how often is it looked at?
 #include "model/scenario.h"
 
+#include <stdlib.h>
+
 const char *const SCENARIO_SPACES[] = {"planar", "spatial", NULL};
 
 Scenario scenario_default(void)
@@ -13,6 +15,26 @@ Scenario scenario_default(void)
         .reference = reference_options_default(),
         .ode = ode_options_default(),
     };
+}
+
+Scenario scenario_copy(const Scenario *scenario)
+{
+    Scenario copy = *scenario;
+    copy.linkage = linkage_copy(&scenario->linkage);
+    return copy;
+}
+
+void scenario_free(Scenario *scenario)
+{
+    linkage_free(&scenario->linkage);
+}
+
+void scenario_destroy(Scenario *scenario)
+{
+    if (scenario != NULL) {
+        scenario_free(scenario);
+        free(scenario);
+    }
 }
 
 double scenario_duration(const Scenario *scenario)
@@ -63,9 +85,7 @@ void scenario_set_stiffness(Scenario *scenario, double stiffness, double exponen
 {
     scenario->contact.stiffness = stiffness;
     scenario->contact.exponent = exponent;
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        scenario->linkage.joints[i].contact.stiffness = 0.0;
-    }
+    scenario->contact.is_for_all = true;
 }
 
 bool scenario_has_clearance(const Scenario *scenario)

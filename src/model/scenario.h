@@ -24,6 +24,9 @@ typedef enum ScenarioSpace {
 
 extern const char *const SCENARIO_SPACES[]; // the words, ending in NULL
 
+// It owns the arrays of its linkage. An assignment shares them: it is for a scenario of other
+// options that does not outlive the first. What is to have other bodies, joints or a life of its
+// own needs scenario_copy.
 typedef struct Scenario {
     char title[SCENARIO_TITLE_SIZE];
     char path[SCENARIO_PATH_SIZE]; // of the case file, as given; empty where there is none
@@ -47,8 +50,17 @@ typedef struct Scenario {
     ExpectedOutcome outcomes[OUTCOME_MAX]; // likewise
 } Scenario;
 
-// A scenario with every option at its default and an empty linkage.
+// A scenario with every option at its default and an empty linkage, without arrays.
 Scenario scenario_default(void);
+
+// One with a linkage of its own, of the same contents. For scenario_free.
+Scenario scenario_copy(const Scenario *scenario);
+
+// Frees what the scenario owns; its linkage is then empty.
+void scenario_free(Scenario *scenario);
+
+// The same of a scenario that was allocated itself; NULL is nothing.
+void scenario_destroy(Scenario *scenario);
 
 // Length of the run, s, and the number of samples in it (both ends included).
 double scenario_duration(const Scenario *scenario);
@@ -70,7 +82,7 @@ static inline double scenario_restitution(const Scenario *scenario, const Joint 
                                           : scenario->contact.restitution;
 }
 
-// Gives every joint with play one stiffness, N/m^exponent, in place of the contact's and of its
+// Gives all joints with play one stiffness, N/m^exponent, in place of the contact's and of their
 // own; 0 where the contact's law is to say it.
 void scenario_set_stiffness(Scenario *scenario, double stiffness, double exponent);
 

@@ -54,8 +54,9 @@ static void shake_body(Body *body, uint64_t *seed)
     shake(&body->start.omega, seed);
 }
 
-// What a joint has beside where it slides or stops, or has a contact of its own.
-static void shake_sliding(Joint *joint, uint64_t *seed)
+// What a joint has beside where it slides or stops, or has a contact of its own, with a stiffness
+// that counts.
+static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
 {
     if (joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE) {
         shake(&joint->direction, seed);
@@ -67,7 +68,7 @@ static void shake_sliding(Joint *joint, uint64_t *seed)
         shake(&joint->stop.radius_a, seed);
         shake(&joint->stop.radius_b, seed);
     }
-    if (joint->contact.stiffness > 0.0) {
+    if (joint->contact.stiffness > 0.0 && has_own) {
         shake(&joint->contact.stiffness, seed);
     }
     if (joint->contact.has_restitution) {
@@ -76,7 +77,7 @@ static void shake_sliding(Joint *joint, uint64_t *seed)
     }
 }
 
-static void shake_joint(Joint *joint, uint64_t *seed)
+static void shake_joint(Joint *joint, bool has_own, uint64_t *seed)
 {
     shake_vector(&joint->anchor_a, seed);
     shake_vector(&joint->anchor_b, seed);
@@ -84,7 +85,7 @@ static void shake_joint(Joint *joint, uint64_t *seed)
     shake(&joint->clearance.pin_radius, seed);
     shake(&joint->clearance.width, seed);
     shake_vector(&joint->clearance.start, seed);
-    shake_sliding(joint, seed);
+    shake_sliding(joint, has_own, seed);
 }
 
 static void shake_forces(Linkage *linkage, uint64_t *seed)
@@ -159,7 +160,7 @@ void shake_inputs(Scenario *scenario, unsigned seed)
         }
     }
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        shake_joint(&scenario->linkage.joints[i], &drawn);
+        shake_joint(&scenario->linkage.joints[i], !scenario->contact.is_for_all, &drawn);
         if (scenario->linkage.is_spatial) {
             shake_joint_space(&scenario->linkage.joints[i].space, &drawn);
         }

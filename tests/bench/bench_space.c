@@ -6,6 +6,7 @@
 #include "mechanism.h"
 
 #include "base/clock.h"
+#include "kept.h"
 #include "run/registry.h"
 #include "run/run.h"
 
@@ -25,7 +26,7 @@ static double run_us(const Scenario *scenario, BackendKind backend)
 
 static Scenario lifted(const Scenario *flat)
 {
-    Scenario scenario = *flat;
+    Scenario scenario = kept_copy(flat);
     scenario.linkage.is_spatial = true;
     for (size_t i = 0; i < scenario.linkage.body_count; i++) {
         Body *body = &scenario.linkage.bodies[i];

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/sorted.h"
+#include "kept.h"
 #include "ode/engine.h"
 #include "ode/world.h"
 #include "run/registry.h"
@@ -53,7 +54,7 @@ static double run_us(const Scenario *scenario)
 // The scenario stepped in another way.
 static Scenario stepped(const Scenario *scenario, OdeStepping stepping, OdeMap map)
 {
-    Scenario other = *scenario;
+    Scenario other = kept_copy(scenario);
     other.ode.stepping = stepping;
     other.ode.map = map;
     return other;
@@ -64,7 +65,7 @@ int main(void)
     Scenario ideal = mechanism_paper();
     Scenario loose = mechanism_paper();
     mechanism_loosen(&loose, "crank-coupler");
-    Scenario quick = loose;
+    Scenario quick = kept_copy(&loose);
     quick.ode.solver = ODE_QUICK;
     const struct {
         const char *name;

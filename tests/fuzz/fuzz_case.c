@@ -62,6 +62,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (casefile_load_text("case.yaml", text, length, overrides, count, &scenario, &err)) {
         check_settings(&scenario);
         write_back(&scenario);
+        scenario_free(&scenario);
     } else {
         fuzz_check_err(&err);
         fuzz_check(err.kind == ERR_CASE || err.kind == ERR_USAGE,

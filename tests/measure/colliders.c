@@ -14,6 +14,7 @@
 #include "collider_poses.h"
 #include "naive_collider.h"
 
+#include "../support/kept.h"
 #include "base/clock.h"
 #include "casefile/casefile.h"
 #include "contact/facets.h"
@@ -53,7 +54,7 @@ static Scenario load(const char *path, const char *play)
         fprintf(stderr, "%s\n", err.text);
         exit(3);
     }
-    return scenario;
+    return kept_instead(&scenario);
 }
 
 static int joint_with_play(const Scenario *scenario)

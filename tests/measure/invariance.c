@@ -9,6 +9,7 @@
 #include "rocker.h"
 #include "starts.h"
 
+#include "../support/kept.h"
 #include "commands/check/check_measure.h"
 #include "measure/error.h"
 
@@ -38,10 +39,10 @@ static Answers answer(const Scenario *scenario, unsigned seed, size_t members)
     const Starts starts = {PERTURBATION, seed, members};
     DistanceScale scales[LINKAGE_BODY_MAX];
     distance_scales(answers.truth.trajectory, scales);
-    Scenario longer = *scenario;
+    Scenario longer = kept_copy(scenario);
     longer.run.revolutions = TURNS;
     answers.horizon = starts_horizon(&longer, scales, starts);
-    Scenario plain = *scenario;
+    Scenario plain = kept_copy(scenario);
     plain.run.step = STEP_S;
     plain.run.samples = 360;
     starts_impact(&plain, scales, starts, PIN, &answers.force, &answers.impulse);

@@ -21,6 +21,7 @@
 #include "random_draw.h"
 #include "random_scenario.h"
 
+#include "../support/kept.h"
 #include "casefile/casefile.h"
 #include "measure/child.h"
 #include "measure/chosen_run.h"
@@ -141,7 +142,7 @@ static void judge_reference(const Scenario *scenario, const Truth *truth, Result
 // the centre of its hole has moved the bodies: then the start would be another.
 static void judge_closed_form(const Scenario *scenario, Result *result)
 {
-    Scenario ideal = *scenario;
+    Scenario ideal = kept_copy(scenario);
     for (size_t i = 0; i < ideal.linkage.joint_count; i++) {
         Joint *joint = &ideal.linkage.joints[i];
         if (joint->kind == JOINT_CLEARANCE && vec2_length(joint->clearance.start) > 0.0) {

@@ -1,5 +1,7 @@
 #include "random_scenario.h"
 
+#include "../support/kept.h"
+
 #include "casefile/casefile.h"
 
 #include <assert.h>
@@ -31,7 +33,7 @@ static void move_anchor(int body, Vec2 *anchor, Vec2 by)
 Scenario moved_scenario(const Scenario *scenario, double tolerance)
 {
     static const Vec2 BY = {0.0721, -0.0413}; // m
-    Scenario other = *scenario;
+    Scenario other = kept_copy(scenario);
     Linkage *linkage = &other.linkage;
     for (size_t i = 0; i < linkage->body_count; i++) {
         linkage->bodies[i].start.position = vec2_add(linkage->bodies[i].start.position, BY);

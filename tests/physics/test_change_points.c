@@ -5,6 +5,7 @@
 // from upright with 1 m/s at their tips. On the branch of parallelograms all uprights stand at one
 // angle theta from the vertical:
 //     theta'' = k sin theta,   k = g 3 (3 N + 1) / (2 (4 N + 1)),   theta(0) = 0, theta'(0) = 1
+#include "kept.h"
 #include "ode_error.h"
 
 #include <stdio.h>
@@ -33,7 +34,7 @@ static void add_joint(Linkage *linkage, int a, double along_a, int b, double alo
 // Uprights have the even numbers and point up; couplers the odd ones.
 static Scenario four_bars(int count, double duration_s)
 {
-    Scenario scenario = scenario_default();
+    Scenario scenario = kept_default();
     Linkage *linkage = &scenario.linkage;
     for (int i = 0; i <= count; i++) {
         add_link(linkage, "upright", (Vec2){i, 0.5}, 0.5 * M_PI, -1.0, 0.5);

@@ -6,6 +6,7 @@
 #include "mechanism.h"
 #include "ode_error.h"
 
+#include "kept.h"
 #include "measure/chosen_run.h"
 
 #include <string.h>
@@ -50,7 +51,7 @@ static Trajectory *chosen(const Scenario *scenario)
 
 static double error_of(const Trajectory *run, const Scenario *scenario, BackendKind judge)
 {
-    Scenario other = *scenario;
+    Scenario other = kept_copy(scenario);
     other.reference.tolerance = JUDGE;
     Trajectory *exact = complete_run(&other, judge);
     const TrajectoryError error = error_against(run, exact, run->estimate_s);

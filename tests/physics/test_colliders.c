@@ -6,6 +6,7 @@
 
 #include "collider_poses.h"
 #include "contact/facets.h"
+#include "kept.h"
 #include "measure/error.h"
 #include "mechanism.h"
 #include "run/registry.h"
@@ -41,7 +42,7 @@ static PoseFigures ask(const Scenario *scenario, OdePolygon asked, double limit)
     const OdeCollider collider = scenario->ode.collider;
     const size_t count = collider == ODE_COLLIDER_TRIMESH ? SLOW_POSE_COUNT : POSE_COUNT;
     Poses poses = collider_poses_make(scenario, joint_of(scenario), count, 11);
-    Scenario other = *scenario;
+    Scenario other = kept_copy(scenario);
     other.ode.polygon = asked;
     poses.scenario = &other;
     const PoseFigures figures = collider_poses_ask(&poses, collider_get(collider), limit);

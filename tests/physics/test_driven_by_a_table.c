@@ -7,6 +7,7 @@
 #include "mechanism.h"
 
 #include "analytic/closed_form.h"
+#include "kept.h"
 
 static const double RPM = 3.14159265358979323846 / 30.0;
 
@@ -121,7 +122,7 @@ static void the_reference_follows_the_closed_form(void **state)
         }
     }
     // the drive's work holds the turning of the crank itself: 174e-6 kg m^2 at 400 rpm
-    Scenario light = scenario;
+    Scenario light = kept_copy(&scenario);
     light.linkage.bodies[0].inertia *= 0.5;
     light.run.duration = scenario.run.duration = 8e-3;
     Trajectory *heavy_run = complete_run(&scenario, BACKEND_REFERENCE);

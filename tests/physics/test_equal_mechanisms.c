@@ -5,6 +5,7 @@
 
 #include "mechanism.h"
 
+#include "kept.h"
 #include "model/kinematics.h"
 #include "run/registry.h"
 
@@ -44,7 +45,7 @@ static void add_copy(Linkage *linkage, const Linkage *one, double right, int num
 
 static Scenario copies(const Scenario *one, int count)
 {
-    Scenario scenario = *one;
+    Scenario scenario = kept_copy(one);
     scenario.has_fourbar = false;
     for (int i = 1; i < count; i++) {
         add_copy(&scenario.linkage, &one->linkage, APART * i, i);
@@ -122,7 +123,7 @@ static void check_copies(const Scenario *one, BackendKind backend, int count, do
         fail_msg("%d copies: %.3g", count, found);
     }
     // the control: a run to compare with that has other impacts is far off
-    Scenario other = *one;
+    Scenario other = kept_copy(one);
     other.contact.restitution = 0.89;
     Trajectory *different = complete_run(&other, backend);
     assert_true(difference(one, many, different) > 1e3 * most);

@@ -1,5 +1,6 @@
 // Do staggered worlds of different steps, put together, give the order that their number promises,
 // in motion and in forces, with a drive and without one?
+#include "kept.h"
 #include "mechanism.h"
 #include "ode_error.h"
 
@@ -30,7 +31,7 @@ static void add_link(Linkage *linkage, const char *name, int above, Vec2 anchor,
 // One or two links, pointing to the right and moving up at the speeds given, rad/s.
 static Scenario pendulum(size_t links, double upper_speed, double lower_speed)
 {
-    Scenario scenario = scenario_default();
+    Scenario scenario = kept_default();
     Body upper = {.mass = 1.0, .inertia = 0.02, .start.position = {0.25, 0.0}};
     upper.start.omega = upper_speed;
     upper.start.velocity.y = 0.25 * upper_speed;

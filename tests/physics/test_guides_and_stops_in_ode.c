@@ -1,5 +1,6 @@
 // Do blocks between guides, and stops, press in ODE as in the reference: motion with the orders of
 // the schemes, forces, energy?
+#include "kept.h"
 #include "mechanism.h"
 #include "ode_error.h"
 #include "slider.h"
@@ -266,7 +267,7 @@ static void guides_a_micron_wider_are_seen(void **state)
 {
     (void)state;
     const Scenario scenario = flores(false);
-    Scenario wider = scenario;
+    Scenario wider = kept_copy(&scenario);
     wider.linkage.joints[SLIDER_GUIDE].guide.opening += 1e-6;
     Trajectory *truth = complete_run(&scenario, BACKEND_REFERENCE);
     Trajectory *run = ode_run(wider, &SCHEMES[1], 1.25e-6);

@@ -3,6 +3,7 @@
 //
 // A ball on a stiff floor: approach speeds e^n v0, onsets at sqrt(2 h / g) (1 + 2 (e + ... + e^n)).
 // A row of discs on F = K d^1.5: calculated here by itself, m x_i'' = F_i - F_(i+1).
+#include "kept.h"
 #include "ode_error.h"
 
 #include <stdio.h>
@@ -19,7 +20,7 @@ static const double GRAVITY = 9.81; // m/s^2
 
 static Scenario scene(double step_s)
 {
-    Scenario scenario = scenario_default();
+    Scenario scenario = kept_default();
     scenario.gravity = GRAVITY;
     scenario.run.backend_count = 1;
     scenario.run.backends[0] = BACKEND_ODE;

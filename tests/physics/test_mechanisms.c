@@ -3,6 +3,7 @@
 #include "load_case.h"
 #include "ode_error.h"
 
+#include "kept.h"
 #include "model/kinematics.h"
 
 static const char ANDREWS[] = "cases/mechanisms/andrews.yaml";
@@ -85,7 +86,7 @@ static void energy_balances_beside_contacts(void **state)
     assert_true(energy->drive_work > 1e-3);
     assert_true(fabs(energy->residual) < 1e-9 * energy->drive_work);
     // the control: without what the dampers took it is a million times more
-    Scenario undamped = scenario;
+    Scenario undamped = kept_copy(&scenario);
     undamped.linkage.torsions[0].damping = undamped.linkage.springs[0].damping = 0.0;
     Trajectory *other = complete_run(&undamped, BACKEND_REFERENCE);
     assert_true(energy->dissipated - other->energy.dissipated > 1e-3 * energy->drive_work);

@@ -8,6 +8,7 @@
 #include "load_case.h"
 
 #include "contact/pin_space.h"
+#include "kept.h"
 
 // The paper's mechanism in space.
 static Scenario paper(OdeStepping stepping, OdeMap map, double step_s)
@@ -53,7 +54,7 @@ static Apart apart(const Trajectory *a, const Trajectory *b)
 
 static Apart lifted(Scenario flat, double height)
 {
-    Scenario spatial = flat;
+    Scenario spatial = kept_copy(&flat);
     flat.linkage.is_spatial = false;
     for (size_t i = 0; i < spatial.linkage.body_count; i++) {
         spatial.linkage.bodies[i].space.height = height;
@@ -102,7 +103,7 @@ static void friction_is_that_of_the_plane(void **state)
         scenario.contact.friction = 0.1;
         // the step's own equations are solved to 1e-7, contacts in the step by other local steps
         assert_true(lifted(scenario, 0.0).omega < 1e-6);
-        Scenario half = scenario;
+        Scenario half = kept_copy(&scenario);
         half.contact.friction = 0.05;
         Trajectory *one = complete_run(&scenario, BACKEND_ODE);
         Trajectory *two = complete_run(&half, BACKEND_ODE);

@@ -8,6 +8,7 @@
 
 #include "contact/force_law.h"
 #include "contact/law.h"
+#include "kept.h"
 
 // Speed after one impact over the speed before, the mean over where the steps fall.
 static double delivered(const Scenario *scenario, double steps_a_contact)
@@ -89,7 +90,7 @@ static void a_constant_load_presses_as_deep_as_the_law_says(void **state)
         assert_close(static_depth(linear, weight, 0.5 * weight / stiffness), weight / stiffness,
                      1e-6);
         for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
-            Scenario scenario = linear;
+            Scenario scenario = kept_copy(&linear);
             scenario.contact.stiffness = 0.0;
             scenario.contact.law = laws[i];
             ForceLaw law;

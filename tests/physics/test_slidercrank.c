@@ -1,5 +1,6 @@
 // Do the reference and ODE give a slider-crank with ideal joints the motion and the forces of the
 // closed form?
+#include "kept.h"
 #include "mechanism.h"
 #include "ode_error.h"
 
@@ -46,7 +47,7 @@ static void the_reference_agrees_with_the_closed_form_to_rounding(void **state)
                     trajectory_state(truth, k, 3)->eccentricity.x, 1e-14);
     }
     // the control: a slider a thousandth heavier is pushed by other forces
-    Scenario heavier = scenario;
+    Scenario heavier = kept_copy(&scenario);
     heavier.linkage.bodies[2].mass *= 1.001;
     Trajectory *other = complete_run(&heavier, BACKEND_REFERENCE);
     for (size_t joint = 1; joint < 4; joint++) {

@@ -2,6 +2,7 @@
 // are listed?
 #include "complete_run.h"
 
+#include "kept.h"
 #include "slider.h"
 
 #include <stdio.h>
@@ -11,7 +12,7 @@
 static Scenario relisted(const Scenario *scenario, const int *order, bool is_turned_round)
 {
     const double turned = 0.7;
-    Scenario other = *scenario;
+    Scenario other = kept_copy(scenario);
     other.linkage.bodies[2].start.angle += turned;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         Joint *joint = &other.linkage.joints[i];
@@ -191,7 +192,7 @@ static void a_free_mechanism_keeps_its_energy_however_it_is_listed(void **state)
 // that slides on that one in turn, off its centre and at an angle.
 static Scenario train(bool is_turned_round)
 {
-    Scenario scenario = scenario_default();
+    Scenario scenario = kept_default();
     scenario.gravity = 0.0;
     scenario.run.duration = 1.0;
     scenario.run.samples = 100;

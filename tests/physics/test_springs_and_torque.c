@@ -1,11 +1,12 @@
 // Do springs, dampers and torques move a linkage as closed forms and published solutions say, in
 // the reference and in every way of stepping ODE?
+#include "kept.h"
 #include "ode_error.h"
 
 // A body of inertia 0.25 + 0.5^2 = 0.5 kg m^2 about its pivot.
 static Scenario arm(void)
 {
-    Scenario scenario = scenario_default();
+    Scenario scenario = kept_default();
     Linkage *linkage = &scenario.linkage;
     linkage->body_count = linkage->joint_count = 1;
     linkage->bodies[0] = (Body){.name = "arm", .mass = 1.0, .inertia = 0.25};

@@ -1,5 +1,6 @@
 // Do bodies that stop one another bounce as they must?
 #include "complete_run.h"
+#include "kept.h"
 
 #include <stdio.h>
 
@@ -7,7 +8,7 @@ static const double GRAVITY = 9.81;
 
 static Scenario empty(void)
 {
-    Scenario scenario = scenario_default();
+    Scenario scenario = kept_default();
     scenario.gravity = GRAVITY;
     scenario.run.backend_count = 1;
     scenario.run.backends[0] = BACKEND_REFERENCE;
@@ -115,7 +116,7 @@ static void a_ball_on_a_stiff_floor_bounces_as_on_a_rigid_one(void **state)
         double errors[3][3];
         for (int k = 0; k < 3; k++) {
             const Scenario scenario = ball(pow(10.0, 8.0 + 2.0 * k), e);
-            Scenario run = scenario;
+            Scenario run = kept_copy(&scenario);
             run.run.duration = end_s + 0.1;
             const Bounces bounces = bounce(&run, end_s + 0.05);
             against_rigid(&bounces, e, errors[k]);

@@ -4,6 +4,7 @@
 #include "casefile/casefile.h"
 
 #include "close.h"
+#include "kept.h"
 
 static inline Scenario load(const char *path, const char *const *overrides, size_t count)
 {
@@ -12,7 +13,7 @@ static inline Scenario load(const char *path, const char *const *overrides, size
     if (!casefile_load(path, overrides, count, &scenario, &err)) {
         fail_msg("%s", err.text);
     }
-    return scenario;
+    return kept_instead(&scenario);
 }
 
 static inline Scenario load_with(const char *path, const char *override)

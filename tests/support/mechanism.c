@@ -1,5 +1,6 @@
 #include "mechanism.h"
 
+#include "kept.h"
 #include "model/kinematics.h"
 
 #include <assert.h>
@@ -39,7 +40,7 @@ static void assemble(Scenario *scenario)
 
 Scenario mechanism_default(void)
 {
-    Scenario scenario = scenario_default();
+    Scenario scenario = kept_default();
     scenario.run.step = 1e-6;
     scenario.run.backend_count = 2;
     scenario.run.backends[0] = BACKEND_ANALYTIC;

@@ -6,6 +6,7 @@
 
 #include "contact/damping.h"
 #include "contact/law.h"
+#include "kept.h"
 #include "mechanism.h"
 
 #include <assert.h>
@@ -77,7 +78,7 @@ static bool try_joint(unsigned short *state, int number, RandomJoint *drawn)
     const bool is_cylinder = number % KIND_COUNT == KIND_COUNT - 1;
     const Scenario scenario =
         is_cylinder ? cylinder_scenario(state, number, mass) : stiff_scenario(state, number, mass);
-    Scenario wide = scenario;
+    Scenario wide = kept_copy(&scenario);
     Clearance *clearance = &wide.linkage.joints[0].clearance;
     if (!is_cylinder) {
         clearance->pin_radius = 1e6; // no depth is too deep for it
@@ -112,7 +113,7 @@ RandomJoint random_joint_draw(unsigned short state[3], int number)
 RandomJoint random_joint_scaled(const RandomJoint *joint, double mass, double length, double time)
 {
     const MapImpactCase *impact = &joint->contact.impact;
-    Scenario scenario = joint->contact.scenario;
+    Scenario scenario = kept_copy(&joint->contact.scenario);
     ContactOptions *options = &scenario.contact;
     Clearance *clearance = &scenario.linkage.joints[0].clearance;
     options->stiffness *= mass * pow(length, 1.0 - options->exponent) / (time * time);

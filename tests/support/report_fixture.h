@@ -6,6 +6,7 @@
 #include "write/units.h"
 
 #include "close.h"
+#include "kept.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -159,7 +160,7 @@ static inline void make_summary(Fixture *fixture)
 static inline int fixture_set_up(void **state)
 {
     Fixture *fixture = calloc(1, sizeof *fixture);
-    fixture->scenario = scenario_default();
+    fixture->scenario = kept_default();
     Scenario *scenario = &fixture->scenario;
     strcpy(scenario->title, "A test & <nothing> else");
     strcpy(scenario->path, "cases/test.yaml");

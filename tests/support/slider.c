@@ -1,5 +1,6 @@
 #include "slider.h"
 
+#include "kept.h"
 #include "model/joint_rows.h"
 
 #include <assert.h>
@@ -46,7 +47,7 @@ static JointEnd at(int body_number, double x, double y)
 
 Scenario slider_crank(const SliderSizes *sizes, double crank_omega)
 {
-    Scenario scenario = scenario_default();
+    Scenario scenario = kept_default();
     scenario.gravity = 9.81;
     scenario.run.backend_count = 1;
     scenario.run.backends[0] = BACKEND_REFERENCE;
@@ -116,7 +117,7 @@ void slider_loosen_wrist(Scenario *scenario, double hole_radius, double play)
 
 Scenario slider_lever(double speed)
 {
-    Scenario scenario = scenario_default();
+    Scenario scenario = kept_default();
     scenario.gravity = 9.81;
     scenario.run.backend_count = 1;
     scenario.run.backends[0] = BACKEND_REFERENCE;

@@ -43,7 +43,7 @@ static Sliders begin(double speed, double start)
 
 static Sliders end(Sliders made, void (*motion)(const Scenario *, double, Motion *))
 {
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[LINKAGE_BODY_MAX] = {{.angle = 0.0}};
     made.motion = motion;
     motion(&made.scenario, 0.0, motions);
     for (size_t i = 0; i < made.scenario.linkage.body_count; i++) {

@@ -1,6 +1,7 @@
 #include "starts.h"
 
 #include "base/sorted.h"
+#include "kept.h"
 #include "model/growth.h"
 #include "run/registry.h"
 #include "run/run.h"
@@ -32,7 +33,7 @@ static Scenario start_of(const Scenario *scenario, const DistanceScale *scales, 
                          size_t number)
 {
     assert(starts.count <= STARTS_MAX);
-    Scenario beside = *scenario;
+    Scenario beside = kept_copy(scenario);
     perturb_start(&beside, scales, starts.size, starts.seed * STARTS_MAX + (unsigned)number);
     return beside;
 }

@@ -124,5 +124,6 @@ int main(int argc, char **argv)
            reached_s < truth.horizon_s ? "truth-stopped" : "ok");
     trajectory_destroy(exact);
     truth_finish(&truth);
+    scenario_free(&scenario);
     return 0;
 }

@@ -9,6 +9,7 @@
 #include "commands/check/baseline_json.h"
 #include "commands/check/check_judge.h"
 #include "commands/check/check_report.h"
+#include "kept.h"
 
 #include <jansson.h>
 #include <string.h>
@@ -26,7 +27,7 @@ typedef struct Bench {
 static void measure(Bench *bench, unsigned member, CheckMeasure *target)
 {
     const CheckPlan plan = {.has_truth = true, .uncertainty = 1e-7, .is_full = false};
-    Scenario scenario = bench->scenario;
+    Scenario scenario = kept_copy(&bench->scenario);
     if (member > 0) {
         check_measure_start(&scenario, baseline_rounding_start(member));
     }

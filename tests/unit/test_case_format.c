@@ -3,6 +3,7 @@
 #include "casefile/casefile.h"
 
 #include "close.h"
+#include "kept.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,7 +37,7 @@ static void both_descriptions_name_every_key(void **state)
     text_init(&words);
     casefile_describe_markdown(&page);
     casefile_describe(&words);
-    const Scenario scenario = scenario_default();
+    const Scenario scenario = kept_default();
     CasefileSetting setting;
     for (size_t i = 0; casefile_setting(&scenario, i, &setting); i++) {
         // the last part of the key: names of joints and points are placeholders there

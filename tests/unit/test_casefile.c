@@ -1,6 +1,7 @@
 // Does a case file become the scenario it describes? Runs in the source root.
 #include "casefile/casefile.h"
 
+#include "kept.h"
 #include "load_case.h"
 #include "mechanism.h"
 #include "model/kinematics.h"
@@ -153,8 +154,8 @@ static void settings_tell_what_the_case_said(void **state)
                                      "joints.crank-coupler.start=[5 um, -3 um]"};
     const Scenario scenario = load(IMPACT, overrides, 2);
     CasefileSetting setting;
-    assert_false(casefile_setting(&scenario, casefile_setting_count(), &setting));
-    assert_true(casefile_setting(&scenario, casefile_setting_count() - 1, &setting));
+    assert_false(casefile_setting(&scenario, casefile_setting_count(&scenario), &setting));
+    assert_true(casefile_setting(&scenario, casefile_setting_count(&scenario) - 1, &setting));
 
     assert_true(find_setting(&scenario, "four-bar.crank.length", &setting));
     assert_int_equal(setting.number_count, 3);
@@ -234,7 +235,7 @@ static void defaults_are_those_of_the_options(void **state)
     Scenario scenario;
     Err err = {0};
     assert_true(casefile_load_text("memory", TEXT, strlen(TEXT), NULL, 0, &scenario, &err));
-    const Scenario defaults = scenario_default();
+    const Scenario defaults = kept_default();
     // choices one by one, for there is padding between them and the numbers
     assert_int_equal(scenario.ode.solver, defaults.ode.solver);
     assert_int_equal(scenario.ode.stepping, defaults.ode.stepping);

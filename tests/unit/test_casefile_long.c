@@ -2,6 +2,7 @@
 #include "casefile/casefile.h"
 
 #include "close.h"
+#include "kept.h"
 #include "model/kinematics.h"
 
 #include <stdio.h>
@@ -40,7 +41,7 @@ static Scenario load(const char *text, const char *const *overrides, size_t coun
     if (!casefile_load_text("memory", text, strlen(text), overrides, count, &scenario, &err)) {
         fail_msg("%s", err.text);
     }
-    return scenario;
+    return kept_instead(&scenario);
 }
 
 static Scenario load_file(const char *path, const char *override)
@@ -50,7 +51,7 @@ static Scenario load_file(const char *path, const char *override)
     if (!casefile_load(path, &override, override != NULL ? 1 : 0, &scenario, &err)) {
         fail_msg("%s", err.text);
     }
-    return scenario;
+    return kept_instead(&scenario);
 }
 
 static void refuse(const char *text, const char *override, const char *message)
@@ -183,6 +184,7 @@ static void redundant_play_is_no_hindrance(void **state)
         const double omega = strcmp(scenario.linkage.bodies[i].name, "coupler") == 0 ? 0.0 : speed;
         assert_near(scenario.linkage.bodies[i].start.omega, omega, 1e-9 * speed);
     }
+    scenario_free(&scenario);
 }
 
 // Rounding of two hundred metres is more than a joint of some centimetres was once held to be

@@ -2,6 +2,7 @@
 #include "commands/check/check_work.h"
 
 #include "close.h"
+#include "kept.h"
 #include "mechanism.h"
 
 #include <stdlib.h>
@@ -34,7 +35,7 @@ static void a_start_takes_as_long_as_others_of_its_case(void **state)
     // far longer than it takes to ask
     Scenario slow = mechanism_loose(1);
     slow.run.revolutions = 100.0;
-    const Scenario other = slow;
+    const Scenario other = kept_copy(&slow);
     CheckMeasure *measures = calloc(2, sizeof *measures);
     assert_non_null(measures);
     CheckWork works[] = {

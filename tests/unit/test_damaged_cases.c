@@ -32,6 +32,7 @@ static void load(const char *text, size_t size, const char *const *overrides, si
         for (size_t i = 0; i < scenario.linkage.body_count; i++) {
             assert_true(isfinite(scenario.linkage.bodies[i].start.alpha));
         }
+        scenario_free(&scenario);
     } else {
         assert_true(err.kind == ERR_CASE || err.kind == ERR_USAGE);
         assert_true(strlen(err.text) > 0 && strlen(err.text) < ERR_TEXT_SIZE - 1);

@@ -1,6 +1,7 @@
 // Do runs follow from their numbers, do shards make up the whole, and do values arrive unchanged?
 #include "commands/study/design.h"
 
+#include "kept.h"
 #include "same_scenario.h"
 #include "study_file.h"
 
@@ -186,7 +187,7 @@ static Scenario make_run(const Spec *spec, uint64_t run, BackendKind *backend)
     if (!design_scenario(spec, values, &scenario, backend, &err)) {
         fail_msg("%s", err.text);
     }
-    return scenario;
+    return kept_instead(&scenario);
 }
 
 static void values_arrive_as_if_written_in_the_case(void **state)
@@ -225,6 +226,7 @@ static void values_arrive_as_if_written_in_the_case(void **state)
                               sizeof BY_HAND / sizeof BY_HAND[0], &written, &err));
     assert_int_equal(backend, BACKEND_ODE);
     assert_same_scenario(&drawn, &written);
+    scenario_free(&written);
     spec_finish(&spec);
 }
 

@@ -3,13 +3,18 @@
 #include "model/forces.h"
 
 #include "close.h"
+#include "kept.h"
 
 #include <string.h>
 
 // Two bodies that move as they like, every kind of spring between them and the ground.
 static Linkage two_bodies(Motion *motions)
 {
-    Linkage linkage = {.body_count = 2, .joint_count = 2, .spring_count = 2, .torsion_count = 2};
+    Linkage linkage = kept_linkage();
+    linkage.body_count = 2;
+    linkage.joint_count = 2;
+    linkage.spring_count = 2;
+    linkage.torsion_count = 2;
     for (size_t i = 0; i < 2; i++) {
         linkage.bodies[i].mass = 1.0;
         linkage.bodies[i].inertia = 0.1;

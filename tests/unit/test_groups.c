@@ -1,6 +1,7 @@
 // Are the bodies of a linkage sorted into the groups that textbooks show?
 #include "close.h"
 
+#include "kept.h"
 #include "model/groups.h"
 
 #include <string.h>
@@ -10,7 +11,9 @@ enum { CRANK };
 // A linkage of which only the joints count.
 static Linkage joined(size_t bodies, size_t joints, const int pairs[][2])
 {
-    Linkage linkage = {.body_count = bodies, .joint_count = joints};
+    Linkage linkage = kept_linkage();
+    linkage.body_count = bodies;
+    linkage.joint_count = joints;
     for (size_t i = 0; i < joints; i++) {
         linkage.joints[i].body_a = pairs[i][0];
         linkage.joints[i].body_b = pairs[i][1];

@@ -5,6 +5,7 @@
 #include "slider.h"
 
 #include "base/lcg.h"
+#include "kept.h"
 #include "model/joint_rows.h"
 #include "model/kinematics.h"
 #include "model/lock.h"
@@ -226,7 +227,9 @@ static void rates_of_rows_are_those_of_their_positions(void **state)
     uint64_t seed = lcg_stirred(7);
     int without_term = 0;
     for (int draw = 0; draw < 300; draw++) {
-        Linkage linkage = {.body_count = 2, .joint_count = 1};
+        Linkage linkage = kept_linkage();
+        linkage.body_count = 2;
+        linkage.joint_count = 1;
         Joint *joint = &linkage.joints[0];
         joint->kind = KINDS[draw % 3];
         joint->body_a = draw % 5 == 0 ? LINKAGE_GROUND : 0;

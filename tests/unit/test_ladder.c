@@ -4,6 +4,7 @@
 #include "run/registry.h"
 
 #include "close.h"
+#include "kept.h"
 #include "mechanism.h"
 
 #include <stdio.h>
@@ -307,7 +308,7 @@ static void without_a_truth_there_is_no_comparison(void **state)
 // How long one member of the ensemble of the finest step takes here, s, and not nothing.
 static double time_of_member(const Scenario *scenario)
 {
-    Scenario member = *scenario;
+    Scenario member = kept_copy(scenario);
     member.run.step = LADDER_STEPS[STEPS - 1];
     Trajectory *trajectory = run_scenario(&member, registry_solver(BACKEND_ODE), (RunWatch){0});
     const double wall_s = trajectory->wall_s;

@@ -4,6 +4,7 @@
 #include "mechanism.h"
 
 #include "base/lcg.h"
+#include "kept.h"
 #include "model/kinematics.h"
 #include "model/lock.h"
 
@@ -56,7 +57,7 @@ static Vec2 meet(Vec2 p, double b, Vec2 q, double c, double side)
 // A four-bar as bodies from ground, crank, coupler and follower, m.
 static Linkage four_bar(const double lengths[4], double start, double side, double speed)
 {
-    Linkage linkage = {0};
+    Linkage linkage = kept_linkage();
     const Vec2 pivot = {0.3, -0.2}; // where the crank's pivot lies does not matter
     const Vec2 far = vec2_add(pivot, (Vec2){lengths[0], 0.0});
     const Vec2 pin = vec2_add(pivot, vec2_rotate(start, (Vec2){lengths[1], 0.0}));
@@ -273,7 +274,7 @@ static void a_failure_near_the_lock_is_explained_and_one_before_it_is_not(void *
 {
     (void)state;
     const double lengths[4] = {0.4, 0.26, 0.2794, 0.2705};
-    Scenario scenario = scenario_default();
+    Scenario scenario = kept_default();
     scenario.linkage = four_bar(lengths, 30.0 * DEGREE, 1.0, 30.0);
     const double at_s = free_turn(lengths, 30.0 * DEGREE, 1.0) / 30.0;
     Err err = {ERR_SOLVER, "the pin is too deep"};

@@ -4,6 +4,7 @@
 #include "commands/paper/embedded.h"
 #include "commands/paper/paper.h"
 #include "contact/law.h"
+#include "kept.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -216,7 +217,7 @@ static void a_four_bar_that_is_not_one_is_refused(void **state)
     Scenario scenario;
     Err err = {0};
     assert_true(embedded_load(EMBEDDED_IDEAL_NOMINAL, &scenario, &err));
-    Scenario renamed = scenario;
+    Scenario renamed = kept_copy(&scenario);
     renamed.linkage.joints[1].name[0] = 'x';
     renamed.linkage.joints[2].name[0] = 'x';
     double forces[PRINTED_PIN_COUNT];

@@ -4,6 +4,7 @@
 #include "mechanism.h"
 #include "rocker.h"
 
+#include "kept.h"
 #include "model/nearest.h"
 #include "model/perturb.h"
 
@@ -23,7 +24,7 @@ static Scenario perturbed(const Scenario *scenario, double size, unsigned member
 {
     DistanceScale scales[LINKAGE_BODY_MAX];
     start_scales(scenario, scales);
-    Scenario beside = *scenario;
+    Scenario beside = kept_copy(scenario);
     assert_true(perturb_start(&beside, scales, size, member));
     return beside;
 }

@@ -5,6 +5,7 @@
 #include "mechanism.h"
 #include "whole_linkage.h"
 
+#include "kept.h"
 #include "model/kinematics.h"
 #include "model/response.h"
 
@@ -218,7 +219,7 @@ static void a_free_pin_has_its_own_mass_in_every_direction(void **state)
         assert_close(response_mass(&response, 0, normal), 0.123, 1e-14);
     }
     // control: a pin off the centre of mass gives way by turning, but not along its arm
-    Scenario off = scenario;
+    Scenario off = kept_copy(&scenario);
     off.linkage.joints[0].anchor_b = (Vec2){0.02, 0.0};
     assert_true(response_init(&off.linkage, false, &response, &err));
     assert_true(response_place(&response, &off.linkage.bodies[0].start));

@@ -3,6 +3,7 @@
 #include "close.h"
 
 #include "contact/touch.h"
+#include "kept.h"
 
 // Numbers that are not round and of either sign.
 static double some_number(size_t number)
@@ -19,7 +20,9 @@ static Linkage flying_pair(Motion motions[2])
                                  .anchor_a = {0.02, 0.01},
                                  .anchor_b = {-0.015, 0.03},
                                  .direction = 0.4};
-    Linkage linkage = {.body_count = 2, .joint_count = 3};
+    Linkage linkage = kept_linkage();
+    linkage.body_count = 2;
+    linkage.joint_count = 3;
     const double masses[2] = {0.3, 0.12};
     for (size_t i = 0; i < 2; i++) {
         linkage.bodies[i].mass = masses[i];

@@ -1,4 +1,5 @@
 // Does shaking round every input anew, and leave everything else alone?
+#include "kept.h"
 #include "load_case.h"
 #include "model/shake.h"
 #include "run/spike_scale.h"
@@ -16,7 +17,7 @@ static void each_number_moves_by_a_unit_in_the_last_place_at_most(void **state)
     const Scenario still = load("cases/paper/impact-k66.yaml", NULL, 0);
     size_t moved = 0;
     for (unsigned seed = 1; seed <= 20; seed++) {
-        Scenario shaken = still;
+        Scenario shaken = kept_copy(&still);
         shake_inputs(&shaken, seed);
         const double *const pairs[][2] = {
             {&still.contact.stiffness, &shaken.contact.stiffness},
@@ -40,18 +41,33 @@ static void each_number_moves_by_a_unit_in_the_last_place_at_most(void **state)
     assert_in_range(moved, 60, 100);
 }
 
+static bool is_alike(const Scenario *one, const Scenario *other)
+{
+    Scenario shared = *other;
+    const Linkage *linkage = &other->linkage;
+    shared.linkage.bodies = one->linkage.bodies;
+    shared.linkage.joints = one->linkage.joints;
+    shared.linkage.springs = one->linkage.springs;
+    shared.linkage.torsions = one->linkage.torsions;
+    return memcmp(one, &shared, sizeof shared) == 0 &&
+           memcmp(one->linkage.bodies, linkage->bodies,
+                  linkage->body_count * sizeof *linkage->bodies) == 0 &&
+           memcmp(one->linkage.joints, linkage->joints,
+                  linkage->joint_count * sizeof *linkage->joints) == 0;
+}
+
 static void equal_seeds_shake_alike_and_others_do_not(void **state)
 {
     (void)state;
     const Scenario still = load("cases/paper/impact-k66.yaml", NULL, 0);
-    Scenario first = still;
-    Scenario second = still;
-    Scenario third = still;
+    Scenario first = kept_copy(&still);
+    Scenario second = kept_copy(&still);
+    Scenario third = kept_copy(&still);
     shake_inputs(&first, 1);
     shake_inputs(&second, 1);
     shake_inputs(&third, 2);
-    assert_memory_equal(&first, &second, sizeof first);
-    assert_true(memcmp(&first, &third, sizeof first) != 0);
+    assert_true(is_alike(&first, &second));
+    assert_false(is_alike(&first, &third));
 }
 
 static void a_perfect_bounce_gives_back_no_more_than_all(void **state)
@@ -59,7 +75,7 @@ static void a_perfect_bounce_gives_back_no_more_than_all(void **state)
     (void)state;
     Scenario scenario = load_with("cases/paper/impact-k66.yaml", "contact.restitution=1");
     for (unsigned seed = 1; seed <= 20; seed++) {
-        Scenario shaken = scenario;
+        Scenario shaken = kept_copy(&scenario);
         shake_inputs(&shaken, seed);
         assert_true(shaken.contact.restitution <= 1.0);
     }
@@ -78,11 +94,11 @@ static void a_linkage_at_a_change_point_has_no_scale_of_spikes_however_it_is_rou
     // with accelerations of 6e9 rad/s^2; these three among them
     const unsigned seeds[] = {1, 2, 3, 5068, 5298, 5655};
     for (size_t i = 0; i < sizeof seeds / sizeof seeds[0]; i++) {
-        Scenario shaken = parallelogram;
+        Scenario shaken = kept_copy(&parallelogram);
         shake_inputs(&shaken, seeds[i]);
         assert_false(spike_scale(&shaken).is_known);
         // a linkage that goes round has a scale, and it stays
-        shaken = four_bar;
+        shaken = kept_copy(&four_bar);
         shake_inputs(&shaken, seeds[i]);
         assert_true(spike_scale(&shaken).is_known);
         assert_close(spike_scale(&shaken).alpha, alpha, 1e-9);

@@ -9,6 +9,7 @@
 #include "analytic/slidercrank_motion.h"
 #include "analytic/summary.h"
 #include "casefile/casefile.h"
+#include "kept.h"
 #include "model/kinematics.h"
 
 #include <string.h>
@@ -158,7 +159,7 @@ static Textbook solve_by_hand(const Scenario *scenario, const Motion *motions)
 
 static double reaction_error(const Scenario *scenario, double gravity_of_book)
 {
-    Scenario lighter = *scenario;
+    Scenario lighter = kept_copy(scenario);
     lighter.gravity = gravity_of_book;
     double worst = 0.0;
     for (int degree = 0; degree < 360; degree += 7) {
@@ -193,7 +194,7 @@ static void a_guide_away_from_the_pin_takes_a_couple(void **state)
 {
     (void)state;
     const Scenario scenario = mechanism_slidercrank(0.0, 0.0, SLIDER_RIGHT);
-    Scenario ahead = scenario;
+    Scenario ahead = kept_copy(&scenario);
     ahead.linkage.joints[3].anchor_b = (Vec2){0.03, 0.0};
     Motion motions[3];
     Reactions plain;

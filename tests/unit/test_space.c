@@ -1,5 +1,6 @@
 // How does a linkage stand in space, and which rows hold it there? Runs in the source root.
 #include "base/lcg.h"
+#include "kept.h"
 #include "load_case.h"
 #include "model/space_nearest.h"
 
@@ -72,7 +73,9 @@ static void the_kinetic_energy_is_that_of_the_points(void **state)
     // four point masses, and the moments and products they have
     static const Vec3 POINTS[] = {
         {0.1, 0.2, -0.05}, {-0.3, 0.1, 0.2}, {0.25, -0.15, 0.1}, {-0.05, -0.15, -0.25}};
-    Linkage linkage = {.is_spatial = true, .body_count = 1};
+    Linkage linkage = kept_linkage();
+    linkage.is_spatial = true;
+    linkage.body_count = 1;
     Body *body = &linkage.bodies[0];
     for (int i = 0; i < 4; i++) {
         const Vec3 p = POINTS[i];

@@ -2,6 +2,7 @@
 #include "commands/tune/tune.h"
 
 #include "close.h"
+#include "kept.h"
 #include "mechanism.h"
 
 #include <string.h>
@@ -173,7 +174,7 @@ static void tolerances_of_chosen_steps_are_one_scheme(void **state)
     assert_int_equal(tune->scheme_count, 1);
     assert_string_equal(tune->schemes[0].scheme.name, "auto");
     assert_true(tune_value(tune->schemes[0].first) <= 6e-3);
-    Scenario changed = scenario;
+    Scenario changed = kept_copy(&scenario);
     tune_apply(&tune->schemes[0], 2.5e-4, &changed);
     assert_true(changed.run.step == 0.0 && changed.run.tolerance == 2.5e-4);
     tune_destroy(tune);

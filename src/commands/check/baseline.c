@@ -76,7 +76,7 @@ static void set_setting(BaselineSetting *target, const CasefileSetting *setting)
 // Those that the scenario uses, but for its title.
 static void set_settings(Baseline *baseline, const Scenario *scenario)
 {
-    baseline->settings = calloc(casefile_setting_count(), sizeof *baseline->settings);
+    baseline->settings = calloc(casefile_setting_count(scenario), sizeof *baseline->settings);
     assert(baseline->settings != NULL);
     CasefileSetting setting;
     for (size_t i = 0; casefile_setting(scenario, i, &setting); i++) {

@@ -103,7 +103,7 @@ static bool read_case(CheckItem *item, const CheckOptions *options)
     if (item->err.kind != ERR_NONE ||
         !casefile_load(item->path, options->common.overrides, options->common.override_count,
                        item->scenario, &item->err)) {
-        free(item->scenario);
+        scenario_destroy(item->scenario);
         item->scenario = NULL;
         note_refusal(item, options);
         return false;
@@ -301,7 +301,7 @@ bool check_list_make(const CheckOptions *options, CheckItem **items, size_t *cou
 void check_list_destroy(CheckItem *items, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        free(items[i].scenario);
+        scenario_destroy(items[i].scenario);
         baseline_finish(&items[i].baseline);
         baseline_finish(&items[i].now);
     }

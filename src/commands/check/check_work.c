@@ -20,9 +20,10 @@ typedef struct Doing {
 static void measure(const void *context, void *result)
 {
     const CheckWork *work = context;
-    Scenario scenario = *work->scenario;
+    Scenario scenario = scenario_copy(work->scenario);
     check_measure_start(&scenario, work->start);
     check_measure(&scenario, &work->plan, result);
+    scenario_free(&scenario);
 }
 
 static bool take(void *owner, size_t number, const void *result, const Child *child, Err *err)

@@ -121,7 +121,7 @@ static bool compare_case(void *target, Err *err)
         is_done = compare_ladder(options, scenario, ladder, err);
     }
     ladder_destroy(ladder);
-    free(scenario);
+    scenario_destroy(scenario);
     return is_done;
 }
 

@@ -118,7 +118,7 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario,
         is_done = results_write(&RESULTS, &options->common, path, &report, err);
         say_hint(options, scenario);
     }
-    free(penalty);
+    penalty_map_destroy(penalty);
     mapping_finish(&mapping);
     return is_done;
 }
@@ -207,7 +207,7 @@ static bool do_map(void *target, Err *err)
                              ? load(options, scenario, err) && read_row(options, scenario, err)
                          : options->stiffness != NULL ? map_lone(options, scenario, err)
                                                       : map_case(options, scenario, err);
-    free(scenario);
+    scenario_destroy(scenario);
     return is_done;
 }
 

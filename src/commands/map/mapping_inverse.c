@@ -103,10 +103,11 @@ static void read_by(const Inverse *inverse, double mass, OdeMap kind, InverseRea
     }
 }
 
-// The pin in its hole, with the row.
+// The pin in its hole, with the row; for scenario_free.
 static Scenario pin_of(const Inverse *inverse)
 {
     Scenario scenario = scenario_default();
+    scenario.linkage = linkage_create((LinkageRoom){.joints = 1});
     scenario.linkage.joint_count = 1;
     scenario.linkage.joints[0] = (Joint){
         .name = "hole",
@@ -153,7 +154,8 @@ void inverse_add_mass(Inverse *inverse, const char *joint, double mass)
         snprintf(added->delivered.message, ERR_TEXT_SIZE, "the contact does not end");
         return;
     }
-    const Scenario scenario = pin_of(inverse);
+    Scenario scenario = pin_of(inverse);
     added->delivered =
         impact_deliver(&scenario, 0, mass, added->speed, added->predicted.duration.most);
+    scenario_free(&scenario);
 }

@@ -36,10 +36,11 @@ bool penalty_map_fits(const Scenario *scenario, PrintedPin *pin)
     return false;
 }
 
-// The scenario with its drive at another speed; what moves at the start moves in proportion.
+// The scenario with its drive at another speed; what moves at the start moves in proportion. For
+// scenario_free.
 static Scenario at_speed(const Scenario *scenario, double rpm)
 {
-    Scenario turned = *scenario;
+    Scenario turned = scenario_copy(scenario);
     Driver *driver = &turned.linkage.driver;
     const double ratio = rpm * RAD_PER_S_PER_RPM / fabs(driver->speed);
     driver->speed *= ratio;
@@ -105,13 +106,13 @@ static bool run_penalty(const Scenario *turned, const MappingJoint *joint, const
 
 static bool fill_row(const Scenario *scenario, const PenaltyMap *map, PenaltyMapRow *row, Err *err)
 {
-    const Scenario turned = at_speed(scenario, row->rpm);
+    row->turned = at_speed(scenario, row->rpm);
     MappingJoint joints[LINKAGE_JOINT_MAX];
     size_t count = 0;
-    if (!mapping_joint_measure(&turned, (RunWatch){0}, joints, &count, err)) {
+    if (!mapping_joint_measure(&row->turned, (RunWatch){0}, joints, &count, err)) {
         return false;
     }
-    const int wanted = linkage_find_joint(&turned.linkage, PRINTED_PIN_NAMES[map->pin]);
+    const int wanted = linkage_find_joint(&row->turned.linkage, PRINTED_PIN_NAMES[map->pin]);
     const MappingJoint *joint = &joints[0];
     while (joint->joint != wanted) {
         joint++;
@@ -122,7 +123,8 @@ static bool fill_row(const Scenario *scenario, const PenaltyMap *map, PenaltyMap
         return err_set(err, ERR_SOLVER, "no contact of %s begins with a closing speed",
                        PRINTED_PIN_NAMES[map->pin]);
     }
-    return run_spring(&turned, joint, map, row, err) && run_penalty(&turned, joint, map, row, err);
+    return run_spring(&row->turned, joint, map, row, err) &&
+           run_penalty(&row->turned, joint, map, row, err);
 }
 
 bool penalty_map_make(const Scenario *scenario, double step_s, RunWatch watch, PenaltyMap **map,
@@ -156,10 +158,18 @@ bool penalty_map_make(const Scenario *scenario, double step_s, RunWatch watch, P
             char where[48];
             snprintf(where, sizeof where, "at %.4g rpm", row->rpm);
             err_prefix(err, where);
-            free(made);
+            penalty_map_destroy(made);
             return false;
         }
     }
     *map = made;
     return true;
+}
+
+void penalty_map_destroy(PenaltyMap *map)
+{
+    for (int i = 0; map != NULL && i < PRINTED_SPEED_COUNT; i++) {
+        scenario_free(&map->rows[i].turned);
+    }
+    free(map);
 }

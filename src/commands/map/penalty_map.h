@@ -13,6 +13,7 @@ typedef struct PenaltyMapRow {
     double mass;     // kg, of the joint's contacts
     double speed;    // m/s, likewise: median closing speed of the reference's run at this speed
     // read as a stiffness in N/mm, with the viscous damper of the restitution asked for
+    Scenario turned; // owned: the case at this speed
     MappingContact stiffness;
     ErpCfm soft;               // of it at the step, by the case's map
     double rest_depth;         // m, force / stiffness
@@ -32,8 +33,11 @@ typedef struct PenaltyMap {
 // Whether a scenario has one of the paper's two pins with play, driven; its number if so.
 bool penalty_map_fits(const Scenario *scenario, PrintedPin *pin);
 
-// Works out all rows at a step, s. The caller frees the map. Fails with ERR_CASE where the scenario
-// does not fit, with ERR_SOLVER where the reference fails at one of the speeds or there is no
-// contact at one.
+// Works out all rows at a step, s. The map is for penalty_map_destroy. Fails with ERR_CASE where
+// the scenario does not fit, with ERR_SOLVER where the reference fails at one of the speeds or
+// there is no contact at one.
 bool penalty_map_make(const Scenario *scenario, double step_s, RunWatch watch, PenaltyMap **map,
                       Err *err);
+
+// Accepts NULL.
+void penalty_map_destroy(PenaltyMap *map);

@@ -77,6 +77,7 @@ static bool fill_by_run(EmbeddedCase which, BackendKind backend, RunWatch watch,
         text_copy(row->message, sizeof row->message, run->message);
     }
     trajectory_destroy(run);
+    scenario_free(&scenario);
     return true;
 }
 
@@ -110,6 +111,7 @@ static bool fill_by_sampling(ExtremesRow *row, Err *err)
         .follower_alpha = curves[3],
     };
     fourbar_motion_grid(&lengths, scenario.linkage.driver.speed, DEGREES, angles, &grid);
+    scenario_free(&scenario);
     for (int i = 0; i < 4; i++) {
         sampled_range(curves[i], &row->ours[2 * i], &row->ours[2 * i + 1]);
     }

@@ -12,9 +12,13 @@ bool paper_compute(PaperResult *result, RunWatch watch, Err *err)
         made.as_printed += made.tables[i].as_printed;
     }
     Scenario nominal;
-    if (!embedded_load(EMBEDDED_IDEAL_NOMINAL, &nominal, err) ||
-        !physical_compute(&nominal, &made.physical, err) ||
-        !extremes_compute(watch, made.extremes, err)) {
+    if (!embedded_load(EMBEDDED_IDEAL_NOMINAL, &nominal, err)) {
+        return false;
+    }
+    const bool is_computed = physical_compute(&nominal, &made.physical, err) &&
+                             extremes_compute(watch, made.extremes, err);
+    scenario_free(&nominal);
+    if (!is_computed) {
         return false;
     }
     made.ideal_difference_max = extremes_difference_max(made.extremes);

@@ -165,4 +165,5 @@ void case_run_finish(CaseRun *run)
         run->runs[i] = NULL;
     }
     truth_finish(&run->truth);
+    scenario_free(&run->scenario);
 }

@@ -212,7 +212,7 @@ bool design_scenario(const Spec *spec, const Cell *values, Scenario *scenario, B
     Overrides overrides;
     overrides_make(spec, values, &overrides);
     Err own = {0};
-    Scenario built;
+    Scenario built = {.point_count = 0};
     BackendKind chosen = BACKEND_ODE;
     bool is_good = casefile_load_text(name, spec->case_text, spec->case_size, overrides.all,
                                       overrides.count, &built, &own);
@@ -223,6 +223,7 @@ bool design_scenario(const Spec *spec, const Cell *values, Scenario *scenario, B
     }
     overrides_finish(spec, &overrides);
     if (!is_good) {
+        scenario_free(&built);
         keep_sentence(&own, err);
         return false;
     }

@@ -89,7 +89,7 @@ void spec_finish(Spec *spec)
     free(spec->path);
     free(spec->case_path);
     free(spec->case_text);
-    free(spec->base);
+    scenario_destroy(spec->base);
     for (size_t i = 0; i < spec->set_count; i++) {
         free(spec->set[i]);
     }

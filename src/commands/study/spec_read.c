@@ -34,7 +34,7 @@ static bool take_base(Reading *reading)
     if (spec->base != NULL) {
         return true;
     }
-    spec->base = malloc(sizeof *spec->base);
+    spec->base = calloc(1, sizeof *spec->base);
     assert(spec->base != NULL);
     return probe_scenario(reading->probe, spec->base, reading->err);
 }

@@ -69,8 +69,6 @@ static void append_trials(const StudyOptions *options, const Spec *spec, Text *t
     uint64_t refused = 0;
     uint64_t first = 0;
     Err reason = {0};
-    Scenario *scenario = malloc(sizeof *scenario);
-    assert(scenario != NULL);
     for (uint64_t i = 0; i < count; i++) {
         Cell values[RECORD_SETTING_MAX];
         BackendKind backend;
@@ -81,12 +79,13 @@ static void append_trials(const StudyOptions *options, const Spec *spec, Text *t
         }
         tried++;
         design_values(spec, run, values);
-        if (!design_scenario(spec, values, scenario, &backend, &err)) {
+        Scenario scenario = {.point_count = 0};
+        if (!design_scenario(spec, values, &scenario, &backend, &err)) {
             reason = refused == 0 ? err : reason;
             first = refused++ == 0 ? run : first;
         }
+        scenario_free(&scenario);
     }
-    free(scenario);
     text_append(text, "Runs tried over all of it: %" PRIu64 "; of them no valid case: %" PRIu64,
                 tried, refused);
     text_append(text, refused > 0 ? "; the first is run %" PRIu64 ": %s\n" : ".\n", first,

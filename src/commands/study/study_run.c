@@ -64,7 +64,7 @@ static bool find_layout(const Spec *spec, Layout *layout, Err *err)
     if (is_found) {
         metrics_layout(spec, scenario, layout);
     }
-    free(scenario);
+    scenario_destroy(scenario);
     return is_found;
 }
 

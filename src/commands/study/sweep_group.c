@@ -90,6 +90,9 @@ void sweep_group_open(const Sweep *sweep, uint64_t run, SweepGroup *group)
 
 static void drop_preparations(SweepGroup *group)
 {
+    if (group->wanted != NULL) {
+        scenario_free(&group->wanted->task.scenario);
+    }
     free(group->wanted);
     free(group->packed);
     group->wanted = NULL;

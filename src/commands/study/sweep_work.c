@@ -65,7 +65,7 @@ static void measure(const SweepRun *task, const Scenario *scenario, BackendKind 
 
 static void run(const SweepRun *task, Record *record)
 {
-    Scenario *scenario = malloc(sizeof *scenario);
+    Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
     record->run = task->run;
     forget_results(record);

@@ -173,7 +173,7 @@ static bool tune_case(void *target, Err *err)
                   check_met(&report, err);
     }
     tune_destroy(tune);
-    free(scenario);
+    scenario_destroy(scenario);
     return is_done;
 }
 

@@ -148,12 +148,12 @@ static void write_joint(const Joint *joint, Text *text)
 
 static void write_linkage(const Linkage *linkage, Text *text)
 {
-    text_append(text, "    .linkage.body_count = %zu,\n    .linkage.bodies = {\n",
+    text_append(text, "    .linkage.body_count = %zu,\n    .linkage.bodies = (Body[]){\n",
                 linkage->body_count);
     for (size_t i = 0; i < linkage->body_count; i++) {
         write_body(&linkage->bodies[i], text);
     }
-    text_append(text, "    },\n    .linkage.joint_count = %zu,\n    .linkage.joints = {\n",
+    text_append(text, "    },\n    .linkage.joint_count = %zu,\n    .linkage.joints = (Joint[]){\n",
                 linkage->joint_count);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         write_joint(&linkage->joints[i], text);

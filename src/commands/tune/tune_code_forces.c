@@ -6,39 +6,48 @@
 
 static void write_springs(const Linkage *linkage, Text *text)
 {
-    text_append(text, "    .linkage.spring_count = %zu,\n", linkage->spring_count);
+    if (linkage->spring_count == 0) {
+        return;
+    }
+    text_append(text, "    .linkage.spring_count = %zu,\n    .linkage.springs = (Spring[]){\n",
+                linkage->spring_count);
     for (size_t i = 0; i < linkage->spring_count; i++) {
         const Spring *spring = &linkage->springs[i];
-        text_append(text, "    .linkage.springs[%zu] = {.body_a = %d, .body_b = %d,\n", i,
-                    spring->body_a, spring->body_b);
-        text_append(text, "                            .anchor_a = {%s, %s}",
-                    number_shortest(spring->anchor_a.x).text,
+        text_append(text, "        {.body_a = %d, .body_b = %d,\n", spring->body_a, spring->body_b);
+        text_append(text, "         .anchor_a = {%s, %s}", number_shortest(spring->anchor_a.x).text,
                     number_shortest(spring->anchor_a.y).text);
-        text_append(text, ",\n                            .anchor_b = {%s, %s}",
+        text_append(text, ",\n         .anchor_b = {%s, %s}",
                     number_shortest(spring->anchor_b.x).text,
                     number_shortest(spring->anchor_b.y).text);
         text_append(text,
-                    ",\n                            .stiffness = %s, // N/m\n"
-                    "                            .length = %s, // m\n"
-                    "                            .damping = %s}, // N s/m\n",
+                    ",\n         .stiffness = %s, // N/m\n"
+                    "         .length = %s, // m\n"
+                    "         .damping = %s}, // N s/m\n",
                     number_shortest(spring->stiffness).text, number_shortest(spring->length).text,
                     number_shortest(spring->damping).text);
     }
+    text_append(text, "    },\n");
 }
 
 static void write_torsions(const Linkage *linkage, Text *text)
 {
-    text_append(text, "    .linkage.torsion_count = %zu,\n", linkage->torsion_count);
+    if (linkage->torsion_count == 0) {
+        return;
+    }
+    text_append(text,
+                "    .linkage.torsion_count = %zu,\n    .linkage.torsions = (TorsionSpring[]){\n",
+                linkage->torsion_count);
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
         text_append(text,
-                    "    .linkage.torsions[%zu] = {.joint = %d,\n"
-                    "                             .stiffness = %s, // N m/rad\n"
-                    "                             .angle = %s, // rad\n"
-                    "                             .damping = %s}, // N m s/rad\n",
-                    i, spring->joint, number_shortest(spring->stiffness).text,
+                    "        {.joint = %d,\n"
+                    "         .stiffness = %s, // N m/rad\n"
+                    "         .angle = %s, // rad\n"
+                    "         .damping = %s}, // N m s/rad\n",
+                    spring->joint, number_shortest(spring->stiffness).text,
                     number_shortest(spring->angle).text, number_shortest(spring->damping).text);
     }
+    text_append(text, "    },\n");
 }
 
 void tune_code_table(const char *name, const TimeTable *table, const char *unit, Text *text)

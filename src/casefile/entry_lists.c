@@ -1,0 +1,101 @@
+// Where do the entries of a case stand, and how is one found?
+//
+// Entries stand in one list, in the order in which the case gives them. For each row of the schema
+// a list by member says at which place the member's entry is.
+#include "base/room.h"
+#include "casefile/entries.h"
+
+static size_t row_number(const SchemaRow *row)
+{
+    return (size_t)(row - SCHEMA_ROWS);
+}
+
+const Entry *entries_at(const Entries *entries, const SchemaRow *row, size_t index)
+{
+    if (entries->slots == NULL) {
+        return NULL;
+    }
+    const EntrySlots *slots = &entries->slots[row_number(row)];
+    const size_t slot = index < slots->room ? slots->slots[index] : 0;
+    return slot == 0 ? NULL : &entries->entries[slot - 1];
+}
+
+static void note_slot(Entries *entries, size_t slot)
+{
+    if (entries->slots == NULL) {
+        entries->slots = calloc(SCHEMA_ROW_COUNT, sizeof *entries->slots);
+        assert(entries->slots != NULL);
+    }
+    const Entry *entry = &entries->entries[slot];
+    EntrySlots *slots = &entries->slots[row_number(entry->row)];
+    slots->slots = room_grow(slots->slots, &slots->room, entry->index + 1, sizeof *slots->slots);
+    slots->slots[entry->index] = slot + 1;
+}
+
+void entries_put(Entries *entries, const Entry *entry)
+{
+    const Entry *found = entries_at(entries, entry->row, entry->index);
+    const size_t slot = found != NULL ? (size_t)(found - entries->entries) : entries->count++;
+    entries->entries =
+        room_grow(entries->entries, &entries->room, entries->count, sizeof *entries->entries);
+    entries->entries[slot] = *entry;
+    note_slot(entries, slot);
+}
+
+void entries_take_away(Entries *entries, size_t slot)
+{
+    const Entry *gone = &entries->entries[slot];
+    entries->slots[row_number(gone->row)].slots[gone->index] = 0;
+    for (size_t i = slot + 1; i < entries->count; i++) {
+        entries->entries[i - 1] = entries->entries[i];
+        note_slot(entries, i - 1);
+    }
+    entries->count--;
+}
+
+void entries_add_group(Entries *entries, const EntryGroup *group)
+{
+    entries->groups = room_grow(entries->groups, &entries->group_room, entries->group_count + 1,
+                                sizeof *entries->groups);
+    entries->groups[entries->group_count++] = *group;
+}
+
+size_t entries_add_name(EntryNames *names, const char *name)
+{
+    names->names = room_grow(names->names, &names->room, names->count + 1, sizeof *names->names);
+    text_copy(names->names[names->count], LINKAGE_NAME_SIZE, name);
+    return names->count++;
+}
+
+Entries entries_copy(const Entries *entries)
+{
+    Entries copy = *entries;
+    copy.room = copy.count;
+    copy.entries = room_copy(entries->entries, copy.count, sizeof *copy.entries);
+    copy.group_room = copy.group_count;
+    copy.groups = room_copy(entries->groups, copy.group_count, sizeof *copy.groups);
+    for (size_t i = 0; i < SCHEMA_FAMILY_COUNT; i++) {
+        EntryNames *names = &copy.names[i];
+        names->room = names->count;
+        names->names = room_copy(names->names, names->count, sizeof *names->names);
+    }
+    copy.slots = NULL;
+    for (size_t i = 0; i < copy.count; i++) {
+        note_slot(&copy, i);
+    }
+    return copy;
+}
+
+void entries_finish(Entries *entries)
+{
+    for (size_t i = 0; entries->slots != NULL && i < SCHEMA_ROW_COUNT; i++) {
+        free(entries->slots[i].slots);
+    }
+    for (size_t i = 0; i < SCHEMA_FAMILY_COUNT; i++) {
+        free(entries->names[i].names);
+    }
+    free(entries->slots);
+    free(entries->entries);
+    free(entries->groups);
+    *entries = (Entries){.count = 0};
+}

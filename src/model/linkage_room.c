@@ -1,0 +1,60 @@
+// Who owns the arrays of a linkage?
+//
+// One block for each kind of member, as long as the linkage was made for. Members are plain data:
+// a copy of a linkage is a copy of its blocks.
+#include "model/linkage.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Zeroed room for so many members. A block without members exists as well.
+static void *create_block(size_t count, size_t size)
+{
+    void *block = calloc(count > 0 ? count : 1, size);
+    assert(block != NULL);
+    return block;
+}
+
+Linkage linkage_create(LinkageRoom room)
+{
+    return (Linkage){
+        .bodies = create_block(room.bodies, sizeof(Body)),
+        .joints = create_block(room.joints, sizeof(Joint)),
+        .springs = create_block(room.springs, sizeof(Spring)),
+        .torsions = create_block(room.torsions, sizeof(TorsionSpring)),
+    };
+}
+
+static void copy_block(void *target, const void *source, size_t count, size_t size)
+{
+    if (count > 0) {
+        memcpy(target, source, count * size);
+    }
+}
+
+Linkage linkage_copy(const Linkage *linkage)
+{
+    const LinkageRoom room = {linkage->body_count, linkage->joint_count, linkage->spring_count,
+                              linkage->torsion_count};
+    const Linkage made = linkage_create(room);
+    copy_block(made.bodies, linkage->bodies, room.bodies, sizeof(Body));
+    copy_block(made.joints, linkage->joints, room.joints, sizeof(Joint));
+    copy_block(made.springs, linkage->springs, room.springs, sizeof(Spring));
+    copy_block(made.torsions, linkage->torsions, room.torsions, sizeof(TorsionSpring));
+    Linkage copy = *linkage;
+    copy.bodies = made.bodies;
+    copy.joints = made.joints;
+    copy.springs = made.springs;
+    copy.torsions = made.torsions;
+    return copy;
+}
+
+void linkage_free(Linkage *linkage)
+{
+    free(linkage->bodies);
+    free(linkage->joints);
+    free(linkage->springs);
+    free(linkage->torsions);
+    *linkage = (Linkage){.body_count = 0};
+}

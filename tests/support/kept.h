@@ -1,0 +1,63 @@
+// Scenarios and linkages that a test builds. They live until its process ends, and have room for
+// bodies and joints that the test adds.
+#pragma once
+
+#include "model/scenario.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+// What is kept is reached from here: a leak is something else.
+typedef struct Kept {
+    Linkage linkage;
+    struct Kept *before;
+} Kept;
+
+static inline Linkage kept_linkage(void)
+{
+    static Kept *last;
+    Kept *kept = malloc(sizeof *kept);
+    assert(kept != NULL);
+    *kept = (Kept){
+        .linkage = linkage_create(
+            (LinkageRoom){.bodies = 64, .joints = 96, .springs = 32, .torsions = 32}),
+        .before = last,
+    };
+    last = kept;
+    return kept->linkage;
+}
+
+static inline Linkage kept_linkage_copy(const Linkage *linkage)
+{
+    const Linkage own = kept_linkage();
+    Linkage copy = *linkage;
+    copy.bodies = memcpy(own.bodies, linkage->bodies, copy.body_count * sizeof *own.bodies);
+    copy.joints = memcpy(own.joints, linkage->joints, copy.joint_count * sizeof *own.joints);
+    copy.springs = memcpy(own.springs, linkage->springs, copy.spring_count * sizeof *own.springs);
+    copy.torsions =
+        memcpy(own.torsions, linkage->torsions, copy.torsion_count * sizeof *own.torsions);
+    return copy;
+}
+
+static inline Scenario kept_default(void)
+{
+    Scenario scenario = scenario_default();
+    scenario.linkage = kept_linkage();
+    return scenario;
+}
+
+static inline Scenario kept_copy(const Scenario *scenario)
+{
+    Scenario copy = *scenario;
+    copy.linkage = kept_linkage_copy(&scenario->linkage);
+    return copy;
+}
+
+// One that was read or built otherwise: it is freed.
+static inline Scenario kept_instead(Scenario *scenario)
+{
+    const Scenario copy = kept_copy(scenario);
+    scenario_free(scenario);
+    return copy;
+}
