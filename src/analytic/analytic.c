@@ -20,7 +20,8 @@ typedef struct Analytic {
     double start_s;
     double end_s;
     size_t steps;
-    double omega[CLOSED_FORM_BODIES]; // at end_s
+    Motion bodies[CLOSED_FORM_BODIES]; // at end_s, once there was a step
+    double omega[CLOSED_FORM_BODIES];
     double alpha[CLOSED_FORM_BODIES];
     JointState joints[LINKAGE_JOINT_MAX];
     double torque;     // N m, of the drive at end_s
@@ -159,6 +160,7 @@ static bool analytic_step(void *state, double stop_s, Err *err)
     }
     add_up(analytic, &middle, middle_torque, &end, end_torque, width_s);
     for (size_t i = 0; i < CLOSED_FORM_BODIES; i++) {
+        analytic->bodies[i] = end.bodies[i];
         analytic->omega[i] = end.bodies[i].omega;
         analytic->alpha[i] = end.bodies[i].alpha;
     }
@@ -186,16 +188,30 @@ static StepRecord analytic_record(const void *state)
     };
 }
 
+// The state at the end of the step is known: the step has evaluated the loop there.
+static void observe_end(const Analytic *analytic, Sample *sample)
+{
+    const Linkage *linkage = &analytic->scenario->linkage;
+    sample->time_s = analytic->end_s;
+    sample->crank_rad = linkage_crank_angle(linkage, analytic->end_s);
+    memcpy(sample->bodies, analytic->bodies, sizeof analytic->bodies);
+    memcpy(sample->joints, analytic->joints, linkage->joint_count * sizeof *sample->joints);
+}
+
 static void analytic_observe(const void *state, double time_s, Sample *sample)
 {
-    Err err = {ERR_NONE, ""};
-    // the step before has evaluated the loop at the end of this interval
-    double torque;
-    const bool is_closed =
-        evaluate(state, ((const Analytic *)state)->start_s, time_s, sample, &torque, &err);
-    assert(is_closed);
-    (void)is_closed;
-    const Linkage *linkage = &((const Analytic *)state)->scenario->linkage;
+    const Analytic *analytic = state;
+    const Linkage *linkage = &analytic->scenario->linkage;
+    if (analytic->steps > 0 && time_s == analytic->end_s) {
+        observe_end(analytic, sample);
+    } else {
+        Err err = {ERR_NONE, ""};
+        // the step before has evaluated the loop at the end of this interval
+        double torque;
+        const bool is_closed = evaluate(analytic, analytic->start_s, time_s, sample, &torque, &err);
+        assert(is_closed);
+        (void)is_closed;
+    }
     if (linkage->is_spatial) {
         space_lift(linkage, sample->bodies, sample->space_bodies);
         memset(sample->space_joints, 0, sizeof sample->space_joints);

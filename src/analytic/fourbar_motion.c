@@ -10,6 +10,7 @@
 // digits near a dead centre, where b^2 - (p d)^2 loses them. Lengths m, angles rad.
 #include "analytic/fourbar_motion.h"
 
+#include <assert.h>
 #include <math.h>
 
 typedef struct Loop {
@@ -33,14 +34,20 @@ FourBarLengths fourbar_motion_nominal(const FourBar *fourbar)
     };
 }
 
-static inline Loop close_loop(const FourBarLengths *lengths, double speed, double crank_angle)
+// The crank as a unit vector.
+static inline Vec2 direction_of(double crank_angle)
+{
+    return (Vec2){cos(crank_angle), sin(crank_angle)};
+}
+
+static inline Loop close_loop(const FourBarLengths *lengths, double speed, Vec2 crank)
 {
     const double b = lengths->coupler;
     const double c = lengths->follower;
     Loop loop;
 
     // the two triangles share the diagonal from crank pin to follower pivot
-    loop.r2 = (Vec2){lengths->crank * cos(crank_angle), lengths->crank * sin(crank_angle)};
+    loop.r2 = vec2_scale(lengths->crank, crank);
     const Vec2 diagonal = {lengths->ground - loop.r2.x, -loop.r2.y};
     const double d2 = vec2_dot(diagonal, diagonal);
     const double d = sqrt(d2);
@@ -74,7 +81,7 @@ void fourbar_motion_grid(const FourBarLengths *lengths, double speed, size_t cou
                          const double *crank_angles, const FourBarGrid *grid)
 {
     for (size_t i = 0; i < count; i++) {
-        const Loop loop = close_loop(lengths, speed, crank_angles[i]);
+        const Loop loop = close_loop(lengths, speed, direction_of(crank_angles[i]));
         if (grid->follower_angle != NULL) {
             grid->follower_angle[i] = atan2(loop.r4.y, loop.r4.x);
         }
@@ -106,7 +113,7 @@ static Motion link_motion(Vec2 first, Vec2 link, Vec2 carried, Vec2 pushed, doub
 bool fourbar_motion_bodies(const FourBarLengths *lengths, double speed, double crank_angle,
                            Motion motions[3])
 {
-    const Loop loop = close_loop(lengths, speed, crank_angle);
+    const Loop loop = close_loop(lengths, speed, direction_of(crank_angle));
     if (!isfinite(loop.alpha3) || !isfinite(loop.alpha4)) {
         return false;
     }
@@ -143,14 +150,14 @@ static double loop_quantity(const Loop *loop, FourBarQuantity quantity)
 double fourbar_motion_quantity(const FourBarLengths *lengths, double speed,
                                FourBarQuantity quantity, double crank_angle)
 {
-    const Loop loop = close_loop(lengths, speed, crank_angle);
+    const Loop loop = close_loop(lengths, speed, direction_of(crank_angle));
     return loop_quantity(&loop, quantity);
 }
 
-void fourbar_motion_quantities(const FourBarLengths *lengths, double speed, double crank_angle,
+void fourbar_motion_quantities(const FourBarLengths *lengths, double speed, Vec2 crank,
                                double values[FOURBAR_QUANTITY_COUNT])
 {
-    const Loop loop = close_loop(lengths, speed, crank_angle);
+    const Loop loop = close_loop(lengths, speed, crank);
     for (int quantity = 0; quantity < FOURBAR_QUANTITY_COUNT; quantity++) {
         values[quantity] = loop_quantity(&loop, quantity);
     }
@@ -173,4 +180,25 @@ CurveExtreme fourbar_motion_extreme(const FourBarLengths *lengths, double speed,
 {
     Curve curve = {lengths, speed, quantity};
     return curve_extreme(curve_value, &curve, first_angle, last_angle);
+}
+
+void fourbar_motion_turn(FourBarTurn *turn)
+{
+    turn->grid = curve_grid(0.0, 2.0 * M_PI);
+    assert(turn->grid.count <= FOURBAR_TURN_MAX);
+    for (size_t i = 0; i < turn->grid.count; i++) {
+        turn->cranks[i] = direction_of(curve_grid_angle(&turn->grid, i));
+    }
+}
+
+double fourbar_motion_bound(const FourBarLengths *lengths, double speed, FourBarQuantity quantity,
+                            bool is_high, const FourBarTurn *turn)
+{
+    double samples[FOURBAR_TURN_MAX];
+    for (size_t i = 0; i < turn->grid.count; i++) {
+        const Loop loop = close_loop(lengths, speed, turn->cranks[i]);
+        samples[i] = loop_quantity(&loop, quantity);
+    }
+    Curve curve = {lengths, speed, quantity};
+    return curve_bound(curve_value, &curve, &turn->grid, samples, is_high, NULL);
 }

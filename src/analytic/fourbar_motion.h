@@ -51,11 +51,25 @@ typedef enum FourBarQuantity {
 double fourbar_motion_quantity(const FourBarLengths *lengths, double speed,
                                FourBarQuantity quantity, double crank_angle);
 
-// All of them at one crank angle, with the loop closed once.
-void fourbar_motion_quantities(const FourBarLengths *lengths, double speed, double crank_angle,
+// All of them with the crank along a unit vector, with the loop closed once.
+void fourbar_motion_quantities(const FourBarLengths *lengths, double speed, Vec2 crank,
                                double values[FOURBAR_QUANTITY_COUNT]);
 
 // The extremes of one quantity for crank angles from first to last: curve_extreme.
 CurveExtreme fourbar_motion_extreme(const FourBarLengths *lengths, double speed,
                                     FourBarQuantity quantity, double first_angle,
                                     double last_angle);
+
+enum { FOURBAR_TURN_MAX = 722 }; // half degrees, both ends, and one for rounding
+
+// The crank's directions on the grid of a turn, for who asks for many extremes.
+typedef struct FourBarTurn {
+    CurveGrid grid;
+    Vec2 cranks[FOURBAR_TURN_MAX]; // unit vectors
+} FourBarTurn;
+
+void fourbar_motion_turn(FourBarTurn *turn);
+
+// The smallest or largest value of one quantity over a turn, as fourbar_motion_extreme's.
+double fourbar_motion_bound(const FourBarLengths *lengths, double speed, FourBarQuantity quantity,
+                            bool is_high, const FourBarTurn *turn);

@@ -32,6 +32,8 @@ typedef struct Search {
     const FourBar *fourbar;
     const double *play;
     double speed;
+    Vec2 cranks[GRID]; // unit vectors
+    FourBarTurn turn;
     double best[FOURBAR_QUANTITY_COUNT][2];
     StackupCombination worst[FOURBAR_QUANTITY_COUNT][2];
     bool is_turning; // whether the crank turned fully in every corner so far
@@ -87,7 +89,7 @@ static void try_combination(Search *search, const StackupCombination *combinatio
     search->is_turning = search->is_turning && is_alike(search, &lengths);
     for (int i = 0; i < GRID; i++) {
         double values[FOURBAR_QUANTITY_COUNT];
-        fourbar_motion_quantities(&lengths, search->speed, 2.0 * M_PI * i / GRID, values);
+        fourbar_motion_quantities(&lengths, search->speed, search->cranks[i], values);
         for (int quantity = 0; quantity < FOURBAR_QUANTITY_COUNT; quantity++) {
             double *best = search->best[quantity];
             if (values[quantity] < best[0]) {
@@ -140,14 +142,12 @@ static double extreme_of(const Search *search, const StackupCombination *combina
                          FourBarQuantity quantity, bool is_high)
 {
     const FourBarLengths lengths = stackup_lengths(search->fourbar, search->play, combination);
-    const CurveExtreme extreme =
-        fourbar_motion_extreme(&lengths, search->speed, quantity, 0.0, 2.0 * M_PI);
-    return is_high ? extreme.high : extreme.low;
+    return fourbar_motion_bound(&lengths, search->speed, quantity, is_high, &search->turn);
 }
 
 // What one bound becomes, and what each source of its worst combination does alone.
-static StackupBound refine(const Search *search, FourBarQuantity quantity, bool is_high,
-                           double nominal)
+static StackupBound refine(const Search *search, const bool is_source[STACKUP_SOURCES],
+                           FourBarQuantity quantity, bool is_high, double nominal)
 {
     StackupBound bound = {.combination = search->worst[quantity][is_high]};
     bound.value = extreme_of(search, &bound.combination, quantity, is_high);
@@ -160,7 +160,8 @@ static StackupBound refine(const Search *search, FourBarQuantity quantity, bool 
             single.play_link[play] = bound.combination.play_link[play];
             single.play_sign[play] = bound.combination.play_sign[play];
         }
-        bound.alone[source] = extreme_of(search, &single, quantity, is_high) - nominal;
+        bound.alone[source] =
+            is_source[source] ? extreme_of(search, &single, quantity, is_high) - nominal : 0.0;
     }
     return bound;
 }
@@ -202,6 +203,11 @@ bool stackup_compute(const Scenario *scenario, Stackup *stackup, Err *err)
         .speed = scenario->linkage.driver.speed,
         .is_turning = true,
     };
+    for (int i = 0; i < GRID; i++) {
+        const double angle = 2.0 * M_PI * i / GRID;
+        search.cranks[i] = (Vec2){cos(angle), sin(angle)};
+    }
+    fourbar_motion_turn(&search.turn);
     for (int quantity = 0; quantity < FOURBAR_QUANTITY_COUNT; quantity++) {
         search.best[quantity][0] = INFINITY;
         search.best[quantity][1] = -INFINITY;
@@ -217,8 +223,8 @@ bool stackup_compute(const Scenario *scenario, Stackup *stackup, Err *err)
         StackupRow *row = &made.rows[quantity];
         row->nominal_low = extreme_of(&search, &nominal, quantity, false);
         row->nominal_high = extreme_of(&search, &nominal, quantity, true);
-        row->low = refine(&search, quantity, false, row->nominal_low);
-        row->high = refine(&search, quantity, true, row->nominal_high);
+        row->low = refine(&search, made.is_source, quantity, false, row->nominal_low);
+        row->high = refine(&search, made.is_source, quantity, true, row->nominal_high);
     }
     *stackup = made;
     return true;

@@ -13,7 +13,9 @@
 #include "analytic/slidercrank_motion.h"
 #include "base/root.h"
 
+#include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 
 // a degree encloses every extreme; Brent's method then finds it to rounding
 enum { SUMMARY_STEPS = 360 };
@@ -76,21 +78,49 @@ static double curve_value(double crank, void *context)
                                            : vec2_length(reactions.force_on_b[curve->joint]));
 }
 
-// The lowest point of the curve over a turn from the driver's start, as the driver reaches it.
-static Extreme lowest(Curve *curve)
+static double turn_angle(const Linkage *linkage, int number)
 {
-    const Driver *driver = &curve->scenario->linkage.driver;
-    const double width = copysign(2.0 * M_PI / SUMMARY_STEPS, driver->speed);
-    double crank = driver->start;
-    double value = curve_value(crank, curve);
-    for (int i = 1; i < SUMMARY_STEPS; i++) {
-        const double here = curve_value(driver->start + width * i, curve);
-        if (here < value) {
-            value = here;
-            crank = driver->start + width * i;
+    const Driver *driver = &linkage->driver;
+    return driver->start + copysign(2.0 * M_PI / SUMMARY_STEPS, driver->speed) * number;
+}
+
+// The torque and the joints' forces at every angle of a turn from the driver's start, as the driver
+// reaches them, one row an angle: the torque first.
+static double *sample_turn(const Curve *curve)
+{
+    const Linkage *linkage = &curve->scenario->linkage;
+    const size_t columns = 1 + linkage->joint_count;
+    double *samples = malloc(SUMMARY_STEPS * columns * sizeof *samples);
+    assert(samples != NULL);
+    for (int i = 0; i < SUMMARY_STEPS; i++) {
+        Motion motions[CLOSED_FORM_BODIES];
+        Reactions reactions;
+        const bool is_known = evaluate(curve, turn_angle(linkage, i), motions, &reactions);
+        double *row = samples + (size_t)i * columns;
+        row[0] = is_known ? reactions.drive_torque : NAN;
+        for (size_t k = 0; k < linkage->joint_count; k++) {
+            row[1 + k] = is_known ? vec2_length(reactions.force_on_b[k]) : NAN;
         }
     }
-    if (root_minimum(curve_value, curve, crank - fabs(width), crank, crank + fabs(width), &crank)) {
+    return samples;
+}
+
+// The lowest point of the curve over a turn.
+static Extreme lowest(Curve *curve, const double *samples)
+{
+    const Linkage *linkage = &curve->scenario->linkage;
+    const Driver *driver = &linkage->driver;
+    const size_t columns = 1 + linkage->joint_count;
+    const double *column = samples + (curve->joint + 1);
+    const double width = 2.0 * M_PI / SUMMARY_STEPS;
+    int found = 0;
+    for (int i = 1; i < SUMMARY_STEPS; i++) {
+        found =
+            curve->sign * column[i * columns] < curve->sign * column[found * columns] ? i : found;
+    }
+    double value = curve->sign * column[found * columns];
+    double crank = turn_angle(linkage, found);
+    if (root_minimum(curve_value, curve, crank - width, crank, crank + width, &crank)) {
         value = curve_value(crank, curve);
     }
     return (Extreme){curve->sign * value, (crank - driver->start) / driver->speed, crank};
@@ -99,16 +129,18 @@ static Extreme lowest(Curve *curve)
 static void find_extremes(const Scenario *scenario, AnalyticSummary *summary, Err *err)
 {
     Curve curve = {scenario, -1, 1.0, err};
-    summary->torque_min = lowest(&curve);
+    double *samples = sample_turn(&curve);
+    summary->torque_min = lowest(&curve, samples);
     curve.sign = -1.0;
-    summary->torque_max = lowest(&curve);
+    summary->torque_max = lowest(&curve, samples);
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         curve.joint = (int)i;
         curve.sign = 1.0;
-        summary->reaction_min[i] = lowest(&curve);
+        summary->reaction_min[i] = lowest(&curve, samples);
         curve.sign = -1.0;
-        summary->reaction_max[i] = lowest(&curve);
+        summary->reaction_max[i] = lowest(&curve, samples);
     }
+    free(samples);
 }
 
 // How well drive power and the bodies' change of energy agree over a turn.

@@ -68,7 +68,8 @@ void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bo
 {
     jacobian->rows = 0;
     jacobian->columns = 3 * linkage->body_count;
-    memset(jacobian->entries, 0, sizeof jacobian->entries);
+    const size_t row_most = 2 * linkage->joint_count + 1;
+    memset(jacobian->entries, 0, row_most * jacobian->columns * sizeof *jacobian->entries);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const JointKind kind = linkage->joints[i].kind;
         if (kind == JOINT_STOP || (include != NULL && !include[i])) {
