@@ -6,18 +6,13 @@
 //     L_pp L_pp' = A_pp,   L_ip = A_ip L_pp'^-1,   A_ij := A_ij - L_ip L_jp'
 #include "base/sparse.h"
 
+#include "base/zeroed.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-static void *allocate(size_t count, size_t size)
-{
-    void *made = calloc(count + 1, size);
-    assert(made != NULL);
-    return made;
-}
 
 void sparse_finish(Sparse *sparse)
 {
@@ -54,8 +49,8 @@ static void list_blocks(Sparse *sparse, const SparseList *later)
     for (size_t i = 0; i < sparse->count; i++) {
         blocks += later[i].count;
     }
-    sparse->block_node = allocate(blocks, sizeof *sparse->block_node);
-    sparse->block_value = allocate(blocks + 1, sizeof *sparse->block_value);
+    sparse->block_node = zeroed(blocks, sizeof *sparse->block_node);
+    sparse->block_value = zeroed(blocks + 1, sizeof *sparse->block_value);
     size_t next = 0;
     size_t value = 0;
     for (size_t p = 0; p < sparse->count; p++) {
@@ -74,7 +69,7 @@ static void list_blocks(Sparse *sparse, const SparseList *later)
     }
     sparse->first_block[sparse->count] = next;
     sparse->block_value[next] = value;
-    sparse->values = allocate(value, sizeof *sparse->values);
+    sparse->values = zeroed(value, sizeof *sparse->values);
 }
 
 // The block of a column in the row of a later node, by their orders.
@@ -103,7 +98,7 @@ static void list_targets(Sparse *sparse)
         targets += below * (below + 1) / 2;
     }
     sparse->first_target[sparse->eliminated] = targets;
-    sparse->targets = allocate(targets, sizeof *sparse->targets);
+    sparse->targets = zeroed(targets, sizeof *sparse->targets);
     for (size_t p = 0; p < sparse->eliminated; p++) {
         size_t *target = sparse->targets + sparse->first_target[p];
         for (size_t j = sparse->first_block[p] + 1; j < sparse->first_block[p + 1]; j++) {
@@ -121,17 +116,17 @@ void sparse_init(size_t count, const size_t *sizes, size_t eliminated, size_t li
 {
     assert(eliminated <= count);
     *sparse = (Sparse){.count = count, .eliminated = eliminated};
-    sparse->first_row = allocate(count + 1, sizeof *sparse->first_row);
-    sparse->order = allocate(count, sizeof *sparse->order);
-    sparse->node_at = allocate(count, sizeof *sparse->node_at);
-    sparse->first_block = allocate(count + 1, sizeof *sparse->first_block);
-    sparse->first_target = allocate(eliminated + 1, sizeof *sparse->first_target);
+    sparse->first_row = zeroed(count + 1, sizeof *sparse->first_row);
+    sparse->order = zeroed(count, sizeof *sparse->order);
+    sparse->node_at = zeroed(count, sizeof *sparse->node_at);
+    sparse->first_block = zeroed(count + 1, sizeof *sparse->first_block);
+    sparse->first_target = zeroed(eliminated + 1, sizeof *sparse->first_target);
     for (size_t i = 0; i < count; i++) {
         sparse->first_row[i + 1] = sparse->first_row[i] + sizes[i];
     }
     sparse->row_count = sparse->first_row[count];
-    sparse->diagonals = allocate(sparse->row_count, sizeof *sparse->diagonals);
-    SparseList *later = allocate(count, sizeof *later);
+    sparse->diagonals = zeroed(sparse->row_count, sizeof *sparse->diagonals);
+    SparseList *later = zeroed(count, sizeof *later);
     sparse_order_find(count, eliminated, link_count, links, sparse->node_at, later);
     for (size_t p = 0; p < count; p++) {
         sparse->order[sparse->node_at[p]] = p;
@@ -273,11 +268,22 @@ bool sparse_factor(Sparse *sparse, double share)
     return true;
 }
 
-void sparse_forward(const Sparse *sparse, double *rows)
+// The end of a column's blocks in eliminated rows.
+static inline size_t eliminated_end(const Sparse *sparse, size_t p)
+{
+    size_t end = sparse->first_block[p + 1];
+    while (end > sparse->first_block[p] + 1 && sparse->block_node[end - 1] >= sparse->eliminated) {
+        end--;
+    }
+    return end;
+}
+
+static void go_forward(const Sparse *sparse, bool with_kept, double *rows)
 {
     for (size_t p = 0; p < sparse->eliminated; p++) {
         const size_t n = size_at(sparse, p);
         const size_t first = sparse->first_block[p];
+        const size_t end = with_kept ? sparse->first_block[p + 1] : eliminated_end(sparse, p);
         const double *own = sparse->values + sparse->block_value[first];
         double *x = rows + sparse->first_row[sparse->node_at[p]];
         for (size_t k = 0; k < n; k++) {
@@ -286,7 +292,7 @@ void sparse_forward(const Sparse *sparse, double *rows)
             }
             x[k] /= own[k * n + k];
         }
-        for (size_t b = first + 1; b < sparse->first_block[p + 1]; b++) {
+        for (size_t b = first + 1; b < end; b++) {
             const double *block = sparse->values + sparse->block_value[b];
             const size_t node = sparse->node_at[sparse->block_node[b]];
             const size_t count = sparse->first_row[node + 1] - sparse->first_row[node];
@@ -313,18 +319,15 @@ static inline void subtract_below(const Sparse *sparse, const double *rows, size
     }
 }
 
-void sparse_back(const Sparse *sparse, double *rows)
+static void go_back(const Sparse *sparse, bool with_kept, double *rows)
 {
     for (size_t p = sparse->eliminated; p-- > 0;) {
         const size_t n = size_at(sparse, p);
         const size_t first = sparse->first_block[p];
-        const size_t end = sparse->first_block[p + 1];
+        const size_t kept = eliminated_end(sparse, p);
+        const size_t end = with_kept ? sparse->first_block[p + 1] : kept;
         const double *own = sparse->values + sparse->block_value[first];
         double *x = rows + sparse->first_row[sparse->node_at[p]];
-        size_t kept = end;
-        while (kept > first + 1 && sparse->block_node[kept - 1] >= sparse->eliminated) {
-            kept--;
-        }
         for (size_t k = n; k-- > 0;) {
             for (size_t b = kept; b < end; b++) {
                 subtract_below(sparse, rows, b, n, k, x);
@@ -340,9 +343,18 @@ void sparse_back(const Sparse *sparse, double *rows)
     }
 }
 
+void sparse_forward(const Sparse *sparse, double *rows)
+{
+    go_forward(sparse, true, rows);
+}
+
+void sparse_back(const Sparse *sparse, double *rows)
+{
+    go_back(sparse, true, rows);
+}
+
 void sparse_solve(const Sparse *sparse, double *rows)
 {
-    assert(sparse->eliminated == sparse->count);
-    sparse_forward(sparse, rows);
-    sparse_back(sparse, rows);
+    go_forward(sparse, false, rows);
+    go_back(sparse, false, rows);
 }

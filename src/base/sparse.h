@@ -60,7 +60,8 @@ void sparse_forward(const Sparse *sparse, double *rows);
 // the kept rows.
 void sparse_back(const Sparse *sparse, double *rows);
 
-// Both, where no node is kept: solves A x = b in place.
+// Solves A x = b for the eliminated rows in place, the unknowns of the kept rows being zero; those
+// rows are left alone.
 void sparse_solve(const Sparse *sparse, double *rows);
 
 // The number of numbers that a factor holds.

@@ -10,10 +10,12 @@
 #include "contact/facets.h"
 
 #include "base/root.h"
+#include "base/zeroed.h"
 #include "contact/law.h"
 #include "model/response.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 // sagitta over the smaller of play and depth: a hundredth, which inscribed polygons get wrong
 static const double SHARE = 0.01;
@@ -85,16 +87,19 @@ static double energy_left(double depth, void *context)
 static double effective_mass(const Linkage *linkage, const Motion *motions, int joint)
 {
     Response response;
-    Err unused = {ERR_NONE, ""};
-    if (!response_init(linkage, false, &response, &unused) || !response_place(&response, motions)) {
+    response_init(linkage, false, &response);
+    if (!response_place(&response, motions)) {
+        response_finish(&response);
         return 0.0;
     }
     size_t row = 0;
     while (row < response_play_rows(&response) && response_joint(&response, row) != joint) {
         row += 2;
     }
-    return fmin(response_mass(&response, row, (Vec2){1.0, 0.0}),
-                response_mass(&response, row, (Vec2){0.0, 1.0}));
+    const double least = fmin(response_mass(&response, row, (Vec2){1.0, 0.0}),
+                              response_mass(&response, row, (Vec2){0.0, 1.0}));
+    response_finish(&response);
+    return least;
 }
 
 double facets_expected_depth(const Scenario *scenario, int joint)
@@ -106,7 +111,7 @@ double facets_expected_depth(const Scenario *scenario, int joint)
     if (scenario->contact.model != CONTACT_IMPACT || !law_of_joint(scenario, data, &law, &unused)) {
         return 0.0;
     }
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
     linkage_start(linkage, motions);
     // the pin falls under gravity and what a point that the drive turns feels
     double pull = fabs(scenario->gravity);
@@ -120,6 +125,7 @@ double facets_expected_depth(const Scenario *scenario, int joint)
     const double start = vec2_length(linkage_joint_gap(linkage, motions, joint).velocity);
     const double square = start * start + 4.0 * pull * linkage_radial_clearance(data);
     Impact impact = {&law, 0.5 * effective_mass(linkage, motions, joint) * square};
+    free(motions);
     double depth = law_depth_max(&law, data->clearance.pin_radius);
     root_find(energy_left, &impact, 0.0, depth, 1e-6 * depth, &depth);
     return impact.energy > 0.0 ? depth : 0.0;

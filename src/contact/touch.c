@@ -1,7 +1,10 @@
 // Where do the bodies of a joint touch, and how deep?
 #include "contact/touch.h"
 
+#include "base/zeroed.h"
 #include "contact/law.h"
+
+#include <stdlib.h>
 
 // The corners of a block or sleeve against the guides or the rod. Corner by corner: which side of
 // the middle line, +1 along the lines' normal (their direction turned by a quarter turn), and which
@@ -80,25 +83,25 @@ bool touch_too_many(Err *err)
                    TOUCH_MAX);
 }
 
-bool touch_list(const Scenario *scenario, Touch places[TOUCH_MAX], size_t *count, Err *err)
+bool touch_list(const Scenario *scenario, Touch **places, size_t *count, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
+    Touch *list = zeroed(TOUCH_CORNERS * linkage->joint_count, sizeof *list);
     *count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        Touch own[TOUCH_CORNERS];
+        Touch *own = list + *count;
         const size_t own_count = touch_places(&linkage->joints[i], (int)i, own);
         ForceLaw law;
         if (own_count > 0 && !law_of_joint(scenario, &linkage->joints[i], &law, err)) {
+            free(list);
             return false;
         }
-        if (*count + own_count > TOUCH_MAX) {
-            return touch_too_many(err);
-        }
         for (size_t k = 0; k < own_count; k++) {
-            places[*count] = own[k];
-            places[(*count)++].law = law;
+            own[k].law = law;
         }
+        *count += own_count;
     }
+    *places = list;
     return true;
 }
 
@@ -171,10 +174,10 @@ double touch_sliding(const Linkage *linkage, const Touch *place, const TouchPose
     return vec2_dot(vec2_perp(pose->normal), relative);
 }
 
-bool touch_response(const Linkage *linkage, const Touch *places, size_t count, bool has_friction,
-                    Response *response, Err *err)
+void touch_response(const Linkage *linkage, const Touch *places, size_t count, bool has_friction,
+                    Response *response)
 {
-    ResponsePlace rows[TOUCH_MAX];
+    ResponsePlace *rows = zeroed(count, sizeof *rows);
     for (size_t i = 0; i < count; i++) {
         const bool is_line = places[i].shape == TOUCH_LINE;
         rows[i] = (ResponsePlace){
@@ -187,5 +190,6 @@ bool touch_response(const Linkage *linkage, const Touch *places, size_t count, b
             .radius = places[i].radius_b,
         };
     }
-    return response_init_places(linkage, rows, count, response, err);
+    response_init_places(linkage, rows, count, response);
+    free(rows);
 }

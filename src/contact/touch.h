@@ -48,9 +48,9 @@ typedef struct TouchPose {
     double approach_speed; // m/s, rate of the penetration; without a normal the relative speed
 } TouchPose;
 
-// Writes the places of all joints with play, joint by joint, with their laws. Returns false with
-// ERR_CASE where a law does not fit a joint, or there are more than TOUCH_MAX places.
-bool touch_list(const Scenario *scenario, Touch places[TOUCH_MAX], size_t *count, Err *err);
+// Makes a list of the places of all joints with play, joint by joint, with their laws, which free()
+// gives back. Fails with ERR_CASE where a law does not fit a joint.
+bool touch_list(const Scenario *scenario, Touch **places, size_t *count, Err *err);
 
 // Says that there are more places than TOUCH_MAX; returns false.
 bool touch_too_many(Err *err);
@@ -89,5 +89,5 @@ double touch_sliding(const Linkage *linkage, const Touch *place, const TouchPose
 
 // Prepares the response of a linkage with its places, in their order; where there is friction, with
 // the turns that it acts in.
-bool touch_response(const Linkage *linkage, const Touch *places, size_t count, bool has_friction,
-                    Response *response, Err *err);
+void touch_response(const Linkage *linkage, const Touch *places, size_t count, bool has_friction,
+                    Response *response);

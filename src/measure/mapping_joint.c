@@ -25,7 +25,7 @@ typedef struct Gathering {
     const Scenario *scenario;
     Response response;
     size_t place_count;
-    Touch places[TOUCH_MAX];
+    Touch *places; // owned
     size_t play_count;
     int play[LINKAGE_JOINT_MAX]; // numbers of the joints with play
     bool was_touching[LINKAGE_JOINT_MAX];
@@ -44,6 +44,8 @@ static void gathering_finish(Gathering *gathering)
         free(gathering->masses[i]);
         free(gathering->speeds[i]);
     }
+    response_finish(&gathering->response);
+    free(gathering->places);
     free(gathering);
 }
 
@@ -208,10 +210,12 @@ bool mapping_joint_measure(const Scenario *scenario, RunWatch watch,
                        "along z; run and compare show what each map makes of it");
     }
     Gathering *gathering = gathering_start(scenario);
-    bool is_right = touch_list(scenario, gathering->places, &gathering->place_count, err) &&
-                    touch_response(&scenario->linkage, gathering->places, gathering->place_count,
-                                   false, &gathering->response, err) &&
-                    gather(gathering, watch, err);
+    bool is_right = touch_list(scenario, &gathering->places, &gathering->place_count, err);
+    if (is_right) {
+        touch_response(&scenario->linkage, gathering->places, gathering->place_count, false,
+                       &gathering->response);
+        is_right = gather(gathering, watch, err);
+    }
     if (is_right && gathering->mass_counts[0] == 0) {
         is_right = err_set(err, ERR_SOLVER, "the ideal joints are redundant throughout the run");
     }

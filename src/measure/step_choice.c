@@ -7,6 +7,7 @@
 // go.
 #include "measure/step_choice.h"
 
+#include "base/zeroed.h"
 #include "contact/touch.h"
 #include "model/scale.h"
 
@@ -48,31 +49,43 @@ static double contact_depth(const Scenario *scenario, const Touch *place, double
     return pow(0.5 * power * mass * speed * speed / place->law.stiffness, 1.0 / power);
 }
 
-// The half-period of the stiffest contact, s.
-static double contact_time(const Scenario *scenario)
+// The shortest half-period of contacts at places that the response has been taken with, s.
+static double shortest_time(const Scenario *scenario, const Response *response, const Touch *places,
+                            size_t count)
 {
-    Motion motions[LINKAGE_BODY_MAX];
-    Touch places[TOUCH_MAX];
-    size_t count = 0;
-    Response response;
-    Err unused = {ERR_NONE, ""};
-    linkage_start(&scenario->linkage, motions);
-    if (!touch_list(scenario, places, &count, &unused) ||
-        !touch_response(&scenario->linkage, places, count, false, &response, &unused) ||
-        !response_place(&response, motions)) {
-        return INFINITY; // opening the world says what is wrong
-    }
     double shortest_s = INFINITY;
     for (size_t i = 0; i < count; i++) {
-        const size_t row = response_first_row(&response, i);
+        const size_t row = response_first_row(response, i);
         // the first row of a line is along its normal
-        const double along = response_mass(&response, row, (Vec2){1.0, 0.0});
+        const double along = response_mass(response, row, (Vec2){1.0, 0.0});
         const double mass = places[i].shape == TOUCH_LINE
                                 ? along
-                                : fmin(along, response_mass(&response, row, (Vec2){0.0, 1.0}));
+                                : fmin(along, response_mass(response, row, (Vec2){0.0, 1.0}));
         const double depth = contact_depth(scenario, &places[i], mass);
         shortest_s = fmin(shortest_s, M_PI * sqrt(mass / force_law_tangent(&places[i].law, depth)));
     }
+    return shortest_s;
+}
+
+// The half-period of the stiffest contact, s.
+static double contact_time(const Scenario *scenario)
+{
+    Touch *places;
+    size_t count;
+    Response response;
+    Err unused = {ERR_NONE, ""};
+    if (!touch_list(scenario, &places, &count, &unused)) {
+        return INFINITY; // opening the world says what is wrong
+    }
+    Motion *motions = zeroed(scenario->linkage.body_count, sizeof *motions);
+    linkage_start(&scenario->linkage, motions);
+    touch_response(&scenario->linkage, places, count, false, &response);
+    const double shortest_s = response_place(&response, motions)
+                                  ? shortest_time(scenario, &response, places, count)
+                                  : INFINITY;
+    response_finish(&response);
+    free(motions);
+    free(places);
     return shortest_s;
 }
 

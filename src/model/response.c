@@ -5,7 +5,9 @@
 // The ideal joints answer a push p with impulses that keep them closed,
 //     D_ii y + D_ic p = 0,   v' = v + M^-1 J' (y, p)
 // so that the joints with play see the Schur complement W = D_cc - D_ci D_ii^-1 D_ic. It is what
-// is left of D when Cholesky's elimination stops after the ideal rows.
+// is left of D when Cholesky's elimination stops after the ideal rows. Rows of joints that share no
+// body leave zeros in D, and D is factored without them (base/sparse.h): a chain, a tree or a loop
+// takes time and memory in proportion to its joints.
 //
 // Accelerations without a push: gamma = J a0 + dJ/dt v of all rows, a0 gravity's; then
 //     g = gamma_c - D_ci D_ii^-1 gamma_i
@@ -22,58 +24,6 @@
 // the share of a row that must be left when the rows before it are taken out: rounding leaves
 // 1e-15, of either sign, of one that they make redundant
 static const double INDEPENDENT = 1e-12;
-
-static bool add_rows(Response *response, int joint, int place, size_t count)
-{
-    if (response->row_count + count > RESPONSE_ROW_MAX) {
-        return false;
-    }
-    for (size_t i = 0; i < count; i++) {
-        response->joint_of[response->row_count] = joint;
-        response->place_of[response->row_count++] = place;
-    }
-    return true;
-}
-
-bool response_init_places(const Linkage *linkage, const ResponsePlace *places, size_t count,
-                          Response *response, Err *err)
-{
-    memset(response, 0, sizeof *response);
-    response->linkage = linkage;
-    bool has_room = count <= RESPONSE_PLACE_MAX;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        has_room = has_room && (!linkage_is_ideal(linkage, i) || add_rows(response, (int)i, -1, 2));
-    }
-    response->ideal_rows = response->row_count;
-    for (size_t i = 0; has_room && i < count; i++) {
-        response->places[i] = places[i];
-        response->first_row[i] = response_play_rows(response);
-        has_room = add_rows(response, places[i].joint, (int)i, response_place_rows(&places[i]));
-        response->place_count++;
-    }
-    return has_room || err_set(err, ERR_SOLVER,
-                               "the linkage has more joint rows than the %d that contacts can be "
-                               "solved with",
-                               RESPONSE_ROW_MAX);
-}
-
-bool response_init(const Linkage *linkage, bool with_turns, Response *response, Err *err)
-{
-    ResponsePlace places[LINKAGE_JOINT_MAX];
-    size_t count = 0;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (joint->kind == JOINT_CLEARANCE) {
-            places[count++] = (ResponsePlace){
-                .joint = (int)i,
-                .has_turns = with_turns,
-                .anchor_a = joint->anchor_a,
-                .anchor_b = joint->anchor_b,
-            };
-        }
-    }
-    return response_init_places(linkage, places, count, response, err);
-}
 
 size_t response_play_rows(const Response *response)
 {
@@ -99,43 +49,49 @@ static double coupling(const Linkage *linkage, const ResponseRow *a, const Respo
 bool response_place(Response *response, const Motion *motions)
 {
     response_rows_place(response, motions);
-    const size_t count = response->row_count;
-    double diagonal[RESPONSE_ROW_MAX];
-    for (size_t i = 0; i < count; i++) {
-        for (size_t k = 0; k <= i; k++) {
-            response->matrix[i][k] =
-                coupling(response->linkage, &response->rows[i], &response->rows[k]);
-        }
-        diagonal[i] = response->matrix[i][i];
-    }
-    // Cholesky's elimination, stopped after the ideal rows
-    for (size_t pivot = 0; pivot < response->ideal_rows; pivot++) {
-        const double square = response->matrix[pivot][pivot];
-        if (!(square > INDEPENDENT * diagonal[pivot])) {
-            return false;
-        }
-        const double inverse = 1.0 / sqrt(square);
-        for (size_t i = pivot; i < count; i++) {
-            response->matrix[i][pivot] *= inverse;
-        }
-        for (size_t i = pivot + 1; i < count; i++) {
-            const double factor = response->matrix[i][pivot];
-            for (size_t k = pivot + 1; k <= i && factor != 0.0; k++) {
-                response->matrix[i][k] -= factor * response->matrix[k][pivot];
+    sparse_clear(&response->matrix);
+    for (size_t n = 0; n < response->block_count; n++) {
+        const ResponseBlock *block = &response->blocks[n];
+        const bool is_own = block->rows == block->columns;
+        for (size_t i = 0; i < block->row_count; i++) {
+            double *row = block->values + i * block->column_count;
+            for (size_t k = 0; k < (is_own ? i + 1 : block->column_count); k++) {
+                row[k] = coupling(response->linkage, &response->rows[block->rows + i],
+                                  &response->rows[block->columns + k]);
+                if (is_own) {
+                    block->values[k * block->column_count + i] = row[k];
+                }
             }
         }
     }
-    return true;
+    return sparse_factor(&response->matrix, INDEPENDENT);
+}
+
+// The mobility between two places as they are stored, row by row: of the later one, from the other.
+static const double *mobility_block(const Response *response, size_t place, size_t other)
+{
+    const size_t first = response->ideal_rows / 2;
+    bool is_transposed;
+    return sparse_block(&response->matrix, first + place, first + other, &is_transposed);
 }
 
 void response_mobility(const Response *response, double *mobility)
 {
-    const size_t first = response->ideal_rows;
-    const size_t width = response->row_count - first;
-    for (size_t i = 0; i < width; i++) {
-        for (size_t k = 0; k < width; k++) {
-            mobility[i * width + k] = k <= i ? response->matrix[first + i][first + k]
-                                             : response->matrix[first + k][first + i];
+    const size_t width = response_play_rows(response);
+    memset(mobility, 0, width * width * sizeof *mobility);
+    for (size_t a = 0; a < response->place_count; a++) {
+        const size_t row = response->first_row[a];
+        const size_t rows = response_place_rows(&response->places[a]);
+        for (size_t b = 0; b <= a; b++) {
+            const double *block = mobility_block(response, a, b);
+            const size_t column = response->first_row[b];
+            const size_t columns = response_place_rows(&response->places[b]);
+            for (size_t i = 0; block != NULL && i < rows; i++) {
+                for (size_t k = 0; k < columns; k++) {
+                    mobility[(row + i) * width + column + k] = block[i * columns + k];
+                    mobility[(column + k) * width + row + i] = block[i * columns + k];
+                }
+            }
         }
     }
 }
@@ -143,15 +99,10 @@ void response_mobility(const Response *response, double *mobility)
 void response_free(const Response *response, const Motion *motions, double gravity,
                    const BodyLoad *loads, double *rates)
 {
-    double gamma[RESPONSE_ROW_MAX];
+    double *gamma = response->work;
     response_rows_loose(response, motions, gravity, loads, gamma);
     // forward through the factor: what is left in the rows of play is g
-    for (size_t pivot = 0; pivot < response->ideal_rows; pivot++) {
-        gamma[pivot] /= response->matrix[pivot][pivot];
-        for (size_t i = pivot + 1; i < response->row_count; i++) {
-            gamma[i] -= response->matrix[i][pivot] * gamma[pivot];
-        }
-    }
+    sparse_forward(&response->matrix, gamma);
     memcpy(rates, gamma + response->ideal_rows, response_play_rows(response) * sizeof *rates);
 }
 
@@ -172,38 +123,27 @@ static void add_row(const Linkage *linkage, const ResponseRow *row, double impul
     }
 }
 
-// Back through the transposed factor.
-static void solve_back(const Response *response, double *rows)
+// All impulses that impulses in the joints with play bring with them, by row.
+static const double *answer(const Response *response, const double *impulses)
 {
-    for (size_t i = response->ideal_rows; i-- > 0;) {
-        for (size_t k = i + 1; k < response->ideal_rows; k++) {
-            rows[i] -= response->matrix[k][i] * rows[k];
-        }
-        rows[i] /= response->matrix[i][i];
-    }
+    double *all = response->work;
+    memset(all, 0, response->ideal_rows * sizeof *all);
+    memcpy(all + response->ideal_rows, impulses, response_play_rows(response) * sizeof *all);
+    sparse_back(&response->matrix, all);
+    return all;
 }
 
 void response_react(const Response *response, const double *impulses, double *reactions)
 {
-    const size_t ideal = response->ideal_rows;
-    for (size_t i = 0; i < ideal; i++) {
-        reactions[i] = 0.0;
-        for (size_t k = ideal; k < response->row_count; k++) {
-            reactions[i] -= response->matrix[k][i] * impulses[k - ideal];
-        }
-    }
-    solve_back(response, reactions);
+    memcpy(reactions, answer(response, impulses), response->ideal_rows * sizeof *reactions);
 }
 
 void response_apply(const Response *response, const double *impulses, double *changes)
 {
-    const size_t ideal = response->ideal_rows;
-    double reactions[RESPONSE_ROW_MAX];
-    response_react(response, impulses, reactions);
+    const double *all = answer(response, impulses);
     memset(changes, 0, 3 * response->linkage->body_count * sizeof *changes);
     for (size_t i = 0; i < response->row_count; i++) {
-        const double impulse = i < ideal ? reactions[i] : impulses[i - ideal];
-        add_row(response->linkage, &response->rows[i], impulse, changes);
+        add_row(response->linkage, &response->rows[i], all[i], changes);
     }
 }
 
@@ -217,13 +157,7 @@ void response_load(const Response *response, const double *impulses, double *loa
 
 void response_solve(const Response *response, double *rows)
 {
-    for (size_t i = 0; i < response->ideal_rows; i++) {
-        for (size_t k = 0; k < i; k++) {
-            rows[i] -= response->matrix[i][k] * rows[k];
-        }
-        rows[i] /= response->matrix[i][i];
-    }
-    solve_back(response, rows);
+    sparse_solve(&response->matrix, rows);
 }
 
 void response_close(const Response *response, const double *openings, double *impulses,
@@ -261,24 +195,24 @@ size_t response_first_row(const Response *response, size_t place)
     return response->first_row[place];
 }
 
-static size_t rows_at(const Response *response, size_t first)
+size_t response_place_at(const Response *response, size_t play_row)
 {
-    const int place = response->place_of[response->ideal_rows + first];
-    return response_place_rows(&response->places[place]);
+    return (size_t)response->place_of[response->ideal_rows + play_row];
 }
 
 double response_between(const Response *response, size_t first_from, const double *from,
                         size_t first_to, const double *to)
 {
-    const size_t from_count = rows_at(response, first_from);
-    const size_t to_count = rows_at(response, first_to);
+    const size_t from_place = response_place_at(response, first_from);
+    const size_t to_place = response_place_at(response, first_to);
+    const size_t from_count = response_place_rows(&response->places[from_place]);
+    const size_t to_count = response_place_rows(&response->places[to_place]);
+    const double *block = mobility_block(response, from_place, to_place);
     double sum = 0.0;
-    for (size_t i = 0; i < from_count; i++) {
+    for (size_t i = 0; block != NULL && i < from_count; i++) {
         for (size_t k = 0; k < to_count; k++) {
-            const size_t row = response->ideal_rows + first_from + i;
-            const size_t column = response->ideal_rows + first_to + k;
             const double mobility =
-                row < column ? response->matrix[column][row] : response->matrix[row][column];
+                from_place < to_place ? block[k * from_count + i] : block[i * to_count + k];
             sum += from[i] * mobility * to[k];
         }
     }
@@ -287,9 +221,11 @@ double response_between(const Response *response, size_t first_from, const doubl
 
 double response_mass(const Response *response, size_t first_row, Vec2 normal)
 {
-    const size_t row = response->ideal_rows + first_row;
-    const double xx = response->matrix[row][row];
-    const double yx = response->matrix[row + 1][row];
-    const double yy = response->matrix[row + 1][row + 1];
+    const size_t place = response_place_at(response, first_row);
+    const size_t width = response_place_rows(&response->places[place]);
+    const double *block = mobility_block(response, place, place);
+    const double xx = block[0];
+    const double yx = block[width];
+    const double yy = block[width + 1];
     return 1.0 / (normal.x * (xx * normal.x + 2.0 * yx * normal.y) + normal.y * yy * normal.y);
 }

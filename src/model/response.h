@@ -6,15 +6,17 @@
 #include "model/response_rows.h"
 
 // Prepares the response of a linkage with places at which its joints touch, joint by joint
-// (contact/touch.h makes them). Fails with ERR_SOLVER where it has more rows than there is room
-// for.
-bool response_init_places(const Linkage *linkage, const ResponsePlace *places, size_t count,
-                          Response *response, Err *err);
+// (contact/touch.h makes them). It keeps the pointer to the linkage, and must not be copied.
+void response_init_places(const Linkage *linkage, const ResponsePlace *places, size_t count,
+                          Response *response);
 
 // The same where pins in holes are all that touches. With turns, each joint with play has four
 // rows: velocity of the pin's centre less that of the hole's, x and y, then angular velocity of the
 // hole's and of the pin's body; else only the first two.
-bool response_init(const Linkage *linkage, bool with_turns, Response *response, Err *err);
+void response_init(const Linkage *linkage, bool with_turns, Response *response);
+
+// Frees what a response owns; accepts a zeroed one.
+void response_finish(Response *response);
 
 // The first row of a place among the rows of play.
 size_t response_first_row(const Response *response, size_t place);
@@ -61,6 +63,9 @@ void response_close(const Response *response, const double *openings, double *im
 // joint.
 void response_openings(const Response *response, const Motion *motions, double *positions,
                        double *rates);
+
+// The place that a row of play belongs to.
+size_t response_place_at(const Response *response, size_t play_row);
 
 // The number of the joint that a row of play belongs to.
 int response_joint(const Response *response, size_t play_row);

@@ -1,6 +1,7 @@
 // The rows of a linkage's response (model/response.h), and where they stand.
 #pragma once
 
+#include "base/sparse.h"
 #include "model/forces.h"
 
 enum {
@@ -32,18 +33,32 @@ typedef struct ResponseRow {
     double turn[2]; // m, or 1 for a row that is a turn: of its angular velocity
 } ResponseRow;
 
+// A block of D: the rows of two joints or places that share a body, the second eliminated first.
+typedef struct ResponseBlock {
+    size_t rows;    // its first row, and how many
+    size_t columns; // likewise
+    size_t row_count;
+    size_t column_count;
+    double *values; // in the sparse matrix, row by row
+} ResponseBlock;
+
 typedef struct Response {
     const Linkage *linkage;
     size_t ideal_rows; // they come first, two a joint; the drive's joint has none
     size_t row_count;
-    ResponseRow rows[RESPONSE_ROW_MAX];
-    int joint_of[RESPONSE_ROW_MAX];
+    ResponseRow *rows; // owned, as all below
+    int *joint_of;     // of a row
     size_t place_count;
-    ResponsePlace places[RESPONSE_PLACE_MAX];          // their rows come after the ideal ones
-    size_t first_row[RESPONSE_PLACE_MAX];              // of a place, among the rows of play
-    int place_of[RESPONSE_ROW_MAX];                    // -1 of an ideal row
-    double matrix[RESPONSE_ROW_MAX][RESPONSE_ROW_MAX]; // lower triangle: Cholesky's factor in the
-                                                       // ideal columns, then the mobility
+    ResponsePlace *places; // their rows come after the ideal ones
+    size_t *first_row;     // of a place, among the rows of play
+    size_t *first_partner; // of a place, and behind the last: which places an impulse in it moves,
+    size_t *partners;      // itself among them, in order
+    int *place_of;         // of a row; -1 of an ideal one
+    Sparse matrix;         // D; a node is an ideal joint or a place. Once placed, Cholesky's factor
+                           // in the ideal columns, then the mobility
+    size_t block_count;
+    ResponseBlock *blocks; // of D that are not zero
+    double *work;          // by row
 } Response;
 
 // The number of rows of a place.

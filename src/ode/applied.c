@@ -10,6 +10,8 @@
 // ERP / h (wanted distance - distance). An angular motor has that of a turn. The work is h f^2 / c.
 #include "ode/applied.h"
 
+#include "base/zeroed.h"
+
 // m: below it ODE takes any direction for the line
 static const double LINE_LEAST = 1e-6;
 
@@ -52,6 +54,13 @@ void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
     applied->linkage = linkage;
     applied->bodies = bodies;
     applied->is_any = forces_any(linkage);
+    applied->angles = zeroed(linkage->body_count, sizeof *applied->angles);
+    applied->dampers = zeroed(linkage->spring_count, sizeof *applied->dampers);
+    applied->torsions = zeroed(linkage->torsion_count, sizeof *applied->torsions);
+    applied->lines = zeroed(linkage->spring_count, sizeof *applied->lines);
+    applied->motions = zeroed(linkage->body_count, sizeof *applied->motions);
+    applied->seen = zeroed(linkage->body_count, sizeof *applied->seen);
+    applied->loads = zeroed(linkage->body_count, sizeof *applied->loads);
     for (size_t i = 0; i < linkage->body_count; i++) {
         applied->angles[i] = motions[i].angle;
     }
@@ -65,6 +74,18 @@ void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
             make_turn(applied, world, linkage->torsions[i].joint, &applied->torsions[i]);
         }
     }
+}
+
+void applied_finish(Applied *applied)
+{
+    free(applied->angles);
+    free(applied->dampers);
+    free(applied->torsions);
+    free(applied->lines);
+    free(applied->motions);
+    free(applied->seen);
+    free(applied->loads);
+    *applied = (Applied){.linkage = NULL};
 }
 
 // The bodies as the engine holds them, their angles in the turn that they were in last.
@@ -157,12 +178,11 @@ void applied_push(Applied *applied, double start_s, double step_s, AppliedRule r
     if (!applied->is_any) {
         return;
     }
-    Motion motions[LINKAGE_BODY_MAX];
-    read_motions(applied, motions);
+    read_motions(applied, applied->seen);
     for (size_t i = 0; i < applied->linkage->body_count; i++) {
-        applied->angles[i] = motions[i].angle;
+        applied->angles[i] = applied->seen[i].angle;
     }
-    applied_push_at(applied, motions, start_s, step_s, rule, direction);
+    applied_push_at(applied, applied->seen, start_s, step_s, rule, direction);
 }
 
 // Adds what the dampers' rows did in the step. Returns the work they took, J.
@@ -207,9 +227,8 @@ AppliedWork applied_book(Applied *applied, double step_s)
     forces_add_torque(linkage, applied->motions, applied->torque, applied->loads);
     work.damping = take_dampers(applied, step_s);
     if (linkage->torque.table.count > 0) {
-        Motion after[LINKAGE_BODY_MAX];
-        read_motions(applied, after);
-        const double turning = forces_drive_rate(linkage, after);
+        read_motions(applied, applied->seen);
+        const double turning = forces_drive_rate(linkage, applied->seen);
         work.torque = step_s * applied->torque * 0.5 * (applied->turning + turning);
     }
     return work;

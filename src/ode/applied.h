@@ -14,18 +14,20 @@ typedef struct AppliedRow {
 
 typedef struct Applied {
     const Linkage *linkage;
-    const dBodyID *bodies;                   // of the world
-    bool is_any;                             // whether anything acts; else nothing below is used
-    double angles[LINKAGE_BODY_MAX];         // rad, of the bodies when last looked at, not wrapped
-    AppliedRow dampers[LINKAGE_SPRING_MAX];  // of the springs
-    AppliedRow torsions[LINKAGE_SPRING_MAX]; // of the torsion springs
-    SpringLine lines[LINKAGE_SPRING_MAX];    // at the positions of the step
-    Motion motions[LINKAGE_BODY_MAX];        // likewise, with the speeds of its start
-    BodyLoad loads[LINKAGE_BODY_MAX]; // of springs and torque, and of the dampers: before the step
-                                      // as the speeds of its start have them, behind it as they
-                                      // were
-    double torque;                    // N m, mean over the step
-    double turning;                   // rad/s, rate of the drive's joint at its start
+    const dBodyID *bodies; // of the world
+    bool is_any;           // whether anything acts; else nothing below is used
+    double *angles;        // rad, of the bodies when last looked at, not wrapped;
+                           // owned, as all arrays below
+    AppliedRow *dampers;   // of the springs
+    AppliedRow *torsions;  // of the torsion springs
+    SpringLine *lines;     // at the positions of the step
+    Motion *motions;       // likewise, with the speeds of its start
+    Motion *seen;          // as the engine holds them
+    BodyLoad *loads;       // of springs and torque, and of the dampers: before the step
+                           // as the speeds of its start have them, behind it as they
+                           // were
+    double torque;         // N m, mean over the step
+    double turning;        // rad/s, rate of the drive's joint at its start
 } Applied;
 
 // How a step reads the speeds that dampers feel.
@@ -38,6 +40,8 @@ typedef enum AppliedRule {
 // world_build.
 void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
                   const Motion *motions, Applied *applied);
+
+void applied_finish(Applied *applied);
 
 // Before a step: puts springs and torque on the bodies where they stand, and the dampers' rows to
 // their speeds, those of its start. A step backwards in time has a negative direction.

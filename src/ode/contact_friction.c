@@ -16,7 +16,11 @@
 // pin within the step it is as large as keeps the speed from changing sign.
 #include "ode/contact_friction.h"
 
+#include "base/zeroed.h"
+
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 enum { SWEEPS_MAX = 50, ROOT_STEPS_MAX = 50 };
 
@@ -24,7 +28,7 @@ static const double CONVERGED = 1e-7; // of the largest force: the step's own er
 static const double FLAT = 1e-9;      // slope of tanh, below which the row is at its bound
 static const double SATURATED = 12.0; // tanh of it is 1 less 1e-10
 
-enum { UNKNOWN_MAX = 2 * TOUCH_MAX };
+enum { BLOCK = 4 }; // of two rows with two forces each
 
 // One row's part in a step.
 typedef struct Share {
@@ -35,17 +39,61 @@ typedef struct Share {
     double drift;                         // m/s: v' if no contact pressed
     double theta;
     double mean; // m/s: w
+    // the rows that move this one, itself among them, in order, and how: h W of their two forces
+    // and this row's two speeds, s/kg
+    size_t partner_count;
+    const size_t *partners;
+    const double *changes;
+    const double *own; // those of the row itself
 } Share;
+
+struct FrictionWork {
+    Share *shares;
+    size_t *partners; // of all rows
+    double *changes;
+    size_t *share_of; // of a place: its row and 1, or 0
+    double *forces;
+    double *alone;
+    double *free;
+};
 
 // The equations of a step: of each row what presses, then what acts along the wall.
 typedef struct System {
     const ContactOptions *contact;
     const FrictionRow *rows;
     Share *shares;
-    size_t count;                            // of rows
-    double change[UNKNOWN_MAX][UNKNOWN_MAX]; // s/kg: h W
-    double forces[UNKNOWN_MAX];              // N: N and F of each row in turn
+    size_t count;   // of rows
+    double *forces; // N: N and F of each row in turn
 } System;
+
+FrictionWork *contact_friction_work(const Response *response)
+{
+    const size_t count = response->place_count;
+    const size_t blocks = response->first_partner[count];
+    FrictionWork *work = zeroed(1, sizeof *work);
+    work->shares = zeroed(count, sizeof *work->shares);
+    work->partners = zeroed(blocks, sizeof *work->partners);
+    work->changes = zeroed(BLOCK * blocks, sizeof *work->changes);
+    work->share_of = zeroed(count, sizeof *work->share_of);
+    work->forces = zeroed(2 * count, sizeof *work->forces);
+    work->alone = zeroed(count, sizeof *work->alone);
+    work->free = zeroed(response_play_rows(response), sizeof *work->free);
+    return work;
+}
+
+void contact_friction_free(FrictionWork *work)
+{
+    if (work != NULL) {
+        free(work->shares);
+        free(work->partners);
+        free(work->changes);
+        free(work->share_of);
+        free(work->forces);
+        free(work->alone);
+        free(work->free);
+        free(work);
+    }
+}
 
 double contact_friction_sliding(const FrictionRow *row)
 {
@@ -99,7 +147,7 @@ static double find_force(const System *system, size_t row, double drift)
 {
     Share *share = &system->shares[row];
     const double speed = system->contact->friction_speed;
-    const double mobility = system->change[2 * row + 1][2 * row + 1];
+    const double mobility = share->own[3];
     const double most = system->contact->friction * system->forces[2 * row];
     const double stiffness = mobility * most / speed;
     share->theta = stiffness > 2.0 ? 1.0 - 1.0 / stiffness : 0.5;
@@ -131,9 +179,14 @@ static double find_force(const System *system, size_t row, double drift)
 // What the forces of all unknowns but one change that one's speed by, m/s.
 static double changed_by_others(const System *system, size_t unknown)
 {
+    const Share *share = &system->shares[unknown / 2];
     double sum = 0.0;
-    for (size_t j = 0; j < 2 * system->count; j++) {
-        sum += j == unknown ? 0.0 : system->change[unknown][j] * system->forces[j];
+    for (size_t n = 0; n < share->partner_count; n++) {
+        for (size_t k = 0; k < 2; k++) {
+            const size_t other = 2 * share->partners[n] + k;
+            const double change = share->changes[BLOCK * n + 2 * (unknown % 2) + k];
+            sum += other == unknown ? 0.0 : change * system->forces[other];
+        }
     }
     return sum;
 }
@@ -149,7 +202,7 @@ static void solve_forces(System *system, bool has_friction)
             const Share *share = &system->shares[i];
             double *forces = &system->forces[2 * i];
             const double before[] = {forces[0], forces[1]};
-            const double own = system->change[2 * i][2 * i] + system->rows[i].cfm;
+            const double own = share->own[0] + system->rows[i].cfm;
             forces[0] = fmax(0.0, (share->asked - changed_by_others(system, 2 * i)) / own);
             if (has_friction) {
                 forces[1] =
@@ -161,16 +214,47 @@ static void solve_forces(System *system, bool has_friction)
     }
 }
 
-static void fill_changes(System *system, const Response *response, double step_s)
+// Fills in how the two forces of one row change the two speeds of another.
+static void fill_change(const System *system, const Response *response, double step_s, size_t to,
+                        size_t from, double *change)
 {
-    for (size_t i = 0; i < 2 * system->count; i++) {
-        const Share *to = &system->shares[i / 2];
-        for (size_t j = 0; j <= i; j++) {
-            const Share *from = &system->shares[j / 2];
-            const double mobility = response_between(
-                response, system->rows[j / 2].first_row, j % 2 == 0 ? from->along : from->across,
-                system->rows[i / 2].first_row, i % 2 == 0 ? to->along : to->across);
-            system->change[i][j] = system->change[j][i] = step_s * mobility;
+    const Share *shares[2] = {&system->shares[to], &system->shares[from]};
+    for (size_t i = 0; i < 2; i++) {
+        for (size_t k = 0; k < 2; k++) {
+            const double mobility = response_between(response, system->rows[from].first_row,
+                                                     k == 0 ? shares[1]->along : shares[1]->across,
+                                                     system->rows[to].first_row,
+                                                     i == 0 ? shares[0]->along : shares[0]->across);
+            change[2 * i + k] = step_s * mobility;
+        }
+    }
+}
+
+// Lists the rows that move each row, and how much.
+static void fill_changes(System *system, const Response *response, double step_s,
+                         FrictionWork *work)
+{
+    size_t block = 0;
+    memset(work->share_of, 0, response->place_count * sizeof *work->share_of);
+    for (size_t i = 0; i < system->count; i++) {
+        work->share_of[response_place_at(response, system->rows[i].first_row)] = i + 1;
+    }
+    for (size_t i = 0; i < system->count; i++) {
+        Share *share = &system->shares[i];
+        const size_t place = response_place_at(response, system->rows[i].first_row);
+        share->partners = work->partners + block;
+        share->changes = work->changes + BLOCK * block;
+        share->partner_count = 0;
+        for (size_t n = response->first_partner[place]; n < response->first_partner[place + 1];
+             n++) {
+            const size_t other = work->share_of[response->partners[n]];
+            if (other > 0) {
+                double *change = work->changes + BLOCK * block;
+                fill_change(system, response, step_s, i, other - 1, change);
+                share->own = other - 1 == i ? change : share->own;
+                work->partners[block++] = other - 1;
+                share->partner_count++;
+            }
         }
     }
 }
@@ -193,32 +277,25 @@ static void linearise_force(const System *system, size_t number, FrictionRow *ro
 
 void contact_friction_find(const ContactOptions *contact, const Response *response,
                            const Motion *motions, double gravity, const BodyLoad *loads,
-                           double step_s, FrictionRow *rows, size_t count)
+                           double step_s, FrictionWork *work, FrictionRow *rows, size_t count)
 {
-    double free[RESPONSE_ROW_MAX];
-    Share shares[TOUCH_MAX];
-    double alone[TOUCH_MAX];
-    System system; // large, and filled in as far as it is used
-    system.contact = contact;
-    system.rows = rows;
-    system.shares = shares;
-    system.count = count;
-    response_free(response, motions, gravity, loads, free);
+    System system = {contact, rows, work->shares, count, work->forces};
+    response_free(response, motions, gravity, loads, work->free);
     for (size_t i = 0; i < count; i++) {
         rows[i].sliding = contact_friction_sliding(&rows[i]);
-        shares[i] = start_share(&rows[i], free, step_s);
+        system.shares[i] = start_share(&rows[i], work->free, step_s);
         system.forces[2 * i] = system.forces[2 * i + 1] = 0.0;
     }
-    fill_changes(&system, response, step_s);
+    fill_changes(&system, response, step_s, work);
     solve_forces(&system, false);
     for (size_t i = 0; i < count; i++) {
-        alone[i] = system.forces[2 * i];
+        work->alone[i] = system.forces[2 * i];
     }
     solve_forces(&system, true);
     for (size_t i = 0; i < count; i++) {
         const double pressing = system.forces[2 * i];
-        rows[i].bound =
-            alone[i] > 0.0 ? contact->friction * pressing / alone[i] : contact->friction;
+        rows[i].bound = work->alone[i] > 0.0 ? contact->friction * pressing / work->alone[i]
+                                             : contact->friction;
         rows[i].slip = INFINITY;
         linearise_force(&system, i, &rows[i]);
     }

@@ -22,9 +22,15 @@ typedef struct FrictionRow {
 // The speed at which body b slides on body a's point that it touches, m/s.
 double contact_friction_sliding(const FrictionRow *row);
 
+// What the search for it works with, for the places of a response. For contact_friction_free, which
+// accepts NULL.
+typedef struct FrictionWork FrictionWork;
+FrictionWork *contact_friction_work(const Response *response);
+void contact_friction_free(FrictionWork *work);
+
 // Finds the friction of all places that touch, for a step of ODE's direct solver. The response is
 // placed, has turns, and has the motions before the step; gravity in m/s^2 along -y; loads on the
 // bodies, NULL where there are none.
 void contact_friction_find(const ContactOptions *contact, const Response *response,
                            const Motion *motions, double gravity, const BodyLoad *loads,
-                           double step_s, FrictionRow *rows, size_t count);
+                           double step_s, FrictionWork *work, FrictionRow *rows, size_t count);

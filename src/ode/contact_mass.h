@@ -8,7 +8,7 @@ typedef struct ContactMass {
     const World *world;
     Response response; // its places are the pairs of the world
     bool is_placed;    // the response is where the bodies are in this step, and so are the motions
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion *motions;   // owned by the rows
 } ContactMass;
 
 // Brings the masses of a row that touches up to date, all rows of the step having been found: each

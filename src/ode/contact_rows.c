@@ -8,10 +8,11 @@
 // counted. POISSON: CFM = 1 / p and bounce e, the paper's Eq. (2) F = p dg/dt.
 #include "ode/contact_rows.h"
 
+#include "base/zeroed.h"
 #include "contact/law.h"
 #include "contact/penalty.h"
-#include "ode/contact_friction.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world, bool is_staggered,
@@ -25,19 +26,25 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
     if (scenario->contact.model == CONTACT_IMPACT && world->pair_count > 0) {
         rows->map = map_get(scenario->ode.map);
     }
-    Touch places[TOUCH_MAX];
-    size_t count = 0;
-    if (!touch_list(scenario, places, &count, err) ||
-        !touch_response(&scenario->linkage, places, count, scenario->contact.friction > 0.0,
-                        &rows->mass.response, err)) {
+    Touch *places;
+    size_t count;
+    if (!touch_list(scenario, &places, &count, err)) {
         return false;
     }
+    const bool has_friction = scenario->contact.friction > 0.0;
+    rows->rows = zeroed(count, sizeof *rows->rows);
+    rows->friction = zeroed(count, sizeof *rows->friction);
+    rows->numbers = zeroed(count, sizeof *rows->numbers);
+    rows->mass.motions = zeroed(scenario->linkage.body_count, sizeof *rows->mass.motions);
+    touch_response(&scenario->linkage, places, count, has_friction, &rows->mass.response);
+    rows->work = has_friction ? contact_friction_work(&rows->mass.response) : NULL;
     rows->penalty = scenario->contact.penalty > 0.0
                         ? scenario->contact.penalty
                         : penalty_estimate(scenario->linkage.driver.speed, &scenario->material);
     for (size_t i = 0; i < world->pair_count; i++) {
         rows->rows[i].law = places[i].law;
     }
+    free(places);
     rows->group = dJointGroupCreate(0);
     return true;
 }
@@ -47,6 +54,12 @@ void contact_rows_finish(ContactRows *rows)
     if (rows->group != NULL) {
         dJointGroupDestroy(rows->group);
     }
+    free(rows->rows);
+    free(rows->friction);
+    free(rows->numbers);
+    free(rows->mass.motions);
+    contact_friction_free(rows->work);
+    response_finish(&rows->mass.response);
     memset(rows, 0, sizeof *rows);
 }
 
@@ -121,8 +134,8 @@ static void add_friction(ContactRow *row, const FrictionRow *friction)
 static void find_friction(ContactRows *rows, double step_s)
 {
     const ContactOptions *options = &rows->scenario->contact;
-    FrictionRow found[TOUCH_MAX];
-    size_t numbers[TOUCH_MAX];
+    FrictionRow *found = rows->friction;
+    size_t *numbers = rows->numbers;
     size_t count = 0;
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         if (rows->rows[i].is_touching) {
@@ -138,7 +151,8 @@ static void find_friction(ContactRows *rows, double step_s)
     if (motions != NULL) {
         const Applied *applied = &rows->world->applied;
         contact_friction_find(options, &rows->mass.response, motions, rows->scenario->gravity,
-                              applied->is_any ? applied->loads : NULL, step_s, found, count);
+                              applied->is_any ? applied->loads : NULL, step_s, rows->work, found,
+                              count);
     }
     for (size_t i = 0; i < count; i++) {
         add_friction(&rows->rows[numbers[i]], &found[i]);
@@ -345,9 +359,9 @@ void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
     }
 }
 
-void contact_rows_offsets(const ContactRows *rows, int body, Vec2 offsets[LINKAGE_JOINT_MAX])
+void contact_rows_offsets(const ContactRows *rows, int body, Vec2 *offsets)
 {
-    memset(offsets, 0, LINKAGE_JOINT_MAX * sizeof *offsets);
+    memset(offsets, 0, rows->scenario->linkage.joint_count * sizeof *offsets);
     world_offsets(rows->world, body, offsets);
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         const ContactRow *row = &rows->rows[i];

@@ -4,6 +4,7 @@
 
 #include "contact/map.h"
 #include "model/trajectory.h"
+#include "ode/contact_friction.h"
 #include "ode/contact_mass.h"
 
 typedef struct ContactRows {
@@ -12,12 +13,15 @@ typedef struct ContactRows {
     const Map *map;
     double penalty; // N s/m, of CONTACT_POISSON: given, or the paper's estimate
     dJointGroupID group;
-    ContactRow rows[TOUCH_MAX]; // by pair of the world
-    size_t most_rows;           // at any step so far
-    size_t row_count;           // made so far
-    size_t fallback_count;      // of those, where the map would not have been stable
-    bool is_staggered;          // positions stand half a step behind the speeds
-    ContactMass mass;           // of the linkage at the places
+    ContactRow *rows;      // by pair of the world; owned, as the next
+    FrictionRow *friction; // of those that touch
+    FrictionWork *work;    // NULL without friction
+    size_t *numbers;       // of the pairs that touch
+    size_t most_rows;      // at any step so far
+    size_t row_count;      // made so far
+    size_t fallback_count; // of those, where the map would not have been stable
+    bool is_staggered;     // positions stand half a step behind the speeds
+    ContactMass mass;      // of the linkage at the places
 } ContactRows;
 
 // Prepares the laws of all pairs. Fails with ERR_CASE where a law does not fit a joint. The rows
@@ -38,7 +42,7 @@ bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, dou
 // By joint, from the anchor on a body to where the joint's force is said to act, m: of a pin or
 // stop at the contact, of a block or a prismatic joint at the anchor on body b. Zero for a joint
 // with play that has no row in this step.
-void contact_rows_offsets(const ContactRows *rows, int body, Vec2 offsets[LINKAGE_JOINT_MAX]);
+void contact_rows_offsets(const ContactRows *rows, int body, Vec2 *offsets);
 
 // What all contacts together lost in the step along the normal and in sliding, and store after it,
 // J.

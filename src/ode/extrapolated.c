@@ -9,6 +9,7 @@
 // the balance of the driven body. Work of the drive, P its power, over a part from t1 to t2:
 //     W = (t2 - t1) / 6 (P(t1) + 4 P((t1 + t2) / 2) + P(t2))        (Simpson)
 #include "base/hermite.h"
+#include "base/zeroed.h"
 #include "ode/ideal_forces.h"
 #include "ode/nodes.h"
 #include "ode/stepping.h"
@@ -29,20 +30,23 @@ typedef struct Powers {
 typedef struct Extrapolated {
     const Scenario *scenario;
     Nodes nodes;
-    Response *response;                 // room to work in
-    int driven;                         // body, or LINKAGE_GROUND
-    bool is_begun;                      // the part at time zero has been handed out
-    long interval;                      // number of the node before it
-    Hermite paths[LINKAGE_BODY_MAX][3]; // x, y and angle in the interval
-    double start_s;                     // of the last part
-    Sample end;                         // of it
-    Powers powers;                      // there
-    double drive_work;                  // J, in the last part
-    double damped;                      // J, in dampers, likewise
-    double omega[LINKAGE_BODY_MAX];
-    double alpha[LINKAGE_BODY_MAX];
-    double impulse[LINKAGE_JOINT_MAX];
-    double approach[LINKAGE_JOINT_MAX]; // zero: an ideal joint never begins to touch
+    Response *response;  // room to work in; owned
+    int driven;          // body, or LINKAGE_GROUND
+    bool is_begun;       // the part at time zero has been handed out
+    long interval;       // number of the node before it
+    Hermite (*paths)[3]; // x, y and angle in the interval; owned, as are all arrays
+    double start_s;      // of the last part
+    Sample end;          // of it
+    Powers powers;       // there
+    double drive_work;   // J, in the last part
+    double damped;       // J, in dampers, likewise
+    double *omega;
+    double *alpha;
+    double *impulse;
+    double *approach; // zero: an ideal joint never begins to touch
+    BodyLoad *loads;  // to work with, as the next
+    Vec2 *offsets;
+    double *rows; // of the response
 } Extrapolated;
 
 static void extrapolated_close(void *state)
@@ -50,9 +54,32 @@ static void extrapolated_close(void *state)
     Extrapolated *own = state;
     if (own != NULL) {
         nodes_finish(&own->nodes);
+        response_finish(own->response);
         free(own->response);
+        free(own->paths);
+        free(own->omega);
+        free(own->alpha);
+        free(own->impulse);
+        free(own->approach);
+        free(own->loads);
+        free(own->offsets);
+        free(own->rows);
         free(own);
     }
+}
+
+static void make_extrapolated(const Linkage *linkage, Extrapolated *own)
+{
+    own->response = zeroed(1, sizeof *own->response);
+    response_init(linkage, false, own->response);
+    own->paths = zeroed(linkage->body_count, sizeof *own->paths);
+    own->omega = zeroed(linkage->body_count, sizeof *own->omega);
+    own->alpha = zeroed(linkage->body_count, sizeof *own->alpha);
+    own->impulse = zeroed(linkage->joint_count, sizeof *own->impulse);
+    own->approach = zeroed(linkage->joint_count, sizeof *own->approach);
+    own->loads = zeroed(linkage->body_count, sizeof *own->loads);
+    own->offsets = zeroed(linkage->joint_count, sizeof *own->offsets);
+    own->rows = zeroed(own->response->ideal_rows, sizeof *own->rows);
 }
 
 static bool extrapolated_open(const Scenario *scenario, void **state, Err *err)
@@ -63,12 +90,10 @@ static bool extrapolated_open(const Scenario *scenario, void **state, Err *err)
     }
     Extrapolated *own = calloc(1, sizeof *own);
     assert(own != NULL);
-    own->response = calloc(1, sizeof *own->response);
-    assert(own->response != NULL);
     own->scenario = scenario;
     own->driven = linkage_driven_body(&scenario->linkage);
-    if (nodes_init(scenario, &own->nodes, err) &&
-        response_init(&scenario->linkage, false, own->response, err)) {
+    make_extrapolated(&scenario->linkage, own);
+    if (nodes_init(scenario, &own->nodes, err)) {
         *state = own;
         return true;
     }
@@ -132,21 +157,21 @@ static void fill_motions(const Extrapolated *own, double time_s, Motion *motions
 static bool work_out(const Extrapolated *own, double time_s, Sample *sample, Powers *powers)
 {
     const Linkage *linkage = &own->scenario->linkage;
-    BodyLoad loads[LINKAGE_BODY_MAX];
+    BodyLoad *loads = own->loads;
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
     fill_motions(own, time_s, sample->bodies);
     forces_loads(linkage, sample->bodies, time_s, loads);
-    if (!ideal_forces_solve(own->scenario, sample->bodies, loads, own->response, sample->joints)) {
+    if (!ideal_forces_solve(own->scenario, sample->bodies, loads, own->response, own->rows,
+                            sample->joints)) {
         return false;
     }
     powers->drive = forces_torque_power(linkage, sample->bodies, time_s);
     powers->damping = forces_damping_power(linkage, sample->bodies);
     if (own->driven >= 0) {
-        Vec2 offsets[LINKAGE_JOINT_MAX];
-        stepping_offsets(linkage, sample->bodies, own->driven, offsets);
+        stepping_offsets(linkage, sample->bodies, own->driven, own->offsets);
         powers->drive = stepping_drive(own->scenario, &sample->bodies[own->driven],
-                                       &loads[own->driven], offsets, sample->joints);
+                                       &loads[own->driven], own->offsets, sample->joints);
     }
     return true;
 }

@@ -42,13 +42,12 @@ static void set_force(const Linkage *linkage, const Motion *motions, int number,
 }
 
 bool ideal_forces_solve(const Scenario *scenario, const Motion *motions, const BodyLoad *loads,
-                        Response *response, JointState *joints)
+                        Response *response, double *lambda, JointState *joints)
 {
     if (!response_place(response, motions)) {
         return false;
     }
     const size_t count = response->ideal_rows;
-    double lambda[RESPONSE_ROW_MAX];
     for (size_t i = 0; i < count; i++) {
         lambda[i] = row_acceleration(&response->rows[i], &scenario->linkage, motions,
                                      scenario->gravity, loads);

@@ -2,6 +2,7 @@
 // themselves: ode/impulse_step.c.)
 //
 // A step is handed on in parts (ode/impulse_part.c).
+#include "base/zeroed.h"
 #include "contact/law.h"
 #include "ode/impulse_part.h"
 #include "ode/impulse_step.h"
@@ -13,8 +14,9 @@
 typedef struct Impulse {
     ImpulseStep step;
     ImpulsePart part; // of it, the one that is handed on
-    JointState joints[LINKAGE_JOINT_MAX];
-    double depths[ENCOUNTER_JOINT_MAX]; // m, by place
+    Motion *motions;  // by body; owned, as the next two
+    JointState *joints;
+    double *depths; // m, by place
 } Impulse;
 
 static void impulse_close(void *state)
@@ -23,6 +25,9 @@ static void impulse_close(void *state)
     if (impulse != NULL) {
         impulse_part_finish(&impulse->part);
         impulse_step_finish(&impulse->step);
+        free(impulse->motions);
+        free(impulse->joints);
+        free(impulse->depths);
         free(impulse);
     }
 }
@@ -32,6 +37,11 @@ static bool impulse_open(const Scenario *scenario, void **state, Err *err)
     Impulse *impulse = calloc(1, sizeof *impulse);
     assert(impulse != NULL);
     if (impulse_step_init(scenario, &impulse->step, err)) {
+        const Linkage *linkage = &scenario->linkage;
+        impulse_part_init(&impulse->part, linkage);
+        impulse->motions = zeroed(linkage->body_count, sizeof *impulse->motions);
+        impulse->joints = zeroed(linkage->joint_count, sizeof *impulse->joints);
+        impulse->depths = zeroed(impulse->step.place_count, sizeof *impulse->depths);
         *state = impulse;
         return true;
     }
@@ -56,7 +66,7 @@ static void take_part(Impulse *impulse)
 {
     const ImpulseStep *step = &impulse->step;
     ImpulsePart *part = &impulse->part;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion *motions = impulse->motions;
     const Mark *mark = impulse_part_next(part, &step->encounter, step->start_s, step->end_s);
     impulse_step_inside(step, mark->node, mark->time_s, !part->is_last, &part->sums, motions,
                         impulse->joints, impulse->depths);
@@ -99,12 +109,11 @@ static void impulse_observe(const void *state, double time_s, Sample *sample)
     const double since_s = fmin(fmax(time_s - impulse->step.start_s, 0.0), impulse->step.width_s);
     const size_t node = encounter_node(&impulse->step.encounter, since_s);
     EncounterSums sums;
-    double depths[ENCOUNTER_JOINT_MAX];
     encounter_at(&impulse->step.encounter, node, since_s, &sums);
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
     impulse_step_inside(&impulse->step, node, since_s, true, &sums, sample->bodies, sample->joints,
-                        depths);
+                        impulse->depths);
 }
 
 static SolverModel impulse_model(const void *state)

@@ -11,7 +11,7 @@ void impulse_step_push(ImpulseStep *step, const Motion *middle)
     if (!step->world.applied.is_any) {
         return;
     }
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion *motions = step->work->motions;
     memcpy(motions, middle, step->scenario->linkage.body_count * sizeof *motions);
     if (step->driven >= 0) {
         // the others have the speeds of the start already
@@ -27,10 +27,11 @@ void impulse_step_push_late(ImpulseStep *step, const Motion *middle)
     if (!forces_damp(linkage)) {
         return;
     }
-    double late[RESPONSE_ROW_MAX] = {0.0};
-    double moved[IMPULSE_CHANGE_MAX];
-    Motion motions[LINKAGE_BODY_MAX];
-    BodyLoad loads[LINKAGE_BODY_MAX] = {{{0.0, 0.0}, 0.0}};
+    double *late = step->work->rows[0];
+    double *moved = step->work->changes[0];
+    Motion *motions = step->work->motions;
+    BodyLoad *loads = step->work->loads;
+    memset(loads, 0, linkage->body_count * sizeof *loads);
     for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
         late[i] = step->total.moment[i] / step->width_s - 0.5 * step->total.impulse[i];
     }

@@ -14,8 +14,8 @@
 static void find_motions(const ImpulseStep *step, double since_s, const EncounterSums *sums,
                          Motion *motions)
 {
-    double speeds[IMPULSE_CHANGE_MAX];
-    double positions[IMPULSE_CHANGE_MAX];
+    double *speeds = step->work->changes[0];
+    double *positions = step->work->changes[1];
     response_apply(&step->response, sums->impulse, speeds);
     response_apply(&step->response, sums->moment, positions);
     const double share = since_s / step->width_s;
@@ -45,7 +45,7 @@ static void find_motions(const ImpulseStep *step, double since_s, const Encounte
 static void find_accelerations(const ImpulseStep *step, const Response *response, double since_s,
                                const EncounterSums *sums, Motion *motions)
 {
-    double rates[IMPULSE_CHANGE_MAX];
+    double *rates = step->work->changes[0];
     const double off_middle_s = since_s - 0.5 * step->width_s;
     response_apply(response, sums->force, rates);
     for (size_t n = 0; n < 3 * step->scenario->linkage.body_count; n++) {
@@ -127,8 +127,8 @@ static void find_joints(const ImpulseStep *step, size_t node, double since_s,
     memcpy(joints, step->mean, linkage->joint_count * sizeof *joints);
     find_places(step, node, since_s, sums, motions, joints, depths);
     // the ideal joints' mean forces, and how they answer what the contacts do beyond theirs
-    double beyond[RESPONSE_ROW_MAX] = {0.0};
-    double reactions[RESPONSE_ROW_MAX];
+    double *beyond = step->work->rows[0];
+    double *reactions = step->work->rows[1];
     for (size_t i = 0; i < encounter_rows(encounter); i++) {
         beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
     }
@@ -145,7 +145,8 @@ static void find_joints(const ImpulseStep *step, size_t node, double since_s,
         }
     }
     if (step->driven >= 0) {
-        const Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
+        Vec2 *offsets = step->work->offsets;
+        memset(offsets, 0, linkage->joint_count * sizeof *offsets);
         const BodyLoad load = applied_on(&step->world.applied, step->driven);
         stepping_drive(step->scenario, &motions[step->driven], &load, offsets, joints);
     }
@@ -153,10 +154,11 @@ static void find_joints(const ImpulseStep *step, size_t node, double since_s,
 
 void impulse_step_inside(const ImpulseStep *step, size_t node, double since_s, bool is_peak,
                          const EncounterSums *sums, Motion *motions, JointState *joints,
-                         double depths[ENCOUNTER_JOINT_MAX])
+                         double *depths)
 {
     find_motions(step, since_s, sums, motions);
-    const bool is_placed = is_peak && response_place(step->there, motions);
-    find_accelerations(step, is_placed ? step->there : &step->response, since_s, sums, motions);
+    const bool is_placed = is_peak && response_place(&step->work->there, motions);
+    find_accelerations(step, is_placed ? &step->work->there : &step->response, since_s, sums,
+                       motions);
     find_joints(step, node, since_s, sums, motions, joints, depths);
 }

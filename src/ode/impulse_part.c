@@ -1,8 +1,21 @@
 // What does a part of a step say of the contacts that were integrated inside it?
 #include "ode/impulse_part.h"
 
+#include "base/zeroed.h"
+
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+void impulse_part_init(ImpulsePart *part, const Linkage *linkage)
+{
+    part->omega = zeroed(linkage->body_count, sizeof *part->omega);
+    part->alpha = zeroed(linkage->body_count, sizeof *part->alpha);
+    part->impulse = zeroed(linkage->joint_count, sizeof *part->impulse);
+    part->approach = zeroed(linkage->joint_count, sizeof *part->approach);
+    part->since_s = zeroed(linkage->joint_count, sizeof *part->since_s);
+    part->is_known = zeroed(linkage->joint_count, sizeof *part->is_known);
+}
 
 bool impulse_part_needs_step(const ImpulsePart *part)
 {
@@ -50,9 +63,12 @@ void impulse_part_record(ImpulsePart *part, const Linkage *linkage, const JointS
 void impulse_part_add_contacts(ImpulsePart *part, const Encounter *encounter, const Mark *mark,
                                const double *depths, const bool *counts)
 {
-    double since_s[LINKAGE_JOINT_MAX];
-    bool is_known[LINKAGE_JOINT_MAX] = {false};
+    double *since_s = part->since_s;
+    bool *is_known = part->is_known;
     size_t touching = 0;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        is_known[encounter->joints[i].joint] = false;
+    }
     for (size_t i = 0; i < encounter->joint_count; i++) {
         const EncounterJoint *place = &encounter->joints[i];
         const bool is_touching = (encounter->touching[mark->node] >> i & 1) != 0;
@@ -81,4 +97,10 @@ void impulse_part_add_contacts(ImpulsePart *part, const Encounter *encounter, co
 void impulse_part_finish(ImpulsePart *part)
 {
     marks_finish(&part->marks);
+    free(part->omega);
+    free(part->alpha);
+    free(part->impulse);
+    free(part->approach);
+    free(part->since_s);
+    free(part->is_known);
 }

@@ -14,12 +14,16 @@ typedef struct ImpulsePart {
     bool is_last;       // of its step
     EncounterSums sums; // at its end
     EncounterSums before;
-    double omega[LINKAGE_BODY_MAX];
-    double alpha[LINKAGE_BODY_MAX];
-    double impulse[LINKAGE_JOINT_MAX];
-    double approach[LINKAGE_JOINT_MAX];
+    double *omega; // by body; owned, as are all arrays
+    double *alpha;
+    double *impulse; // by joint
+    double *approach;
+    double *since_s; // s, of the contact that is told
+    bool *is_known;
     StepRecord record;
 } ImpulsePart;
+
+void impulse_part_init(ImpulsePart *part, const Linkage *linkage);
 
 // Whether the next part begins a new step, which is then to be taken and given to
 // impulse_part_begin.

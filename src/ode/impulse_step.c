@@ -18,8 +18,6 @@
 #include "model/joint_rows.h"
 #include "ode/stepping.h"
 
-#include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 
 // a pin this close to the wall at the end of a coarse step, of its play, is taken to be there
@@ -32,68 +30,6 @@ static const double SHORT = 0.1;
 static size_t body_count(const ImpulseStep *step)
 {
     return step->scenario->linkage.body_count;
-}
-
-void impulse_step_finish(ImpulseStep *step)
-{
-    encounter_finish(&step->encounter);
-    free(step->there);
-    world_finish(&step->world);
-}
-
-// What an encounter is given of a place.
-static EncounterJoint joint_of(const ImpulseStep *step, const Touch *place)
-{
-    // a disc outside is a hole of negative size
-    const double sign = place->shape == TOUCH_DISC ? -1.0 : 1.0;
-    const bool is_line = place->shape == TOUCH_LINE;
-    const bool has_corners = step->scenario->linkage.joints[place->joint].kind == JOINT_GUIDE;
-    return (EncounterJoint){
-        .law = place->law,
-        .shape = place->shape,
-        .radial_clearance = is_line ? 0.0 : sign * place->clearance,
-        .hole_radius = is_line ? 0.0 : sign * place->radius_a,
-        .joint = place->joint,
-        .siblings = {has_corners ? -place->place : 0,
-                     has_corners ? TOUCH_CORNERS - 1 - place->place : 0},
-    };
-}
-
-static bool init_encounter(ImpulseStep *step, Err *err)
-{
-    const Scenario *scenario = step->scenario;
-    const ContactOptions *contact = &scenario->contact;
-    step->encounter =
-        encounter_start(contact->friction, contact->friction_speed, scenario->ode.contact_phase);
-    if (!touch_list(scenario, step->places, &step->place_count, err) ||
-        !touch_response(&scenario->linkage, step->places, step->place_count,
-                        contact->friction > 0.0, &step->response, err)) {
-        return false;
-    }
-    for (size_t i = 0; i < step->place_count; i++) {
-        const EncounterJoint added = joint_of(step, &step->places[i]);
-        // there is room: the response has as many rows
-        const bool is_added =
-            encounter_add(&step->encounter, &added, response_place_rows(&step->response.places[i]));
-        assert(is_added);
-        (void)is_added;
-    }
-    return true;
-}
-
-bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
-{
-    step->scenario = scenario;
-    step->driven = linkage_driven_body(&scenario->linkage);
-    step->tick_s = scenario->run.step / (double)scenario->ode.gear;
-    step->there = calloc(1, sizeof *step->there);
-    assert(step->there != NULL);
-    linkage_start(&scenario->linkage, step->after);
-    if (!init_encounter(step, err) || !world_build(scenario, step->after, &step->world, err)) {
-        return false;
-    }
-    *step->there = step->response;
-    return true;
 }
 
 // Where the rows of play are at the start of the step, and how fast they go.
@@ -199,9 +135,9 @@ static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
 static bool step_world(ImpulseStep *step, const Motion *middle, Err *err)
 {
     const double width_s = step->width_s;
-    double loads[IMPULSE_CHANGE_MAX];
-    response_load(&step->response, step->total.impulse, loads);
+    double *loads = step->work->changes[0];
     impulse_step_push_late(step, middle);
+    response_load(&step->response, step->total.impulse, loads);
     for (size_t i = 0; i < body_count(step); i++) {
         Motion placed = middle[i];
         if (impulse_step_is_free(step, i)) {
@@ -251,20 +187,21 @@ static void find_end(ImpulseStep *step, const Motion *middle)
         }
     }
     // when in the step the impulse came
-    double late[RESPONSE_ROW_MAX] = {0.0};
+    double *late = step->work->rows[0];
     for (size_t i = 0; i < rows; i++) {
         late[i] = step->total.moment[i] - half_s * step->total.impulse[i];
     }
-    double positions[IMPULSE_CHANGE_MAX];
-    double speeds[IMPULSE_CHANGE_MAX] = {0.0};
+    double *positions = step->work->changes[0];
+    double *speeds = step->work->changes[1];
     response_apply(&step->response, late, positions);
+    memset(speeds, 0, 3 * body_count(step) * sizeof *speeds);
     change_motions(step, positions, speeds, step->after);
     // back onto the ideal joints
-    double openings[RESPONSE_ROW_MAX];
-    double rates[RESPONSE_ROW_MAX];
+    double *openings = step->work->rows[0];
+    double *rates = step->work->rows[1];
     response_openings(&step->response, step->after, openings, rates);
-    double unused[RESPONSE_ROW_MAX];
-    response_close(&step->response, openings, unused, positions);
+    // the impulses that close the positions are of no interest
+    response_close(&step->response, openings, step->closing, positions);
     response_close(&step->response, rates, step->closing, speeds);
     change_motions(step, positions, speeds, step->after);
 }
@@ -273,8 +210,8 @@ static void find_end(ImpulseStep *step, const Motion *middle)
 static void prepare_inside(ImpulseStep *step, double width_before_s)
 {
     const double width_s = step->width_s;
-    double speeds[IMPULSE_CHANGE_MAX];
-    double positions[IMPULSE_CHANGE_MAX];
+    double *speeds = step->work->changes[0];
+    double *positions = step->work->changes[1];
     response_apply(&step->response, step->total.impulse, speeds);
     response_apply(&step->response, step->total.moment, positions);
     for (size_t i = 0; i < body_count(step); i++) {
@@ -349,9 +286,9 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
     const OdeOptions *options = &step->scenario->ode;
     // accelerations before a kink say nothing of those after it
     const double width_before_s = step->is_kink ? 0.0 : step->width_s;
-    Motion middle[LINKAGE_BODY_MAX];
+    Motion *middle = step->middle;
     step->start_s = step->end_s;
-    memcpy(step->before, step->after, sizeof step->before);
+    memcpy(step->before, step->after, body_count(step) * sizeof *step->before);
     if (step->driven >= 0) {
         step->before[step->driven] = stepping_driven(&step->scenario->linkage, step->start_s);
     }

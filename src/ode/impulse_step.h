@@ -6,16 +6,24 @@
 #include "model/trajectory.h"
 #include "ode/world.h"
 
-enum { IMPULSE_CHANGE_MAX = 3 * LINKAGE_BODY_MAX };
+// What a step works with: arrays by row of the response, by body three numbers each, by body and by
+// joint.
+typedef struct ImpulseWork {
+    Response there; // at whatever time is looked at
+    double *rows[2];
+    double *changes[2];
+    Motion *motions;
+    BodyLoad *loads;
+    Vec2 *offsets;
+} ImpulseWork;
 
 typedef struct ImpulseStep {
     const Scenario *scenario;
     World world;
     Response response;   // at mid-step
-    Response *there;     // at whatever time is looked at; owned
     Encounter encounter; // a joint of it is a place
     size_t place_count;
-    Touch places[TOUCH_MAX];
+    Touch *places; // owned, as are all arrays here
     int driven;    // body, or LINKAGE_GROUND
     double tick_s; // the finest step
     size_t tick;   // at the end of the last step, or before it
@@ -24,16 +32,18 @@ typedef struct ImpulseStep {
     size_t count;
     double start_s; // of the last step
     double width_s;
-    Motion before[LINKAGE_BODY_MAX];      // at its start
-    Motion after[LINKAGE_BODY_MAX];       // at its end
-    double free[IMPULSE_CHANGE_MAX];      // mean acceleration beside the contacts'
-    double free_rate[IMPULSE_CHANGE_MAX]; // its rate of change
-    double rest[IMPULSE_CHANGE_MAX];      // of the end's positions, beyond the formula for inside
-    double drive_work;                    // J, in the whole step
-    double damped;                        // J, in dampers, likewise
-    EncounterSums total;                  // of the contacts, in the whole step
-    double closing[RESPONSE_ROW_MAX];     // N s, of the ideal joints' rows, beside the world's step
-    JointState mean[LINKAGE_JOINT_MAX];   // mean forces of the ideal joints
+    Motion *before;      // at its start
+    Motion *middle;      // at mid-step, with the speeds of its start
+    Motion *after;       // at its end
+    double *free;        // mean acceleration beside the contacts', three a body
+    double *free_rate;   // its rate of change
+    double *rest;        // of the end's positions, beyond the formula for inside
+    double drive_work;   // J, in the whole step
+    double damped;       // J, in dampers, likewise
+    EncounterSums total; // of the contacts, in the whole step
+    double *closing;     // N s, of the ideal joints' rows, beside the world's step
+    JointState *mean;    // mean forces of the ideal joints
+    ImpulseWork *work;
 } ImpulseStep;
 
 // Whether a body moves by the forces on it, and not by the drive.
@@ -69,4 +79,4 @@ void impulse_step_push_late(ImpulseStep *step, const Motion *middle);
 // bodies are, else at mid-step.
 void impulse_step_inside(const ImpulseStep *step, size_t node, double since_s, bool is_peak,
                          const EncounterSums *sums, Motion *motions, JointState *joints,
-                         double depths[ENCOUNTER_JOINT_MAX]);
+                         double *depths);

@@ -132,8 +132,8 @@ void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
 {
     const Linkage *linkage = &step->scenario->linkage;
     const Motion *driven = &middle[step->driven >= 0 ? step->driven : 0];
-    Vec2 offsets[LINKAGE_JOINT_MAX] = {{0.0, 0.0}};
-    Motion motions[LINKAGE_BODY_MAX];
+    Vec2 *offsets = step->work->offsets;
+    Motion *motions = step->work->motions;
     double work = 0.0;
     find_play_means(step, middle, offsets);
     find_mean_motions(step, middle, motions);

@@ -21,10 +21,12 @@
 #include "ode/nodes.h"
 
 #include "base/dense.h"
+#include "base/zeroed.h"
 #include "model/kinematics.h"
 #include "ode/stepping.h"
 
 #include <assert.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -149,7 +151,7 @@ static bool start_level(Nodes *nodes, NodesLevel *level, Err *err)
 {
     const Linkage *linkage = &nodes->scenario->linkage;
     const long steps = NODES_BEFORE * (long)level->steps_a_node + SETTLE_STEPS;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion *motions = nodes->motions;
     linkage_start(linkage, motions);
     Err unused = {ERR_NONE, ""};
     if (kinematics_solve(linkage, linkage_crank_angle(linkage, 0.0), motions, &unused)) {
@@ -179,9 +181,9 @@ static bool start_levels(Nodes *nodes, Err *err)
 }
 
 // Adds what one world says of a node.
-static void add_level(const NodesLevel *level, size_t body_count, NodeState *states)
+static void add_level(const NodesLevel *level, size_t body_count, Motion *motions,
+                      NodeState *states)
 {
-    Motion motions[LINKAGE_BODY_MAX];
     read_level(level, body_count, motions);
     for (size_t i = 0; i < body_count; i++) {
         states[i].position[0] += level->weight * motions[i].position.x;
@@ -198,7 +200,15 @@ bool nodes_advance(Nodes *nodes, Err *err)
     if (!nodes->is_started && !start_levels(nodes, err)) {
         return false;
     }
-    NodeState states[LINKAGE_BODY_MAX] = {0};
+    // the oldest one makes room
+    if (nodes->kept == NODES_KEPT) {
+        NodeState *const oldest = nodes->states[0];
+        memmove(nodes->states, nodes->states + 1, (NODES_KEPT - 1) * sizeof *nodes->states);
+        nodes->states[--nodes->kept] = oldest;
+    }
+    const size_t body_count = nodes->scenario->linkage.body_count;
+    NodeState *states = nodes->states[nodes->kept];
+    memset(states, 0, body_count * sizeof *states);
     for (size_t k = 0; k < nodes->level_count; k++) {
         NodesLevel *level = &nodes->levels[k];
         while (level->index < nodes->next * (long)level->steps_a_node) {
@@ -206,13 +216,8 @@ bool nodes_advance(Nodes *nodes, Err *err)
                 return false;
             }
         }
-        add_level(level, nodes->scenario->linkage.body_count, states);
+        add_level(level, body_count, nodes->motions, states);
     }
-    if (nodes->kept == NODES_KEPT) {
-        memmove(nodes->states[0], nodes->states[1], (NODES_KEPT - 1) * sizeof nodes->states[0]);
-        nodes->kept--;
-    }
-    memcpy(nodes->states[nodes->kept], states, sizeof states);
     nodes->kept++;
     nodes->next++;
     return true;
@@ -230,12 +235,17 @@ bool nodes_init(const Scenario *scenario, Nodes *nodes, Err *err)
     }
     nodes->interval_s = (double)steps_a_node * scenario->run.step;
     set_weights(nodes);
-    Motion motions[LINKAGE_BODY_MAX];
-    linkage_start(&scenario->linkage, motions);
+    const size_t body_count = scenario->linkage.body_count;
+    nodes->motions = zeroed(body_count, sizeof *nodes->motions);
+    for (size_t k = 0; k < NODES_KEPT; k++) {
+        nodes->states[k] = zeroed(body_count, sizeof *nodes->states[k]);
+    }
+    linkage_start(&scenario->linkage, nodes->motions);
     for (size_t k = 0; k < nodes->level_count; k++) {
         NodesLevel *level = &nodes->levels[k];
+        level->turned = zeroed(body_count, sizeof *level->turned);
         level->step_s = nodes->interval_s / (double)level->steps_a_node;
-        if (!world_build(scenario, motions, &level->world, err)) {
+        if (!world_build(scenario, nodes->motions, &level->world, err)) {
             return false;
         }
     }
@@ -246,5 +256,10 @@ void nodes_finish(Nodes *nodes)
 {
     for (size_t k = 0; k < NODES_LEVEL_MAX; k++) {
         world_finish(&nodes->levels[k].world);
+        free(nodes->levels[k].turned);
     }
+    for (size_t k = 0; k < NODES_KEPT; k++) {
+        free(nodes->states[k]);
+    }
+    free(nodes->motions);
 }

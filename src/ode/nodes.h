@@ -15,9 +15,9 @@ typedef struct NodesLevel {
     World world;
     size_t steps_a_node;
     double step_s;
-    double weight;                   // 1, of its motion in the nodes'
-    long index;                      // steps from time zero to where its speeds stand
-    double turned[LINKAGE_BODY_MAX]; // rad, angles half a step later: what whole turns they have
+    double weight;  // 1, of its motion in the nodes'
+    long index;     // steps from time zero to where its speeds stand
+    double *turned; // rad, angles half a step later: what whole turns they have; owned
 } NodesLevel;
 
 // One body at one node.
@@ -35,7 +35,8 @@ typedef struct Nodes {
     size_t steps; // of all worlds so far
     long next;    // number of the node that comes next; number zero is at time zero
     size_t kept;  // nodes kept of those before it
-    NodeState states[NODES_KEPT][LINKAGE_BODY_MAX]; // at those, in order; not of the driven body
+    NodeState *states[NODES_KEPT]; // at those, in order; not of the driven body; owned
+    Motion *motions;               // to work with; owned
 } Nodes;
 
 // Builds the worlds. From node to node it is as long as the scenario's step times the steps that

@@ -7,6 +7,7 @@
 // ODE is first order read like this. In between, positions and speeds are taken as linear.
 // Where every joint is ideal the run starts `settle_steps` early: the joint rows lag behind the
 // start by a share (1 - ERP)^n, which would stand in the accelerations at any step size.
+#include "base/zeroed.h"
 #include "ode/contact_rows.h"
 #include "ode/stepping.h"
 
@@ -22,13 +23,14 @@ typedef struct Plain {
     double step_s;
     long index; // of the next step: it starts at index times step_s
     size_t steps;
-    int driven;                        // body, or LINKAGE_GROUND
-    Snapshot before[LINKAGE_BODY_MAX]; // at the start of the last step
-    double omega[LINKAGE_BODY_MAX];    // at its end
-    double alpha[LINKAGE_BODY_MAX];
-    JointState joints[LINKAGE_JOINT_MAX];
-    double impulse[LINKAGE_JOINT_MAX];
-    double approach[LINKAGE_JOINT_MAX];
+    int driven;       // body, or LINKAGE_GROUND
+    Snapshot *before; // at the start of the last step; owned, as are the arrays below
+    double *omega;    // at its end
+    double *alpha;
+    JointState *joints;
+    double *impulse;
+    double *approach;
+    Vec2 *offsets;       // by joint, to work with
     double drive_work;   // J, in the last step
     AppliedWork applied; // in the last step
 } Plain;
@@ -41,6 +43,13 @@ static void plain_close(void *state)
     }
     contact_rows_finish(&plain->contacts);
     world_finish(&plain->world);
+    free(plain->before);
+    free(plain->omega);
+    free(plain->alpha);
+    free(plain->joints);
+    free(plain->impulse);
+    free(plain->approach);
+    free(plain->offsets);
     free(plain);
 }
 
@@ -59,10 +68,9 @@ static void read_velocities(Plain *plain)
 // The force of each joint acts at its contact, where it has one.
 static double drive_power(Plain *plain, const Motion *driven)
 {
-    Vec2 offsets[LINKAGE_JOINT_MAX];
-    contact_rows_offsets(&plain->contacts, plain->driven, offsets);
+    contact_rows_offsets(&plain->contacts, plain->driven, plain->offsets);
     const BodyLoad load = applied_on(&plain->world.applied, plain->driven);
-    return stepping_drive(plain->scenario, driven, &load, offsets, plain->joints);
+    return stepping_drive(plain->scenario, driven, &load, plain->offsets, plain->joints);
 }
 
 static bool advance(Plain *plain, Err *err)
@@ -108,6 +116,17 @@ static bool settle(Plain *plain, Err *err)
     return true;
 }
 
+static void make_plain(const Linkage *linkage, Plain *plain)
+{
+    plain->before = zeroed(linkage->body_count, sizeof *plain->before);
+    plain->omega = zeroed(linkage->body_count, sizeof *plain->omega);
+    plain->alpha = zeroed(linkage->body_count, sizeof *plain->alpha);
+    plain->joints = zeroed(linkage->joint_count, sizeof *plain->joints);
+    plain->impulse = zeroed(linkage->joint_count, sizeof *plain->impulse);
+    plain->approach = zeroed(linkage->joint_count, sizeof *plain->approach);
+    plain->offsets = zeroed(linkage->joint_count, sizeof *plain->offsets);
+}
+
 static bool plain_open(const Scenario *scenario, void **state, Err *err)
 {
     Plain *plain = calloc(1, sizeof *plain);
@@ -115,16 +134,19 @@ static bool plain_open(const Scenario *scenario, void **state, Err *err)
     plain->scenario = scenario;
     plain->step_s = scenario->run.step;
     plain->driven = linkage_driven_body(&scenario->linkage);
-    Motion motions[LINKAGE_BODY_MAX];
+    make_plain(&scenario->linkage, plain);
+    Motion *motions = zeroed(scenario->linkage.body_count, sizeof *motions);
     plain->index =
         -stepping_start(scenario, plain->step_s, (long)scenario->ode.settle_steps, motions);
-    if (world_build(scenario, motions, &plain->world, err) &&
-        contact_rows_init(&plain->contacts, scenario, &plain->world, false, err)) {
-        *state = plain;
-        return true;
+    const bool is_made = world_build(scenario, motions, &plain->world, err) &&
+                         contact_rows_init(&plain->contacts, scenario, &plain->world, false, err);
+    free(motions);
+    if (!is_made) {
+        plain_close(plain);
+        return false;
     }
-    plain_close(plain);
-    return false;
+    *state = plain;
+    return true;
 }
 
 static bool plain_step(void *state, double stop_s, Err *err)

@@ -34,6 +34,7 @@ static bool space_impulse_open(const Scenario *scenario, void **state, Err *err)
 {
     SpaceImpulse *impulse = calloc(1, sizeof *impulse);
     assert(impulse != NULL);
+    impulse_part_init(&impulse->part, &scenario->linkage);
     if (space_impulse_step_init(scenario, &impulse->step, err)) {
         *state = impulse;
         return true;

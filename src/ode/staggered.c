@@ -17,6 +17,7 @@
 // Read between: speeds linear in each step, positions their integral, accelerations linear between
 // mid-steps. That needs the step after: the run is one step ahead of what it hands on.
 // Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. 2006, VII.1.4 on SHAKE.
+#include "base/zeroed.h"
 #include "model/joint_rows.h"
 #include "model/response.h"
 #include "ode/contact_rows.h"
@@ -32,13 +33,13 @@ enum { SETTLE_STEPS = 4 };
 // One step, as it is handed on.
 typedef struct Stride {
     double start_s;
-    Snapshot middle[LINKAGE_BODY_MAX]; // positions at mid-step, speeds at its start
-    Vec2 velocity[LINKAGE_BODY_MAX];   // at its end
-    double omega[LINKAGE_BODY_MAX];
-    double alpha[LINKAGE_BODY_MAX]; // mean
-    JointState joints[LINKAGE_JOINT_MAX];
-    double impulse[LINKAGE_JOINT_MAX];
-    double approach[LINKAGE_JOINT_MAX];
+    Snapshot *middle; // positions at mid-step, speeds at its start; owned, as are the arrays below
+    Vec2 *velocity;   // at its end
+    double *omega;
+    double *alpha; // mean
+    JointState *joints;
+    double *impulse;
+    double *approach;
     double drive_work; // J
     double damped;     // J, in dampers
     ContactEnergy energy;
@@ -52,11 +53,34 @@ typedef struct Staggered {
     long index; // of the next step: it starts at that many times step_s
     size_t steps;
     int driven;
+    Vec2 *offsets;     // by joint, to work with; owned
     Stride strides[3]; // before the one handed on, that one, and the one ahead of it
     Stride *before;
     Stride *now;
     Stride *ahead;
 } Staggered;
+
+static void stride_init(const Linkage *linkage, Stride *stride)
+{
+    stride->middle = zeroed(linkage->body_count, sizeof *stride->middle);
+    stride->velocity = zeroed(linkage->body_count, sizeof *stride->velocity);
+    stride->omega = zeroed(linkage->body_count, sizeof *stride->omega);
+    stride->alpha = zeroed(linkage->body_count, sizeof *stride->alpha);
+    stride->joints = zeroed(linkage->joint_count, sizeof *stride->joints);
+    stride->impulse = zeroed(linkage->joint_count, sizeof *stride->impulse);
+    stride->approach = zeroed(linkage->joint_count, sizeof *stride->approach);
+}
+
+static void stride_finish(Stride *stride)
+{
+    free(stride->middle);
+    free(stride->velocity);
+    free(stride->omega);
+    free(stride->alpha);
+    free(stride->joints);
+    free(stride->impulse);
+    free(stride->approach);
+}
 
 static void staggered_close(void *state)
 {
@@ -66,7 +90,37 @@ static void staggered_close(void *state)
     }
     contact_rows_finish(&staggered->contacts);
     world_finish(&staggered->world);
+    for (size_t i = 0; i < 3; i++) {
+        stride_finish(&staggered->strides[i]);
+    }
+    free(staggered->offsets);
     free(staggered);
+}
+
+// Moves the bodies so that each ideal joint is as far open as it stays, the response having been
+// taken there.
+static void open_joints(const Linkage *linkage, double step_s, const Response *response,
+                        Motion *motions)
+{
+    double *openings = zeroed(response->ideal_rows, sizeof *openings);
+    double *rates = zeroed(response->ideal_rows, sizeof *rates);
+    double *changes = zeroed(3 * linkage->body_count, sizeof *changes);
+    response_openings(response, motions, openings, rates);
+    for (size_t row = 0; row < response->ideal_rows; row += JOINT_ROWS) {
+        JointRows joint;
+        joint_rows_find(linkage, motions, response->joint_of[row], &joint);
+        openings[row] -= 0.5 * step_s * step_s * joint.bias[0];
+        openings[row + 1] -= 0.5 * step_s * step_s * joint.bias[1];
+    }
+    response_close(response, openings, rates, changes);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i].position.x += changes[3 * i];
+        motions[i].position.y += changes[3 * i + 1];
+        motions[i].angle += changes[3 * i + 2];
+    }
+    free(openings);
+    free(rates);
+    free(changes);
 }
 
 // The bodies half a step on, with the speeds of the start, each ideal joint as far open as it
@@ -89,22 +143,7 @@ static bool move_on(const Scenario *scenario, double start_s, Response *response
                        "the ideal joints are redundant at the start: give one joint of the "
                        "loop some play");
     }
-    double openings[RESPONSE_ROW_MAX];
-    double rates[RESPONSE_ROW_MAX];
-    double changes[3 * LINKAGE_BODY_MAX];
-    response_openings(response, motions, openings, rates);
-    for (size_t row = 0; row < response->ideal_rows; row += JOINT_ROWS) {
-        JointRows joint;
-        joint_rows_find(linkage, motions, response->joint_of[row], &joint);
-        openings[row] -= 0.5 * step_s * step_s * joint.bias[0];
-        openings[row + 1] -= 0.5 * step_s * step_s * joint.bias[1];
-    }
-    response_close(response, openings, rates, changes);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        motions[i].position.x += changes[3 * i];
-        motions[i].position.y += changes[3 * i + 1];
-        motions[i].angle += changes[3 * i + 2];
-    }
+    open_joints(linkage, step_s, response, motions);
     return true;
 }
 
@@ -118,21 +157,28 @@ static bool staggered_open(const Scenario *scenario, void **state, Err *err)
     staggered->before = &staggered->strides[0];
     staggered->now = &staggered->strides[1];
     staggered->ahead = &staggered->strides[2];
-    Motion motions[LINKAGE_BODY_MAX];
+    staggered->offsets = zeroed(scenario->linkage.joint_count, sizeof *staggered->offsets);
+    for (size_t i = 0; i < 3; i++) {
+        stride_init(&scenario->linkage, &staggered->strides[i]);
+    }
+    Motion *motions = zeroed(scenario->linkage.body_count, sizeof *motions);
     staggered->index = -stepping_start(scenario, staggered->step_s, SETTLE_STEPS, motions);
     const double start_s = (double)staggered->index * staggered->step_s;
     // built closed, so that every joint gets its anchors where they belong, and moved then
-    if (world_build(scenario, motions, &staggered->world, err) &&
+    const bool is_made =
+        world_build(scenario, motions, &staggered->world, err) &&
         contact_rows_init(&staggered->contacts, scenario, &staggered->world, true, err) &&
-        move_on(scenario, start_s, &staggered->contacts.mass.response, motions, err)) {
-        for (size_t i = 0; i < scenario->linkage.body_count; i++) {
-            world_place(&staggered->world, i, &motions[i]);
-        }
-        *state = staggered;
-        return true;
+        move_on(scenario, start_s, &staggered->contacts.mass.response, motions, err);
+    for (size_t i = 0; is_made && i < scenario->linkage.body_count; i++) {
+        world_place(&staggered->world, i, &motions[i]);
     }
-    staggered_close(staggered);
-    return false;
+    free(motions);
+    if (!is_made) {
+        staggered_close(staggered);
+        return false;
+    }
+    *state = staggered;
+    return true;
 }
 
 // Puts the driven body to mid-step with its speed at another time.
@@ -163,12 +209,11 @@ static void read_speeds(const Staggered *staggered, Stride *stride)
 static void book(Staggered *staggered, const Motion *middle, Stride *stride)
 {
     const Linkage *linkage = &staggered->scenario->linkage;
-    Vec2 offsets[LINKAGE_JOINT_MAX];
-    contact_rows_offsets(&staggered->contacts, staggered->driven, offsets);
+    contact_rows_offsets(&staggered->contacts, staggered->driven, staggered->offsets);
     const AppliedWork applied = applied_book(&staggered->world.applied, staggered->step_s);
     const BodyLoad load = applied_on(&staggered->world.applied, staggered->driven);
     const double power =
-        stepping_drive(staggered->scenario, middle, &load, offsets, stride->joints);
+        stepping_drive(staggered->scenario, middle, &load, staggered->offsets, stride->joints);
     stride->drive_work = staggered->step_s * power + applied.torque;
     stride->damped = applied.damping;
     for (size_t i = 0; i < linkage->joint_count; i++) {

@@ -65,8 +65,7 @@ long stepping_start(const Scenario *scenario, double step_s, long steps_back, Mo
     return steps_back;
 }
 
-void stepping_offsets(const Linkage *linkage, const Motion *motions, int body,
-                      Vec2 offsets[LINKAGE_JOINT_MAX])
+void stepping_offsets(const Linkage *linkage, const Motion *motions, int body, Vec2 *offsets)
 {
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];

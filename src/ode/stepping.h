@@ -24,8 +24,7 @@ long stepping_start(const Scenario *scenario, double step_s, long steps_back, Mo
 
 // By joint, from the anchor on a body to where the force of an ideal joint acts, m: that of a
 // prismatic joint at the anchor on its body b.
-void stepping_offsets(const Linkage *linkage, const Motion *motions, int body,
-                      Vec2 offsets[LINKAGE_JOINT_MAX]);
+void stepping_offsets(const Linkage *linkage, const Motion *motions, int body, Vec2 *offsets);
 
 // The force in the driven joint, N, and the power of the drive, W, from the body's own equations:
 // all other forces on it are known. `joints` holds those forces and couples, and receives the

@@ -12,6 +12,7 @@
 #include "ode/world.h"
 
 #include "base/dense.h"
+#include "base/zeroed.h"
 #include "ode/engine.h"
 
 #include <stdlib.h>
@@ -154,9 +155,6 @@ static bool make_pairs(const Scenario *scenario, int number, World *world, Err *
     const Joint *joint = &scenario->linkage.joints[number];
     Touch places[TOUCH_CORNERS];
     const size_t count = touch_places(joint, number, places);
-    if (world->pair_count + count > TOUCH_MAX) {
-        return touch_too_many(err);
-    }
     const dBodyID bodies[2] = {body_of(world, joint->body_a), body_of(world, joint->body_b)};
     for (size_t i = 0; i < count; i++) {
         WorldPair *pair = &world->pairs[world->pair_count++];
@@ -170,12 +168,17 @@ static bool make_pairs(const Scenario *scenario, int number, World *world, Err *
 void world_start(const Scenario *scenario, World *world)
 {
     const OdeOptions *options = &scenario->ode;
+    const Linkage *linkage = &scenario->linkage;
     memset(world, 0, sizeof *world);
+    world->bodies = zeroed(linkage->body_count, sizeof *world->bodies);
+    world->feedback = zeroed(linkage->joint_count, sizeof *world->feedback);
+    world->sliding = zeroed(linkage->joint_count, sizeof *world->sliding);
+    world->pairs = zeroed(TOUCH_CORNERS * linkage->joint_count, sizeof *world->pairs);
     engine_start();
     engine_seed(options->seed);
     const dWorldID id = dWorldCreate();
     world->id = id;
-    world->linkage = &scenario->linkage;
+    world->linkage = linkage;
     dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);
     dWorldSetERP(id, joint_erp(options));
     dWorldSetCFM(id, options->cfm);
@@ -223,6 +226,11 @@ void world_finish(World *world)
     if (world->id != NULL) {
         dWorldDestroy(world->id);
     }
+    free(world->bodies);
+    free(world->feedback);
+    free(world->sliding);
+    free(world->pairs);
+    applied_finish(&world->applied);
     memset(world, 0, sizeof *world);
 }
 
@@ -234,7 +242,7 @@ bool world_step(World *world, double step_s, bool is_quick, Err *err)
     return engine_step(world->id, step_s, is_quick, err);
 }
 
-void world_offsets(const World *world, int body, Vec2 offsets[LINKAGE_JOINT_MAX])
+void world_offsets(const World *world, int body, Vec2 *offsets)
 {
     for (size_t i = 0; i < world->sliding_count; i++) {
         const int joint = world->sliding[i].joint;

@@ -14,15 +14,15 @@
 typedef struct World {
     const Linkage *linkage;
     dWorldID id;
-    dBodyID bodies[LINKAGE_BODY_MAX];
-    dJointFeedback feedback[LINKAGE_JOINT_MAX]; // of the revolute joints
+    dBodyID *bodies;          // owned, as are all arrays here
+    dJointFeedback *feedback; // of the revolute joints, by joint
     size_t sliding_count;
-    Sliding sliding[LINKAGE_JOINT_MAX]; // the prismatic joints
-    const Collider *collider;           // of all pairs
+    Sliding *sliding;         // the prismatic joints
+    const Collider *collider; // of all pairs
     size_t pair_count;
-    WorldPair pairs[TOUCH_MAX]; // in the order of touch_list
-    size_t constraint_rows;     // scalar rows of the ideal joints, all independent
-    Applied applied;            // springs, dampers, torque
+    WorldPair *pairs;       // in the order of touch_list
+    size_t constraint_rows; // scalar rows of the ideal joints, all independent
+    Applied applied;        // springs, dampers, torque
 } World;
 
 // Builds the world of a scenario with its bodies in the motions given. Fails with ERR_SOLVER where
@@ -43,7 +43,7 @@ bool world_step(World *world, double step_s, bool is_quick, Err *err);
 
 // Fills in, by joint, how far from the anchor on a body the forces of the prismatic joints acted in
 // the last step, m: at the anchor on their body b. Other joints are left alone.
-void world_offsets(const World *world, int body, Vec2 offsets[LINKAGE_JOINT_MAX]);
+void world_offsets(const World *world, int body, Vec2 *offsets);
 
 // Fails with ERR_SOLVER where a velocity is not finite or a body has left the plane, which is kept
 // only as long as nothing ever leaves it.

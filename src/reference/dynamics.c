@@ -11,6 +11,7 @@
 #include "reference/dynamics_reactions.h"
 #include "reference/loops.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 // What the coordinates of the tree are.
@@ -56,9 +57,13 @@ static double flight_of(const Linkage *linkage, const Touch *touch)
 static bool list_contacts(const Scenario *scenario, Dynamics *dynamics, Err *err)
 {
     System *system = &dynamics->system;
-    Touch touches[TOUCH_MAX];
-    if (!touch_list(scenario, touches, &system->contact_count, err)) {
+    Touch *touches;
+    if (!touch_list(scenario, &touches, &system->contact_count, err)) {
         return false;
+    }
+    if (system->contact_count > TOUCH_MAX) {
+        free(touches);
+        return touch_too_many(err);
     }
     for (size_t i = 0; i < system->contact_count; i++) {
         const Touch *touch = &touches[i];
@@ -75,6 +80,7 @@ static bool list_contacts(const Scenario *scenario, Dynamics *dynamics, Err *err
             .acts_beside = touch->shape == TOUCH_LINE || scenario->contact.friction > 0.0,
         };
     }
+    free(touches);
     return true;
 }
 

@@ -71,21 +71,23 @@ static double find_mass(const Linkage *linkage, const Trajectory *trajectory, si
                         double time_s)
 {
     Response response;
-    Err unused = {ERR_NONE, ""};
+    double mass = NAN;
     const size_t sample = sample_near(trajectory, time_s);
     const Motion *motions = trajectory_motion(trajectory, sample, 0);
-    if (!space_has_plane(linkage) || !response_init(linkage, false, &response, &unused) ||
-        !response_place(&response, motions)) {
+    if (!space_has_plane(linkage)) {
         return NAN;
     }
     const Vec2 offset = trajectory_state(trajectory, sample, joint)->eccentricity;
     const double length = vec2_length(offset);
-    for (size_t row = 0; row < response_play_rows(&response); row += 2) {
-        if (response_joint(&response, row) == (int)joint && length > 0.0) {
-            return response_mass(&response, row, vec2_scale(-1.0 / length, offset));
+    response_init(linkage, false, &response);
+    const bool is_known = length > 0.0 && response_place(&response, motions);
+    for (size_t row = 0; is_known && row < response_play_rows(&response); row += 2) {
+        if (response_joint(&response, row) == (int)joint) {
+            mass = response_mass(&response, row, vec2_scale(-1.0 / length, offset));
         }
     }
-    return NAN;
+    response_finish(&response);
+    return mass;
 }
 
 static void find_contact(const Scenario *scenario, const Trajectory *truth, TuneContact *contact)

@@ -1,0 +1,119 @@
+// What does a step with contacts integrated inside it need, and of which size?
+#include "ode/impulse_step.h"
+
+#include "base/zeroed.h"
+
+#include <stdlib.h>
+
+static void make_arrays(ImpulseStep *step)
+{
+    const size_t bodies = step->scenario->linkage.body_count;
+    const size_t joints = step->scenario->linkage.joint_count;
+    ImpulseWork *work = step->work = zeroed(1, sizeof *step->work);
+    touch_response(&step->scenario->linkage, step->places, step->place_count,
+                   step->scenario->contact.friction > 0.0, &work->there);
+    step->before = zeroed(bodies, sizeof *step->before);
+    step->middle = zeroed(bodies, sizeof *step->middle);
+    step->after = zeroed(bodies, sizeof *step->after);
+    step->free = zeroed(3 * bodies, sizeof *step->free);
+    step->free_rate = zeroed(3 * bodies, sizeof *step->free_rate);
+    step->rest = zeroed(3 * bodies, sizeof *step->rest);
+    step->closing = zeroed(step->response.ideal_rows, sizeof *step->closing);
+    step->mean = zeroed(joints, sizeof *step->mean);
+    work->motions = zeroed(bodies, sizeof *work->motions);
+    work->loads = zeroed(bodies, sizeof *work->loads);
+    work->offsets = zeroed(joints, sizeof *work->offsets);
+    for (size_t i = 0; i < 2; i++) {
+        work->rows[i] = zeroed(step->response.row_count, sizeof *work->rows[i]);
+        work->changes[i] = zeroed(3 * bodies, sizeof *work->changes[i]);
+    }
+}
+
+static void free_arrays(ImpulseStep *step)
+{
+    ImpulseWork *work = step->work;
+    free(step->before);
+    free(step->middle);
+    free(step->after);
+    free(step->free);
+    free(step->free_rate);
+    free(step->rest);
+    free(step->closing);
+    free(step->mean);
+    for (size_t i = 0; work != NULL && i < 2; i++) {
+        free(work->rows[i]);
+        free(work->changes[i]);
+    }
+    if (work != NULL) {
+        response_finish(&work->there);
+        free(work->motions);
+        free(work->loads);
+        free(work->offsets);
+    }
+    free(work);
+}
+
+void impulse_step_finish(ImpulseStep *step)
+{
+    encounter_finish(&step->encounter);
+    response_finish(&step->response);
+    world_finish(&step->world);
+    free_arrays(step);
+    free(step->places);
+}
+
+// What an encounter is given of a place.
+static EncounterJoint joint_of(const ImpulseStep *step, const Touch *place)
+{
+    // a disc outside is a hole of negative size
+    const double sign = place->shape == TOUCH_DISC ? -1.0 : 1.0;
+    const bool is_line = place->shape == TOUCH_LINE;
+    const bool has_corners = step->scenario->linkage.joints[place->joint].kind == JOINT_GUIDE;
+    return (EncounterJoint){
+        .law = place->law,
+        .shape = place->shape,
+        .radial_clearance = is_line ? 0.0 : sign * place->clearance,
+        .hole_radius = is_line ? 0.0 : sign * place->radius_a,
+        .joint = place->joint,
+        .siblings = {has_corners ? -place->place : 0,
+                     has_corners ? TOUCH_CORNERS - 1 - place->place : 0},
+    };
+}
+
+static bool init_encounter(ImpulseStep *step, Err *err)
+{
+    const Scenario *scenario = step->scenario;
+    const ContactOptions *contact = &scenario->contact;
+    step->encounter =
+        encounter_start(contact->friction, contact->friction_speed, scenario->ode.contact_phase);
+    if (!touch_list(scenario, &step->places, &step->place_count, err)) {
+        return false;
+    }
+    const bool has_friction = contact->friction > 0.0;
+    touch_response(&scenario->linkage, step->places, step->place_count, has_friction,
+                   &step->response);
+    for (size_t i = 0; i < step->place_count; i++) {
+        const EncounterJoint added = joint_of(step, &step->places[i]);
+        const size_t rows = response_place_rows(&step->response.places[i]);
+        if (!encounter_add(&step->encounter, &added, rows)) {
+            return err_set(err, ERR_SOLVER,
+                           "the joints with play touch at more than %d places or have more than %d "
+                           "rows: more than contacts can be integrated with",
+                           ENCOUNTER_JOINT_MAX, RESPONSE_ROW_MAX);
+        }
+    }
+    return true;
+}
+
+bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
+{
+    step->scenario = scenario;
+    step->driven = linkage_driven_body(&scenario->linkage);
+    step->tick_s = scenario->run.step / (double)scenario->ode.gear;
+    if (!init_encounter(step, err)) {
+        return false;
+    }
+    make_arrays(step);
+    linkage_start(&scenario->linkage, step->after);
+    return world_build(scenario, step->after, &step->world, err);
+}
