@@ -165,6 +165,18 @@ static void the_fingerprint_is_that_of_the_runs(void **state)
     assert_true(print_of(CASE, first) != print_of(CASE, second));
 }
 
+// A joint that keeps its restitution while that of the contacts varies has the number that the
+// others have in the case as it stands.
+static void a_number_that_is_a_joints_own_makes_other_runs(void **state)
+{
+    (void)state;
+    static const char CASE[] = "paper/impact-k66.yaml";
+    static const char VARY[] = "vary:\n  contact.restitution: [0.5, 0.9]\n";
+    char own[192];
+    snprintf(own, sizeof own, "set: {joints.crank-coupler.restitution: 0.9}\n%s", VARY);
+    assert_true(print_of(CASE, VARY) != print_of(CASE, own));
+}
+
 static void a_study_that_is_not_there_is_an_error_of_the_file(void **state)
 {
     (void)state;
@@ -217,6 +229,7 @@ int main(void)
         cmocka_unit_test(keys_stand_from_slow_to_fast),
         cmocka_unit_test(a_joint_gets_play_from_what_varies),
         cmocka_unit_test(the_fingerprint_is_that_of_the_runs),
+        cmocka_unit_test(a_number_that_is_a_joints_own_makes_other_runs),
         cmocka_unit_test(a_study_that_is_not_there_is_an_error_of_the_file),
         cmocka_unit_test(the_studies_of_the_program_are_good),
     };
