@@ -2,15 +2,15 @@
 //
 //     M qdd = sum over bodies B^T (F - m a_bias) + moments + J^T lambda,   J qdd = gamma
 // B: velocity of each centre by each coordinate (reference/tree.h), M = sum m B^T B + I; J, gamma:
-// the joints that close loops. The contacts' forces: reference/dynamics_contact.c; those of
-// springs, dampers and torques: model/forces.c.
+// the joints that close loops. Solved body by body: reference/articulated.h. The contacts' forces:
+// reference/dynamics_contact.c; those of springs, dampers and torques: model/forces.c.
 #include "reference/dynamics.h"
 
-#include "base/dense.h"
 #include "model/forces.h"
 #include "reference/dynamics_reactions.h"
 #include "reference/loops.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,7 +23,7 @@ static void list_coordinates(Dynamics *dynamics)
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
         const Body *body = &tree->linkage->bodies[node->body];
-        SystemCoordinate *own = &coordinates[node->chain[node->chain_count - 1]];
+        SystemCoordinate *own = &coordinates[node->column];
         if (node->is_sliding) {
             *own = (SystemCoordinate){-1, 1.0, body->mass};
             continue;
@@ -61,10 +61,6 @@ static bool list_contacts(const Scenario *scenario, Dynamics *dynamics, Err *err
     if (!touch_list(scenario, &touches, &system->contact_count, err)) {
         return false;
     }
-    if (system->contact_count > TOUCH_MAX) {
-        free(touches);
-        return touch_too_many(err);
-    }
     for (size_t i = 0; i < system->contact_count; i++) {
         const Touch *touch = &touches[i];
         const bool is_corner = scenario->linkage.joints[touch->joint].kind == JOINT_GUIDE;
@@ -84,18 +80,112 @@ static bool list_contacts(const Scenario *scenario, Dynamics *dynamics, Err *err
     return true;
 }
 
+// All arrays, from a layout that counts or has the memory.
+static void lay(Dynamics *dynamics, size_t contact_most, Layout *layout)
+{
+    const Linkage *linkage = dynamics->tree.linkage;
+    const size_t bodies = linkage->body_count;
+    const size_t n = dynamics->tree.coordinate_count;
+    const size_t rows = 2 * dynamics->tree.loop_count;
+    System *system = &dynamics->system;
+    DynamicsRoom *room = &dynamics->room;
+    system->coordinates = layout_take(layout, n, sizeof *system->coordinates);
+    system->contacts = layout_take(layout, contact_most, sizeof *system->contacts);
+    dynamics->places = layout_take(layout, contact_most, sizeof *dynamics->places);
+    dynamics->reach = layout_take(layout, bodies, sizeof *dynamics->reach);
+    dynamics->weights = layout_take(layout, bodies, sizeof *dynamics->weights);
+    room->loads.pushes = layout_take(layout, bodies, sizeof *room->loads.pushes);
+    room->pushes = layout_take(layout, bodies, sizeof *room->pushes);
+    room->zeros = layout_take(layout, bodies, sizeof *room->zeros);
+    room->added = layout_take(layout, bodies, sizeof *room->added);
+    room->sides = layout_take(layout, rows, sizeof *room->sides);
+    room->solved = layout_take(layout, n + rows, sizeof *room->solved);
+    room->closed = layout_take(layout, 2 * n, sizeof *room->closed);
+    room->row = layout_take(layout, n, sizeof *room->row);
+    room->arms = layout_take(layout, n, sizeof *room->arms);
+    for (int i = 0; i < DYNAMICS_PUSHED; i++) {
+        room->pushed[i] = layout_take(layout, n + rows, sizeof *room->pushed[i]);
+    }
+}
+
+static void make_room(Dynamics *dynamics)
+{
+    const Linkage *linkage = dynamics->tree.linkage;
+    const size_t contact_most = TOUCH_CORNERS * linkage->joint_count;
+    Layout layout = {NULL, 0};
+    lay(dynamics, contact_most, &layout);
+    dynamics->memory = calloc(1, layout.used + 1);
+    assert(dynamics->memory != NULL);
+    lay(dynamics, contact_most, &(Layout){dynamics->memory, 0});
+}
+
 bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
 {
     *dynamics = (Dynamics){.system = {.scenario = scenario, .torn = -1}};
-    dynamics->has_forces = forces_any(&scenario->linkage);
-    tree_build(&scenario->linkage, &dynamics->tree);
-    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
-        dynamics->reach[i] = linkage_reach(&scenario->linkage, (int)i);
+    const Linkage *linkage = &scenario->linkage;
+    Tree *tree = &dynamics->tree;
+    dynamics->has_forces = forces_any(linkage);
+    tree_build(linkage, tree);
+    make_room(dynamics);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        dynamics->reach[i] = linkage_reach(linkage, (int)i);
+        dynamics->weights[i] = linkage->bodies[i].mass * scenario->gravity;
     }
     list_coordinates(dynamics);
-    const Tree *tree = &dynamics->tree;
     dynamics->may_branch = tree->loop_count > 0 && tree->coordinate_count > 2 * tree->loop_count;
-    return list_contacts(scenario, dynamics, err);
+    if (!list_contacts(scenario, dynamics, err)) {
+        dynamics_finish(dynamics);
+        return false;
+    }
+    dynamics->articulated = articulated_create(tree, tree->loop_count, tree->loops);
+    dynamics->room.state = dynamics_state_create(dynamics);
+    return true;
+}
+
+void dynamics_finish(Dynamics *dynamics)
+{
+    free(dynamics->room.state);
+    articulated_destroy(dynamics->articulated);
+    free(dynamics->memory);
+    tree_finish(&dynamics->tree);
+}
+
+static void lay_state(const Dynamics *dynamics, Layout *layout, DynamicsState *state)
+{
+    const size_t contacts = dynamics->system.contact_count;
+    const size_t joints = dynamics->tree.linkage->joint_count;
+    layout_take(layout, 1, sizeof *state);
+    state->shared.contacts = layout_take(layout, contacts, sizeof *state->shared.contacts);
+    tree_state_lay(&dynamics->tree, layout, &state->tree);
+    state->contacts = layout_take(layout, contacts, sizeof *state->contacts);
+    state->reactions = layout_take(layout, joints, sizeof *state->reactions);
+    state->couples = layout_take(layout, joints, sizeof *state->couples);
+}
+
+DynamicsState *dynamics_state_create(const Dynamics *dynamics)
+{
+    DynamicsState counted;
+    Layout layout = {NULL, 0};
+    lay_state(dynamics, &layout, &counted);
+    DynamicsState *state = calloc(1, layout.used);
+    assert(state != NULL);
+    lay_state(dynamics, &(Layout){(char *)state, 0}, state);
+    return state;
+}
+
+LoopsRoom dynamics_loops(const Dynamics *dynamics)
+{
+    const DynamicsRoom *room = &dynamics->room;
+    return (LoopsRoom){
+        .tree = &dynamics->tree,
+        .loop_count = dynamics->tree.loop_count,
+        .loops = dynamics->tree.loops,
+        .articulated = dynamics->articulated,
+        .state = &room->state->tree,
+        .pushes = room->zeros,
+        .sides = room->sides,
+        .solved = room->solved,
+    };
 }
 
 static void load_contact(const Dynamics *dynamics, size_t number, const TreeState *state,
@@ -115,9 +205,7 @@ static void start_loads(const Dynamics *dynamics, Loads *loads)
     const Tree *tree = &dynamics->tree;
     for (size_t i = 0; i < tree->node_count; i++) {
         const int body = tree->nodes[i].body;
-        const double weight = tree->linkage->bodies[body].mass * dynamics->system.scenario->gravity;
-        loads->force[body] = (Vec2){0.0, -weight};
-        loads->moment[body] = 0.0;
+        loads->pushes[body] = (ArticulatedPush){{0.0, -dynamics->weights[body]}, 0.0};
     }
     loads->driven_power = 0.0;
     loads->driven_force = (Vec2){0.0, 0.0};
@@ -136,99 +224,28 @@ static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState 
     const Linkage *linkage = tree->linkage;
     const Motion *motions = state->tree.motions;
     const double time_s = tree_time(tree, since_s);
-    BodyLoad added[LINKAGE_BODY_MAX];
+    BodyLoad *added = dynamics->room.added;
     forces_loads(linkage, motions, time_s, added);
     for (int i = 0; i < (int)linkage->body_count; i++) {
         if (i == tree->driven) {
             loads->driven_power += forces_load_power(&added[i], &motions[i]);
             loads->driven_force = vec2_add(loads->driven_force, added[i].force);
         } else {
-            loads->force[i] = vec2_add(loads->force[i], added[i].force);
-            loads->moment[i] += added[i].moment;
+            ArticulatedPush *push = &loads->pushes[i];
+            push->force = vec2_add(push->force, added[i].force);
+            push->moment += added[i].moment;
         }
     }
     state->drive_power = forces_torque_power(linkage, motions, time_s);
     state->damping_power = forces_damping_power(linkage, motions);
 }
 
-// Mass matrix (n by n, in rows of `width`) and right-hand side of the coordinates; a body counts
-// for the coordinates of its chain.
-static void assemble(const Tree *tree, const TreeState *state, const Loads *loads, size_t width,
-                     double *matrix, double *right)
-{
-    for (size_t i = 0; i < width * width; i++) {
-        matrix[i] = 0.0;
-    }
-    for (size_t i = 0; i < width; i++) {
-        right[i] = 0.0;
-    }
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const TreeNode *node = &tree->nodes[i];
-        const Body *body = &tree->linkage->bodies[node->body];
-        const Vec2 *columns = state->columns[i];
-        const Vec2 push =
-            vec2_sub(loads->force[node->body], vec2_scale(body->mass, state->bias[node->body]));
-        for (size_t j = 0; j < node->chain_count; j++) {
-            const size_t row = node->chain[j];
-            const Vec2 heavy = vec2_scale(body->mass, columns[j]);
-            right[row] += vec2_dot(columns[j], push);
-            for (size_t k = 0; k < j; k++) {
-                const double product = vec2_dot(heavy, columns[k]);
-                matrix[row * width + node->chain[k]] += product;
-                matrix[node->chain[k] * width + row] += product;
-            }
-            matrix[row * width + row] += vec2_dot(heavy, columns[j]);
-        }
-        if (node->angle_column >= 0) {
-            const size_t angle = (size_t)node->angle_column;
-            matrix[angle * width + angle] += body->inertia;
-            right[angle] += loads->moment[node->body];
-        }
-    }
-}
-
-static void append_loops(const Tree *tree, const TreeState *state, size_t width, double *matrix,
-                         double *right)
-{
-    const size_t n = tree->coordinate_count;
-    Vec2 row[TREE_COORDINATE_MAX];
-    for (size_t loop = 0; loop < tree->loop_count; loop++) {
-        const Vec2 bias = loops_bias(tree, state, loop);
-        const size_t x = n + 2 * loop;
-        loops_row(tree, state, loop, row);
-        for (size_t j = 0; j < n; j++) {
-            matrix[x * width + j] = matrix[j * width + x] = row[j].x;
-            matrix[(x + 1) * width + j] = matrix[j * width + x + 1] = row[j].y;
-        }
-        right[x] = -bias.x;
-        right[x + 1] = -bias.y;
-    }
-}
-
-// Solves the equations; two coordinates, as a four-bar with one loose joint has, at once.
-static bool solve(size_t width, double *matrix, double *right)
-{
-    if (width != 2) {
-        return dense_solve(width, matrix, right);
-    }
-    // a mass matrix, positive definite
-    const double determinant = matrix[0] * matrix[3] - matrix[1] * matrix[2];
-    if (!(determinant > 0.0)) {
-        return false;
-    }
-    const double first = (matrix[3] * right[0] - matrix[1] * right[1]) / determinant;
-    right[1] = (matrix[0] * right[1] - matrix[2] * right[0]) / determinant;
-    right[0] = first;
-    return true;
-}
-
-// Solves for the coordinates' second rates (and the loops' multipliers behind them).
+// Solves for the coordinates' second rates (and the loops' multipliers behind them), into the room.
 static bool find_rates(const Dynamics *dynamics, double since_s, const double *y,
-                       DynamicsState *state, Loads *loads, double *solved)
+                       DynamicsState *state, Loads *loads)
 {
     const Tree *tree = &dynamics->tree;
-    const size_t width = dynamics_equations(dynamics);
-    double matrix[DYNAMICS_EQUATION_MAX * DYNAMICS_EQUATION_MAX];
+    const DynamicsRoom *room = &dynamics->room;
     tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state->tree);
     start_loads(dynamics, loads);
     load_forces(dynamics, since_s, state, loads);
@@ -238,20 +255,22 @@ static bool find_rates(const Dynamics *dynamics, double since_s, const double *y
             load_contact(dynamics, i, &state->tree, &state->contacts[i], loads);
         }
     }
-    assemble(tree, &state->tree, loads, width, matrix, solved);
-    append_loops(tree, &state->tree, width, matrix, solved);
-    return solve(width, matrix, solved);
-}
-
-bool dynamics_factor(const Dynamics *dynamics, const TreeState *state, double *matrix,
-                     size_t *pivots)
-{
-    const size_t width = dynamics_equations(dynamics);
-    const Loads none = {.driven_power = 0.0};
-    double unused[DYNAMICS_EQUATION_MAX];
-    assemble(&dynamics->tree, state, &none, width, matrix, unused);
-    append_loops(&dynamics->tree, state, width, matrix, unused);
-    return dense_factor(width, matrix, pivots);
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const int body = tree->nodes[i].body;
+        const Vec2 held = vec2_scale(tree->linkage->bodies[body].mass, state->tree.bias[body]);
+        const ArticulatedPush *push = &loads->pushes[body];
+        room->pushes[body] = (ArticulatedPush){vec2_sub(push->force, held), push->moment};
+    }
+    for (size_t loop = 0; loop < tree->loop_count; loop++) {
+        const Vec2 bias = loops_bias(tree, &state->tree, loop);
+        room->sides[2 * loop] = -bias.x;
+        room->sides[2 * loop + 1] = -bias.y;
+    }
+    if (!articulated_factor(dynamics->articulated, &state->tree)) {
+        return false;
+    }
+    articulated_solve(dynamics->articulated, room->pushes, room->sides, room->solved);
+    return true;
 }
 
 // Power of the drive and force of the driven joint, from the driven body's own equations.
@@ -285,14 +304,14 @@ static void fill_sums(const Dynamics *dynamics, const DynamicsState *state, doub
     }
 }
 
-// Rates of the integrator's vector, from a state and the coordinates' second rates.
+// Rates of the integrator's vector, from a state whose equations are solved.
 static void fill_rates(const Dynamics *dynamics, const DynamicsState *state, const double *y,
-                       const double *solved, double *rates)
+                       double *rates)
 {
     const size_t n = dynamics->tree.coordinate_count;
     for (size_t i = 0; i < n; i++) {
         rates[i] = y[n + i];
-        rates[n + i] = solved[i];
+        rates[n + i] = dynamics->room.solved[i];
     }
     fill_sums(dynamics, state, rates + 2 * n);
 }
@@ -300,18 +319,17 @@ static void fill_rates(const Dynamics *dynamics, const DynamicsState *state, con
 bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
                        DynamicsState *state, double *rates)
 {
-    double solved[DYNAMICS_EQUATION_MAX];
-    Loads loads;
-    if (!find_rates(dynamics, since_s, y, state, &loads, solved)) {
+    Loads loads = dynamics->room.loads;
+    if (!find_rates(dynamics, since_s, y, state, &loads)) {
         return false;
     }
-    dynamics_reactions_find(dynamics, solved, &loads, state);
+    dynamics_reactions_find(dynamics, dynamics->room.solved, &loads, state);
     find_drive(dynamics, &loads, state);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         state->shared.contacts[i] = state->contacts[i].press;
     }
     if (rates != NULL) {
-        fill_rates(dynamics, state, y, solved, rates);
+        fill_rates(dynamics, state, y, rates);
     }
     return true;
 }
@@ -320,10 +338,11 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
                               const double *y)
 {
     const Tree *tree = &dynamics->tree;
-    TreeState state;
-    tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state);
+    TreeState *state = &dynamics->room.state->tree;
+    tree_evaluate_pair(tree, dynamics->places[contact].pair, since_s, y, y + tree->coordinate_count,
+                       state);
     ContactForce force;
-    dynamics_contact_find(dynamics, contact, &state, &force);
+    dynamics_contact_find(dynamics, contact, state, &force);
     return force;
 }
 
@@ -332,18 +351,19 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
     const Dynamics *dynamics = context;
     const Tree *tree = &dynamics->tree;
     const size_t n = tree->coordinate_count;
-    DynamicsState state;
-    Loads loads;
-    double solved[DYNAMICS_EQUATION_MAX];
-    double closed[2 * TREE_COORDINATE_MAX];
+    DynamicsState *state = dynamics->room.state;
+    Loads loads = dynamics->room.loads;
+    const double *solved = dynamics->room.solved;
     if (dynamics->may_branch) {
         // with loops open by the error of a stage, the accelerations are wrong by that over the
         // distance from a change point
+        double *closed = dynamics->room.closed;
+        const LoopsRoom room = dynamics_loops(dynamics);
         memcpy(closed, y, 2 * n * sizeof *y);
-        loops_project(tree, since_s, closed, closed + n);
+        loops_project(&room, since_s, closed, closed + n);
         y = closed;
     }
-    if (!find_rates(dynamics, since_s, y, &state, &loads, solved)) {
+    if (!find_rates(dynamics, since_s, y, state, &loads)) {
         for (size_t i = 0; i < system_size(&dynamics->system); i++) {
             rates[i] = NAN;
         }
@@ -351,8 +371,8 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
     }
     // the drive's power needs the reactions only where the driven body carries ideal joints
     if (tree->is_driven_hung_on) {
-        dynamics_reactions_find(dynamics, solved, &loads, &state);
+        dynamics_reactions_find(dynamics, solved, &loads, state);
     }
-    find_drive(dynamics, &loads, &state);
-    fill_rates(dynamics, &state, y, solved, rates);
+    find_drive(dynamics, &loads, state);
+    fill_rates(dynamics, state, y, rates);
 }

@@ -3,24 +3,15 @@
 #pragma once
 
 #include "reference/dynamics_contact.h"
+#include "reference/loops.h"
 #include "reference/tree.h"
 
 // Fails with ERR_CASE where a contact law does not fit a joint.
 bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err);
+void dynamics_finish(Dynamics *dynamics);
 
-// Unknowns of the equations for the accelerations: the coordinates' second rates, and behind them
-// two multipliers for each joint that closes a loop.
-enum { DYNAMICS_EQUATION_MAX = TREE_COORDINATE_MAX + 2 * TREE_LOOP_MAX };
-
-static inline size_t dynamics_equations(const Dynamics *dynamics)
-{
-    return dynamics->tree.coordinate_count + 2 * dynamics->tree.loop_count;
-}
-
-// Factors the matrix of these equations at a state of the tree, for dense_substitute. Returns false
-// where the accelerations are not determined.
-bool dynamics_factor(const Dynamics *dynamics, const TreeState *state, double *matrix,
-                     size_t *pivots);
+// Room for a state of these equations; the caller frees it.
+DynamicsState *dynamics_state_create(const Dynamics *dynamics);
 
 // Times, s, and coordinates are those since the base of the tree.
 //
@@ -32,6 +23,10 @@ bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y
 // Rates of the integrator's vector; NaN where they are not determined. The context is a Dynamics.
 void dynamics_rates(double since_s, const double *y, double *rates, void *context);
 
-// One contact at a time, for events: cheaper than the whole state.
+// What closing the loops of the tree needs.
+LoopsRoom dynamics_loops(const Dynamics *dynamics);
+
+// One contact at a time, for events: cheaper than the whole state. Only the bodies that move it are
+// looked at.
 ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
                               const double *y);

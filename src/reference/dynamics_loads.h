@@ -4,14 +4,6 @@
 #include "reference/dynamics_contact.h"
 #include "reference/tree_line.h"
 
-// Forces on the bodies, by body: at the centre, and the moment about it.
-typedef struct Loads {
-    Vec2 force[LINKAGE_BODY_MAX];
-    double moment[LINKAGE_BODY_MAX];
-    double driven_power; // W, of all forces on the driven body but the drive's
-    Vec2 driven_force;   // N, their sum
-} Loads;
-
 // A force on the body of an end, beside the end.
 static inline void dynamics_load_end(const Tree *tree, const TreeState *state, int end, Vec2 beside,
                                      Vec2 force, Loads *loads)
@@ -25,8 +17,9 @@ static inline void dynamics_load_end(const Tree *tree, const TreeState *state, i
         loads->driven_force = vec2_add(loads->driven_force, force);
         return;
     }
-    loads->force[body] = vec2_add(loads->force[body], force);
-    loads->moment[body] += vec2_cross(vec2_add(state->arms[end], beside), force);
+    ArticulatedPush *push = &loads->pushes[body];
+    push->force = vec2_add(push->force, force);
+    push->moment += vec2_cross(vec2_add(state->arms[end], beside), force);
 }
 
 // A couple on a body.
@@ -36,6 +29,6 @@ static inline void dynamics_load_couple(const Tree *tree, const TreeState *state
     if (body == tree->driven) {
         loads->driven_power += couple * tree_omega(state, body);
     } else if (body != LINKAGE_GROUND) {
-        loads->moment[body] += couple;
+        loads->pushes[body].moment += couple;
     }
 }

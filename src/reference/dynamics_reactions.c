@@ -55,14 +55,14 @@ static void find_held(const Tree *tree, const TreeNode *node, const Loads *loads
     const Body *body = &tree->linkage->bodies[node->body];
     const Motion *motion = &state->tree.motions[node->body];
     const Vec2 held =
-        vec2_sub(vec2_scale(body->mass, motion->acceleration), loads->force[node->body]);
+        vec2_sub(vec2_scale(body->mass, motion->acceleration), loads->pushes[node->body].force);
     const double sign = node->own_end % 2 == 1 ? 1.0 : -1.0;
     state->reactions[node->joint] = sign > 0.0 ? held : vec2_scale(-1.0, held);
     state->couples[node->joint] = 0.0;
     if (node->is_sliding) {
         const Vec2 arm =
             vec2_add(state->tree.arms[node->own_end], beside(tree, &state->tree, node->own_end));
-        const double moment = body->inertia * motion->alpha - loads->moment[node->body];
+        const double moment = body->inertia * motion->alpha - loads->pushes[node->body].moment;
         state->couples[node->joint] = sign * (moment - vec2_cross(arm, held));
     }
 }

@@ -10,24 +10,26 @@
 // + of discs, - of a pin in its hole; a line's normal turns as slowly as the mechanism moves.
 #include "reference/dynamics_slopes.h"
 
-#include "base/dense.h"
+#include "reference/dynamics_loads.h"
 #include "reference/loops.h"
 #include "reference/tree_line.h"
 
 #include <math.h>
+#include <string.h>
 
 // A pressing contact and what its force changes with.
 typedef struct Pressing {
     const Touch *touch;
     const ContactOptions *options;
     ContactForce force;
-    Vec2 velocity;                    // m/s, v
-    double bend;                      // m, +-|e| over which n turns; infinite of a line
-    double stiffness;                 // N/m, dN by depth
-    double damping;                   // N s/m, dN by closing speed
-    double grip;                      // 1, g / (mu N)
-    Vec2 centre[TREE_COORDINATE_MAX]; // G
-    double arms[TREE_COORDINATE_MAX]; // m, s; 0 without friction
+    Vec2 velocity;    // m/s, v
+    double bend;      // m, +-|e| over which n turns; infinite of a line
+    double stiffness; // N/m, dN by depth
+    double damping;   // N s/m, dN by closing speed
+    double grip;      // 1, g / (mu N)
+    Vec2 *centre;     // G
+    double *arms;     // m, s; 0 without friction
+    int pair;         // of the tree
 } Pressing;
 
 // What small changes make of it.
@@ -75,7 +77,19 @@ static Pressing look_at(const Dynamics *dynamics, const TreeState *state, size_t
     const Contact *contact = &dynamics->system.contacts[number];
     const PlanePlace *place = &dynamics->places[number];
     const ContactOptions *options = &dynamics->system.scenario->contact;
-    Pressing pressing = {.touch = &place->touch, .options = options, .bend = INFINITY};
+    const size_t n = dynamics->tree.coordinate_count;
+    Pressing pressing = {
+        .touch = &place->touch,
+        .options = options,
+        .bend = INFINITY,
+        .centre = dynamics->room.row,
+        .arms = dynamics->room.arms,
+        .pair = place->pair,
+    };
+    for (size_t i = 0; i < n; i++) {
+        pressing.centre[i] = (Vec2){0.0, 0.0};
+        pressing.arms[i] = 0.0;
+    }
     dynamics_contact_find(dynamics, number, state, &pressing.force);
     const TouchPose *pose = &pressing.force.pose;
     pressing.velocity = pose->velocity;
@@ -124,41 +138,63 @@ static Change change_force(const Pressing *pressing, Vec2 moved, Vec2 faster, do
     return (Change){vec2_add(vec2_scale(across, normal), vec2_scale(along, tangent)), friction};
 }
 
-// The accelerations that a force causes: on the centre along x and along y, and by friction's arms.
-typedef struct Pushed {
-    double by[3][DYNAMICS_EQUATION_MAX];
-} Pushed;
-
-static void add_column(size_t n, const Pushed *pushed, Change change, double *column)
+static void add_column(size_t n, double *const *pushed, Change change, double *column)
 {
     for (size_t i = 0; i < n; i++) {
-        column[i * n] += pushed->by[0][i] * change.force.x + pushed->by[1][i] * change.force.y +
-                         pushed->by[2][i] * change.friction;
+        column[i * n] += pushed[0][i] * change.force.x + pushed[1][i] * change.force.y +
+                         pushed[2][i] * change.friction;
     }
 }
 
-static void add_slopes(const Dynamics *dynamics, const Pressing *pressing, const double *factored,
-                       const size_t *pivots, double *by_position, double *by_rate)
+// The accelerations that unit forces cause: on the circle's centre on body b along x and along y
+// and the other way on body a, and by friction's arms.
+static void find_pushed(const Dynamics *dynamics, const TreeState *state, const Pressing *pressing)
+{
+    const Tree *tree = &dynamics->tree;
+    const DynamicsRoom *room = &dynamics->room;
+    Loads loads = {.pushes = room->zeros};
+    const int end = 2 * pressing->pair;
+    // a line is pushed at its point under the circle's centre
+    const Vec2 none = {0.0, 0.0};
+    const bool is_line = tree->measures[pressing->pair] == TREE_LINE;
+    const Vec2 under = is_line ? tree_pair_gap(tree, state, pressing->pair) : none;
+    const bool has_friction = pressing->options->friction > 0.0;
+    memset(room->pushed[2], 0, tree->coordinate_count * sizeof *room->pushed[2]);
+    for (int way = 0; way < (has_friction ? DYNAMICS_PUSHED : 2); way++) {
+        const Vec2 force = {way == 0 ? 1.0 : 0.0, way == 1 ? 1.0 : 0.0};
+        if (way < 2) {
+            dynamics_load_end(tree, state, end + 1, none, force, &loads);
+            dynamics_load_end(tree, state, end, under, vec2_scale(-1.0, force), &loads);
+        } else {
+            for (int side = 0; side < 2; side++) {
+                const double arm = friction_arm(pressing->touch, &pressing->force.pose, side);
+                dynamics_load_couple(tree, state, tree->end_bodies[end + side], arm, &loads);
+            }
+        }
+        articulated_solve(dynamics->articulated, loads.pushes, NULL, room->pushed[way]);
+        for (int side = 0; side < 2; side++) {
+            const int body = tree->end_bodies[end + side];
+            if (body != LINKAGE_GROUND) {
+                loads.pushes[body] = (ArticulatedPush){none, 0.0};
+            }
+        }
+    }
+}
+
+static void add_slopes(const Dynamics *dynamics, const Pressing *pressing, double *by_position,
+                       double *by_rate)
 {
     static const Vec2 NONE = {0.0, 0.0};
     const size_t n = dynamics->tree.coordinate_count;
-    Pushed pushed = {{{0.0}}};
-    for (size_t i = 0; i < n; i++) {
-        pushed.by[0][i] = pressing->centre[i].x;
-        pushed.by[1][i] = pressing->centre[i].y;
-        pushed.by[2][i] = pressing->arms[i];
-    }
-    for (int i = 0; i < (pressing->options->friction > 0.0 ? 3 : 2); i++) {
-        dense_substitute(dynamics_equations(dynamics), factored, pivots, pushed.by[i]);
-    }
+    double *const *pushed = dynamics->room.pushed;
     for (size_t k = 0; k < n; k++) {
         const Vec2 centre = pressing->centre[k];
         const bool moves = centre.x != 0.0 || centre.y != 0.0;
         if (moves) {
-            add_column(n, &pushed, change_force(pressing, centre, NONE, 0.0), by_position + k);
+            add_column(n, pushed, change_force(pressing, centre, NONE, 0.0), by_position + k);
         }
         if (moves || pressing->arms[k] != 0.0) {
-            add_column(n, &pushed, change_force(pressing, NONE, centre, pressing->arms[k]),
+            add_column(n, pushed, change_force(pressing, NONE, centre, pressing->arms[k]),
                        by_rate + k);
         }
     }
@@ -170,18 +206,17 @@ void dynamics_slopes(double since_s, const double *y, double *by_position, doubl
     const Dynamics *dynamics = context;
     const Tree *tree = &dynamics->tree;
     const size_t n = tree->coordinate_count;
-    TreeState state;
-    double factored[DYNAMICS_EQUATION_MAX * DYNAMICS_EQUATION_MAX];
-    size_t pivots[DYNAMICS_EQUATION_MAX];
-    tree_evaluate(tree, since_s, y, y + n, &state);
-    const double start = dynamics_factor(dynamics, &state, factored, pivots) ? 0.0 : NAN;
+    TreeState *state = &dynamics->room.state->tree;
+    tree_evaluate(tree, since_s, y, y + n, state);
+    const double start = articulated_factor(dynamics->articulated, state) ? 0.0 : NAN;
     for (size_t i = 0; i < n * n; i++) {
         by_position[i] = by_rate[i] = start;
     }
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         if (dynamics->system.contacts[i].mode == CONTACT_PRESSING) {
-            const Pressing pressing = look_at(dynamics, &state, i);
-            add_slopes(dynamics, &pressing, factored, pivots, by_position, by_rate);
+            const Pressing pressing = look_at(dynamics, state, i);
+            find_pushed(dynamics, state, &pressing);
+            add_slopes(dynamics, &pressing, by_position, by_rate);
         }
     }
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "contact/touch.h"
+#include "model/forces.h"
+#include "reference/articulated.h"
 #include "reference/system.h"
 #include "reference/tree_state.h"
 
@@ -20,24 +22,54 @@ typedef struct ContactForce {
     Vec2 force; // N, on body b, friction included
 } ContactForce;
 
+// Everything at one instant.
+typedef struct DynamicsState {
+    SystemState shared;     // the first
+    TreeState tree;         // accelerations filled in
+    ContactForce *contacts; // by contact
+    Vec2 *reactions;        // N, on body b, of ideal joints
+    double *couples;        // N m, on body b, of prismatic joints, about its anchor
+    double drive_power;     // W, of drive or torque
+    double damping_power;   // W, that the dampers take
+} DynamicsState;
+
+// The forces on the bodies at one instant, while they are gathered.
+typedef struct Loads {
+    ArticulatedPush *pushes; // by body: at the centre, and the moment about it
+    double driven_power;     // W, of all forces on the driven body but the drive's
+    Vec2 driven_force;       // N, their sum
+} Loads;
+
+// The ways in which a contact pushes: along x, along y, and by friction.
+enum { DYNAMICS_PUSHED = 3 };
+
+// Room to work in.
+typedef struct DynamicsRoom {
+    DynamicsState *state;
+    Loads loads;
+    ArticulatedPush *pushes; // by body
+    ArticulatedPush *zeros;  // by body
+    BodyLoad *added;         // by body
+    double *sides;           // of the loops' rows
+    double *solved;          // by coordinate, then by row of a loop
+    double *closed;          // an integrator's vector
+    // of the slopes, by coordinate
+    Vec2 *row;
+    double *arms;
+    double *pushed[DYNAMICS_PUSHED];
+} DynamicsRoom;
+
 typedef struct Dynamics {
     System system; // the first
     Tree tree;
-    PlanePlace places[TOUCH_MAX];   // by contact
-    double reach[LINKAGE_BODY_MAX]; // m, of each body's points
-    bool has_forces;                // whether springs, dampers or a torque act
-    bool may_branch;                // whether loops move freely, and may come to a change point
-    double start_energy;            // J, of such a linkage: what it has, less what it was given
-    double greatest_energy;         // J, kinetic, so far
+    Articulated *articulated; // owned
+    void *memory;             // owned; where all arrays are
+    PlanePlace *places;       // by contact
+    double *reach;            // m, of each body's points
+    double *weights;          // N, of each body
+    bool has_forces;          // whether springs, dampers or a torque act
+    bool may_branch;          // whether loops move freely, and may come to a change point
+    double start_energy;      // J, of such a linkage: what it has, less what it was given
+    double greatest_energy;   // J, kinetic, so far
+    DynamicsRoom room;
 } Dynamics;
-
-// Everything at one instant.
-typedef struct DynamicsState {
-    SystemState shared;                // the first
-    TreeState tree;                    // accelerations filled in
-    ContactForce contacts[TOUCH_MAX];  // by contact
-    Vec2 reactions[LINKAGE_JOINT_MAX]; // N, on body b, of ideal joints
-    double couples[LINKAGE_JOINT_MAX]; // N m, on body b, of prismatic joints, about its anchor
-    double drive_power;                // W, of drive or torque
-    double damping_power;              // W, that the dampers take
-} DynamicsState;

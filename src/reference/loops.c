@@ -1,58 +1,34 @@
 // How are closed loops kept closed?
 //
-// After a step the coordinates are moved by the least (in the sum of squares) that satisfies
+// After a step the coordinates are moved by the least that satisfies
 //     Phi + J dq = 0   and   J (u + du) + drift = 0
-// with Phi the gaps and drift the anchors' relative velocity at rest coordinates. Two Newton steps
-// take the gap of a good step, 1e-12 m, to rounding.
+// with Phi the gaps and drift the anchors' relative velocity at rest coordinates: by
+//     M^-1 J^T (J M^-1 J^T)^-1 (-Phi)
+// which the equations of motion give, with no force but the gaps on the right side. Two Newton
+// steps take the gap of a good step, 1e-12 m, to rounding.
 #include "reference/loops.h"
 
-#include "base/dense.h"
 #include "reference/tree_line.h"
 
+#include <assert.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { PASSES = 2, ROW_MAX = 2 * TREE_LOOP_MAX };
+enum { PASSES = 2 };
 
 // m, or rad: a start is closed to some 1e-12; a pin farther from its own was meant to be elsewhere
 static const double ROUNDED = 1e-10;
 
-// Adds the velocity of one end by each coordinate, with a sign.
-static void add_end(const Tree *tree, const TreeState *state, int end, double sign, Vec2 *row)
-{
-    const int body = tree->end_bodies[end];
-    if (body == LINKAGE_GROUND || body == tree->driven) {
-        return;
-    }
-    const TreeNode *node = &tree->nodes[tree->node_of[body]];
-    const Vec2 *columns = state->columns[tree->node_of[body]];
-    for (size_t i = 0; i < node->chain_count; i++) {
-        Vec2 *entry = &row[node->chain[i]];
-        *entry = vec2_add(*entry, vec2_scale(sign, columns[i]));
-    }
-    if (node->angle_column >= 0) {
-        Vec2 *angle = &row[node->angle_column];
-        *angle = vec2_add(*angle, vec2_scale(sign, vec2_perp(state->arms[end])));
-    }
-}
-
-// The coordinate that is a body's angle, or -1.
-static int angle_column(const Tree *tree, int body)
-{
-    return body == LINKAGE_GROUND ? -1 : tree->angle_column[body];
-}
-
 void loops_pair_row(const Tree *tree, const TreeState *state, int pair, Vec2 *row)
 {
     const int end = 2 * pair;
-    for (size_t j = 0; j < tree->coordinate_count; j++) {
-        row[j] = (Vec2){0.0, 0.0};
+    const Vec2 *arms = state->arms;
+    Vec2 arm_a = arms[end];
+    if (tree->measures[pair] == TREE_LINE) {
+        arm_a = vec2_add(arm_a, tree_pair_gap(tree, state, pair));
     }
-    add_end(tree, state, end, -1.0, row);
-    add_end(tree, state, end + 1, 1.0, row);
-    const int turning = angle_column(tree, tree->end_bodies[end]);
-    if (tree->measures[pair] == TREE_LINE && turning >= 0) {
-        row[turning] = vec2_sub(row[turning], vec2_perp(tree_pair_gap(tree, state, pair)));
-    }
+    tree_point_row(tree, state, tree->end_bodies[end], arm_a, -1.0, row);
+    tree_point_row(tree, state, tree->end_bodies[end + 1], arms[end + 1], 1.0, row);
 }
 
 // Whether the rows of a joint are a distance from a line and a tilt.
@@ -60,25 +36,6 @@ static bool is_on_line(const Tree *tree, int joint)
 {
     const JointKind kind = tree->linkage->joints[joint].kind;
     return kind == JOINT_PRISMATIC || kind == JOINT_GUIDE;
-}
-
-void loops_row(const Tree *tree, const TreeState *state, size_t loop, Vec2 *row)
-{
-    const int joint = tree->loops[loop];
-    loops_pair_row(tree, state, joint, row);
-    if (!is_on_line(tree, joint)) {
-        return;
-    }
-    const Vec2 normal = tree_normal(tree, state, joint);
-    for (size_t j = 0; j < tree->coordinate_count; j++) {
-        row[j] = (Vec2){vec2_dot(normal, row[j]), 0.0};
-    }
-    for (int side = 0; side < 2; side++) {
-        const int turning = angle_column(tree, tree->end_bodies[2 * joint + side]);
-        if (turning >= 0) {
-            row[turning].y += side == 0 ? -1.0 : 1.0;
-        }
-    }
 }
 
 Vec2 loops_bias(const Tree *tree, const TreeState *state, size_t loop)
@@ -94,9 +51,8 @@ Vec2 loops_bias(const Tree *tree, const TreeState *state, size_t loop)
 }
 
 // Gap (or its rate) of one loop.
-static Vec2 loop_gap(const Tree *tree, const TreeState *state, size_t loop, bool is_rate)
+static Vec2 loop_gap(const Tree *tree, const TreeState *state, int joint, bool is_rate)
 {
-    const int joint = tree->loops[loop];
     if (is_on_line(tree, joint)) {
         const double turning = tree_omega(state, tree->end_bodies[2 * joint + 1]) -
                                tree_omega(state, tree->end_bodies[2 * joint]);
@@ -106,59 +62,38 @@ static Vec2 loop_gap(const Tree *tree, const TreeState *state, size_t loop, bool
     return is_rate ? tree_pair_velocity(tree, state, joint) : tree_pair_gap(tree, state, joint);
 }
 
-// Changes x by J^T (J J^T)^-1 (-gap).
-static void move_least(const Tree *tree, const TreeState *state, bool is_rate, double *x)
+// Changes x by the least that takes the gaps of all loops, or their rates, away.
+static void move_least(const LoopsRoom *room, bool is_rate, double *x)
 {
-    const size_t n = tree->coordinate_count;
-    const size_t rows = 2 * tree->loop_count;
-    double jacobian[ROW_MAX][TREE_COORDINATE_MAX];
-    double square[ROW_MAX * ROW_MAX];
-    double right[ROW_MAX];
-    Vec2 row[TREE_COORDINATE_MAX];
-    for (size_t loop = 0; loop < tree->loop_count; loop++) {
-        loops_row(tree, state, loop, row);
-        const Vec2 gap = loop_gap(tree, state, loop, is_rate);
-        right[2 * loop] = -gap.x;
-        right[2 * loop + 1] = -gap.y;
-        for (size_t j = 0; j < n; j++) {
-            jacobian[2 * loop][j] = row[j].x;
-            jacobian[2 * loop + 1][j] = row[j].y;
-        }
+    for (size_t loop = 0; loop < room->loop_count; loop++) {
+        const Vec2 gap = loop_gap(room->tree, room->state, room->loops[loop], is_rate);
+        room->sides[2 * loop] = -gap.x;
+        room->sides[2 * loop + 1] = -gap.y;
     }
-    for (size_t i = 0; i < rows; i++) {
-        for (size_t k = 0; k < rows; k++) {
-            double sum = 0.0;
-            for (size_t j = 0; j < n; j++) {
-                sum += jacobian[i][j] * jacobian[k][j];
-            }
-            square[i * rows + k] = sum;
-        }
-    }
-    if (!dense_solve(rows, square, right)) {
+    if (!articulated_factor(room->articulated, room->state)) {
         return;
     }
-    for (size_t i = 0; i < rows; i++) {
-        for (size_t j = 0; j < n; j++) {
-            x[j] += right[i] * jacobian[i][j];
-        }
+    articulated_solve(room->articulated, room->pushes, room->sides, room->solved);
+    for (size_t j = 0; j < room->tree->coordinate_count; j++) {
+        x[j] += room->solved[j];
     }
 }
 
-double loops_project(const Tree *tree, double since_s, double *q, double *u)
+double loops_project(const LoopsRoom *room, double since_s, double *q, double *u)
 {
-    if (tree->loop_count == 0) {
+    if (room->loop_count == 0) {
         return 0.0;
     }
-    TreeState state;
+    const Tree *tree = room->tree;
     for (int pass = 0; pass < PASSES; pass++) {
-        tree_evaluate(tree, since_s, q, u, &state);
-        move_least(tree, &state, false, q);
+        tree_evaluate(tree, since_s, q, u, room->state);
+        move_least(room, false, q);
     }
-    tree_evaluate(tree, since_s, q, u, &state);
-    move_least(tree, &state, true, u);
+    tree_evaluate(tree, since_s, q, u, room->state);
+    move_least(room, true, u);
     double largest = 0.0;
-    for (size_t loop = 0; loop < tree->loop_count; loop++) {
-        largest = fmax(largest, vec2_length(loop_gap(tree, &state, loop, false)));
+    for (size_t loop = 0; loop < room->loop_count; loop++) {
+        largest = fmax(largest, vec2_length(loop_gap(tree, room->state, room->loops[loop], false)));
     }
     return largest;
 }
@@ -176,27 +111,46 @@ static bool starts_rounded(Tree *tree, int joint)
     return vec2_length(tree->base_gaps[joint]) <= ROUNDED;
 }
 
-void loops_start(Tree *tree, double *q, double *u)
+// Brings the pins and blocks of a start to their own as loops are closed, with speeds that are not
+// used. Returns whether they are there.
+static bool bring(Tree *tree, const LoopsRoom *of, double *q)
 {
-    loops_project(tree, 0.0, q, u);
-    tree_rebase(tree, 0.0, q);
     const Linkage *linkage = tree->linkage;
-    if (!linkage->driver.is_present) {
-        return;
-    }
-    // pins and blocks are brought to their starts as loops are closed, with speeds that are not
-    // used
-    Tree pinned = *tree;
+    const size_t n = tree->coordinate_count;
+    const size_t most = linkage->joint_count;
+    int *loops = malloc((most + 1) * sizeof *loops);
+    double *room = calloc(2 * n + 4 * most + 1, sizeof *room);
+    assert(loops != NULL && room != NULL);
+    LoopsRoom pinned = *of;
+    memcpy(loops, of->loops, of->loop_count * sizeof *loops);
+    bool are_near = true;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         if (linkage->joints[i].kind == JOINT_CLEARANCE || linkage->joints[i].kind == JOINT_GUIDE) {
-            pinned.loops[pinned.loop_count++] = i;
-            if (!starts_rounded(&pinned, i)) {
-                return;
-            }
+            loops[pinned.loop_count++] = i;
+            are_near = starts_rounded(tree, i) && are_near;
         }
     }
-    double rates[TREE_COORDINATE_MAX] = {0.0};
-    if (loops_project(&pinned, 0.0, q, rates) <= ROUNDED) {
-        tree_rebase(tree, 0.0, q);
+    if (are_near) {
+        pinned.loops = loops;
+        pinned.articulated = articulated_create(tree, pinned.loop_count, loops);
+        pinned.sides = room;
+        pinned.solved = room + 2 * most;
+        are_near = loops_project(&pinned, 0.0, q, room + n + 4 * most) <= ROUNDED;
+        articulated_destroy(pinned.articulated);
     }
+    free(room);
+    free(loops);
+    return are_near;
+}
+
+void loops_start(Tree *tree, const LoopsRoom *room, double *q, double *u)
+{
+    loops_project(room, 0.0, q, u);
+    tree_rebase(tree, 0.0, q);
+    if (!tree->linkage->driver.is_present) {
+        return;
+    }
+    bring(tree, room, q);
+    // where they are not, the gaps count from the base again
+    tree_rebase(tree, 0.0, q);
 }

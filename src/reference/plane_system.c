@@ -27,15 +27,17 @@ static double energy_balance(const Dynamics *dynamics, const double *y, double *
     const System *system = &dynamics->system;
     const Linkage *linkage = dynamics->tree.linkage;
     const double *sums = y + system_sum_index(system, 0);
-    TreeState state;
-    tree_evaluate(&dynamics->tree, 0.0, y, y + system->coordinate_count, &state);
-    *kinetic = linkage_kinetic_energy(linkage, state.motions);
-    double energy = *kinetic + forces_energy(linkage, state.motions) +
-                    linkage_potential_energy(linkage, state.motions, system->scenario->gravity);
+    const TreeState *state = &dynamics->room.state->tree;
+    tree_evaluate(&dynamics->tree, 0.0, y, y + system->coordinate_count,
+                  &dynamics->room.state->tree);
+    *kinetic = linkage_kinetic_energy(linkage, state->motions);
+    double energy = *kinetic + forces_energy(linkage, state->motions) +
+                    linkage_potential_energy(linkage, state->motions, system->scenario->gravity);
     for (size_t i = 0; i < system->contact_count; i++) {
         if (system->contacts[i].mode != CONTACT_APART) {
-            const double depth = dynamics_contact(dynamics, i, 0.0, y).press.depth;
-            energy += force_law_energy(&system->contacts[i].law, depth);
+            ContactForce force;
+            dynamics_contact_find(dynamics, i, state, &force);
+            energy += force_law_energy(&system->contacts[i].law, force.press.depth);
         }
     }
     return energy - sums[SYSTEM_DRIVE_WORK] + sums[SYSTEM_DISSIPATED] + sums[SYSTEM_FRICTION];
@@ -56,12 +58,13 @@ static bool has_gone_astray(Dynamics *dynamics, const double *y)
 
 static void plane_start(System *system, double *y)
 {
-    Tree *tree = &((Dynamics *)system)->tree;
-    Motion motions[LINKAGE_BODY_MAX];
+    Dynamics *dynamics = (Dynamics *)system;
+    Tree *tree = &dynamics->tree;
+    Motion *motions = dynamics->room.state->tree.motions;
+    const LoopsRoom room = dynamics_loops(dynamics);
     linkage_start(tree->linkage, motions);
     tree_start(tree, motions, y + tree->coordinate_count);
-    loops_start(tree, y, y + tree->coordinate_count);
-    Dynamics *dynamics = (Dynamics *)system;
+    loops_start(tree, &room, y, y + tree->coordinate_count);
     if (dynamics->may_branch) {
         dynamics->start_energy = energy_balance(dynamics, y, &dynamics->greatest_energy);
     }
@@ -155,8 +158,8 @@ static void plane_peak(const System *system, const SystemState *state, size_t nu
 
 static void plane_project(const System *system, double since_s, double *y)
 {
-    const Tree *tree = &dynamics_of(system)->tree;
-    loops_project(tree, since_s, y, y + tree->coordinate_count);
+    const LoopsRoom room = dynamics_loops(dynamics_of(system));
+    loops_project(&room, since_s, y, y + system->coordinate_count);
 }
 
 static bool plane_rebase(System *system, double since_s, double *y)
@@ -280,13 +283,19 @@ static size_t plane_rows(const System *system)
     return 2 * dynamics_of(system)->tree.loop_count;
 }
 
+static SystemState *plane_state_create(const System *system)
+{
+    return &dynamics_state_create(dynamics_of(system))->shared;
+}
+
 static void plane_destroy(System *system)
 {
+    dynamics_finish((Dynamics *)system);
     free(system);
 }
 
 static const SystemKind PLANE = {
-    .state_size = sizeof(DynamicsState),
+    .state_create = plane_state_create,
     .start = plane_start,
     .evaluate = plane_evaluate,
     .rates = dynamics_rates,

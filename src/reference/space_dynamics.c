@@ -56,12 +56,16 @@ bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err 
     *dynamics = (SpaceDynamics){.system = {.scenario = scenario, .torn = -1}};
     System *system = &dynamics->system;
     space_tree_build(&scenario->linkage, &dynamics->tree);
+    system->coordinates = calloc(dynamics->tree.coordinate_count + 1, sizeof *system->coordinates);
+    system->contacts = calloc(PIN_SPACE_MAX, sizeof *system->contacts);
+    assert(system->coordinates != NULL && system->contacts != NULL);
     list_coordinates(dynamics);
     PinSpace places[PIN_SPACE_MAX];
     Err failed = {ERR_NONE, ""};
     system->contact_count = pin_space_list(scenario, places, &failed);
     if (failed.kind != ERR_NONE) {
         *err = failed;
+        space_dynamics_finish(dynamics);
         return false;
     }
     for (size_t i = 0; i < system->contact_count; i++) {
@@ -77,7 +81,7 @@ bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err 
         };
     }
     const size_t most = 2 * SPACE_TREE_COORDINATE_MAX;
-    dynamics->scratch = calloc(1, sizeof *dynamics->scratch);
+    dynamics->scratch = space_dynamics_state_create(dynamics);
     dynamics->matrix = malloc((most * most + most) * sizeof *dynamics->matrix);
     assert(dynamics->scratch != NULL && dynamics->matrix != NULL);
     dynamics->right = dynamics->matrix + most * most;
@@ -86,8 +90,19 @@ bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err 
 
 void space_dynamics_finish(SpaceDynamics *dynamics)
 {
+    free(dynamics->system.coordinates);
+    free(dynamics->system.contacts);
     free(dynamics->scratch);
     free(dynamics->matrix);
+}
+
+SpaceState *space_dynamics_state_create(const SpaceDynamics *dynamics)
+{
+    const size_t contacts = dynamics->system.contact_count;
+    SpaceState *state = calloc(1, sizeof *state + contacts * sizeof *state->shared.contacts);
+    assert(state != NULL);
+    state->shared.contacts = (Press *)(state + 1);
+    return state;
 }
 
 // A force on a body at a point on an arm from its centre.

@@ -30,6 +30,9 @@ typedef struct SpaceDynamics {
 bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err *err);
 void space_dynamics_finish(SpaceDynamics *dynamics);
 
+// Room for a state of these equations; the caller frees it.
+SpaceState *space_dynamics_state_create(const SpaceDynamics *dynamics);
+
 // Times, s, and coordinates are those since the base of the tree.
 //
 // The state at a time from the integrator's vector, and the rates of that, which may be NULL.

@@ -238,6 +238,11 @@ static size_t space_rows(const System *system)
     return dynamics_of(system)->loops.row_count;
 }
 
+static SystemState *space_state_create(const System *system)
+{
+    return &space_dynamics_state_create(dynamics_of(system))->shared;
+}
+
 static void space_destroy(System *system)
 {
     space_dynamics_finish(own_dynamics(system));
@@ -245,7 +250,7 @@ static void space_destroy(System *system)
 }
 
 static const SystemKind SPACE = {
-    .state_size = sizeof(SpaceState),
+    .state_create = space_state_create,
     .start = space_begin,
     .evaluate = space_evaluate,
     .rates = space_dynamics_rates,

@@ -3,14 +3,9 @@
 
 #include "contact/law.h"
 
-#include <assert.h>
-#include <stdlib.h>
-
 SystemState *system_state_create(const System *system)
 {
-    SystemState *state = calloc(1, system->kind->state_size);
-    assert(state != NULL);
-    return state;
+    return system->kind->state_create(system);
 }
 
 bool system_check_depth(const System *system, const SystemState *state, double share, Err *err)

@@ -12,11 +12,6 @@
 #include "reference/dop853.h"
 #include "reference/press.h"
 
-enum {
-    SYSTEM_CONTACT_MAX = PIN_SPACE_MAX,
-    SYSTEM_COORDINATE_MAX = 6 * LINKAGE_BODY_MAX,
-};
-
 // What is added up, behind the rates.
 typedef enum SystemSum {
     SYSTEM_DRIVE_WORK, // J
@@ -34,13 +29,15 @@ typedef struct SystemCoordinate {
 
 typedef struct System System;
 
-// Everything at one instant. What the equations have beyond it lies behind it.
+// Everything at one instant, in one piece of memory. What the equations have beyond it lies behind
+// it.
 typedef struct SystemState {
-    Press contacts[SYSTEM_CONTACT_MAX];
+    Press *contacts; // by contact
 } SystemState;
 
 typedef struct SystemKind {
-    size_t state_size; // of what begins with a SystemState
+    // Room for a state of these equations; the caller frees it.
+    SystemState *(*state_create)(const System *system);
     // Writes the integrator's vector at the scenario's start, with sums of zero.
     void (*start)(System *system, double *y);
     // The state at a time, with the rates of the integrator's vector where they are not NULL.
@@ -83,11 +80,11 @@ struct System {
     const SystemKind *kind;
     const Scenario *scenario;
     size_t coordinate_count;
-    SystemCoordinate coordinates[SYSTEM_COORDINATE_MAX];
+    SystemCoordinate *coordinates;
     bool is_astray; // whether the loops' energy has jumped, as it does at a change point
     int torn;       // the number of an ideal joint that its loop could not keep closed; -1: none
     size_t contact_count;
-    Contact contacts[SYSTEM_CONTACT_MAX];
+    Contact *contacts;
 };
 
 // Where a sum is in the integrator's vector, and how long that is.

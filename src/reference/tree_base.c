@@ -23,47 +23,48 @@ static TreePoint subtract(TreePoint a, TreePoint b)
     return (TreePoint){a.x - b.x, a.y - b.y};
 }
 
-static void set_arms(const Tree *tree, int body, TreePoint *arms)
+static void set_arms(Tree *tree, int body)
 {
     const long double c = cosl(tree->base_angle[body]);
     const long double s = sinl(tree->base_angle[body]);
-    for (size_t i = 0; i < tree->end_counts[body]; i++) {
-        const int end = tree->ends[body][i];
+    for (size_t i = tree->end_firsts[body]; i < tree->end_firsts[body + 1]; i++) {
+        const int end = tree->ends[i];
         const Vec2 anchor = tree->anchors[end];
-        arms[end] = (TreePoint){c * anchor.x - s * anchor.y, s * anchor.x + c * anchor.y};
+        tree->long_arms[end] =
+            (TreePoint){c * anchor.x - s * anchor.y, s * anchor.x + c * anchor.y};
     }
 }
 
-static TreePoint end_point(const Tree *tree, const TreePoint *arms, int end)
+static TreePoint end_point(const Tree *tree, int end)
 {
     const int body = tree->end_bodies[end];
     return body == LINKAGE_GROUND ? (TreePoint){tree->anchors[end].x, tree->anchors[end].y}
-                                  : add(tree->base_position[body], arms[end]);
+                                  : add(tree->base_position[body], tree->long_arms[end]);
 }
 
 // The normal of a pair's line; of a body that does not move that of its frame.
-static TreePoint normal_of(const Tree *tree, const TreePoint *arms, int pair)
+static TreePoint normal_of(const Tree *tree, int pair)
 {
-    const int end = TREE_NORMAL + pair;
+    const int end = tree->normals + pair;
     return tree->end_bodies[end] == LINKAGE_GROUND
                ? (TreePoint){tree->anchors[end].x, tree->anchors[end].y}
-               : arms[end];
+               : tree->long_arms[end];
 }
 
 // Where a body that slides is, with the angle that it has on its parent.
-static void settle_sliding(Tree *tree, const TreeNode *node, TreePoint *arms)
+static void settle_sliding(Tree *tree, const TreeNode *node)
 {
     const Joint *joint = &tree->linkage->joints[node->joint];
     const bool is_b = node->own_end % 2 == 1;
     const long double held = is_b ? joint->held_angle : -(long double)joint->held_angle;
     tree->base_angle[node->body] =
         held + (node->parent == LINKAGE_GROUND ? 0.0L : tree->base_angle[node->parent]);
-    set_arms(tree, node->body, arms);
-    const TreePoint normal = normal_of(tree, arms, node->joint);
+    set_arms(tree, node->body);
+    const TreePoint normal = normal_of(tree, node->joint);
     const long double slide = is_b ? tree->base_slide[node->body] : -tree->base_slide[node->body];
     const TreePoint moved = {slide * normal.y, -slide * normal.x};
     tree->base_position[node->body] =
-        subtract(add(end_point(tree, arms, node->parent_end), moved), arms[node->own_end]);
+        subtract(add(end_point(tree, node->parent_end), moved), tree->long_arms[node->own_end]);
 }
 
 static long double base_angle_of(const Tree *tree, int body)
@@ -72,16 +73,15 @@ static long double base_angle_of(const Tree *tree, int body)
 }
 
 // Distances from lines and between discs, and tilts.
-static void measure(Tree *tree, const TreePoint *arms)
+static void measure(Tree *tree)
 {
     for (size_t i = 0; i < tree->measured_count; i++) {
         const int pair = tree->measured[i];
-        const TreePoint gap =
-            subtract(end_point(tree, arms, 2 * pair + 1), end_point(tree, arms, 2 * pair));
+        const TreePoint gap = subtract(end_point(tree, 2 * pair + 1), end_point(tree, 2 * pair));
         long double distance = hypotl(gap.x, gap.y);
         if (tree->measures[pair] == TREE_LINE) {
-            const TreePoint normal = normal_of(tree, arms, pair);
-            tree->base_arms[TREE_NORMAL + pair] = (Vec2){(double)normal.x, (double)normal.y};
+            const TreePoint normal = normal_of(tree, pair);
+            tree->base_arms[tree->normals + pair] = (Vec2){(double)normal.x, (double)normal.y};
             distance = normal.x * gap.x + normal.y * gap.y;
         }
         tree->base_distances[pair] = (double)(distance - tree->offsets[pair]);
@@ -96,36 +96,40 @@ static void measure(Tree *tree, const TreePoint *arms)
 // Centres of the bodies that hang, arms and gaps, from the angles and the floating bodies' centres.
 static void settle(Tree *tree)
 {
-    TreePoint arms[TREE_END_MAX];
     if (tree->driven >= 0) {
         const int joint = tree->linkage->driver.joint;
-        set_arms(tree, tree->driven, arms);
+        set_arms(tree, tree->driven);
         tree->base_position[tree->driven] =
-            subtract(end_point(tree, arms, 2 * joint), arms[2 * joint + 1]);
+            subtract(end_point(tree, 2 * joint), tree->long_arms[2 * joint + 1]);
     }
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
         if (node->is_sliding) {
-            settle_sliding(tree, node, arms);
+            settle_sliding(tree, node);
             continue;
         }
-        set_arms(tree, node->body, arms);
+        set_arms(tree, node->body);
         if (node->joint >= 0) {
             tree->base_position[node->body] =
-                subtract(end_point(tree, arms, node->parent_end), arms[node->own_end]);
+                subtract(end_point(tree, node->parent_end), tree->long_arms[node->own_end]);
         }
     }
     for (int pair = 0; pair < (int)tree->pair_count; pair++) {
-        const TreePoint gap =
-            subtract(end_point(tree, arms, 2 * pair + 1), end_point(tree, arms, 2 * pair));
+        const TreePoint gap = subtract(end_point(tree, 2 * pair + 1), end_point(tree, 2 * pair));
         tree->base_gaps[pair] = (Vec2){(double)gap.x, (double)gap.y};
         for (int end = 2 * pair; end <= 2 * pair + 1; end++) {
             if (tree->end_bodies[end] != LINKAGE_GROUND) {
-                tree->base_arms[end] = (Vec2){(double)arms[end].x, (double)arms[end].y};
+                const TreePoint arm = tree->long_arms[end];
+                tree->base_arms[end] = (Vec2){(double)arm.x, (double)arm.y};
             }
         }
     }
-    measure(tree, arms);
+    for (size_t i = 0; i < tree->linkage->body_count; i++) {
+        const TreePoint centre = tree->base_position[i];
+        tree->base_motions[i].angle = (double)tree->base_angle[i];
+        tree->base_motions[i].position = (Vec2){(double)centre.x, (double)centre.y};
+    }
+    measure(tree);
 }
 
 // The driven body at the base. A kink of its speed that is nearer than rounding has been reached.
@@ -152,7 +156,7 @@ void tree_start(Tree *tree, const Motion *motions, double *u)
             const Vec2 along = joint_rows_along(tree->linkage, motions, node->joint);
             const JointGap gap = linkage_joint_gap(tree->linkage, motions, node->joint);
             tree->base_slide[node->body] = vec2_dot(along, gap.position);
-            u[node->chain[node->chain_count - 1]] = vec2_dot(along, gap.velocity);
+            u[node->column] = vec2_dot(along, gap.velocity);
             continue;
         }
         u[node->angle_column] = motion->omega;
@@ -173,7 +177,7 @@ void tree_rebase(Tree *tree, double since_s, double *q)
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
         if (node->is_sliding) {
-            tree->base_slide[node->body] += q[node->chain[node->chain_count - 1]];
+            tree->base_slide[node->body] += q[node->column];
             continue;
         }
         tree->base_angle[node->body] += q[node->angle_column];

@@ -27,13 +27,13 @@ static inline double tree_alpha(const TreeState *state, int body)
 // The unit normal of a pair's line, and its change since the base.
 static inline Vec2 tree_normal(const Tree *tree, const TreeState *state, int pair)
 {
-    const int end = TREE_NORMAL + pair;
+    const int end = tree->normals + pair;
     return tree->end_bodies[end] == LINKAGE_GROUND ? tree->base_arms[end] : state->arms[end];
 }
 
 static inline Vec2 tree_normal_turned(const Tree *tree, const TreeState *state, int pair)
 {
-    const int end = TREE_NORMAL + pair;
+    const int end = tree->normals + pair;
     return tree->end_bodies[end] == LINKAGE_GROUND ? (Vec2){0.0, 0.0} : state->turned[end];
 }
 

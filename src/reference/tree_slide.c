@@ -7,13 +7,13 @@
 //     a_i = a_p + al_p z x r - w^2 r +- (x'' t + 2 w x' z x t)
 #include "reference/tree_slide.h"
 
-void tree_slide_move(const Tree *tree, const TreeNode *node, const double *q, const double *u,
-                     Vec2 *columns, TreeState *state)
+void tree_slide_move(const Tree *tree, size_t number, const double *q, const double *u,
+                     TreeState *state)
 {
+    const TreeNode *node = &tree->nodes[number];
     Motion *motion = &state->motions[node->body];
-    const size_t own = node->chain_count - 1;
-    const double slide = q[node->chain[own]];
-    const double speed = u[node->chain[own]];
+    const double slide = q[node->column];
+    const double speed = u[node->column];
     // from the direction's normal to what moves the body
     const double sign = node->own_end % 2 == 1 ? -1.0 : 1.0;
     const Vec2 along = vec2_scale(sign, vec2_perp(tree_normal(tree, state, node->joint)));
@@ -39,13 +39,25 @@ void tree_slide_move(const Tree *tree, const TreeNode *node, const double *q, co
         state->bias[node->body] =
             vec2_add(state->bias[node->body], vec2_scale(alpha, vec2_perp(behind)));
     }
-    tree_copy_chain(tree, node, columns, state);
-    if (node->parent_angle >= 0) {
-        const Vec2 lever = vec2_add(state->arms[node->parent_end], behind);
-        Vec2 *by_parent = &columns[node->parent_angle];
-        *by_parent = vec2_add(*by_parent, vec2_perp(lever));
+    state->along[number] = along;
+    state->behind[number] =
+        node->parent == LINKAGE_GROUND ? behind : vec2_add(state->arms[node->parent_end], behind);
+}
+
+Vec2 tree_slide_acceleration(const Tree *tree, size_t number, double rate, const TreeState *state)
+{
+    const TreeNode *node = &tree->nodes[number];
+    const Vec2 acceleration =
+        vec2_add(state->bias[node->body], vec2_scale(rate, state->along[number]));
+    if (node->parent == LINKAGE_GROUND) {
+        return acceleration;
     }
-    columns[own] = along;
+    // what the parent does beyond its own bias
+    const Motion *parent = &state->motions[node->parent];
+    const Vec2 beyond = vec2_sub(parent->acceleration, state->bias[node->parent]);
+    const double spun = parent->alpha - tree_bias_alpha(tree, node->parent);
+    return vec2_add(acceleration,
+                    vec2_add(beyond, vec2_scale(spun, vec2_perp(state->behind[number]))));
 }
 
 void tree_slide_turn(const Tree *tree, const TreeNode *node, const double *q, const double *u,

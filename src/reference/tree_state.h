@@ -10,17 +10,10 @@
 
 #include "contact/touch.h"
 
-enum {
-    TREE_COORDINATE_MAX = 3 * LINKAGE_BODY_MAX,
-    TREE_LOOP_MAX = LINKAGE_JOINT_MAX,
-    // pairs of points, one on body a and one on body b: pair j has the anchors of joint j, those
-    // behind the joints' the corners of blocks between guides and points of the guides
-    TREE_PAIR_MAX = LINKAGE_JOINT_MAX + TOUCH_MAX,
-};
-
-// The ends of the pairs: end 2 p on body a, end 2 p + 1 on body b. Behind them the unit normals of
-// the lines of the pairs that have one: they turn with body a as arms do.
-enum { TREE_NORMAL = 2 * TREE_PAIR_MAX, TREE_END_MAX = 3 * TREE_PAIR_MAX };
+// Pairs of points, one on body a and one on body b: pair j has the anchors of joint j, those behind
+// the joints' the corners of blocks between guides and points of the guides. End 2 p is on body a,
+// end 2 p + 1 on body b. Behind all of these are the unit normals of the lines of the pairs that
+// have one (Tree.normals): they turn with body a as arms do.
 
 // What the distance between the ends of a pair is measured along (reference/tree_line.h).
 typedef enum TreeMeasure {
@@ -30,18 +23,18 @@ typedef enum TreeMeasure {
 } TreeMeasure;
 
 typedef struct TreeNode {
-    int body;           // number of a body that is free to move
-    int joint;          // ideal joint it hangs on, or -1 for a floating body
-    bool is_sliding;    // whether that is a prismatic joint
-    int parent;         // body at the other end of that joint; LINKAGE_GROUND or a body's number
-    int parent_end;     // of the joint, on the parent
-    int own_end;        // and on the body
-    int angle_column;   // coordinate that is its angle, or that of the body on which it slides: -1
-                        // where a drive or the ground has it; a floating body's x and y stand
-                        // before it
-    int parent_angle;   // place in the chain of the parent's angle; -1: no coordinate is that
-    size_t chain_count; // coordinates that move it, its own last, and which
-    size_t chain[TREE_COORDINATE_MAX];
+    int body;         // number of a body that is free to move
+    int joint;        // ideal joint it hangs on, or -1 for a floating body
+    bool is_sliding;  // whether that is a prismatic joint
+    int parent;       // body at the other end of that joint; LINKAGE_GROUND or a body's number
+    int parent_node;  // and its node, -1: of the ground and the driven body, which have none
+    int parent_end;   // of the joint, on the parent
+    int own_end;      // and on the body
+    int angle_column; // coordinate that is its angle, or that of the body on which it slides: -1
+                      // where a drive or the ground has it; a floating body's x and y stand
+                      // before it
+    size_t column;    // its own coordinate: the angle, or the slide
+    size_t depth;     // how many nodes move it, itself one of them
 } TreeNode;
 
 // m, in the world
@@ -52,49 +45,61 @@ typedef struct TreePoint {
 
 typedef struct Tree {
     const Linkage *linkage;
+    void *memory;      // owned; where all arrays are
     int driven;        // number of the driven body or LINKAGE_GROUND
     size_t node_count; // free bodies, parents before children
-    TreeNode nodes[LINKAGE_BODY_MAX];
-    int angle_column[LINKAGE_BODY_MAX]; // by body; -1 for the driven one and what slides on it
-    int node_of[LINKAGE_BODY_MAX];      // by body; -1 for the driven one
-    size_t pair_count;                  // those of the joints first
-    int corners[LINKAGE_JOINT_MAX];     // first pair of a block's corners, by joint
-    size_t measured_count;              // pairs with a line or discs, and which
-    int measured[TREE_PAIR_MAX];
-    TreeMeasure measures[TREE_PAIR_MAX]; // by pair
-    double offsets[TREE_PAIR_MAX];       // m, by which the distance of that pair counts less
-    int end_bodies[TREE_END_MAX];        // the body of each end, or LINKAGE_GROUND
-    Vec2 anchors[TREE_END_MAX];          // of each end in its body's frame, m
-    size_t end_counts[LINKAGE_BODY_MAX]; // how many ends each body has, and which
-    int ends[LINKAGE_BODY_MAX][TREE_END_MAX];
+    TreeNode *nodes;
+    int *angle_column;     // by body; -1 for the driven one and what slides on it
+    int *node_of;          // by body; -1 for the driven one
+    size_t pair_count;     // those of the joints first
+    int *corners;          // first pair of a block's corners, by joint
+    size_t measured_count; // pairs with a line or discs, and which
+    int *measured;         //
+    TreeMeasure *measures; // by pair
+    double *offsets;       // m, by which the distance of that pair counts less
+    int normals;           // the first of the normals among the ends
+    size_t end_count;      // ends and normals
+    int *end_bodies;       // the body of each end, or LINKAGE_GROUND
+    Vec2 *anchors;         // of each end in its body's frame, m
+    size_t *end_firsts;    // by body, and one more: where its ends begin in the list of ends
+    int *ends;             // body by body
     size_t coordinate_count;
-    bool is_carried[LINKAGE_BODY_MAX]; // whether its angle is the driven body's, and follows it
-    bool is_driven_hung_on;            // whether a body hangs on the driven one by an ideal joint
+    bool *is_carried;       // by body: whether its angle is the driven body's, and follows it
+    bool is_driven_hung_on; // whether a body hangs on the driven one by an ideal joint
     size_t loop_count;
-    int loops[TREE_LOOP_MAX]; // ideal joints that close loops
+    int *loops; // ideal joints that close loops
     // the base
     long double base_time_s;
-    DriveState base_drive;                     // its acceleration holds through the step
-    long double base_angle[LINKAGE_BODY_MAX];  // rad
-    TreePoint base_position[LINKAGE_BODY_MAX]; // of the centres
-    long double base_slide[LINKAGE_BODY_MAX];  // m, of bodies that slide
-    Vec2 base_arms[TREE_END_MAX];              // from the body's centre to each end, m
-    Vec2 base_gaps[TREE_PAIR_MAX];             // from the end on body a to that on body b, m
-    double base_distances[TREE_PAIR_MAX];      // m, of measured pairs, offset subtracted
-    double base_tilts[LINKAGE_JOINT_MAX];      // rad, of prismatic joints and blocks
+    DriveState base_drive;    // its acceleration holds through the step
+    long double *base_angle;  // rad
+    TreePoint *base_position; // of the centres
+    long double *base_slide;  // m, of bodies that slide
+    Motion *base_motions;     // angles and positions, rounded
+    TreePoint *long_arms;     // from the body's centre to each end, m
+    Vec2 *base_arms;          // the same, rounded
+    Vec2 *base_gaps;          // from the end on body a to that on body b, m
+    double *base_distances;   // m, of measured pairs, offset subtracted
+    double *base_tilts;       // rad, of prismatic joints and blocks
 } Tree;
 
 // Where the tree's bodies are and how their velocities depend on the coordinates' rates.
 typedef struct TreeState {
-    Motion motions[LINKAGE_BODY_MAX]; // of all bodies; accelerations after tree_accelerate
-    Vec2 arms[TREE_END_MAX];          // from the body's centre to each end, m; not of ground ends
-    Vec2 turned[TREE_END_MAX];        // change of that arm since the base, m
-    Vec2 moved[LINKAGE_BODY_MAX];     // of each centre since the base, m
-    double turn[LINKAGE_BODY_MAX];    // of each body since the base, rad
-    Vec2 bias[LINKAGE_BODY_MAX]; // acceleration of each centre with all coordinates' rates steady
-    // velocity of each node's centre by the rate of each coordinate of its chain
-    Vec2 columns[LINKAGE_BODY_MAX][TREE_COORDINATE_MAX];
+    Motion *motions; // of all bodies; accelerations after tree_accelerate
+    Vec2 *arms;      // from the body's centre to each end, m; not of ground ends
+    Vec2 *turned;    // change of that arm since the base, m
+    Vec2 *moved;     // of each centre since the base, m
+    double *turn;    // of each body since the base, rad
+    Vec2 *bias;      // acceleration of each centre with all coordinates' rates steady
+    Vec2 *along;     // of a node that slides: the direction
+    Vec2 *behind;    // and from the parent's centre to its own, m
+    int *path;       // room for the numbers of nodes
 } TreeState;
+
+// The node of a body, or -1 of the driven one and the ground.
+static inline int tree_node_of(const Tree *tree, int body)
+{
+    return body == LINKAGE_GROUND ? -1 : tree->node_of[body];
+}
 
 // How far an end of a joint has moved since the base, m.
 static inline Vec2 tree_end_moved(const Tree *tree, const TreeState *state, int end)

@@ -6,7 +6,7 @@
 #include "base/lcg.h"
 #include "reference/dynamics_slopes.h"
 
-enum { SIZE = 2 * TREE_COORDINATE_MAX + SYSTEM_IMPULSES + TOUCH_MAX };
+enum { COORDINATES = 16, SIZE = 2 * COORDINATES + SYSTEM_IMPULSES + 8 };
 
 static const double DEPTH = 1e-6; // m
 static const double PLACE = 1e-5; // m or rad, that coordinates are away from the start
@@ -33,7 +33,7 @@ static void press(Pressed *pressed, const Scenario *mechanism)
     Err err = {ERR_NONE, ""};
     assert_true(dynamics_init(scenario, dynamics, &err));
     const size_t n = dynamics->tree.coordinate_count;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion *motions = dynamics->room.state->tree.motions;
     linkage_start(&scenario->linkage, motions);
     tree_start(&dynamics->tree, motions, pressed->y + n);
     uint64_t seed = 1;
@@ -101,11 +101,11 @@ static void differences(Pressed *pressed, size_t k, double nudge, double *column
 static double worst(Pressed *pressed)
 {
     const size_t n = pressed->dynamics.tree.coordinate_count;
-    double slopes[2][TREE_COORDINATE_MAX * TREE_COORDINATE_MAX];
+    double slopes[2][COORDINATES * COORDINATES];
     double worst = 0.0;
     dynamics_slopes(0.0, pressed->y, slopes[0], slopes[1], &pressed->dynamics);
     for (size_t k = 0; k < 2 * n; k++) {
-        double column[TREE_COORDINATE_MAX];
+        double column[COORDINATES];
         double error = 0.0;
         double largest = 0.0;
         differences(pressed, k, k < n ? 1e-4 * DEPTH : 1e-4 * RATE, column);
@@ -129,6 +129,7 @@ static void derivatives_are_those_of_the_contacts_forces(void **state)
         // the frozen geometry leaves out some depths over lengths, and the differences their
         // squares
         assert_true(worst(&pressed) < 1e-4);
+        dynamics_finish(&pressed.dynamics);
     }
 }
 
@@ -143,6 +144,7 @@ static void derivatives_are_those_of_blocks_and_stops(void **state)
         press(&pressed, &scenarios[i]);
         assert_int_equal(pressed.dynamics.system.contact_count, i == 0 ? 4 : 6);
         assert_true(worst(&pressed) < 1e-4);
+        dynamics_finish(&pressed.dynamics);
     }
 }
 
@@ -154,7 +156,7 @@ static void another_sliding_speed_has_other_derivatives(void **state)
     Pressed pressed;
     press(&pressed, &scenario);
     const size_t n = pressed.dynamics.tree.coordinate_count;
-    double slopes[2][2][TREE_COORDINATE_MAX * TREE_COORDINATE_MAX];
+    double slopes[2][2][COORDINATES * COORDINATES];
     for (int i = 0; i < 2; i++) {
         dynamics_slopes(0.0, pressed.y, slopes[i][0], slopes[i][1], &pressed.dynamics);
         pressed.scenario.contact.friction_speed *= 1.1;
@@ -166,6 +168,7 @@ static void another_sliding_speed_has_other_derivatives(void **state)
         largest = fmax(largest, fabs(slopes[0][1][i]));
     }
     assert_true(apart > 1e-3 * largest);
+    dynamics_finish(&pressed.dynamics);
 }
 
 int main(void)

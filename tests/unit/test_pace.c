@@ -6,6 +6,7 @@
 #include "reference/dynamics.h"
 #include "reference/stepper.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { MANY = 200000 };
@@ -24,7 +25,8 @@ static Dynamics loose(const Scenario *scenario)
 static size_t steps_until_failure(const Dynamics *dynamics, double step_s, size_t events, Err *err)
 {
     Pace pace = {0};
-    const EventList list = {.count = events};
+    Event first = {.contact = 0};
+    const EventList list = {.count = events, .events = &first};
     for (size_t i = 1; i <= MANY; i++) {
         if (!pace_keep(&pace, &dynamics->system, &list, (double)i * step_s, err)) {
             return i;
@@ -50,13 +52,14 @@ static void steps_that_lead_nowhere_end_with_the_joint_to_blame(void **state)
     // control: steps of a usual length may go on
     err = (Err){ERR_NONE, ""};
     assert_int_equal(steps_until_failure(&dynamics, 1e-7, 0, &err), 0);
+    dynamics_finish(&dynamics);
 }
 
 static void events_at_one_instant_end(void **state)
 {
     (void)state;
     const Scenario scenario = mechanism_loose(1);
-    const Dynamics dynamics = loose(&scenario);
+    Dynamics dynamics = loose(&scenario);
     Err err = {ERR_NONE, ""};
     const size_t failed_at = steps_until_failure(&dynamics, 0.0, 1, &err);
     assert_in_range(failed_at, 100, 10000);
@@ -65,6 +68,7 @@ static void events_at_one_instant_end(void **state)
     // control: events that are apart may be any number
     err = (Err){ERR_NONE, ""};
     assert_int_equal(steps_until_failure(&dynamics, 1e-7, 1, &err), 0);
+    dynamics_finish(&dynamics);
 }
 
 static void a_step_below_the_rounding_of_time_ends(void **state)
@@ -93,8 +97,8 @@ static void a_pin_beyond_the_end_of_its_law_ends(void **state)
 {
     (void)state;
     const Scenario scenario = mechanism_loose(1);
-    const Dynamics dynamics = loose(&scenario);
-    SystemState *at = test_calloc(1, sizeof *at);
+    Dynamics dynamics = loose(&scenario);
+    SystemState *at = &dynamics_state_create(&dynamics)->shared;
     Err err = {ERR_NONE, ""};
     at->contacts[0].depth = 1e-6;
     assert_true(system_check_depth(&dynamics.system, at, 1.0, &err));
@@ -106,7 +110,8 @@ static void a_pin_beyond_the_end_of_its_law_ends(void **state)
     err = (Err){ERR_NONE, ""};
     at->contacts[0].depth = NAN;
     assert_false(system_check_depth(&dynamics.system, at, 1.0, &err));
-    test_free(at);
+    free(at);
+    dynamics_finish(&dynamics);
 }
 
 int main(void)

@@ -1,0 +1,56 @@
+// In which order are the unknowns of a tree with loops eliminated, and what meets in each step?
+// Found once, from the tree alone.
+//
+// A front is one step: a small dense symmetric matrix of what is eliminated in it (a body's
+// freedom, or the two multipliers of one loop) and what that is coupled with (the rest of the
+// body's motion, multipliers of other loops). What is left of it goes into one later front. Source:
+// Duff and Reid 1983, multifrontal elimination.
+#pragma once
+
+#include "reference/tree.h"
+
+// A front that comes into another, and where its loops are there.
+typedef struct PlanChild {
+    int front;
+    size_t first_place; // into Plan.places: by loop of the child, the row in this front
+} PlanChild;
+
+// An end of a loop on the body of a front.
+typedef struct PlanEnd {
+    int loop;
+    int side;   // 0: of body a
+    size_t row; // first of the loop's two in this front
+} PlanEnd;
+
+typedef struct PlanFront {
+    int node;           // whose motion is in it; -1: none
+    bool is_body;       // whether that node's freedom is eliminated, else the first loop
+    size_t width;       // of its matrix
+    size_t motion;      // row at which the motion begins, of three
+    size_t first_loop;  // into Plan.loops
+    size_t loop_count;  //
+    size_t first_child; // into Plan.children
+    size_t child_count; //
+    size_t first_end;   // into Plan.ends
+    size_t end_count;
+} PlanFront;
+
+typedef struct Plan {
+    size_t front_count;
+    PlanFront *fronts;
+    size_t place_count;
+    size_t *places;
+    size_t loop_count;
+    int *loops; // in the fronts
+    size_t child_count;
+    PlanChild *children;
+    size_t end_count;
+    PlanEnd *ends;
+    int *front_of;       // by node: the front of its body; -1: it is simple, and needs none
+    size_t *fronts_from; // by node + 1, the ground before the first: where the fronts there begin;
+                         // those of the last node are the first, those of the ground the last
+} Plan;
+
+// For the loops of some joints.
+void articulated_plan_make(const Tree *tree, size_t loop_count, const int *loops, Plan *plan);
+void articulated_plan_finish(Plan *plan);

@@ -1,0 +1,297 @@
+// Do bodies that are eliminated one after the other move as the whole matrix of their equations
+// says?
+#include "close.h"
+
+#include "base/dense.h"
+#include "base/lcg.h"
+#include "reference/loops.h"
+#include "reference/tree_line.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { BODIES = 12, JOINTS = 20, EQUATIONS = 3 * BODIES + 2 * JOINTS };
+
+// A linkage in the making. Bodies lie at random, and joints where they are put.
+typedef struct Made {
+    Linkage *linkage;
+    uint64_t seed;
+} Made;
+
+static Made start(void)
+{
+    Made made = {test_calloc(1, sizeof(Linkage)), 1};
+    *made.linkage = linkage_create((LinkageRoom){.bodies = BODIES, .joints = JOINTS});
+    return made;
+}
+
+static int add_body(Made *made)
+{
+    Linkage *linkage = made->linkage;
+    Body *body = &linkage->bodies[linkage->body_count++];
+    body->mass = 2.0 + lcg_draw(&made->seed);
+    body->inertia = 0.2 + 0.1 * lcg_draw(&made->seed);
+    body->start.position = (Vec2){lcg_draw(&made->seed), lcg_draw(&made->seed)};
+    body->start.angle = lcg_draw(&made->seed);
+    return (int)linkage->body_count - 1;
+}
+
+// The anchor of a body at a point of the world.
+static Vec2 anchor_of(const Linkage *linkage, int body, Vec2 point)
+{
+    if (body == LINKAGE_GROUND) {
+        return point;
+    }
+    const Motion *start = &linkage->bodies[body].start;
+    return vec2_rotate(-start->angle, vec2_sub(point, start->position));
+}
+
+static void join(Made *made, JointKind kind, int body_a, int body_b)
+{
+    Linkage *linkage = made->linkage;
+    const Vec2 point = {lcg_draw(&made->seed), lcg_draw(&made->seed)};
+    const double angle_a = body_a == LINKAGE_GROUND ? 0.0 : linkage->bodies[body_a].start.angle;
+    linkage->joints[linkage->joint_count++] = (Joint){
+        .kind = kind,
+        .body_a = body_a,
+        .body_b = body_b,
+        .anchor_a = anchor_of(linkage, body_a, point),
+        .anchor_b = anchor_of(linkage, body_b, point),
+        .direction = 3.0 * lcg_draw(&made->seed),
+        .held_angle = linkage->bodies[body_b].start.angle - angle_a,
+    };
+}
+
+// A chain of N bodies that hangs on the ground, or on nothing.
+static Made chain(int count, bool is_hung)
+{
+    Made made = start();
+    for (int i = 0; i < count; i++) {
+        add_body(&made);
+        if (i > 0 || is_hung) {
+            join(&made, JOINT_REVOLUTE, i - 1, i);
+        }
+    }
+    return made;
+}
+
+// Crossed bars, pinned in their middles, each pair to the next at both its ends.
+static Made scissor(int pairs)
+{
+    Made made = start();
+    for (int i = 0; i < pairs; i++) {
+        const int left = add_body(&made);
+        const int right = add_body(&made);
+        join(&made, JOINT_REVOLUTE, left, right);
+        if (i > 0) {
+            join(&made, JOINT_REVOLUTE, left - 2, right);
+            join(&made, JOINT_REVOLUTE, right - 2, left);
+        }
+    }
+    return made;
+}
+
+// Four-bars in a row on the ground, which share their uprights; or on a body that floats.
+static Made row(int count, bool is_floating)
+{
+    Made made = start();
+    const int ground = is_floating ? add_body(&made) : LINKAGE_GROUND;
+    int before = add_body(&made);
+    join(&made, JOINT_REVOLUTE, ground, before);
+    for (int i = 0; i < count; i++) {
+        const int coupler = add_body(&made);
+        const int upright = add_body(&made);
+        join(&made, JOINT_REVOLUTE, ground, upright);
+        join(&made, JOINT_REVOLUTE, before, coupler);
+        join(&made, JOINT_REVOLUTE, coupler, upright);
+        before = upright;
+    }
+    return made;
+}
+
+// Slides on the ground, on one another and on what turns, and a loop that one closes.
+static Made slides(void)
+{
+    Made made = start();
+    for (int i = 0; i < 7; i++) {
+        add_body(&made);
+    }
+    join(&made, JOINT_PRISMATIC, LINKAGE_GROUND, 0);
+    join(&made, JOINT_PRISMATIC, 0, 1);
+    join(&made, JOINT_REVOLUTE, 1, 2);
+    join(&made, JOINT_PRISMATIC, 2, 3);
+    join(&made, JOINT_REVOLUTE, 3, 4);
+    join(&made, JOINT_REVOLUTE, 4, 5);
+    join(&made, JOINT_PRISMATIC, 5, 6);
+    join(&made, JOINT_PRISMATIC, 1, 6);
+    return made;
+}
+
+typedef struct Solved {
+    Tree tree;
+    TreeState *state;
+    double *memory;
+    double rates[EQUATIONS];
+    double whole[EQUATIONS];
+} Solved;
+
+// The row of a joint's two numbers by each coordinate, in the whole matrix.
+static void put_loop(const Solved *solved, size_t loop, size_t width, double *matrix)
+{
+    const Tree *tree = &solved->tree;
+    const size_t n = tree->coordinate_count;
+    const int joint = tree->loops[loop];
+    Vec2 by[EQUATIONS];
+    memset(by, 0, sizeof by);
+    loops_pair_row(tree, solved->state, joint, by);
+    for (size_t k = 0; k < n; k++) {
+        if (tree->measures[joint] == TREE_LINE) {
+            const Vec2 normal = tree_normal(tree, solved->state, joint);
+            by[k] = (Vec2){vec2_dot(normal, by[k]), 0.0};
+            const Joint *of = &tree->linkage->joints[joint];
+            by[k].y += of->body_b >= 0 && tree->angle_column[of->body_b] == (int)k ? 1.0 : 0.0;
+            by[k].y -= of->body_a >= 0 && tree->angle_column[of->body_a] == (int)k ? 1.0 : 0.0;
+        }
+        const size_t x = n + 2 * loop;
+        matrix[x * width + k] = matrix[k * width + x] = by[k].x;
+        matrix[(x + 1) * width + k] = matrix[k * width + x + 1] = by[k].y;
+    }
+}
+
+// Solves with the whole matrix: M = sum over bodies of m B^T B + I.
+static void solve_whole(Solved *solved, const ArticulatedPush *pushes, const double *sides)
+{
+    const Tree *tree = &solved->tree;
+    const size_t n = tree->coordinate_count;
+    const size_t width = n + 2 * tree->loop_count;
+    double *matrix = test_calloc(width * width, sizeof *matrix);
+    memset(solved->whole, 0, sizeof solved->whole);
+    for (int body = 0; body < (int)tree->linkage->body_count; body++) {
+        const Body *of = &tree->linkage->bodies[body];
+        Vec2 by[EQUATIONS];
+        memset(by, 0, sizeof by);
+        tree_point_row(tree, solved->state, body, (Vec2){0.0, 0.0}, 1.0, by);
+        for (size_t i = 0; i < n; i++) {
+            solved->whole[i] += vec2_dot(by[i], pushes[body].force);
+            for (size_t k = 0; k < n; k++) {
+                matrix[i * width + k] += of->mass * vec2_dot(by[i], by[k]);
+            }
+        }
+        const int angle = tree->angle_column[body];
+        if (angle >= 0) {
+            matrix[(size_t)angle * (width + 1)] += of->inertia;
+            solved->whole[angle] += pushes[body].moment;
+        }
+    }
+    for (size_t loop = 0; loop < tree->loop_count; loop++) {
+        put_loop(solved, loop, width, matrix);
+        solved->whole[n + 2 * loop] = sides[2 * loop];
+        solved->whole[n + 2 * loop + 1] = sides[2 * loop + 1];
+    }
+    assert_true(dense_solve(width, matrix, solved->whole));
+    test_free(matrix);
+}
+
+// Solves in both ways at a state away from the start; the push is on one body more than the other.
+static Solved *solve(const Linkage *linkage, double other)
+{
+    Solved *solved = test_calloc(1, sizeof *solved);
+    Tree *tree = &solved->tree;
+    tree_build(linkage, tree);
+    Layout layout = {NULL, 0};
+    tree_state_lay(tree, &layout, &(TreeState){NULL});
+    solved->memory = test_calloc(1, layout.used);
+    solved->state = test_calloc(1, sizeof *solved->state);
+    tree_state_lay(tree, &(Layout){(char *)solved->memory, 0}, solved->state);
+    Motion motions[BODIES];
+    linkage_start(linkage, motions);
+    double q[EQUATIONS] = {0.0};
+    double u[EQUATIONS] = {0.0};
+    tree_start(tree, motions, u);
+    uint64_t seed = 3;
+    for (size_t i = 0; i < tree->coordinate_count; i++) {
+        q[i] = 0.3 * lcg_draw(&seed);
+    }
+    tree_evaluate(tree, 0.0, q, u, solved->state);
+    ArticulatedPush pushes[BODIES];
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        pushes[i] = (ArticulatedPush){{lcg_draw(&seed), lcg_draw(&seed)}, lcg_draw(&seed)};
+    }
+    double sides[2 * JOINTS];
+    for (size_t i = 0; i < 2 * tree->loop_count; i++) {
+        sides[i] = lcg_draw(&seed);
+    }
+    Articulated *articulated = articulated_create(tree, tree->loop_count, tree->loops);
+    assert_true(articulated_factor(articulated, solved->state));
+    articulated_solve(articulated, pushes, sides, solved->rates);
+    articulated_destroy(articulated);
+    pushes[0].moment += other;
+    solve_whole(solved, pushes, sides);
+    return solved;
+}
+
+// The largest difference of any unknown, over the largest of all.
+static double apart(Made made, double other)
+{
+    Solved *solved = solve(made.linkage, other);
+    const size_t count = solved->tree.coordinate_count + 2 * solved->tree.loop_count;
+    double largest = 0.0;
+    double error = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        largest = fmax(largest, fabs(solved->whole[i]));
+        error = fmax(error, fabs(solved->whole[i] - solved->rates[i]));
+    }
+    tree_finish(&solved->tree);
+    test_free(solved->state);
+    test_free(solved->memory);
+    test_free(solved);
+    linkage_free(made.linkage);
+    test_free(made.linkage);
+    return error / largest;
+}
+
+// Rounding of some hundred operations, times the condition of the matrices.
+static const double ROUNDED = 1e-10;
+
+static void chains_move_as_their_whole_matrix_says(void **state)
+{
+    (void)state;
+    for (int count = 1; count <= BODIES; count++) {
+        assert_true(apart(chain(count, true), 0.0) < ROUNDED);
+        assert_true(apart(chain(count, false), 0.0) < ROUNDED);
+    }
+}
+
+static void loops_in_a_row_move_as_their_whole_matrix_says(void **state)
+{
+    (void)state;
+    for (int count = 1; count <= 5; count++) {
+        assert_true(apart(scissor(count), 0.0) < ROUNDED);
+        assert_true(apart(row(count, false), 0.0) < ROUNDED);
+        assert_true(apart(row(count, true), 0.0) < ROUNDED);
+    }
+}
+
+static void slides_move_as_their_whole_matrix_says(void **state)
+{
+    (void)state;
+    assert_true(apart(slides(), 0.0) < ROUNDED);
+}
+
+// Control: another moment on the first body.
+static void another_push_moves_otherwise(void **state)
+{
+    (void)state;
+    assert_true(apart(scissor(4), 1e-3) > 100.0 * ROUNDED);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(chains_move_as_their_whole_matrix_says),
+        cmocka_unit_test(loops_in_a_row_move_as_their_whole_matrix_says),
+        cmocka_unit_test(slides_move_as_their_whole_matrix_says),
+        cmocka_unit_test(another_push_moves_otherwise),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
