@@ -373,10 +373,11 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "ode.gear", .type = SCHEMA_INTEGER, AT(ode.gear), .low = 1.0, .high = 64.0,
      .needs = ODE | LOCAL | GIVEN_STEP,
      .doc = "with map impulse: steps are this many times finer while a pin touches or is about to"},
-    {.path = "ode.contact-phase", AT(ode.contact_phase), .low = 1e-3, .high = 0.5,
+    {.path = "ode.contact-phase", AT(ode.contact_phase), .low = 0.0, .high = 0.5,
      .needs = ODE | LOCAL | GIVEN_STEP, .plain_unit = "rad",
-     .doc = "with map impulse: how far a contact's own oscillation advances in one local step, "
-            "in rad, written without a unit"},
+     .doc = "with map impulse: 0, and a contact's own steps are as long as the accuracy of the "
+            "step allows; or their error is that of a classical step of this many rad of the "
+            "contact's oscillation, written without a unit"},
 
     {.path = "points.*.body", .type = SCHEMA_BODY_NAME, POINT(body), .is_required = true,
      .doc = "the body to which the point belongs"},

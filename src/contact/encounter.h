@@ -38,10 +38,14 @@ typedef struct EncounterJoint {
     size_t first_row;
     size_t row_count;
     bool is_touching;
-    double impact_speed; // m/s, closing speed where the contact under way began
-    double touching_s;   // s, since then
-    double frequency;    // rad/s, of its oscillation at the depth to be expected
-    bool is_overdamped;  // its damping stops the pin long before its spring would
+    double impact_speed;    // m/s, closing speed where the contact under way began
+    double touching_s;      // s, since then
+    double frequency;       // rad/s, of its oscillation at the depth to be expected
+    double force_per_speed; // N s/m: the force to be expected of a closing speed
+    double tolerance;       // 1: error of the force in a local step that is allowed, relative to it
+    double first_width_s;   // of the first local step of a contact, and of the last
+    double mobility_before[3]; // 1/kg: of its first two rows in the step before
+    bool is_overdamped;        // its damping stops the pin long before its spring would
 } EncounterJoint;
 
 typedef struct Encounter {
@@ -51,9 +55,11 @@ typedef struct Encounter {
     int joint_of[RESPONSE_ROW_MAX]; // of a row: which of the joints here
     double friction;                // 1, Coulomb's coefficient
     double friction_speed;
-    double phase;  // rad of a contact's oscillation in one local step
-    double stable; // time constants of a contact's damping in an explicit local step, at most
-    bool is_stiff; // whether the local step under way is implicit
+    double phase;        // rad of a contact's oscillation in one local step; 0: as many as suit
+    double stiff_phase;  // rad, likewise, where steps are implicit
+    double stable;       // time constants of a contact's damping in an explicit local step, at most
+    double longest_s[2]; // of the next explicit step, of order 4 and 5
+    double duration_before_s;       // of the step of the world before; 0: there was none
     struct EncounterStages *stages; // of implicit steps; owned, NULL before the first
     double stiff_width_s;           // of the next implicit step; 0 where a contact has just begun
 

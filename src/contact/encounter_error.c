@@ -56,7 +56,7 @@ static double share_of_joint(const Encounter *encounter, size_t joint, const Enc
 {
     const size_t first = encounter->joints[joint].first_row;
     const size_t own = encounter->joints[joint].row_count;
-    const double square = encounter->phase * encounter->phase;
+    const double square = encounter->stiff_phase * encounter->stiff_phase;
     const double rounding = depth_rounding(encounter, joint, from->time_s + width_s);
     const PinHole pose =
         encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);

@@ -136,25 +136,19 @@ static void find_all_rows(const Encounter *encounter, double time_s, const doubl
     }
 }
 
-// What one joint's rows do; of all of them only where there is friction.
-typedef struct OwnRows {
-    double position[2];
-    double speed[ENCOUNTER_ROWS_MOST];
-} OwnRows;
-
+// Where one joint's rows are, and how fast they go.
 static void find_own_rows(const Encounter *encounter, size_t joint, double time_s,
                           const double *impulse, const double *moment, const AllRows *all,
-                          OwnRows *own)
+                          double position[2], double *speed)
 {
     const size_t row = encounter->joints[joint].first_row;
     const size_t count = encounter->joints[joint].row_count;
     for (size_t i = 0; i < count; i++) {
-        own->speed[i] = all != NULL
-                            ? all->speed[row + i]
-                            : encounter_force_row_speed(encounter, row + i, time_s, impulse);
+        speed[i] = all != NULL ? all->speed[row + i]
+                               : encounter_force_row_speed(encounter, row + i, time_s, impulse);
     }
     for (size_t i = 0; i < 2; i++) {
-        own->position[i] =
+        position[i] =
             all != NULL ? all->position[row + i] : row_position(encounter, row + i, time_s, moment);
     }
 }
@@ -216,24 +210,34 @@ static double add_friction(const Encounter *encounter, size_t joint, const doubl
 
 // What presses along the normal of a joint that touches. Where a contact has just begun its depth
 // is zero but for rounding, of either sign, and a viscous damper presses hardest.
-static double pressing(const EncounterJoint *joint, const PinHole *pose)
+static double pressing(const EncounterJoint *joint, const EncounterTouch *touch)
 {
-    if (pose->penetration <= 0.0) {
-        return fmax(0.0, joint->law.viscous * pose->approach_speed);
-    }
-    return force_law_force(&joint->law, pose->penetration, pose->approach_speed,
-                           joint->impact_speed);
+    const double rate = touch->pose.approach_speed;
+    const double speed = fmax(joint->impact_speed, joint->law.impact_speed_floor);
+    const double total =
+        touch->elastic * (1.0 + joint->law.hysteresis * rate / speed) + joint->law.viscous * rate;
+    return total < 0.0 ? 0.0 : total; // a comparison that lets NaN through
 }
 
-void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
-                          const double *moment, double *force, double powers[2])
+// How a joint is; of its rows beyond the first two only where there is friction.
+static void find_touch(const Encounter *encounter, size_t joint, double time_s,
+                       const double *impulse, const double *moment, const AllRows *all,
+                       EncounterTouch *touch)
+{
+    double position[2];
+    find_own_rows(encounter, joint, time_s, impulse, moment, all, position, touch->speed);
+    touch->pose = pose_of(encounter, joint, position, touch->speed);
+    force_law_both(&encounter->joints[joint].law, touch->pose.penetration, &touch->elastic,
+                   &touch->tangent);
+}
+
+void encounter_force_find_touching(Encounter *encounter, double time_s, const double *impulse,
+                                   const double *moment, double *force, double powers[2],
+                                   EncounterTouch *touching)
 {
     AllRows rows;
     const bool is_wide = encounter->row_count >= WIDE;
-    if (is_wide) {
-        find_all_rows(encounter, time_s, impulse, moment, &rows);
-    }
-    encounter->evaluations++;
+    bool is_any = false;
     powers[0] = powers[1] = 0.0;
     for (size_t i = 0; i < encounter->joint_count; i++) {
         const EncounterJoint *joint = &encounter->joints[i];
@@ -242,18 +246,29 @@ void encounter_force_find(Encounter *encounter, double time_s, const double *imp
             memset(own, 0, joint->row_count * sizeof *own);
             continue;
         }
-        OwnRows at;
-        find_own_rows(encounter, i, time_s, impulse, moment, is_wide ? &rows : NULL, &at);
-        const PinHole pose = pose_of(encounter, i, at.position, at.speed);
-        const double normal = pressing(joint, &pose);
-        const double elastic = force_law_elastic(&joint->law, pose.penetration);
-        own[0] = normal * pose.normal.x;
-        own[1] = normal * pose.normal.y;
-        powers[0] += (normal - elastic) * pose.approach_speed;
+        if (!is_any && is_wide) {
+            find_all_rows(encounter, time_s, impulse, moment, &rows);
+        }
+        is_any = true;
+        EncounterTouch *touch = &touching[i];
+        find_touch(encounter, i, time_s, impulse, moment, is_wide ? &rows : NULL, touch);
+        const PinHole *pose = &touch->pose;
+        const double normal = pressing(joint, touch);
+        own[0] = normal * pose->normal.x;
+        own[1] = normal * pose->normal.y;
+        powers[0] += (normal - touch->elastic) * pose->approach_speed;
         if (joint->has_friction) {
-            powers[1] += add_friction(encounter, i, at.speed, &pose, normal, force);
+            powers[1] += add_friction(encounter, i, touch->speed, pose, normal, force);
         }
     }
+    encounter->evaluations += is_any ? 1 : 0;
+}
+
+void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
+                          const double *moment, double *force, double powers[2])
+{
+    EncounterTouch touching[ENCOUNTER_JOINT_MAX];
+    encounter_force_find_touching(encounter, time_s, impulse, moment, force, powers, touching);
 }
 
 // By how much the places that can press together with one move it along its normal, 1/kg; of a

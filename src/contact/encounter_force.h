@@ -20,13 +20,29 @@ typedef struct EncounterPoint {
     double impulse[RESPONSE_ROW_MAX]; // N s, by row
     double moment[RESPONSE_ROW_MAX];  // N s^2, its integral over time
     double force[RESPONSE_ROW_MAX];   // N
+    double rate[RESPONSE_ROW_MAX];    // N/s, of the forces along the motion
     double powers[2];                 // W, lost in damping and in friction
+    double power_rates[2];            // W/s
     double losses[2];                 // J, likewise, since the start
 } EncounterPoint;
+
+// How a joint that touches is at a point: its pose, how fast its rows go, what its spring presses
+// with, N, and how fast that grows with the depth, N/m.
+typedef struct EncounterTouch {
+    PinHole pose;
+    double speed[ENCOUNTER_ROWS_MOST];
+    double elastic;
+    double tangent;
+} EncounterTouch;
 
 // Writes the forces in all rows, and the powers lost in damping and in friction.
 void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
                           const double *moment, double *force, double powers[2]);
+
+// The same, and how the joints are that touch, by joint.
+void encounter_force_find_touching(Encounter *encounter, double time_s, const double *impulse,
+                                   const double *moment, double *force, double powers[2],
+                                   EncounterTouch *touching);
 
 // The pose of one joint after impulses and their integrals.
 PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double time_s,

@@ -10,6 +10,7 @@
 #include "contact/encounter.h"
 
 #include "contact/encounter_force.h"
+#include "contact/encounter_rates.h"
 #include "contact/encounter_step.h"
 
 #include <assert.h>
@@ -21,6 +22,24 @@
 enum { NODE_MAX = 100000 };
 
 enum { ROOT_STEPS = 60 };
+
+enum { EVENT_STEPS = 8 };
+static const double EVENT_ROUNDING = 1e-14; // of a local step
+
+// rad: of implicit steps, where the phase is not given
+static const double STIFF_PHASE = 0.05;
+
+// the error of a classical step of order 4 in its phase, which is what is meant where one is given
+static const double PHASE_ERROR = 1.0 / 120.0;
+
+// what is allowed where it is not given: of the error that comes of a response that is taken as
+// constant
+static const double SHARE = 0.015;
+static const double TOLERANCE_LEAST = 1e-9;
+static const double TOLERANCE_MOST = 1e-3;
+
+// of a contact's first step: times the tolerance, to the power 2/3, in rad
+static const double FIRST = 50.0;
 
 // restitutions below a tenth or so
 static const double OVERDAMPED = 8.0;
@@ -35,7 +54,9 @@ Encounter encounter_start(double friction, double friction_speed, double phase)
         .friction = friction,
         .friction_speed = friction_speed,
         .phase = phase,
-        .stable = 2.0, // the method is stable up to 2.78
+        .stiff_phase = phase > 0.0 ? phase : STIFF_PHASE,
+        .stable = 2.0,
+        .longest_s = {INFINITY, INFINITY},
     };
 }
 
@@ -63,10 +84,56 @@ bool encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t row
     return true;
 }
 
-static void complete_point(Encounter *encounter, EncounterPoint *point)
+// The force grows as the power 1.5 of the time since the onset.
+static void set_first_width(EncounterJoint *joint)
 {
-    encounter_force_find(encounter, point->time_s, point->impulse, point->moment, point->force,
-                         point->powers);
+    joint->first_width_s =
+        joint->frequency > 0.0
+            ? cbrt(FIRST * FIRST * joint->tolerance * joint->tolerance) / joint->frequency
+            : 0.0;
+}
+
+// How much the mobility of a joint has changed since the step before, in the time between their
+// middles, relative to it.
+static double response_change(const Encounter *encounter, const EncounterJoint *joint)
+{
+    const size_t width = encounter->row_count;
+    const double *own = encounter->mobility + joint->first_row * width + joint->first_row;
+    const double now[3] = {own[0], own[1], own[width + 1]};
+    double change = 0.0;
+    double size = 0.0;
+    for (size_t i = 0; i < 3; i++) {
+        change += (now[i] - joint->mobility_before[i]) * (now[i] - joint->mobility_before[i]);
+        size += now[i] * now[i];
+    }
+    return sqrt(change / size);
+}
+
+// Sets the errors allowed: a share of what comes of the response being taken as constant, which
+// moves a pin by W' h^2 / 12 for each newton second.
+static void set_tolerances(Encounter *encounter, double duration_s)
+{
+    const double phase = encounter->phase;
+    const double between_s = 0.5 * (duration_s + encounter->duration_before_s);
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        EncounterJoint *joint = &encounter->joints[i];
+        const size_t width = encounter->row_count;
+        const double *own = encounter->mobility + joint->first_row * width + joint->first_row;
+        if (phase > 0.0) {
+            joint->tolerance = phase * phase * phase * phase * PHASE_ERROR;
+        } else if (encounter->duration_before_s > 0.0) {
+            const double change = response_change(encounter, joint) * duration_s / between_s;
+            const double turned = fmin(1.0, joint->frequency * duration_s / M_PI);
+            joint->tolerance = fmin(fmax(SHARE * change * turned, TOLERANCE_LEAST), TOLERANCE_MOST);
+        } else {
+            joint->tolerance = TOLERANCE_LEAST;
+        }
+        joint->mobility_before[0] = own[0];
+        joint->mobility_before[1] = own[1];
+        joint->mobility_before[2] = own[width + 1];
+        set_first_width(joint);
+    }
+    encounter->duration_before_s = duration_s;
 }
 
 static void begin_contact(Encounter *encounter, size_t number, const PinHole *pose)
@@ -84,6 +151,13 @@ static void begin_contact(Encounter *encounter, size_t number, const PinHole *po
                      0.5 * force_law_depth_limit(&joint->law));
     }
     joint->frequency = encounter_force_frequency(encounter, number, pose->normal, depth);
+    const double mobility =
+        joint->frequency * joint->frequency / force_law_tangent(&joint->law, depth);
+    joint->force_per_speed = joint->frequency / mobility;
+    set_first_width(joint);
+    for (int k = 0; k < 2; k++) {
+        encounter->longest_s[k] = joint->first_width_s;
+    }
     joint->is_overdamped = encounter_force_decay(encounter, number, pose->normal, depth) >
                            OVERDAMPED * joint->frequency;
 }
@@ -104,17 +178,9 @@ static void settle_contacts(Encounter *encounter, const EncounterPoint *point)
     }
 }
 
-static double depth_after(Encounter *encounter, size_t joint, const EncounterPoint *from,
-                          double width_s)
-{
-    EncounterPoint to;
-    encounter_step_try(encounter, from, width_s, &to);
-    return encounter_force_pose(encounter, joint, to.time_s, to.impulse, to.moment).penetration;
-}
-
 // The width at which a joint's depth passes zero, between 0 and `width_s`, by the Illinois method.
-static double find_crossing(Encounter *encounter, size_t joint, const EncounterPoint *from,
-                            double first, double width_s, double last)
+static double find_crossing(Encounter *encounter, EncounterStep *step, size_t joint, double first,
+                            double width_s, double last)
 {
     double low = 0.0;
     double high = width_s;
@@ -122,7 +188,7 @@ static double find_crossing(Encounter *encounter, size_t joint, const EncounterP
     int side = 0;
     for (int i = 0; i < ROOT_STEPS && high - low > 1e-15 * width_s; i++) {
         width = (low * last - high * first) / (last - first);
-        const double depth = depth_after(encounter, joint, from, width);
+        const double depth = encounter_step_depth(encounter, step, joint, width);
         if (depth == 0.0) {
             break;
         }
@@ -143,9 +209,10 @@ static double find_crossing(Encounter *encounter, size_t joint, const EncounterP
 
 // Whether the depth of a joint passes zero in a step, and between which widths and depths: at the
 // step's end, or, of a pin that comes to the wall and leaves again in between, where it turns.
-static bool find_bracket(Encounter *encounter, size_t joint, const EncounterPoint *from,
+static bool find_bracket(Encounter *encounter, EncounterStep *step, size_t joint,
                          const EncounterPoint *to, double *first, double *width_s, double *last)
 {
+    const EncounterPoint *from = step->from;
     const PinHole start =
         encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
     const PinHole end = encounter_force_pose(encounter, joint, to->time_s, to->impulse, to->moment);
@@ -162,15 +229,15 @@ static bool find_bracket(Encounter *encounter, size_t joint, const EncounterPoin
     *first = fmin(*first, 0.0);
     if (!(*last > 0.0) && start.approach_speed > 0.0 && end.approach_speed < 0.0) {
         *width_s *= start.approach_speed / (start.approach_speed - end.approach_speed);
-        *last = depth_after(encounter, joint, from, *width_s);
+        *last = encounter_step_depth(encounter, step, joint, *width_s);
     }
     return *last > 0.0;
 }
 
 // Shortens a step to where the first contact begins or ends in it. Returns which do there, one bit
 // a joint.
-static uint32_t find_events(Encounter *encounter, const EncounterPoint *from,
-                            const EncounterPoint *to, double *width_s)
+static uint32_t find_events(Encounter *encounter, EncounterStep *step, const EncounterPoint *to,
+                            double *width_s)
 {
     const double whole_s = *width_s;
     double crossings[ENCOUNTER_JOINT_MAX];
@@ -179,8 +246,8 @@ static uint32_t find_events(Encounter *encounter, const EncounterPoint *from,
         double first;
         double last;
         crossings[i] = INFINITY;
-        if (find_bracket(encounter, i, from, to, &first, &bracket_s, &last)) {
-            crossings[i] = find_crossing(encounter, i, from, first, bracket_s, last);
+        if (find_bracket(encounter, step, i, to, &first, &bracket_s, &last)) {
+            crossings[i] = find_crossing(encounter, step, i, first, bracket_s, last);
             *width_s = fmin(*width_s, crossings[i]);
         }
     }
@@ -226,20 +293,45 @@ static void change_contacts(Encounter *encounter, uint32_t events, const Encount
     }
 }
 
+// Steps to where the first of some contacts begins or ends: the length is right but for the error
+// of what was known between the ends of the step.
+static bool step_to_event(Encounter *encounter, EncounterStep *step, uint32_t events,
+                          double *width_s, EncounterPoint *to)
+{
+    const double whole_s = *width_s;
+    size_t first = 0;
+    while ((events >> first & 1) == 0) {
+        first++;
+    }
+    for (int i = 0;; i++) {
+        if (!encounter_step_try(encounter, step, *width_s, to)) {
+            return false;
+        }
+        const PinHole pose =
+            encounter_force_pose(encounter, first, to->time_s, to->impulse, to->moment);
+        const double later_s = -pose.penetration / pose.approach_speed;
+        if (i == EVENT_STEPS || step->method != ENCOUNTER_EXPLICIT ||
+            !(fabs(later_s) > EVENT_ROUNDING * whole_s) || !(*width_s + later_s > 0.0)) {
+            return true;
+        }
+        *width_s += later_s;
+    }
+}
+
 // A local step of at most `left_s` up to the first event in it; `events` are the joints it is of.
 // Returns false where the step is to be tried again. An event at its very start leaves no length.
-static bool advance_step(Encounter *encounter, const EncounterPoint *from, double left_s,
+static bool advance_step(Encounter *encounter, EncounterStep *step, double left_s,
                          EncounterPoint *to, uint32_t *events)
 {
-    double width_s = encounter_step_take(encounter, from, left_s, to);
+    double width_s = encounter_step_take(encounter, step, left_s, to);
     const double whole_s = width_s;
     bool is_solved = true;
-    if (shorten_flight(encounter, from, to, &width_s)) {
-        is_solved = encounter_step_try(encounter, from, width_s, to);
+    if (shorten_flight(encounter, step->from, to, &width_s)) {
+        is_solved = encounter_step_try(encounter, step, width_s, to);
     }
-    *events = is_solved ? find_events(encounter, from, to, &width_s) : 0;
+    *events = is_solved ? find_events(encounter, step, to, &width_s) : 0;
     if (*events != 0) {
-        is_solved = encounter_step_try(encounter, from, width_s, to);
+        is_solved = step_to_event(encounter, step, *events, &width_s, to);
     }
     if (!is_solved) {
         encounter->stiff_width_s = 0.5 * whole_s;
@@ -256,10 +348,12 @@ bool encounter_run(Encounter *encounter, double duration)
     EncounterPoint points[2];
     EncounterPoint *from = &points[0];
     EncounterPoint *to = &points[1];
+    EncounterStep step;
     memset(from, 0, sizeof *from);
     encounter->node_count = 0;
+    set_tolerances(encounter, duration);
     settle_contacts(encounter, from);
-    complete_point(encounter, from);
+    encounter_rates_find(encounter, from);
     encounter_nodes_add(encounter, from);
     const double rounding_s = 1e-14 * duration;
     while (duration - from->time_s > rounding_s) {
@@ -267,17 +361,22 @@ bool encounter_run(Encounter *encounter, double duration)
             return false;
         }
         uint32_t events;
-        if (!advance_step(encounter, from, duration - from->time_s, to, &events)) {
+        step.from = from;
+        if (!advance_step(encounter, &step, duration - from->time_s, to, &events)) {
             continue;
         }
-        if (encounter->is_stiff && encounter->node_count == 1) {
+        if (step.method == ENCOUNTER_STIFF && encounter->node_count == 1) {
             encounter_nodes_settle(encounter);
         }
-        complete_point(encounter, to);
+        if (step.is_ended && events == 0) {
+            encounter_explicit_extend(encounter, &step.explicit, from, to);
+        } else {
+            encounter_rates_find(encounter, to);
+        }
         encounter_nodes_add(encounter, to);
         if (events != 0) {
             change_contacts(encounter, events, to);
-            complete_point(encounter, to);
+            encounter_rates_find(encounter, to);
             encounter_nodes_add(encounter, to);
         }
         EncounterPoint *const spare = from;

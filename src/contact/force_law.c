@@ -138,6 +138,23 @@ double force_law_tangent(const ForceLaw *law, double penetration)
     return 1.0 / (law->compliance * (branch_at(law, penetration) - 1.0));
 }
 
+void force_law_both(const ForceLaw *law, double penetration, double *elastic, double *tangent)
+{
+    if (law->family == FORCE_LAW_POWER) {
+        const double secant = force_law_secant(law, penetration);
+        *elastic = penetration <= 0.0 ? 0.0 : secant * penetration;
+        *tangent = law->exponent * secant;
+        return;
+    }
+    if (penetration <= 0.0) {
+        *elastic = *tangent = 0.0;
+        return;
+    }
+    const double branch = branch_at(law, penetration);
+    *elastic = penetration / (law->compliance * branch);
+    *tangent = 1.0 / (law->compliance * (branch - 1.0));
+}
+
 double force_law_secant(const ForceLaw *law, double penetration)
 {
     if (law->family == FORCE_LAW_POWER) {

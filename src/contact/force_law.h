@@ -45,6 +45,9 @@ double force_law_elastic(const ForceLaw *law, double penetration);
 // n < 1, 0 for the logarithmic family (its stiffness vanishes as 1 / ln d).
 double force_law_tangent(const ForceLaw *law, double penetration);
 
+// Both at once, from one solution of the law.
+void force_law_both(const ForceLaw *law, double penetration, double *elastic, double *tangent);
+
 // Elastic force over penetration, N/m: the spring that gives the exact force there. At no
 // penetration: its limit, as for the tangent.
 double force_law_secant(const ForceLaw *law, double penetration);

@@ -157,7 +157,8 @@ typedef struct OdeOptions {
     size_t settle_steps;    // of ODE_PLAIN: run before time zero where every joint is ideal
     size_t levels;          // of ODE_EXTRAPOLATED: worlds side by side
     size_t gear;            // of ODE_MAP_IMPULSE: by how much steps are finer near a wall
-    double contact_phase;   // rad, of ODE_MAP_IMPULSE: a contact's own oscillation in a local step
+    double contact_phase;   // rad, of ODE_MAP_IMPULSE: how accurate local steps of contacts are, as
+                            // classical steps of that phase; 0: as the step of the world allows
 } OdeOptions;
 
 // s, the step where a case names a way of stepping but no step: one that is chosen has its own way.

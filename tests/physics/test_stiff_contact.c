@@ -66,11 +66,11 @@ static void a_weight_sinks_into_its_damper(void **state)
         assert_close(lone_pin_end(&pin).force[0], -ONE_IMPACT_MASS * WEIGHT, 1e-5);
         encounter_finish(&pin);
     }
-    // control: explicit steps throw the weight off the wall again and again
+    // control: explicit steps throw the weight off the wall again and again, or are too many
     Encounter pin = resting(1e-9);
     pin.stable = INFINITY;
-    assert_true(encounter_run(&pin, 1e-3));
-    assert_true(count_contacts(&pin) > 10 || sinking_error(&pin, 1e-9, 1e-3) > 0.1);
+    assert_true(!encounter_run(&pin, 1e-3) || count_contacts(&pin) > 10 ||
+                sinking_error(&pin, 1e-9, 1e-3) > 0.1);
     encounter_finish(&pin);
 }
 
@@ -146,8 +146,8 @@ static void a_damper_presses_hardest_at_its_onset(void **state)
     double highest = 0.0;
     size_t looked_at = 0;
     for (size_t node = 0; node + 1 < pin.node_count; node++) {
-        for (int k = 0; pin.touching[node] != 0 && k < 8; k++) {
-            const double share = 0.125 * k;
+        for (int k = 0; pin.touching[node] != 0 && k < 32; k++) {
+            const double share = k / 32.0;
             const double time_s = (1.0 - share) * pin.times[node] + share * pin.times[node + 1];
             EncounterSums sums;
             encounter_at(&pin, node, time_s, &sums);
