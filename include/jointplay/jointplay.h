@@ -1,5 +1,5 @@
-/* jointplay: contacts for any world of the Open Dynamics Engine (ODE), and what an ERP and a CFM
- * stand for.
+/* jointplay: joints with play and backlash for any world of the Open Dynamics Engine (ODE), and what
+ * an ERP and a CFM stand for.
  *
  * C17 and C++17. Everything is in the units of your world, written here as SI: metres, kilograms,
  * seconds, radians. What is said of a mass, a force and a length holds of an inertia, a torque and
@@ -11,6 +11,7 @@
 #ifndef JOINTPLAY_JOINTPLAY_H
 #define JOINTPLAY_JOINTPLAY_H
 
+#include <ode/ode.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -28,6 +29,9 @@ typedef enum JpStatus {
     JP_OK = 0,
     JP_ERROR_ARGUMENT, /* an argument that no call may have: NULL, NaN, out of range */
     JP_ERROR_NONE,     /* what is asked for does not exist: no such step, no such spring */
+    JP_ERROR_MEMORY,   /* there is no memory */
+    JP_ERROR_WORLD,    /* the world cannot be stepped: a number in it is not finite, or it has bodies
+                          that are not known */
 } JpStatus;
 
 enum { JP_ERROR_SIZE = 256 };
@@ -191,6 +195,126 @@ JP_API JpStatus jp_step_is_right(JpMap map, const JpContact *contact, double mas
  * found down to a ten-thousandth of the contact. */
 JP_API JpStatus jp_step_longest(JpMap map, const JpContact *contact, double mass, double speed,
                                 double share, double *step, JpError *error);
+
+/* ---- worlds ----------------------------------------------------------------------------------
+ *
+ * A JpWorld steps a world of yours that has joints of ours. The world, its bodies, joints and
+ * contacts stay yours; destroy a JpJoint before the ODE joint it is made on, and the JpWorld before
+ * the world. Between two steps all bodies stand at one time, and ODE's getters read them there. */
+
+typedef struct JpWorld JpWorld;
+typedef struct JpJoint JpJoint;
+
+typedef enum JpStepping {
+    JP_STEPPING_PLAIN,     /* as ODE steps: order 1; rows of JP_MAP_CORRECTED */
+    JP_STEPPING_STAGGERED, /* forces at mid-step: order 2 at the same cost; rows of JP_MAP_MIDPOINT */
+} JpStepping;
+
+typedef struct JpWorldOptions {
+    JpStepping stepping;
+    bool is_quick; /* dWorldQuickStep in place of dWorldStep: its rows are as right as its
+                      iterations */
+    /* Called once a step with the bodies where forces are evaluated, to make the step's contacts
+     * there; staggered, that is half a step on. May be NULL; contacts made before the step serve,
+     * too, and are half a step old then. */
+    void (*collide)(dWorldID world, void *data);
+    void *collide_data;
+} JpWorldOptions;
+
+/* Staggered, by dWorldStep, without a function for contacts. */
+JP_API JpWorldOptions jp_world_options_default(void);
+
+/* Options may be NULL for the default. Destroying a world destroys the joints made in it. */
+JP_API JpStatus jp_world_create(dWorldID world, const JpWorldOptions *options, JpWorld **created,
+                                JpError *error);
+JP_API void jp_world_destroy(JpWorld *world);
+
+/* Bodies that no chain of joints links with a joint of ours have to be added, so that they are
+ * stepped like all others, and removed before they are destroyed. The others are found. */
+JP_API JpStatus jp_world_add_body(JpWorld *world, dBodyID body, JpError *error);
+JP_API JpStatus jp_world_remove_body(JpWorld *world, dBodyID body, JpError *error);
+
+/* One step, s, in place of dWorldStep. Forces that were added to bodies act in it. */
+JP_API JpStatus jp_world_step(JpWorld *world, double step, JpError *error);
+
+typedef struct JpWorldStats {
+    size_t steps;       /* of jp_world_step */
+    size_t world_steps; /* of ODE, with those of trials */
+    size_t rows;        /* contacts of our joints, a step each */
+    size_t fallbacks;   /* of those, beyond the limit of the map: the row was the textbook's */
+} JpWorldStats;
+JP_API JpStatus jp_world_stats(const JpWorld *world, JpWorldStats *stats, JpError *error);
+
+/* ---- joints with play -------------------------------------------------------------------------
+ *
+ * On a hinge or a slider of yours, which goes on holding all but its own coordinate: the angle or
+ * position that dJointGetHingeAngle or dJointGetSliderPosition give, followed beyond half a turn.
+ * Forces and lengths are torques and angles on a hinge. */
+
+/* Backlash: the teeth of one side stand between those of the other with a gap. Without a rotor the
+ * gap is between the two bodies. With one, what stands in the gap is a rotor (motor, gears, reflected
+ * to the joint by the square of the ratio), which is a mere number and no body: it is driven by
+ * jp_backlash_drive, or led by jp_backlash_lead. What the gears press on the first body, they press
+ * on the second the other way; the rotor's own reaction on its housing, smaller by the ratio, is left
+ * out. */
+typedef struct JpBacklash {
+    double gap;           /* rad or m, from tooth to tooth, >= 0 */
+    double offset;        /* rad or m: the coordinate less the rotor's where the gap is centred */
+    double rotor_inertia; /* kg m^2 or kg; 0: no rotor */
+    JpContact tooth;
+} JpBacklash;
+
+/* A gap of 0 about 0, no rotor, the default contact. */
+JP_API JpBacklash jp_backlash_default(void);
+JP_API JpStatus jp_backlash_create(JpWorld *world, dJointID joint, const JpBacklash *backlash,
+                                   JpJoint **created, JpError *error);
+
+/* The torque or force on the rotor from now on. A rotor that was led is free again. Fails without a
+ * rotor. */
+JP_API JpStatus jp_backlash_drive(JpJoint *joint, double force, JpError *error);
+
+/* Leads the rotor, or what the gap stands on where there is none: where it is now, and the speed with
+ * which it goes on from there. */
+JP_API JpStatus jp_backlash_lead(JpJoint *joint, double position, double speed, JpError *error);
+
+/* Stops that rebound as asked. Use them in place of dParamLoStop and dParamHiStop. */
+typedef struct JpStops {
+    double low;  /* rad or m; may be -infinity */
+    double high; /* rad or m, above low; may be infinity */
+    JpContact contact;
+} JpStops;
+
+/* No stops, the default contact. */
+JP_API JpStops jp_stops_default(void);
+JP_API JpStatus jp_stops_create(JpWorld *world, dJointID joint, const JpStops *stops,
+                                JpJoint **created, JpError *error);
+
+JP_API void jp_joint_destroy(JpJoint *joint);
+
+/* One side of the gap. */
+typedef struct JpSide {
+    double gap;       /* rad or m to it; below 0 inside; infinite where there is none */
+    double force;     /* N m or N, >= 0, mean of the last step */
+    double force_max; /* since the joint was made, as are all below */
+    double depth_max; /* rad or m */
+    double impulse;   /* N m s or N s */
+    double work;      /* J, done by the contact */
+    double stored;    /* J, elastic, now; -work - stored was lost */
+    double impact_speed; /* rad/s or m/s, of the last impact */
+    size_t impacts;
+    bool is_touching;
+} JpSide;
+
+typedef struct JpJointState {
+    double position; /* rad or m, of the coordinate */
+    double speed;    /* rad/s or m/s */
+    double rotor_position;
+    double rotor_speed;
+    double force; /* N m or N, mean of the last step: on the first body along the coordinate */
+    JpSide low;   /* pushes the coordinate up */
+    JpSide high;
+} JpJointState;
+JP_API JpStatus jp_joint_state(const JpJoint *joint, JpJointState *state, JpError *error);
 
 #ifdef __cplusplus
 }

@@ -120,6 +120,153 @@ static void an_impact_that_is_none_is_refused(void **state)
     assert_int_equal(jp_damper_of(1e6, 1.5, 1.0, &number, NULL), JP_ERROR_ARGUMENT);
 }
 
+// A world with a hinge and a slider to the ground, and one joint of another kind.
+typedef struct Scene {
+    dWorldID world;
+    dJointID hinge;
+    dJointID ball;
+    JpWorld *play;
+} Scene;
+
+static Scene scene_make(void)
+{
+    Scene scene = {.world = dWorldCreate()};
+    const dBodyID body = dBodyCreate(scene.world);
+    scene.hinge = dJointCreateHinge(scene.world, 0);
+    dJointAttach(scene.hinge, body, 0);
+    scene.ball = dJointCreateBall(scene.world, 0);
+    dJointAttach(scene.ball, body, 0);
+    assert_int_equal(jp_world_create(scene.world, NULL, &scene.play, NULL), JP_OK);
+    return scene;
+}
+
+static void scene_finish(Scene *scene)
+{
+    jp_world_destroy(scene->play);
+    dWorldDestroy(scene->world);
+}
+
+static void a_world_that_is_none_is_refused(void **state)
+{
+    (void)state;
+    Scene scene = scene_make();
+    JpWorld *play = NULL;
+    JpWorldOptions options = jp_world_options_default();
+    options.stepping = (JpStepping)17;
+    assert_refused(jp_world_create(NULL, NULL, &play, &error));
+    assert_refused(jp_world_create(scene.world, NULL, NULL, &error));
+    assert_refused(jp_world_create(scene.world, &options, &play, &error));
+    assert_null(play);
+    assert_refused(jp_world_step(NULL, 1e-3, &error));
+    assert_refused(jp_world_step(scene.play, 0.0, &error));
+    assert_refused(jp_world_step(scene.play, -1e-3, &error));
+    assert_refused(jp_world_step(scene.play, NAN, &error));
+    assert_refused(jp_world_step(scene.play, INFINITY, &error));
+    assert_refused(jp_world_stats(scene.play, NULL, &error));
+    const dWorldID other = dWorldCreate();
+    const dBodyID stranger = dBodyCreate(other);
+    assert_refused(jp_world_add_body(scene.play, NULL, &error));
+    assert_refused(jp_world_add_body(scene.play, stranger, &error));
+    assert_refused(jp_world_remove_body(scene.play, dJointGetBody(scene.hinge, 0), &error));
+    dWorldDestroy(other);
+    jp_world_destroy(NULL);
+    scene_finish(&scene);
+}
+
+static void a_joint_that_is_none_is_refused(void **state)
+{
+    (void)state;
+    Scene scene = scene_make();
+    JpBacklash backlash = jp_backlash_default();
+    backlash.tooth = good();
+    JpStops stops = jp_stops_default();
+    stops.contact = good();
+    JpJoint *joint = NULL;
+    assert_refused(jp_backlash_create(NULL, scene.hinge, &backlash, &joint, &error));
+    assert_refused(jp_backlash_create(scene.play, NULL, &backlash, &joint, &error));
+    assert_refused(jp_backlash_create(scene.play, scene.hinge, NULL, &joint, &error));
+    assert_refused(jp_backlash_create(scene.play, scene.hinge, &backlash, NULL, &error));
+    assert_refused(jp_backlash_create(scene.play, scene.ball, &backlash, &joint, &error));
+    const dJointID loose = dJointCreateHinge(scene.world, 0);
+    assert_refused(jp_backlash_create(scene.play, loose, &backlash, &joint, &error));
+    JpBacklash wrong = backlash;
+    wrong.gap = -1e-3;
+    assert_refused(jp_backlash_create(scene.play, scene.hinge, &wrong, &joint, &error));
+    wrong = backlash;
+    wrong.rotor_inertia = NAN;
+    assert_refused(jp_backlash_create(scene.play, scene.hinge, &wrong, &joint, &error));
+    wrong = backlash;
+    wrong.tooth.stiffness = 0.0;
+    assert_refused(jp_backlash_create(scene.play, scene.hinge, &wrong, &joint, &error));
+    JpStops crossed = stops;
+    crossed.low = 1.0;
+    crossed.high = -1.0;
+    assert_refused(jp_stops_create(scene.play, scene.hinge, &crossed, &joint, &error));
+    crossed.low = NAN;
+    assert_refused(jp_stops_create(scene.play, scene.hinge, &crossed, &joint, &error));
+    const dWorldID other = dWorldCreate();
+    JpWorld *elsewhere = NULL;
+    assert_int_equal(jp_world_create(other, NULL, &elsewhere, NULL), JP_OK);
+    assert_refused(jp_stops_create(elsewhere, scene.hinge, &stops, &joint, &error));
+    jp_world_destroy(elsewhere);
+    dWorldDestroy(other);
+    assert_null(joint);
+    scene_finish(&scene);
+}
+
+static void a_drive_that_is_none_is_refused(void **state)
+{
+    (void)state;
+    Scene scene = scene_make();
+    JpBacklash backlash = jp_backlash_default();
+    backlash.tooth = good();
+    JpStops stops = jp_stops_default();
+    stops.contact = good();
+    JpJoint *bare = NULL;
+    JpJoint *stopped = NULL;
+    JpJointState now;
+    assert_int_equal(jp_backlash_create(scene.play, scene.hinge, &backlash, &bare, NULL), JP_OK);
+    assert_int_equal(jp_stops_create(scene.play, scene.hinge, &stops, &stopped, NULL), JP_OK);
+    assert_refused(jp_backlash_drive(bare, 1.0, &error)); // has no rotor
+    assert_refused(jp_backlash_drive(stopped, 1.0, &error));
+    assert_refused(jp_backlash_drive(NULL, 1.0, &error));
+    assert_refused(jp_backlash_lead(bare, NAN, 0.0, &error));
+    assert_refused(jp_backlash_lead(stopped, 0.0, 0.0, &error));
+    assert_refused(jp_joint_state(NULL, &now, &error));
+    assert_refused(jp_joint_state(bare, NULL, &error));
+    jp_joint_destroy(NULL);
+    jp_joint_destroy(bare);
+    assert_int_equal(jp_joint_state(stopped, &now, NULL), JP_OK);
+    scene_finish(&scene);
+}
+
+static void a_world_that_has_left_all_numbers_is_refused(void **state)
+{
+    (void)state;
+    Scene scene = scene_make();
+    dJointDestroy(scene.ball);
+    JpStops stops = jp_stops_default();
+    stops.contact = good();
+    JpJoint *joint = NULL;
+    assert_int_equal(jp_stops_create(scene.play, scene.hinge, &stops, &joint, NULL), JP_OK);
+    dBodySetAngularVel(dJointGetBody(scene.hinge, 0), NAN, NAN, NAN);
+    assert_refused(jp_world_step(scene.play, 1e-3, &error));
+    scene_finish(&scene);
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    return dInitODE2(0) ? 0 : 1;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    dCloseODE();
+    return 0;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -127,6 +274,10 @@ int main(void)
         cmocka_unit_test(a_pin_that_is_none_is_refused),
         cmocka_unit_test(a_row_that_is_none_is_refused),
         cmocka_unit_test(an_impact_that_is_none_is_refused),
+        cmocka_unit_test(a_world_that_is_none_is_refused),
+        cmocka_unit_test(a_joint_that_is_none_is_refused),
+        cmocka_unit_test(a_drive_that_is_none_is_refused),
+        cmocka_unit_test(a_world_that_has_left_all_numbers_is_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, setup, teardown);
 }

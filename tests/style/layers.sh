@@ -55,7 +55,7 @@ broken_wall() {
 }
 
 broken_walls() {
-    broken_wall "$1" 'ode/' '/ode/'
+    broken_wall "$1" 'ode/' '/(ode|world)/'
     broken_wall "$1" 'ccd/' '/ode/staves\.c$'
     broken_wall "$1" 'gsl/' '/commands/study/normal\.c$'
     broken_wall "$1" 'yaml\.h' '/casefile/document\.c$'

@@ -1,0 +1,253 @@
+// Which bodies does a step move, and where were they?
+//
+// ODE has no list of a world's bodies. A step moves all of them, so that one that is to be undone
+// has to know them: those that hang together with ours by joints are found along these; the others
+// are added by hand. How many there are in all is counted in ODE's own export.
+#define _GNU_SOURCE // open_memstream
+#include "world/bodies.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIRST_ROOM = 16 };
+
+void bodies_finish(Bodies *bodies)
+{
+    free(bodies->records);
+    free(bodies->slots);
+    *bodies = (Bodies){0};
+}
+
+static size_t slot_of(const Bodies *bodies, dBodyID body)
+{
+    const uint64_t mixed = (uint64_t)(uintptr_t)body * 0x9e3779b97f4a7c15U;
+    size_t slot = (size_t)(mixed >> 32) & (bodies->slot_count - 1);
+    while (bodies->slots[slot] != 0 && bodies->records[bodies->slots[slot] - 1].id != body) {
+        slot = (slot + 1) & (bodies->slot_count - 1);
+    }
+    return slot;
+}
+
+BodyRecord *bodies_find(const Bodies *bodies, dBodyID body)
+{
+    if (bodies->slot_count == 0) {
+        return NULL;
+    }
+    const size_t number = bodies->slots[slot_of(bodies, body)];
+    return number == 0 ? NULL : &bodies->records[number - 1];
+}
+
+static void fill_slots(Bodies *bodies)
+{
+    memset(bodies->slots, 0, bodies->slot_count * sizeof *bodies->slots);
+    for (size_t i = 0; i < bodies->count; i++) {
+        bodies->slots[slot_of(bodies, bodies->records[i].id)] = i + 1;
+    }
+}
+
+static bool make_room(Bodies *bodies)
+{
+    if (bodies->count < bodies->room) {
+        return true;
+    }
+    const size_t room = bodies->room == 0 ? FIRST_ROOM : 2 * bodies->room;
+    BodyRecord *records = realloc(bodies->records, room * sizeof *records);
+    if (records == NULL) {
+        return false;
+    }
+    bodies->records = records;
+    size_t *slots = realloc(bodies->slots, 4 * room * sizeof *slots);
+    if (slots == NULL) {
+        return false;
+    }
+    bodies->slots = slots;
+    bodies->room = room;
+    bodies->slot_count = 4 * room;
+    fill_slots(bodies);
+    return true;
+}
+
+BodyRecord *bodies_add(Bodies *bodies, dBodyID body)
+{
+    BodyRecord *known = bodies_find(bodies, body);
+    if (known != NULL) {
+        return known;
+    }
+    if (!make_room(bodies)) {
+        return NULL;
+    }
+    bodies->slots[slot_of(bodies, body)] = bodies->count + 1;
+    BodyRecord *record = &bodies->records[bodies->count++];
+    *record = (BodyRecord){.id = body};
+    return record;
+}
+
+static bool see(Bodies *bodies, dBodyID body)
+{
+    if (body == NULL) {
+        return true;
+    }
+    BodyRecord *record = bodies_add(bodies, body);
+    if (record == NULL) {
+        return false;
+    }
+    record->seen = bodies->gathering;
+    return true;
+}
+
+static void drop_unseen(Bodies *bodies)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < bodies->count; i++) {
+        if (bodies->records[i].seen == bodies->gathering) {
+            bodies->records[kept++] = bodies->records[i];
+        }
+    }
+    if (kept != bodies->count) {
+        bodies->count = kept;
+        fill_slots(bodies);
+    }
+}
+
+// Bodies that were gathered before keep their records, for what they hold of the last step; whether
+// the ones behind them still exist is known once a joint leads there.
+bool bodies_gather(Bodies *bodies, const dBodyID *seeds, size_t seed_count)
+{
+    Bodies found = {.gathering = bodies->gathering + 1};
+    bool is_done = true;
+    for (size_t i = 0; i < bodies->count && is_done; i++) {
+        is_done = !bodies->records[i].is_added || see(&found, bodies->records[i].id);
+    }
+    for (size_t i = 0; i < seed_count && is_done; i++) {
+        is_done = see(&found, seeds[i]);
+    }
+    for (size_t i = 0; i < found.count && is_done; i++) {
+        const dBodyID body = found.records[i].id;
+        const int joints = dBodyGetNumJoints(body);
+        for (int j = 0; j < joints && is_done; j++) {
+            const dJointID joint = dBodyGetJoint(body, j);
+            is_done = see(&found, dJointGetBody(joint, 0)) && see(&found, dJointGetBody(joint, 1));
+        }
+    }
+    for (size_t i = 0; i < found.count && is_done; i++) {
+        BodyRecord *record = bodies_add(bodies, found.records[i].id);
+        is_done = record != NULL;
+        if (is_done) {
+            record->seen = found.gathering;
+        }
+    }
+    bodies->gathering = found.gathering;
+    bodies_finish(&found);
+    if (is_done) {
+        drop_unseen(bodies);
+    }
+    return is_done;
+}
+
+bool bodies_are_finite(const Bodies *bodies)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        const dBodyID id = bodies->records[i].id;
+        const dReal *vectors[] = {dBodyGetPosition(id),   dBodyGetLinearVel(id),
+                                  dBodyGetAngularVel(id), dBodyGetForce(id),
+                                  dBodyGetTorque(id),     &dBodyGetQuaternion(id)[1]};
+        double sum = dBodyGetQuaternion(id)[0];
+        for (int v = 0; v < 6; v++) {
+            // a sum that overflows is as good as one that is infinite
+            sum += vectors[v][0] + vectors[v][1] + vectors[v][2];
+        }
+        if (!isfinite(sum)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void bodies_keep(Bodies *bodies)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        BodyRecord *record = &bodies->records[i];
+        const dBodyID id = record->id;
+        memcpy(record->position, dBodyGetPosition(id), sizeof record->position);
+        memcpy(record->turn, dBodyGetQuaternion(id), sizeof record->turn);
+        memcpy(record->velocity, dBodyGetLinearVel(id), sizeof record->velocity);
+        memcpy(record->omega, dBodyGetAngularVel(id), sizeof record->omega);
+        memcpy(record->force, dBodyGetForce(id), sizeof record->force);
+        memcpy(record->torque, dBodyGetTorque(id), sizeof record->torque);
+        record->is_enabled = dBodyIsEnabled(id);
+    }
+}
+
+void bodies_put_back_positions(const Bodies *bodies)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        const BodyRecord *record = &bodies->records[i];
+        const dReal *at = record->position;
+        dBodySetPosition(record->id, at[0], at[1], at[2]);
+        dBodySetQuaternion(record->id, record->turn);
+    }
+}
+
+void bodies_put_back(const Bodies *bodies)
+{
+    bodies_put_back_positions(bodies);
+    for (size_t i = 0; i < bodies->count; i++) {
+        const BodyRecord *record = &bodies->records[i];
+        const dBodyID id = record->id;
+        dBodySetLinearVel(id, record->velocity[0], record->velocity[1], record->velocity[2]);
+        dBodySetAngularVel(id, record->omega[0], record->omega[1], record->omega[2]);
+        dBodySetForce(id, record->force[0], record->force[1], record->force[2]);
+        dBodySetTorque(id, record->torque[0], record->torque[1], record->torque[2]);
+        if (record->is_enabled != dBodyIsEnabled(id)) {
+            (record->is_enabled ? dBodyEnable : dBodyDisable)(id);
+        }
+    }
+}
+
+// The quaternion turned on by a rotation vector in the world's frame, rad.
+static void turn_by(const dReal *from, const dReal *by, double time, dQuaternion turned)
+{
+    const double rate = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
+    const double half = 0.5 * rate * time;
+    const double along = rate > 0.0 ? sin(half) / rate : 0.0;
+    const dQuaternion step = {cos(half), along * by[0], along * by[1], along * by[2]};
+    dQMultiply0(turned, step, from);
+}
+
+void bodies_drift(const Bodies *bodies, double time)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        const dBodyID id = bodies->records[i].id;
+        if (!dBodyIsEnabled(id)) {
+            continue;
+        }
+        const dReal *at = dBodyGetPosition(id);
+        const dReal *velocity = dBodyGetLinearVel(id);
+        dBodySetPosition(id, at[0] + time * velocity[0], at[1] + time * velocity[1],
+                         at[2] + time * velocity[2]);
+        dQuaternion turned;
+        turn_by(dBodyGetQuaternion(id), dBodyGetAngularVel(id), time, turned);
+        dBodySetQuaternion(id, turned);
+    }
+}
+
+long bodies_unknown(const Bodies *bodies, dWorldID world)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    if (file == NULL) {
+        return -1;
+    }
+    dWorldExportDIF(world, file, "jp_");
+    const bool is_written = fclose(file) == 0;
+    long count = 0;
+    for (const char *at = text; is_written && at != NULL; at = strstr(at + 1, "\njp_body[")) {
+        count++;
+    }
+    free(text);
+    return is_written ? count - 1 - (long)bodies->count : -1;
+}

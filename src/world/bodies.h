@@ -1,0 +1,65 @@
+// The bodies of a world that is being stepped: every one that joints lead to from a joint of ours,
+// and those that were added by hand. Where they are and how they move, kept and put back.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct BodyRecord {
+    dBodyID id;
+    bool is_added; // by hand: stays known without a joint
+    unsigned seen; // the gathering that found it last
+    // kept by bodies_keep
+    dVector3 position;
+    dQuaternion turn;
+    dVector3 velocity;
+    dVector3 omega;
+    dVector3 force;
+    dVector3 torque;
+    bool is_enabled;
+    // of the step before, for the gyroscopic torque
+    dVector3 last_omega; // at its end
+    dVector3 last_alpha;
+    bool has_last;
+    bool is_gyrating; // its gyroscopic torque is ours in the step under way
+} BodyRecord;
+
+typedef struct Bodies {
+    size_t count;
+    size_t room;
+    BodyRecord *records; // owned
+    size_t slot_count;   // a power of two
+    size_t *slots;       // owned: by hash of a body, its number plus 1
+    unsigned gathering;
+} Bodies;
+
+void bodies_finish(Bodies *bodies);
+
+// The record of a body; NULL where it is not known.
+BodyRecord *bodies_find(const Bodies *bodies, dBodyID body);
+
+// The record of a body, new where it is not known. NULL where there is no memory.
+BodyRecord *bodies_add(Bodies *bodies, dBodyID body);
+
+// Drops what was not added by hand and follows all joints from the bodies that are left and from
+// those given (NULL among them is the world itself). Returns false where there is no memory.
+bool bodies_gather(Bodies *bodies, const dBodyID *seeds, size_t seed_count);
+
+// Whether all numbers of all bodies are finite: ODE ends the program where they are not.
+bool bodies_are_finite(const Bodies *bodies);
+
+// Notes everything about all bodies; puts it back.
+void bodies_keep(Bodies *bodies);
+void bodies_put_back(const Bodies *bodies);
+
+// Puts bodies back to where they were kept, but leaves their velocities.
+void bodies_put_back_positions(const Bodies *bodies);
+
+// Moves all bodies on by a time, s, along their velocities.
+void bodies_drift(const Bodies *bodies, double time);
+
+// Whether the world has bodies that are not known: their number, or -1 where it cannot be found
+// out.
+long bodies_unknown(const Bodies *bodies, dWorldID world);

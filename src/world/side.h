@@ -1,0 +1,53 @@
+// One side of a joint with play: where it touches, how hard, and what came of it since it was made.
+#pragma once
+
+#include "contact/force_law.h"
+#include "contact/map.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct Side {
+    ForceLaw law;
+    double sign;  // 1: pushes the coordinate up; -1: down
+    double limit; // rad or m: where it begins to touch; infinite where there is none
+    bool is_touching;
+    double impact_speed; // closing speed where the contact under way began
+    double depth;        // of the row in the step under way, 0 where it does not touch
+    double share;        // 1, of the step in which it touches
+    double inside;       // the depth where the step finds it
+    double closing;      // at its start
+    double last_closing; // at the start of the step before, where nothing touched then
+    double last_step;    // s, of that step; 0 where it is not known
+    double mobility;     // of the coordinate, found by trial in the contact under way; 0: not yet
+    // what came of it
+    double force;     // N m or N, mean of the last step, >= 0
+    double forces[2]; // of the two steps before, in the contact under way
+    double depths[2];
+    bool has_series;
+    double since; // s, between them; at first from its onset
+    double force_max;
+    double depth_max;
+    double impulse;
+    double work; // J, done by the contact on bodies and rotor
+    size_t impacts;
+} Side;
+
+// The distance to the side from a position of the coordinate, < 0 where it is inside.
+static inline double side_gap(const Side *side, double position)
+{
+    return side->sign * (position - side->limit);
+}
+
+// Notes how a step finds the side: the position, and the rate of the coordinate at the step's
+// start, which is earlier than the position by a time, s.
+void side_find(Side *side, double position, double rate, double earlier, double step);
+
+// The contact as a map looks at it, of a side that touches.
+MapContact side_contact(const Side *side, double step);
+
+// Whether a map of this limit is stable for the contact, with a mobility of the coordinate.
+bool side_is_stable(const Side *side, double limit, double mobility, double step);
+
+// Notes the force of the step that was made, N m or N, and the rates before and after it.
+void side_book(Side *side, double force, double rate_before, double rate_after, double step);

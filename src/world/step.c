@@ -1,0 +1,206 @@
+// How is a world stepped in which coordinates have play?
+//
+// Plain, from t = n h: a side that overlaps has a row of map corrected, and ODE steps.
+// Staggered: bodies move by h/2 along their velocities; there, at mid-step, sides that overlap get
+// a row of map midpoint and ODE steps the velocities from t to t + h; from mid-step on bodies move
+// by h/2 along the new ones. Positions at mid-step are those of a leapfrog; before and after the
+// step positions and velocities belong to one time.
+//
+// The row. The force F >= 0 on a side of sign s pushes the coordinate q by s F and a rotor of
+// inertia J under a drive D the other way, so that the rotor's speed after the step is p' = p +
+// (h/J) (D - s F). The map's row is of the rate of q - p:
+//     s (q' - p') + CFM F = (ERP/h) d    is    s q' + (CFM + h/J) F = (ERP/h) d + s (p + (h/J) D)
+// a row of ODE's bodies alone.
+#include "world/gyration.h"
+#include "world/row.h"
+#include "world/trial.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static bool is_staggered(const JpWorld *world)
+{
+    return world->options.stepping == JP_STEPPING_STAGGERED;
+}
+
+static const Map *map_of(const JpWorld *world)
+{
+    return map_get(is_staggered(world) ? ODE_MAP_MIDPOINT : ODE_MAP_CORRECTED);
+}
+
+static JpStatus gather(JpWorld *world, JpError *error)
+{
+    size_t count = 0;
+    for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        count += 2;
+    }
+    dBodyID *seeds = malloc((count + 1) * sizeof *seeds);
+    bool is_done = seeds != NULL;
+    if (is_done) {
+        size_t filled = 0;
+        for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+            seeds[filled++] = joint->coordinate.bodies[0];
+            seeds[filled++] = joint->coordinate.bodies[1];
+        }
+        is_done = bodies_gather(&world->bodies, seeds, count);
+    }
+    free(seeds);
+    return is_done ? JP_OK
+                   : refusal(error, JP_ERROR_MEMORY, "there is no memory for the world's bodies");
+}
+
+// The mobility with which a side meets the stability limit: of free bodies where that is low
+// enough, or, once in a contact, found by trial.
+static JpStatus find_mobility(JpJoint *joint, Side *side, double step, JpError *error)
+{
+    const double limit = map_of(joint->world)->stability_limit;
+    if (side->mobility > 0.0 || side_is_stable(side, limit, play_mobility(joint), step)) {
+        return JP_OK;
+    }
+    const double force = side->sign * force_law_elastic(&side->law, side->depth);
+    return trial_mobility(joint, force, step, &side->mobility, error);
+}
+
+static JpStatus make_row(JpJoint *joint, Side *side, double step, JpError *error)
+{
+    JpWorld *world = joint->world;
+    const Map *map = map_of(world);
+    const double mobility = side->mobility > 0.0 ? side->mobility : play_mobility(joint);
+    const MapContact contact = side_contact(side, step);
+    const bool falls_back = !side_is_stable(side, map->stability_limit, mobility, step);
+    const ErpCfm row = (falls_back ? map_get(ODE_MAP_TEXTBOOK) : map)->convert(&contact);
+    const Rotor *rotor = &joint->rotor;
+    const double yield = isfinite(rotor->inertia) ? step / rotor->inertia : 0.0;
+    const double speed =
+        row.erp / step * side->depth + side->sign * (rotor->speed + yield * rotor->drive);
+    if (!isfinite(speed) || !isfinite(row.cfm)) {
+        return refusal(error, JP_ERROR_WORLD,
+                       "a joint is %g inside its play, where its contact's law gives no force; the "
+                       "step of %g s may be too long",
+                       side->depth, step);
+    }
+    row_make(joint, side, row.cfm + yield, speed, step, world->rows);
+    world->stats.rows++;
+    world->stats.fallbacks += falls_back ? 1 : 0;
+    return JP_OK;
+}
+
+// Bodies where forces are evaluated, contacts made, everything kept.
+static void go_there(JpWorld *world, double step)
+{
+    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        joint->rate = play_rate(joint);
+        if (is_staggered(world)) {
+            joint->rotor.position += 0.5 * step * joint->rotor.speed;
+        }
+    }
+    if (is_staggered(world)) {
+        bodies_drift(&world->bodies, 0.5 * step);
+    }
+    if (world->options.collide != NULL) {
+        world->options.collide(world->id, world->options.collide_data);
+    }
+}
+
+typedef JpStatus (*SideFunction)(JpJoint *joint, Side *side, double step, JpError *error);
+
+static JpStatus each_touching(JpWorld *world, SideFunction function, double step, JpError *error)
+{
+    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        for (int i = 0; i < SIDE_COUNT; i++) {
+            if (joint->sides[i].is_touching) {
+                REFUSAL_TRY(function(joint, &joint->sides[i], step, error));
+            }
+        }
+    }
+    return JP_OK;
+}
+
+static JpStatus make_rows(JpWorld *world, double step, JpError *error)
+{
+    const double earlier = is_staggered(world) ? 0.5 * step : 0.0;
+    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        const double position = play_position(joint);
+        for (int i = 0; i < SIDE_COUNT; i++) {
+            side_find(&joint->sides[i], position, joint->rate, earlier, step);
+        }
+    }
+    // trials see the world without our rows
+    JpStatus status = each_touching(world, find_mobility, step, error);
+    return status == JP_OK ? each_touching(world, make_row, step, error) : status;
+}
+
+static void book(JpJoint *joint, double step)
+{
+    double forces[SIDE_COUNT] = {0.0};
+    for (int i = 0; i < SIDE_COUNT; i++) {
+        if (joint->sides[i].is_touching) {
+            forces[i] = row_take(joint);
+        }
+    }
+    Rotor *rotor = &joint->rotor;
+    if (isfinite(rotor->inertia)) {
+        rotor->speed += step / rotor->inertia * (rotor->drive - forces[0] + forces[1]);
+    }
+    const double rate = play_rate(joint);
+    for (int i = 0; i < SIDE_COUNT; i++) {
+        side_book(&joint->sides[i], forces[i], joint->rate, rate, step);
+    }
+    rotor->position += (is_staggered(joint->world) ? 0.5 : 1.0) * step * rotor->speed;
+}
+
+static void take_back(JpWorld *world, double step)
+{
+    bodies_put_back(&world->bodies);
+    if (is_staggered(world)) {
+        bodies_drift(&world->bodies, -0.5 * step);
+        for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+            joint->rotor.position -= 0.5 * step * joint->rotor.speed;
+        }
+        gyration_finish(&world->bodies, step);
+    }
+}
+
+static JpStatus step_bodies(JpWorld *world, double step, JpError *error)
+{
+    if (is_staggered(world)) {
+        gyration_push(&world->bodies, step);
+    }
+    bodies_keep(&world->bodies);
+    JpStatus status = make_rows(world, step, error);
+    status = status == JP_OK ? trial_step(world, step, error) : status;
+    if (status != JP_OK) {
+        take_back(world, step);
+        return status;
+    }
+    if (is_staggered(world)) {
+        gyration_finish(&world->bodies, step);
+        bodies_put_back_positions(&world->bodies);
+        bodies_drift(&world->bodies, 0.5 * step);
+    }
+    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        book(joint, step);
+    }
+    return JP_OK;
+}
+
+JpStatus jp_world_step(JpWorld *world, double step, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(world, "the world", error));
+    REFUSAL_TRY(refusal_of_positive(step, "the step", error));
+    REFUSAL_TRY(gather(world, error));
+    if (!bodies_are_finite(&world->bodies)) {
+        return refusal(
+            error, JP_ERROR_WORLD,
+            "a body has a position, velocity or force that is no finite number; the steps "
+            "before may have been too long");
+    }
+    go_there(world, step);
+    const JpStatus status = step_bodies(world, step, error);
+    dJointGroupEmpty(world->rows);
+    if (status != JP_OK) {
+        return status;
+    }
+    world->stats.steps++;
+    return refusal_none(error);
+}

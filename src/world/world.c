@@ -1,0 +1,83 @@
+// What does a caller's world hold besides ODE's?
+#include "world/play.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+JpWorldOptions jp_world_options_default(void)
+{
+    return (JpWorldOptions){.stepping = JP_STEPPING_STAGGERED};
+}
+
+JpStatus jp_world_create(dWorldID id, const JpWorldOptions *options, JpWorld **created,
+                         JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(id, "the world", error));
+    REFUSAL_TRY(refusal_of_null(created, "where the world is to go", error));
+    const JpWorldOptions chosen = options != NULL ? *options : jp_world_options_default();
+    if (chosen.stepping != JP_STEPPING_PLAIN && chosen.stepping != JP_STEPPING_STAGGERED) {
+        return refusal(error, JP_ERROR_ARGUMENT, "the stepping is %d, which is no JpStepping",
+                       (int)chosen.stepping);
+    }
+    JpWorld *world = calloc(1, sizeof *world);
+    if (world == NULL) {
+        return refusal(error, JP_ERROR_MEMORY, "there is no memory for a world");
+    }
+    world->id = id;
+    world->options = chosen;
+    world->rows = dJointGroupCreate(0);
+    *created = world;
+    return refusal_none(error);
+}
+
+void jp_world_destroy(JpWorld *world)
+{
+    if (world == NULL) {
+        return;
+    }
+    while (world->joints != NULL) {
+        jp_joint_destroy(world->joints);
+    }
+    dJointGroupDestroy(world->rows);
+    bodies_finish(&world->bodies);
+    free(world);
+}
+
+static JpStatus check_body(const JpWorld *world, dBodyID body, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(world, "the world", error));
+    REFUSAL_TRY(refusal_of_null(body, "the body", error));
+    return dBodyGetWorld(body) == world->id
+               ? JP_OK
+               : refusal(error, JP_ERROR_ARGUMENT, "the body is in another world");
+}
+
+JpStatus jp_world_add_body(JpWorld *world, dBodyID body, JpError *error)
+{
+    REFUSAL_TRY(check_body(world, body, error));
+    BodyRecord *record = bodies_add(&world->bodies, body);
+    if (record == NULL) {
+        return refusal(error, JP_ERROR_MEMORY, "there is no memory for a body");
+    }
+    record->is_added = true;
+    return refusal_none(error);
+}
+
+JpStatus jp_world_remove_body(JpWorld *world, dBodyID body, JpError *error)
+{
+    REFUSAL_TRY(check_body(world, body, error));
+    BodyRecord *record = bodies_find(&world->bodies, body);
+    if (record == NULL || !record->is_added) {
+        return refusal(error, JP_ERROR_ARGUMENT, "the body was not added");
+    }
+    record->is_added = false; // and is forgotten by the next gathering, unless joints lead to it
+    return refusal_none(error);
+}
+
+JpStatus jp_world_stats(const JpWorld *world, JpWorldStats *stats, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(world, "the world", error));
+    REFUSAL_TRY(refusal_of_null(stats, "the counts", error));
+    *stats = world->stats;
+    return refusal_none(error);
+}

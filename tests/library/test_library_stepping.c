@@ -1,0 +1,242 @@
+// Do steps have the order that is claimed, read by ODE's own getters, and do they leave all else of
+// a world alone?
+#include "close.h"
+
+#include <jointplay/jointplay.h>
+
+#include <ode/ode.h>
+#include <string.h>
+
+#define must(call) assert_int_equal((call), JP_OK)
+
+static JpWorld *make_world(dWorldID world, JpStepping stepping)
+{
+    JpWorldOptions options = jp_world_options_default();
+    options.stepping = stepping;
+    JpWorld *play = NULL;
+    must(jp_world_create(world, &options, &play, NULL));
+    return play;
+}
+
+static dBodyID make_body(dWorldID world, double mass, double xx, double yy, double zz)
+{
+    dMass data;
+    dMassSetParameters(&data, mass, 0, 0, 0, xx, yy, zz, 0, 0, 0);
+    const dBodyID body = dBodyCreate(world);
+    dBodySetMass(body, &data);
+    return body;
+}
+
+// A classic Runge-Kutta step of a state of up to three numbers.
+typedef void (*Rates)(const double state[3], double rates[3]);
+
+static void truth_step(Rates rates, double step, double state[3])
+{
+    double k[4][3];
+    double at[3];
+    static const double SHARES[] = {0.0, 0.5, 0.5, 1.0};
+    for (int stage = 0; stage < 4; stage++) {
+        for (int i = 0; i < 3; i++) {
+            at[i] = state[i] + (stage > 0 ? SHARES[stage] * step * k[stage - 1][i] : 0.0);
+        }
+        rates(at, k[stage]);
+    }
+    for (int i = 0; i < 3; i++) {
+        state[i] += step / 6.0 * (k[0][i] + 2.0 * (k[1][i] + k[2][i]) + k[3][i]);
+    }
+}
+
+// A rod of 1 kg and .01 kg m^2, its middle .3 m from its hinge, let go level.
+static const double ARM = 0.3;
+static const double ABOUT_PIVOT = 0.01 + 0.09;
+
+static void pendulum_rates(const double state[3], double rates[3])
+{
+    rates[0] = state[1];
+    rates[1] = -9.81 * ARM * cos(state[0]) / ABOUT_PIVOT;
+    rates[2] = 0.0;
+}
+
+static double pendulum_error(JpStepping stepping, int steps)
+{
+    double truth[3] = {0.0};
+    for (int i = 0; i < 10000; i++) {
+        truth_step(pendulum_rates, 1e-4, truth);
+    }
+    const dWorldID world = dWorldCreate();
+    dWorldSetGravity(world, 0, -9.81, 0);
+    dWorldSetERP(world, 1.0); // what the hinge is open by is (h^2/2) / ERP times its arm's
+    const dBodyID body = make_body(world, 1.0, 0.02, 0.02, 0.01);
+    dBodySetPosition(body, ARM, 0, 0);
+    const dJointID hinge = dJointCreateHinge(world, 0);
+    dJointAttach(hinge, body, 0);
+    dJointSetHingeAnchor(hinge, 0, 0, 0);
+    dJointSetHingeAxis(hinge, 0, 0, 1);
+    JpWorld *play = make_world(world, stepping);
+    JpJoint *joint = NULL;
+    JpStops stops = jp_stops_default();
+    stops.contact.stiffness = 1.0;
+    must(jp_stops_create(play, hinge, &stops, &joint, NULL));
+    for (int i = 0; i < steps; i++) {
+        must(jp_world_step(play, 1.0 / steps, NULL));
+    }
+    const double angle = remainder(dJointGetHingeAngle(hinge) - truth[0], 6.283185307179586);
+    const double error = fabs(angle) + fabs(dJointGetHingeAngleRate(hinge) - truth[1]);
+    jp_world_destroy(play);
+    dWorldDestroy(world);
+    return error;
+}
+
+static void a_pendulum_has_order_two_staggered_and_one_plain(void **state)
+{
+    (void)state;
+    const double staggered =
+        pendulum_error(JP_STEPPING_STAGGERED, 1000) / pendulum_error(JP_STEPPING_STAGGERED, 2000);
+    const double plain =
+        pendulum_error(JP_STEPPING_PLAIN, 1000) / pendulum_error(JP_STEPPING_PLAIN, 2000);
+    assert_near(staggered, 4.0, 0.3);
+    assert_near(plain, 2.0, 0.3);
+    // 3.4e-4 beside 3.9e-3
+    assert_true(pendulum_error(JP_STEPPING_STAGGERED, 1000) <
+                0.1 * pendulum_error(JP_STEPPING_PLAIN, 1000));
+}
+
+static const double INERTIAS[3] = {0.01, 0.02, 0.025};
+
+static void top_rates(const double state[3], double rates[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3;
+        const int k = (i + 2) % 3;
+        rates[i] = (INERTIAS[j] - INERTIAS[k]) / INERTIAS[i] * state[j] * state[k];
+    }
+}
+
+static double top_error(JpStepping stepping, int steps)
+{
+    double truth[3] = {0.5, 4.0, 0.3}; // about the middle axis, which tumbles
+    for (int i = 0; i < 10000; i++) {
+        truth_step(top_rates, 2e-4, truth);
+    }
+    const dWorldID world = dWorldCreate();
+    const dBodyID body = make_body(world, 1.0, INERTIAS[0], INERTIAS[1], INERTIAS[2]);
+    dBodySetAngularVel(body, 0.5, 4.0, 0.3);
+    JpWorld *play = make_world(world, stepping);
+    must(jp_world_add_body(play, body, NULL));
+    for (int i = 0; i < steps; i++) {
+        must(jp_world_step(play, 2.0 / steps, NULL));
+    }
+    dVector3 local;
+    const dReal *omega = dBodyGetAngularVel(body);
+    dBodyVectorFromWorld(body, omega[0], omega[1], omega[2], local);
+    double error = 0.0;
+    for (int i = 0; i < 3; i++) {
+        error = fmax(error, fabs(local[i] - truth[i]));
+    }
+    assert_true(dBodyGetGyroscopicMode(body));
+    jp_world_destroy(play);
+    dWorldDestroy(world);
+    return error;
+}
+
+static void a_tumbling_body_has_order_two(void **state)
+{
+    (void)state;
+    const double coarse = top_error(JP_STEPPING_STAGGERED, 1000);
+    assert_near(coarse / top_error(JP_STEPPING_STAGGERED, 2000), 4.0, 0.4);
+    // ODE's own torque
+    assert_true(top_error(JP_STEPPING_PLAIN, 1000) > 10.0 * coarse);
+}
+
+// A body that is not known stays untouched by a step that has to try something.
+static void bodies_that_are_not_known_are_asked_for(void **state)
+{
+    (void)state;
+    const dWorldID world = dWorldCreate();
+    const dBodyID rod = make_body(world, 1.0, 0.001, 0.001, 0.001);
+    dBodySetPosition(rod, 0.3, 0, 0);
+    const dJointID hinge = dJointCreateHinge(world, 0);
+    dJointAttach(hinge, rod, 0);
+    dJointSetHingeAnchor(hinge, 0, 0, 0);
+    dJointSetHingeAxis(hinge, 0, 0, 1);
+    const dBodyID stranger = make_body(world, 1.0, 1.0, 1.0, 1.0);
+    dBodySetPosition(stranger, 5, 0, 0);
+    dBodySetLinearVel(stranger, 0, 1, 0);
+    JpWorld *play = make_world(world, JP_STEPPING_STAGGERED);
+    JpJoint *joint = NULL;
+    JpStops stops = jp_stops_default();
+    stops.high = -1e-3; // inside it
+    stops.contact.stiffness = 1e4;
+    must(jp_stops_create(play, hinge, &stops, &joint, NULL));
+    const double step = 1e-3; // omega h of the rod alone is 3.2
+    JpError error;
+    assert_int_equal(jp_world_step(play, step, &error), JP_ERROR_WORLD);
+    assert_non_null(strstr(error.text, "1 bodies of the world"));
+    assert_near(dBodyGetPosition(stranger)[1], 0.0, 0.0);
+    assert_near(dBodyGetPosition(rod)[0], 0.3, 1e-15);
+    must(jp_world_add_body(play, stranger, NULL));
+    must(jp_world_step(play, step, NULL));
+    assert_near(dBodyGetPosition(stranger)[1], step, 1e-15);
+    must(jp_world_remove_body(play, stranger, NULL));
+    jp_world_destroy(play);
+    dWorldDestroy(world);
+}
+
+// Where contacts are asked for.
+typedef struct Asked {
+    dBodyID body;
+    double height;
+    int times;
+} Asked;
+
+static void ask(dWorldID world, void *data)
+{
+    (void)world;
+    Asked *asked = data;
+    asked->height = dBodyGetPosition(asked->body)[2];
+    asked->times++;
+}
+
+static void contacts_are_asked_for_at_mid_step(void **state)
+{
+    (void)state;
+    const dWorldID world = dWorldCreate();
+    Asked asked = {.body = make_body(world, 1.0, 1.0, 1.0, 1.0)};
+    dBodySetLinearVel(asked.body, 0, 0, 2.0);
+    JpWorldOptions options = jp_world_options_default();
+    options.collide = ask;
+    options.collide_data = &asked;
+    JpWorld *play = NULL;
+    must(jp_world_create(world, &options, &play, NULL));
+    must(jp_world_add_body(play, asked.body, NULL));
+    must(jp_world_step(play, 0.1, NULL));
+    assert_int_equal(asked.times, 1);
+    assert_near(asked.height, 0.1, 1e-15);
+    assert_near(dBodyGetPosition(asked.body)[2], 0.2, 1e-15);
+    jp_world_destroy(play);
+    dWorldDestroy(world);
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    return dInitODE2(0) ? 0 : 1;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    dCloseODE();
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pendulum_has_order_two_staggered_and_one_plain),
+        cmocka_unit_test(a_tumbling_body_has_order_two),
+        cmocka_unit_test(bodies_that_are_not_known_are_asked_for),
+        cmocka_unit_test(contacts_are_asked_for_at_mid_step),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}
