@@ -14,6 +14,7 @@
 #include "measure/truth.h"
 
 #include "base/clock.h"
+#include "base/side_by_side.h"
 #include "measure/error.h"
 #include "model/distance.h"
 #include "model/growth.h"
@@ -28,6 +29,9 @@
 // tolerances of the second and third run over the first's
 static const double SECOND = 1.0 / 30.0;
 static const double THIRD = 1.0 / 10.0;
+
+// Tolerance of the perturbed runs over the perturbation: growth is then wrong by some hundredths.
+static const double PERTURBED_SHARE = 1e-3;
 
 enum { THIRD_SEED = 1 }; // of its inputs' rounding
 
@@ -73,14 +77,12 @@ static void certify_ideal(const Scenario *scenario, RunWatch watch, Truth *truth
     trajectory_destroy(second);
 }
 
-// A complete run, or the reason in the truth's message.
-static Trajectory *run_for(const Scenario *scenario, RunWatch watch, Truth *truth)
+// Keeps the first reason why a run is not complete.
+static void note_failure(const Trajectory *trajectory, Truth *truth)
 {
-    Trajectory *trajectory = run(scenario, BACKEND_REFERENCE, watch);
     if (!trajectory->is_complete && truth->message[0] == '\0') {
         snprintf(truth->message, sizeof truth->message, "%s", trajectory->message);
     }
-    return trajectory;
 }
 
 // Who watches the perturbed runs, which go on side by side.
@@ -97,7 +99,7 @@ static void beat(void *context)
 
 // Shortens the horizon to where the fastest of all perturbations has grown too much.
 static void follow_growth(const Scenario *scenario, const Trajectory *beside, RunWatch watch,
-                          Truth *truth)
+                          size_t threads, Truth *truth)
 {
     Beats beats = {watch, clock_now_s()};
     DistanceScale scales[LINKAGE_BODY_MAX];
@@ -114,6 +116,7 @@ static void follow_growth(const Scenario *scenario, const Trajectory *beside, Ru
         .size = DISTANCE_PERTURBATION,
         .most = DISTANCE_GROWTH,
         .until_s = truth->horizon_s,
+        .threads = threads,
         .pulse = {watch.progress != NULL ? beat : NULL, &beats},
     });
     truth->growth = growth.largest;
@@ -126,32 +129,76 @@ static void follow_growth(const Scenario *scenario, const Trajectory *beside, Ru
 }
 
 // The scenario with another tolerance of the reference.
-static Scenario with_tolerance(const Scenario *scenario, double factor)
+static Scenario with_tolerance(const Scenario *scenario, double tolerance)
 {
     Scenario other = *scenario;
-    other.reference.tolerance *= factor;
+    other.reference.tolerance = tolerance;
     return other;
 }
 
-// Compares the reference on the fine grid with a second and a third run, and the second with
-// perturbed ones.
-static void certify(const Scenario *fine, RunWatch watch, Truth *truth)
+// The runs that a truth is made of, at the same time where there are processors.
+enum { RUN_FIRST, RUN_SECOND, RUN_THIRD, RUN_FINE, RUN_COUNT };
+
+typedef struct Runs {
+    Scenario scenarios[RUN_COUNT]; // the third owns its linkage, the others share the caller's
+    Trajectory *trajectories[RUN_COUNT]; // owned, but where two are one
+    RunWatch watch;
+} Runs;
+
+static void make_run(size_t index, bool is_callers, void *context)
 {
-    // the first run is there already where the case's own samples are fine enough
-    const bool is_there = scenario_sample_count(fine) == truth->trajectory->sample_count;
-    const Scenario tight = with_tolerance(fine, SECOND);
-    const Scenario third_one = with_tolerance(fine, THIRD);
-    Scenario shaken = scenario_copy(&third_one);
-    shake_inputs(&shaken, THIRD_SEED);
-    Trajectory *first = is_there ? truth->trajectory : run_for(fine, watch, truth);
-    Trajectory *second = run_for(&tight, watch, truth);
-    Trajectory *third = run_for(&shaken, watch, truth);
+    Runs *runs = context;
+    const Scenario *scenario = &runs->scenarios[index];
+    const RunWatch watch = is_callers ? runs->watch : (RunWatch){NULL, NULL};
+    // spikes are those of the first alone
+    runs->trajectories[index] =
+        index == RUN_FIRST ? tracer_run(scenario, registry_solver(BACKEND_REFERENCE), watch)
+                           : run(scenario, BACKEND_REFERENCE, watch);
+}
+
+// The first on the case's own samples; on the fine grid itself, where these are fine enough.
+static void make_runs(const Scenario *scenario, size_t threads, Runs *runs)
+{
+    const double tolerance = scenario->reference.tolerance;
+    const Scenario fine = distance_grid(scenario);
+    runs->scenarios[RUN_FIRST] = *scenario;
+    runs->scenarios[RUN_FINE] = fine;
+    runs->scenarios[RUN_SECOND] = with_tolerance(&fine, SECOND * tolerance);
+    const Scenario third = with_tolerance(&fine, THIRD * tolerance);
+    runs->scenarios[RUN_THIRD] = scenario_copy(&third);
+    shake_inputs(&runs->scenarios[RUN_THIRD], THIRD_SEED);
+    const bool is_fine = scenario_sample_count(&fine) == scenario_sample_count(scenario);
+    side_by_side_run(is_fine ? RUN_FINE : RUN_COUNT, threads, make_run, runs);
+    if (is_fine) {
+        runs->trajectories[RUN_FINE] = runs->trajectories[RUN_FIRST];
+    }
+}
+
+// The tolerance of perturbed runs: theirs is the error of the distance to the second.
+static double perturbed_tolerance(const Scenario *scenario)
+{
+    const double first = scenario->reference.tolerance;
+    return fmin(first, fmax(SECOND * first, PERTURBED_SHARE * DISTANCE_PERTURBATION));
+}
+
+// Compares the first run on the fine grid with the second and third, and the second with perturbed
+// ones.
+static void certify(const Runs *runs, size_t threads, Truth *truth)
+{
+    const Scenario *fine = &runs->scenarios[RUN_FINE];
+    const Trajectory *first = runs->trajectories[RUN_FINE];
+    const Trajectory *second = runs->trajectories[RUN_SECOND];
+    const Trajectory *third = runs->trajectories[RUN_THIRD];
+    note_failure(first, truth);
+    note_failure(second, truth);
+    note_failure(third, truth);
     truth->is_limited = false;
     truth->horizon_s = scenario_duration(fine);
     shorten_horizon(second, first, truth);
     shorten_horizon(second, third, truth);
     if (truth->message[0] == '\0') {
-        follow_growth(&tight, second, watch, truth);
+        const Scenario perturbed = with_tolerance(fine, perturbed_tolerance(fine));
+        follow_growth(&perturbed, second, runs->watch, threads, truth);
     }
     // now that the horizon is known
     const double to_second = shorten_horizon(second, first, truth);
@@ -163,12 +210,6 @@ static void certify(const Scenario *fine, RunWatch watch, Truth *truth)
         truth->horizon_s = 0.0;
         truth->uncertainty = INFINITY;
     }
-    trajectory_destroy(third);
-    trajectory_destroy(second);
-    scenario_free(&shaken);
-    if (!is_there) {
-        trajectory_destroy(first);
-    }
 }
 
 BackendKind truth_backend(const Scenario *scenario)
@@ -178,22 +219,52 @@ BackendKind truth_backend(const Scenario *scenario)
                : BACKEND_REFERENCE;
 }
 
-Truth truth_make(const Scenario *scenario, RunWatch watch)
+static Truth certified(const Scenario *scenario, RunWatch watch, size_t threads)
+{
+    Truth truth = {.growth = 1.0, .horizon_s = 0.0, .is_limited = true, .uncertainty = INFINITY};
+    Runs *runs = calloc(1, sizeof *runs);
+    assert(runs != NULL);
+    runs->watch = watch;
+    make_runs(scenario, threads, runs);
+    truth.trajectory = runs->trajectories[RUN_FIRST];
+    if (truth.trajectory->is_complete) {
+        certify(runs, threads, &truth);
+    }
+    for (size_t i = RUN_SECOND; i < RUN_COUNT; i++) {
+        if (runs->trajectories[i] != truth.trajectory) {
+            trajectory_destroy(runs->trajectories[i]);
+        }
+    }
+    scenario_free(&runs->scenarios[RUN_THIRD]);
+    free(runs);
+    return truth;
+}
+
+Truth truth_make_on(const Scenario *scenario, RunWatch watch, size_t threads)
 {
     Truth truth = {.growth = 1.0};
     if (truth_backend(scenario) == BACKEND_ANALYTIC) {
         certify_ideal(scenario, watch, &truth);
         return truth;
     }
-    truth.horizon_s = 0.0;
-    truth.is_limited = true;
-    truth.uncertainty = INFINITY;
-    truth.trajectory = tracer_run(scenario, registry_solver(BACKEND_REFERENCE), watch);
-    if (!truth.trajectory->is_complete) {
-        return truth;
-    }
-    const Scenario fine = distance_grid(scenario);
-    certify(&fine, watch, &truth);
+    return certified(scenario, watch, threads);
+}
+
+Truth truth_make(const Scenario *scenario, RunWatch watch)
+{
+    return truth_make_on(scenario, watch, 1);
+}
+
+Truth truth_make_uncertified(const Scenario *scenario, RunWatch watch)
+{
+    Truth truth = {
+        .uncertainty = INFINITY,
+        .horizon_s = scenario_duration(scenario),
+        .growth = 1.0,
+        .is_uncertified = true,
+        .message = "nobody asked for it",
+    };
+    truth.trajectory = tracer_run(scenario, registry_solver(truth_backend(scenario)), watch);
     return truth;
 }
 

@@ -11,13 +11,21 @@ typedef struct Truth {
                             // nor the fastest of all starts 1e-10 beside is too far away
     double growth;          // 1: by how much that one's distance grew up to the horizon
     bool is_limited;        // whether the horizon ends before the run does
-    char message[ERR_TEXT_SIZE]; // why it could not be certified; empty where it was
+    bool is_uncertified;    // because nobody asked for it
+    char message[ERR_TEXT_SIZE]; // why it is not certified; empty where it is
 } Truth;
 
 // The truth of a scenario: the reference, certified by two tighter runs and perturbed ones.
 // With ideal joints alone it is the closed form, certified by the reference. A truth that cannot be
-// had holds an incomplete trajectory with the reason.
+// had holds an incomplete trajectory with the reason. The watch sees the runs in the caller's
+// thread.
 Truth truth_make(const Scenario *scenario, RunWatch watch);
+
+// The same on so many threads, with the same numbers.
+Truth truth_make_on(const Scenario *scenario, RunWatch watch, size_t threads);
+
+// The first run of it alone: its uncertainty and horizon are not known, as its message says.
+Truth truth_make_uncertified(const Scenario *scenario, RunWatch watch);
 void truth_finish(Truth *truth);
 
 // The backend that errors of a scenario are taken against.

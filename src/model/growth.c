@@ -9,6 +9,8 @@
 // is that of the fastest of all perturbations. It does not depend on the directions that were run.
 #include "model/growth.h"
 
+#include "base/side_by_side.h"
+
 #include <assert.h>
 #include <stdlib.h>
 
@@ -17,59 +19,119 @@ static const double SAME_TIME = 1e-12;
 
 enum { BEAT_EVERY = 64 }; // steps, between two samples
 
+// Samples up to which all runs go before the growth there is looked at, and by how much more for
+// the next time: a run that goes too far is work in vain, and so is to wait for one another.
+enum { BLOCK_FIRST = 32, BLOCK_MOST = 512 };
+
+enum { ROOM = 1 << 22 }; // vectors that all runs may keep of a block: 100 MB
+
 // A solver taken from sample to sample, without anything recorded on the way.
 typedef struct Walk {
     void *state; // of the solver
     bool has_step;
     double reached_s;
+    size_t sample; // the first of the samples that it has not come to
+    bool is_away;  // so far that the growth is above the most, at the last sample it came to
+    Err failure;   // why it did not come to the sample
+    Vec3 *apart;   // how far it is from the motion, by sample of the block and body; owned
 } Walk;
 
-static void beat(const GrowthWork *work)
+// The perturbed runs, side by side, and the samples that they go through next.
+typedef struct Runs {
+    const GrowthWork *work;
+    size_t count;
+    Walk *walks; // owned, like the scenarios, to which solvers keep a pointer
+    Scenario *scenarios;
+    size_t block_most; // samples
+    size_t first;
+    size_t end;
+} Runs;
+
+static void beat(const GrowthWork *work, bool is_callers)
 {
-    if (work->pulse.beat != NULL) {
+    if (is_callers && work->pulse.beat != NULL) {
         work->pulse.beat(work->pulse.context);
     }
 }
 
 // Goes on to a time, not before the last one, and looks at the bodies there.
-static bool walk_to(const GrowthWork *work, Walk *walk, double time_s, Sample *sample, Err *err)
+static bool walk_to(const GrowthWork *work, Walk *walk, double time_s, bool is_callers,
+                    Sample *sample)
 {
     const double near_s = time_s - SAME_TIME * time_s;
     size_t steps = 0;
     // a first step comes before the first sample, though it may have no length
     while (!walk->has_step || walk->reached_s < near_s) {
-        if (!work->solver->step(walk->state, time_s, err)) {
+        if (!work->solver->step(walk->state, time_s, &walk->failure)) {
             return false;
         }
         walk->has_step = true;
         walk->reached_s = work->solver->record(walk->state).end_s;
         if (++steps % BEAT_EVERY == 0) {
-            beat(work);
+            beat(work, is_callers);
         }
     }
-    beat(work);
+    beat(work, is_callers);
     work->solver->observe(walk->state, fmin(time_s, walk->reached_s), sample);
     return true;
 }
 
-// The perturbed runs, side by side.
-typedef struct Runs {
-    size_t count;
-    Walk walks[PERTURB_FREEDOM_MAX];
-    Scenario *scenarios; // owned: solvers keep a pointer to theirs
-} Runs;
+// How far a run is from the motion at a sample, by body; whether that alone is too far.
+static bool find_apart(const GrowthWork *work, const Sample *sample, size_t k, Vec3 *apart)
+{
+    const Trajectory *beside = work->beside;
+    bool is_away = false;
+    for (size_t body = 0; body < beside->body_count; body++) {
+        const DistanceMeasure measure = distance_measure(beside, body);
+        const bool is_spatial = work->scenario->linkage.is_spatial;
+        apart[body] = vec3_sub(distance_sample_rate(sample, is_spatial, body, measure),
+                               distance_rate(beside, k, body, measure));
+        const double scale = work->scales[body].omega;
+        is_away = is_away ||
+                  (scale > 0.0 && !(vec3_length(apart[body]) <= work->most * work->size * scale));
+    }
+    return is_away;
+}
+
+// Takes one run through the block. Of all perturbations none grows less than this one.
+static void walk_block(size_t index, bool is_callers, void *context)
+{
+    Runs *runs = context;
+    const GrowthWork *work = runs->work;
+    Walk *walk = &runs->walks[index];
+    const size_t bodies = work->beside->body_count;
+    for (size_t k = runs->first; k < runs->end && !walk->is_away; k++) {
+        Sample sample;
+        if (!walk_to(work, walk, work->beside->times[k], is_callers, &sample)) {
+            return;
+        }
+        walk->is_away = find_apart(work, &sample, k, walk->apart + (k - runs->first) * bodies);
+        walk->sample = k + 1;
+    }
+}
 
 static bool open_runs(const GrowthWork *work, Runs *runs, Growth *growth)
 {
+    runs->work = work;
     runs->scenarios = calloc(work->basis->count + 1, sizeof *runs->scenarios);
-    assert(runs->scenarios != NULL);
+    runs->walks = calloc(work->basis->count + 1, sizeof *runs->walks);
+    assert(runs->scenarios != NULL && runs->walks != NULL);
     for (size_t i = 0; i < work->basis->count; i++) {
+        Walk *walk = &runs->walks[i];
         runs->scenarios[i] = scenario_copy(work->scenario);
         perturb_along(&runs->scenarios[i], work->basis->changes[i], work->size);
-        if (!work->solver->open(&runs->scenarios[i], &runs->walks[i].state, &growth->failure)) {
+        if (!work->solver->open(&runs->scenarios[i], &walk->state, &growth->failure)) {
             return false;
         }
         runs->count++;
+    }
+    const size_t bodies = work->beside->body_count;
+    const size_t room = ROOM / (runs->count * bodies + 1);
+    runs->block_most = room < 1 ? 1 : (room < BLOCK_MOST ? room : BLOCK_MOST);
+    for (size_t i = 0; i < runs->count; i++) {
+        Vec3 *apart = calloc(runs->block_most * bodies + 1, sizeof *apart);
+        assert(apart != NULL);
+        runs->walks[i].apart = apart;
     }
     return true;
 }
@@ -81,11 +143,13 @@ static void close_runs(const Solver *solver, Runs *runs, Growth *growth)
         growth->steps += model.steps;
         growth->evaluations += model.evaluations;
         solver->close(runs->walks[i].state);
+        free(runs->walks[i].apart);
     }
     // beyond those that were opened is the one that could not be
     for (size_t i = 0; i <= runs->count; i++) {
         scenario_free(&runs->scenarios[i]);
     }
+    free(runs->walks);
     free(runs->scenarios);
 }
 
@@ -133,28 +197,30 @@ static double largest_singular(Gram gram)
     return sqrt(mean + hypot(0.5 * (gram.xx - gram.yy), gram.xy));
 }
 
-// The growth at one sample; false where a run does not come there.
-static bool find_at(const GrowthWork *work, Runs *runs, size_t k, double *found, Growth *growth)
+// The growth at one sample of the block; false where a run does not come there.
+static bool find_at(const Runs *runs, size_t k, double *found, Growth *growth)
 {
-    const Trajectory *beside = work->beside;
-    const bool is_spatial = work->scenario->linkage.is_spatial;
-    Gram grams[LINKAGE_BODY_MAX] = {{.xx = 0.0}};
+    const GrowthWork *work = runs->work;
+    const size_t bodies = work->beside->body_count;
     for (size_t i = 0; i < runs->count; i++) {
-        Sample sample;
-        if (!walk_to(work, &runs->walks[i], beside->times[k], &sample, &growth->failure)) {
-            return false;
+        const Walk *walk = &runs->walks[i];
+        if (walk->sample <= k && walk->is_away) {
+            *found = INFINITY;
+            return true;
         }
-        for (size_t body = 0; body < beside->body_count; body++) {
-            const DistanceMeasure measure = distance_measure(beside, body);
-            add_difference(vec3_sub(distance_sample_rate(&sample, is_spatial, body, measure),
-                                    distance_rate(beside, k, body, measure)),
-                           &grams[body]);
+        if (walk->sample <= k) {
+            growth->failure = walk->failure;
+            return false;
         }
     }
     *found = 0.0;
-    for (size_t body = 0; body < beside->body_count; body++) {
+    for (size_t body = 0; body < bodies; body++) {
+        Gram gram = {.xx = 0.0};
+        for (size_t i = 0; i < runs->count; i++) {
+            add_difference(runs->walks[i].apart[(k - runs->first) * bodies + body], &gram);
+        }
         if (work->scales[body].omega > 0.0) {
-            const double apart = largest_singular(grams[body]) / work->scales[body].omega;
+            const double apart = largest_singular(gram) / work->scales[body].omega;
             // a number that is not finite is no small one
             *found = !(apart <= *found) ? apart : *found;
         }
@@ -163,25 +229,39 @@ static bool find_at(const GrowthWork *work, Runs *runs, size_t k, double *found,
     return true;
 }
 
+// Looks at the samples of the block. Returns whether the runs are to go on.
+static bool look_at_block(const Runs *runs, Growth *growth)
+{
+    for (size_t k = runs->first; k < runs->end; k++) {
+        double found;
+        growth->is_failed = !find_at(runs, k, &found, growth);
+        growth->is_limited = growth->is_failed || !(found <= runs->work->most);
+        if (growth->is_limited) {
+            return false;
+        }
+        growth->largest = fmax(growth->largest, found);
+        growth->until_s = runs->work->beside->times[k];
+    }
+    return true;
+}
+
 Growth growth_find(const GrowthWork *work)
 {
     Growth growth = {.largest = 1.0};
     Runs runs = {.count = 0};
-    growth.is_failed = !open_runs(work, &runs, &growth);
     const Trajectory *beside = work->beside;
+    size_t count = beside->sample_count;
+    while (count > 0 && !(beside->times[count - 1] <= work->until_s)) {
+        count--;
+    }
+    growth.is_failed = !open_runs(work, &runs, &growth);
     bool is_going = !growth.is_failed;
-    for (size_t k = 0; is_going && k < beside->sample_count; k++) {
-        double found;
-        if (!(beside->times[k] <= work->until_s)) {
-            break;
-        }
-        growth.is_failed = !find_at(work, &runs, k, &found, &growth);
-        growth.is_limited = growth.is_failed || !(found <= work->most);
-        is_going = !growth.is_limited;
-        if (is_going) {
-            growth.largest = fmax(growth.largest, found);
-            growth.until_s = beside->times[k];
-        }
+    for (size_t block = BLOCK_FIRST; is_going && runs.first < count; block *= 2) {
+        block = block < runs.block_most ? block : runs.block_most;
+        runs.end = runs.first + block < count ? runs.first + block : count;
+        side_by_side_run(runs.count, work->threads, walk_block, &runs);
+        is_going = look_at_block(&runs, &growth);
+        runs.first = runs.end;
     }
     close_runs(work->solver, &runs, &growth);
     return growth;

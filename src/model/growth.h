@@ -19,7 +19,8 @@ typedef struct GrowthWork {
     double size;                 // of their perturbations
     double most;                 // growth at which it ends
     double until_s;              // or here, s
-    GrowthPulse pulse;
+    size_t threads;              // that may run starts at the same time, at least 1
+    GrowthPulse pulse;           // from the caller's thread alone
 } GrowthWork;
 
 typedef struct Growth {

@@ -71,6 +71,36 @@ static void ideal_joints_have_the_closed_form_for_truth(void **state)
     json_decref(root);
 }
 
+static void a_reference_that_is_not_certified_says_so(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run --uncertified --json --backend reference,ode --step 20us "
+                         "$cases/paper/impact-k66.yaml");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *truth = json_object_get(root, "truth");
+    assert_string_equal(json_string_value(json_object_get(truth, "message")),
+                        "is not certified: --uncertified");
+    static const char *const UNKNOWN[] = {"uncertainty", "horizon_s", "growth"};
+    for (size_t i = 0; i < 3; i++) {
+        assert_true(json_is_null(json_object_get(truth, UNKNOWN[i])));
+    }
+    // the errors are there, but nobody knows how sure they are
+    const json_t *ode = run_at(root, 1);
+    assert_true(number_of(ode, "error", "omega_max") > 1e-6);
+    const json_t *error = json_object_get(ode, "error");
+    assert_true(json_is_null(json_object_get(error, "reference_uncertainty")));
+    assert_true(json_is_null(json_object_get(error, "horizon_s")));
+    json_decref(root);
+    program_run(program, "run --uncertified --backend reference $cases/paper/impact-k66.yaml");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "The reference is not certified (--uncertified)");
+    // a step that is chosen needs to know how sure the reference is
+    program_run(program, "run --uncertified $cases/literature/three-clearances.yaml");
+    assert_int_equal(program->status, 2);
+    assert_says(program->errors, "with --uncertified give --step TIME");
+}
+
 static void a_pin_in_a_hole_runs_without_a_drive(void **state)
 {
     Program *program = *state;
@@ -109,6 +139,7 @@ int main(void)
         COMMAND_TEST(errors_are_against_the_certified_reference),
         COMMAND_TEST(beyond_the_horizon_distributions_stand_in_for_errors),
         COMMAND_TEST(ideal_joints_have_the_closed_form_for_truth),
+        COMMAND_TEST(a_reference_that_is_not_certified_says_so),
         COMMAND_TEST(a_pin_in_a_hole_runs_without_a_drive),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

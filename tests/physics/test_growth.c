@@ -45,7 +45,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-static Growth grow(const Bench *bench, const PerturbBasis *basis, double size)
+static Growth grow_on(const Bench *bench, const PerturbBasis *basis, double size, size_t threads)
 {
     const Growth growth = growth_find(&(GrowthWork){
         .solver = registry_solver(BACKEND_REFERENCE),
@@ -56,9 +56,15 @@ static Growth grow(const Bench *bench, const PerturbBasis *basis, double size)
         .size = size,
         .most = 1e5,
         .until_s = INFINITY,
+        .threads = threads,
     });
     assert_false(growth.is_failed);
     return growth;
+}
+
+static Growth grow(const Bench *bench, const PerturbBasis *basis, double size)
+{
+    return grow_on(bench, basis, size, 1);
 }
 
 // The two directions of the basis, turned into two others.
@@ -107,6 +113,16 @@ static void the_horizon_is_no_matter_of_directions_or_sizes(void **state)
         const Growth again = grow(bench, &other, i % 2 == 0 ? 1e-10 : 1e-9);
         assert_close(again.until_s, growth.until_s, 0.01);
         assert_close(again.largest, growth.largest, 0.05);
+    }
+}
+
+static void threads_change_no_number(void **state)
+{
+    const Bench *bench = *state;
+    const Growth growth = grow_on(bench, &bench->basis, 1e-10, 1);
+    for (size_t threads = 2; threads <= 3; threads++) {
+        const Growth again = grow_on(bench, &bench->basis, 1e-10, threads);
+        assert_true(again.largest == growth.largest && again.until_s == growth.until_s);
     }
 }
 
@@ -182,6 +198,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_freedom_has_a_direction),
         cmocka_unit_test(the_horizon_is_no_matter_of_directions_or_sizes),
+        cmocka_unit_test(threads_change_no_number),
         cmocka_unit_test(the_fastest_of_many_single_directions_is_as_fast),
         cmocka_unit_test(mechanisms_that_nothing_connects_share_their_runs),
     };

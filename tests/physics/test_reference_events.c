@@ -170,6 +170,33 @@ static void a_loose_fourbar_has_a_truth_with_an_uncertainty_and_a_twin(void **st
     truth_finish(&truth);
 }
 
+static void a_truth_made_on_many_processors_is_the_same(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    scenario.contact.stiffness = 6.6e10;
+    scenario.run.revolutions = 0.1;
+    for (int i = 0; i < 2; i++) {
+        // with samples that are fine enough to certify on, and with few
+        scenario.run.samples = i == 0 ? 12000 : 360;
+        Truth one = truth_make_on(&scenario, NOBODY, 1);
+        Truth many = truth_make_on(&scenario, NOBODY, 4);
+        Truth alone = truth_make_uncertified(&scenario, NOBODY);
+        assert_string_equal(many.message, "");
+        assert_true(many.uncertainty == one.uncertainty && many.uncertainty > 0.0);
+        assert_true(many.growth == one.growth && many.horizon_s == one.horizon_s);
+        assert_true(many.trajectory->hash == one.trajectory->hash);
+        // the first run alone has the same motion and none of the rest
+        assert_true(alone.trajectory->hash == one.trajectory->hash);
+        assert_true(alone.is_uncertified && alone.message[0] != '\0');
+        assert_true(isinf(alone.uncertainty));
+        truth_finish(&alone);
+        truth_finish(&many);
+        truth_finish(&one);
+    }
+}
+
 static void wide_play_has_a_horizon_on_any_grid_of_samples(void **state)
 {
     (void)state;
@@ -256,6 +283,7 @@ int main(void)
         cmocka_unit_test(the_jump_of_a_viscous_damper_is_the_peak),
         cmocka_unit_test(many_contacts_may_begin_at_once),
         cmocka_unit_test(a_loose_fourbar_has_a_truth_with_an_uncertainty_and_a_twin),
+        cmocka_unit_test(a_truth_made_on_many_processors_is_the_same),
         cmocka_unit_test(wide_play_has_a_horizon_on_any_grid_of_samples),
         cmocka_unit_test(the_tightest_tolerance_is_certified_by_a_looser_run),
         cmocka_unit_test(the_error_goes_with_the_tolerance_without_outliers),

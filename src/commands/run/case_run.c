@@ -1,6 +1,7 @@
 // What do the backends of one case make of it, and how far are they apart?
 #include "commands/run/case_run.h"
 
+#include "base/side_by_side.h"
 #include "cli/long_work.h"
 #include "measure/backend_run.h"
 #include "run/registry.h"
@@ -36,7 +37,10 @@ static void make_truth(CaseRun *run, Progress *progress)
     if (!uses(run, BACKEND_REFERENCE)) {
         return;
     }
-    run->truth = truth_make(&run->scenario, progress_watch(progress, "reference"));
+    const RunWatch watch = progress_watch(progress, "reference");
+    run->truth = run->is_uncertified
+                     ? truth_make_uncertified(&run->scenario, watch)
+                     : truth_make_on(&run->scenario, watch, side_by_side_processors());
     progress_end(progress);
     run->report.truth = &run->truth;
 }

@@ -6,6 +6,7 @@
 
 typedef struct CaseRun {
     Scenario scenario;
+    bool is_uncertified; // whether the reference runs alone
     Trajectory *runs[BACKEND_COUNT];
     TrajectoryError errors[BACKEND_COUNT];
     AnalyticSummary summary;
@@ -19,8 +20,8 @@ typedef struct CaseRun {
     size_t failed_count;
 } CaseRun;
 
-// Runs the scenario that stands in it, with the reference certified where it is asked for, and from
-// many starts where the motion cannot be predicted; every run is watched. A backend that fails is a
+// Runs the scenario that stands in it, with the reference certified unless it is to run alone, on
+// the processors that there are, and from many starts where the motion cannot be predicted; every run is watched. A backend that fails is a
 // run that is not complete, and counted.
 void case_run_execute(CaseRun *run, Progress *progress);
 

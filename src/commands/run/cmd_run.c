@@ -6,6 +6,7 @@
 #include "commands/commands.h"
 #include "commands/run/case_run.h"
 #include "commands/run/run_files.h"
+#include "measure/backend_run.h"
 #include "write/file.h"
 
 #include <assert.h>
@@ -22,6 +23,7 @@ typedef struct RunCommand {
     char *owned[OWNED_MAX]; // of the overrides, those that --step and --backend stand for
     size_t owned_count;
     Text backends; // names, separated by commas
+    bool is_uncertified;
     const char *series;
     const char *plot;
 } RunCommand;
@@ -65,6 +67,9 @@ static const OptionRow OPTIONS[] = {
     {"step", "TIME", "The step, such as '2 us': short for --set run.step=TIME", 1, OPTION_READ,
      .read = read_step},
     COMMON_SET(1),
+    {"uncertified", NULL,
+     "Run the reference alone, in a fifth of the time: its uncertainty and horizon are not known",
+     1, OPTION_FLAG, AT(is_uncertified)},
     COMMON_JSON(2),
     COMMON_WIDE(2),
     {"series", "FILE.csv", "Write every sample; with several backends to FILE-<backend>.csv each",
@@ -75,12 +80,31 @@ static const OptionRow OPTIONS[] = {
     COMMON_QUIET(2),
 };
 
+// A step is chosen by its error against a reference whose own is known.
+static bool check_uncertified(const Scenario *scenario, Err *err)
+{
+    for (size_t i = 0; i < scenario->run.backend_count; i++) {
+        if (backend_run_is_chosen(scenario, scenario->run.backends[i])) {
+            return err_set(err, ERR_USAGE,
+                           "%s: the step of ode is chosen by its error against the certified "
+                           "reference; with --uncertified give --step TIME, or --backend without "
+                           "ode",
+                           scenario->path);
+        }
+    }
+    return true;
+}
+
 // Loads every case before any runs, so that a mistake in the last is reported at once.
 static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
 {
     for (size_t i = 0; i < command->case_count; i++) {
         if (!casefile_load(command->cases[i], command->common.overrides,
                            command->common.override_count, &runs[i].scenario, err)) {
+            return false;
+        }
+        runs[i].is_uncertified = command->is_uncertified;
+        if (command->is_uncertified && !check_uncertified(&runs[i].scenario, err)) {
             return false;
         }
     }

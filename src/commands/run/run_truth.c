@@ -38,7 +38,10 @@ static void write_horizon(const RunReport *report, Text *text)
 {
     const Truth *truth = report->truth;
     const double end_ms = scenario_duration(report->scenario) * UNITS_MS;
-    if (truth->message[0] != '\0') {
+    if (truth->is_uncertified) {
+        text_append(text, "  The reference is not certified (--uncertified): neither its own error "
+                          "is known nor how far the motion can be predicted.\n");
+    } else if (truth->message[0] != '\0') {
         text_append(text, "  The reference could not be certified: %s\n", truth->message);
     } else if (truth->is_limited) {
         text_append(text,

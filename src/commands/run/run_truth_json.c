@@ -3,6 +3,12 @@
 #include "write/json_value.h"
 #include "write/measured_fields.h"
 
+static json_t *message_of(const Truth *truth)
+{
+    return truth->is_uncertified ? json_string("is not certified: --uncertified")
+                                 : json_value_not_certified(truth->message);
+}
+
 json_t *run_truth_json_truth(const RunReport *report)
 {
     const Truth *truth = report->truth;
@@ -16,7 +22,7 @@ json_t *run_truth_json_truth(const RunReport *report)
     const bool is_certified = truth->message[0] == '\0';
     json_object_set_new(object, "message",
                         truth->trajectory->is_complete
-                            ? json_value_not_certified(truth->message)
+                            ? message_of(truth)
                             : json_value_text(truth->trajectory->message));
     if (truth->trajectory->is_complete) {
         json_value_set(object, "uncertainty", truth->uncertainty);

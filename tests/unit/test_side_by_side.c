@@ -1,0 +1,77 @@
+// Is every piece of work done once, whatever the threads?
+#include "close.h"
+
+#include "base/side_by_side.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+enum { PIECES = 1000, THREADS_MOST = 100 };
+
+typedef struct Done {
+    atomic_int times[PIECES];
+    bool is_callers[PIECES];
+    pthread_t threads[PIECES];
+} Done;
+
+static void note(size_t index, bool is_callers, void *context)
+{
+    Done *done = context;
+    atomic_fetch_add(&done->times[index], 1);
+    done->is_callers[index] = is_callers;
+    done->threads[index] = pthread_self();
+}
+
+static void every_piece_is_done_once(void **state)
+{
+    (void)state;
+    static const size_t THREADS[] = {0, 1, 2, 3, 64, THREADS_MOST};
+    for (size_t i = 0; i < sizeof THREADS / sizeof *THREADS; i++) {
+        Done done = {.is_callers = {false}};
+        side_by_side_run(PIECES, THREADS[i], note, &done);
+        for (size_t k = 0; k < PIECES; k++) {
+            assert_int_equal(atomic_load(&done.times[k]), 1);
+            assert_int_equal(done.is_callers[k], pthread_equal(done.threads[k], pthread_self()));
+            assert_true(THREADS[i] > 1 || done.is_callers[k]);
+        }
+        assert_true(done.is_callers[0]);
+    }
+}
+
+typedef struct Meeting {
+    pthread_barrier_t barrier;
+} Meeting;
+
+static void meet(size_t index, bool is_callers, void *context)
+{
+    (void)index;
+    (void)is_callers;
+    pthread_barrier_wait(&((Meeting *)context)->barrier);
+}
+
+// Pieces that wait for each other would never end one after the other.
+static void pieces_are_done_at_the_same_time(void **state)
+{
+    (void)state;
+    Meeting meeting;
+    pthread_barrier_init(&meeting.barrier, NULL, 3);
+    side_by_side_run(3, 3, meet, &meeting);
+    pthread_barrier_destroy(&meeting.barrier);
+}
+
+static void no_piece_is_no_work(void **state)
+{
+    (void)state;
+    side_by_side_run(0, 4, note, NULL);
+    assert_true(side_by_side_processors() >= 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_piece_is_done_once),
+        cmocka_unit_test(pieces_are_done_at_the_same_time),
+        cmocka_unit_test(no_piece_is_no_work),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
