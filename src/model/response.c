@@ -155,6 +155,14 @@ void response_load(const Response *response, const double *impulses, double *loa
     }
 }
 
+void response_hold(const Response *response, const double *reactions, double *loads)
+{
+    memset(loads, 0, 3 * response->linkage->body_count * sizeof *loads);
+    for (size_t i = 0; i < response->ideal_rows; i++) {
+        add_row(NULL, &response->rows[i], reactions[i], loads);
+    }
+}
+
 void response_solve(const Response *response, double *rows)
 {
     sparse_solve(&response->matrix, rows);

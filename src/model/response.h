@@ -46,6 +46,10 @@ void response_react(const Response *response, const double *impulses, double *re
 // answer left out: x, y, N s, and moment, N m s, three a body.
 void response_load(const Response *response, const double *impulses, double *loads);
 
+// Writes what impulses in the ideal rows are on the bodies they act on: x, y, N s, and moment,
+// N m s, three a body.
+void response_hold(const Response *response, const double *reactions, double *loads);
+
 // Writes by how much impulses in the joints with play, N s (N m s), change the velocities of all
 // bodies: x, y, angle, three a body. The ideal joints' own impulses are in it.
 void response_apply(const Response *response, const double *impulses, double *changes);

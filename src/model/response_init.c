@@ -5,6 +5,7 @@
 #include "model/response.h"
 
 #include "base/zeroed.h"
+#include "model/joint_nodes.h"
 
 #include <stdlib.h>
 
@@ -29,60 +30,6 @@ static void add_rows(Response *response, int joint, int place, size_t count)
         response->joint_of[response->row_count] = joint;
         response->place_of[response->row_count++] = place;
     }
-}
-
-// The bodies that a node's joint moves: LINKAGE_GROUND where one cannot give way.
-static int mover(const Linkage *linkage, int joint, int side)
-{
-    const int body = linkage_end(&linkage->joints[joint], side).body;
-    return body == linkage_driven_body(linkage) ? LINKAGE_GROUND : body;
-}
-
-// Lists the nodes of each body: those of body i from first[i] to first[i + 1].
-static void list_nodes(const Linkage *linkage, const int *joints, size_t count, size_t *first,
-                       size_t *nodes)
-{
-    for (size_t i = 0; i < 2 * count; i++) {
-        const int body = mover(linkage, joints[i / 2], (int)(i % 2));
-        if (body != LINKAGE_GROUND) {
-            first[body]++;
-        }
-    }
-    for (size_t i = 1; i <= linkage->body_count; i++) {
-        first[i] += first[i - 1];
-    }
-    for (size_t i = 2 * count; i-- > 0;) {
-        const int body = mover(linkage, joints[i / 2], (int)(i % 2));
-        if (body != LINKAGE_GROUND) {
-            nodes[--first[body]] = i / 2;
-        }
-    }
-}
-
-// Links the nodes that share a body. Returns how many links there are.
-static size_t link_nodes(const Linkage *linkage, const int *joints, size_t count,
-                         SparseLink **links)
-{
-    size_t *first = zeroed(linkage->body_count + 1, sizeof *first);
-    size_t *nodes = zeroed(2 * count, sizeof *nodes);
-    size_t room = 0;
-    size_t link_count = 0;
-    list_nodes(linkage, joints, count, first, nodes);
-    for (size_t body = 0; body < linkage->body_count; body++) {
-        const size_t own = first[body + 1] - first[body];
-        room += own * own / 2;
-    }
-    *links = zeroed(room, sizeof **links);
-    for (size_t body = 0; body < linkage->body_count; body++) {
-        for (size_t i = first[body]; i < first[body + 1]; i++) {
-            for (size_t k = first[body]; k < i; k++) {
-                (*links)[link_count++] = (SparseLink){nodes[i], nodes[k]};
-            }
-        }
-    }
-    free(first);
-    free(nodes);
-    return link_count;
 }
 
 static void add_block(Response *response, size_t a, size_t b)
@@ -113,7 +60,7 @@ static int compare_links(const void *a, const void *b)
 static void init_matrix(Response *response, const int *joints, const size_t *sizes, size_t count)
 {
     SparseLink *links;
-    const size_t link_count = link_nodes(response->linkage, joints, count, &links);
+    const size_t link_count = joint_nodes_link(response->linkage, joints, count, &links);
     sparse_init(count, sizes, response->ideal_rows / 2, link_count, links, &response->matrix);
     response->blocks = zeroed(count + link_count, sizeof *response->blocks);
     for (size_t i = 0; i < count; i++) {
@@ -127,6 +74,26 @@ static void init_matrix(Response *response, const int *joints, const size_t *siz
         }
     }
     free(links);
+}
+
+// The most rows of ideal joints that are connected: a column of the factor and the first one below
+// belong together.
+static size_t find_largest_group(const Sparse *matrix)
+{
+    size_t largest = 0;
+    size_t *rows = zeroed(matrix->eliminated, sizeof *rows);
+    for (size_t p = 0; p < matrix->eliminated; p++) {
+        const size_t node = matrix->node_at[p];
+        const size_t first = matrix->first_block[p];
+        rows[p] += matrix->first_row[node + 1] - matrix->first_row[node];
+        largest = rows[p] > largest ? rows[p] : largest;
+        if (first + 1 < matrix->first_block[p + 1] &&
+            matrix->block_node[first + 1] < matrix->eliminated) {
+            rows[matrix->block_node[first + 1]] += rows[p];
+        }
+    }
+    free(rows);
+    return largest;
 }
 
 // Lists which places move each other: those whose mobility is not zero.
@@ -195,6 +162,7 @@ void response_init_places(const Linkage *linkage, const ResponsePlace *places, s
     response->rows = zeroed(response->row_count, sizeof *response->rows);
     response->work = zeroed(response->row_count, sizeof *response->work);
     init_matrix(response, joints, sizes, nodes);
+    response->largest_group = find_largest_group(&response->matrix);
     list_partners(response);
     free(sizes);
     free(joints);

@@ -56,6 +56,7 @@ typedef struct Response {
     int *place_of;         // of a row; -1 of an ideal one
     Sparse matrix;         // D; a node is an ideal joint or a place. Once placed, Cholesky's factor
                            // in the ideal columns, then the mobility
+    size_t largest_group;  // rows of the most ideal joints that hold one another
     size_t block_count;
     ResponseBlock *blocks; // of D that are not zero
     double *work;          // by row

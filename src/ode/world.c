@@ -6,94 +6,14 @@
 // kinematic (no rows), a prismatic joint has two rows (ode/sliding.c), and a joint with play is
 // nothing but a contact row while it touches.
 // Four hinges in a loop would be 20 rows on 18 freedoms, which ODE cannot solve with CFM 0.
-//
-// Jacobian rows of a ball between bodies a and b, arm r from each centre to the anchor:
-//     x: v_x - w_z r_y,   y: v_y + w_z r_x,   z: v_z + w_x r_y - w_y r_x      (b minus a)
 #include "ode/world.h"
 
-#include "base/dense.h"
 #include "base/zeroed.h"
 #include "ode/engine.h"
+#include "ode/world_rows.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-enum { BALL_ROWS = 3, BODY_FREEDOMS = 6 };
-
-// rows that differ by less than this share are one row twice: rounding leaves 1e-15
-static const double WORLD_INDEPENDENT = 1e-9;
-
-static void fill_block(double *row, size_t columns, int body, Vec2 arm, double sign)
-{
-    double *x = row + BODY_FREEDOMS * (size_t)body;
-    double *y = x + columns;
-    double *z = y + columns;
-    x[0] = sign;
-    x[5] = -sign * arm.y;
-    y[1] = sign;
-    y[5] = sign * arm.x;
-    z[2] = sign;
-    z[3] = sign * arm.y;
-    z[4] = -sign * arm.x;
-}
-
-// The two rows of a prismatic joint.
-static void fill_sliding(double *matrix, size_t columns, const Linkage *linkage,
-                         const Motion *motions, int joint)
-{
-    JointRows rows;
-    joint_rows_find(linkage, motions, joint, &rows);
-    for (size_t k = 0; k < JOINT_ROWS; k++) {
-        for (int side = 0; side < 2; side++) {
-            const int body = linkage_end(&linkage->joints[joint], side).body;
-            if (body != LINKAGE_GROUND && body != linkage_driven_body(linkage)) {
-                double *row = matrix + k * columns + BODY_FREEDOMS * (size_t)body;
-                row[0] = rows.rows[k].x[side];
-                row[1] = rows.rows[k].y[side];
-                row[5] = rows.rows[k].turn[side];
-            }
-        }
-    }
-}
-
-// Counts the ideal joints' rows and makes sure that none follows from the others.
-static bool check_rows(const Scenario *scenario, const Motion *motions, size_t *row_count, Err *err)
-{
-    const Linkage *linkage = &scenario->linkage;
-    const size_t columns = BODY_FREEDOMS * linkage->body_count;
-    const int driven = linkage_driven_body(linkage);
-    double *matrix = calloc(BALL_ROWS * linkage->joint_count * columns + 1, sizeof *matrix);
-    size_t rows = 0;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (!linkage_is_ideal(linkage, i)) {
-            continue;
-        }
-        if (linkage->joints[i].kind == JOINT_PRISMATIC) {
-            fill_sliding(matrix + rows * columns, columns, linkage, motions, (int)i);
-            rows += JOINT_ROWS;
-            continue;
-        }
-        for (int side = 0; side < 2; side++) {
-            const JointEnd end = linkage_end(&linkage->joints[i], side);
-            // the motion of a kinematic body is given: it has no columns
-            if (end.body != LINKAGE_GROUND && end.body != driven) {
-                const Vec2 arm = vec2_rotate(motions[end.body].angle, end.anchor);
-                fill_block(matrix + rows * columns, columns, end.body, arm, side == 0 ? -1.0 : 1.0);
-            }
-        }
-        rows += BALL_ROWS;
-    }
-    const size_t rank = dense_rank(rows, columns, matrix, WORLD_INDEPENDENT);
-    free(matrix);
-    if (rank != rows) {
-        return err_set(err, ERR_SOLVER,
-                       "%zu of the %zu rows of the ideal joints follow from the others; ODE "
-                       "cannot solve redundant rows: give one joint of the loop some play",
-                       rows - rank, rows);
-    }
-    *row_count = rows;
-    return true;
-}
 
 static void make_bodies(const Scenario *scenario, const Motion *motions, World *world)
 {
@@ -124,12 +44,6 @@ static dBodyID body_of(const World *world, int body)
     return body == LINKAGE_GROUND ? 0 : world->bodies[body];
 }
 
-// Staggered worlds carry an ideal joint's error of a step off in the next one: a linearised SHAKE.
-static double joint_erp(const OdeOptions *options)
-{
-    return options->stepping == ODE_PLAIN ? options->erp : 1.0;
-}
-
 static void make_ball(const Linkage *linkage, const Motion *motions, size_t number,
                       const OdeOptions *options, World *world)
 {
@@ -138,7 +52,7 @@ static void make_ball(const Linkage *linkage, const Motion *motions, size_t numb
     dJointAttach(ball, body_of(world, joint->body_a), body_of(world, joint->body_b));
     const Vec2 anchor = linkage_point(motions, joint->body_a, joint->anchor_a);
     dJointSetBallAnchor(ball, anchor.x, anchor.y, 0.0);
-    dJointSetBallParam(ball, dParamERP, joint_erp(options));
+    dJointSetBallParam(ball, dParamERP, world_hold_erp(options));
     dJointSetBallParam(ball, dParamCFM, options->cfm);
     dJointSetFeedback(ball, &world->feedback[number]);
 }
@@ -146,7 +60,7 @@ static void make_ball(const Linkage *linkage, const Motion *motions, size_t numb
 static void make_sliding(const Linkage *linkage, int number, const OdeOptions *options,
                          World *world)
 {
-    sliding_make(linkage, number, world->id, world->bodies, joint_erp(options), options->cfm,
+    sliding_make(linkage, number, world->id, world->bodies, world_hold_erp(options), options->cfm,
                  &world->sliding[world->sliding_count++]);
 }
 
@@ -180,7 +94,7 @@ void world_start(const Scenario *scenario, World *world)
     world->id = id;
     world->linkage = linkage;
     dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);
-    dWorldSetERP(id, joint_erp(options));
+    dWorldSetERP(id, world_hold_erp(options));
     dWorldSetCFM(id, options->cfm);
     dWorldSetAutoDisableFlag(id, 0);
     dWorldSetLinearDamping(id, 0.0);
@@ -196,18 +110,19 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
 {
     memset(world, 0, sizeof *world);
     size_t rows = 0;
-    if (!check_rows(scenario, motions, &rows, err)) {
+    if (!world_rows_check(scenario, motions, &rows, err)) {
         return false;
     }
     world_start(scenario, world);
     world->constraint_rows = rows;
     world->collider = collider_get(scenario->ode.collider);
+    world->hold = world_hold_make(scenario);
     make_bodies(scenario, motions, world);
     const Linkage *linkage = &scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_PRISMATIC) {
+        if (linkage->joints[i].kind == JOINT_PRISMATIC && world->hold == NULL) {
             make_sliding(linkage, (int)i, &scenario->ode, world);
-        } else if (linkage_is_ideal(linkage, i)) {
+        } else if (linkage_is_ideal(linkage, i) && world->hold == NULL) {
             make_ball(linkage, motions, i, &scenario->ode, world);
         } else if (linkage_kind_has_play(linkage->joints[i].kind) &&
                    !make_pairs(scenario, (int)i, world, err)) {
@@ -231,6 +146,7 @@ void world_finish(World *world)
     free(world->sliding);
     free(world->pairs);
     applied_finish(&world->applied);
+    world_hold_free(world->hold);
     memset(world, 0, sizeof *world);
 }
 
@@ -238,6 +154,12 @@ bool world_step(World *world, double step_s, bool is_quick, Err *err)
 {
     for (size_t i = 0; i < world->sliding_count; i++) {
         sliding_set(&world->sliding[i], step_s);
+    }
+    if (world->hold != NULL) {
+        world_motions(world, world_hold_motions(world->hold));
+        if (!world_hold_push(world->hold, world->bodies, step_s, err)) {
+            return false;
+        }
     }
     return engine_step(world->id, step_s, is_quick, err);
 }
@@ -249,6 +171,9 @@ void world_offsets(const World *world, int body, Vec2 *offsets)
         if (world->linkage->joints[joint].body_a == body) {
             offsets[joint] = world->sliding[i].offset;
         }
+    }
+    if (world->hold != NULL) {
+        world_hold_offsets(world->hold, body, offsets);
     }
 }
 
@@ -272,6 +197,10 @@ bool world_check(const World *world, Err *err)
 void world_joint_forces(const World *world, JointState *joints)
 {
     const Linkage *linkage = world->linkage;
+    if (world->hold != NULL) {
+        world_hold_forces(world->hold, joints);
+        return;
+    }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         if (joint->kind == JOINT_REVOLUTE) {

@@ -8,6 +8,7 @@
 #include "ode/pair.h"
 #include "ode/sliding.h"
 #include "ode/snapshot.h"
+#include "ode/world_hold.h"
 
 #include <ode/ode.h>
 
@@ -21,6 +22,7 @@ typedef struct World {
     const Collider *collider; // of all pairs
     size_t pair_count;
     WorldPair *pairs;       // in the order of touch_list
+    WorldHold *hold;        // of the ideal joints where they have no rows in ODE; else NULL
     size_t constraint_rows; // scalar rows of the ideal joints, all independent
     Applied applied;        // springs, dampers, torque
 } World;

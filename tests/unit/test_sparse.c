@@ -1,5 +1,5 @@
 // Does the sparse factor solve what the dense solver solves, and stay as sparse as it should?
-#include "base/sparse.h"
+#include "base/sparse_rank.h"
 
 #include "base/dense.h"
 #include "base/lcg.h"
@@ -220,12 +220,64 @@ static void chains_and_trees_fill_nothing_in_and_rings_a_node_each(void **state)
     }
 }
 
+// Unknowns in a row, each equation of two neighbours; some are made to depend on those before.
+static void it_finds_the_rank_that_the_dense_solver_finds(void **state)
+{
+    (void)state;
+    enum { CHAIN = 8, WIDE = 3 * CHAIN, EQUATIONS = 6 * CHAIN };
+    size_t sizes[CHAIN];
+    SparseLink links[CHAIN];
+    for (size_t i = 0; i < CHAIN; i++) {
+        sizes[i] = 3;
+        links[i] = (SparseLink){i, (i + 1) % CHAIN};
+    }
+    size_t deficient = 0;
+    for (unsigned number = 0; number < 100; number++) {
+        uint64_t seed = lcg_stirred(number);
+        Sparse sparse;
+        double dense[EQUATIONS * WIDE] = {0.0};
+        double squares[WIDE] = {0.0};
+        double equation[WIDE] = {0.0};
+        sparse_init(CHAIN, sizes, CHAIN, CHAIN, links, &sparse);
+        const size_t twice = draw_below(&seed, CHAIN);
+        const bool has_twin = draw_below(&seed, 2) == 1;
+        const size_t count = 1 + draw_below(&seed, EQUATIONS);
+        for (size_t e = 0; e < count; e++) {
+            const size_t node = e % CHAIN;
+            for (size_t k = 0; k < 6; k++) {
+                equation[(3 * node + k) % WIDE] = lcg_draw(&seed);
+            }
+            if (has_twin) {
+                // the second unknown of a node is the first one and the third
+                equation[3 * twice + 1] = equation[3 * twice] + equation[3 * twice + 2];
+            }
+            for (size_t k = 0; k < WIDE; k++) {
+                dense[e * WIDE + k] = equation[k];
+                squares[k] += equation[k] * equation[k];
+            }
+            const size_t other = (node + 1) % CHAIN;
+            const size_t first =
+                sparse.order[node] < sparse.order[other] ? sparse.order[node] : sparse.order[other];
+            sparse_rank_add(&sparse, first, equation);
+            for (size_t k = 0; k < WIDE; k++) {
+                equation[k] = 0.0; // what rounding leaves
+            }
+        }
+        const size_t rank = sparse_rank_find(&sparse, squares, 1e-9, equation);
+        assert_int_equal(rank, dense_rank(count, WIDE, dense, 1e-9));
+        deficient += count > WIDE && rank < WIDE ? 1 : 0;
+        sparse_finish(&sparse);
+    }
+    assert_true(deficient > 10);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_solves_what_the_dense_solver_solves),
         cmocka_unit_test(what_is_kept_is_the_schur_complement),
         cmocka_unit_test(a_row_that_follows_from_others_is_noticed),
+        cmocka_unit_test(it_finds_the_rank_that_the_dense_solver_finds),
         cmocka_unit_test(chains_and_trees_fill_nothing_in_and_rings_a_node_each),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,32 @@
+// The ideal joints of a world with many of them, held by forces that are found here instead of by
+// rows of ODE: in time proportional to the joints.
+#pragma once
+
+#include "model/scenario.h"
+#include "model/trajectory.h"
+
+#include <ode/ode.h>
+
+typedef struct WorldHold WorldHold;
+
+// What holds the ideal joints of a scenario; NULL where they are rows of ODE. For world_hold_free,
+// which accepts NULL.
+WorldHold *world_hold_make(const Scenario *scenario);
+void world_hold_free(WorldHold *hold);
+
+// The share of an ideal joint's opening that a step takes back.
+double world_hold_erp(const OdeOptions *options);
+
+// Where the bodies' motions are to be put before a push.
+Motion *world_hold_motions(WorldHold *hold);
+
+// Pushes the bodies, on which all else acts already, so that a step keeps the joints closed. Fails
+// with ERR_SOLVER where the joints are redundant there.
+bool world_hold_push(WorldHold *hold, const dBodyID *bodies, double step_s, Err *err);
+
+// Fills in the forces of the ideal joints in the last step; the driven one apart.
+void world_hold_forces(const WorldHold *hold, JointState *joints);
+
+// Fills in, by joint, how far from the anchor on a body the forces of prismatic joints acted in the
+// last step, m: at the anchor on their body b.
+void world_hold_offsets(const WorldHold *hold, int body, Vec2 *offsets);

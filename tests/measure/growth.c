@@ -1,0 +1,259 @@
+// How do time and memory of a step grow with the number of bodies?
+//
+// growth KIND PLAY SOLVER N [STEPS]
+//   KIND    chain       N links in a row, hung up at one end, level at the start
+//           pendula     N pendula that have nothing to do with each other
+//           four-bars   N four-bars side by side
+//           row         N four-bars in a row that share their uprights
+//           scissor     N crossed pairs of bars
+//   PLAY    ideal, or loose: every joint a pin with 50 um of play in its hole
+//   SOLVER  direct, quick: plain steps of ODE; staggered; impulse; reference
+// Prints bodies, joints, us and evaluations a step, and the memory that the solver takes, KiB. A
+// step is one of 20 us of ODE's world, or one of the reference's own. Nobody looks at the states in
+// between. tests/measure/growth.sh makes tables of it.
+#include "base/zeroed.h"
+#include "model/solver.h"
+
+#include <malloc.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { STEPS = 200 };
+
+static const double STEP_S = 2e-5;
+static const double MASS = 0.1;   // kg, of each bar
+static const double LENGTH = 0.1; // m, of each link
+static const double PIN_RADIUS = 5e-3;
+static const double PLAY = 5e-5; // m, radial
+static const double WIDTH = 0.01;
+
+typedef struct Build {
+    Linkage linkage;
+    bool is_loose;
+} Build;
+
+// A bar from one point to another; returns its number.
+static int add_bar(Build *build, Vec2 from, Vec2 to)
+{
+    Linkage *linkage = &build->linkage;
+    const Vec2 along = vec2_sub(to, from);
+    const double length = vec2_length(along);
+    Body *body = &linkage->bodies[linkage->body_count];
+    snprintf(body->name, sizeof body->name, "bar-%zu", linkage->body_count);
+    // no two alike, so that no two contacts begin at once
+    body->mass = MASS * (1.0 + 0.2 * sin(1.7 * (double)linkage->body_count));
+    body->inertia = body->mass * length * length / 12.0;
+    body->start.position = vec2_scale(0.5, vec2_add(from, to));
+    body->start.angle = atan2(along.y, along.x);
+    return (int)linkage->body_count++;
+}
+
+static Vec2 local(const Linkage *linkage, int body, Vec2 point)
+{
+    if (body == LINKAGE_GROUND) {
+        return point;
+    }
+    const Motion *start = &linkage->bodies[body].start;
+    return vec2_rotate(-start->angle, vec2_sub(point, start->position));
+}
+
+static void add_pin(Build *build, int a, int b, Vec2 at)
+{
+    Linkage *linkage = &build->linkage;
+    Joint *joint = &linkage->joints[linkage->joint_count];
+    snprintf(joint->name, sizeof joint->name, "pin-%zu", linkage->joint_count++);
+    joint->kind = build->is_loose ? JOINT_CLEARANCE : JOINT_REVOLUTE;
+    joint->body_a = a;
+    joint->body_b = b;
+    joint->anchor_a = local(linkage, a, at);
+    joint->anchor_b = local(linkage, b, at);
+    joint->clearance =
+        (Clearance){.hole_radius = PIN_RADIUS + PLAY, .pin_radius = PIN_RADIUS, .width = WIDTH};
+}
+
+static void build_chain(Build *build, size_t count)
+{
+    int before = LINKAGE_GROUND;
+    for (size_t i = 0; i < count; i++) {
+        const Vec2 from = {LENGTH * (double)i, 0.0};
+        const int bar = add_bar(build, from, (Vec2){from.x + LENGTH, 0.0});
+        add_pin(build, before, bar, from);
+        before = bar;
+    }
+}
+
+static void build_pendula(Build *build, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const Vec2 from = {2.0 * LENGTH * (double)i, 0.0};
+        add_pin(build, LINKAGE_GROUND, add_bar(build, from, (Vec2){from.x + LENGTH, 0.0}), from);
+    }
+}
+
+static void build_four_bars(Build *build, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const double x = 4.0 * LENGTH * (double)i;
+        const Vec2 points[4] = {{x, 0.0}, {x + 0.05, 0.09}, {x + 0.28, 0.12}, {x + 0.3, 0.0}};
+        int before = LINKAGE_GROUND;
+        for (int k = 0; k < 3; k++) {
+            const int bar = add_bar(build, points[k], points[k + 1]);
+            add_pin(build, before, bar, points[k]);
+            before = bar;
+        }
+        add_pin(build, before, LINKAGE_GROUND, points[3]);
+    }
+}
+
+// The uprights lean, so that gravity moves them at once.
+static void build_row(Build *build, size_t count)
+{
+    const Vec2 up = {0.3 * LENGTH, 0.9 * LENGTH};
+    int before = LINKAGE_GROUND;
+    for (size_t i = 0; i <= count; i++) {
+        const Vec2 foot = {LENGTH * (double)i, 0.0};
+        const Vec2 head = vec2_add(foot, up);
+        const int upright = add_bar(build, foot, head);
+        add_pin(build, LINKAGE_GROUND, upright, foot);
+        if (i > 0) {
+            const int coupler = add_bar(build, vec2_sub(head, (Vec2){LENGTH, 0.0}), head);
+            add_pin(build, before, coupler, vec2_sub(head, (Vec2){LENGTH, 0.0}));
+            add_pin(build, coupler, upright, head);
+        }
+        before = upright;
+    }
+}
+
+static void build_scissor(Build *build, size_t count)
+{
+    int low =
+        LINKAGE_GROUND; // of the pair before: the bar that ends low and the one that ends high
+    int high = LINKAGE_GROUND;
+    for (size_t i = 0; i < count; i++) {
+        const double x = LENGTH * (double)i;
+        const int rising = add_bar(build, (Vec2){x, 0.0}, (Vec2){x + LENGTH, LENGTH});
+        const int falling = add_bar(build, (Vec2){x, LENGTH}, (Vec2){x + LENGTH, 0.0});
+        add_pin(build, rising, falling, (Vec2){x + 0.5 * LENGTH, 0.5 * LENGTH});
+        add_pin(build, low, rising, (Vec2){x, 0.0});
+        if (i > 0) {
+            add_pin(build, high, falling, (Vec2){x, LENGTH});
+        }
+        low = falling;
+        high = rising;
+    }
+}
+
+typedef struct Kind {
+    const char *name;
+    void (*build)(Build *, size_t);
+} Kind;
+
+static const Kind KINDS[] = {
+    {"chain", build_chain}, {"pendula", build_pendula}, {"four-bars", build_four_bars},
+    {"row", build_row},     {"scissor", build_scissor},
+};
+
+// Chooses the way of stepping; returns the solver, or NULL.
+static const Solver *choose(const char *name, Scenario *scenario)
+{
+    scenario->run.step = STEP_S;
+    scenario->run.duration = 1e3 * STEP_S;
+    scenario->ode.stepping = ODE_PLAIN;
+    scenario->ode.map = ODE_MAP_MIDPOINT;
+    if (strcmp(name, "quick") == 0) {
+        scenario->ode.solver = ODE_QUICK;
+    } else if (strcmp(name, "staggered") == 0) {
+        scenario->ode.stepping = ODE_STAGGERED;
+    } else if (strcmp(name, "impulse") == 0) {
+        scenario->ode.stepping = ODE_STAGGERED;
+        scenario->ode.map = ODE_MAP_IMPULSE;
+    } else if (strcmp(name, "reference") == 0) {
+        return &REFERENCE_SOLVER;
+    } else if (strcmp(name, "direct") != 0) {
+        return NULL;
+    }
+    return &ODE_SOLVER;
+}
+
+static double processor_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static size_t in_use(void)
+{
+    const struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+
+// Takes steps until so many have been taken. Valgrind can be told to count in here alone.
+__attribute__((noinline)) bool growth_take(const Solver *solver, void *state, size_t steps,
+                                           Err *err);
+__attribute__((noinline)) bool growth_take(const Solver *solver, void *state, size_t steps,
+                                           Err *err)
+{
+    while (solver->model(state).steps < steps) {
+        if (!solver->step(state, INFINITY, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static int measure(const Scenario *scenario, const Solver *solver, size_t steps)
+{
+    Err err = {ERR_NONE, ""};
+    void *state = NULL;
+    const size_t before = in_use();
+    const double opening_s = processor_s();
+    // the first steps find the contacts
+    if (!solver->open(scenario, &state, &err) || !growth_take(solver, state, 5, &err)) {
+        fprintf(stderr, "growth: %s\n", err.text);
+        return 4;
+    }
+    const SolverModel start = solver->model(state);
+    const double begun_s = processor_s();
+    if (!growth_take(solver, state, start.steps + steps, &err)) {
+        fprintf(stderr, "growth: %s\n", err.text);
+        return 4;
+    }
+    const double taken_s = processor_s() - begun_s;
+    const SolverModel end = solver->model(state);
+    const double count = (double)(end.steps - start.steps);
+    printf("%zu bodies %zu joints %.3f us a step %.1f evaluations a step %zu KiB %.3f ms to open\n",
+           scenario->linkage.body_count, scenario->linkage.joint_count, 1e6 * taken_s / count,
+           (double)(end.evaluations - start.evaluations) / count, (in_use() - before) / 1024,
+           1e3 * (begun_s - opening_s));
+    solver->close(state);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    const Kind *kind = NULL;
+    for (size_t i = 0; argc >= 5 && i < sizeof KINDS / sizeof *KINDS; i++) {
+        kind = strcmp(argv[1], KINDS[i].name) == 0 ? &KINDS[i] : kind;
+    }
+    Scenario scenario = scenario_default();
+    const Solver *solver = argc >= 5 ? choose(argv[3], &scenario) : NULL;
+    const size_t count = argc >= 5 ? strtoul(argv[4], NULL, 10) : 0;
+    const size_t steps = argc == 6 ? strtoul(argv[5], NULL, 10) : STEPS;
+    if (kind == NULL || solver == NULL || count == 0 || steps == 0 || argc > 6) {
+        fprintf(stderr, "usage: growth KIND PLAY SOLVER N [STEPS]\n");
+        return 2;
+    }
+    Build build = {.is_loose = strcmp(argv[2], "loose") == 0};
+    build.linkage = linkage_create((LinkageRoom){3 * count + 1, 4 * count + 1, 0, 0});
+    kind->build(&build, count);
+    scenario.linkage = build.linkage;
+    scenario.contact.stiffness = 6.6e10;
+    scenario.contact.exponent = 1.5;
+    const int status = measure(&scenario, solver, steps);
+    linkage_free(&build.linkage);
+    return status;
+}
