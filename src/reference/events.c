@@ -160,14 +160,22 @@ static double approach_at(double time, void *context)
     return press_at(context, time).closing;
 }
 
+// Whether a margin is below zero by more than rounding, as that is in a state.
+static bool is_used_up(const Margin *margin, const SystemState *state, double left)
+{
+    const System *system = margin->system;
+    const ContactMode mode = system->contacts[margin->contact].mode;
+    return left < 0.0 && left < -rounding_of(system, state, margin->contact, mode, margin->which);
+}
+
 // A free pin that went towards its wall and comes back may have been there in between: where the
 // penetration has its maximum it is looked at once more.
-static bool has_been_there(Margin *margin, double first, double last, double last_speed,
-                           double rounding, double *top)
+static bool has_been_there(Margin *margin, double first, double last, const SystemState *state,
+                           double *top)
 {
-    return last_speed < 0.0 && approach_at(first, margin) > 0.0 &&
+    return state->contacts[margin->contact].closing < 0.0 && approach_at(first, margin) > 0.0 &&
            root_find(approach_at, margin, first, last, 0.0, top) &&
-           margin_at(*top, margin) < -rounding;
+           is_used_up(margin, state, margin_at(*top, margin));
 }
 
 static void look_at(Margin *margin, const EventPoints *points, Event *event)
@@ -180,13 +188,12 @@ static void look_at(Margin *margin, const EventPoints *points, Event *event)
         const double time = events_point_time(margin->integrator, points, i);
         const SystemState *state = points->states[i];
         const Press *press = &state->contacts[margin->contact];
-        const double rounding = rounding_of(system, state, margin->contact, mode, margin->which);
         double top = time;
-        if (is_free && has_been_there(margin, before, time, press->closing, rounding, &top)) {
+        if (is_free && has_been_there(margin, before, time, state, &top)) {
             note_event(margin, crossing(margin, before, top), event);
             return;
         }
-        if (margin_of(press, mode, margin->which) < -rounding) {
+        if (is_used_up(margin, state, margin_of(press, mode, margin->which))) {
             note_event(margin, crossing(margin, before, time), event);
             return;
         }

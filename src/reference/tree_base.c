@@ -5,6 +5,7 @@
 // the gap of each joint there comes from positions in long double. It is worked out once a step.
 #include "reference/tree.h"
 
+#include "base/sincos.h"
 #include "model/joint_rows.h"
 #include "reference/tree_line.h"
 
@@ -25,8 +26,9 @@ static TreePoint subtract(TreePoint a, TreePoint b)
 
 static void set_arms(Tree *tree, int body)
 {
-    const long double c = cosl(tree->base_angle[body]);
-    const long double s = sinl(tree->base_angle[body]);
+    long double s;
+    long double c;
+    sincos_find(tree->base_angle[body], &s, &c);
     for (size_t i = tree->end_firsts[body]; i < tree->end_firsts[body + 1]; i++) {
         const int end = tree->ends[i];
         const Vec2 anchor = tree->anchors[end];
