@@ -15,6 +15,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { JOINTS = 4 }; // of a four-bar and of a slider-crank
+
+// A state at a time, with its arrays.
+typedef struct Instant {
+    Motion bodies[CLOSED_FORM_BODIES];
+    JointState joints[JOINTS];
+} Instant;
+
+static Sample sample_of(Instant *instant)
+{
+    return (Sample){.bodies = instant->bodies, .joints = instant->joints};
+}
+
 typedef struct Analytic {
     const Scenario *scenario;
     double start_s;
@@ -23,11 +36,11 @@ typedef struct Analytic {
     Motion bodies[CLOSED_FORM_BODIES]; // at end_s, once there was a step
     double omega[CLOSED_FORM_BODIES];
     double alpha[CLOSED_FORM_BODIES];
-    JointState joints[LINKAGE_JOINT_MAX];
+    JointState joints[JOINTS];
     double torque;     // N m, of the drive at end_s
     double drive_work; // J, in the last step
-    double impulse[LINKAGE_JOINT_MAX];
-    double approach[LINKAGE_JOINT_MAX];
+    double impulse[JOINTS];
+    double approach[JOINTS];
 } Analytic;
 
 static bool place_bodies(const Analytic *analytic, double from_s, Sample *sample)
@@ -90,7 +103,8 @@ static bool analytic_open(const Scenario *scenario, void **state, Err *err)
     Analytic *analytic = calloc(1, sizeof *analytic);
     assert(analytic != NULL);
     analytic->scenario = scenario;
-    Sample start;
+    Instant at;
+    Sample start = sample_of(&at);
     if (!evaluate(analytic, 0.0, 0.0, &start, &analytic->torque, err)) {
         analytic_close(analytic);
         return false;
@@ -129,7 +143,8 @@ static void add_up(Analytic *analytic, const Sample *middle, double middle_torqu
 // The forces after a kink of the drive's speed: they jump there.
 static bool start_piece(Analytic *analytic, Err *err)
 {
-    Sample start;
+    Instant at;
+    Sample start = sample_of(&at);
     if (drive_is_steady(&analytic->scenario->linkage.driver)) {
         return true;
     }
@@ -148,8 +163,10 @@ static bool analytic_step(void *state, double stop_s, Err *err)
     const double degree_s = 2.0 * M_PI / fabs(driver->speed) / 360.0;
     const double start_s = analytic->end_s;
     stop_s = fmin(fmin(stop_s, start_s + degree_s), drive_next_kink(driver, start_s));
-    Sample middle;
-    Sample end;
+    Instant halfway;
+    Instant behind;
+    Sample middle = sample_of(&halfway);
+    Sample end = sample_of(&behind);
     double middle_torque;
     double end_torque;
     const double width_s = stop_s - start_s;
@@ -214,7 +231,7 @@ static void analytic_observe(const void *state, double time_s, Sample *sample)
     }
     if (linkage->is_spatial) {
         space_lift(linkage, sample->bodies, sample->space_bodies);
-        memset(sample->space_joints, 0, sizeof sample->space_joints);
+        memset(sample->space_joints, 0, linkage->joint_count * sizeof *sample->space_joints);
     }
 }
 

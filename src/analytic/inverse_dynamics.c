@@ -26,7 +26,12 @@ static void set_reaction(const Linkage *linkage, const Motion *motions, int join
 bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, double gravity,
                             Reactions *reactions, Err *err)
 {
-    bool include[LINKAGE_JOINT_MAX];
+    if (!kinematics_is_small(linkage)) {
+        return err_set(err, ERR_SOLVER,
+                       "reactions of more than %d bodies or %d joints are not found",
+                       KINEMATICS_BODY_MAX, KINEMATICS_JOINT_MAX);
+    }
+    bool include[KINEMATICS_JOINT_MAX];
     for (size_t i = 0; i < linkage->joint_count; i++) {
         include[i] = true;
     }

@@ -1,18 +1,19 @@
 // The forces behind a known motion: drive torque and the reaction in every ideal joint.
 #pragma once
 
-#include "model/linkage.h"
+#include "model/kinematics.h"
 
 typedef struct Reactions {
-    Vec2 force_on_b[LINKAGE_JOINT_MAX];    // N, on body b of each joint, at its anchor there; on
-                                           // body a its opposite at the same point
-    double moment_on_b[LINKAGE_JOINT_MAX]; // N m, likewise, of prismatic joints: the couple
-    double drive_torque;                   // N m, on the driven body
+    Vec2 force_on_b[KINEMATICS_JOINT_MAX];    // N, on body b of each joint, at its anchor there; on
+                                              // body a its opposite at the same point
+    double moment_on_b[KINEMATICS_JOINT_MAX]; // N m, likewise, of prismatic joints: the couple
+    double drive_torque;                      // N m, on the driven body
 } Reactions;
 
 // Solves the Newton-Euler equations of every body for the reactions. The motions hold position,
 // velocity and acceleration; every joint counts as ideal; gravity acts along -y, m/s^2.
-// Fails with ERR_SOLVER where the reactions are not determined.
+// Fails with ERR_SOLVER where the reactions are not determined, or the mechanism is not small
+// (model/kinematics.h).
 bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, double gravity,
                             Reactions *reactions, Err *err);
 

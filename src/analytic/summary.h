@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analytic/curve.h"
+#include "model/kinematics.h"
 #include "model/trajectory.h"
 
 typedef struct AnalyticSummary {
@@ -21,8 +22,9 @@ typedef struct AnalyticSummary {
     double limit_folded;       // rad, crank angle where they fold over one another
     Extreme torque_max;        // N m, of the drive
     Extreme torque_min;
-    Extreme reaction_max[LINKAGE_JOINT_MAX]; // N, size of the force in each joint, taken as ideal
-    Extreme reaction_min[LINKAGE_JOINT_MAX];
+    Extreme
+        reaction_max[KINEMATICS_JOINT_MAX]; // N, size of the force in each joint, taken as ideal
+    Extreme reaction_min[KINEMATICS_JOINT_MAX];
     double power_residual; // 1: largest |torque speed - power| over the largest |torque speed|
 } AnalyticSummary;
 

@@ -157,13 +157,13 @@ static bool gather(Gathering *gathering, RunWatch watch, Err *err)
     if (!solver->open(scenario, &state, err)) {
         return false;
     }
+    Sample sample = sample_create(&scenario->linkage);
     bool is_right = true;
     double reached_s = 0.0;
     for (int k = 0; is_right && k < INSTANT_COUNT; k++) {
         const double time_s = duration_s * (k + 0.5) / INSTANT_COUNT;
         is_right = step_to(gathering, state, time_s, &reached_s, err);
         if (is_right) {
-            Sample sample;
             solver->observe(state, fmin(time_s, reached_s), &sample);
             add_masses(gathering, sample.bodies);
         }
@@ -172,6 +172,7 @@ static bool gather(Gathering *gathering, RunWatch watch, Err *err)
         }
     }
     is_right = is_right && step_to(gathering, state, duration_s, &reached_s, err);
+    sample_free(&sample);
     solver->close(state);
     return is_right;
 }

@@ -1,8 +1,7 @@
 // How does a truth cross a pipe?
 //
-// Truth | Trajectory | times | crank angles | motions | states | motions and states in space, where
-// there are any, the pointers in the first two
-// replaced on arrival.
+// Truth | Trajectory | its arrays, those in space where there are any; the pointers in the first
+// two are replaced on arrival.
 #include "measure/truth_pack.h"
 
 #include <string.h>
@@ -13,11 +12,13 @@ typedef struct Part {
     size_t size;
 } Part;
 
-enum { PART_COUNT = 6 };
+enum { PART_COUNT = 12 };
 
 static void list_parts(const Trajectory *trajectory, Part parts[PART_COUNT])
 {
     const size_t samples = trajectory->sample_count;
+    const size_t body_count = trajectory->body_count;
+    const size_t joint_count = trajectory->joint_count;
     parts[0] = (Part){trajectory->times, samples * sizeof(double)};
     parts[1] = (Part){trajectory->crank_angles, samples * sizeof(double)};
     parts[2] = (Part){trajectory->motions, samples * trajectory->body_count * sizeof(Motion)};
@@ -27,6 +28,12 @@ static void list_parts(const Trajectory *trajectory, Part parts[PART_COUNT])
     const size_t joints = is_spatial ? samples * trajectory->joint_count : 0;
     parts[4] = (Part){trajectory->space_motions, bodies * sizeof(SpaceMotion)};
     parts[5] = (Part){trajectory->space_states, joints * sizeof(SpaceJointState)};
+    parts[6] = (Part){trajectory->reach, body_count * sizeof(double)};
+    parts[7] = (Part){trajectory->slides, body_count * sizeof(bool)};
+    parts[8] = (Part){trajectory->bodies, body_count * sizeof(BodyExtremes)};
+    parts[9] = (Part){trajectory->joints, joint_count * sizeof(JointExtremes)};
+    parts[10] = (Part){trajectory->alpha_spikes, body_count * sizeof(SignalSpikes)};
+    parts[11] = (Part){trajectory->force_spikes, joint_count * sizeof(SignalSpikes)};
 }
 
 size_t truth_pack_size(const Scenario *scenario)
@@ -38,7 +45,11 @@ size_t truth_pack_size(const Scenario *scenario)
         a_sample += linkage->body_count * sizeof(SpaceMotion) +
                     linkage->joint_count * sizeof(SpaceJointState);
     }
-    return sizeof(Truth) + sizeof(Trajectory) + scenario_sample_count(scenario) * a_sample;
+    const size_t once =
+        linkage->body_count * (sizeof(double) + sizeof(bool) + sizeof(BodyExtremes)) +
+        linkage->joint_count * sizeof(JointExtremes) +
+        (linkage->body_count + linkage->joint_count) * sizeof(SignalSpikes);
+    return sizeof(Truth) + sizeof(Trajectory) + once + scenario_sample_count(scenario) * a_sample;
 }
 
 void truth_pack_write(const Truth *truth, void *packed)
@@ -74,6 +85,12 @@ Truth truth_pack_read(const Scenario *scenario, const void *packed)
     truth.trajectory->states = parts[3].start;
     truth.trajectory->space_motions = parts[4].start;
     truth.trajectory->space_states = parts[5].start;
+    truth.trajectory->reach = parts[6].start;
+    truth.trajectory->slides = parts[7].start;
+    truth.trajectory->bodies = parts[8].start;
+    truth.trajectory->joints = parts[9].start;
+    truth.trajectory->alpha_spikes = parts[10].start;
+    truth.trajectory->force_spikes = parts[11].start;
     source += sizeof truth + sizeof *truth.trajectory;
     for (int i = 0; i < PART_COUNT; i++) {
         if (parts[i].size > 0) {

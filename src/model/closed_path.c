@@ -52,7 +52,7 @@ static double evaluate(const ClosedPath *path, const double *at, Jacobian *jacob
                        double missing[KINEMATICS_ROW_MAX])
 {
     const Linkage *linkage = path->linkage;
-    Motion motions[LINKAGE_BODY_MAX] = {0};
+    Motion motions[KINEMATICS_BODY_MAX] = {0};
     double largest = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         motions[i].position = (Vec2){path->size * at[3 * i], path->size * at[3 * i + 1]};

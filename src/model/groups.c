@@ -12,8 +12,8 @@ enum { SEARCHED_MOST = 4 };
 // A linkage whose bodies are determined one after the other.
 typedef struct Search {
     const Linkage *linkage;
-    bool is_known[LINKAGE_BODY_MAX];  // determined already
-    bool is_chosen[LINKAGE_BODY_MAX]; // in the set that is looked at
+    bool is_known[KINEMATICS_BODY_MAX];  // determined already
+    bool is_chosen[KINEMATICS_BODY_MAX]; // in the set that is looked at
 } Search;
 
 static bool is_body_in(const bool *bodies, int body)
@@ -31,7 +31,7 @@ static bool is_placed(const Search *search, int body)
 static bool is_connected(const Search *search, const Group *group)
 {
     const Linkage *linkage = search->linkage;
-    bool is_reached[LINKAGE_BODY_MAX] = {false};
+    bool is_reached[KINEMATICS_BODY_MAX] = {false};
     size_t count = 1;
     is_reached[group->bodies[0]] = true;
     for (bool is_growing = true; is_growing;) {
@@ -111,7 +111,7 @@ void groups_find(const Linkage *linkage, Groups *groups)
     Search search = {.linkage = linkage};
     groups->count = 0;
     search.is_known[linkage_driven_body(linkage)] = true;
-    while (groups->count < LINKAGE_BODY_MAX / 2) {
+    while (groups->count < KINEMATICS_BODY_MAX / 2) {
         Group *group = &groups->groups[groups->count];
         if (!find_group(&search, group)) {
             return;

@@ -2,18 +2,18 @@
 // driven body and the groups before it, and none can be split (Assur's groups).
 #pragma once
 
-#include "model/linkage.h"
+#include "model/kinematics.h"
 
 typedef struct Group {
     size_t body_count; // its joints are 3/2 of that
-    int bodies[LINKAGE_BODY_MAX];
+    int bodies[KINEMATICS_BODY_MAX];
     size_t joint_count;
-    int joints[LINKAGE_JOINT_MAX]; // that hold them on one another and on what is there already
+    int joints[KINEMATICS_JOINT_MAX]; // that hold them on one another and on what is there already
 } Group;
 
 typedef struct Groups {
     size_t count;
-    Group groups[LINKAGE_BODY_MAX / 2];
+    Group groups[KINEMATICS_BODY_MAX / 2];
 } Groups;
 
 // Finds the groups of a linkage with a driver and ideal joints, in the order in which they follow

@@ -100,14 +100,15 @@ static void walk_block(size_t index, bool is_callers, void *context)
     const GrowthWork *work = runs->work;
     Walk *walk = &runs->walks[index];
     const size_t bodies = work->beside->body_count;
+    Sample sample = sample_create(&work->scenario->linkage);
     for (size_t k = runs->first; k < runs->end && !walk->is_away; k++) {
-        Sample sample;
         if (!walk_to(work, walk, work->beside->times[k], is_callers, &sample)) {
-            return;
+            break;
         }
         walk->is_away = find_apart(work, &sample, k, walk->apart + (k - runs->first) * bodies);
         walk->sample = k + 1;
     }
+    sample_free(&sample);
 }
 
 static bool open_runs(const GrowthWork *work, Runs *runs, Growth *growth)

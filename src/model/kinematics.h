@@ -4,10 +4,21 @@
 
 #include "model/linkage.h"
 
+// A mechanism up to this size is small: its rows are solved as one dense matrix, and what takes
+// many such solutions or all of the matrix (locks, reactions, the scale of spikes) is worked out of
+// small ones alone. A larger one is solved by model/joint_system.h.
+enum { KINEMATICS_BODY_MAX = 16, KINEMATICS_JOINT_MAX = 24 };
+
+static inline bool kinematics_is_small(const Linkage *linkage)
+{
+    return linkage->body_count <= KINEMATICS_BODY_MAX &&
+           linkage->joint_count <= KINEMATICS_JOINT_MAX;
+}
+
 // One row per scalar constraint, three columns (x, y, angle) per body, row by row.
 enum {
-    KINEMATICS_COLUMN_MAX = 3 * LINKAGE_BODY_MAX,
-    KINEMATICS_ROW_MAX = 2 * LINKAGE_JOINT_MAX + 1,
+    KINEMATICS_COLUMN_MAX = 3 * KINEMATICS_BODY_MAX,
+    KINEMATICS_ROW_MAX = 2 * KINEMATICS_JOINT_MAX + 1,
 };
 
 typedef struct Jacobian {
@@ -16,8 +27,9 @@ typedef struct Jacobian {
     double entries[KINEMATICS_ROW_MAX * KINEMATICS_COLUMN_MAX];
 } Jacobian;
 
-// The constraint Jacobian: two rows a joint for which `include` is true (all where it is NULL; a
-// stop has none), then one row for the driver if there is one and `with_driver` is set.
+// The constraint Jacobian of a small mechanism: two rows a joint for which `include` is true (all
+// where it is NULL; a stop has none), then one row for the driver if there is one and `with_driver`
+// is set.
 void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bool *include,
                          bool with_driver, Jacobian *jacobian);
 

@@ -4,25 +4,17 @@
 // a copy of a linkage is a copy of its blocks.
 #include "model/linkage.h"
 
-#include <assert.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/zeroed.h"
 
-// Zeroed room for so many members. A block without members exists as well.
-static void *create_block(size_t count, size_t size)
-{
-    void *block = calloc(count > 0 ? count : 1, size);
-    assert(block != NULL);
-    return block;
-}
+#include <string.h>
 
 Linkage linkage_create(LinkageRoom room)
 {
     return (Linkage){
-        .bodies = create_block(room.bodies, sizeof(Body)),
-        .joints = create_block(room.joints, sizeof(Joint)),
-        .springs = create_block(room.springs, sizeof(Spring)),
-        .torsions = create_block(room.torsions, sizeof(TorsionSpring)),
+        .bodies = zeroed(room.bodies, sizeof(Body)),
+        .joints = zeroed(room.joints, sizeof(Joint)),
+        .springs = zeroed(room.springs, sizeof(Spring)),
+        .torsions = zeroed(room.torsions, sizeof(TorsionSpring)),
     };
 }
 

@@ -122,7 +122,7 @@ static void move_origin(Linkage *part, Motion *motions)
 static bool cut_out_part(const Linkage *linkage, const Motion *motions, Linkage *part,
                          Motion *start)
 {
-    int numbers[LINKAGE_BODY_MAX];
+    int numbers[KINEMATICS_BODY_MAX];
     *part = linkage_create(
         (LinkageRoom){.bodies = linkage->body_count, .joints = linkage->joint_count});
     part->driver = linkage->driver;
@@ -221,7 +221,7 @@ static Passage pass(ClosedPath *path, double *crank_angle)
 // The determinants of the groups at a position of the crank.
 typedef struct Signs {
     double crank_angle;
-    double determinants[LINKAGE_BODY_MAX / 2];
+    double determinants[KINEMATICS_BODY_MAX / 2];
 } Signs;
 
 static Signs find_signs(const ClosedPath *path, const Groups *groups)
@@ -283,8 +283,8 @@ Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
         return unknown;
     }
     Linkage ideal = idealised(linkage, joints);
-    Motion motions[LINKAGE_BODY_MAX];
-    Motion start[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
+    Motion start[KINEMATICS_BODY_MAX];
     Linkage part = {.body_count = 0};
     ClosedPath path;
     linkage_start(&ideal, motions);

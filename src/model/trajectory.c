@@ -1,13 +1,49 @@
 // Where is what a run found kept?
 #include "model/trajectory.h"
 
-#include <assert.h>
+#include "base/zeroed.h"
+
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 // stretches of a whole run at the least: twice the columns of a panel of a picture
 enum { STRETCHES_LEAST = 800 };
+
+Sample sample_create(const Linkage *linkage)
+{
+    Sample sample = {
+        .bodies = zeroed(linkage->body_count, sizeof *sample.bodies),
+        .joints = zeroed(linkage->joint_count, sizeof *sample.joints),
+    };
+    if (linkage->is_spatial) {
+        sample.space_bodies = zeroed(linkage->body_count, sizeof *sample.space_bodies);
+        sample.space_joints = zeroed(linkage->joint_count, sizeof *sample.space_joints);
+    }
+    return sample;
+}
+
+void sample_free(Sample *sample)
+{
+    free(sample->bodies);
+    free(sample->joints);
+    free(sample->space_bodies);
+    free(sample->space_joints);
+    *sample = (Sample){.bodies = NULL};
+}
+
+void sample_copy(const Linkage *linkage, const Sample *from, Sample *to)
+{
+    to->time_s = from->time_s;
+    to->crank_rad = from->crank_rad;
+    memcpy(to->bodies, from->bodies, linkage->body_count * sizeof *to->bodies);
+    memcpy(to->joints, from->joints, linkage->joint_count * sizeof *to->joints);
+    if (linkage->is_spatial) {
+        memcpy(to->space_bodies, from->space_bodies,
+               linkage->body_count * sizeof *to->space_bodies);
+        memcpy(to->space_joints, from->space_joints,
+               linkage->joint_count * sizeof *to->space_joints);
+    }
+}
 
 static void refuse_memory(Trajectory *trajectory, size_t samples)
 {
@@ -23,6 +59,12 @@ Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
     const size_t samples = scenario_sample_count(scenario);
     trajectory->body_count = scenario->linkage.body_count;
     trajectory->joint_count = scenario->linkage.joint_count;
+    trajectory->reach = zeroed(trajectory->body_count, sizeof *trajectory->reach);
+    trajectory->slides = zeroed(trajectory->body_count, sizeof *trajectory->slides);
+    trajectory->bodies = zeroed(trajectory->body_count, sizeof *trajectory->bodies);
+    trajectory->joints = zeroed(trajectory->joint_count, sizeof *trajectory->joints);
+    trajectory->alpha_spikes = zeroed(trajectory->body_count, sizeof(SignalSpikes));
+    trajectory->force_spikes = zeroed(trajectory->joint_count, sizeof(SignalSpikes));
     trajectory->driven_body = linkage_driven_body(&scenario->linkage);
     for (size_t i = 0; i < trajectory->body_count; i++) {
         trajectory->reach[i] = linkage_reach(&scenario->linkage, (int)i);
@@ -73,6 +115,12 @@ void trajectory_destroy(Trajectory *trajectory)
     if (trajectory == NULL) {
         return;
     }
+    free(trajectory->reach);
+    free(trajectory->slides);
+    free(trajectory->bodies);
+    free(trajectory->joints);
+    free(trajectory->alpha_spikes);
+    free(trajectory->force_spikes);
     free(trajectory->times);
     free(trajectory->crank_angles);
     free(trajectory->motions);

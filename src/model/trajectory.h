@@ -76,16 +76,22 @@ typedef struct JointExtremes {
     Extreme axial_max; // m, distance of the pin's middle from the hole's along the axis
 } JointExtremes;
 
-// The state at one sample.
+// The state at one sample. Its arrays hold as many entries as the linkage has bodies or joints; an
+// assignment shares them.
 typedef struct Sample {
     double time_s;
     double crank_rad;
-    Motion bodies[LINKAGE_BODY_MAX]; // in space what the plane sees of them: space_planar
-    JointState joints[LINKAGE_JOINT_MAX];
-    // of a linkage in space only
-    SpaceMotion space_bodies[LINKAGE_BODY_MAX];
-    SpaceJointState space_joints[LINKAGE_JOINT_MAX];
+    Motion *bodies; // in space what the plane sees of them: space_planar
+    JointState *joints;
+    // of a linkage in space only, else NULL
+    SpaceMotion *space_bodies;
+    SpaceJointState *space_joints;
 } Sample;
+
+// Room for a sample of a linkage, all zero, for sample_free; and another's contents put into one.
+Sample sample_create(const Linkage *linkage);
+void sample_free(Sample *sample);
+void sample_copy(const Linkage *linkage, const Sample *from, Sample *to);
 
 // Where the energy of a run went, J.
 typedef struct Energy {
@@ -103,9 +109,9 @@ typedef struct Trajectory {
     char message[ERR_TEXT_SIZE];       // why it failed
     size_t body_count;
     size_t joint_count;
-    int driven_body;                // whose motion is prescribed, or LINKAGE_GROUND
-    double reach[LINKAGE_BODY_MAX]; // m, of each body's points from its centre: linkage_reach
-    bool slides[LINKAGE_BODY_MAX];  // linkage_slides
+    int driven_body; // whose motion is prescribed, or LINKAGE_GROUND
+    double *reach;   // m, of each body's points from its centre: linkage_reach; owned, as the next
+    bool *slides;    // linkage_slides
     size_t sample_count;
     double *times;              // s, by sample; owned, like the three below
     double *crank_angles;       // rad, by sample, not wrapped
@@ -113,12 +119,12 @@ typedef struct Trajectory {
     JointState *states;         // [sample * joint_count + joint]
     SpaceMotion *space_motions; // likewise, of a linkage in space; else NULL, like the next
     SpaceJointState *space_states;
-    size_t parts;  // stretches of the ranges in a sample interval
-    Ranges ranges; // between the samples, from every step; empty where not asked for
-    BodyExtremes bodies[LINKAGE_BODY_MAX];
-    JointExtremes joints[LINKAGE_JOINT_MAX];
-    SignalSpikes alpha_spikes[LINKAGE_BODY_MAX];
-    SignalSpikes force_spikes[LINKAGE_JOINT_MAX];
+    size_t parts;          // stretches of the ranges in a sample interval
+    Ranges ranges;         // between the samples, from every step; empty where not asked for
+    BodyExtremes *bodies;  // by body; owned, like the three below
+    JointExtremes *joints; // by joint
+    SignalSpikes *alpha_spikes;
+    SignalSpikes *force_spikes;
     double duration_s;    // simulated
     double report_from_s; // extremes, contacts and spikes are those from this time on
     Energy energy;

@@ -36,6 +36,8 @@ typedef struct Extrapolated {
     long interval;       // number of the node before it
     Hermite (*paths)[3]; // x, y and angle in the interval; owned, as are all arrays
     double start_s;      // of the last part
+    Sample begin;        // of it, once the next one is being made
+    Sample middle;       // likewise
     Sample end;          // of it
     Powers powers;       // there
     double drive_work;   // J, in the last part
@@ -55,6 +57,9 @@ static void extrapolated_close(void *state)
     if (own != NULL) {
         nodes_finish(&own->nodes);
         response_finish(own->response);
+        sample_free(&own->begin);
+        sample_free(&own->middle);
+        sample_free(&own->end);
         free(own->response);
         free(own->paths);
         free(own->omega);
@@ -91,6 +96,9 @@ static bool extrapolated_open(const Scenario *scenario, void **state, Err *err)
     Extrapolated *own = calloc(1, sizeof *own);
     assert(own != NULL);
     own->scenario = scenario;
+    own->begin = sample_create(&scenario->linkage);
+    own->middle = sample_create(&scenario->linkage);
+    own->end = sample_create(&scenario->linkage);
     own->driven = linkage_driven_body(&scenario->linkage);
     make_extrapolated(&scenario->linkage, own);
     if (nodes_init(scenario, &own->nodes, err)) {
@@ -186,10 +194,11 @@ static void observe_joints(const Extrapolated *own, Sample *sample)
 // Hands out the part from the end of the last one to a time in the interval.
 static bool make_part(Extrapolated *own, double end_s, Err *err)
 {
-    const Sample start = own->end;
+    sample_copy(&own->scenario->linkage, &own->end, &own->begin);
+    const Sample start = own->begin;
     const Powers from = own->powers;
     const double sixth_s = (end_s - start.time_s) / 6.0;
-    Sample middle;
+    Sample middle = own->middle;
     Powers mid = {0.0, 0.0};
     if (!work_out(own, 0.5 * (start.time_s + end_s), &middle, &mid) ||
         !work_out(own, end_s, &own->end, &own->powers)) {
@@ -252,12 +261,11 @@ static StepRecord extrapolated_record(const void *state)
 static void extrapolated_observe(const void *state, double time_s, Sample *sample)
 {
     const Extrapolated *own = state;
+    // should the forces not be determined, those of the end stand
+    sample_copy(&own->scenario->linkage, &own->end, sample);
     if (time_s == own->end.time_s) {
-        *sample = own->end;
         return;
     }
-    // should the forces not be determined, those of the end stand
-    *sample = own->end;
     Powers unused;
     work_out(own, time_s, sample, &unused);
     observe_joints(own, sample);

@@ -127,8 +127,8 @@ static void space_impulse_observe(const void *state, double time_s, Sample *samp
     for (size_t i = 0; i < linkage->body_count; i++) {
         sample->bodies[i] = space_planar(&sample->space_bodies[i]);
     }
-    memcpy(sample->joints, joints.plane, sizeof sample->joints);
-    memcpy(sample->space_joints, joints.space, sizeof sample->space_joints);
+    memcpy(sample->joints, joints.plane, linkage->joint_count * sizeof *sample->joints);
+    memcpy(sample->space_joints, joints.space, linkage->joint_count * sizeof *sample->space_joints);
 }
 
 static SolverModel space_impulse_model(const void *state)

@@ -354,8 +354,9 @@ static void space_rows_observe(const void *state, double time_s, Sample *sample)
         }
         sample->bodies[i] = space_planar(&sample->space_bodies[i]);
     }
-    memcpy(sample->joints, now->joints.plane, sizeof sample->joints);
-    memcpy(sample->space_joints, now->joints.space, sizeof sample->space_joints);
+    memcpy(sample->joints, now->joints.plane, linkage->joint_count * sizeof *sample->joints);
+    memcpy(sample->space_joints, now->joints.space,
+           linkage->joint_count * sizeof *sample->space_joints);
     space_joints_place(&rows->response, sample->space_bodies, sample->joints, sample->space_joints);
 }
 

@@ -7,9 +7,9 @@
 // sees every look.
 #include "run/look.h"
 
+#include "base/room.h"
 #include "base/root.h"
-
-#include <string.h>
+#include "base/zeroed.h"
 
 // of the extreme so far: a part of a step hardly rises higher above both its ends
 static const double NEAR = 0.01;
@@ -27,27 +27,78 @@ enum { POINTS_MAX = LOOK_PARTS_MAX + 4 };
 
 enum { CLIMBS_MAX = 12 }; // a parabola gains half as many digits again each time
 
-Look look_inside(const Looker *looker, double time_s)
+Looker looker_start(const Scenario *scenario, const Solver *solver, const void *state,
+                    Recorder *recorder)
+{
+    return (Looker){.scenario = scenario,
+                    .solver = solver,
+                    .state = state,
+                    .recorder = recorder,
+                    .sample = sample_create(&scenario->linkage)};
+}
+
+void looker_finish(Looker *looker)
+{
+    for (size_t i = 0; i < looker->block_count; i++) {
+        free(looker->blocks[i]);
+    }
+    free(looker->blocks);
+    sample_free(&looker->sample);
+}
+
+// Where the numbers of a look stand in its block.
+static Look look_in(const Looker *looker, double *block, double time_s)
+{
+    const size_t bodies = looker->scenario->linkage.body_count;
+    return (Look){time_s, block, block + bodies, block + 2 * bodies};
+}
+
+static Look new_look(Looker *looker, double time_s)
 {
     const Linkage *linkage = &looker->scenario->linkage;
-    Look look = {.time_s = time_s};
-    Sample sample;
-    looker->solver->observe(looker->state, time_s, &sample);
-    recorder_see(looker->recorder, &sample);
+    looker->blocks = room_grow(looker->blocks, &looker->block_count, looker->look_count + 1,
+                               sizeof *looker->blocks);
+    double **block = &looker->blocks[looker->look_count++];
+    if (*block == NULL) {
+        *block = zeroed(2 * linkage->body_count + linkage->joint_count, sizeof **block);
+    }
+    return look_in(looker, *block, time_s);
+}
+
+void looker_keep(Looker *looker, Look *look)
+{
+    size_t at = 0;
+    while (at < looker->look_count && looker->blocks[at] != look->omega) {
+        at++;
+    }
+    assert(at < looker->look_count);
+    double *kept = looker->blocks[at];
+    looker->blocks[at] = looker->blocks[0];
+    looker->blocks[0] = kept;
+    looker->look_count = 1;
+}
+
+Look look_inside(Looker *looker, double time_s)
+{
+    const Linkage *linkage = &looker->scenario->linkage;
+    const Look look = new_look(looker, time_s);
+    const Sample *sample = &looker->sample;
+    looker->solver->observe(looker->state, time_s, &looker->sample);
+    recorder_see(looker->recorder, sample);
     for (size_t i = 0; i < linkage->body_count; i++) {
-        look.omega[i] = sample.bodies[i].omega;
-        look.alpha[i] = sample.bodies[i].alpha;
+        look.omega[i] = sample->bodies[i].omega;
+        look.alpha[i] = sample->bodies[i].alpha;
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        look.force[i] = sample.joints[i].force;
+        look.force[i] = sample->joints[i].force;
     }
     return look;
 }
 
-Look look_at_end(const Looker *looker, const StepRecord *step)
+Look look_at_end(Looker *looker, const StepRecord *step)
 {
     const Linkage *linkage = &looker->scenario->linkage;
-    Look look = {.time_s = step->end_s};
+    const Look look = new_look(looker, step->end_s);
     memcpy(look.omega, step->omega, linkage->body_count * sizeof *look.omega);
     memcpy(look.alpha, step->alpha, linkage->body_count * sizeof *look.alpha);
     for (size_t i = 0; i < linkage->joint_count; i++) {
@@ -58,7 +109,7 @@ Look look_at_end(const Looker *looker, const StepRecord *step)
 
 // An acceleration or a force, and whether its largest or its smallest value is looked for.
 typedef struct Aim {
-    const Looker *looker;
+    Looker *looker;
     size_t signal; // alpha of each body, then the forces
     double sign;
     double extreme; // so far
@@ -90,7 +141,7 @@ static bool is_near(const Aim *aim, double value, double share)
 
 // The next signal with a sign to look for; false behind the last. The smallest force is nothing
 // that is reported.
-static bool next_aim(const Looker *looker, size_t *number, Aim *aim)
+static bool next_aim(Looker *looker, size_t *number, Aim *aim)
 {
     const Linkage *linkage = &looker->scenario->linkage;
     const size_t bodies = linkage->body_count;
@@ -107,7 +158,7 @@ static bool next_aim(const Looker *looker, size_t *number, Aim *aim)
     return true;
 }
 
-static bool any_is_near(const Looker *looker, const Look *before, int parts, const Look *looks)
+static bool any_is_near(Looker *looker, const Look *before, int parts, const Look *looks)
 {
     Aim aim;
     for (size_t number = 0; next_aim(looker, &number, &aim);) {
@@ -201,17 +252,20 @@ static bool find_top(const Aim *aim, size_t count, const Look *points, Look *fou
 
 // A body whose angular velocity may have an extreme between two looks.
 typedef struct Turn {
-    const Looker *looker;
+    Looker *looker;
     size_t body;
 } Turn;
 
 static double turn_rate(double time_s, void *context)
 {
     const Turn *turn = context;
-    return look_inside(turn->looker, time_s).alpha[turn->body];
+    const size_t looks = turn->looker->look_count;
+    const double alpha = look_inside(turn->looker, time_s).alpha[turn->body];
+    turn->looker->look_count = looks; // nobody else needs that one
+    return alpha;
 }
 
-static void look_for_turns(const Looker *looker, const Look *first, const Look *last)
+static void look_for_turns(Looker *looker, const Look *first, const Look *last)
 {
     const Trajectory *trajectory = looker->recorder->trajectory;
     for (size_t i = 0; i < trajectory->body_count; i++) {
@@ -228,12 +282,12 @@ static void look_for_turns(const Looker *looker, const Look *first, const Look *
              fmin(first->omega[i], last->omega[i]) - room < body->omega_min.value) &&
             root_find(turn_rate, &turn, first->time_s, last->time_s,
                       NEXT_TO_END * (last->time_s - first->time_s), &time_s)) {
-            look_inside(looker, time_s);
+            turn_rate(time_s, &turn); // for the recorder
         }
     }
 }
 
-int look_for_extremes(const Looker *looker, const Look *before, int parts, Look looks[LOOK_MAX])
+int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[LOOK_MAX])
 {
     const double end_s = looks[parts - 1].time_s;
     const double width_s = end_s - before->time_s;

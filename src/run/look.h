@@ -9,25 +9,36 @@ enum { LOOK_PARTS_MAX = 16, LOOK_TOPS_MAX = 8, LOOK_MAX = LOOK_PARTS_MAX + LOOK_
 // The signals at one instant.
 typedef struct Look {
     double time_s;
-    double omega[LINKAGE_BODY_MAX];
-    double alpha[LINKAGE_BODY_MAX];
-    double force[LINKAGE_JOINT_MAX];
+    double *omega; // by body; in the looker's room, like the next two
+    double *alpha;
+    double *force; // by joint
 } Look;
 
-// Whom to ask; nothing owned. What it says the recorder sees, too.
+// Whom to ask. What it says the recorder sees, too. Looks are in its room until that is emptied.
 typedef struct Looker {
     const Scenario *scenario;
     const Solver *solver;
     const void *state; // of the solver
     Recorder *recorder;
+    Sample sample;      // owned, as the room
+    size_t look_count;  // looks that are in the room
+    size_t block_count; // of them there is room for
+    double **blocks;    // of one look each
 } Looker;
 
-Look look_inside(const Looker *looker, double time_s);
+Looker looker_start(const Scenario *scenario, const Solver *solver, const void *state,
+                    Recorder *recorder);
+void looker_finish(Looker *looker);
+
+// Empties the room; what is in the look stays, and is the first one in it.
+void looker_keep(Looker *looker, Look *look);
+
+Look look_inside(Looker *looker, double time_s);
 
 // The end of a step as its record has it.
-Look look_at_end(const Looker *looker, const StepRecord *step);
+Look look_at_end(Looker *looker, const StepRecord *step);
 
 // Looks in a step for maxima and minima of the signals that come near the run's extremes, down to
 // rounding. `before` is the start of the step, the looks the ends of its parts, LOOK_PARTS_MAX at
 // most. Those at maxima are put in between; returns how many looks there are then.
-int look_for_extremes(const Looker *looker, const Look *before, int parts, Look looks[LOOK_MAX]);
+int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[LOOK_MAX]);

@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "base/sorted.h"
+#include "base/zeroed.h"
 
 // of a stretch: what ends so little behind its border ends there
 static const double BORDER_ROUNDING = 1e-9;
@@ -33,25 +34,38 @@ static void set_stretch_end(Recorder *recorder)
 Recorder recorder_start(const Scenario *scenario, Trajectory *trajectory)
 {
     trajectory->hash = HASH_START;
-    Recorder recorder = {.scenario = scenario, .trajectory = trajectory, .is_empty = true};
+    const Linkage *linkage = &scenario->linkage;
+    Recorder recorder = {
+        .scenario = scenario,
+        .trajectory = trajectory,
+        .is_empty = true,
+        .was_touching = zeroed(linkage->joint_count, sizeof *recorder.was_touching),
+        .open = zeroed(linkage->joint_count, sizeof *recorder.open),
+        .now = zeroed(trajectory->ranges.signal_count, sizeof *recorder.now),
+        .forces = zeroed(linkage->body_count, sizeof *recorder.forces),
+    };
     set_stretch_end(&recorder);
     empty_stretch(&recorder);
     return recorder;
 }
 
-// The size of the acceleration of a body's centre of mass, from the forces on it.
-static double acceleration_of(const Scenario *scenario, const StepRecord *step, size_t body)
+// The force on each body's centre of mass: its weight, and what its joints do.
+static void add_up_forces(const Scenario *scenario, const StepRecord *step, Vec2 *forces)
 {
     const Linkage *linkage = &scenario->linkage;
-    Vec2 force = {0.0, -linkage->bodies[body].mass * scenario->gravity};
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        forces[i] = (Vec2){0.0, -linkage->bodies[i].mass * scenario->gravity};
+    }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].body_b == (int)body) {
-            force = vec2_add(force, step->joints[i].force_on_b);
-        } else if (linkage->joints[i].body_a == (int)body) {
-            force = vec2_sub(force, step->joints[i].force_on_b);
+        const Joint *joint = &linkage->joints[i];
+        const Vec2 force = step->joints[i].force_on_b;
+        if (joint->body_b != LINKAGE_GROUND) {
+            forces[joint->body_b] = vec2_add(forces[joint->body_b], force);
+        }
+        if (joint->body_a != LINKAGE_GROUND) {
+            forces[joint->body_a] = vec2_sub(forces[joint->body_a], force);
         }
     }
-    return vec2_length(force) / linkage->bodies[body].mass;
 }
 
 // Takes a step into the stretch under way.
@@ -59,12 +73,17 @@ static void add_to_stretch(Recorder *recorder, const StepRecord *step)
 {
     const Linkage *linkage = &recorder->scenario->linkage;
     Range *range = recorder->now;
+    // without a drive the centres may be all that moves
+    const bool has_accelerations = !linkage->driver.is_present;
+    if (has_accelerations) {
+        add_up_forces(recorder->scenario, step, recorder->forces);
+    }
     for (size_t i = 0; i < linkage->body_count; i++) {
         range_add(&range[RANGES_OMEGA], step->omega[i]);
         range_add(&range[RANGES_ALPHA], step->alpha[i]);
-        // without a drive the centres may be all that moves
-        if (!linkage->driver.is_present) {
-            range_add(&range[RANGES_ACCELERATION], acceleration_of(recorder->scenario, step, i));
+        if (has_accelerations) {
+            range_add(&range[RANGES_ACCELERATION],
+                      vec2_length(recorder->forces[i]) / linkage->bodies[i].mass);
         }
         range += RANGES_OF_BODY;
     }
@@ -303,4 +322,8 @@ void recorder_finish(Recorder *recorder)
         set_crank(linkage, &trajectory->joints[i].tilt_max);
         set_crank(linkage, &trajectory->joints[i].axial_max);
     }
+    free(recorder->was_touching);
+    free(recorder->open);
+    free(recorder->now);
+    free(recorder->forces);
 }

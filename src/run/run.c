@@ -5,6 +5,7 @@
 #include "run/run.h"
 
 #include "base/clock.h"
+#include "base/zeroed.h"
 #include "contact/law.h"
 #include "contact/pin_space.h"
 #include "contact/touch.h"
@@ -28,13 +29,27 @@ typedef struct Loop {
     bool is_stopped;       // by the guard
     double started_s;      // by the clock
     size_t steps;
-    double reached_s;               // simulated
-    double width_s;                 // length of the last step
-    double angle[LINKAGE_BODY_MAX]; // rad, of each body there, by adding up omega
-    double omega[LINKAGE_BODY_MAX]; // rad/s, there
-    double elastic;                 // J, stored in the contacts there
-    double start_energy;            // J, kinetic, potential and elastic, at time zero
+    double reached_s;    // simulated
+    double width_s;      // length of the last step
+    double *angle;       // rad, of each body there, by adding up omega; owned, like the next two
+    double *omega;       // rad/s, there
+    Sample sample;       // the last one
+    double elastic;      // J, stored in the contacts there
+    double start_energy; // J, kinetic, potential and elastic, at time zero
 } Loop;
+
+// Room for the bodies, where they are at time zero.
+static void make_room(Loop *loop)
+{
+    const Linkage *linkage = &loop->scenario->linkage;
+    loop->angle = zeroed(linkage->body_count, sizeof *loop->angle);
+    loop->omega = zeroed(linkage->body_count, sizeof *loop->omega);
+    loop->sample = sample_create(linkage);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        loop->angle[i] = linkage->bodies[i].start.angle;
+        loop->omega[i] = linkage->bodies[i].start.omega;
+    }
+}
 
 // Adds what each body has turned in a step: enough to know which turn an angle is in.
 static void add_turning(Loop *loop, const StepRecord *record)
@@ -170,8 +185,7 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
         if (!reach(loop, time_s, err)) {
             return false;
         }
-        // a solver fills in what the linkage has; the rest is never looked at
-        Sample sample;
+        Sample sample = loop->sample;
         loop->solver->observe(loop->state, time_s, &sample);
         if (!check_sample(loop, &sample, err)) {
             return false;
@@ -194,7 +208,8 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
 // The balance over the run, from its first instant to the last one reached.
 static void close_energy(const Loop *loop, Trajectory *trajectory)
 {
-    Sample last = {.time_s = loop->reached_s};
+    Sample last = loop->sample;
+    last.time_s = loop->reached_s;
     loop->solver->observe(loop->state, loop->reached_s, &last);
     unwrap_angles(loop, &last);
     Energy *energy = &trajectory->energy;
@@ -257,14 +272,11 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     if (trajectory->sample_count == 0) {
         return trajectory;
     }
-    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
-        loop.angle[i] = scenario->linkage.bodies[i].start.angle;
-        loop.omega[i] = scenario->linkage.bodies[i].start.omega;
-    }
     if (!solver->open(scenario, &loop.state, &err)) {
         snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
         return trajectory;
     }
+    make_room(&loop);
     loop.recorder = recorder_start(scenario, trajectory);
     loop.probe_own =
         probe == NULL ? NULL : probe->begin(scenario, solver, loop.state, &loop.recorder);
@@ -290,5 +302,8 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     }
     snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
     solver->close(loop.state);
+    free(loop.angle);
+    free(loop.omega);
+    sample_free(&loop.sample);
     return trajectory;
 }

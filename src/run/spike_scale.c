@@ -8,6 +8,7 @@
 #include "analytic/closed_form.h"
 #include "analytic/inverse_dynamics.h"
 #include "base/dense.h"
+#include "base/zeroed.h"
 #include "model/kinematics.h"
 #include "model/space.h"
 
@@ -62,11 +63,12 @@ static DriveState pose(const Scenario *scenario, int number, int count)
 SpikeScale spike_scale(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
-    SpikeScale scale = {.is_known = linkage->driver.is_present && space_has_plane(linkage)};
+    SpikeScale scale = {.is_known = linkage->driver.is_present && space_has_plane(linkage) &&
+                                    kinematics_is_small(linkage)};
     scale.alpha = linkage->driver.speed * linkage->driver.speed;
-    double least[LINKAGE_BODY_MAX] = {0.0};
-    double most[LINKAGE_BODY_MAX] = {0.0};
-    Motion motions[LINKAGE_BODY_MAX];
+    double *least = zeroed(linkage->body_count, sizeof *least);
+    double *most = zeroed(linkage->body_count, sizeof *most);
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
     linkage_start(linkage, motions);
     const int count = scale.is_known ? pose_count(scenario) : 0;
     for (int k = 0; scale.is_known && k < count; k++) {
@@ -85,6 +87,9 @@ SpikeScale spike_scale(const Scenario *scenario)
             scale.force = fmax(scale.force, vec2_length(reactions.force_on_b[i]));
         }
     }
+    free(motions);
+    free(most);
+    free(least);
     scale.is_known = scale.is_known && scale.force > 0.0;
     return scale;
 }

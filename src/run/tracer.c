@@ -10,6 +10,7 @@
 #include "run/tracer.h"
 
 #include "base/sorted.h"
+#include "base/zeroed.h"
 #include "run/look.h"
 #include "run/spike_scale.h"
 #include "run/spikes.h"
@@ -38,10 +39,10 @@ typedef struct Tracer {
     const Scenario *scenario;
     Looker looker;
     SpikeScale scale;
-    Trace alpha[LINKAGE_BODY_MAX];
-    Trace force[LINKAGE_JOINT_MAX];
-    double impulse[LINKAGE_JOINT_MAX]; // N s, so far
-    Look last;                         // at the end of the last step
+    Trace *alpha;    // by body; owned, like the next two
+    Trace *force;    // by joint
+    double *impulse; // N s, so far
+    Look last;       // at the end of the last step
     bool has_begun;
 } Tracer;
 
@@ -59,7 +60,10 @@ static void *tracer_begin(const Scenario *scenario, const Solver *solver, const 
     Tracer *tracer = calloc(1, sizeof *tracer);
     assert(tracer != NULL);
     tracer->scenario = scenario;
-    tracer->looker = (Looker){scenario, solver, state, recorder};
+    tracer->looker = looker_start(scenario, solver, state, recorder);
+    tracer->alpha = zeroed(scenario->linkage.body_count, sizeof *tracer->alpha);
+    tracer->force = zeroed(scenario->linkage.joint_count, sizeof *tracer->force);
+    tracer->impulse = zeroed(scenario->linkage.joint_count, sizeof *tracer->impulse);
     tracer->scale = spike_scale(scenario);
     const double fine = tracer->scale.is_known ? FINENESS * scenario->run.spike_threshold : 0.0;
     for (size_t i = 0; i < scenario->linkage.body_count; i++) {
@@ -188,6 +192,7 @@ static void add_instants(Tracer *tracer, const StepRecord *step)
         add_forces(tracer, i, step, count, looks);
     }
     tracer->last = looks[count - 1];
+    looker_keep(&tracer->looker, &tracer->last);
 }
 
 static void tracer_look(void *own, const StepRecord *step)
@@ -323,12 +328,16 @@ static void tracer_end(void *own, Trajectory *trajectory)
     if (trajectory->is_complete) {
         tell_all(tracer, trajectory);
     }
-    for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
+    for (size_t i = 0; i < tracer->scenario->linkage.body_count; i++) {
         trace_finish(&tracer->alpha[i]);
     }
-    for (size_t i = 0; i < LINKAGE_JOINT_MAX; i++) {
+    for (size_t i = 0; i < tracer->scenario->linkage.joint_count; i++) {
         trace_finish(&tracer->force[i]);
     }
+    free(tracer->alpha);
+    free(tracer->force);
+    free(tracer->impulse);
+    looker_finish(&tracer->looker);
     free(tracer);
 }
 

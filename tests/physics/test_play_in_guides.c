@@ -48,7 +48,7 @@ static Impact first_impact(const Scenario *scenario)
         const StepRecord record = solver->record(reference);
         const bool is_touching = record.joints[SLIDER_GUIDE].is_touching;
         if (is_touching && !has_begun) {
-            Sample sample;
+            Sample sample = sample_create(&scenario->linkage);
             solver->observe(reference, record.end_s, &sample);
             impact.onset_s = record.end_s;
             impact.approach = record.approach[SLIDER_GUIDE];
@@ -56,6 +56,7 @@ static Impact first_impact(const Scenario *scenario)
                 impact.angles[i] = sample.bodies[i].angle;
                 impact.before[i] = record.omega[i];
             }
+            sample_free(&sample);
         } else if (has_begun && !is_touching) {
             impact.duration_s = record.end_s - impact.onset_s;
             for (int i = 0; i < 3; i++) {

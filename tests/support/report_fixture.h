@@ -54,7 +54,8 @@ static inline Trajectory *make_run(const Scenario *scenario, const char *backend
 {
     Trajectory *run = trajectory_create(scenario, backend);
     for (size_t i = 0; i < run->sample_count; i++) {
-        Sample sample = {.time_s = scenario_sample_time(scenario, i)};
+        Sample sample = sample_create(&scenario->linkage);
+        sample.time_s = scenario_sample_time(scenario, i);
         sample.crank_rad = linkage_crank_angle(&scenario->linkage, sample.time_s);
         for (size_t k = 0; k < run->body_count; k++) {
             sample.bodies[k].angle = 0.25 * (double)i;
@@ -65,6 +66,7 @@ static inline Trajectory *make_run(const Scenario *scenario, const char *backend
         sample.joints[1].gap = 1.25e-6;
         sample.joints[1].force = 10.0 * (double)i;
         trajectory_store(run, i, &sample);
+        sample_free(&sample);
     }
     run->is_complete = true;
     run->duration_s = scenario_duration(scenario);

@@ -20,7 +20,8 @@ Trajectory *truth_trajectory(const Scenario *scenario, const QuadProblem *proble
     }
     truth_run(problem, options, wanted, times, samples, figures);
     for (size_t k = 0; k < count; k++) {
-        Sample sample = {.time_s = times[k]};
+        Sample sample = sample_create(&scenario->linkage);
+        sample.time_s = times[k];
         for (size_t i = 0; k < figures->samples && i < problem->body_count; i++) {
             const TruthSample *body = &samples[k * problem->body_count + i];
             sample.bodies[i].velocity = (Vec2){(double)body->x_rate, (double)body->y_rate};
@@ -30,6 +31,7 @@ Trajectory *truth_trajectory(const Scenario *scenario, const QuadProblem *proble
                    isfinite(sample.bodies[i].velocity.y));
         }
         trajectory_store(trajectory, k, &sample);
+        sample_free(&sample);
     }
     trajectory->is_complete = true;
     free(times);

@@ -11,7 +11,8 @@ static Trajectory *made(const Scenario *scenario, double offset, double slip)
 {
     Trajectory *trajectory = trajectory_create(scenario, "made");
     for (size_t k = 0; k < trajectory->sample_count; k++) {
-        Sample sample = {.time_s = scenario_sample_time(scenario, k)};
+        Sample sample = sample_create(&scenario->linkage);
+        sample.time_s = scenario_sample_time(scenario, k);
         for (size_t i = 0; i < 3; i++) {
             const double scale = i == 1 ? 10.0 : 100.0;
             sample.bodies[i].omega = scale * (k % 2 == 0 ? 1.0 : -0.5) + (k == 7 ? offset : 0.0);
@@ -19,6 +20,7 @@ static Trajectory *made(const Scenario *scenario, double offset, double slip)
             sample.bodies[i].angle = slip * (double)k;
         }
         trajectory_store(trajectory, k, &sample);
+        sample_free(&sample);
     }
     trajectory->is_complete = true;
     return trajectory;
@@ -50,11 +52,13 @@ static Trajectory *made_sliding(const Scenario *scenario, double faster, double 
 {
     Trajectory *trajectory = made(scenario, 0.0, 0.0);
     for (size_t k = 0; k < trajectory->sample_count; k++) {
-        Sample sample = {.time_s = scenario_sample_time(scenario, k)};
+        Sample sample = sample_create(&scenario->linkage);
+        sample.time_s = scenario_sample_time(scenario, k);
         sample.bodies[1].omega = 10.0;
         sample.bodies[2].velocity.x = 5.0 + faster;
         sample.bodies[2].omega = turning;
         trajectory_store(trajectory, k, &sample);
+        sample_free(&sample);
     }
     return trajectory;
 }

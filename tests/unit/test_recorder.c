@@ -214,7 +214,6 @@ static void every_step_is_in_the_range_of_its_stretch(void **state)
 static void observe_swings(const void *solver_state, double time_s, Sample *sample)
 {
     (void)solver_state;
-    memset(sample, 0, sizeof *sample);
     sample->time_s = time_s;
     sample->bodies[1].alpha = 5.0 * cos(time_s);
     sample->bodies[1].omega = 5.0 * sin(time_s);
@@ -229,17 +228,16 @@ static void tops_within_a_step_that_is_looked_into_are_extremes(void **state)
     const Solver solver = {.name = "swings", .observe = observe_swings};
     Trajectory *trajectory = trajectory_create(&scenario, "test");
     Recorder recorder = recorder_start(&scenario, trajectory);
-    const Looker looker = {&scenario, &solver, NULL, &recorder};
-    Sample ends[2];
+    Looker looker = looker_start(&scenario, &solver, NULL, &recorder);
+    Sample end = sample_create(&scenario.linkage);
     Look looks[LOOK_MAX];
     const double first_s = 0.25;
     const double last_s = M_PI - 0.25;
-    observe_swings(NULL, first_s, &ends[0]);
-    observe_swings(NULL, last_s, &ends[1]);
+    observe_swings(NULL, last_s, &end);
     Steps steps = {.approach = {0.0}};
-    steps.omega[1] = ends[1].bodies[1].omega;
-    steps.alpha[1] = ends[1].bodies[1].alpha;
-    add_step(&recorder, &steps, 0, ends[1].joints[1].force, 0.0);
+    steps.omega[1] = end.bodies[1].omega;
+    steps.alpha[1] = end.bodies[1].alpha;
+    add_step(&recorder, &steps, 0, end.joints[1].force, 0.0);
     const Look before = look_inside(&looker, first_s);
     const StepRecord record = {.start_s = first_s,
                                .end_s = last_s,
@@ -258,6 +256,9 @@ static void tops_within_a_step_that_is_looked_into_are_extremes(void **state)
     // where omega turns, alpha is zero: found to a thousandth of the step
     assert_close(body->omega_max.value, 5.0, 1e-5);
     assert_close(body->alpha_max.value, 5.0 * cos(0.25), 1e-12);
+    sample_free(&end);
+    looker_finish(&looker);
+    recorder_finish(&recorder);
     trajectory_destroy(trajectory);
 }
 

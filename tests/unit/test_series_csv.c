@@ -119,11 +119,13 @@ static void a_number_that_does_not_exist_is_an_empty_cell(void **state)
 {
     Fixture *fixture = *state;
     Trajectory *run = fixture->runs[1];
-    Sample sample = {.time_s = run->times[1]};
+    Sample sample = sample_create(&fixture->scenario.linkage);
+    sample.time_s = run->times[1];
     sample.bodies[1].omega = 3.5;
     sample.bodies[1].alpha = INFINITY;
     sample.joints[1].force = NAN;
     trajectory_store(run, 1, &sample);
+    sample_free(&sample);
     char path[256];
     static char content[8192];
     Err err = {0};

@@ -13,8 +13,8 @@ static const double REACH_S = 3e-3;
 // A run whose joint has spikes at these times, ms; force and impulse follow from their number.
 static Trajectory *run_with(const double *onsets_ms, size_t count, double scale)
 {
-    Trajectory *run = calloc(1, sizeof *run);
-    assert_non_null(run);
+    const Scenario scenario = mechanism_paper();
+    Trajectory *run = trajectory_create(&scenario, "made");
     run->is_complete = true;
     run->joints[JOINT].spike_count = count;
     for (size_t i = 0; i < count; i++) {
@@ -33,8 +33,8 @@ static SpikeMatch match(const double *onsets_ms, size_t count, const double *tru
     Trajectory *run = run_with(onsets_ms, count, 1.25);
     Trajectory *truth = run_with(truth_ms, truth_count, 1.0);
     const SpikeMatch result = spike_match(run, truth, JOINT, 1e-3 * horizon_ms, REACH_S);
-    free(run);
-    free(truth);
+    trajectory_destroy(run);
+    trajectory_destroy(truth);
     return result;
 }
 
@@ -132,8 +132,8 @@ static void a_spike_without_force_is_no_contact(void **state)
     assert_near(result.pairs[0].force_error, 0.25, 1e-15);
     assert_int_equal(result.missed, 0);
     assert_int_equal(result.extra, 1);
-    free(run);
-    free(truth);
+    trajectory_destroy(run);
+    trajectory_destroy(truth);
 }
 
 static void the_reach_is_a_part_of_a_turn_or_of_the_run(void **state)
