@@ -1,57 +1,70 @@
 // How does a tree with loops accelerate under forces, at a cost linear in its size?
 //
-// A body's motion is that of its reference: of a body on a revolute joint its pin, of others the
-// centre. With e from there to the centre, p to the pin of a child (both turned by a quarter turn),
-// K_c and F_c what a child is at that pin, the body resists an acceleration a, al by
-//     A a + b al = f - sum F_c,   b a + J al = t - sum p F_c
-//     A = m + sum K_c,  b = m e + sum K_c p,  J = I + m e^2 + sum p K_c p
-// A revolute joint leaves al free:
-//     al = t / J - (b / J) a,   K = A - b b^T / J
-// Bodies with loops or slides: reference/articulated_fronts.c.
+// A body's motion x is that of its reference: of a body on a revolute joint its pin, of others the
+// centre; al is its spin. With e from there to the centre, p to the reference of a body that hangs
+// on it (both turned by a quarter turn), and A_c, b_c, J_c what that one has left, it resists by
+//     A x + b al = f,   b x + J al = t
+//     A = m + sum A_c,   b = m e + sum (b_c + A_c p),   J = I + m e^2 + sum (J_c + (2 b_c + A_c p)
+//     p)
+// A revolute joint leaves al free, and nothing but a mass at the pin is left:
+//     al = (t - b x) / J,   A - b b^T / J,   b = 0,   J = 0
+// A slide leaves the motion along it free, in the same way. Loops: reference/articulated_fronts.c.
 #include "reference/articulated.h"
 
 #include "reference/articulated_fronts.h"
+#include "reference/articulated_tree.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
 
 static void lay(Articulated *articulated, Layout *layout)
 {
-    const Tree *tree = articulated->tree;
     const Plan *plan = &articulated->plan;
-    articulated->links = layout_take(layout, tree->node_count, sizeof *articulated->links);
-    articulated->loops = layout_take(layout, articulated->loop_count, sizeof(int));
-    size_t widest = 0;
-    articulated->matrices = layout_take(layout, plan->front_count, sizeof(double *));
-    articulated->vectors = layout_take(layout, plan->front_count, sizeof(double *));
+    articulated->links =
+        layout_take(layout, articulated->tree->node_count, sizeof *articulated->links);
+    articulated->loops = layout_take(layout, articulated->loop_count, sizeof *articulated->loops);
+    articulated->fronts = layout_take(layout, plan->front_count, sizeof *articulated->fronts);
     for (size_t i = 0; i < plan->front_count; i++) {
-        const size_t width = plan->fronts[i].width;
-        widest = width > widest ? width : widest;
-        double *matrix = layout_take(layout, width * width, sizeof *matrix);
-        double *vector = layout_take(layout, width, sizeof *vector);
-        if (articulated->matrices != NULL) {
-            articulated->matrices[i] = matrix;
-            articulated->vectors[i] = vector;
+        const size_t count = 2 * plan->fronts[i].loop_count;
+        FrontRows at;
+        at.rows = layout_take(layout, count, sizeof *at.rows);
+        at.square = layout_take(layout, count * count, sizeof *at.square);
+        at.own = layout_take(layout, count, sizeof *at.own);
+        at.along = layout_take(layout, count, sizeof *at.along);
+        at.across = layout_take(layout, count, sizeof *at.across);
+        at.vector = layout_take(layout, count, sizeof *at.vector);
+        if (articulated->fronts != NULL) {
+            articulated->fronts[i] = at;
         }
     }
-    articulated->targets = layout_take(layout, widest, sizeof *articulated->targets);
 }
 
 static void set_links(Articulated *articulated)
 {
+    articulated->is_plain = articulated->plan.front_count == 0;
     const Tree *tree = articulated->tree;
+    const Plan *plan = &articulated->plan;
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
         const Body *body = &tree->linkage->bodies[node->body];
         const bool is_hinge = node->joint >= 0 && !node->is_sliding;
         const Vec2 arm = is_hinge ? tree->anchors[node->own_end] : (Vec2){0.0, 0.0};
-        ArticulatedLink *link = &articulated->links[i];
-        link->kind = is_hinge ? LINK_HINGE : (node->is_sliding ? LINK_SLIDE : LINK_FLOATING);
-        link->has_own_front = articulated->plan.front_of[i] >= 0;
-        link->has_fronts = articulated->plan.fronts_from[i + 1] < articulated->plan.fronts_from[i];
-        link->mass = body->mass;
-        link->inertia = body->inertia + body->mass * vec2_dot(arm, arm);
+        articulated->links[i] = (ArticulatedLink){
+            .kind = is_hinge ? LINK_HINGE : (node->is_sliding ? LINK_SLIDE : LINK_FLOATING),
+            .has_fronts = plan->fronts_from[i + 1] < plan->fronts_from[i],
+            .has_own_front = plan->front_of[i] >= 0,
+            .parent = node->parent_node,
+            .body = node->body,
+            .column = node->column,
+            .own_end = node->own_end,
+            .parent_end = node->parent_end,
+            .mass = body->mass,
+            .inertia = body->inertia + body->mass * vec2_dot(arm, arm),
+        };
+        articulated->is_plain = articulated->is_plain && !node->is_sliding;
+        if (node->parent_node >= 0) {
+            articulated->links[node->parent_node].has_children = true;
+        }
     }
 }
 
@@ -87,12 +100,10 @@ void articulated_destroy(Articulated *articulated)
 static inline Vec2 lever_of(const Articulated *articulated, size_t number, const TreeState *state)
 {
     const TreeNode *node = &articulated->tree->nodes[number];
-    Vec2 lever = node->is_sliding ? state->behind[number] : state->arms[node->parent_end];
-    if (articulated->links[node->parent_node].kind == LINK_HINGE) {
-        const int own_end = articulated->tree->nodes[node->parent_node].own_end;
-        lever = vec2_sub(lever, state->arms[own_end]);
-    }
-    return vec2_perp(lever);
+    const ArticulatedLink *parent = &articulated->links[node->parent_node];
+    const Vec2 arm = node->is_sliding ? state->behind[number] : state->arms[node->parent_end];
+    // the centre of a hinge is known: it stands before what hangs on it
+    return vec2_add(parent->centre, vec2_perp(arm));
 }
 
 // What the body itself resists with.
@@ -103,29 +114,54 @@ static inline void start_link(const Articulated *articulated, size_t number, con
     if (link->kind == LINK_HINGE) {
         const Vec2 arm = state->arms[node->own_end];
         link->centre = (Vec2){arm.y, -arm.x};
-    }
-    if (link->kind == LINK_SLIDE) {
+    } else if (link->kind == LINK_SLIDE) {
         link->direction = state->along[number];
     }
     link->xx = link->yy = link->mass;
     link->xy = 0.0;
     link->j = link->inertia;
     link->b = vec2_scale(link->mass, link->centre);
-    if (node->parent_node >= 0) {
+    if (link->parent >= 0) {
         link->lever = lever_of(articulated, number, state);
     }
 }
 
-// Eliminates the turning of a body, and of one that floats its motion.
+static inline Vec2 resisted(const ArticulatedLink *link, Vec2 motion)
+{
+    return (Vec2){
+        link->xx * motion.x + link->xy * motion.y,
+        link->xy * motion.x + link->yy * motion.y,
+    };
+}
+
+// Eliminates the motion along a slide.
+static bool eliminate_slide(ArticulatedLink *link)
+{
+    const Vec2 coupled = resisted(link, link->direction);
+    const double spun = vec2_dot(link->direction, link->b);
+    const double pivot = vec2_dot(link->direction, coupled);
+    link->inverse = 1.0 / pivot;
+    link->share = vec2_scale(link->inverse, coupled);
+    link->spin_share = link->inverse * spun;
+    link->xx -= link->share.x * coupled.x;
+    link->xy -= link->share.x * coupled.y;
+    link->yy -= link->share.y * coupled.y;
+    link->b = vec2_sub(link->b, vec2_scale(spun, link->share));
+    link->j -= link->spin_share * spun;
+    return pivot > 0.0;
+}
+
+// Eliminates a body's own freedom; of one that floats, all of them.
 static inline bool eliminate(ArticulatedLink *link)
 {
-    const double inverse = 1.0 / link->j;
-    const Vec2 share = vec2_scale(inverse, link->b);
-    link->inverse = inverse;
-    link->share = share;
-    link->xx -= share.x * link->b.x;
-    link->xy -= share.x * link->b.y;
-    link->yy -= share.y * link->b.y;
+    if (link->kind == LINK_SLIDE) {
+        return eliminate_slide(link);
+    }
+    link->inverse = 1.0 / link->j;
+    link->share = vec2_scale(link->inverse, link->b);
+    link->xx -= link->share.x * link->b.x;
+    link->xy -= link->share.x * link->b.y;
+    link->yy -= link->share.y * link->b.y;
     if (link->kind == LINK_FLOATING) {
         link->slope = link->xy / link->xx;
         link->yy -= link->slope * link->xy;
@@ -134,74 +170,62 @@ static inline bool eliminate(ArticulatedLink *link)
     return link->j > 0.0;
 }
 
-// Adds a body that hangs to the one it hangs on.
+// Adds what is left of a body to the one it hangs on.
 static inline void hand_on(const ArticulatedLink *link, ArticulatedLink *parent)
 {
-    const Vec2 lever = link->lever;
-    const Vec2 moved = {
-        link->xx * lever.x + link->xy * lever.y,
-        link->xy * lever.x + link->yy * lever.y,
-    };
+    const Vec2 moved = resisted(link, link->lever);
     parent->xx += link->xx;
     parent->xy += link->xy;
     parent->yy += link->yy;
     parent->b = vec2_add(parent->b, moved);
-    parent->j += vec2_dot(lever, moved);
+    parent->j += vec2_dot(link->lever, moved);
+    if (link->kind == LINK_SLIDE) {
+        parent->b = vec2_add(parent->b, link->b);
+        parent->j += link->j + 2.0 * vec2_dot(link->lever, link->b);
+    }
 }
 
-bool articulated_factor(Articulated *articulated, const TreeState *state)
-{
-    const Tree *tree = articulated->tree;
-    ArticulatedLink *links = articulated->links;
-    for (size_t i = 0; i < tree->node_count; i++) {
-        start_link(articulated, i, state, &links[i]);
-    }
-    for (size_t i = tree->node_count; i-- > 0;) {
-        ArticulatedLink *link = &links[i];
-        if (link->has_fronts && !articulated_fronts_factor(articulated, (int)i, state)) {
-            return false;
-        }
-        if (link->has_own_front) {
-            continue;
-        }
-        if (!eliminate(link)) {
-            return false;
-        }
-        if (tree->nodes[i].parent_node >= 0) {
-            hand_on(link, &links[tree->nodes[i].parent_node]);
-        }
-    }
-    return articulated_fronts_factor(articulated, -1, state);
-}
-
-// Of a body without a front: eliminates its turning, and hands the rest on to what it hangs on.
+// The same of the forces.
 static inline void push_inwards(ArticulatedLink *link, ArticulatedLink *parent)
 {
-    link->force = vec2_sub(link->force, vec2_scale(link->moment, link->share));
+    double left = 0.0;
+    link->own_force = link->moment;
+    if (link->kind == LINK_SLIDE) {
+        link->own_force = vec2_dot(link->direction, link->force);
+        left = link->moment - link->own_force * link->spin_share;
+    }
+    link->force = vec2_sub(link->force, vec2_scale(link->own_force, link->share));
     if (parent != NULL) {
         parent->force = vec2_add(parent->force, link->force);
-        parent->moment += vec2_dot(link->lever, link->force);
+        parent->moment += left + vec2_dot(link->lever, link->force);
     }
 }
 
-// Of a body without a front: its motion, from that of what it hangs on.
+// A body's motion, from that of what it hangs on.
 static inline void move_outwards(ArticulatedLink *link, const ArticulatedLink *parent)
 {
     if (link->kind == LINK_FLOATING) {
         const Vec2 force = link->force;
         const double y = (force.y - link->slope * force.x) / link->yy;
         link->motion = (Vec2){(force.x - link->xy * y) / link->xx, y};
+    } else if (parent != NULL) {
+        link->motion = vec2_add(parent->motion, vec2_scale(parent->spin, link->lever));
     } else {
-        link->motion = articulated_at(link, parent);
+        link->motion = (Vec2){0.0, 0.0};
     }
-    link->spin = link->inverse * link->moment - vec2_dot(link->share, link->motion);
+    const double own = link->inverse * link->own_force - vec2_dot(link->share, link->motion);
+    if (link->kind != LINK_SLIDE) {
+        link->spin = own;
+        return;
+    }
+    link->spin = parent != NULL ? parent->spin : 0.0;
+    link->slide = own - link->spin_share * link->spin;
+    link->motion = vec2_add(link->motion, vec2_scale(link->slide, link->direction));
 }
 
-static void write_rates(const Articulated *articulated, size_t number, double *rates)
+static inline void write_rates(const ArticulatedLink *link, double *rates)
 {
-    const TreeNode *node = &articulated->tree->nodes[number];
-    const ArticulatedLink *link = &articulated->links[number];
-    double *own = &rates[node->column];
+    double *own = &rates[link->column];
     own[0] = link->kind == LINK_SLIDE ? link->slide : link->spin;
     if (link->kind == LINK_FLOATING) {
         own[-2] = link->motion.x;
@@ -209,36 +233,106 @@ static void write_rates(const Articulated *articulated, size_t number, double *r
     }
 }
 
+// From the leaves inwards: eliminates where a state is given, and takes the forces along where they
+// are wanted.
+static inline bool sweep_inwards(Articulated *articulated, const TreeState *state, bool has_forces,
+                                 const double *sides)
+{
+    ArticulatedLink *links = articulated->links;
+    for (size_t i = articulated->tree->node_count; i-- > 0;) {
+        ArticulatedLink *link = &links[i];
+        ArticulatedLink *parent = link->parent >= 0 ? &links[link->parent] : NULL;
+        if (link->has_fronts) {
+            if (state != NULL && !articulated_gather(articulated, (int)i, state)) {
+                return false;
+            }
+            if (has_forces) {
+                articulated_gather_sides(articulated, (int)i, sides);
+            }
+        }
+        if (state != NULL) {
+            if (!eliminate(link)) {
+                return false;
+            }
+            if (link->has_own_front) {
+                articulated_take_out(articulated, (int)i);
+            }
+            if (parent != NULL) {
+                hand_on(link, parent);
+            }
+        }
+        if (has_forces) {
+            push_inwards(link, parent);
+            if (link->has_own_front) {
+                articulated_take_out_sides(articulated, (int)i);
+            }
+        }
+    }
+    if (state != NULL && !articulated_gather(articulated, -1, state)) {
+        return false;
+    }
+    if (has_forces) {
+        articulated_gather_sides(articulated, -1, sides);
+    }
+    return true;
+}
+
+static inline void sweep_outwards(Articulated *articulated, double *rates)
+{
+    ArticulatedLink *links = articulated->links;
+    const size_t count = articulated->tree->node_count;
+    double *multipliers = rates + articulated->tree->coordinate_count;
+    articulated_find_multipliers(articulated, -1, multipliers);
+    for (size_t i = 0; i < count; i++) {
+        ArticulatedLink *link = &links[i];
+        if (link->has_own_front) {
+            articulated_add_multipliers(articulated, (int)i, multipliers);
+        }
+        move_outwards(link, link->parent >= 0 ? &links[link->parent] : NULL);
+        if (link->has_fronts) {
+            articulated_find_multipliers(articulated, (int)i, multipliers);
+        }
+        write_rates(link, rates);
+    }
+}
+
+bool articulated_factor(Articulated *articulated, const TreeState *state)
+{
+    for (size_t i = 0; i < articulated->tree->node_count; i++) {
+        start_link(articulated, i, state, &articulated->links[i]);
+    }
+    return sweep_inwards(articulated, state, false, NULL);
+}
+
 void articulated_solve(Articulated *articulated, const ArticulatedPush *pushes, const double *sides,
                        double *rates)
 {
-    const Tree *tree = articulated->tree;
-    ArticulatedLink *links = articulated->links;
-    double *multipliers = rates + tree->coordinate_count;
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const ArticulatedPush *push = &pushes[tree->nodes[i].body];
-        links[i].force = push->force;
-        links[i].moment = push->moment + vec2_dot(links[i].centre, push->force);
+    for (size_t i = 0; i < articulated->tree->node_count; i++) {
+        ArticulatedLink *link = &articulated->links[i];
+        const ArticulatedPush *push = &pushes[link->body];
+        link->force = push->force;
+        link->moment = push->moment + vec2_dot(link->centre, push->force);
     }
-    for (size_t i = tree->node_count; i-- > 0;) {
-        const int parent = tree->nodes[i].parent_node;
-        if (links[i].has_fronts) {
-            articulated_fronts_inwards(articulated, (int)i, sides);
-        }
-        if (!links[i].has_own_front) {
-            push_inwards(&links[i], parent >= 0 ? &links[parent] : NULL);
-        }
+    sweep_inwards(articulated, NULL, true, sides);
+    sweep_outwards(articulated, rates);
+}
+
+bool articulated_accelerate(Articulated *articulated, const TreeState *state,
+                            const ArticulatedPush *pushes, const double *sides, double *rates)
+{
+    if (articulated->is_plain) {
+        return articulated_tree_accelerate(articulated, state, pushes, rates);
     }
-    articulated_fronts_inwards(articulated, -1, sides);
-    articulated_fronts_outwards(articulated, -1, multipliers);
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const int parent = tree->nodes[i].parent_node;
-        if (!links[i].has_own_front) {
-            move_outwards(&links[i], parent >= 0 ? &links[parent] : NULL);
-        }
-        if (links[i].has_fronts) {
-            articulated_fronts_outwards(articulated, (int)i, multipliers);
-        }
-        write_rates(articulated, i, rates);
+    for (size_t i = 0; i < articulated->tree->node_count; i++) {
+        ArticulatedLink *link = &articulated->links[i];
+        const ArticulatedPush *push = &pushes[link->body];
+        start_link(articulated, i, state, link);
+        link->force = vec2_sub(push->force, vec2_scale(link->mass, state->bias[link->body]));
+        link->moment = push->moment + vec2_dot(link->centre, link->force);
     }
+    if (!sweep_inwards(articulated, state, true, sides)) {
+        return false;
+    }
+    sweep_outwards(articulated, rates);
+    return true;
 }

@@ -10,15 +10,7 @@
 // together at one body or at the ground are eliminated in an order that fills in little.
 #pragma once
 
-#include "reference/tree.h"
-
-typedef struct Articulated Articulated;
-
-// What a body is given: a force at its centre, N, and the moment about it, N m.
-typedef struct ArticulatedPush {
-    Vec2 force;
-    double moment;
-} ArticulatedPush;
+#include "reference/articulated_links.h"
 
 // For the loops of some joints. The tree must outlive it. Never NULL; the caller destroys it.
 Articulated *articulated_create(const Tree *tree, size_t loop_count, const int *loops);
@@ -33,3 +25,8 @@ bool articulated_factor(Articulated *articulated, const TreeState *state);
 // multipliers of the loops' rows, two each: what the joint gives its body b.
 void articulated_solve(Articulated *articulated, const ArticulatedPush *pushes, const double *sides,
                        double *rates);
+
+// Both at once, of pushes less what the bodies' bias takes of them (TreeState.bias): writes the
+// second rates.
+bool articulated_accelerate(Articulated *articulated, const TreeState *state,
+                            const ArticulatedPush *pushes, const double *sides, double *rates);

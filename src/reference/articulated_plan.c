@@ -85,8 +85,6 @@ static PlanFront *add_front(Maker *maker, int node, bool is_body)
     *front = (PlanFront){
         .node = node,
         .is_body = is_body,
-        .motion = is_body ? 0 : 2,
-        .width = node >= 0 ? 3 : 0,
         .first_loop = plan->loop_count,
         .first_child = plan->child_count,
         .first_end = plan->end_count,
@@ -102,10 +100,7 @@ static void add_loop(Maker *maker, int loop)
     if (maker->row_of[loop] >= 0) {
         return;
     }
-    // the loop that is eliminated comes before the motion
-    const bool is_first = !front->is_body && front->loop_count == 0;
-    maker->row_of[loop] = is_first ? 0 : (int)front->width;
-    front->width += 2;
+    maker->row_of[loop] = 2 * (int)front->loop_count;
     front->loop_count++;
     plan->loops = widen(plan->loops, &maker->rooms[2], plan->loop_count + 1, sizeof *plan->loops);
     plan->loops[plan->loop_count++] = loop;
@@ -192,7 +187,6 @@ static size_t degree_of(const Maker *maker, int loop)
 static void add_loop_front(Maker *maker, int node, int loop)
 {
     add_front(maker, node, false);
-    // the motion comes behind the loop's own two rows
     add_loop(maker, loop);
     for (int k = 0; k < 2; k++) {
         if (maker->within[loop][k] >= 0) {
@@ -222,7 +216,7 @@ static void add_loop_fronts(Maker *maker, int node)
     }
 }
 
-// Eliminates the freedom of a node; no front is needed where only masses hang on it.
+// Eliminates the freedom of a node; no front is needed where no loop feels it.
 static void add_body_front(Maker *maker, int node)
 {
     Plan *plan = maker->plan;
@@ -237,7 +231,7 @@ static void add_body_front(Maker *maker, int node)
         add_end(maker, end / 2, end % 2);
     }
     const PlanFront *own = &plan->fronts[number];
-    if (own->child_count + own->end_count == 0 && !maker->tree->nodes[node].is_sliding) {
+    if (own->child_count + own->end_count == 0) {
         plan->front_count--;
         return;
     }

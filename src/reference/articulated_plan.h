@@ -1,9 +1,8 @@
 // In which order are the unknowns of a tree with loops eliminated, and what meets in each step?
 // Found once, from the tree alone.
 //
-// A front is one step: a small dense symmetric matrix of what is eliminated in it (a body's
-// freedom, or the two multipliers of one loop) and what that is coupled with (the rest of the
-// body's motion, multipliers of other loops). What is left of it goes into one later front. Source:
+// A front is one step: the rows of some loops, and what is eliminated is a body's freedom or the
+// two multipliers of the first of the loops. What is left of it goes into one later front. Source:
 // Duff and Reid 1983, multifrontal elimination.
 #pragma once
 
@@ -23,11 +22,9 @@ typedef struct PlanEnd {
 } PlanEnd;
 
 typedef struct PlanFront {
-    int node;           // whose motion is in it; -1: none
+    int node;           // whose motion its rows feel; -1: none
     bool is_body;       // whether that node's freedom is eliminated, else the first loop
-    size_t width;       // of its matrix
-    size_t motion;      // row at which the motion begins, of three
-    size_t first_loop;  // into Plan.loops
+    size_t first_loop;  // into Plan.loops; each loop has two rows
     size_t loop_count;  //
     size_t first_child; // into Plan.children
     size_t child_count; //
@@ -46,7 +43,7 @@ typedef struct Plan {
     PlanChild *children;
     size_t end_count;
     PlanEnd *ends;
-    int *front_of;       // by node: the front of its body; -1: it is simple, and needs none
+    int *front_of;       // by node: the front that eliminates its freedom; -1: no loop feels that
     size_t *fronts_from; // by node + 1, the ground before the first: where the fronts there begin;
                          // those of the last node are the first, those of the ground the last
 } Plan;

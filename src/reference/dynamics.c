@@ -95,7 +95,6 @@ static void lay(Dynamics *dynamics, size_t contact_most, Layout *layout)
     dynamics->reach = layout_take(layout, bodies, sizeof *dynamics->reach);
     dynamics->weights = layout_take(layout, bodies, sizeof *dynamics->weights);
     room->loads.pushes = layout_take(layout, bodies, sizeof *room->loads.pushes);
-    room->pushes = layout_take(layout, bodies, sizeof *room->pushes);
     room->zeros = layout_take(layout, bodies, sizeof *room->zeros);
     room->added = layout_take(layout, bodies, sizeof *room->added);
     room->sides = layout_take(layout, rows, sizeof *room->sides);
@@ -255,22 +254,13 @@ static bool find_rates(const Dynamics *dynamics, double since_s, const double *y
             load_contact(dynamics, i, &state->tree, &state->contacts[i], loads);
         }
     }
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const int body = tree->nodes[i].body;
-        const Vec2 held = vec2_scale(tree->linkage->bodies[body].mass, state->tree.bias[body]);
-        const ArticulatedPush *push = &loads->pushes[body];
-        room->pushes[body] = (ArticulatedPush){vec2_sub(push->force, held), push->moment};
-    }
     for (size_t loop = 0; loop < tree->loop_count; loop++) {
         const Vec2 bias = loops_bias(tree, &state->tree, loop);
         room->sides[2 * loop] = -bias.x;
         room->sides[2 * loop + 1] = -bias.y;
     }
-    if (!articulated_factor(dynamics->articulated, &state->tree)) {
-        return false;
-    }
-    articulated_solve(dynamics->articulated, room->pushes, room->sides, room->solved);
-    return true;
+    return articulated_accelerate(dynamics->articulated, &state->tree, loads->pushes, room->sides,
+                                  room->solved);
 }
 
 // Power of the drive and force of the driven joint, from the driven body's own equations.

@@ -47,12 +47,11 @@ enum { DYNAMICS_PUSHED = 3 };
 typedef struct DynamicsRoom {
     DynamicsState *state;
     Loads loads;
-    ArticulatedPush *pushes; // by body
-    ArticulatedPush *zeros;  // by body
-    BodyLoad *added;         // by body
-    double *sides;           // of the loops' rows
-    double *solved;          // by coordinate, then by row of a loop
-    double *closed;          // an integrator's vector
+    ArticulatedPush *zeros; // by body
+    BodyLoad *added;        // by body
+    double *sides;          // of the loops' rows
+    double *solved;         // by coordinate, then by row of a loop
+    double *closed;         // an integrator's vector
     // of the slopes, by coordinate
     Vec2 *row;
     double *arms;

@@ -85,6 +85,7 @@ double loops_project(const LoopsRoom *room, double since_s, double *q, double *u
         return 0.0;
     }
     const Tree *tree = room->tree;
+    // near a change point the rows turn much in little: each move asks for them anew
     for (int pass = 0; pass < PASSES; pass++) {
         tree_evaluate(tree, since_s, q, u, room->state);
         move_least(room, false, q);

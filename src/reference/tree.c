@@ -72,9 +72,18 @@ static inline void set_hanging(const Tree *tree, const TreeNode *node, TreeState
     Vec2 velocity = vec2_scale(-omega, vec2_perp(arm));
     Vec2 bias = vec2_scale(omega * omega, arm);
     if (node->parent != LINKAGE_GROUND) {
-        moved = vec2_add(moved, tree_end_moved(tree, state, node->parent_end));
-        velocity = vec2_add(velocity, tree_end_velocity(tree, state, node->parent_end));
-        bias = vec2_add(bias, tree_end_bias(tree, state, node->parent_end));
+        const Motion *parent = &state->motions[node->parent];
+        const Vec2 outer = state->arms[node->parent_end];
+        moved =
+            vec2_add(moved, vec2_add(state->moved[node->parent], state->turned[node->parent_end]));
+        velocity = vec2_add(
+            velocity, vec2_add(parent->velocity, vec2_scale(parent->omega, vec2_perp(outer))));
+        bias = vec2_add(bias, vec2_sub(state->bias[node->parent],
+                                       vec2_scale(parent->omega * parent->omega, outer)));
+        const double alpha = tree_bias_alpha(tree, node->parent);
+        if (alpha != 0.0) {
+            bias = vec2_add(bias, vec2_scale(alpha, vec2_perp(outer)));
+        }
     }
     tree_set_centre(tree, node->body, moved, state);
     motion->velocity = velocity;

@@ -6,6 +6,11 @@
 #include <assert.h>
 #include <stdlib.h>
 
+static bool is_driven(const Tree *tree, int body)
+{
+    return body != LINKAGE_GROUND && body == tree->driven;
+}
+
 static void add_node(Tree *tree, int body, int joint, int parent)
 {
     TreeNode *node = &tree->nodes[tree->node_count++];
@@ -26,7 +31,7 @@ static void add_node(Tree *tree, int body, int joint, int parent)
             node->angle_column = parent == LINKAGE_GROUND ? -1 : tree->angle_column[parent];
             tree->is_carried[body] = parent != LINKAGE_GROUND && tree->is_carried[parent];
         }
-        tree->is_driven_hung_on = tree->is_driven_hung_on || parent == tree->driven;
+        tree->is_driven_hung_on = tree->is_driven_hung_on || is_driven(tree, parent);
     }
     tree->angle_column[body] = node->angle_column;
     tree->node_of[body] = (int)tree->node_count - 1;
@@ -202,8 +207,8 @@ static void list_loops(Tree *tree, const bool *is_used)
         if (linkage_kind_is_ideal(linkage->joints[i].kind) && !is_used[i]) {
             tree->loops[tree->loop_count++] = i;
             tree->is_driven_hung_on = tree->is_driven_hung_on ||
-                                      linkage->joints[i].body_a == tree->driven ||
-                                      linkage->joints[i].body_b == tree->driven;
+                                      is_driven(tree, linkage->joints[i].body_a) ||
+                                      is_driven(tree, linkage->joints[i].body_b);
         }
     }
 }

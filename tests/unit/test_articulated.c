@@ -224,6 +224,12 @@ static Solved *solve(const Linkage *linkage, double other)
     Articulated *articulated = articulated_create(tree, tree->loop_count, tree->loops);
     assert_true(articulated_factor(articulated, solved->state));
     articulated_solve(articulated, pushes, sides, solved->rates);
+    // at rest nothing is biased: both at once give the same
+    double at_once[EQUATIONS] = {0.0};
+    assert_true(articulated_accelerate(articulated, solved->state, pushes, sides, at_once));
+    for (size_t i = 0; i < tree->coordinate_count + 2 * tree->loop_count; i++) {
+        assert_near(at_once[i], solved->rates[i], 1e-11 * (1.0 + fabs(at_once[i])));
+    }
     articulated_destroy(articulated);
     pushes[0].moment += other;
     solve_whole(solved, pushes, sides);
