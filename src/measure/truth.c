@@ -43,27 +43,39 @@ static Trajectory *run(const Scenario *scenario, BackendKind backend, RunWatch w
     return run_scenario(scenario, registry_solver(backend), watch);
 }
 
-// Shortens the horizon to where another run is further away than the limit, and returns the largest
-// distance up to there. A run that cannot be compared leaves no horizon.
-static double shorten_horizon(const Trajectory *trajectory, const Trajectory *other, Truth *truth)
+// How far two runs are apart at each sample.
+typedef struct Apart {
+    size_t count; // 0 where they cannot be compared
+    const double *times;
+    double *distance; // owned
+} Apart;
+
+static Apart apart_of(const Trajectory *trajectory, const Trajectory *other)
 {
-    const size_t count = trajectory->sample_count;
-    double *distance = calloc(count, sizeof *distance);
-    assert(distance != NULL);
+    Apart apart = {.times = trajectory->times};
+    apart.distance = calloc(trajectory->sample_count + 1, sizeof *apart.distance);
+    assert(apart.distance != NULL);
+    const bool is_known = error_series(other, trajectory, apart.distance);
+    apart.count = is_known ? trajectory->sample_count : 0;
+    return apart;
+}
+
+// Shortens the horizon to where two runs are further apart than the limit, and returns the largest
+// distance up to there. Runs that cannot be compared leave no horizon.
+static double shorten_horizon(const Apart *apart, Truth *truth)
+{
+    const size_t count = apart->count;
     double largest = 0.0;
     double reached = 0.0;
     size_t k = 0;
-    if (error_series(other, trajectory, distance)) {
-        while (k < count && distance[k] <= DISTANCE_GROWTH * DISTANCE_PERTURBATION &&
-               trajectory->times[k] <= truth->horizon_s) {
-            largest = fmax(largest, distance[k]);
-            reached = trajectory->times[k++];
-        }
+    while (k < count && apart->distance[k] <= DISTANCE_GROWTH * DISTANCE_PERTURBATION &&
+           apart->times[k] <= truth->horizon_s) {
+        largest = fmax(largest, apart->distance[k]);
+        reached = apart->times[k++];
     }
     truth->is_limited =
-        truth->is_limited || (k < count && trajectory->times[k] <= truth->horizon_s);
+        truth->is_limited || count == 0 || (k < count && apart->times[k] <= truth->horizon_s);
     truth->horizon_s = fmin(truth->horizon_s, reached);
-    free(distance);
     return largest;
 }
 
@@ -194,22 +206,28 @@ static void certify(const Runs *runs, size_t threads, Truth *truth)
     note_failure(third, truth);
     truth->is_limited = false;
     truth->horizon_s = scenario_duration(fine);
-    shorten_horizon(second, first, truth);
-    shorten_horizon(second, third, truth);
+    const Apart from_second = apart_of(second, first);
+    const Apart from_third = apart_of(first, third);
+    const Apart between_both = apart_of(second, third);
+    shorten_horizon(&from_second, truth);
+    shorten_horizon(&between_both, truth);
     if (truth->message[0] == '\0') {
         const Scenario perturbed = with_tolerance(fine, perturbed_tolerance(fine));
         follow_growth(&perturbed, second, runs->watch, threads, truth);
     }
     // now that the horizon is known
-    const double to_second = shorten_horizon(second, first, truth);
-    const double to_third = shorten_horizon(first, third, truth);
-    const double between = shorten_horizon(second, third, truth);
+    const double to_second = shorten_horizon(&from_second, truth);
+    const double to_third = shorten_horizon(&from_third, truth);
+    const double between = shorten_horizon(&between_both, truth);
     truth->uncertainty = fmax(fmax(to_second, to_third) + between, ROUNDING * truth->growth);
     if (truth->message[0] != '\0') {
         truth->is_limited = true;
         truth->horizon_s = 0.0;
         truth->uncertainty = INFINITY;
     }
+    free(from_second.distance);
+    free(from_third.distance);
+    free(between_both.distance);
 }
 
 BackendKind truth_backend(const Scenario *scenario)
