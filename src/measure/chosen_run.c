@@ -175,6 +175,7 @@ static Trial make_trial(Chosen *chosen, double step_s, bool is_last)
         .window = chosen->window,
         .tolerance = tolerance,
         .is_last = is_last,
+        .is_smooth = chosen->choice.is_smooth,
     };
     const Trial trial =
         trial_make(&scenario, &rule, begin(chosen, ++chosen->trials, step_s), chosen->probe);
@@ -239,8 +240,11 @@ static Trajectory *choose(Chosen *chosen)
         if (trial.holds || is_last || chosen->failures == FAILURES_ALIKE) {
             return end_trials(chosen, &trial);
         }
-        step_s = trial.is_given_up ? step_choice_finer(step_s, trial.held_s / duration_s)
-                                   : step_choice_after_failure(step_s);
+        step_s = chosen->choice.is_smooth && trial.run->is_complete
+                     ? step_choice_by_order(&chosen->choice, step_s,
+                                            trial.worst / chosen->scenario->run.tolerance)
+                 : trial.is_given_up ? step_choice_finer(step_s, trial.held_s / duration_s)
+                                     : step_choice_after_failure(step_s);
         trial_finish(&trial);
     }
 }

@@ -4,7 +4,8 @@
 // is mostly soon: on random mechanisms a walk in small steps comes to the coarsest step that will
 // do at the cost of little more than that one run. To jump ahead as the order says takes fewer
 // trials and more world steps, for errors do not fall as the order says: grazing impacts come and
-// go.
+// go. Where all joints are ideal they do: a trial is run to its end, and the next step follows from
+// its largest error and the order.
 #include "measure/step_choice.h"
 
 #include "base/zeroed.h"
@@ -25,14 +26,11 @@ static const double FIRST_STEPS = 20.0;    // of the drive's turn, or of a run w
 static const double FIRST_CONTACTS = 64.0; // half-periods of a contact, if that is less
 static const double LEAST_STEPS = 10.0;    // of any run
 
-// rad, of the contacts' own steps: the coarsest, kept down to this share of the first world step.
-// Below it the phase falls faster than the root of the world step, so that the contacts' errors, of
-// order 4, fall faster than those of the world step, of order 2, and slower than the world step,
-// for they cost evaluations.
-static const double FIRST_PHASE = 0.2;
-static const double FIRST_PHASE_UNTIL = 1.0 / 16.0;
-static const double PHASE_POWER = 0.75;
-static const double LEAST_PHASE = 1e-3;
+// Where the order says it, a step this much shorter than what would just do; and within these
+// shares of the last one, for the coarsest steps are beyond what the order says.
+static const double ORDER_SHARE = 0.9;
+static const double ORDER_LEAST = 0.4;
+static const double ORDER_MOST = 0.9;
 
 // A depth of a contact: a tenth of the clearance, or of a stop, which has none, what the fastest
 // point of the linkage would press in. Laws of stops are powers.
@@ -95,24 +93,35 @@ StepChoice step_choice_begin(const Scenario *scenario)
     const double duration_s = scenario_duration(scenario);
     const double turn_s = drive_is_steady(&linkage->driver) ? linkage_period(linkage) : duration_s;
     const double first_s = fmin(turn_s / FIRST_STEPS, duration_s / LEAST_STEPS);
+    const OdeOptions *ode = &scenario->ode;
+    bool is_smooth = true;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        is_smooth = is_smooth && linkage_kind_is_ideal(linkage->joints[i].kind);
+    }
     return (StepChoice){
         .scenario = scenario,
         .first_step_s = fmin(first_s, FIRST_CONTACTS * contact_time(scenario)),
+        .is_smooth = is_smooth,
+        .order = ode->stepping == ODE_PLAIN          ? 1.0
+                 : ode->stepping == ODE_EXTRAPOLATED ? (double)ode->levels + 1.0
+                                                     : 2.0,
     };
 }
 
 Scenario step_choice_scenario(const StepChoice *choice, double step_s)
 {
-    Scenario trial = scenario_with_step(choice->scenario, step_s);
-    const double phase_step_s = FIRST_PHASE_UNTIL * choice->first_step_s;
-    trial.ode.contact_phase =
-        fmax(FIRST_PHASE * fmin(1.0, pow(step_s / phase_step_s, PHASE_POWER)), LEAST_PHASE);
-    return trial;
+    return scenario_with_step(choice->scenario, step_s);
 }
 
 double step_choice_finer(double step_s, double share)
 {
     return step_s * (FINER_EARLY + (FINER_LATE - FINER_EARLY) * fmin(1.0, share));
+}
+
+double step_choice_by_order(const StepChoice *choice, double step_s, double excess)
+{
+    const double share = ORDER_SHARE * pow(excess, -1.0 / choice->order);
+    return step_s * fmin(fmax(share, ORDER_LEAST), ORDER_MOST);
 }
 
 double step_choice_after_failure(double step_s)

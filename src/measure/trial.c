@@ -33,11 +33,15 @@ static bool look(const Trajectory *trajectory, size_t sample, void *context, Err
     const Truth *truth = rule->truth;
     Trial *trial = watcher->trial;
     const double time_s = truth->trajectory->times[sample];
-    if (watcher->is_over || time_s > rule->window.until_s) {
+    if (time_s > rule->window.until_s || (watcher->is_over && !rule->is_smooth)) {
         return true;
     }
     const double bound = distance_at(trajectory, truth->trajectory, sample, watcher->scales) +
                          TRUTH_MARGIN * rule->window.uncertainty;
+    trial->worst = fmax(trial->worst, bound);
+    if (watcher->is_over) {
+        return true;
+    }
     if (bound <= rule->tolerance) {
         trial->held_s = time_s;
         trial->held_error = fmax(trial->held_error, bound);
@@ -45,8 +49,9 @@ static bool look(const Trajectory *trajectory, size_t sample, void *context, Err
     }
     watcher->is_over = true;
     trial->error = bound;
-    trial->is_given_up = !rule->is_last;
-    return rule->is_last || err_set(err, ERR_SOLVER, "the step is too coarse");
+    const bool runs_on = rule->is_last || rule->is_smooth;
+    trial->is_given_up = !runs_on;
+    return runs_on || err_set(err, ERR_SOLVER, "the step is too coarse");
 }
 
 Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatch watch,

@@ -15,6 +15,7 @@ typedef struct TrialRule {
     TrialWindow window; // in which errors count
     double tolerance;   // 1, of omega
     bool is_last;       // it is run to its end, though it misses the tolerance
+    bool is_smooth;     // likewise, for its largest error says which step is next
 } TrialRule;
 
 typedef struct Trial {
@@ -24,6 +25,7 @@ typedef struct Trial {
     double held_error; // 1, largest while it held the tolerance
     double held_s;     // the last sample up to which it did; 0: not even the first
     double error;      // 1, at the sample after that; 0 where there is none
+    double worst;      // 1, largest on the whole window, where the trial is run to its end
     bool holds;        // the tolerance, on the whole window
 } Trial;
 

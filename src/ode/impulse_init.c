@@ -24,6 +24,7 @@ static void make_arrays(ImpulseStep *step)
     work->loads = zeroed(bodies, sizeof *work->loads);
     work->offsets = zeroed(joints, sizeof *work->offsets);
     for (size_t i = 0; i < 2; i++) {
+        step->moved[i] = zeroed(3 * bodies, sizeof *step->moved[i]);
         work->rows[i] = zeroed(step->response.row_count, sizeof *work->rows[i]);
         work->changes[i] = zeroed(3 * bodies, sizeof *work->changes[i]);
     }
@@ -39,6 +40,8 @@ static void free_arrays(ImpulseStep *step)
     free(step->free_rate);
     free(step->rest);
     free(step->closing);
+    free(step->moved[0]);
+    free(step->moved[1]);
     free(step->mean);
     for (size_t i = 0; work != NULL && i < 2; i++) {
         free(work->rows[i]);

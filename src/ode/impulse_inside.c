@@ -14,6 +14,10 @@
 static void find_motions(const ImpulseStep *step, double since_s, const EncounterSums *sums,
                          Motion *motions)
 {
+    if (since_s == step->width_s) {
+        memcpy(motions, step->after, step->scenario->linkage.body_count * sizeof *motions);
+        return;
+    }
     double *speeds = step->work->changes[0];
     double *positions = step->work->changes[1];
     response_apply(&step->response, sums->impulse, speeds);

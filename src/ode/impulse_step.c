@@ -175,7 +175,6 @@ static void change_motions(const ImpulseStep *step, const double *positions, con
 static void find_end(ImpulseStep *step, const Motion *middle)
 {
     const double half_s = 0.5 * step->width_s;
-    const size_t rows = encounter_rows(&step->encounter);
     for (size_t i = 0; i < body_count(step); i++) {
         if (impulse_step_is_free(step, i)) {
             const Snapshot now = world_snapshot(&step->world, i);
@@ -187,13 +186,13 @@ static void find_end(ImpulseStep *step, const Motion *middle)
         }
     }
     // when in the step the impulse came
-    double *late = step->work->rows[0];
-    for (size_t i = 0; i < rows; i++) {
-        late[i] = step->total.moment[i] - half_s * step->total.impulse[i];
-    }
     double *positions = step->work->changes[0];
     double *speeds = step->work->changes[1];
-    response_apply(&step->response, late, positions);
+    response_apply(&step->response, step->total.impulse, step->moved[0]);
+    response_apply(&step->response, step->total.moment, step->moved[1]);
+    for (size_t i = 0; i < 3 * body_count(step); i++) {
+        positions[i] = step->moved[1][i] - half_s * step->moved[0][i];
+    }
     memset(speeds, 0, 3 * body_count(step) * sizeof *speeds);
     change_motions(step, positions, speeds, step->after);
     // back onto the ideal joints
@@ -210,10 +209,8 @@ static void find_end(ImpulseStep *step, const Motion *middle)
 static void prepare_inside(ImpulseStep *step, double width_before_s)
 {
     const double width_s = step->width_s;
-    double *speeds = step->work->changes[0];
-    double *positions = step->work->changes[1];
-    response_apply(&step->response, step->total.impulse, speeds);
-    response_apply(&step->response, step->total.moment, positions);
+    const double *speeds = step->moved[0];
+    const double *positions = step->moved[1];
     for (size_t i = 0; i < body_count(step); i++) {
         const Motion *first = &step->before[i];
         const Motion *last = &step->after[i];

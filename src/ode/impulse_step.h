@@ -41,6 +41,7 @@ typedef struct ImpulseStep {
     double drive_work;   // J, in the whole step
     double damped;       // J, in dampers, likewise
     EncounterSums total; // of the contacts, in the whole step
+    double *moved[2];    // by the contacts in the whole step: speeds and positions, three a body
     double *closing;     // N s, of the ideal joints' rows, beside the world's step
     JointState *mean;    // mean forces of the ideal joints
     ImpulseWork *work;

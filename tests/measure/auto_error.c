@@ -27,7 +27,6 @@ static const double JUDGE_TOLERANCE = 1e-14;
 static const double RATIO = 1.26; // of two steps of the ladder
 static const double LADDER_STEPS_LEAST = 10.0;
 static const double LADDER_STEPS_MOST = 1e5;
-static const double LADDER_PHASE = 0.05;
 static const double TIME_LIMIT_S = 120.0; // of one case
 
 typedef struct Run {
@@ -118,7 +117,6 @@ static void run_ladder(const Scenario *scenario, const Truth *truth, const Traje
         }
         Scenario fixed = scenario_with_step(scenario, step_s);
         fixed.ode.gear = 1;
-        fixed.ode.contact_phase = LADDER_PHASE;
         Trajectory *run =
             run_scenario(&fixed, registry_solver(BACKEND_ODE), (RunWatch){NULL, NULL});
         const double error =
