@@ -37,6 +37,10 @@ static const double ERROR_FACTORS[2] = {1.0 / 120.0, 1.0 / 3600.0};
 static const double EXTEND_FACTORS[2] = {1.0 / 96.0, 0.36 / 24.0};
 static const double EXTEND_MOST = 10.0;
 
+// of the force of the impact that a contact began with, a share by which its errors are judged as
+// long as it lasts: what is left of that impact's own errors is as large
+static const double REMEMBERED = 1.0;
+
 static const double SAFETY = 0.85;
 
 // The point at a share c of a step, by the rates at its start.
@@ -199,7 +203,8 @@ double encounter_explicit_error(const Encounter *encounter, EncounterExplicit *s
         const double changes = third_change(joint, step, from);
         const double allowed =
             joint->tolerance *
-            fmax(joint->force_per_speed * fabs(pose.approach_speed),
+            fmax(joint->force_per_speed *
+                     fmax(fabs(pose.approach_speed), REMEMBERED * joint->impact_speed),
                  hypot(inside->force[joint->first_row], inside->force[joint->first_row + 1]));
         // error over what is allowed, of either order at this length
         const double theta = fastest * h;

@@ -34,8 +34,8 @@ static const double PHASE_ERROR = 1.0 / 120.0;
 
 // what is allowed where it is not given: of the error that comes of a response that is taken as
 // constant
-static const double SHARE = 0.015;
-static const double TOLERANCE_LEAST = 1e-9;
+static const double SHARE = 0.008;
+static const double TOLERANCE_LEAST = 1e-10;
 static const double TOLERANCE_MOST = 1e-3;
 
 // of a contact's first step: times the tolerance, to the power 2/3, in rad
@@ -268,8 +268,8 @@ static bool shorten_flight(const Encounter *encounter, const EncounterPoint *fro
         const PinHole start =
             encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment);
         const PinHole end = encounter_force_pose(encounter, i, to->time_s, to->impulse, to->moment);
-        if (!encounter->joints[i].is_touching && start.penetration >= 0.0 &&
-            start.approach_speed < 0.0 && end.approach_speed > 0.0) {
+        if (!encounter->joints[i].is_touching && start.approach_speed < 0.0 &&
+            end.approach_speed > 0.0 && (start.penetration >= 0.0 || end.penetration > 0.0)) {
             const double share = start.approach_speed / (start.approach_speed - end.approach_speed);
             *width_s = fmin(*width_s, share * whole_s);
         }

@@ -5,6 +5,10 @@
 
 #include <stdlib.h>
 
+// rows up to which what each of them does is worked out once a step: that takes as much as asking
+// for them together so many times
+enum { FEW_ROWS = 4 };
+
 static void make_arrays(ImpulseStep *step)
 {
     const size_t bodies = step->scenario->linkage.body_count;
@@ -23,6 +27,10 @@ static void make_arrays(ImpulseStep *step)
     work->motions = zeroed(bodies, sizeof *work->motions);
     work->loads = zeroed(bodies, sizeof *work->loads);
     work->offsets = zeroed(joints, sizeof *work->offsets);
+    const size_t rows = encounter_rows(&step->encounter);
+    for (size_t i = 0; rows <= FEW_ROWS && i < IMPULSE_COLUMNS; i++) {
+        step->columns[i] = zeroed(3 * bodies * rows, sizeof *step->columns[i]);
+    }
     for (size_t i = 0; i < 2; i++) {
         step->moved[i] = zeroed(3 * bodies, sizeof *step->moved[i]);
         work->rows[i] = zeroed(step->response.row_count, sizeof *work->rows[i]);
@@ -40,6 +48,9 @@ static void free_arrays(ImpulseStep *step)
     free(step->free_rate);
     free(step->rest);
     free(step->closing);
+    for (size_t i = 0; i < IMPULSE_COLUMNS; i++) {
+        free(step->columns[i]);
+    }
     free(step->moved[0]);
     free(step->moved[1]);
     free(step->mean);

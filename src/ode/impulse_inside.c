@@ -20,8 +20,8 @@ static void find_motions(const ImpulseStep *step, double since_s, const Encounte
     }
     double *speeds = step->work->changes[0];
     double *positions = step->work->changes[1];
-    response_apply(&step->response, sums->impulse, speeds);
-    response_apply(&step->response, sums->moment, positions);
+    impulse_step_apply(step, sums->impulse, speeds);
+    impulse_step_apply(step, sums->moment, positions);
     const double share = since_s / step->width_s;
     for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
         const Motion *first = &step->before[i];
@@ -44,14 +44,43 @@ static void find_motions(const ImpulseStep *step, double since_s, const Encounte
     }
 }
 
-// Fills in the accelerations: those beside the contacts', linear in time, and the contacts'. What
-// these do turns with the bodies: the response is taken where they are, and not at mid-step.
-static void find_accelerations(const ImpulseStep *step, const Response *response, double since_s,
+// What the contacts' forces do to all speeds. It turns with the bodies: of few rows it is a
+// parabola in time through this step and the two before; else the response is taken where the
+// bodies are, at a peak, or at mid-step.
+static void find_contact_rates(const ImpulseStep *step, double since_s, bool is_peak,
+                               const EncounterSums *sums, const Motion *motions, double *rates)
+{
+    if (step->columns[0] == NULL || step->count < IMPULSE_COLUMNS) {
+        const bool is_placed = is_peak && response_place(&step->work->there, motions);
+        response_apply(is_placed ? &step->work->there : &step->response, sums->force, rates);
+        return;
+    }
+    const size_t count = 3 * step->scenario->linkage.body_count;
+    const double time_s = step->start_s + since_s;
+    memset(rates, 0, count * sizeof *rates);
+    for (size_t k = 0; k < IMPULSE_COLUMNS; k++) {
+        double weight = 1.0;
+        for (size_t j = 0; j < IMPULSE_COLUMNS; j++) {
+            weight *=
+                j == k ? 1.0
+                       : (time_s - step->middles_s[j]) / (step->middles_s[k] - step->middles_s[j]);
+        }
+        for (size_t row = 0; row < encounter_rows(&step->encounter); row++) {
+            const double force = weight * sums->force[row];
+            for (size_t i = 0; i < count; i++) {
+                rates[i] += force * step->columns[k][row * count + i];
+            }
+        }
+    }
+}
+
+// Fills in the accelerations: those beside the contacts', linear in time, and the contacts'.
+static void find_accelerations(const ImpulseStep *step, double since_s, bool is_peak,
                                const EncounterSums *sums, Motion *motions)
 {
     double *rates = step->work->changes[0];
     const double off_middle_s = since_s - 0.5 * step->width_s;
-    response_apply(response, sums->force, rates);
+    find_contact_rates(step, since_s, is_peak, sums, motions, rates);
     for (size_t n = 0; n < 3 * step->scenario->linkage.body_count; n++) {
         rates[n] += step->free[n] + off_middle_s * step->free_rate[n];
     }
@@ -161,8 +190,6 @@ void impulse_step_inside(const ImpulseStep *step, size_t node, double since_s, b
                          double *depths)
 {
     find_motions(step, since_s, sums, motions);
-    const bool is_placed = is_peak && response_place(&step->work->there, motions);
-    find_accelerations(step, is_placed ? &step->work->there : &step->response, since_s, sums,
-                       motions);
+    find_accelerations(step, since_s, is_peak, sums, motions);
     find_joints(step, node, since_s, sums, motions, joints, depths);
 }

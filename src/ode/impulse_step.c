@@ -110,6 +110,40 @@ static void find_middle(const ImpulseStep *step, Motion *middle)
     }
 }
 
+void impulse_step_apply(const ImpulseStep *step, const double *impulses, double *changes)
+{
+    const double *columns = step->columns[0];
+    if (columns == NULL) {
+        response_apply(&step->response, impulses, changes);
+        return;
+    }
+    const size_t count = 3 * body_count(step);
+    memset(changes, 0, count * sizeof *changes);
+    for (size_t row = 0; row < encounter_rows(&step->encounter); row++) {
+        for (size_t i = 0; i < count; i++) {
+            changes[i] += impulses[row] * columns[row * count + i];
+        }
+    }
+}
+
+// What an impulse in each row does, if there are few: it is asked for several times in a step.
+static void find_columns(ImpulseStep *step)
+{
+    const size_t rows = encounter_rows(&step->encounter);
+    double *oldest = step->columns[IMPULSE_COLUMNS - 1];
+    memmove(step->columns + 1, step->columns, (IMPULSE_COLUMNS - 1) * sizeof *step->columns);
+    memmove(step->middles_s + 1, step->middles_s, (IMPULSE_COLUMNS - 1) * sizeof *step->middles_s);
+    step->columns[0] = oldest;
+    step->middles_s[0] = step->start_s + 0.5 * step->width_s;
+    double *unit = step->work->rows[0];
+    memset(unit, 0, rows * sizeof *unit);
+    for (size_t row = 0; oldest != NULL && row < rows; row++) {
+        unit[row] = 1.0;
+        response_apply(&step->response, unit, oldest + 3 * body_count(step) * row);
+        unit[row] = 0.0;
+    }
+}
+
 // Lets the contacts run through the step by themselves.
 static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
 {
@@ -118,6 +152,7 @@ static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
         return err_set(err, ERR_SOLVER,
                        "the ideal joints are redundant here: give one joint of the loop some play");
     }
+    find_columns(step);
     response_mobility(&step->response, encounter->mobility);
     const Applied *applied = &step->world.applied;
     response_free(&step->response, middle, step->scenario->gravity,
@@ -188,8 +223,8 @@ static void find_end(ImpulseStep *step, const Motion *middle)
     // when in the step the impulse came
     double *positions = step->work->changes[0];
     double *speeds = step->work->changes[1];
-    response_apply(&step->response, step->total.impulse, step->moved[0]);
-    response_apply(&step->response, step->total.moment, step->moved[1]);
+    impulse_step_apply(step, step->total.impulse, step->moved[0]);
+    impulse_step_apply(step, step->total.moment, step->moved[1]);
     for (size_t i = 0; i < 3 * body_count(step); i++) {
         positions[i] = step->moved[1][i] - half_s * step->moved[0][i];
     }

@@ -6,6 +6,8 @@
 #include "model/trajectory.h"
 #include "ode/world.h"
 
+enum { IMPULSE_COLUMNS = 3 }; // steps of which it is known what rows do: a parabola in time
+
 // What a step works with: arrays by row of the response, by body three numbers each, by body and by
 // joint.
 typedef struct ImpulseWork {
@@ -41,9 +43,13 @@ typedef struct ImpulseStep {
     double drive_work;   // J, in the whole step
     double damped;       // J, in dampers, likewise
     EncounterSums total; // of the contacts, in the whole step
-    double *moved[2];    // by the contacts in the whole step: speeds and positions, three a body
-    double *closing;     // N s, of the ideal joints' rows, beside the world's step
-    JointState *mean;    // mean forces of the ideal joints
+    // of few rows: what 1 N s in each does to all speeds, three a body, in this step and in those
+    // before it, and when these had their middles; NULL where there are more rows
+    double *columns[IMPULSE_COLUMNS];
+    double middles_s[IMPULSE_COLUMNS];
+    double *moved[2]; // by the contacts in the whole step: speeds and positions, three a body
+    double *closing;  // N s, of the ideal joints' rows, beside the world's step
+    JointState *mean; // mean forces of the ideal joints
     ImpulseWork *work;
 } ImpulseStep;
 
@@ -66,6 +72,9 @@ void impulse_step_add_ideal(const ImpulseStep *step, size_t row, const double *v
 // Finds the mean forces of the joints with play and the works of the drive and of dampers in the
 // step that has just been taken, from the bodies at mid-step.
 void impulse_step_find_work(ImpulseStep *step, const Motion *middle);
+
+// Writes what impulses in the rows of play do to the speeds of all bodies, three each, at mid-step.
+void impulse_step_apply(const ImpulseStep *step, const double *impulses, double *changes);
 
 // Takes the next step.
 bool impulse_step_take(ImpulseStep *step, Err *err);
