@@ -208,6 +208,8 @@ typedef struct JpJoint JpJoint;
 typedef enum JpStepping {
     JP_STEPPING_PLAIN,     /* as ODE steps: order 1; rows of JP_MAP_CORRECTED */
     JP_STEPPING_STAGGERED, /* forces at mid-step: order 2 at the same cost; rows of JP_MAP_MIDPOINT */
+    JP_STEPPING_IMPULSE,   /* the same with the contacts of our joints integrated within the step,
+                              however short they are: n + 2 steps of ODE where n joints touch */
 } JpStepping;
 
 typedef struct JpWorldOptions {
@@ -241,15 +243,16 @@ typedef struct JpWorldStats {
     size_t steps;       /* of jp_world_step */
     size_t world_steps; /* of ODE, with those of trials */
     size_t rows;        /* contacts of our joints, a step each */
-    size_t fallbacks;   /* of those, beyond the limit of the map: the row was the textbook's */
+    size_t fallbacks;   /* rows beyond the limit of their map, which were the textbook's; of
+                           JP_STEPPING_IMPULSE steps in which the world did not answer linearly */
 } JpWorldStats;
 JP_API JpStatus jp_world_stats(const JpWorld *world, JpWorldStats *stats, JpError *error);
 
 /* ---- joints with play -------------------------------------------------------------------------
  *
  * On a hinge or a slider of yours, which goes on holding all but its own coordinate: the angle or
- * position that dJointGetHingeAngle or dJointGetSliderPosition give, followed beyond half a turn.
- * Forces and lengths are torques and angles on a hinge. */
+ * position that dJointGetHingeAngle or dJointGetSliderPosition give, followed beyond half a turn
+ * where it turns by less than that in a step. Forces and lengths are torques and angles on a hinge. */
 
 /* Backlash: the teeth of one side stand between those of the other with a gap. Without a rotor the
  * gap is between the two bodies. With one, what stands in the gap is a rotor (motor, gears, reflected

@@ -207,8 +207,7 @@ void bodies_put_back(const Bodies *bodies)
     }
 }
 
-// The quaternion turned on by a rotation vector in the world's frame, rad.
-static void turn_by(const dReal *from, const dReal *by, double time, dQuaternion turned)
+void bodies_turn(const dReal *from, const dReal *by, double time, dQuaternion turned)
 {
     const double rate = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
     const double half = 0.5 * rate * time;
@@ -229,7 +228,7 @@ void bodies_drift(const Bodies *bodies, double time)
         dBodySetPosition(id, at[0] + time * velocity[0], at[1] + time * velocity[1],
                          at[2] + time * velocity[2]);
         dQuaternion turned;
-        turn_by(dBodyGetQuaternion(id), dBodyGetAngularVel(id), time, turned);
+        bodies_turn(dBodyGetQuaternion(id), dBodyGetAngularVel(id), time, turned);
         dBodySetQuaternion(id, turned);
     }
 }

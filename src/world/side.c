@@ -44,6 +44,17 @@ static Overlap find_overlap(const Side *side, double gap, double earlier, double
     };
 }
 
+void side_begin(Side *side, double closing)
+{
+    side->impact_speed = fmax(closing, 0.0);
+    side->impacts++;
+    side->mobility = 0.0;
+    side->has_series = false;
+    side->since = 0.0;
+    side->forces[1] = side->law.viscous * side->impact_speed;
+    side->depths[1] = 0.0;
+}
+
 void side_find(Side *side, double position, double rate, double earlier, double step)
 {
     const double gap = side_gap(side, position);
@@ -58,11 +69,7 @@ void side_find(Side *side, double position, double rate, double earlier, double 
         const double change =
             side->last_step > 0.0 ? (side->closing - side->last_closing) / side->last_step : 0.0;
         const double late = earlier > 0.0 ? overlap.onset : -side->depth / side->closing;
-        const double onset = side->closing + (side->closing > 0.0 ? change * late : 0.0);
-        side->impact_speed = fmax(onset, 0.0);
-        side->impacts++;
-        side->mobility = 0.0;
-        side->has_series = false;
+        side_begin(side, side->closing + (side->closing > 0.0 ? change * late : 0.0));
         side->since = earlier > 0.0 ? earlier - late : -late;
     }
     side->last_closing = side->closing;
@@ -102,26 +109,19 @@ static double top(const double values[3], double before, double after)
     return at > -before && at < after ? values[1] - 0.25 * slope * slope / bend : largest;
 }
 
-// The largest force and depth lie between the middles of steps that are overlapped throughout;
-// before the first of them stands the onset.
-static void find_tops(Side *side, double force, double step)
+void side_note_tops(Side *side, double force, double ahead)
 {
     side->force_max = fmax(side->force_max, force);
     side->depth_max = fmax(side->depth_max, side->inside);
-    if (side->share < 1.0) {
-        side->since += step;
-        return;
-    }
     if (side->has_series) {
         const double forces[] = {side->forces[0], side->forces[1], force};
         const double depths[] = {side->depths[0], side->depths[1], side->inside};
-        side->force_max = fmax(side->force_max, top(forces, side->since, step));
-        side->depth_max = fmax(side->depth_max, top(depths, side->since, step));
-        side->since = step;
+        side->force_max = fmax(side->force_max, top(forces, side->since, ahead));
+        side->depth_max = fmax(side->depth_max, top(depths, side->since, ahead));
+        side->since = ahead;
     } else {
-        side->forces[1] = side->law.viscous * side->impact_speed;
-        side->depths[1] = 0.0;
         side->has_series = true;
+        side->since += ahead;
     }
     side->forces[0] = side->forces[1];
     side->forces[1] = force;
@@ -131,8 +131,12 @@ static void find_tops(Side *side, double force, double step)
 
 void side_book(Side *side, double force, double rate_before, double rate_after, double step)
 {
-    if (side->is_touching) {
-        find_tops(side, force, step);
+    if (side->is_touching && side->share < 1.0) {
+        side->force_max = fmax(side->force_max, force);
+        side->depth_max = fmax(side->depth_max, side->inside);
+        side->since += step;
+    } else if (side->is_touching) {
+        side_note_tops(side, force, side->has_series ? step : 0.0);
     }
     side->force = force;
     side->impulse += force * step;

@@ -49,5 +49,13 @@ MapContact side_contact(const Side *side, double step);
 // Whether a map of this limit is stable for the contact, with a mobility of the coordinate.
 bool side_is_stable(const Side *side, double limit, double mobility, double step);
 
+// A contact begins, with a closing speed.
+void side_begin(Side *side, double closing);
+
+// Notes a force and the depth where it is; they are ahead of the last ones, or of the onset, by a
+// time, s. The largest of a contact lie between: on the parabola through three, of which the first
+// may be the onset.
+void side_note_tops(Side *side, double force, double ahead);
+
 // Notes the force of the step that was made, N m or N, and the rates before and after it.
 void side_book(Side *side, double force, double rate_before, double rate_after, double step);

@@ -12,6 +12,7 @@
 //     s (q' - p') + CFM F = (ERP/h) d    is    s q' + (CFM + h/J) F = (ERP/h) d + s (p + (h/J) D)
 // a row of ODE's bodies alone.
 #include "world/gyration.h"
+#include "world/impulse.h"
 #include "world/row.h"
 #include "world/trial.h"
 
@@ -20,7 +21,7 @@
 
 static bool is_staggered(const JpWorld *world)
 {
-    return world->options.stepping == JP_STEPPING_STAGGERED;
+    return world->options.stepping != JP_STEPPING_PLAIN;
 }
 
 static const Map *map_of(const JpWorld *world)
@@ -161,27 +162,59 @@ static void take_back(JpWorld *world, double step)
     }
 }
 
+// The new velocities, with rows for what touches.
+static JpStatus step_with_rows(JpWorld *world, double step, JpError *error)
+{
+    REFUSAL_TRY(make_rows(world, step, error));
+    return trial_step(world, step, error);
+}
+
+// The same with contacts integrated within the step; with rows where that cannot be.
+static JpStatus step_with_impulses(JpWorld *world, double step, Impulse *impulse, bool *is_done,
+                                   JpError *error)
+{
+    REFUSAL_TRY(impulse_step(world, step, impulse, is_done, error));
+    if (*is_done) {
+        return JP_OK;
+    }
+    world->stats.fallbacks++;
+    return step_with_rows(world, step, error);
+}
+
+static void move_on(JpWorld *world, double step, Impulse *impulse, bool is_impulse)
+{
+    if (is_staggered(world)) {
+        gyration_finish(&world->bodies, step);
+        bodies_put_back_positions(&world->bodies);
+        bodies_drift(&world->bodies, 0.5 * step);
+    }
+    if (is_impulse) {
+        impulse_finish(world, step, impulse);
+        return;
+    }
+    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        book(joint, step);
+    }
+}
+
 static JpStatus step_bodies(JpWorld *world, double step, JpError *error)
 {
     if (is_staggered(world)) {
         gyration_push(&world->bodies, step);
     }
     bodies_keep(&world->bodies);
-    JpStatus status = make_rows(world, step, error);
-    status = status == JP_OK ? trial_step(world, step, error) : status;
-    if (status != JP_OK) {
+    Impulse impulse = {0};
+    bool is_impulse = false;
+    const JpStatus status = world->options.stepping == JP_STEPPING_IMPULSE
+                                ? step_with_impulses(world, step, &impulse, &is_impulse, error)
+                                : step_with_rows(world, step, error);
+    if (status == JP_OK) {
+        move_on(world, step, &impulse, is_impulse);
+    } else {
         take_back(world, step);
-        return status;
     }
-    if (is_staggered(world)) {
-        gyration_finish(&world->bodies, step);
-        bodies_put_back_positions(&world->bodies);
-        bodies_drift(&world->bodies, 0.5 * step);
-    }
-    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-        book(joint, step);
-    }
-    return JP_OK;
+    impulse_free(&impulse);
+    return status;
 }
 
 JpStatus jp_world_step(JpWorld *world, double step, JpError *error)

@@ -15,9 +15,15 @@ JpStatus jp_world_create(dWorldID id, const JpWorldOptions *options, JpWorld **c
     REFUSAL_TRY(refusal_of_null(id, "the world", error));
     REFUSAL_TRY(refusal_of_null(created, "where the world is to go", error));
     const JpWorldOptions chosen = options != NULL ? *options : jp_world_options_default();
-    if (chosen.stepping != JP_STEPPING_PLAIN && chosen.stepping != JP_STEPPING_STAGGERED) {
+    if ((unsigned)chosen.stepping > JP_STEPPING_IMPULSE) {
         return refusal(error, JP_ERROR_ARGUMENT, "the stepping is %d, which is no JpStepping",
                        (int)chosen.stepping);
+    }
+    if (chosen.stepping == JP_STEPPING_IMPULSE && chosen.is_quick) {
+        return refusal(
+            error, JP_ERROR_ARGUMENT,
+            "JP_STEPPING_IMPULSE compares steps of the world with each other, which those "
+            "of dWorldQuickStep are too rough for; set is_quick to false");
     }
     JpWorld *world = calloc(1, sizeof *world);
     if (world == NULL) {

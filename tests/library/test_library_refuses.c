@@ -156,6 +156,9 @@ static void a_world_that_is_none_is_refused(void **state)
     assert_refused(jp_world_create(NULL, NULL, &play, &error));
     assert_refused(jp_world_create(scene.world, NULL, NULL, &error));
     assert_refused(jp_world_create(scene.world, &options, &play, &error));
+    options.stepping = JP_STEPPING_IMPULSE;
+    options.is_quick = true;
+    assert_refused(jp_world_create(scene.world, &options, &play, &error));
     assert_null(play);
     assert_refused(jp_world_step(NULL, 1e-3, &error));
     assert_refused(jp_world_step(scene.play, 0.0, &error));
