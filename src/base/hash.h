@@ -7,13 +7,18 @@
 
 static const uint64_t HASH_START = 0x9e3779b97f4a7c15u; // the golden ratio's bits: any odd constant
 
-// Mixes the bits of one number into the hash (one round of a multiply-xorshift permutation).
+// Mixes 64 bits into the hash (one round of a multiply-xorshift permutation).
+static inline uint64_t hash_word(uint64_t hash, uint64_t bits)
+{
+    hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
+    return hash ^ (hash >> 32);
+}
+
 static inline uint64_t hash_number(uint64_t hash, double value)
 {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
-    hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
-    return hash ^ (hash >> 32);
+    return hash_word(hash, bits);
 }
 
 static inline uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)

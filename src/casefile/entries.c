@@ -46,11 +46,10 @@ static const Entry *find_entry(const Entries *entries, const char *path, size_t 
                                size_t index)
 {
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        // few rows have an entry: to ask for it costs less than to compare the paths
         const char *own = SCHEMA_ROWS[i].path;
-        const Entry *entry = strncmp(own, path, length) == 0 && own[length] == '\0'
-                                 ? entries_at(entries, &SCHEMA_ROWS[i], index)
-                                 : NULL;
-        if (entry != NULL) {
+        const Entry *entry = entries_at(entries, &SCHEMA_ROWS[i], index);
+        if (entry != NULL && strncmp(own, path, length) == 0 && own[length] == '\0') {
             return entry;
         }
     }

@@ -1,8 +1,8 @@
 // Runs a piece of work in a child process, so that it may crash, hang or run out of memory.
 //
-// fork -> limits -> work -> the result through a pipe -> _exit. The parent reads until the
-// pipe is closed and then asks how the child ended.
-#define _GNU_SOURCE // pipe2
+// fork -> limits -> work -> the result through a socket -> _exit. The parent reads until the
+// socket is closed and then asks how the child ended. A worker sends its result, waits for the next
+// order on the same socket, and goes on until its parent closes it.
 
 #include "measure/child.h"
 
@@ -21,13 +21,14 @@
 #include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 enum {
     WATCHED_MAX = 512, // children at a time: two for each core of large machines
     NO_MEMORY = 113,   // exit status of a child that exceeded its limit of memory
-    LEAVING_MS = 500,  // for a process whose pipe is closed to be gone; it takes some 0.1
+    LEAVING_MS = 500,  // for a process whose socket is closed to be gone; it takes some 0.1
 };
 
 // some libraries go on after a refused allocation until nothing is left at all
@@ -101,30 +102,62 @@ static void settle_in(pid_t parent, ChildLimits limits)
     }
 }
 
-static _Noreturn void live(ChildWork work, const void *context, size_t result_size, int pipe_end)
+// What a child is to do, as it knows it from its parent.
+typedef struct Job {
+    ChildWork work;
+    const void *context;
+    size_t order_size; // 0: there is no other
+    size_t result_size;
+} Job;
+
+static void send_result(int channel, const char *result, size_t size)
 {
-    char *result = calloc(result_size, 1);
-    if (result == NULL) {
-        _exit(NO_MEMORY);
-    }
-    errno = 0;
-    work(context, result);
-    for (size_t sent = 0; sent < result_size;) {
-        const ssize_t count = write(pipe_end, result + sent, result_size - sent);
+    for (size_t sent = 0; sent < size;) {
+        const ssize_t count = send(channel, result + sent, size - sent, MSG_NOSIGNAL);
         if (count < 0 && errno != EINTR) {
             _exit(1);
         }
         sent += count > 0 ? (size_t)count : 0;
     }
+}
+
+// False where the parent has closed its end, and wants nothing more.
+static bool await_order(int channel, char *order, size_t size)
+{
+    size_t received = 0;
+    while (received < size) {
+        const ssize_t count = recv(channel, order + received, size - received, 0);
+        if (count == 0 || (count < 0 && errno != EINTR)) {
+            return false;
+        }
+        received += count > 0 ? (size_t)count : 0;
+    }
+    return size > 0;
+}
+
+static _Noreturn void live(const Job *job, int channel)
+{
+    char *result = malloc(job->result_size);
+    char *order = malloc(job->order_size + 1);
+    if (result == NULL || order == NULL) {
+        _exit(NO_MEMORY);
+    }
+    const void *context = job->context;
+    do {
+        memset(result, 0, job->result_size);
+        errno = 0;
+        job->work(context, result);
+        send_result(channel, result, job->result_size);
+        context = order;
+    } while (await_order(channel, order, job->order_size));
     // _exit: the parent's buffers are not written a second time
     _exit(0);
 }
 
-bool child_start(Child *child, ChildWork work, const void *context, void *result,
-                 size_t result_size, ChildLimits limits, Err *err)
+static bool start(Child *child, const Job *job, void *result, ChildLimits limits, Err *err)
 {
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) {
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
         return err_set(err, ERR_SOLVER, "cannot start a child process: %s", strerror(errno));
     }
     const pid_t parent = getpid();
@@ -138,18 +171,53 @@ bool child_start(Child *child, ChildWork work, const void *context, void *result
     if (process == 0) {
         close(ends[0]);
         settle_in(parent, limits);
-        live(work, context, result_size, ends[1]);
+        live(job, ends[1]);
     }
     close(ends[1]);
     *child = (Child){
         .end = CHILD_RUNNING,
         .process = process,
-        .pipe = ends[0],
+        .channel = ends[0],
+        .order_size = job->order_size,
         .result = result,
-        .result_size = result_size,
+        .result_size = job->result_size,
         .started_s = clock_now_s(),
         .limits = limits,
     };
+    return true;
+}
+
+bool child_start(Child *child, ChildWork work, const void *context, void *result,
+                 size_t result_size, ChildLimits limits, Err *err)
+{
+    const Job job = {.work = work, .context = context, .result_size = result_size};
+    return start(child, &job, result, limits, err);
+}
+
+bool child_start_worker(Child *child, ChildWork work, const void *context, size_t context_size,
+                        void *result, size_t result_size, ChildLimits limits, Err *err)
+{
+    const Job job = {work, context, context_size, result_size};
+    return start(child, &job, result, limits, err);
+}
+
+bool child_is_at_rest(const Child *child)
+{
+    return child->end == CHILD_DONE && child->process > 0;
+}
+
+bool child_order(Child *child, const void *context)
+{
+    assert(child_is_at_rest(child));
+    // a resting worker has read all it was sent, so that there is room for the whole order
+    const ssize_t sent = send(child->channel, context, child->order_size, MSG_NOSIGNAL);
+    if (sent != (ssize_t)child->order_size) {
+        child_kill(child);
+        return false;
+    }
+    child->end = CHILD_RUNNING;
+    child->received = 0;
+    child->started_s = clock_now_s();
     return true;
 }
 
@@ -173,7 +241,7 @@ static bool is_leaving(pid_t process)
 static void bury(Child *child)
 {
     int status = 0;
-    close(child->pipe);
+    close(child->channel);
     while (waitpid(child->process, &status, 0) < 0 && errno == EINTR) {
     }
     child->process = 0;
@@ -188,7 +256,7 @@ static void bury(Child *child)
     child->end = is_whole ? CHILD_DONE : without;
 }
 
-// The pipe is closed: the process is ending, or something in it went wrong. With the whole result
+// The socket is closed: the process is ending, or something in it went wrong. With the whole result
 // here there is nothing left that could: a busy machine has not let the process end yet.
 static void see_off(Child *child)
 {
@@ -205,9 +273,11 @@ static void receive(Child *child)
     char nothing;
     const size_t wanted = child->result_size - child->received;
     char *target = wanted > 0 ? child->result + child->received : &nothing;
-    const ssize_t count = read(child->pipe, target, wanted > 0 ? wanted : 1);
+    const ssize_t count = read(child->channel, target, wanted > 0 ? wanted : 1);
     if (count > 0) {
         child->received += (size_t)count;
+        const bool is_worker = child->order_size > 0;
+        child->end = is_worker && child->received == child->result_size ? CHILD_DONE : child->end;
     } else if (count == 0 || errno != EINTR) {
         see_off(child);
     }
@@ -234,7 +304,7 @@ static bool wait_once(Child *children, size_t count, double wait_s)
         if (is_running(&children[i])) {
             assert(watched_count < WATCHED_MAX);
             owners[watched_count] = &children[i];
-            watched[watched_count++] = (struct pollfd){.fd = children[i].pipe, .events = POLLIN};
+            watched[watched_count++] = (struct pollfd){.fd = children[i].channel, .events = POLLIN};
             wait_s = fmin(wait_s, time_left(&children[i], clock_now_s()));
         }
     }
@@ -265,7 +335,7 @@ void child_wait(Child *children, size_t count, double wait_s)
 
 void child_kill(Child *child)
 {
-    if (is_running(child)) {
+    if (child->process > 0) {
         kill(child->process, SIGKILL);
         bury(child);
     }

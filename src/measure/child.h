@@ -36,7 +36,8 @@ typedef struct Child {
     ChildEnd end;
     int code;      // exit status of CHILD_EXITED, number of the signal of CHILD_SIGNALLED
     pid_t process; // from here on internal
-    int pipe;
+    int channel;
+    size_t order_size; // 0: no worker
     char *result;
     size_t result_size;
     size_t received;
@@ -51,11 +52,25 @@ typedef struct Child {
 bool child_start(Child *child, ChildWork work, const void *context, void *result,
                  size_t result_size, ChildLimits limits, Err *err);
 
+// Starts a worker: a child that lives on when its work is CHILD_DONE and can be given more of the
+// same kind. The context is all that differs between two pieces of work; it is sent as it is, so
+// that what it points to must have existed at the start and must not have changed since. A worker
+// that does not come back with a result is a child that has ended, as any other.
+bool child_start_worker(Child *child, ChildWork work, const void *context, size_t context_size,
+                        void *result, size_t result_size, ChildLimits limits, Err *err);
+
+// Whether a worker is there and has nothing to do. child_kill ends it.
+bool child_is_at_rest(const Child *child);
+
+// Gives a worker at rest its next piece of work; the result is as before. False where it is gone:
+// it is then ended, and another one may be started.
+bool child_order(Child *child, const void *context);
+
 // Waits until one of the children that are running ends, at most so long; their ends stand in
 // them. Returns at once where none is running.
 void child_wait(Child *children, size_t count, double wait_s);
 
-// Ends a child that is running; nothing is to be had from it. Accepts zeroed children.
+// Ends a child that is running or at rest; nothing is to be had from it. Accepts zeroed children.
 void child_kill(Child *child);
 
 // Asked in a child: whether memory was refused to it, by its limit or by the system, since errno

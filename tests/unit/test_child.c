@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -56,14 +57,14 @@ static void hang(const void *context, void *result)
     }
 }
 
-// Sends so many bytes to whatever pipe it finds, closes that, and does not end.
+// Sends so many bytes to whatever socket it finds, closes that, and does not end.
 static void linger(const void *context, void *result)
 {
     static const double SENT = 2.5;
     (void)result;
     for (int file = 3; file < 64; file++) {
         struct stat about;
-        if (fstat(file, &about) == 0 && S_ISFIFO(about.st_mode) &&
+        if (fstat(file, &about) == 0 && S_ISSOCK(about.st_mode) &&
             write(file, &SENT, *(const size_t *)context) > 0) {
             close(file);
         }
@@ -218,6 +219,72 @@ static void several_go_on_at_a_time(void **state)
     free(answers);
 }
 
+// What one worker answered, and from which process.
+typedef struct Served {
+    double value;
+    pid_t process;
+    int times; // that the process worked
+} Served;
+
+// Twice the number; at a negative one it dies.
+static void serve(const void *context, void *result)
+{
+    static int times = 0;
+    const double number = *(const double *)context;
+    if (number < 0.0) {
+        abort();
+    }
+    *(Served *)result = (Served){2.0 * number, getpid(), ++times};
+}
+
+static void a_worker_lives_for_many_pieces_and_dies_of_one(void **state)
+{
+    (void)state;
+    double numbers[] = {1.0, 2.0, 3.0, -1.0};
+    Child child;
+    Served served = {0};
+    Err err = {0};
+    assert_true(child_start_worker(&child, serve, &numbers[0], sizeof(double), &served,
+                                   sizeof served, NO_LIMITS, &err));
+    const pid_t process = child.process;
+    for (int i = 0; i < 3; i++) {
+        if (i > 0) {
+            assert_true(child_order(&child, &numbers[i]));
+            assert_false(child_is_at_rest(&child));
+        }
+        child_wait(&child, 1, 60.0);
+        assert_int_equal(child.end, CHILD_DONE);
+        assert_true(child_is_at_rest(&child));
+        assert_close(served.value, 2.0 * numbers[i], 0.0);
+        assert_int_equal(served.process, process);
+        assert_int_equal(served.times, i + 1);
+    }
+    assert_true(child_order(&child, &numbers[3]));
+    child_wait(&child, 1, 60.0);
+    assert_int_equal(child.end, CHILD_SIGNALLED);
+    assert_int_equal(child.code, SIGABRT);
+    assert_false(child_is_at_rest(&child));
+}
+
+static void a_worker_that_was_killed_at_rest_takes_no_order(void **state)
+{
+    (void)state;
+    double number = 1.0;
+    Child child;
+    Served served = {0};
+    Err err = {0};
+    assert_true(child_start_worker(&child, serve, &number, sizeof number, &served, sizeof served,
+                                   NO_LIMITS, &err));
+    child_wait(&child, 1, 60.0);
+    assert_true(child_is_at_rest(&child));
+    siginfo_t gone;
+    kill(child.process, SIGKILL);
+    assert_int_equal(waitid(P_PID, (id_t)child.process, &gone, WEXITED | WNOWAIT), 0);
+    assert_false(child_order(&child, &number));
+    assert_false(child_is_at_rest(&child));
+    child_kill(&child);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -229,6 +296,8 @@ int main(void)
         cmocka_unit_test(work_that_wants_all_memory_does_not_get_it),
         cmocka_unit_test(work_that_has_sent_its_result_need_not_have_ended),
         cmocka_unit_test(several_go_on_at_a_time),
+        cmocka_unit_test(a_worker_lives_for_many_pieces_and_dies_of_one),
+        cmocka_unit_test(a_worker_that_was_killed_at_rest_takes_no_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

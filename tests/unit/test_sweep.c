@@ -25,6 +25,8 @@ typedef struct Board {
     unsigned at_work;          // now
     unsigned at_work_max;
     unsigned with_truth; // runs that had one
+    unsigned processes;  // that made runs
+    unsigned spoilt;     // runs that ended in a process that had made others
 } Board;
 
 static Board *board;
@@ -247,6 +249,25 @@ static void hang(const SweepRun *task, Record *record)
     }
 }
 
+// Runs of the process that is at work; of the test's own process none.
+static unsigned made_here;
+
+static void be_counted(const SweepRun *task, Record *record)
+{
+    __atomic_fetch_add(&board->processes, made_here++ == 0 ? 1 : 0, __ATOMIC_SEQ_CST);
+    be_well(task, record);
+}
+
+// What goes before spoils every process: it takes one run only.
+static void be_spoilt(const SweepRun *task, Record *record)
+{
+    if (made_here++ > 0) {
+        __atomic_fetch_add(&board->spoilt, 1, __ATOMIC_SEQ_CST);
+        abort();
+    }
+    be_well(task, record);
+}
+
 static void certify_well(const SweepTruth *task, void *packed)
 {
     __atomic_fetch_add(&board->certified, 1, __ATOMIC_SEQ_CST);
@@ -275,6 +296,8 @@ static const SweepWork WELL = {be_well, certify_well};
 static const SweepWork BADLY = {misbehave, certify_well};
 static const SweepWork HANGING = {hang, certify_well};
 static const SweepWork WITHOUT_TRUTH = {be_well, certify_badly};
+static const SweepWork COUNTED = {be_counted, certify_well};
+static const SweepWork SPOILT = {be_spoilt, certify_well};
 static const SweepWork AT_LAST = {be_well, certify_at_last};
 
 static void check_row(const Study *study, uint64_t run, Fate fate, const char *reason)
@@ -320,6 +343,33 @@ static void what_goes_wrong_is_one_row_with_its_reason(void **state)
     assert_non_null(strstr(study->rows[EATS].reason, "Assertion"));
     check_row(study, EATS_AT_ONCE, FATE_NO_MEMORY,
               "wanted more than its limit of 200 MB of memory");
+}
+
+// Three groups, each with a truth that its processes have known from their start; two processes a
+// job.
+static void a_process_makes_many_runs(void **state)
+{
+    Study *study = *state;
+    open_study(study, 8, true, "{time: 600 s}");
+    assert_int_equal(sweep(study, &COUNTED, 1, ALL), SWEEP_COMPLETE);
+    assert_int_equal(study->row_count, 24);
+    assert_int_equal(board->with_truth, 24);
+    assert_in_range(board->processes, 3, 8);
+}
+
+static void a_run_is_judged_by_what_it_does_in_a_process_of_its_own(void **state)
+{
+    Study *study = *state;
+    open_study(study, 4, false, "{time: 600 s}");
+    assert_int_equal(sweep(study, &SPOILT, 2, ALL), SWEEP_COMPLETE);
+    assert_int_equal(study->row_count, 12);
+    for (uint64_t run = 0; run < 12; run++) {
+        check_row(study, run, FATE_OK, "");
+        assert_int_equal(board->started[run], 1);
+    }
+    // control: there were processes that had to be replaced
+    assert_in_range(board->spoilt, 1, 12);
+    assert_int_equal(study->state.failed, 0);
 }
 
 // None of them can end, so that a busy machine changes nothing.
@@ -508,6 +558,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
 #define SWEEP_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
         SWEEP_TEST(what_goes_wrong_is_one_row_with_its_reason),
+        SWEEP_TEST(a_process_makes_many_runs),
+        SWEEP_TEST(a_run_is_judged_by_what_it_does_in_a_process_of_its_own),
         SWEEP_TEST(a_run_that_hangs_is_ended_at_its_limit),
         SWEEP_TEST(every_truth_is_made_once_and_every_run_has_it),
         SWEEP_TEST(no_more_runs_go_on_at_a_time_than_there_are_jobs),

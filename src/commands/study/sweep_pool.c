@@ -1,6 +1,7 @@
 // Which process is to be started next, and what became of those that ended?
 //
 // There are as many slots as jobs; in each a process works and another one, already started, waits.
+// A process lives for many runs, and ends with a run that goes wrong.
 // Runs start by rising number. A truth is a process like a run, and is started early enough that no
 // run waits for it: as soon as fewer runs than jobs are ready to start. The number of open groups
 // is that of the jobs plus one, so that there is always something to start: each open group has a
@@ -14,6 +15,10 @@
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+
+// Runs of one worker: what a process costs is then some per cent of a short run, and what it might
+// lose of its memory from run to run is given back.
+enum { WORKER_RUNS_MAX = 200 };
 
 void sweep_pool_open(const Sweep *sweep, SweepState *state, SweepPool *pool)
 {
@@ -107,8 +112,29 @@ static bool open_next(SweepPool *pool, SweepGroup **opened, Err *err)
     return true;
 }
 
-// Starts a process. Where the system has none left but some are running, one becomes free when they
-// end. The slot applies the time limit, because the process may have to wait first.
+// Gives the run to the worker that is there, where it knows the group's truth.
+static bool go_on(SweepJob *job, Child *child, const SweepGroup *group)
+{
+    if (!child_is_at_rest(child) || job->serves != group->end || job->made >= WORKER_RUNS_MAX) {
+        return false;
+    }
+    job->made++;
+    return child_order(child, &job->run);
+}
+
+static bool start_worker(SweepJob *job, Child *child, const SweepGroup *group, ChildLimits limits,
+                         Err *err)
+{
+    child_kill(child);
+    job->serves = group->end;
+    job->made = 1;
+    return child_start_worker(child, sweep_work_run, &job->run, sizeof job->run, &job->record,
+                              sizeof job->record, limits, err);
+}
+
+// Begins what the job is to do. Where the system has no process left but some are running, one
+// becomes free when they end. The slot applies the time limit, because the process may have to wait
+// first.
 static bool start(SweepPool *pool, size_t number, SweepGroup *group, bool *is_started, Err *err)
 {
     SweepJob *job = &pool->jobs[number];
@@ -120,13 +146,13 @@ static bool start(SweepPool *pool, size_t number, SweepGroup *group, bool *is_st
     limits.time_s = 0.0;
     last_words_clear(job->slot.words);
     if (job->is_truth) {
+        child_kill(child);
         group->wanted->slot = job->slot;
         *is_started = child_start(child, sweep_work_certify, group->wanted, group->packed,
                                   group->packed_size, limits, &reason);
     } else {
         job->run.slot = job->slot;
-        *is_started = child_start(child, sweep_work_run, &job->run, &job->record,
-                                  sizeof job->record, limits, &reason);
+        *is_started = go_on(job, child, group) || start_worker(job, child, group, limits, &reason);
     }
     pool->busy += *is_started ? 1 : 0;
     job->group = *is_started ? group : NULL;
@@ -247,6 +273,26 @@ static void take_truth(SweepPool *pool, SweepGroup *group, const Child *child, d
     }
 }
 
+// What went wrong in a worker may be the fault of an earlier run: a run is judged by what it does
+// in a process of its own. A limit of time is its own in any case.
+static bool is_in_doubt(const SweepJob *job, const Child *child)
+{
+    const bool is_lost = child->end != CHILD_DONE && child->end != CHILD_TIMED_OUT;
+    const bool is_starved = child->end == CHILD_DONE && job->record.fate == FATE_NO_MEMORY;
+    return !job->is_truth && job->made > 1 && (is_lost || is_starved);
+}
+
+// Makes the run of a job once more, in a new process. False where there is none.
+static bool try_again(SweepPool *pool, size_t number)
+{
+    SweepJob *job = &pool->jobs[number];
+    Err unused = {0};
+    ChildLimits limits = pool->sweep->spec->limits;
+    limits.time_s = 0.0;
+    last_words_clear(job->slot.words);
+    return start_worker(job, &pool->children[number], job->group, limits, &unused);
+}
+
 bool sweep_pool_take(SweepPool *pool, Err *err)
 {
     bool is_taken = true;
@@ -259,6 +305,10 @@ bool sweep_pool_take(SweepPool *pool, Err *err)
         Child *child = &pool->children[i];
         const double wall_s = time_of(pool, job, child);
         sweep_work_mark_timeout(&job->slot, child);
+        if (is_in_doubt(job, child) && try_again(pool, i)) {
+            pool->state->inside_s += wall_s;
+            continue;
+        }
         if (job->is_truth) {
             take_truth(pool, group, child, wall_s);
         } else {

@@ -5,13 +5,15 @@
 
 enum { SWEEP_SLOT_DEPTH = 2 }; // processes of a slot: one at work, one ready
 
-// One process.
+// One process. It lives for many runs of one group, since it knows the truth from its start.
 typedef struct SweepJob {
     SweepGroup *group; // NULL: none
     bool is_truth;
     SweepSlot slot;
     SweepRun run;
     Record record;
+    uint64_t serves; // the worker there: `end` of the group whose truth it knows
+    size_t made;     // and the runs that it was given
 } SweepJob;
 
 typedef struct SweepPool {

@@ -1,6 +1,6 @@
 // What does one process of a sweep do, and which record stands for one that ended without a result?
 //
-// values -> scenario -> trajectory -> metrics -> record. Memory is not freed: the process ends.
+// values -> scenario -> trajectory -> metrics -> record.
 #include "commands/study/sweep_work.h"
 
 #include "base/clock.h"
@@ -47,20 +47,21 @@ static void forget_results(Record *record)
 static void measure(const SweepRun *task, const Scenario *scenario, BackendKind backend,
                     Record *record)
 {
-    const Trajectory *trajectory =
+    Trajectory *trajectory =
         backend_run(scenario, backend, task->truth, (ChosenWatch){.begin = NULL}, NULL);
-    if (!trajectory->is_complete) {
+    if (trajectory->is_complete) {
+        metrics_take(scenario, trajectory, task->truth, record->results);
+        record->hash = trajectory->hash;
+        check_results(task->layout, record);
+    } else {
         const bool is_starved = child_lacks_memory();
         give_reason(record, is_starved ? FATE_NO_MEMORY : FATE_FAILED, trajectory->message);
-        return;
     }
-    metrics_take(scenario, trajectory, task->truth, record->results);
-    record->hash = trajectory->hash;
-    check_results(task->layout, record);
     if (record->fate != FATE_OK) {
         forget_results(record);
         record->hash = 0;
     }
+    trajectory_destroy(trajectory);
 }
 
 static void run(const SweepRun *task, Record *record)
@@ -77,6 +78,7 @@ static void run(const SweepRun *task, Record *record)
     } else {
         give_reason(record, FATE_REFUSED, err.text);
     }
+    scenario_destroy(scenario);
 }
 
 static void certify(const SweepTruth *truth, void *packed)
