@@ -1,38 +1,12 @@
 // Are the derivatives of a contact's force those of the force?
 #include "close.h"
+#include "pressed_pin.h"
 
-#include "base/lcg.h"
 #include "contact/encounter_slopes.h"
 
 enum { ROWS = ENCOUNTER_ROWS_MOST };
 
-static const double CLEARANCE = 1e-4; // m
-static const double DEPTH = 1e-7;     // m
 static const double NOTHING[ROWS] = {0.0};
-
-// A pin in its wall, somewhere round the hole, sliding and turning and on its way in.
-static Encounter pressed(uint64_t *seed, double friction, size_t rows)
-{
-    Encounter pin = encounter_start(friction, 5e-3, 0.05);
-    encounter_add(&pin, &(EncounterJoint){.joint = 0}, rows);
-    EncounterJoint *joint = &pin.joints[0];
-    joint->law = force_law_power(6.6e10, 1.5);
-    joint->law.hysteresis = 0.7;
-    joint->law.viscous = 30.0;
-    joint->radial_clearance = CLEARANCE;
-    joint->hole_radius = 5e-3;
-    joint->is_touching = true;
-    joint->impact_speed = 0.1;
-    const double angle = 3.0 * lcg_draw(seed);
-    pin.position[0] = (CLEARANCE + DEPTH) * cos(angle);
-    pin.position[1] = (CLEARANCE + DEPTH) * sin(angle);
-    pin.speed[0] = 0.02 * cos(angle) + 5e-3 * lcg_draw(seed);
-    pin.speed[1] = 0.02 * sin(angle) + 5e-3 * lcg_draw(seed);
-    for (size_t i = 2; i < pin.row_count; i++) {
-        pin.speed[i] = (i == ENCOUNTER_ROW_AXIAL ? 5e-3 : 1.0) * lcg_draw(seed);
-    }
-    return pin;
-}
 
 // By central differences: where `at` points into the encounter.
 static void differences(Encounter *pin, double *at, double nudge, double *slopes)
@@ -57,7 +31,7 @@ static double mismatch(Encounter *pin, size_t row, bool of_position)
     encounter_slopes_find(pin, 0, 0.0, NOTHING, NOTHING, 0.0, &slopes);
     double expected[ROWS];
     differences(pin, of_position ? &pin->position[row] : &pin->speed[row],
-                of_position ? 1e-3 * DEPTH : 1e-7, expected);
+                of_position ? 1e-3 * PRESSED_DEPTH : 1e-7, expected);
     double largest = 0.0;
     double apart = 0.0;
     for (size_t i = 0; i < pin->row_count; i++) {
@@ -74,7 +48,7 @@ static void slopes_are_those_of_the_force(void **state)
     for (unsigned number = 0; number < 20; number++) {
         uint64_t seed = lcg_stirred(number);
         const size_t rows[3] = {ENCOUNTER_ROWS_PLAIN, RESPONSE_ROWS_A_JOINT, ENCOUNTER_ROWS_MOST};
-        Encounter pin = pressed(&seed, number % 3 == 0 ? 0.0 : 0.3, rows[number % 3]);
+        Encounter pin = pressed_pin(&seed, number % 3 == 0 ? 0.0 : 0.3, rows[number % 3]);
         EncounterSlopes slopes;
         double force[ROWS];
         double powers[2];
@@ -101,23 +75,8 @@ static void slopes_at_lines_and_discs_are_those_of_the_force(void **state)
         const bool is_line = number / 2 % 2 == 0;
         const bool has_turns = !is_line && friction > 0.0;
         Encounter pin =
-            pressed(&seed, friction, has_turns ? RESPONSE_ROWS_A_JOINT : ENCOUNTER_ROWS_PLAIN);
-        EncounterJoint *joint = &pin.joints[0];
-        joint->shape = is_line ? TOUCH_LINE : TOUCH_DISC;
-        joint->has_friction = friction > 0.0;
-        if (is_line) {
-            pin.position[0] = -DEPTH;
-            pin.position[1] = 0.0;
-            pin.speed[0] = -0.02;
-        } else {
-            // as deep in the other disc as the pin was in its wall, and on its way in
-            joint->radial_clearance *= -1.0;
-            joint->hole_radius *= -1.0;
-            for (size_t i = 0; i < 2; i++) {
-                pin.position[i] *= (CLEARANCE - DEPTH) / (CLEARANCE + DEPTH);
-                pin.speed[i] *= -1.0;
-            }
-        }
+            pressed_pin(&seed, friction, has_turns ? RESPONSE_ROWS_A_JOINT : ENCOUNTER_ROWS_PLAIN);
+        press_elsewhere(&pin, is_line, friction);
         EncounterSlopes slopes;
         double force[ROWS];
         double powers[2];
@@ -142,7 +101,7 @@ static void a_force_that_would_pull_is_none_unless_it_is_smooth(void **state)
 {
     (void)state;
     uint64_t seed = lcg_stirred(1);
-    Encounter pin = pressed(&seed, 0.3, ENCOUNTER_ROWS_MOST);
+    Encounter pin = pressed_pin(&seed, 0.3, ENCOUNTER_ROWS_MOST);
     for (size_t i = 0; i < 2; i++) {
         pin.speed[i] = -1e4 * pin.position[i];
     }
@@ -153,7 +112,7 @@ static void a_force_that_would_pull_is_none_unless_it_is_smooth(void **state)
         assert_near(slopes.by_speed[i][0], 0.0, 0.0);
     }
     // outwards is the way of the position: a force along it pulls the pin into the wall
-    encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, 0.5 * DEPTH, &slopes);
+    encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, 0.5 * PRESSED_DEPTH, &slopes);
     assert_true(slopes.force[0] * pin.position[0] + slopes.force[1] * pin.position[1] > 0.0);
     assert_true(slopes.by_speed[0][0] < 0.0);
     encounter_finish(&pin);
@@ -164,21 +123,22 @@ static void a_smooth_force_goes_on_below_a_depth(void **state)
 {
     (void)state;
     uint64_t seed = lcg_stirred(2);
-    Encounter pin = pressed(&seed, 0.0, ENCOUNTER_ROWS_PLAIN);
-    const double outward[2] = {pin.position[0] / (CLEARANCE + DEPTH),
-                               pin.position[1] / (CLEARANCE + DEPTH)};
+    Encounter pin = pressed_pin(&seed, 0.0, ENCOUNTER_ROWS_PLAIN);
+    const double outward[2] = {pin.position[0] / (PRESSED_CLEARANCE + PRESSED_DEPTH),
+                               pin.position[1] / (PRESSED_CLEARANCE + PRESSED_DEPTH)};
     double along[3];
-    const double depths[3] = {DEPTH * (1.0 + 1e-9), DEPTH * (1.0 - 1e-9), -DEPTH};
+    const double depths[3] = {PRESSED_DEPTH * (1.0 + 1e-9), PRESSED_DEPTH * (1.0 - 1e-9),
+                              -PRESSED_DEPTH};
     for (int i = 0; i < 3; i++) {
-        pin.position[0] = (CLEARANCE + depths[i]) * outward[0];
-        pin.position[1] = (CLEARANCE + depths[i]) * outward[1];
+        pin.position[0] = (PRESSED_CLEARANCE + depths[i]) * outward[0];
+        pin.position[1] = (PRESSED_CLEARANCE + depths[i]) * outward[1];
         EncounterSlopes slopes;
-        encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, DEPTH, &slopes);
+        encounter_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, PRESSED_DEPTH, &slopes);
         along[i] = -(slopes.force[0] * outward[0] + slopes.force[1] * outward[1]);
     }
     assert_close(along[0], along[1], 1e-8);
-    const double tangent = force_law_tangent(&pin.joints[0].law, DEPTH);
-    assert_close(along[1] - along[2], 2.0 * DEPTH * tangent, 1e-6);
+    const double tangent = force_law_tangent(&pin.joints[0].law, PRESSED_DEPTH);
+    assert_close(along[1] - along[2], 2.0 * PRESSED_DEPTH * tangent, 1e-6);
     encounter_finish(&pin);
 }
 

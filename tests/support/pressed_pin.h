@@ -1,0 +1,53 @@
+// A contact of one place that is under way, for contact/encounter_*.h.
+#pragma once
+
+#include "base/lcg.h"
+#include "contact/encounter_force.h"
+
+static const double PRESSED_CLEARANCE = 1e-4; // m
+static const double PRESSED_DEPTH = 1e-7;     // m
+
+// A pin in its wall, somewhere round the hole, sliding and turning and on its way in.
+static inline Encounter pressed_pin(uint64_t *seed, double friction, size_t rows)
+{
+    Encounter pin = encounter_start(friction, 5e-3, 0.05);
+    encounter_add(&pin, &(EncounterJoint){.joint = 0}, rows);
+    EncounterJoint *joint = &pin.joints[0];
+    joint->law = force_law_power(6.6e10, 1.5);
+    joint->law.hysteresis = 0.7;
+    joint->law.viscous = 30.0;
+    joint->radial_clearance = PRESSED_CLEARANCE;
+    joint->hole_radius = 5e-3;
+    joint->is_touching = true;
+    joint->impact_speed = 0.1;
+    const double angle = 3.0 * lcg_draw(seed);
+    pin.position[0] = (PRESSED_CLEARANCE + PRESSED_DEPTH) * cos(angle);
+    pin.position[1] = (PRESSED_CLEARANCE + PRESSED_DEPTH) * sin(angle);
+    pin.speed[0] = 0.02 * cos(angle) + 5e-3 * lcg_draw(seed);
+    pin.speed[1] = 0.02 * sin(angle) + 5e-3 * lcg_draw(seed);
+    for (size_t i = 2; i < pin.row_count; i++) {
+        pin.speed[i] = (i == ENCOUNTER_ROW_AXIAL ? 5e-3 : 1.0) * lcg_draw(seed);
+    }
+    return pin;
+}
+
+// Makes of it a circle on a line, or a disc as deep in the other disc as the pin was in its wall.
+static inline void press_elsewhere(Encounter *pin, bool is_line, double friction)
+{
+    EncounterJoint *joint = &pin->joints[0];
+    joint->shape = is_line ? TOUCH_LINE : TOUCH_DISC;
+    joint->has_friction = friction > 0.0;
+    if (is_line) {
+        pin->position[0] = -PRESSED_DEPTH;
+        pin->position[1] = 0.0;
+        pin->speed[0] = -0.02;
+        return;
+    }
+    joint->radial_clearance *= -1.0;
+    joint->hole_radius *= -1.0;
+    for (size_t i = 0; i < 2; i++) {
+        pin->position[i] *=
+            (PRESSED_CLEARANCE - PRESSED_DEPTH) / (PRESSED_CLEARANCE + PRESSED_DEPTH);
+        pin->speed[i] *= -1.0;
+    }
+}
