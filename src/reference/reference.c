@@ -4,6 +4,7 @@
 // method of order 8 (reference/dop853.h); contact begin and end are events, between which the
 // right-hand side is smooth. A step of the integrator is handed on in parts that end where a force
 // or a depth has its maximum, so that no peak is missed whatever the step.
+#include "base/layout.h"
 #include "model/solver.h"
 #include "reference/peaks.h"
 #include "reference/stepper.h"
@@ -25,13 +26,41 @@ typedef struct Reference {
     double *before; // at start_s
     double *seen;   // at a time that is observed
     double elastic; // J, stored in the contacts at end_s
-    double omega[LINKAGE_BODY_MAX];
-    double alpha[LINKAGE_BODY_MAX];
-    double impulse[LINKAGE_JOINT_MAX];
-    double approach[LINKAGE_JOINT_MAX];
-    JointState joints[LINKAGE_JOINT_MAX];
-    SpaceJointState space_joints[LINKAGE_JOINT_MAX];
+    void *memory;   // owned; where the arrays below are
+    double *omega;  // by body
+    double *alpha;
+    double *impulse; // by joint
+    double *approach;
+    double *onset_s; // when its contact under way began
+    JointState *joints;
+    SpaceJointState *space_joints;
 } Reference;
+
+// All arrays, from a layout that counts or has the memory.
+static void lay(Reference *reference, const Linkage *linkage, Layout *layout)
+{
+    const size_t bodies = linkage->body_count;
+    const size_t joints = linkage->joint_count;
+    reference->omega = layout_take(layout, bodies, sizeof *reference->omega);
+    reference->alpha = layout_take(layout, bodies, sizeof *reference->alpha);
+    reference->impulse = layout_take(layout, joints, sizeof *reference->impulse);
+    reference->approach = layout_take(layout, joints, sizeof *reference->approach);
+    reference->onset_s = layout_take(layout, joints, sizeof *reference->onset_s);
+    reference->joints = layout_take(layout, joints, sizeof *reference->joints);
+    reference->space_joints = layout_take(layout, joints, sizeof *reference->space_joints);
+}
+
+static Reference *create(const Linkage *linkage)
+{
+    Reference *reference = calloc(1, sizeof *reference);
+    assert(reference != NULL);
+    Layout layout = {NULL, 0};
+    lay(reference, linkage, &layout);
+    reference->memory = calloc(1, layout.used + 1);
+    assert(reference->memory != NULL);
+    lay(reference, linkage, &(Layout){reference->memory, 0});
+    return reference;
+}
 
 static bool fail_at(const Reference *reference, double time_s, Err *err)
 {
@@ -52,6 +81,7 @@ static void reference_close(void *state)
         free(reference->y);
         free(reference->before);
         free(reference->seen);
+        free(reference->memory);
         free(reference);
     }
 }
@@ -61,7 +91,7 @@ static void reference_close(void *state)
 static void fill_approach(Reference *reference)
 {
     const System *system = reference->stepper->system;
-    double since_s[LINKAGE_JOINT_MAX];
+    double *since_s = reference->onset_s;
     for (size_t i = 0; i < system->contact_count; i++) {
         since_s[system->contacts[i].joint] = INFINITY;
     }
@@ -151,8 +181,7 @@ static bool advance(Reference *reference, Err *err)
 
 static bool reference_open(const Scenario *scenario, void **state, Err *err)
 {
-    Reference *reference = calloc(1, sizeof *reference);
-    assert(reference != NULL);
+    Reference *reference = create(&scenario->linkage);
     Stepper *stepper = calloc(1, sizeof *stepper);
     assert(stepper != NULL);
     reference->stepper = stepper;

@@ -273,6 +273,14 @@ static const SystemKind SPACE = {
 
 System *space_system_create(const Scenario *scenario, Err *err)
 {
+    const Linkage *linkage = &scenario->linkage;
+    if (linkage->body_count > LINKAGE_BODY_MAX || linkage->joint_count > LINKAGE_JOINT_MAX) {
+        err_set(err, ERR_CASE,
+                "the reference holds at most %d bodies and %d joints in space; the case has "
+                "%zu and %zu",
+                LINKAGE_BODY_MAX, LINKAGE_JOINT_MAX, linkage->body_count, linkage->joint_count);
+        return NULL;
+    }
     SpaceDynamics *dynamics = malloc(sizeof *dynamics);
     assert(dynamics != NULL);
     if (!space_dynamics_init(scenario, dynamics, err)) {
