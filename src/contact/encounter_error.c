@@ -38,9 +38,7 @@ static double along_wall(const Encounter *encounter, size_t joint, Vec2 tangent,
     return sum;
 }
 
-// What rounding leaves of a depth, m: the play less an eccentricity, or at a line the gap at the
-// start of the world's step less the way since then.
-static double depth_rounding(const Encounter *encounter, size_t joint, double time_s)
+double encounter_error_rounding(const Encounter *encounter, size_t joint, double time_s)
 {
     const EncounterJoint *of = &encounter->joints[joint];
     if (of->shape != TOUCH_LINE) {
@@ -57,7 +55,7 @@ static double share_of_joint(const Encounter *encounter, size_t joint, const Enc
     const size_t first = encounter->joints[joint].first_row;
     const size_t own = encounter->joints[joint].row_count;
     const double square = encounter->stiff_phase * encounter->stiff_phase;
-    const double rounding = depth_rounding(encounter, joint, from->time_s + width_s);
+    const double rounding = encounter_error_rounding(encounter, joint, from->time_s + width_s);
     const PinHole pose =
         encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
     const Vec2 tangent = vec2_perp(pose.normal);

@@ -7,3 +7,7 @@
 // what is allowed; `moved` are the impulses in the step. Infinite or NaN where they are.
 double encounter_error_share(const Encounter *encounter, const EncounterPoint *from, double width_s,
                              const double *moved, const double *impulse, const double *moment);
+
+// What rounding leaves of a depth, m: the play less an eccentricity, or at a line the gap at the
+// start of the world's step less the way since then.
+double encounter_error_rounding(const Encounter *encounter, size_t joint, double time_s);

@@ -9,6 +9,8 @@
 // are found to rounding, and steps end there.
 #include "contact/encounter.h"
 
+#include "contact/encounter_error.h"
+#include "contact/encounter_flight.h"
 #include "contact/encounter_force.h"
 #include "contact/encounter_rates.h"
 #include "contact/encounter_step.h"
@@ -47,6 +49,9 @@ static const double OVERDAMPED = 8.0;
 // of a local step: contacts that begin or end nearer to each other than this do so together, for
 // rounding of positions keeps the contacts of equal mechanisms apart by no less
 static const double AT_ONCE = 1e-7;
+
+// how many roundings of its depth a pin may be off the wall that it is at
+static const double AT_WALL = 64.0;
 
 Encounter encounter_start(double friction, double friction_speed, double phase)
 {
@@ -219,6 +224,9 @@ static bool find_bracket(Encounter *encounter, EncounterStep *step, size_t joint
     *first = start.penetration;
     *last = end.penetration;
     if (encounter->joints[joint].is_touching) {
+        if (start.penetration < 0.0 && start.approach_speed > 0.0 && end.approach_speed > 0.0) {
+            return false; // moved off the wall by the step of the world, and not back there yet
+        }
         *first = fmax(*first, 1e-30); // at the wall, where the contact began
         return *last < 0.0;
     }
@@ -234,6 +242,16 @@ static bool find_bracket(Encounter *encounter, EncounterStep *step, size_t joint
     return *last > 0.0;
 }
 
+// Whether a pin that does not touch is at its wall, to rounding, and on its way off it.
+static bool is_leaving(const Encounter *encounter, const EncounterPoint *from, size_t joint)
+{
+    const PinHole pose =
+        encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
+    const double rounding = encounter_error_rounding(encounter, joint, from->time_s);
+    return !encounter->joints[joint].is_touching && pose.penetration >= -AT_WALL * rounding &&
+           pose.approach_speed < 0.0;
+}
+
 // Shortens a step to where the first contact begins or ends in it. Returns which do there, one bit
 // a joint.
 static uint32_t find_events(Encounter *encounter, EncounterStep *step, const EncounterPoint *to,
@@ -246,7 +264,10 @@ static uint32_t find_events(Encounter *encounter, EncounterStep *step, const Enc
         double first;
         double last;
         crossings[i] = INFINITY;
-        if (find_bracket(encounter, step, i, to, &first, &bracket_s, &last)) {
+        if (step->method == ENCOUNTER_FLIGHT && is_leaving(encounter, step->from, i)) {
+            crossings[i] = encounter_flight_time(encounter, i, step->from, whole_s);
+            *width_s = fmin(*width_s, crossings[i]);
+        } else if (find_bracket(encounter, step, i, to, &first, &bracket_s, &last)) {
             crossings[i] = find_crossing(encounter, step, i, first, bracket_s, last);
             *width_s = fmin(*width_s, crossings[i]);
         }
@@ -258,8 +279,8 @@ static uint32_t find_events(Encounter *encounter, EncounterStep *step, const Enc
     return events;
 }
 
-// Shortens a flight that leads away from the wall and back to it to where it turns: from there on
-// the pin is within its play, and the next crossing can be found.
+// Shortens a step in which a pin goes away from its wall and comes to it, while another one
+// touches, to where it turns: from there on the next crossing can be found.
 static bool shorten_flight(const Encounter *encounter, const EncounterPoint *from,
                            const EncounterPoint *to, double *width_s)
 {
@@ -311,7 +332,8 @@ static bool step_to_event(Encounter *encounter, EncounterStep *step, uint32_t ev
             encounter_force_pose(encounter, first, to->time_s, to->impulse, to->moment);
         const double later_s = -pose.penetration / pose.approach_speed;
         if (i == EVENT_STEPS || step->method != ENCOUNTER_EXPLICIT ||
-            !(fabs(later_s) > EVENT_ROUNDING * whole_s) || !(*width_s + later_s > 0.0)) {
+            !(fabs(later_s) > EVENT_ROUNDING * whole_s) || !(*width_s + later_s > 0.0) ||
+            !(fabs(later_s) < whole_s)) {
             return true;
         }
         *width_s += later_s;
@@ -326,7 +348,7 @@ static bool advance_step(Encounter *encounter, EncounterStep *step, double left_
     double width_s = encounter_step_take(encounter, step, left_s, to);
     const double whole_s = width_s;
     bool is_solved = true;
-    if (shorten_flight(encounter, step->from, to, &width_s)) {
+    if (step->method != ENCOUNTER_FLIGHT && shorten_flight(encounter, step->from, to, &width_s)) {
         is_solved = encounter_step_try(encounter, step, width_s, to);
     }
     *events = is_solved ? find_events(encounter, step, to, &width_s) : 0;

@@ -184,6 +184,17 @@ static double time_to_end(const EncounterJoint *joint, const EncounterPoint *fro
                                                    : leaves_s;
 }
 
+// How soon a pin may be back at the wall, s, that the step of the world has moved off it while they
+// touched: nothing presses before, and no error says how long a step may be.
+static double time_to_wall(const Encounter *encounter, const EncounterJoint *joint,
+                           const PinHole *pose)
+{
+    const double *free = encounter->free + joint->first_row;
+    const double speed = fmax(pose->approach_speed, 0.0);
+    const double gap = -pose->penetration;
+    return 2.0 * gap / (speed + sqrt(speed * speed + 2.0 * hypot(free[0], free[1]) * gap));
+}
+
 // How long an explicit step may be at most for damping, friction, and ends of contacts; and whether
 // the damping may need an implicit one.
 static double limit_explicit(const Encounter *encounter, const EncounterPoint *from,
@@ -199,6 +210,10 @@ static double limit_explicit(const Encounter *encounter, const EncounterPoint *f
         const PinHole pose =
             encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment);
         const double depth = fmax(pose.penetration, 0.0);
+        if (pose.penetration < 0.0) {
+            longest_s =
+                fmin(longest_s, fmax(time_to_wall(encounter, joint, &pose), joint->first_width_s));
+        }
         longest_s =
             fmin(longest_s, fmax(ENDING * time_to_end(joint, from, &pose), joint->first_width_s));
         if (joint->law.hysteresis != 0.0 || joint->law.viscous != 0.0) {

@@ -159,6 +159,52 @@ static void a_pin_that_falls_back_touches_again(void **state)
     encounter_finish(&pin);
 }
 
+// Thrown from wall to wall in one run: every 2 c / v and the duration of a contact. A crossing of
+// the hole is short beside what is left of the run.
+static void a_pin_that_crosses_the_hole_meets_the_other_wall(void **state)
+{
+    (void)state;
+    enum { IMPACTS = 8 };
+    const double crossing_s = 2.0 * ONE_IMPACT_CLEARANCE / ONE_IMPACT_SPEED;
+    const double cycle_s = crossing_s + lone_pin_duration();
+    Encounter pin = lone_pin(lone_pin_hertz(0.0), 0.01);
+    run(&pin, (IMPACTS - 0.5) * cycle_s);
+    size_t impacts = 0;
+    for (size_t node = 1; node < pin.node_count; node++) {
+        if (pin.touching[node] > pin.touching[node - 1]) {
+            const double first_s = LONE_PIN_GAP / ONE_IMPACT_SPEED;
+            assert_close(pin.times[node], first_s + (double)impacts * cycle_s, 1e-6);
+            impacts++;
+        }
+    }
+    assert_int_equal(impacts, IMPACTS);
+    encounter_finish(&pin);
+}
+
+// A contact under way whose pin the step of the world has put into its play: it falls back to the
+// wall with the speed that it has gained, and comes off with the energy it had.
+static void a_pin_moved_off_its_wall_comes_back_to_it(void **state)
+{
+    (void)state;
+    static const double FREE = 1000.0; // m/s^2
+    Encounter pin = lone_pin(lone_pin_hertz(0.0), 0.01);
+    run(&pin, LONE_PIN_GAP / ONE_IMPACT_SPEED + 0.9 * lone_pin_duration());
+    assert_true(pin.joints[0].is_touching);
+    pin.position[0] = ONE_IMPACT_CLEARANCE - 4e-6;
+    pin.speed[0] = 5e-3;
+    pin.free[0] = FREE;
+    run(&pin, 2.3e-4);
+    assert_false(pin.joints[0].is_touching);
+    const EncounterSums sums = lone_pin_end(&pin);
+    const double time_s = pin.times[pin.node_count - 1];
+    const double speed = pin.speed[0] + FREE * time_s + sums.impulse[0] / ONE_IMPACT_MASS;
+    const double moved =
+        (pin.speed[0] + 0.5 * FREE * time_s) * time_s + sums.moment[0] / ONE_IMPACT_MASS;
+    assert_true(speed < 0.0);
+    assert_close(0.5 * speed * speed, 0.5 * 5e-3 * 5e-3 + FREE * moved, 1e-6);
+    encounter_finish(&pin);
+}
+
 // Half the period of a weight let go at the wall, in which it goes down to twice and a half m g / K
 // to the power of two thirds. Rounding may put the pin to either side of the wall.
 static void a_weight_let_go_on_the_wall_sinks_at_once(void **state)
@@ -407,6 +453,8 @@ int main(void)
         cmocka_unit_test(the_error_falls_with_the_fourth_power_of_the_phase),
         cmocka_unit_test(an_onset_stands_where_the_flight_meets_the_wall),
         cmocka_unit_test(a_slow_pin_turns_back_before_the_wall),
+        cmocka_unit_test(a_pin_that_crosses_the_hole_meets_the_other_wall),
+        cmocka_unit_test(a_pin_moved_off_its_wall_comes_back_to_it),
         cmocka_unit_test(a_weight_let_go_on_the_wall_sinks_at_once),
         cmocka_unit_test(a_pin_that_falls_back_touches_again),
         cmocka_unit_test(impulses_are_integrals_of_forces_and_move_the_pin),
