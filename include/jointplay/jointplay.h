@@ -1,5 +1,5 @@
-/* jointplay: joints with play and backlash for any world of the Open Dynamics Engine (ODE), and what
- * an ERP and a CFM stand for.
+/* jointplay: joints with play and backlash for any world of the Open Dynamics Engine (ODE), and
+ * what an ERP and a CFM stand for.
  *
  * C17 and C++17. Everything is in the units of your world, written here as SI: metres, kilograms,
  * seconds, radians. What is said of a mass, a force and a length holds of an inertia, a torque and
@@ -30,8 +30,8 @@ typedef enum JpStatus {
     JP_ERROR_ARGUMENT, /* an argument that no call may have: NULL, NaN, out of range */
     JP_ERROR_NONE,     /* what is asked for does not exist: no such step, no such spring */
     JP_ERROR_MEMORY,   /* there is no memory */
-    JP_ERROR_WORLD,    /* the world cannot be stepped: a number in it is not finite, or it has bodies
-                          that are not known */
+    JP_ERROR_WORLD, /* the world cannot be stepped: a number in it is not finite, or it has bodies
+                       that are not known */
 } JpStatus;
 
 enum { JP_ERROR_SIZE = 256 };
@@ -63,12 +63,12 @@ typedef enum JpDamping {
 } JpDamping;
 
 typedef struct JpContact {
-    double stiffness;   /* K of F_el = K d^exponent, N/m^exponent; 0 of a logarithmic law */
-    double exponent;    /* 1 */
-    double compliance;  /* A of d = A F (B - ln F), m/N: a cylinder in a hole; else 0 */
-    double offset;      /* B, 1, F in N */
+    double stiffness;  /* K of F_el = K d^exponent, N/m^exponent; 0 of a logarithmic law */
+    double exponent;   /* 1 */
+    double compliance; /* A of d = A F (B - ln F), m/N: a cylinder in a hole; else 0 */
+    double offset;     /* B, 1, F in N */
     JpDamping damping;
-    double restitution; /* 1, of the hysteretic kinds: 0 to 1; where chi is infinite at 0, above 0 */
+    double restitution; /* 1, 0 to 1, of the hysteretic kinds; some want more than 0 */
     double damper;      /* N s/m, of JP_DAMPING_VISCOUS */
     double speed_floor; /* m/s, > 0: slower impacts are damped as if they had this speed */
 } JpContact;
@@ -102,8 +102,8 @@ JP_API JpStatus jp_contact_of_pin(JpPinLaw law, const JpPin *pin, JpContact *con
  * impact of a mass, kg; and the restitution that a spring and a damper give back. */
 JP_API JpStatus jp_damper_of(double stiffness, double restitution, double mass, double *damper,
                              JpError *error);
-JP_API JpStatus jp_restitution_of(double stiffness, double damper, double mass,
-                                  double *restitution, JpError *error);
+JP_API JpStatus jp_restitution_of(double stiffness, double damper, double mass, double *restitution,
+                                  JpError *error);
 
 /* ---- from a contact to ERP and CFM, and back ------------------------------------------------
  *
@@ -124,7 +124,7 @@ typedef struct JpInstant {
     double depth;        /* m, > 0 */
     double closing;      /* m/s, rate of the depth */
     double impact_speed; /* m/s, with which this contact began */
-    double mass;         /* kg, effective along the normal; jp_row looks at it in JP_MAP_EXACT alone */
+    double mass;         /* kg, effective along the normal; of JP_MAP_EXACT alone */
     double step;         /* s */
 } JpInstant;
 
@@ -174,8 +174,8 @@ typedef struct JpImpact {
 JP_API JpStatus jp_impact_of_law(const JpContact *contact, double mass, double speed,
                                  JpImpact *impact, JpError *error);
 
-/* The same, stepped by ODE on rows of a map: over 16 phases, for it is an accident where steps fall.
- * A row beyond the map's limit is the textbook's, as it is in a world of this library. */
+/* The same, stepped by ODE on rows of a map: over 16 phases, for it is an accident where steps
+ * fall. A row beyond the map's limit is the textbook's, as it is in a world of this library. */
 typedef struct JpDelivered {
     JpImpact mean;
     JpImpact least; /* each number by itself */
@@ -207,7 +207,8 @@ typedef struct JpJoint JpJoint;
 
 typedef enum JpStepping {
     JP_STEPPING_PLAIN,     /* as ODE steps: order 1; rows of JP_MAP_CORRECTED */
-    JP_STEPPING_STAGGERED, /* forces at mid-step: order 2 at the same cost; rows of JP_MAP_MIDPOINT */
+    JP_STEPPING_STAGGERED, /* forces at mid-step: order 2 at the same cost; rows of JP_MAP_MIDPOINT
+                            */
     JP_STEPPING_IMPULSE,   /* the same with the contacts of our joints integrated within the step,
                               however short they are: n + 2 steps of ODE where n joints touch */
 } JpStepping;
@@ -252,14 +253,15 @@ JP_API JpStatus jp_world_stats(const JpWorld *world, JpWorldStats *stats, JpErro
  *
  * On a hinge or a slider of yours, which goes on holding all but its own coordinate: the angle or
  * position that dJointGetHingeAngle or dJointGetSliderPosition give, followed beyond half a turn
- * where it turns by less than that in a step. Forces and lengths are torques and angles on a hinge. */
+ * where it turns by less than that in a step. Forces and lengths are torques and angles on a hinge.
+ */
 
 /* Backlash: the teeth of one side stand between those of the other with a gap. Without a rotor the
- * gap is between the two bodies. With one, what stands in the gap is a rotor (motor, gears, reflected
- * to the joint by the square of the ratio), which is a mere number and no body: it is driven by
- * jp_backlash_drive, or led by jp_backlash_lead. What the gears press on the first body, they press
- * on the second the other way; the rotor's own reaction on its housing, smaller by the ratio, is left
- * out. */
+ * gap is between the two bodies. With one, what stands in the gap is a rotor (motor, gears,
+ * reflected to the joint by the square of the ratio), which is a mere number and no body: it is
+ * driven by jp_backlash_drive, or led by jp_backlash_lead. What the gears press on the first body,
+ * they press on the second the other way; the rotor's own reaction on its housing, smaller by the
+ * ratio, is left out. */
 typedef struct JpBacklash {
     double gap;           /* rad or m, from tooth to tooth, >= 0 */
     double offset;        /* rad or m: the coordinate less the rotor's where the gap is centred */
@@ -276,8 +278,8 @@ JP_API JpStatus jp_backlash_create(JpWorld *world, dJointID joint, const JpBackl
  * rotor. */
 JP_API JpStatus jp_backlash_drive(JpJoint *joint, double force, JpError *error);
 
-/* Leads the rotor, or what the gap stands on where there is none: where it is now, and the speed with
- * which it goes on from there. */
+/* Leads the rotor, or what the gap stands on where there is none: where it is now, and the speed
+ * with which it goes on from there. */
 JP_API JpStatus jp_backlash_lead(JpJoint *joint, double position, double speed, JpError *error);
 
 /* Stops that rebound as asked. Use them in place of dParamLoStop and dParamHiStop. */
@@ -296,13 +298,13 @@ JP_API void jp_joint_destroy(JpJoint *joint);
 
 /* One side of the gap. */
 typedef struct JpSide {
-    double gap;       /* rad or m to it; below 0 inside; infinite where there is none */
-    double force;     /* N m or N, >= 0, mean of the last step */
-    double force_max; /* since the joint was made, as are all below */
-    double depth_max; /* rad or m */
-    double impulse;   /* N m s or N s */
-    double work;      /* J, done by the contact */
-    double stored;    /* J, elastic, now; -work - stored was lost */
+    double gap;          /* rad or m to it; below 0 inside; infinite where there is none */
+    double force;        /* N m or N, >= 0, mean of the last step */
+    double force_max;    /* since the joint was made, as are all below */
+    double depth_max;    /* rad or m */
+    double impulse;      /* N m s or N s */
+    double work;         /* J, done by the contact */
+    double stored;       /* J, elastic, now; -work - stored was lost */
     double impact_speed; /* rad/s or m/s, of the last impact */
     size_t impacts;
     bool is_touching;
