@@ -5,6 +5,7 @@
 #include "base/zeroed.h"
 #include "contact/law.h"
 #include "ode/impulse_part.h"
+#include "ode/impulse_parts.h"
 #include "ode/impulse_step.h"
 #include "ode/stepping.h"
 
@@ -94,6 +95,12 @@ static bool impulse_step(void *state, double stop_s, Err *err)
     take_part(impulse);
     return check_depths(impulse, err) ||
            stepping_fail(step->scenario, impulse->part.end_s, step->count, step->width_s, err);
+}
+
+bool impulse_is_at_end(const void *state)
+{
+    const Impulse *impulse = state;
+    return impulse->part.is_last;
 }
 
 static StepRecord impulse_record(const void *state)

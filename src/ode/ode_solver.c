@@ -2,6 +2,7 @@
 //
 // Hands on to the way of stepping that the scenario asks for; each is a solver of its own.
 #include "model/solver.h"
+#include "ode/impulse_parts.h"
 #include "ode/space_stepping.h"
 #include "ode/stepping.h"
 
@@ -26,7 +27,9 @@ static const Solver *choose(const Scenario *scenario)
     };
     const bool is_spatial = scenario->linkage.is_spatial;
     if (scenario_integrates_contacts(scenario)) {
-        return is_spatial ? &SPACE_IMPULSE : &STEPPING_IMPULSE;
+        return is_spatial                          ? &SPACE_IMPULSE
+               : impulse_parts_count(scenario) > 1 ? &STEPPING_IMPULSE_PARTS
+                                                   : &STEPPING_IMPULSE;
     }
     return is_spatial ? IN_SPACE[scenario->ode.stepping] : STEPPINGS[scenario->ode.stepping];
 }

@@ -102,6 +102,9 @@ void world_start(const Scenario *scenario, World *world)
     dWorldSetMaxAngularSpeed(id, dInfinity);
     dWorldSetContactSurfaceLayer(id, 0.0);
     dWorldSetContactMaxCorrectingVel(id, dInfinity);
+    // room to step in as far as it is needed: ODE would take 64 KiB for each world
+    const dWorldStepReserveInfo reserve = {sizeof reserve, dWORLDSTEP_RESERVEFACTOR_DEFAULT, 0};
+    dWorldSetStepMemoryReservationPolicy(id, &reserve);
     dWorldSetQuickStepNumIterations(id, (int)options->iterations);
     dWorldSetQuickStepW(id, options->over_relaxation);
 }

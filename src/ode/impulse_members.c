@@ -1,0 +1,178 @@
+// Which mechanisms of a linkage share nothing but the ground?
+//
+// Those whose bodies no joint and no spring connects, not by way of the driven body either.
+#include "ode/impulse_members.h"
+
+#include "base/zeroed.h"
+#include "ode/stepping.h"
+
+// The first body of those that a body is known to be connected with.
+static size_t leader_of(size_t *leaders, size_t body)
+{
+    while (leaders[body] != body) {
+        leaders[body] = leaders[leaders[body]];
+        body = leaders[body];
+    }
+    return body;
+}
+
+static void connect(size_t *leaders, int a, int b)
+{
+    if (a != LINKAGE_GROUND && b != LINKAGE_GROUND) {
+        const size_t first = leader_of(leaders, (size_t)a);
+        const size_t second = leader_of(leaders, (size_t)b);
+        leaders[first > second ? first : second] = first > second ? second : first;
+    }
+}
+
+// Numbers the mechanisms: by body which one it belongs to. Returns how many there are.
+static size_t number_members(const Linkage *linkage, size_t *member_of)
+{
+    size_t *leaders = zeroed(linkage->body_count, sizeof *leaders);
+    size_t count = 0;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        leaders[i] = i;
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        connect(leaders, linkage->joints[i].body_a, linkage->joints[i].body_b);
+    }
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        connect(leaders, linkage->springs[i].body_a, linkage->springs[i].body_b);
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const size_t leader = leader_of(leaders, i);
+        member_of[i] = leader == i ? count++ : member_of[leader];
+    }
+    free(leaders);
+    return count;
+}
+
+static size_t member_of_pair(const size_t *member_of, int a, int b)
+{
+    return member_of[a != LINKAGE_GROUND ? a : b];
+}
+
+static int renumber(const int *own, int body)
+{
+    return body == LINKAGE_GROUND ? LINKAGE_GROUND : own[body];
+}
+
+// What the linkage has more than bodies: by member, then with their numbers there.
+static void share_out(const Linkage *whole, const size_t *member_of, Member *members)
+{
+    int *own_body = zeroed(whole->body_count, sizeof *own_body);
+    int *own_joint = zeroed(whole->joint_count, sizeof *own_joint);
+    for (size_t i = 0; i < whole->body_count; i++) {
+        Member *member = &members[member_of[i]];
+        Linkage *linkage = &member->scenario->linkage;
+        own_body[i] = (int)linkage->body_count;
+        member->bodies[linkage->body_count] = (int)i;
+        linkage->bodies[linkage->body_count++] = whole->bodies[i];
+    }
+    for (size_t i = 0; i < whole->joint_count; i++) {
+        Joint joint = whole->joints[i];
+        Member *member = &members[member_of_pair(member_of, joint.body_a, joint.body_b)];
+        Linkage *linkage = &member->scenario->linkage;
+        joint.body_a = renumber(own_body, joint.body_a);
+        joint.body_b = renumber(own_body, joint.body_b);
+        own_joint[i] = (int)linkage->joint_count;
+        member->joints[linkage->joint_count] = (int)i;
+        linkage->joints[linkage->joint_count++] = joint;
+        if (whole->driver.is_present && whole->driver.joint == (int)i) {
+            linkage->driver = whole->driver;
+            linkage->driver.joint = own_joint[i];
+        }
+        if (whole->torque.table.count > 0 && whole->torque.joint == (int)i) {
+            linkage->torque = whole->torque;
+            linkage->torque.joint = own_joint[i];
+        }
+    }
+    for (size_t i = 0; i < whole->spring_count; i++) {
+        Spring spring = whole->springs[i];
+        const size_t number = member_of_pair(member_of, spring.body_a, spring.body_b);
+        Linkage *linkage = &members[number].scenario->linkage;
+        spring.body_a = renumber(own_body, spring.body_a);
+        spring.body_b = renumber(own_body, spring.body_b);
+        linkage->springs[linkage->spring_count++] = spring;
+    }
+    for (size_t i = 0; i < whole->torsion_count; i++) {
+        TorsionSpring torsion = whole->torsions[i];
+        const Joint *joint = &whole->joints[torsion.joint];
+        const size_t number = member_of_pair(member_of, joint->body_a, joint->body_b);
+        Linkage *linkage = &members[number].scenario->linkage;
+        torsion.joint = own_joint[torsion.joint];
+        linkage->torsions[linkage->torsion_count++] = torsion;
+    }
+    free(own_body);
+    free(own_joint);
+}
+
+// Counts what each member has.
+static LinkageRoom *count_rooms(const Linkage *whole, const size_t *member_of, size_t count)
+{
+    LinkageRoom *rooms = zeroed(count, sizeof *rooms);
+    for (size_t i = 0; i < whole->body_count; i++) {
+        rooms[member_of[i]].bodies++;
+    }
+    for (size_t i = 0; i < whole->joint_count; i++) {
+        const Joint *joint = &whole->joints[i];
+        rooms[member_of_pair(member_of, joint->body_a, joint->body_b)].joints++;
+    }
+    for (size_t i = 0; i < whole->spring_count; i++) {
+        const Spring *spring = &whole->springs[i];
+        rooms[member_of_pair(member_of, spring->body_a, spring->body_b)].springs++;
+    }
+    for (size_t i = 0; i < whole->torsion_count; i++) {
+        const Joint *joint = &whole->joints[whole->torsions[i].joint];
+        rooms[member_of_pair(member_of, joint->body_a, joint->body_b)].torsions++;
+    }
+    return rooms;
+}
+
+size_t impulse_members_count(const Linkage *linkage)
+{
+    size_t *member_of = zeroed(linkage->body_count, sizeof *member_of);
+    const size_t count = number_members(linkage, member_of);
+    free(member_of);
+    return count;
+}
+
+Member *impulse_members_make(const Scenario *scenario, size_t *count)
+{
+    const Linkage *whole = &scenario->linkage;
+    size_t *member_of = zeroed(whole->body_count, sizeof *member_of);
+    *count = number_members(whole, member_of);
+    Member *members = zeroed(*count, sizeof *members);
+    LinkageRoom *rooms = count_rooms(whole, member_of, *count);
+    for (size_t i = 0; i < *count; i++) {
+        Member *member = &members[i];
+        member->scenario = zeroed(1, sizeof *member->scenario);
+        *member->scenario = *scenario;
+        member->scenario->linkage = linkage_create(rooms[i]);
+        // one without the driver has no revolutions
+        member->scenario->run.duration = scenario_duration(scenario);
+        member->bodies = zeroed(rooms[i].bodies, sizeof *member->bodies);
+        member->joints = zeroed(rooms[i].joints, sizeof *member->joints);
+    }
+    share_out(whole, member_of, members);
+    for (size_t i = 0; i < *count; i++) {
+        members[i].sample = sample_create(&members[i].scenario->linkage);
+    }
+    free(rooms);
+    free(member_of);
+    return members;
+}
+
+void impulse_members_free(Member *members, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (members[i].state != NULL) {
+            STEPPING_IMPULSE.close(members[i].state);
+        }
+        scenario_destroy(members[i].scenario);
+        sample_free(&members[i].sample);
+        free(members[i].bodies);
+        free(members[i].joints);
+    }
+    free(members);
+}

@@ -1,0 +1,23 @@
+// The mechanisms of a planar linkage that share nothing but the ground, each as a scenario of its
+// own.
+#pragma once
+
+#include "model/solver.h"
+
+// One mechanism and the part of its step that comes next (ode/impulse_parts.c).
+typedef struct Member {
+    Scenario *scenario; // with its bodies and joints alone; owned, as are the arrays
+    int *bodies;        // their numbers in the whole
+    int *joints;
+    Sample sample;
+    void *state; // of STEPPING_IMPULSE; closed with the member
+    StepRecord next;
+    double elastic; // J, at the end of its last part
+} Member;
+
+size_t impulse_members_count(const Linkage *linkage);
+
+// Makes the members of a scenario, in the order of their first bodies. They share its tables and
+// must not outlive it.
+Member *impulse_members_make(const Scenario *scenario, size_t *count);
+void impulse_members_free(Member *members, size_t count);
