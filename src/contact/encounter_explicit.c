@@ -41,7 +41,7 @@ static const double EXTEND_MOST = 10.0;
 // long as it lasts: what is left of that impact's own errors is as large
 static const double REMEMBERED = 1.0;
 
-static const double SAFETY = 0.85;
+static const double STEP_SAFETY = 0.85;
 
 // The point at a share c of a step, by the rates at its start.
 static void find_middle_point(const Encounter *encounter, const EncounterPoint *from,
@@ -215,7 +215,7 @@ double encounter_explicit_error(const Encounter *encounter, EncounterExplicit *s
                         EXTEND_FACTORS[step->order - 4] * theta * changes <= EXTEND_MOST * allowed;
         worst = own <= worst ? worst : own; // a NaN must show
         for (int k = 0; k < 2; k++) {
-            const double factor = SAFETY * pow(errors[k], k == 0 ? -1.0 / 4.0 : -1.0 / 5.0);
+            const double factor = STEP_SAFETY * pow(errors[k], k == 0 ? -1.0 / 4.0 : -1.0 / 5.0);
             longest_s[k] = fmin(longest_s[k], fmin(factor * h, THETA_MOST[k] / frequency));
         }
     }

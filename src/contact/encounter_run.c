@@ -36,7 +36,7 @@ static const double PHASE_ERROR = 1.0 / 120.0;
 
 // what is allowed where it is not given: of the error that comes of a response that is taken as
 // constant
-static const double SHARE = 0.008;
+static const double ERROR_SHARE = 0.008;
 static const double TOLERANCE_LEAST = 1e-10;
 static const double TOLERANCE_MOST = 1e-3;
 
@@ -129,7 +129,8 @@ static void set_tolerances(Encounter *encounter, double duration_s)
         } else if (encounter->duration_before_s > 0.0) {
             const double change = response_change(encounter, joint) * duration_s / between_s;
             const double turned = fmin(1.0, joint->frequency * duration_s / M_PI);
-            joint->tolerance = fmin(fmax(SHARE * change * turned, TOLERANCE_LEAST), TOLERANCE_MOST);
+            joint->tolerance =
+                fmin(fmax(ERROR_SHARE * change * turned, TOLERANCE_LEAST), TOLERANCE_MOST);
         } else {
             joint->tolerance = TOLERANCE_LEAST;
         }
