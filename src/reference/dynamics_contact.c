@@ -14,15 +14,6 @@
 
 #include <math.h>
 
-Vec2 dynamics_contact_velocity(const Tree *tree, const TreeState *state, int end, Vec2 beside)
-{
-    const int body = tree->end_bodies[end];
-    const Vec2 velocity = tree_end_velocity(tree, state, end);
-    return body == LINKAGE_GROUND
-               ? velocity
-               : vec2_add(velocity, vec2_scale(state->motions[body].omega, vec2_perp(beside)));
-}
-
 // Adds what friction does to a contact that presses.
 static void add_friction(const Dynamics *dynamics, size_t number, const TreeState *state,
                          ContactForce *force)

@@ -23,4 +23,14 @@ double dynamics_contact_second(const Dynamics *dynamics, size_t number, const Tr
                                const TouchPose *pose);
 
 // Velocity of the point of an end's body that lies beside the end.
-Vec2 dynamics_contact_velocity(const Tree *tree, const TreeState *state, int end, Vec2 beside);
+static inline Vec2 dynamics_contact_velocity(const Tree *tree, const TreeState *state, int end,
+                                             Vec2 beside)
+{
+    const int body = tree->end_bodies[end];
+    if (body == LINKAGE_GROUND) {
+        return (Vec2){0.0, 0.0};
+    }
+    const Motion *motion = &state->motions[body];
+    const Vec2 arm = vec2_add(state->arms[end], beside);
+    return vec2_add(motion->velocity, vec2_scale(motion->omega, vec2_perp(arm)));
+}
