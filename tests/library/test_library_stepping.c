@@ -160,6 +160,53 @@ static void contacts_within_a_step_have_order_two(void **state)
     assert_true(bouncing_error(JP_STEPPING_STAGGERED, 500, &stats) > 20.0 * coarse);
 }
 
+// A disc that a motor at its limit brakes like dry friction, .5 N m on .01 kg m^2, hits a stop and
+// comes back: the brake turns round within the step of the impact, so that the world answers to
+// pushes by no straight line. After .03 s it is still turning back.
+static JpJointState braked(JpStepping stepping, int steps_a_second, JpWorldStats *stats)
+{
+    const dWorldID world = dWorldCreate();
+    const dBodyID body = make_body(world, 1.0, 0.01, 0.01, 0.01);
+    dBodySetAngularVel(body, 0, 0, 2.0);
+    const dJointID hinge = dJointCreateHinge(world, 0);
+    dJointAttach(hinge, body, 0);
+    dJointSetHingeAxis(hinge, 0, 0, 1);
+    dJointSetHingeParam(hinge, dParamFMax, 0.5);
+    JpWorld *play = make_world(world, stepping);
+    JpJoint *joint = NULL;
+    JpStops stops = jp_stops_default();
+    stops.high = 0.02;
+    stops.contact.stiffness = 1e4;
+    stops.contact.restitution = 0.8;
+    must(jp_stops_create(play, hinge, &stops, &joint, NULL));
+    for (int i = 0; i < 3 * steps_a_second / 100; i++) {
+        must(jp_world_step(play, 1.0 / steps_a_second, NULL));
+    }
+    JpJointState now;
+    must(jp_joint_state(joint, &now, NULL));
+    must(jp_world_stats(play, stats, NULL));
+    jp_world_destroy(play);
+    dWorldDestroy(world);
+    assert_int_equal(now.high.impacts, 1);
+    return now;
+}
+
+static void a_motor_at_its_limit_is_met_again_or_counted(void **state)
+{
+    (void)state;
+    JpWorldStats stats;
+    const JpJointState truth = braked(JP_STEPPING_STAGGERED, 64000, &stats);
+    assert_near(truth.high.impact_speed, sqrt(2.0), 1e-5);
+    const JpJointState middle = braked(JP_STEPPING_IMPULSE, 1000, &stats);
+    assert_int_equal(stats.fallbacks, 0);
+    assert_near(middle.position, truth.position, 3e-5);
+    assert_near(middle.speed, truth.speed, 1e-3);
+    // a step of 4 ms is longer than the contact, and sees the brake turn round
+    const JpJointState coarse = braked(JP_STEPPING_IMPULSE, 250, &stats);
+    assert_true(stats.fallbacks > 0);
+    assert_true(fabs(coarse.speed - truth.speed) > 1e-2);
+}
+
 static const double INERTIAS[3] = {0.01, 0.02, 0.025};
 
 static void top_rates(const double state[3], double rates[3])
@@ -294,6 +341,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pendulum_has_order_two_staggered_and_one_plain),
         cmocka_unit_test(contacts_within_a_step_have_order_two),
+        cmocka_unit_test(a_motor_at_its_limit_is_met_again_or_counted),
         cmocka_unit_test(a_tumbling_body_has_order_two),
         cmocka_unit_test(bodies_that_are_not_known_are_asked_for),
         cmocka_unit_test(contacts_are_asked_for_at_mid_step),
