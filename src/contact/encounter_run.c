@@ -25,6 +25,8 @@ enum { NODE_MAX = 100000 };
 
 enum { ROOT_STEPS = 60 };
 
+static const double TURNED = 1e-12; // of a flight, before which a pin has turned by rounding
+
 enum { EVENT_STEPS = 8 };
 static const double EVENT_ROUNDING = 1e-14; // of a local step
 
@@ -293,7 +295,8 @@ static bool shorten_flight(const Encounter *encounter, const EncounterPoint *fro
         if (!encounter->joints[i].is_touching && start.approach_speed < 0.0 &&
             end.approach_speed > 0.0 && (start.penetration >= 0.0 || end.penetration > 0.0)) {
             const double share = start.approach_speed / (start.approach_speed - end.approach_speed);
-            *width_s = fmin(*width_s, share * whole_s);
+            // one that turns right away has turned
+            *width_s = share > TURNED ? fmin(*width_s, share * whole_s) : *width_s;
         }
     }
     return *width_s < whole_s;

@@ -138,6 +138,26 @@ static void a_slow_pin_turns_back_before_the_wall(void **state)
     encounter_finish(&pin);
 }
 
+// A pin that rounding has leave the wall turns at once: onset after the square root of twice the
+// gap over the acceleration.
+static void a_pin_that_turns_by_rounding_flies_on(void **state)
+{
+    (void)state;
+    for (double away = 1e-20; away < 1e-12; away *= 1e2) {
+        Encounter pin = lone_pin(lone_pin_hertz(0.0), LONE_PIN_PHASE);
+        pin.speed[0] = -away;
+        pin.free[0] = 100.0;
+        run(&pin, 6e-4);
+        size_t node = 0;
+        while (node + 1 < pin.node_count && pin.touching[node] == 0) {
+            node++;
+        }
+        assert_close(pin.times[node], sqrt(2.0 * LONE_PIN_GAP / pin.free[0]), 1e-9);
+        assert_int_equal(pin.touching[node], 1);
+        encounter_finish(&pin);
+    }
+}
+
 // A bouncing ball within one run: while gravity is small against the contact's force, every arrival
 // is as fast as the departure before it, e times slower than the arrival before that.
 static void a_pin_that_falls_back_touches_again(void **state)
@@ -455,6 +475,7 @@ int main(void)
         cmocka_unit_test(a_slow_pin_turns_back_before_the_wall),
         cmocka_unit_test(a_pin_that_crosses_the_hole_meets_the_other_wall),
         cmocka_unit_test(a_pin_moved_off_its_wall_comes_back_to_it),
+        cmocka_unit_test(a_pin_that_turns_by_rounding_flies_on),
         cmocka_unit_test(a_weight_let_go_on_the_wall_sinks_at_once),
         cmocka_unit_test(a_pin_that_falls_back_touches_again),
         cmocka_unit_test(impulses_are_integrals_of_forces_and_move_the_pin),
