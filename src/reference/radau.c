@@ -20,6 +20,8 @@
 // of Newton's method, and after how many its matrix is made anew
 enum { ITERATIONS = 12, RENEWAL = 4 };
 
+enum { POWERS = 8 }; // by which the largest rate of decay is found: some hundredths suffice
+
 // of the error allowed: what Newton's method may leave
 static const double SOLVED = 0.01;
 // it has come to rounding where it moves the stages less than allowed and hardly less than before
@@ -48,14 +50,43 @@ void radau_destroy(Radau *radau)
     }
 }
 
+// The largest rate of decay: the largest eigenvalue of minus the derivatives by the rates, by
+// powers of these. All are real and not negative, as far as dampers go, so that it lies between the
+// mean of all and their sum.
+static double largest_decay(const Radau *radau, size_t n, const double *by_rate)
+{
+    double *from = radau->change;
+    double *to = radau->change + n;
+    double sum = 0.0;
+    double grown = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum -= by_rate[i * n + i];
+        from[i] = 1.0;
+    }
+    for (int power = 0; power < POWERS && sum > 0.0; power++) {
+        double square = 0.0;
+        for (size_t i = 0; i < n; i++) {
+            to[i] = 0.0;
+            for (size_t k = 0; k < n; k++) {
+                to[i] -= by_rate[i * n + k] * from[k];
+            }
+            square += to[i] * to[i];
+        }
+        grown = sqrt(square);
+        for (size_t i = 0; i < n && grown > 0.0; i++) {
+            from[i] = to[i] / grown;
+        }
+    }
+    return fmin(sum, fmax(grown, sum / (double)n));
+}
+
 // Derivatives of the accelerations at a state whose rates are known, by the coordinates too where
-// they are asked for. Returns the sum of all rates of decay.
-static double differentiate(const Radau *radau, Dop853 *integrator, double time, double *y,
-                            const double *rates, double *by_position, double *by_rate)
+// they are asked for.
+static void differentiate(const Radau *radau, Dop853 *integrator, double time, double *y,
+                          const double *rates, double *by_position, double *by_rate)
 {
     const size_t n = freedoms_of(integrator);
     double *changed = radau->changed;
-    double decay = 0.0;
     for (size_t k = by_position != NULL ? 0 : n; k < 2 * n; k++) {
         const double kept = y[k];
         y[k] += radau->nudge[k];
@@ -67,16 +98,15 @@ static double differentiate(const Radau *radau, Dop853 *integrator, double time,
         for (size_t i = 0; i < n; i++) {
             column[i * n] = (changed[n + i] - rates[n + i]) / moved;
         }
-        decay -= k < n ? 0.0 : column[(k - n) * n];
     }
-    return decay;
 }
 
 double radau_look(Radau *radau, Dop853 *integrator)
 {
     memcpy(radau->y, integrator->y, integrator->size * sizeof *radau->y);
-    radau->decay = differentiate(radau, integrator, integrator->time, radau->y,
-                                 integrator->stages[0], NULL, radau->newton.by_rate[0]);
+    differentiate(radau, integrator, integrator->time, radau->y, integrator->stages[0], NULL,
+                  radau->newton.by_rate[0]);
+    radau->decay = largest_decay(radau, freedoms_of(integrator), radau->newton.by_rate[0]);
     radau->before_s = 0.0;
     return radau->decay;
 }
@@ -98,22 +128,17 @@ static void find_stage(Radau *radau, const Dop853 *integrator, double step, size
     }
 }
 
-// The derivatives at a stage whose rates are known. Returns the sum of all rates of decay.
-static double find_slopes(Radau *radau, Dop853 *integrator, double time, double *y, size_t stage)
+// The derivatives at a stage whose rates are known.
+static void find_slopes(Radau *radau, Dop853 *integrator, double time, double *y, size_t stage)
 {
-    const size_t n = freedoms_of(integrator);
     double *by_position = radau->newton.by_position[stage];
     double *by_rate = radau->newton.by_rate[stage];
     if (integrator->slopes == NULL) {
-        return differentiate(radau, integrator, time, y, radau->rates[stage], by_position, by_rate);
+        differentiate(radau, integrator, time, y, radau->rates[stage], by_position, by_rate);
+        return;
     }
     integrator->slopes(time, y, by_position, by_rate, integrator->context);
     integrator->evaluations++;
-    double decay = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        decay -= by_rate[i * n + i];
-    }
-    return decay;
 }
 
 // The rates at all stages, with their derivatives where they are asked for.
@@ -126,8 +151,12 @@ static void evaluate_stages(Radau *radau, Dop853 *integrator, double step, bool 
         integrator->rates(time, y, radau->rates[i], integrator->context);
         integrator->evaluations++;
         if (with_derivatives) {
-            radau->decay = find_slopes(radau, integrator, time, y, i);
+            find_slopes(radau, integrator, time, y, i);
         }
+    }
+    if (with_derivatives) {
+        radau->decay =
+            largest_decay(radau, freedoms_of(integrator), radau->newton.by_rate[RADAU_STAGES - 1]);
     }
 }
 

@@ -14,7 +14,7 @@ typedef struct Radau {
     // against what they depend on, large against rounding.
     double *nudge;
     RadauNewton newton;
-    double decay;                // 1/s, the sum of all rates of decay, where it was last looked at
+    double decay;                // 1/s, the largest rate of decay, where it was last looked at
     double *moved[RADAU_STAGES]; // of the stages since the start of the step
     double *rates[RADAU_STAGES];
     double before_s; // length of the step whose polynomial the integrator has; 0 for none
@@ -32,6 +32,6 @@ typedef struct Radau {
 Radau *radau_create(const Dop853 *integrator);
 void radau_destroy(Radau *radau);
 
-// How fast rates die away where the next step starts: the sum of all rates of decay, 1/s. The next
-// step takes nothing from one before.
+// How fast rates die away where the next step starts: the largest rate of decay, 1/s. The next step
+// takes nothing from one before.
 double radau_look(Radau *radau, Dop853 *integrator);

@@ -232,6 +232,36 @@ static void decay_is_measured(void **state)
     finish(&integrator, radau);
 }
 
+// Three coordinates that die away with 1, 4 and 10 1/s, turned against one another.
+static void three_dampers(double time, const double *y, double *rates, void *context)
+{
+    (void)time;
+    (void)context;
+    const double common = (y[3] + y[4] + y[5]) / 3.0;
+    static const double DECAYS[] = {1.0, 4.0, 10.0};
+    for (int i = 0; i < 3; i++) {
+        rates[i] = y[3 + i];
+        rates[3 + i] = -DECAYS[i] * y[3 + i] - 1e-3 * common;
+    }
+    rates[6] = 0.0;
+}
+
+// Steps are held back by the largest rate; of contacts side by side the sum is no such thing.
+static void the_largest_rate_of_decay_counts(void **state)
+{
+    (void)state;
+    Dop853 integrator;
+    dop853_init(&integrator, 7, 6);
+    Radau *radau = radau_create(&integrator);
+    integrator.rates = three_dampers;
+    for (int i = 0; i < 6; i++) {
+        radau->nudge[i] = 1e-7;
+    }
+    dop853_start(&integrator, 0.0, integrator.y);
+    assert_close(radau_look(radau, &integrator), 10.0, 0.01);
+    finish(&integrator, radau);
+}
+
 static void what_cannot_be_solved_for_fails(void **state)
 {
     (void)state;
@@ -255,6 +285,7 @@ int main(void)
         cmocka_unit_test(steps_do_not_see_what_has_died_away),
         cmocka_unit_test(systems_side_by_side_move_as_each_alone),
         cmocka_unit_test(decay_is_measured),
+        cmocka_unit_test(the_largest_rate_of_decay_counts),
         cmocka_unit_test(what_cannot_be_solved_for_fails),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
