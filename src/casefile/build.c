@@ -6,7 +6,7 @@
 // Follower: ground pivot to follower pin, so that its angle is the usual follower angle.
 #include "casefile/build.h"
 
-#include "base/dense.h"
+#include "base/zeroed.h"
 #include "casefile/keys.h"
 #include "model/forces.h"
 #include "model/joint_rows.h"
@@ -147,7 +147,7 @@ bool build_fourbar(Scenario *scenario, Err *err)
         TracedPoint *point = &scenario->points[i];
         point->local.x -= 0.5 * link_length(&scenario->fourbar, point->body);
     }
-    Motion motions[LINKAGE_BODY_MAX] = {0};
+    Motion motions[BODY_COUNT] = {0};
     guess_positions(&scenario->fourbar, scenario->linkage.driver.start, motions);
     return build_start(&scenario->linkage, motions, err);
 }
@@ -200,14 +200,13 @@ static void set_anchors(Linkage *linkage, const Motion *motions)
 static bool check_redundancy(const Entries *entries, const Linkage *linkage, const Motion *motions,
                              Err *err)
 {
-    bool is_ideal[LINKAGE_JOINT_MAX];
+    bool *is_ideal = zeroed(linkage->joint_count, sizeof *is_ideal);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         is_ideal[i] = linkage_kind_is_ideal(linkage->joints[i].kind);
     }
-    Jacobian jacobian;
-    kinematics_jacobian(linkage, motions, is_ideal, true, &jacobian);
-    const size_t rows = jacobian.rows;
-    const size_t rank = dense_rank(rows, jacobian.columns, jacobian.entries, INDEPENDENT);
+    size_t rows;
+    const size_t rank = kinematics_rank(linkage, motions, is_ideal, true, INDEPENDENT, &rows);
+    free(is_ideal);
     const EntryGroup *joints = entries_group(entries, "joints", 0);
     return rank == rows ||
            entries_refuse_group(joints, err,
@@ -255,7 +254,7 @@ static bool find_speeds(const Entries *entries, const Linkage *linkage, Motion *
 {
     const Entry *given = entries_speed(entries, linkage->body_count);
     turn_driven_body(entries, linkage, motions);
-    Motion nearest[LINKAGE_BODY_MAX];
+    Motion *nearest = zeroed(linkage->body_count, sizeof *nearest);
     memcpy(nearest, motions, linkage->body_count * sizeof *motions);
     if (given == NULL && linkage->driver.is_present) {
         nearest_speeds(linkage, true, nearest);
@@ -264,11 +263,14 @@ static bool find_speeds(const Entries *entries, const Linkage *linkage, Motion *
     nearest_speeds(linkage, false, nearest); // what rounding has left
     int joint;
     double distance;
-    if (given != NULL && !nearest_check(linkage, motions, &joint, &distance)) {
-        return refuse_speeds(given, linkage, joint, distance, nearest, err);
+    const bool is_right = given == NULL || nearest_check(linkage, motions, &joint, &distance);
+    if (is_right) {
+        memcpy(motions, nearest, linkage->body_count * sizeof *motions);
+    } else {
+        refuse_speeds(given, linkage, joint, distance, nearest, err);
     }
-    memcpy(motions, nearest, linkage->body_count * sizeof *motions);
-    return true;
+    free(nearest);
+    return is_right;
 }
 
 // Where the bodies cannot be moved so that every joint is as it is to start: an eccentricity that a
@@ -296,7 +298,7 @@ static bool refuse_positions(const Entries *entries, const Linkage *linkage, Err
 // Springs of which the case does not say where they are relaxed are so at time zero.
 static void relax_springs(const Entries *entries, Linkage *linkage)
 {
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
     linkage_start(linkage, motions);
     for (size_t i = 0; i < linkage->spring_count; i++) {
         if (entries_find(entries, "springs.*.length", i) == NULL) {
@@ -309,12 +311,12 @@ static void relax_springs(const Entries *entries, Linkage *linkage)
             spring->angle = forces_turn(linkage, spring->joint, motions).angle;
         }
     }
+    free(motions);
 }
 
-static bool start_linkage(const Entries *entries, Scenario *scenario, Err *err)
+// Where the bodies start, from where the case has them.
+static bool start_linkage(const Entries *entries, Linkage *linkage, Motion *motions, Err *err)
 {
-    Linkage *linkage = &scenario->linkage;
-    Motion motions[LINKAGE_BODY_MAX];
     linkage_start(linkage, motions);
     set_anchors(linkage, motions);
     if (!check_redundancy(entries, linkage, motions, err)) {
@@ -337,11 +339,13 @@ static bool start_linkage(const Entries *entries, Scenario *scenario, Err *err)
 
 bool build_linkage(const Entries *entries, Scenario *scenario, Err *err)
 {
-    if (!start_linkage(entries, scenario, err)) {
-        return false;
+    Motion *motions = zeroed(scenario->linkage.body_count, sizeof *motions);
+    const bool is_started = start_linkage(entries, &scenario->linkage, motions, err);
+    free(motions);
+    if (is_started) {
+        relax_springs(entries, &scenario->linkage);
     }
-    relax_springs(entries, &scenario->linkage);
-    return true;
+    return is_started;
 }
 
 static bool refuse_spatial_speeds(const Entry *entry, const Linkage *linkage, int joint, Err *err)
@@ -356,8 +360,8 @@ static bool refuse_spatial_speeds(const Entry *entry, const Linkage *linkage, in
 bool build_spatial(const Entries *entries, Scenario *scenario, Err *err)
 {
     Linkage *linkage = &scenario->linkage;
-    Motion motions[LINKAGE_BODY_MAX];
-    SpaceMotion space[LINKAGE_BODY_MAX];
+    Motion motions[SPACE_BODY_MAX];
+    SpaceMotion space[SPACE_BODY_MAX];
     linkage_start(linkage, motions);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Entry *start = entries_find(entries, "joints.*.start", i);

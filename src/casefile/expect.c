@@ -9,10 +9,12 @@
 #include "casefile/expect_outcome.h"
 #include "casefile/keys.h"
 
+#include "base/zeroed.h"
+
 #include <stdio.h>
 #include <string.h>
 
-enum { SEGMENT_MAX = 4, CHOICE_MAX = LINKAGE_JOINT_MAX + EXPECTED_NUMBER_COUNT };
+enum { SEGMENT_MAX = 4, CHOICE_MAX = EXPECTED_NUMBER_COUNT };
 
 const char *const EXPECT_GROUPS[EXPECT_GROUP_COUNT] = {
     [EXPECT_BODIES] = "bodies", [EXPECT_JOINTS] = "joints", [EXPECT_ERROR] = "error",
@@ -165,12 +167,14 @@ static bool find_member(const Path *path, const Entries *entries, ExpectGroup gr
     if (expectation->member >= 0) {
         return true;
     }
-    const char *choices[LINKAGE_JOINT_MAX];
+    const char **choices = zeroed(names->count, sizeof *choices);
     for (size_t i = 0; i < names->count; i++) {
         choices[i] = names->names[i];
     }
-    return keys_refuse(path->source, segment_span(path, path->first + 1),
-                       SCHEMA_FAMILIES[family].what, name, choices, names->count, err);
+    keys_refuse(path->source, segment_span(path, path->first + 1), SCHEMA_FAMILIES[family].what,
+                name, choices, names->count, err);
+    free(choices);
+    return false;
 }
 
 static bool find_number(const Path *path, ExpectGroup group, const Scenario *scenario,

@@ -10,22 +10,22 @@ const SchemaGroup SCHEMA_GROUPS[] = {
                      "origin; the rod joins its end to the slider, which slides along a straight "
                      "line. The rod is longer than crank and offset together where the crank is "
                      "to turn fully. In the plane only."},
-    {"bodies", "Any linkage, instead of four-bar: up to 16 rigid bodies, with names of letters, "
-               "digits, - and _."},
+    {"bodies", "Any linkage, instead of four-bar: any number of rigid bodies, in space up to 16, "
+               "with names of letters, digits, - and _."},
     {"joints", "With four-bar, the joints with play, by name: crank-coupler, coupler-follower, "
                "follower-ground; a joint that is not named is ideal, and the drive joint "
                "ground-crank always is. With slider-crank likewise: crank-rod and rod-slider, pins "
                "with play, and slider-guide, with guide, block and length; without them the slider "
-               "stays on its line. With bodies, every joint, up to 24, with any name. Its keys "
+               "stays on its line. With bodies, every joint, in space up to 24, with any name. Its keys "
                "make its kind: without sizes it is an ideal pivot; with hole and pin, or "
                "radial-clearance, a pin with play; with along an ideal prismatic joint; with guide, "
                "block and length as well a block with play between guides, or a sleeve round a "
                "rod; with at-a and at-b a stop, where two bodies touch that are not joined. "
                "Prismatic joints, guides and stops are for the plane."},
-    {"springs", "With bodies: springs with dampers along the line between two points, at most 16, "
+    {"springs", "With bodies: springs with dampers along the line between two points, "
                 "with names of letters, digits, - and _. In the plane only."},
     {"torsion-springs", "With bodies: springs with dampers that turn the two bodies of a joint "
-                        "against each other, at most 16. In the plane only."},
+                        "against each other. In the plane only."},
     {"drive", "How the crank turns; optional with bodies. At a constant speed, or with bodies by a "
               "torque or a force: they then start with their own speeds, at rest by default, and the run has "
               "a duration."},

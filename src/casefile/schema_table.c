@@ -4,6 +4,7 @@
 #include "contact/facets.h"
 
 #include <stddef.h>
+#include <stdint.h>
 
 static const char *const FOUR_BAR_LINKS[] = {"crank", "coupler", "follower", NULL};
 static const char *const FOUR_BAR_PIVOTS[] = {
@@ -24,11 +25,11 @@ const SchemaFormRow SCHEMA_FORMS[SCHEMA_FORM_COUNT] = {
 
 const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
     [SCHEMA_SINGLE] = {"", "", 1},
-    [SCHEMA_BODY] = {"bodies", "body", LINKAGE_BODY_MAX},
-    [SCHEMA_JOINT] = {"joints", "joint", LINKAGE_JOINT_MAX},
+    [SCHEMA_BODY] = {"bodies", "body", SIZE_MAX},
+    [SCHEMA_JOINT] = {"joints", "joint", SIZE_MAX},
     [SCHEMA_POINT] = {"points", "point", SCENARIO_POINT_MAX},
-    [SCHEMA_SPRING] = {"springs", "spring", LINKAGE_SPRING_MAX},
-    [SCHEMA_TORSION_SPRING] = {"torsion-springs", "torsion spring", LINKAGE_SPRING_MAX},
+    [SCHEMA_SPRING] = {"springs", "spring", SIZE_MAX},
+    [SCHEMA_TORSION_SPRING] = {"torsion-springs", "torsion spring", SIZE_MAX},
 };
 
 static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};

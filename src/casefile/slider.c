@@ -113,7 +113,7 @@ bool slider_build(Scenario *scenario, Err *err)
         TracedPoint *point = &scenario->points[i];
         point->local.x -= slider_centre(mechanism, point->body);
     }
-    Motion motions[LINKAGE_BODY_MAX] = {0};
+    Motion motions[SLIDER + 1] = {0};
     guess_positions(mechanism, linkage->driver.start, motions);
     return build_start(linkage, motions, err);
 }

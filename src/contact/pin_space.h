@@ -20,7 +20,7 @@ enum {
     PIN_SPACE_ENDS = 2,   // places 0 and 1, at -w/2 and +w/2 along the hole's axis
     PIN_SPACE_COLLAR = 2, // place 2
     PIN_SPACE_PLACES = 3, // at most, of one joint
-    PIN_SPACE_MAX = PIN_SPACE_PLACES * LINKAGE_JOINT_MAX,
+    PIN_SPACE_MAX = PIN_SPACE_PLACES * SPACE_JOINT_MAX,
 };
 
 // One place of a joint with play.

@@ -2,6 +2,7 @@
 #include "measure/ensemble.h"
 
 #include "base/sorted.h"
+#include "base/zeroed.h"
 #include "model/perturb.h"
 
 #include <string.h>
@@ -10,12 +11,12 @@
 const double ENSEMBLE_PERTURBATION = 1e-3;
 
 typedef struct Draws {
-    double values[LINKAGE_JOINT_MAX][ENSEMBLE_METRIC_COUNT][ENSEMBLE_MEMBERS];
+    double values[ENSEMBLE_JOINT_MAX][ENSEMBLE_METRIC_COUNT][ENSEMBLE_MEMBERS];
 } Draws;
 
 static void take_member(const Trajectory *trajectory, size_t member, Draws *draws)
 {
-    for (size_t i = 0; i < trajectory->joint_count; i++) {
+    for (size_t i = 0; i < trajectory->joint_count && i < ENSEMBLE_JOINT_MAX; i++) {
         const JointExtremes *joint = &trajectory->joints[i];
         draws->values[i][ENSEMBLE_FORCE_MAX][member] = joint->force_max.value;
         draws->values[i][ENSEMBLE_IMPULSE][member] = joint->impulse;
@@ -46,7 +47,7 @@ static Distribution distribution_of(double *values, size_t count)
 
 // Runs the scenario from one start; the first of all says how fast the bodies move.
 static Trajectory *run_member(const Scenario *scenario, const Solver *solver, RunWatch watch,
-                              unsigned member, DistanceScale scales[LINKAGE_BODY_MAX])
+                              unsigned member, DistanceScale *scales)
 {
     Scenario beside = scenario_copy(scenario);
     if (member > 0) {
@@ -64,7 +65,7 @@ void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch
                   Ensemble *ensemble)
 {
     Draws draws;
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale *scales = zeroed(scenario->linkage.body_count, sizeof *scales);
     memset(ensemble, 0, sizeof *ensemble);
     for (unsigned member = 0; member < ENSEMBLE_MEMBERS; member++) {
         Trajectory *trajectory = run_member(scenario, solver, watch, member, scales);
@@ -75,7 +76,9 @@ void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch
         }
         trajectory_destroy(trajectory);
     }
-    for (size_t i = 0; ensemble->members > 0 && i < scenario->linkage.joint_count; i++) {
+    free(scales);
+    const size_t joints = ensemble_joint_count(&scenario->linkage);
+    for (size_t i = 0; ensemble->members > 0 && i < joints; i++) {
         if (!linkage_kind_has_play(scenario->linkage.joints[i].kind)) {
             continue;
         }

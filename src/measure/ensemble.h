@@ -3,7 +3,8 @@
 
 #include "run/run.h"
 
-enum { ENSEMBLE_MEMBERS = 16 };
+// Joints behind the first so many have no distributions.
+enum { ENSEMBLE_MEMBERS = 16, ENSEMBLE_JOINT_MAX = 24 };
 
 // Size of the differences between the starts: of each body's speeds relative to its own largest.
 extern const double ENSEMBLE_PERTURBATION;
@@ -27,11 +28,18 @@ typedef struct Distribution {
 } Distribution;
 
 typedef struct Ensemble {
-    size_t members;                                                // complete runs
-    size_t failed;                                                 // runs that were not
-    char message[ERR_TEXT_SIZE];                                   // of the first failed one
-    Distribution joints[LINKAGE_JOINT_MAX][ENSEMBLE_METRIC_COUNT]; // of joints with play
+    size_t members;              // complete runs
+    size_t failed;               // runs that were not
+    char message[ERR_TEXT_SIZE]; // of the first failed one
+    // of joints with play, by number
+    Distribution joints[ENSEMBLE_JOINT_MAX][ENSEMBLE_METRIC_COUNT];
 } Ensemble;
+
+// How many joints of a linkage may have distributions.
+static inline size_t ensemble_joint_count(const Linkage *linkage)
+{
+    return linkage->joint_count < ENSEMBLE_JOINT_MAX ? linkage->joint_count : ENSEMBLE_JOINT_MAX;
+}
 
 // Runs the scenario from ENSEMBLE_MEMBERS starts that differ by ENSEMBLE_PERTURBATION, the first
 // one unperturbed.

@@ -3,6 +3,8 @@
 // As model/distance.c measures it; the reference's samples stand at the same times.
 #include "measure/error.h"
 
+#include "base/zeroed.h"
+
 #include "model/distance.h"
 
 typedef struct Sums {
@@ -22,11 +24,12 @@ bool error_series(const Trajectory *trajectory, const Trajectory *reference, dou
     if (!can_compare(trajectory, reference)) {
         return false;
     }
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale *scales = zeroed(reference->body_count, sizeof *scales);
     distance_scales(reference, scales);
     for (size_t k = 0; k < reference->sample_count; k++) {
         omega[k] = distance_at(trajectory, reference, k, scales);
     }
+    free(scales);
     return true;
 }
 
@@ -66,13 +69,14 @@ TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *re
         return error;
     }
     Sums sums = {0.0, 0};
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale *scales = zeroed(reference->body_count, sizeof *scales);
     distance_scales(reference, scales);
     for (size_t i = 0; i < reference->body_count; i++) {
         if (scales[i].omega > 0.0) {
             add_body(trajectory, reference, i, &scales[i], horizon_s, &error, &sums);
         }
     }
+    free(scales);
     // a horizon without a sample beyond the start gives no error
     if (reference->sample_count > 1 && !(reference->times[1] <= horizon_s)) {
         error.omega_max_in_horizon = NAN;

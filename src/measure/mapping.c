@@ -106,8 +106,11 @@ static bool make_contacts(Mapping *mapping, MappingWatch watch, Err *err)
 {
     const MappingSettings *settings = &mapping->settings;
     const Linkage *linkage = &mapping->scenario->linkage;
-    MappingJoint joints[LINKAGE_JOINT_MAX] = {0};
+    MappingJoint joints[MAPPING_JOINT_MAX] = {0};
     size_t count = 0;
+    if (!mapping_joint_check(mapping->scenario, err)) {
+        return false;
+    }
     if (needs_run(settings)) {
         if (!mapping_joint_measure(mapping->scenario, watch.run, joints, &count, err)) {
             err_prefix(err, "the run that masses and speeds are taken from (--mass and --speed "

@@ -27,15 +27,15 @@ typedef struct Gathering {
     size_t place_count;
     Touch *places; // owned
     size_t play_count;
-    int play[LINKAGE_JOINT_MAX]; // numbers of the joints with play
-    bool was_touching[LINKAGE_JOINT_MAX];
-    double *masses[LINKAGE_JOINT_MAX]; // owned, as the next
-    size_t mass_counts[LINKAGE_JOINT_MAX];
-    double *speeds[LINKAGE_JOINT_MAX];
-    size_t speed_counts[LINKAGE_JOINT_MAX];
-    size_t speed_rooms[LINKAGE_JOINT_MAX];
-    double penetrations[LINKAGE_JOINT_MAX];
-    double forces[LINKAGE_JOINT_MAX];
+    int play[MAPPING_JOINT_MAX]; // numbers of the joints with play
+    bool was_touching[MAPPING_JOINT_MAX];
+    double *masses[MAPPING_JOINT_MAX]; // owned, as the next
+    size_t mass_counts[MAPPING_JOINT_MAX];
+    double *speeds[MAPPING_JOINT_MAX];
+    size_t speed_counts[MAPPING_JOINT_MAX];
+    size_t speed_rooms[MAPPING_JOINT_MAX];
+    double penetrations[MAPPING_JOINT_MAX];
+    double forces[MAPPING_JOINT_MAX];
 } Gathering;
 
 static void gathering_finish(Gathering *gathering)
@@ -55,7 +55,8 @@ static Gathering *gathering_start(const Scenario *scenario)
     assert(gathering != NULL);
     gathering->scenario = scenario;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        if (linkage_kind_has_play(scenario->linkage.joints[i].kind)) {
+        if (linkage_kind_has_play(scenario->linkage.joints[i].kind) &&
+            gathering->play_count < MAPPING_JOINT_MAX) {
             gathering->masses[gathering->play_count] = calloc(MASS_COUNT, sizeof(double));
             assert(gathering->masses[gathering->play_count] != NULL);
             gathering->play[gathering->play_count++] = (int)i;
@@ -119,15 +120,14 @@ static void add_record(Gathering *gathering, const StepRecord *record)
     for (size_t i = 0; i < gathering->play_count; i++) {
         const int joint = gathering->play[i];
         const JointState *state = &record->joints[joint];
-        if (state->is_touching && !gathering->was_touching[joint] &&
-            record->approach[joint] > 0.0) {
+        if (state->is_touching && !gathering->was_touching[i] && record->approach[joint] > 0.0) {
             add_speed(gathering, i, record->approach[joint]);
         }
         if (state->is_touching) {
             gathering->penetrations[i] = fmax(gathering->penetrations[i], -state->gap);
             gathering->forces[i] = fmax(gathering->forces[i], state->force);
         }
-        gathering->was_touching[joint] = state->is_touching;
+        gathering->was_touching[i] = state->is_touching;
     }
 }
 
@@ -202,13 +202,27 @@ static void conclude(Gathering *gathering, MappingJoint *joints)
     }
 }
 
+bool mapping_joint_check(const Scenario *scenario, Err *err)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        count += linkage_kind_has_play(scenario->linkage.joints[i].kind) ? 1 : 0;
+    }
+    return count <= MAPPING_JOINT_MAX ||
+           err_set(err, ERR_SOLVER, "%zu joints have play; a mapping takes at most %d", count,
+                   MAPPING_JOINT_MAX);
+}
+
 bool mapping_joint_measure(const Scenario *scenario, RunWatch watch,
-                           MappingJoint joints[LINKAGE_JOINT_MAX], size_t *count, Err *err)
+                           MappingJoint joints[MAPPING_JOINT_MAX], size_t *count, Err *err)
 {
     if (!space_has_plane(&scenario->linkage)) {
         return err_set(err, ERR_SOLVER,
                        "the mapping takes masses from the plane, and not all axes of this case are "
                        "along z; run and compare show what each map makes of it");
+    }
+    if (!mapping_joint_check(scenario, err)) {
+        return false;
     }
     Gathering *gathering = gathering_start(scenario);
     bool is_right = touch_list(scenario, &gathering->places, &gathering->place_count, err);

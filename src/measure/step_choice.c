@@ -42,7 +42,9 @@ static double contact_depth(const Scenario *scenario, const Touch *place, double
         return fmin(DEPTH * linkage_radial_clearance(joint),
                     0.5 * force_law_depth_limit(&place->law));
     }
-    const double speed = scale_speeds(scenario).moving;
+    SpeedScale scale = scale_speeds(scenario);
+    const double speed = scale.moving;
+    scale_free(&scale);
     const double power = place->law.exponent + 1.0;
     return pow(0.5 * power * mass * speed * speed / place->law.stiffness, 1.0 / power);
 }

@@ -8,6 +8,8 @@
 //     U(t) = U d(t) / d(T)
 #include "measure/trial.h"
 
+#include "base/zeroed.h"
+
 #include "model/distance.h"
 #include "run/registry.h"
 
@@ -21,7 +23,7 @@ static const double OTHER = 1e2;
 
 typedef struct Watcher {
     const TrialRule *rule;
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale *scales; // owned
     Trial *trial;
     bool is_over; // the tolerance was exceeded
 } Watcher;
@@ -58,11 +60,16 @@ Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatch watch
                  const RunProbe *probe)
 {
     Trial trial = {.step_s = scenario->run.step};
-    Watcher watcher = {.rule = rule, .trial = &trial};
+    Watcher watcher = {
+        .rule = rule,
+        .trial = &trial,
+        .scales = zeroed(scenario->linkage.body_count, sizeof *watcher.scales),
+    };
     distance_scales(rule->truth->trajectory, watcher.scales);
     const RunGuard guard = {look, &watcher};
     trial.run = run_guarded(scenario, registry_solver(BACKEND_ODE), watch, probe, &guard);
     trial.holds = trial.run->is_complete && !watcher.is_over;
+    free(watcher.scales);
     return trial;
 }
 
@@ -75,7 +82,7 @@ void trial_finish(Trial *trial)
 static TrialWindow shorten(const Trajectory *truth, const Trajectory *other, TrialWindow whole,
                            double most)
 {
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale *scales = zeroed(truth->body_count, sizeof *scales);
     distance_scales(truth, scales);
     double largest = 0.0;
     for (size_t k = 0; k < truth->sample_count && truth->times[k] <= whole.until_s; k++) {
@@ -91,6 +98,7 @@ static TrialWindow shorten(const Trajectory *truth, const Trajectory *other, Tri
         }
         window = (TrialWindow){truth->times[k], uncertainty};
     }
+    free(scales);
     return window;
 }
 

@@ -114,7 +114,10 @@ static void follow_growth(const Scenario *scenario, const Trajectory *beside, Ru
                           size_t threads, Truth *truth)
 {
     Beats beats = {watch, clock_now_s()};
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    if (scenario->linkage.body_count > PERTURB_BODY_MAX) {
+        return; // the other two runs alone say how far it can be predicted
+    }
+    DistanceScale scales[PERTURB_BODY_MAX];
     PerturbBasis *basis = malloc(sizeof *basis);
     assert(basis != NULL);
     distance_scales(beside, scales);

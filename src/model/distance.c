@@ -103,7 +103,7 @@ static double least_rate(double fastest, double reach, bool is_velocity)
     return fastest > 0.0 ? SMALLEST_SCALE * fastest / (is_velocity ? 1.0 : reach) : 1.0;
 }
 
-void distance_scales(const Trajectory *reference, DistanceScale scales[LINKAGE_BODY_MAX])
+void distance_scales(const Trajectory *reference, DistanceScale *scales)
 {
     double moving = 0.0;
     double changing = 0.0;

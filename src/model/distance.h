@@ -25,7 +25,7 @@ typedef struct DistanceScale {
     double changing;  // m/s^2, acceleration of the body's fastest point; 0 where there is none
 } DistanceScale;
 
-void distance_scales(const Trajectory *reference, DistanceScale scales[LINKAGE_BODY_MAX]);
+void distance_scales(const Trajectory *reference, DistanceScale *scales);
 
 // What the distance of a body is measured by.
 typedef struct DistanceMeasure {

@@ -11,7 +11,9 @@
 #include "model/kinematics.h"
 
 #include "base/dense.h"
+#include "base/zeroed.h"
 #include "model/joint_rows.h"
+#include "model/joint_system.h"
 
 #include <string.h>
 
@@ -101,15 +103,31 @@ void kinematics_move(const Linkage *linkage, const double *change, Motion *motio
 
 size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool ideal_only)
 {
-    bool include[LINKAGE_JOINT_MAX];
+    bool *include = zeroed(linkage->joint_count, sizeof *include);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         include[i] = !ideal_only || linkage_kind_is_ideal(linkage->joints[i].kind);
     }
-    Jacobian jacobian;
-    kinematics_jacobian(linkage, motions, include, false, &jacobian);
-    const size_t rank =
-        dense_rank(jacobian.rows, jacobian.columns, jacobian.entries, LOOP_INDEPENDENT);
-    return jacobian.columns - rank;
+    size_t rows;
+    const size_t rank = kinematics_rank(linkage, motions, include, false, LOOP_INDEPENDENT, &rows);
+    free(include);
+    return 3 * linkage->body_count - rank;
+}
+
+size_t kinematics_rank(const Linkage *linkage, const Motion *motions, const bool *include,
+                       bool with_driver, double independent, size_t *rows)
+{
+    if (kinematics_is_small(linkage)) {
+        Jacobian jacobian;
+        kinematics_jacobian(linkage, motions, include, with_driver, &jacobian);
+        *rows = jacobian.rows;
+        return dense_rank(jacobian.rows, jacobian.columns, jacobian.entries, independent);
+    }
+    JointSystem system;
+    joint_system_init(linkage, motions, include, with_driver, &system);
+    *rows = system.row_count;
+    const size_t rank = joint_system_rank(&system);
+    joint_system_finish(&system);
+    return rank;
 }
 
 Vec2 kinematics_opening(const Linkage *linkage, const Motion *motions, int joint)
@@ -134,9 +152,31 @@ double kinematics_closure_error(const Linkage *linkage, const Motion *motions)
     return largest;
 }
 
+// The same of a large mechanism. The rows are as many as the unknowns: the least change that they
+// ask for is the only one.
+static bool solve_large(const Linkage *linkage, const Motion *motions, double *right)
+{
+    JointSystem system;
+    joint_system_init(linkage, motions, NULL, true, &system);
+    const size_t columns = 3 * linkage->body_count;
+    const bool is_determined =
+        system.row_count == columns && joint_system_rank(&system) == system.row_count;
+    if (is_determined) {
+        double *change = zeroed(columns, sizeof *change);
+        joint_system_least_change(&system, right, change);
+        memcpy(right, change, columns * sizeof *right);
+        free(change);
+    }
+    joint_system_finish(&system);
+    return is_determined;
+}
+
 // Solves J u = right hand side for every joint and the driver; u has three entries a body.
 static bool solve_rows(const Linkage *linkage, const Motion *motions, double *right)
 {
+    if (!kinematics_is_small(linkage)) {
+        return solve_large(linkage, motions, right);
+    }
     Jacobian jacobian;
     kinematics_jacobian(linkage, motions, NULL, true, &jacobian);
     return jacobian.rows == jacobian.columns &&
@@ -153,11 +193,16 @@ static double linkage_size(const Linkage *linkage)
     return size;
 }
 
-static bool newton(const Linkage *linkage, double crank_angle, Motion *motions)
+// Room for what the rows of the joints and the drive say, and for what the bodies do.
+static double *create_rows(const Linkage *linkage)
+{
+    return zeroed(joint_rows_total(linkage) + 1, sizeof(double));
+}
+
+static bool newton(const Linkage *linkage, double crank_angle, double *residual, Motion *motions)
 {
     const double size = linkage_size(linkage);
     for (int iteration = 0; iteration < ITERATION_MAX; iteration++) {
-        double residual[KINEMATICS_ROW_MAX] = {0.0};
         double *row = residual;
         for (size_t i = 0; i < linkage->joint_count; i++) {
             if (joint_rows_count(linkage->joints[i].kind) > 0) {
@@ -181,13 +226,14 @@ static bool newton(const Linkage *linkage, double crank_angle, Motion *motions)
 
 static bool solve_velocities(const Linkage *linkage, double speed, Motion *motions)
 {
-    double rates[KINEMATICS_ROW_MAX] = {0.0};
+    double *rates = create_rows(linkage);
     rates[joint_rows_total(linkage)] = speed;
     const bool is_solved = solve_rows(linkage, motions, rates);
     for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
         motions[i].velocity = (Vec2){rates[3 * i], rates[3 * i + 1]};
         motions[i].omega = rates[3 * i + 2];
     }
+    free(rates);
     return is_solved;
 }
 
@@ -215,7 +261,7 @@ static Vec2 joint_gamma(const Linkage *linkage, const Motion *motions, int numbe
 
 static bool solve_accelerations(const Linkage *linkage, double alpha, Motion *motions)
 {
-    double rates[KINEMATICS_ROW_MAX] = {0.0};
+    double *rates = create_rows(linkage);
     double *row = rates;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (joint_rows_count(linkage->joints[i].kind) > 0) {
@@ -230,7 +276,25 @@ static bool solve_accelerations(const Linkage *linkage, double alpha, Motion *mo
         motions[i].acceleration = (Vec2){rates[3 * i], rates[3 * i + 1]};
         motions[i].alpha = rates[3 * i + 2];
     }
+    free(rates);
     return is_solved;
+}
+
+static bool solve_all(const Linkage *linkage, const DriveState *drive, Motion *motions, Err *err)
+{
+    double *residual = create_rows(linkage);
+    const bool is_closed = newton(linkage, drive->angle, residual, motions);
+    free(residual);
+    if (!is_closed) {
+        return err_set(err, ERR_SOLVER, "the linkage does not close at a crank angle of %.6g deg",
+                       drive->angle * 180.0 / M_PI);
+    }
+    return (solve_velocities(linkage, drive->omega, motions) &&
+            solve_accelerations(linkage, drive->alpha, motions)) ||
+           err_set(err, ERR_SOLVER,
+                   "the linkage is at a dead centre at a crank angle of %.6g deg: its "
+                   "velocities are not determined",
+                   drive->angle * 180.0 / M_PI);
 }
 
 bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err)
@@ -249,19 +313,12 @@ bool kinematics_solve_driven(const Linkage *linkage, const DriveState *drive, Mo
                        linkage->body_count, linkage->joint_count,
                        linkage->driver.is_present ? "" : ", no driver");
     }
-    Motion solved[LINKAGE_BODY_MAX];
+    Motion *solved = zeroed(linkage->body_count, sizeof *solved);
     memcpy(solved, motions, linkage->body_count * sizeof *motions);
-    if (!newton(linkage, drive->angle, solved)) {
-        return err_set(err, ERR_SOLVER, "the linkage does not close at a crank angle of %.6g deg",
-                       drive->angle * 180.0 / M_PI);
+    const bool is_solved = solve_all(linkage, drive, solved, err);
+    if (is_solved) {
+        memcpy(motions, solved, linkage->body_count * sizeof *motions);
     }
-    if (!solve_velocities(linkage, drive->omega, solved) ||
-        !solve_accelerations(linkage, drive->alpha, solved)) {
-        return err_set(err, ERR_SOLVER,
-                       "the linkage is at a dead centre at a crank angle of %.6g deg: its "
-                       "velocities are not determined",
-                       drive->angle * 180.0 / M_PI);
-    }
-    memcpy(motions, solved, linkage->body_count * sizeof *motions);
-    return true;
+    free(solved);
+    return is_solved;
 }

@@ -36,6 +36,11 @@ void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bo
 // Adds a change, three numbers a body, to the positions and angles.
 void kinematics_move(const Linkage *linkage, const double *change, Motion *motions);
 
+// How many of these rows are independent, of a linkage of any size, and how many there are. Of a
+// small mechanism a pivot counts that is above a share of the largest.
+size_t kinematics_rank(const Linkage *linkage, const Motion *motions, const bool *include,
+                       bool with_driver, double independent, size_t *rows);
+
 // The freedoms left with the driver free: three a body less the independent constraint rows.
 // With `ideal_only`, joints with clearance are left open (two freedoms more each).
 size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool ideal_only);

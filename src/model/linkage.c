@@ -358,11 +358,15 @@ static bool check_torque(const Linkage *linkage, Err *err)
 
 bool linkage_check(const Linkage *linkage, Err *err)
 {
-    if (linkage->body_count == 0 || linkage->body_count > LINKAGE_BODY_MAX ||
-        linkage->joint_count > LINKAGE_JOINT_MAX) {
-        return err_set(err, ERR_CASE, "%zu bodies and %zu joints, allowed: 1 to %d and 0 to %d",
-                       linkage->body_count, linkage->joint_count, LINKAGE_BODY_MAX,
-                       LINKAGE_JOINT_MAX);
+    if (linkage->body_count == 0) {
+        return err_set(err, ERR_CASE, "no bodies, allowed: 1 or more");
+    }
+    if (linkage->is_spatial &&
+        (linkage->body_count > SPACE_BODY_MAX || linkage->joint_count > SPACE_JOINT_MAX)) {
+        return err_set(err, ERR_CASE,
+                       "%zu bodies and %zu joints in space, allowed: 1 to %d and 0 to %d; in the "
+                       "plane there may be any number",
+                       linkage->body_count, linkage->joint_count, SPACE_BODY_MAX, SPACE_JOINT_MAX);
     }
     if (!check_bodies(linkage, err)) {
         return false;

@@ -15,10 +15,10 @@
 
 enum {
     LINKAGE_GROUND = -1,
-    LINKAGE_BODY_MAX = 16,
-    LINKAGE_JOINT_MAX = 24,
-    LINKAGE_SPRING_MAX = 16, // of each kind
     LINKAGE_NAME_SIZE = 48,
+    // in space; in the plane there may be any number
+    SPACE_BODY_MAX = 16,
+    SPACE_JOINT_MAX = 24,
 };
 
 // Of a clearance: how much deeper than its wall something may start that is to touch it, for the

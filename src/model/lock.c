@@ -279,7 +279,7 @@ Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
 {
     const double start_angle = linkage->driver.start;
     const Lock unknown = {LOCK_UNKNOWN, start_angle, false, start_angle};
-    if (!linkage->driver.is_present || !space_has_plane(linkage)) {
+    if (!linkage->driver.is_present || !space_has_plane(linkage) || !kinematics_is_small(linkage)) {
         return unknown;
     }
     Linkage ideal = idealised(linkage, joints);

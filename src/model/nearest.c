@@ -7,7 +7,9 @@
 #include "model/nearest.h"
 
 #include "base/dense.h"
+#include "base/zeroed.h"
 #include "model/joint_rows.h"
+#include "model/joint_system.h"
 #include "model/kinematics.h"
 
 enum { STEP_MAX = 12 }; // Newton doubles the digits: from a clearance to rounding takes about 3
@@ -19,11 +21,28 @@ static const double AGREES = 1e-9; // of the largest speed of a joint: what writ
 
 // The rows that are asked for, and what each is to change by.
 typedef struct Demand {
-    bool include[LINKAGE_JOINT_MAX];
-    size_t rows; // of the joints; the drive's row stands behind them
-    double wanted[KINEMATICS_ROW_MAX];
+    bool *include; // by joint; owned, like the next two
+    double *wanted;
+    double *change;  // room for what it asks for, three columns a body
+    size_t rows;     // of the joints; the drive's row stands behind them
     double distance; // the largest that is missing at any joint, m or m/s
 } Demand;
+
+static Demand create_demand(const Linkage *linkage)
+{
+    return (Demand){
+        .include = zeroed(linkage->joint_count, sizeof(bool)),
+        .wanted = zeroed(2 * linkage->joint_count + 1, sizeof(double)),
+        .change = zeroed(3 * linkage->body_count, sizeof(double)),
+    };
+}
+
+static void free_demand(Demand *demand)
+{
+    free(demand->include);
+    free(demand->wanted);
+    free(demand->change);
+}
 
 // Asks for the two rows of a joint; true where more is missing there than anywhere before.
 static bool add_demand_rows(const Linkage *linkage, int joint, Vec2 missing, Demand *demand)
@@ -43,9 +62,16 @@ static double root_mass(const Linkage *linkage, size_t column)
 }
 
 // The least change that meets the demand, three columns a body. False where rows are redundant.
-static bool least_change(const Linkage *linkage, const Motion *motions, const Demand *demand,
-                         double change[KINEMATICS_COLUMN_MAX])
+static bool least_change(const Linkage *linkage, const Motion *motions, const Demand *demand)
 {
+    double *change = demand->change;
+    if (!kinematics_is_small(linkage)) {
+        JointSystem system;
+        joint_system_init(linkage, motions, demand->include, true, &system);
+        joint_system_least_change(&system, demand->wanted, change);
+        joint_system_finish(&system);
+        return true;
+    }
     Jacobian jacobian;
     kinematics_jacobian(linkage, motions, demand->include, true, &jacobian);
     const size_t rows = jacobian.rows;
@@ -88,7 +114,8 @@ static bool least_change(const Linkage *linkage, const Motion *motions, const De
 // What the pins still miss of where they are to start; false where they are there.
 static bool demand_positions(const Linkage *linkage, const Motion *motions, Demand *demand)
 {
-    *demand = (Demand){0};
+    demand->rows = 0;
+    demand->distance = 0.0;
     double size = 1.0; // m
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
@@ -115,15 +142,16 @@ static bool demand_positions(const Linkage *linkage, const Motion *motions, Dema
 
 bool nearest_positions(const Linkage *linkage, Motion *motions)
 {
-    Demand demand;
-    for (int step = 0; demand_positions(linkage, motions, &demand); step++) {
-        double change[KINEMATICS_COLUMN_MAX];
-        if (step == STEP_MAX || !least_change(linkage, motions, &demand, change)) {
-            return false;
+    Demand demand = create_demand(linkage);
+    bool is_solved = true;
+    for (int step = 0; is_solved && demand_positions(linkage, motions, &demand); step++) {
+        is_solved = step < STEP_MAX && least_change(linkage, motions, &demand);
+        if (is_solved) {
+            kinematics_move(linkage, demand.change, motions);
         }
-        kinematics_move(linkage, change, motions);
     }
-    return true;
+    free_demand(&demand);
+    return is_solved;
 }
 
 // What the speeds miss of keeping joints closed and following the drive. Returns the joint that is
@@ -161,21 +189,23 @@ static int demand_speeds(const Linkage *linkage, const Motion *motions, bool wit
 
 void nearest_speeds(const Linkage *linkage, bool with_play, Motion *motions)
 {
-    Demand demand;
-    double change[KINEMATICS_COLUMN_MAX] = {0.0};
+    Demand demand = create_demand(linkage);
+    const double *change = demand.change;
     demand_speeds(linkage, motions, with_play, &demand);
-    const bool is_solved = least_change(linkage, motions, &demand, change);
+    const bool is_solved = least_change(linkage, motions, &demand);
     for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
         motions[i].velocity.x += change[3 * i];
         motions[i].velocity.y += change[3 * i + 1];
         motions[i].omega += change[3 * i + 2];
     }
+    free_demand(&demand);
 }
 
 void nearest_change(const Linkage *linkage, const Motion *motions, SpeedChange *changes)
 {
-    Motion moved[LINKAGE_BODY_MAX];
-    double change[KINEMATICS_COLUMN_MAX] = {0.0};
+    Motion *moved = zeroed(linkage->body_count, sizeof *moved);
+    Demand demand = create_demand(linkage);
+    const double *change = demand.change;
     // the first pass leaves the softness of redundant rows, the second its square
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < linkage->body_count; i++) {
@@ -183,26 +213,28 @@ void nearest_change(const Linkage *linkage, const Motion *motions, SpeedChange *
             moved[i].velocity = changes[i].velocity;
             moved[i].omega = changes[i].omega;
         }
-        Demand demand;
         demand_speeds(linkage, moved, false, &demand);
         if (linkage->driver.is_present) {
             demand.wanted[demand.rows] = -moved[linkage_driven_body(linkage)].omega;
         }
-        const bool is_solved = least_change(linkage, motions, &demand, change);
+        const bool is_solved = least_change(linkage, motions, &demand);
         for (size_t i = 0; i < linkage->body_count; i++) {
             changes[i].velocity.x = is_solved ? changes[i].velocity.x + change[3 * i] : 0.0;
             changes[i].velocity.y = is_solved ? changes[i].velocity.y + change[3 * i + 1] : 0.0;
             changes[i].omega = is_solved ? changes[i].omega + change[3 * i + 2] : 0.0;
         }
     }
+    free_demand(&demand);
+    free(moved);
 }
 
 bool nearest_check(const Linkage *linkage, const Motion *motions, int *joint, double *distance)
 {
-    Demand demand;
+    Demand demand = create_demand(linkage);
     *joint = demand_speeds(linkage, motions, false, &demand);
     *distance = demand.distance;
     const Driver *driver = &linkage->driver;
     const double turn = driver->is_present ? fabs(demand.wanted[demand.rows]) : 0.0;
+    free_demand(&demand);
     return *joint < 0 && turn <= AGREES * fabs(driver->speed);
 }

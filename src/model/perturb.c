@@ -9,6 +9,7 @@
 #include "model/perturb.h"
 
 #include "base/lcg.h"
+#include "base/zeroed.h"
 #include "model/space_nearest.h"
 
 #include <assert.h>
@@ -68,18 +69,13 @@ static Vec2 own_direction(const Scenario *scenario, const Motion *motions, size_
 {
     const Linkage *linkage = &scenario->linkage;
     const Vec2 centre = motions[body].position;
-    Vec2 arms[2 * LINKAGE_JOINT_MAX];
-    size_t count = 0;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        arms[count++] = vec2_sub(linkage_point(motions, joint->body_a, joint->anchor_a), centre);
-        arms[count++] = vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b), centre);
-    }
     const double reach = linkage_reach(linkage, (int)body);
-    for (size_t i = 0; i < count; i++) {
-        const double length = vec2_length(arms[i]);
+    for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
+        const JointEnd end = linkage_end(&linkage->joints[i / 2], (int)(i % 2));
+        const Vec2 arm = vec2_sub(linkage_point(motions, end.body, end.anchor), centre);
+        const double length = vec2_length(arm);
         if (length > APART * reach) {
-            return vec2_scale(1.0 / length, arms[i]);
+            return vec2_scale(1.0 / length, arm);
         }
     }
     const double speed = vec2_length(motions[body].velocity);
@@ -110,25 +106,26 @@ static void draw_changes(const Scenario *scenario, const DistanceScale *scales,
     }
 }
 
-bool perturb_start(Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_MAX], double size,
-                   unsigned member)
+bool perturb_start(Scenario *scenario, const DistanceScale *scales, double size, unsigned member)
 {
     Linkage *linkage = &scenario->linkage;
-    Motion motions[LINKAGE_BODY_MAX];
-    SpeedChange changes[LINKAGE_BODY_MAX];
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
+    SpeedChange *changes = zeroed(linkage->body_count, sizeof *changes);
     linkage_start(linkage, motions);
     draw_changes(scenario, scales, motions, member, changes);
     const double drawn = change_size(linkage, scales, changes);
     allow_change(linkage, motions, changes);
     const double allowed = change_size(linkage, scales, changes);
-    if (!(allowed > ALLOWED * drawn)) {
-        return false;
+    const bool is_free = allowed > ALLOWED * drawn;
+    if (is_free) {
+        perturb_along(scenario, changes, size / allowed);
     }
-    perturb_along(scenario, changes, size / allowed);
-    return true;
+    free(changes);
+    free(motions);
+    return is_free;
 }
 
-void perturb_along(Scenario *scenario, const SpeedChange changes[LINKAGE_BODY_MAX], double factor)
+void perturb_along(Scenario *scenario, const SpeedChange *changes, double factor)
 {
     for (size_t i = 0; i < scenario->linkage.body_count; i++) {
         Motion *start = &scenario->linkage.bodies[i].start;
@@ -183,7 +180,7 @@ static double *rate_of(SpeedChange *change, int rate)
 // that projection.
 static size_t allow_each(const Linkage *linkage, const DistanceScale *scales, PerturbBasis *each)
 {
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[PERTURB_BODY_MAX];
     linkage_start(linkage, motions);
     const int rates = linkage->is_spatial ? 6 : 3;
     double trace = 0.0;
@@ -249,8 +246,8 @@ static bool group_of(const Linkage *linkage, const size_t *groups, const SpeedCh
 // second of each to another.
 static void merge_groups(const Linkage *linkage, PerturbBasis *basis, PerturbBasis *merged)
 {
-    size_t groups[LINKAGE_BODY_MAX];
-    size_t counts[LINKAGE_BODY_MAX] = {0};
+    size_t groups[PERTURB_BODY_MAX];
+    size_t counts[PERTURB_BODY_MAX] = {0};
     size_t group = 0;
     find_groups(linkage, groups);
     merged->count = 0;
@@ -268,10 +265,10 @@ static void merge_groups(const Linkage *linkage, PerturbBasis *basis, PerturbBas
     *basis = *merged;
 }
 
-void perturb_basis(const Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_MAX],
-                   PerturbBasis *basis)
+void perturb_basis(const Scenario *scenario, const DistanceScale *scales, PerturbBasis *basis)
 {
     const Linkage *linkage = &scenario->linkage;
+    assert(linkage->body_count <= PERTURB_BODY_MAX);
     PerturbBasis *left = malloc(sizeof *left);
     assert(left != NULL);
     const size_t freedoms = allow_each(linkage, scales, left);

@@ -12,10 +12,10 @@
 // ideal joints and the driver let it. The scales are those of the scenario's own motion. The member
 // number is the seed; equal numbers give equal changes. False, and nothing changed, where joints
 // and driver leave no freedom.
-bool perturb_start(Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_MAX], double size,
-                   unsigned member);
+bool perturb_start(Scenario *scenario, const DistanceScale *scales, double size, unsigned member);
 
-enum { PERTURB_FREEDOM_MAX = 6 * LINKAGE_BODY_MAX };
+// All directions are found of linkages with so many bodies at most.
+enum { PERTURB_BODY_MAX = 16, PERTURB_FREEDOM_MAX = 6 * PERTURB_BODY_MAX };
 
 // Changes of the bodies' speeds that span all that joints and driver allow, each of length 1 in
 //     |w|^2 = sum over bodies (w_omega / omega_b)^2 + (w_v / v_b)^2
@@ -24,11 +24,10 @@ enum { PERTURB_FREEDOM_MAX = 6 * LINKAGE_BODY_MAX };
 // them by itself: none feels the others' changes, so that one run serves all groups.
 typedef struct PerturbBasis {
     size_t count; // freedoms, of the group with most of them
-    SpeedChange changes[PERTURB_FREEDOM_MAX][LINKAGE_BODY_MAX];
+    SpeedChange changes[PERTURB_FREEDOM_MAX][PERTURB_BODY_MAX];
 } PerturbBasis;
 
-void perturb_basis(const Scenario *scenario, const DistanceScale scales[LINKAGE_BODY_MAX],
-                   PerturbBasis *basis);
+void perturb_basis(const Scenario *scenario, const DistanceScale *scales, PerturbBasis *basis);
 
 // Adds a multiple of a change to the speeds of the start.
-void perturb_along(Scenario *scenario, const SpeedChange changes[LINKAGE_BODY_MAX], double factor);
+void perturb_along(Scenario *scenario, const SpeedChange *changes, double factor);

@@ -12,7 +12,6 @@ typedef enum RangesOfJoint { RANGES_FORCE, RANGES_GAP } RangesOfJoint;
 enum {
     RANGES_OF_BODY = 3,
     RANGES_OF_JOINT = 2,
-    RANGES_SIGNAL_MAX = RANGES_OF_BODY * LINKAGE_BODY_MAX + RANGES_OF_JOINT * LINKAGE_JOINT_MAX,
 };
 
 // least > most where nothing has been seen.

@@ -8,6 +8,8 @@
 // of all bodies.
 #include "model/scale.h"
 
+#include "base/zeroed.h"
+
 #include "model/forces.h"
 
 // How far the driven body reaches from its pivot, m.
@@ -26,9 +28,10 @@ static double driven_span(const Linkage *linkage)
 // The speed that springs and torque alone give the bodies from rest, m/s.
 static double pushed_speed(const Linkage *linkage)
 {
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
     linkage_start(linkage, motions);
     double energy = forces_energy(linkage, motions);
+    free(motions);
     double mass = 0.0;
     double largest = fabs(time_table_largest(&linkage->torque.table));
     double reach = 0.0;
@@ -57,7 +60,10 @@ SpeedScale scale_speeds(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
     const double gravity = fabs(scenario->gravity);
-    SpeedScale scale = {.moving = 0.0};
+    SpeedScale scale = {
+        .turning = zeroed(linkage->body_count, sizeof *scale.turning),
+        .speeding = zeroed(linkage->body_count, sizeof *scale.speeding),
+    };
     double largest = 0.0;
     double turning = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
@@ -84,6 +90,13 @@ SpeedScale scale_speeds(const Scenario *scenario)
     scale.changing = scale.changing > 0.0 ? scale.changing : scale.moving * scale.moving / largest;
     set_bodies(linkage, &scale);
     return scale;
+}
+
+void scale_free(SpeedScale *scale)
+{
+    free(scale->turning);
+    free(scale->speeding);
+    *scale = (SpeedScale){.turning = NULL};
 }
 
 bool scale_raise(const Linkage *linkage, double moving, SpeedScale *scale)

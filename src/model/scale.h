@@ -8,14 +8,17 @@ typedef struct SpeedScale {
     double changing; // m/s^2, of its velocity: above 0
     // rad/s and rad/s^2, by body: with which its furthest joint moves as that point does. Of a body
     // that hangs on a pivot far away these are small, as its own are.
-    double turning[LINKAGE_BODY_MAX];
-    double speeding[LINKAGE_BODY_MAX];
+    double *turning; // owned, like the next
+    double *speeding;
 } SpeedScale;
 
 // The largest of the speeds at the start, of the driven body's, and of a fall under gravity as long
 // as the largest body or one period of the drive; 1 m/s where nothing moves and nothing pulls. It
-// depends on the bodies alone: not on the origin or the frames that the case is written in.
+// depends on the bodies alone: not on the origin or the frames that the case is written in. For
+// scale_free.
 SpeedScale scale_speeds(const Scenario *scenario);
+
+void scale_free(SpeedScale *scale);
 
 // Raises the scale to a speed of the fastest point, m/s, that was seen. Returns whether it is one
 // above the scale.

@@ -1,6 +1,8 @@
 // How does what the plane says of a linkage stand in space?
 #include "model/space.h"
 
+#include "base/zeroed.h"
+
 // of a principal moment: rounding of the numbers of a case
 static const double INERTIA_ROUNDING = 1e-9;
 
@@ -33,9 +35,10 @@ void space_lift(const Linkage *linkage, const Motion *planar, SpaceMotion *motio
 
 void space_start(const Linkage *linkage, SpaceMotion *motions)
 {
-    Motion planar[LINKAGE_BODY_MAX];
+    Motion *planar = zeroed(linkage->body_count, sizeof *planar);
     linkage_start(linkage, planar);
     space_lift(linkage, planar, motions);
+    free(planar);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const BodySpace *space = &linkage->bodies[i].space;
         motions[i].velocity.z = space->velocity_z;

@@ -19,7 +19,7 @@ enum { PASSES = 2 };
 typedef struct Solution {
     size_t count;
     SpaceRow rows[SPACE_COLUMN_MAX];
-    Mat3 inverse[LINKAGE_BODY_MAX]; // of the inertias in the world
+    Mat3 inverse[SPACE_BODY_MAX]; // of the inertias in the world
     double matrix[SPACE_COLUMN_MAX * SPACE_COLUMN_MAX];
     double right[SPACE_COLUMN_MAX];
 } Solution;
@@ -49,8 +49,8 @@ static double coupling(const Linkage *linkage, const Solution *solution, const S
 static void find_rows(const Linkage *linkage, const SpaceMotion *motions, bool with_play,
                       Solution *solution)
 {
-    bool is_asked[LINKAGE_JOINT_MAX];
-    unsigned chosen[LINKAGE_JOINT_MAX];
+    bool is_asked[SPACE_JOINT_MAX];
+    unsigned chosen[SPACE_JOINT_MAX];
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const bool has_play = linkage->joints[i].kind == JOINT_CLEARANCE;
         is_asked[i] = has_play ? with_play : linkage_is_ideal(linkage, i);
@@ -131,7 +131,7 @@ void space_nearest_speeds(const Linkage *linkage, bool with_play, SpaceMotion *m
 
 void space_nearest_change(const Linkage *linkage, SpeedChange *changes)
 {
-    SpaceMotion motions[LINKAGE_BODY_MAX];
+    SpaceMotion motions[SPACE_BODY_MAX];
     space_start(linkage, motions);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const SpeedChange *change = &changes[i];

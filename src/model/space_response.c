@@ -28,8 +28,8 @@ static bool gives_way(const SpaceResponse *response, int body)
 static bool choose_rows(SpaceResponse *response, const SpaceMotion *motions)
 {
     const Linkage *linkage = response->linkage;
-    bool is_asked[LINKAGE_JOINT_MAX];
-    unsigned chosen[LINKAGE_JOINT_MAX];
+    bool is_asked[SPACE_JOINT_MAX];
+    unsigned chosen[SPACE_JOINT_MAX];
     for (size_t i = 0; i < linkage->joint_count; i++) {
         is_asked[i] = linkage_is_ideal(linkage, i);
     }
@@ -293,7 +293,7 @@ void space_response_react(const SpaceResponse *response, const double *impulses,
 }
 
 void space_response_add_forces(const SpaceResponse *response, const double *reactions,
-                               Vec3 forces[LINKAGE_JOINT_MAX])
+                               Vec3 forces[SPACE_JOINT_MAX])
 {
     for (size_t i = 0; i < response->ideal_rows; i++) {
         if (response->part_of[i] < SPACE_POINT_ROWS) {

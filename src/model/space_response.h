@@ -26,13 +26,13 @@ typedef struct SpaceResponseRow {
 
 typedef struct SpaceResponse {
     const Linkage *linkage;
-    SpaceEnd ends[LINKAGE_JOINT_MAX][2];
-    Mat3 own_inertia[LINKAGE_BODY_MAX]; // kg m^2, in the body's frame
-    Mat3 own_inverse[LINKAGE_BODY_MAX];
+    SpaceEnd ends[SPACE_JOINT_MAX][2];
+    Mat3 own_inertia[SPACE_BODY_MAX]; // kg m^2, in the body's frame
+    Mat3 own_inverse[SPACE_BODY_MAX];
     // where it was placed
-    Mat3 turns[LINKAGE_BODY_MAX];   // from the body's frame to the world's
-    Mat3 inverse[LINKAGE_BODY_MAX]; // of the inertia, in the world's frame
-    size_t ideal_rows;              // independent ones; they come first
+    Mat3 turns[SPACE_BODY_MAX];   // from the body's frame to the world's
+    Mat3 inverse[SPACE_BODY_MAX]; // of the inertia, in the world's frame
+    size_t ideal_rows;            // independent ones; they come first
     size_t row_count;
     int joint_of[SPACE_COLUMN_MAX]; // of an ideal row
     int part_of[SPACE_COLUMN_MAX];  // which of the joint's five
@@ -40,7 +40,7 @@ typedef struct SpaceResponse {
     SpaceResponseRow rows[SPACE_RESPONSE_ROW_MAX];
     // what an impulse of 1 in a row of play changes of all bodies, the ideal joints holding; and
     // with which impulses these hold: space_response_link
-    SpaceChange moved[SPACE_RESPONSE_PLAY_MAX][LINKAGE_BODY_MAX];
+    SpaceChange moved[SPACE_RESPONSE_PLAY_MAX][SPACE_BODY_MAX];
     double reactions[SPACE_RESPONSE_PLAY_MAX][SPACE_COLUMN_MAX];
     // lower triangle, row after row: Cholesky's factor in the ideal columns, with the inverse of
     // its diagonal, then the mobility
@@ -83,7 +83,7 @@ void space_response_react(const SpaceResponse *response, const double *impulses,
 
 // Adds to the forces of the ideal joints on their bodies b what impulses in the ideal rows are.
 void space_response_add_forces(const SpaceResponse *response, const double *reactions,
-                               Vec3 forces[LINKAGE_JOINT_MAX]);
+                               Vec3 forces[SPACE_JOINT_MAX]);
 
 // Adds what impulses in the ideal rows are on one body.
 void space_response_add_reactions(const SpaceResponse *response, const double *reactions, int body,

@@ -96,7 +96,7 @@ static Opening opening_of(const SpaceResponse *response, const SpaceMotion *moti
 void space_response_openings(const SpaceResponse *response, const SpaceMotion *motions,
                              double *openings, double *rates)
 {
-    Mat3 turns[LINKAGE_BODY_MAX];
+    Mat3 turns[SPACE_BODY_MAX];
     for (size_t i = 0; i < response->linkage->body_count; i++) {
         turns[i] = quat_matrix(motions[i].turn);
     }

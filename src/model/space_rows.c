@@ -178,7 +178,7 @@ static bool add_row(const Linkage *linkage, Basis *basis, const SpaceRow *row)
 }
 
 size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions,
-                         const bool is_asked[LINKAGE_JOINT_MAX], unsigned chosen[LINKAGE_JOINT_MAX])
+                         const bool is_asked[SPACE_JOINT_MAX], unsigned chosen[SPACE_JOINT_MAX])
 {
     Basis basis = open_basis(linkage);
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
@@ -197,8 +197,8 @@ size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions,
 }
 
 size_t space_rows_choose_points(const Linkage *linkage, const SpaceMotion *motions,
-                                const bool is_asked[LINKAGE_JOINT_MAX],
-                                unsigned chosen[LINKAGE_JOINT_MAX])
+                                const bool is_asked[SPACE_JOINT_MAX],
+                                unsigned chosen[SPACE_JOINT_MAX])
 {
     Basis basis = open_basis(linkage);
     SpaceRow rows[SPACE_JOINT_ROWS];
@@ -235,8 +235,8 @@ size_t space_rows_mobility(const Linkage *linkage, const SpaceMotion *motions, b
 {
     Linkage undriven = *linkage;
     undriven.driver.is_present = false;
-    bool is_asked[LINKAGE_JOINT_MAX];
-    unsigned chosen[LINKAGE_JOINT_MAX];
+    bool is_asked[SPACE_JOINT_MAX];
+    unsigned chosen[SPACE_JOINT_MAX];
     for (size_t i = 0; i < linkage->joint_count; i++) {
         is_asked[i] = !ideal_only || linkage->joints[i].kind == JOINT_REVOLUTE;
     }

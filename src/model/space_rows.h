@@ -11,8 +11,8 @@ enum {
     SPACE_JOINT_ROWS = 5,
     SPACE_POINT_ROWS = 3, // of those, the first
     SPACE_FREEDOMS = 6,   // of a body: its velocity, then its angular velocity, in the world
-    SPACE_ROW_MAX = SPACE_JOINT_ROWS * LINKAGE_JOINT_MAX,
-    SPACE_COLUMN_MAX = SPACE_FREEDOMS * LINKAGE_BODY_MAX,
+    SPACE_ROW_MAX = SPACE_JOINT_ROWS * SPACE_JOINT_MAX,
+    SPACE_COLUMN_MAX = SPACE_FREEDOMS * SPACE_BODY_MAX,
 };
 
 // A relative velocity as a sum over two bodies: of each, linear . v + angular . omega. The ground
@@ -48,11 +48,10 @@ size_t space_rows_mobility(const Linkage *linkage, const SpaceMotion *motions, b
 // no freedom. Returns the number chosen. Joints that fit together leave the others redundant at
 // the motions given and nowhere else for certain.
 size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions,
-                         const bool is_asked[LINKAGE_JOINT_MAX],
-                         unsigned chosen[LINKAGE_JOINT_MAX]);
+                         const bool is_asked[SPACE_JOINT_MAX], unsigned chosen[SPACE_JOINT_MAX]);
 
 // The same, but the points of all joints before the directions of their axes: what is left out is
 // of axes wherever the points alone are independent.
 size_t space_rows_choose_points(const Linkage *linkage, const SpaceMotion *motions,
-                                const bool is_asked[LINKAGE_JOINT_MAX],
-                                unsigned chosen[LINKAGE_JOINT_MAX]);
+                                const bool is_asked[SPACE_JOINT_MAX],
+                                unsigned chosen[SPACE_JOINT_MAX]);

@@ -309,7 +309,7 @@ static void book_energy(SpaceContacts *contacts, size_t number, const SpaceMotio
 
 void space_contacts_clear(SpaceContacts *contacts, double step_s, SpaceJoints *joints)
 {
-    SpaceMotion motions[LINKAGE_BODY_MAX];
+    SpaceMotion motions[SPACE_BODY_MAX];
     bool any = false;
     for (size_t i = 0; i < contacts->count; i++) {
         any = any || contacts->contacts[i].is_touching;

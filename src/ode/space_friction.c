@@ -59,7 +59,7 @@ static void find_free(System *system, SpaceResponse *response, const SpaceFricti
     double ideal_drift[SPACE_COLUMN_MAX];
     double play_drift[UNKNOWN_MAX];
     double free[UNKNOWN_MAX];
-    SpaceMotion pushed[LINKAGE_BODY_MAX];
+    SpaceMotion pushed[SPACE_BODY_MAX];
     for (size_t i = 0; i < response->linkage->body_count; i++) {
         pushed[i] = step->motions[i];
         pushed[i].velocity = step->motions[i].acceleration;

@@ -70,7 +70,7 @@ static void take_part(SpaceImpulse *impulse)
     const SpaceImpulseStep *step = &impulse->step;
     const Linkage *linkage = &step->scenario->linkage;
     ImpulsePart *part = &impulse->part;
-    SpaceMotion motions[LINKAGE_BODY_MAX];
+    SpaceMotion motions[SPACE_BODY_MAX];
     const Mark *mark = impulse_part_next(part, &step->encounter, step->start_s, step->end_s);
     space_impulse_step_inside(step, mark->node, mark->time_s, !part->is_last, &part->sums, motions,
                               &impulse->joints);

@@ -20,8 +20,8 @@ static void find_motions(const SpaceImpulseStep *step, double since_s, const Enc
 {
     const Linkage *linkage = &step->scenario->linkage;
     const double share = since_s / step->width_s;
-    SpaceChange speeds[LINKAGE_BODY_MAX];
-    SpaceChange places[LINKAGE_BODY_MAX];
+    SpaceChange speeds[SPACE_BODY_MAX];
+    SpaceChange places[SPACE_BODY_MAX];
     space_response_apply(step->response, sums->impulse, speeds);
     space_response_apply(step->response, sums->moment, places);
     for (size_t i = 0; i < linkage->body_count; i++) {
@@ -62,7 +62,7 @@ static bool place_there(const SpaceImpulseStep *step, const SpaceMotion *motions
 static void find_accelerations(const SpaceImpulseStep *step, const SpaceResponse *response,
                                double since_s, const EncounterSums *sums, SpaceMotion *motions)
 {
-    SpaceChange rates[LINKAGE_BODY_MAX];
+    SpaceChange rates[SPACE_BODY_MAX];
     const double off_middle_s = since_s - 0.5 * step->width_s;
     space_response_apply(response, sums->force, rates);
     for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
@@ -124,7 +124,7 @@ static void find_forces(const SpaceImpulseStep *step, const EncounterSums *sums,
     const Linkage *linkage = &step->scenario->linkage;
     double beyond[RESPONSE_ROW_MAX];
     double reactions[SPACE_COLUMN_MAX];
-    Vec3 forces[LINKAGE_JOINT_MAX];
+    Vec3 forces[SPACE_JOINT_MAX];
     memcpy(forces, step->mean, sizeof forces);
     for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
         beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
@@ -137,7 +137,7 @@ static void find_forces(const SpaceImpulseStep *step, const EncounterSums *sums,
         }
     }
     if (step->driven >= 0) {
-        SpaceChange loads[LINKAGE_BODY_MAX];
+        SpaceChange loads[SPACE_BODY_MAX];
         space_response_load(step->response, sums->force, loads);
         SpaceChange *others = &loads[step->driven];
         others->move = vec3_add(others->move, step->on_driven.move);

@@ -65,7 +65,7 @@ static void find_drive_work(SpaceImpulseStep *step)
         return;
     }
     const double rate = 1.0 / step->width_s;
-    SpaceChange loads[LINKAGE_BODY_MAX];
+    SpaceChange loads[SPACE_BODY_MAX];
     space_response_load(step->response, step->total.impulse, loads);
     const SpaceChange *own = &loads[step->driven];
     const SpaceChange others = {

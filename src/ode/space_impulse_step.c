@@ -132,7 +132,7 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
     SpaceRow rows[RESPONSE_ROW_MAX];
     double play_drift[RESPONSE_ROW_MAX];
     double ideal_drift[SPACE_COLUMN_MAX];
-    SpaceMotion loose[LINKAGE_BODY_MAX];
+    SpaceMotion loose[SPACE_BODY_MAX];
     const bool has_friction = step->scenario->contact.friction > 0.0;
     for (size_t i = 0; i < step->place_count; i++) {
         const EncounterJoint *joint = &encounter->joints[i];
@@ -179,7 +179,7 @@ static bool step_world(SpaceImpulseStep *step, const SpaceMotion *middle, const 
                        Err *err)
 {
     const double rate = 1.0 / step->width_s;
-    SpaceChange loads[LINKAGE_BODY_MAX];
+    SpaceChange loads[SPACE_BODY_MAX];
     space_response_load(step->response, step->total.impulse, loads);
     for (size_t i = 0; i < body_count(step); i++) {
         SpaceMotion placed = middle[i];
@@ -230,8 +230,8 @@ static void find_end(SpaceImpulseStep *step, const SpaceMotion *middle)
             coast(after, now.velocity, now.omega, half_s);
         }
     }
-    SpaceChange positions[LINKAGE_BODY_MAX];
-    SpaceChange speeds[LINKAGE_BODY_MAX];
+    SpaceChange positions[SPACE_BODY_MAX];
+    SpaceChange speeds[SPACE_BODY_MAX];
     // when in the step the impulse came
     double late[RESPONSE_ROW_MAX];
     for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
@@ -275,7 +275,7 @@ static Vec3 rest_of(double width_s, Vec3 moved, Vec3 speed, Vec3 mean, Vec3 push
 static void prepare_inside(SpaceImpulseStep *step, const SpaceChange *pushed, double width_before_s)
 {
     const double width_s = step->width_s;
-    SpaceChange moved[LINKAGE_BODY_MAX];
+    SpaceChange moved[SPACE_BODY_MAX];
     space_response_apply(step->response, step->total.moment, moved);
     for (size_t i = 0; i < body_count(step); i++) {
         const SpaceMotion *first = &step->before[i];
@@ -321,7 +321,7 @@ bool space_impulse_step_take(SpaceImpulseStep *step, Err *err)
 {
     const double width_before_s = step->width_s;
     SpaceMotion *const middle = step->middle;
-    SpaceChange pushed[LINKAGE_BODY_MAX]; // what the contacts change of the speeds
+    SpaceChange pushed[SPACE_BODY_MAX]; // what the contacts change of the speeds
     begin_step(step);
     find_middle(step, middle);
     if (!run_encounter(step, middle, pushed, err) || !step_world(step, middle, pushed, err)) {

@@ -23,18 +23,18 @@ typedef struct SpaceImpulseStep {
     size_t count;
     double start_s; // of the last step
     double width_s;
-    SpaceMotion before[LINKAGE_BODY_MAX];    // at its start
-    SpaceMotion after[LINKAGE_BODY_MAX];     // at its end
-    SpaceChange free[LINKAGE_BODY_MAX];      // mean acceleration beside the contacts'
-    SpaceChange free_rate[LINKAGE_BODY_MAX]; // its rate of change
-    SpaceChange rest[LINKAGE_BODY_MAX];   // of the end's positions, beyond the formula for inside
-    Vec3 gyration[LINKAGE_BODY_MAX];      // rad/s^2, of turning inertias, in the step
-    SpaceMotion middle[LINKAGE_BODY_MAX]; // at mid-step, with the speeds of the start
-    double drive_work;                    // J, in the whole step
-    EncounterSums total;                  // of the contacts, in the whole step
-    double closing[SPACE_COLUMN_MAX];     // N s, of the ideal rows, beside the step of the world
-    Vec3 mean[LINKAGE_JOINT_MAX];         // N, mean forces of the ideal joints on bodies b
-    SpaceChange on_driven;                // N, N m: mean of what they do to the driven body
+    SpaceMotion before[SPACE_BODY_MAX];    // at its start
+    SpaceMotion after[SPACE_BODY_MAX];     // at its end
+    SpaceChange free[SPACE_BODY_MAX];      // mean acceleration beside the contacts'
+    SpaceChange free_rate[SPACE_BODY_MAX]; // its rate of change
+    SpaceChange rest[SPACE_BODY_MAX];      // of the end's positions, beyond the formula for inside
+    Vec3 gyration[SPACE_BODY_MAX];         // rad/s^2, of turning inertias, in the step
+    SpaceMotion middle[SPACE_BODY_MAX];    // at mid-step, with the speeds of the start
+    double drive_work;                     // J, in the whole step
+    EncounterSums total;                   // of the contacts, in the whole step
+    double closing[SPACE_COLUMN_MAX];      // N s, of the ideal rows, beside the step of the world
+    Vec3 mean[SPACE_JOINT_MAX];            // N, mean forces of the ideal joints on bodies b
+    SpaceChange on_driven;                 // N, N m: mean of what they do to the driven body
 } SpaceImpulseStep;
 
 // Whether a body moves by the forces on it, and not by the drive.

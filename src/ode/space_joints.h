@@ -7,8 +7,8 @@
 
 // The joints of a linkage, both as the plane sees them and in space.
 typedef struct SpaceJoints {
-    JointState plane[LINKAGE_JOINT_MAX];
-    SpaceJointState space[LINKAGE_JOINT_MAX];
+    JointState plane[SPACE_JOINT_MAX];
+    SpaceJointState space[SPACE_JOINT_MAX];
 } SpaceJoints;
 
 // Fills in where the pins are at the motions given: everything but the forces.

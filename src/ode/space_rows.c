@@ -18,14 +18,14 @@
 // One step, as it is handed on.
 typedef struct Stride {
     double start_s;
-    SpaceMotion first[LINKAGE_BODY_MAX]; // speeds at the step's start, and positions there (plain)
-                                         // or at mid-step (staggered)
-    SpaceMotion last[LINKAGE_BODY_MAX];  // as ODE leaves them; accelerations are means of the step
-    double omega[LINKAGE_BODY_MAX];      // rad/s, about z, at its end
-    double alpha[LINKAGE_BODY_MAX];      // rad/s^2, about z, mean
+    SpaceMotion first[SPACE_BODY_MAX]; // speeds at the step's start, and positions there (plain)
+                                       // or at mid-step (staggered)
+    SpaceMotion last[SPACE_BODY_MAX];  // as ODE leaves them; accelerations are means of the step
+    double omega[SPACE_BODY_MAX];      // rad/s, about z, at its end
+    double alpha[SPACE_BODY_MAX];      // rad/s^2, about z, mean
     SpaceJoints joints;
-    double impulse[LINKAGE_JOINT_MAX];
-    double approach[LINKAGE_JOINT_MAX];
+    double impulse[SPACE_JOINT_MAX];
+    double approach[SPACE_JOINT_MAX];
     double drive_work; // J
     ContactEnergy energy;
 } Stride;
@@ -39,8 +39,8 @@ typedef struct SpaceRows {
     double step_s;
     long index; // of the next step: it starts at that many times step_s
     int driven;
-    Vec3 rest[LINKAGE_BODY_MAX]; // rad/s^2, of the last step, beside the turning inertias'
-    Stride strides[3];           // before the one handed on, that one, and the one ahead of it
+    Vec3 rest[SPACE_BODY_MAX]; // rad/s^2, of the last step, beside the turning inertias'
+    Stride strides[3];         // before the one handed on, that one, and the one ahead of it
     Stride *before;
     Stride *now;
     Stride *ahead; // of plain stepping the one handed on
@@ -80,7 +80,7 @@ static bool move_on(SpaceRows *rows, SpaceMotion *motions, Err *err)
     double openings[SPACE_COLUMN_MAX];
     double rates[SPACE_COLUMN_MAX];
     double drift[SPACE_COLUMN_MAX];
-    SpaceChange changes[LINKAGE_BODY_MAX];
+    SpaceChange changes[SPACE_BODY_MAX];
     space_response_openings(&rows->response, motions, openings, rates);
     space_response_drift(&rows->response, motions, drift);
     for (size_t i = 0; i < rows->response.ideal_rows; i++) {
@@ -107,7 +107,7 @@ static bool open_rows(const Scenario *scenario, bool is_staggered, void **state,
     rows->before = &rows->strides[0];
     rows->now = &rows->strides[1];
     rows->ahead = &rows->strides[2];
-    SpaceMotion motions[LINKAGE_BODY_MAX];
+    SpaceMotion motions[SPACE_BODY_MAX];
     space_start(&scenario->linkage, motions);
     // built closed, so that every joint gets its anchors where they belong, and moved then
     if (space_world_build(scenario, motions, &rows->world, &rows->response, err) &&
@@ -263,10 +263,10 @@ static bool advance(SpaceRows *rows, Stride *stride, Err *err)
     }
     space_joints_clear(linkage, &stride->joints);
     space_joints_place(&rows->response, stride->first, stride->joints.plane, stride->joints.space);
-    Vec3 gyration[LINKAGE_BODY_MAX];
+    Vec3 gyration[SPACE_BODY_MAX];
     gyrate(rows, stride, gyration);
     const bool is_quick = rows->scenario->ode.solver == ODE_QUICK;
-    SpaceMotion seen[LINKAGE_BODY_MAX];
+    SpaceMotion seen[SPACE_BODY_MAX];
     look_ahead(rows, stride, gyration, &driven, seen);
     bool is_good =
         space_contacts_make(&rows->contacts, stride->first, seen, step_s, stride->approach, err);

@@ -8,11 +8,11 @@
 
 // Everything at one instant. Made of zeros.
 typedef struct SpaceState {
-    SystemState shared;                // the first
-    SpaceTreeState tree;               // accelerations filled in
-    SpaceForce forces[PIN_SPACE_MAX];  // by contact
-    Vec3 reactions[LINKAGE_JOINT_MAX]; // N, on body b, of ideal joints
-    double drive_power;                // W
+    SystemState shared;               // the first
+    SpaceTreeState tree;              // accelerations filled in
+    SpaceForce forces[PIN_SPACE_MAX]; // by contact
+    Vec3 reactions[SPACE_JOINT_MAX];  // N, on body b, of ideal joints
+    double drive_power;               // W
 } SpaceState;
 
 typedef struct SpaceDynamics {

@@ -18,7 +18,7 @@ typedef struct SpaceLoopRow {
 typedef struct SpaceLoops {
     size_t row_count;
     SpaceLoopRow rows[SPACE_LOOPS_ROW_MAX];
-    Vec3 base_sides[LINKAGE_JOINT_MAX][2]; // of body a: unit, at right angles to the joint's axis
+    Vec3 base_sides[SPACE_JOINT_MAX][2]; // of body a: unit, at right angles to the joint's axis
 } SpaceLoops;
 
 // Chooses the rows at the base of the tree; the first time, or anew.

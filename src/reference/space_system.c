@@ -32,7 +32,7 @@ static void space_begin(System *system, double *y)
 {
     SpaceDynamics *dynamics = own_dynamics(system);
     const size_t n = dynamics->tree.coordinate_count;
-    SpaceMotion motions[LINKAGE_BODY_MAX];
+    SpaceMotion motions[SPACE_BODY_MAX];
     space_start(dynamics->tree.linkage, motions);
     space_tree_start(&dynamics->tree, motions, y + n);
     space_loops_start(&dynamics->tree, &dynamics->loops, y, y + n, &dynamics->scratch->tree);
@@ -274,11 +274,11 @@ static const SystemKind SPACE = {
 System *space_system_create(const Scenario *scenario, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
-    if (linkage->body_count > LINKAGE_BODY_MAX || linkage->joint_count > LINKAGE_JOINT_MAX) {
+    if (linkage->body_count > SPACE_BODY_MAX || linkage->joint_count > SPACE_JOINT_MAX) {
         err_set(err, ERR_CASE,
                 "the reference holds at most %d bodies and %d joints in space; the case has "
                 "%zu and %zu",
-                LINKAGE_BODY_MAX, LINKAGE_JOINT_MAX, linkage->body_count, linkage->joint_count);
+                SPACE_BODY_MAX, SPACE_JOINT_MAX, linkage->body_count, linkage->joint_count);
         return NULL;
     }
     SpaceDynamics *dynamics = malloc(sizeof *dynamics);

@@ -79,7 +79,7 @@ void space_tree_build(const Linkage *linkage, SpaceTree *tree)
     *tree = (SpaceTree){.linkage = linkage, .driven = linkage_driven_body(linkage)};
     list_ends(tree);
     bool is_known[SPACE_TREE_BODY_MAX] = {true};
-    bool is_used[LINKAGE_JOINT_MAX] = {false};
+    bool is_used[SPACE_JOINT_MAX] = {false};
     if (tree->driven >= 0) {
         tree->node_of[tree->driven] = -1;
         tree->is_carried[tree->driven] = true;

@@ -11,8 +11,8 @@
 
 enum {
     SPACE_TREE_COORDINATE_MAX = SPACE_COLUMN_MAX,
-    SPACE_TREE_LOOP_MAX = LINKAGE_JOINT_MAX,
-    SPACE_TREE_END_MAX = 2 * LINKAGE_JOINT_MAX, // end 2 j on joint j's body a, 2 j + 1 on body b
+    SPACE_TREE_LOOP_MAX = SPACE_JOINT_MAX,
+    SPACE_TREE_END_MAX = 2 * SPACE_JOINT_MAX, // end 2 j on joint j's body a, 2 j + 1 on body b
 };
 
 typedef struct SpaceNode {
@@ -41,15 +41,15 @@ typedef struct LongQuat {
 } LongQuat;
 
 // Bodies by number + 1: the ground stands before the first.
-enum { SPACE_TREE_BODY_MAX = LINKAGE_BODY_MAX + 1 };
+enum { SPACE_TREE_BODY_MAX = SPACE_BODY_MAX + 1 };
 
 typedef struct SpaceTree {
     const Linkage *linkage;
     int driven;                             // number of the driven body or LINKAGE_GROUND
     size_t node_count;                      // free bodies, parents before children
-    SpaceNode nodes[LINKAGE_BODY_MAX];      //
-    int node_of[LINKAGE_BODY_MAX];          // by body; -1 for the driven one
-    bool is_carried[LINKAGE_BODY_MAX];      // the driven body, and all that hang on it
+    SpaceNode nodes[SPACE_BODY_MAX];        //
+    int node_of[SPACE_BODY_MAX];            // by body; -1 for the driven one
+    bool is_carried[SPACE_BODY_MAX];        // the driven body, and all that hang on it
     bool has_floating;                      // whether a body hangs on nothing
     bool is_driven_hung_on;                 // whether others do, or loops close there
     SpaceEnd ends[SPACE_TREE_END_MAX];      // in the bodies' frames
@@ -60,14 +60,14 @@ typedef struct SpaceTree {
     int loops[SPACE_TREE_LOOP_MAX]; // joints that close loops
     // the base
     long double base_time_s;
-    long double base_angle[LINKAGE_BODY_MAX]; // rad, of each hanging body's joint since the start
-    LongQuat start_turn[LINKAGE_BODY_MAX];    // at the start: of a hanging body against its parent
+    long double base_angle[SPACE_BODY_MAX]; // rad, of each hanging body's joint since the start
+    LongQuat start_turn[SPACE_BODY_MAX];    // at the start: of a hanging body against its parent
     LongQuat base_turn[SPACE_TREE_BODY_MAX];
     LongVec3 base_position[SPACE_TREE_BODY_MAX]; // of the centres
-    Mat3 base_inertia[LINKAGE_BODY_MAX];         // kg m^2, in the world
+    Mat3 base_inertia[SPACE_BODY_MAX];           // kg m^2, in the world
     Vec3 base_arms[SPACE_TREE_END_MAX];          // from the body's centre to each end, m
     Vec3 base_axes[SPACE_TREE_END_MAX];          // of the joint, unit
-    Vec3 base_gaps[LINKAGE_JOINT_MAX];           // from the end on body a to that on body b, m
+    Vec3 base_gaps[SPACE_JOINT_MAX];             // from the end on body a to that on body b, m
 } SpaceTree;
 
 // A body at one instant, in the world.
@@ -93,7 +93,7 @@ typedef struct SpaceColumn {
 typedef struct SpaceTreeState {
     SpaceBodyState bodies[SPACE_TREE_BODY_MAX];
     Vec3 arms[SPACE_TREE_END_MAX]; // from the body's centre to each end, m; of the ground from 0
-    SpaceColumn columns[LINKAGE_BODY_MAX][SPACE_TREE_COORDINATE_MAX]; // by node, along its chain
+    SpaceColumn columns[SPACE_BODY_MAX][SPACE_TREE_COORDINATE_MAX]; // by node, along its chain
 } SpaceTreeState;
 
 // Finds the tree of the linkage's ideal joints.

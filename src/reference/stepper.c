@@ -159,6 +159,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
 void stepper_finish(Stepper *stepper)
 {
     stiffness_finish(&stepper->stiffness);
+    scale_free(&stepper->scale);
     for (size_t i = 0; i < EVENTS_POINTS_MAX; i++) {
         free(stepper->points.states[i]);
     }

@@ -46,7 +46,7 @@ const Field METRIC_FIELDS[ENSEMBLE_METRIC_COUNT + 1] = {
 json_t *ensemble_joints_json(const Linkage *linkage, const Ensemble *ensemble)
 {
     json_t *joints = json_object();
-    for (size_t i = 0; i < linkage->joint_count; i++) {
+    for (size_t i = 0; i < ensemble_joint_count(linkage); i++) {
         if (linkage_kind_has_play(linkage->joints[i].kind)) {
             json_object_set_new(joints, linkage->joints[i].name,
                                 fields_json(METRIC_FIELDS, FIELD_JSON, ensemble->joints[i]));
@@ -58,7 +58,7 @@ json_t *ensemble_joints_json(const Linkage *linkage, const Ensemble *ensemble)
 bool ensemble_joints_read(const Linkage *linkage, const json_t *joints, Ensemble *ensemble)
 {
     bool is_right = true;
-    for (size_t i = 0; is_right && i < linkage->joint_count; i++) {
+    for (size_t i = 0; is_right && i < ensemble_joint_count(linkage); i++) {
         is_right =
             !linkage_kind_has_play(linkage->joints[i].kind) ||
             fields_json_read(METRIC_FIELDS, FIELD_STORE,

@@ -201,16 +201,36 @@ static void write_head(const Table *table, const Part *part, Text *text)
     free(units);
 }
 
+// Of a table of more rows than anyone reads, as of a thousand bodies, the first are shown where
+// lines have a width; without one, in files and by --wide, all.
+enum { ROWS_MOST = 400, ROWS_SHOWN = 100 };
+
+static size_t shown_cells(const Table *table)
+{
+    const size_t rows = table->cell_count / table->column_count;
+    return table->fit > 0 && rows > ROWS_MOST ? ROWS_SHOWN * table->column_count
+                                              : table->cell_count;
+}
+
+static void write_left_out(const Table *table, Text *text)
+{
+    const size_t left = (table->cell_count - shown_cells(table)) / table->column_count;
+    if (left > 0) {
+        text_append(text, "  ... and %zu rows more, which --wide shows and --json has\n", left);
+    }
+}
+
 static void write_part(const Table *table, Part *part, Text *text)
 {
     set_widths(table, part);
     write_head(table, part, text);
     size_t rule = 0;
-    for (size_t cell = 0; cell <= table->cell_count; cell += table->column_count) {
+    const size_t end = shown_cells(table);
+    for (size_t cell = 0; cell <= end; cell += table->column_count) {
         for (; rule < table->rule_count && table->rules[rule] == cell; rule++) {
             write_rule(part, text);
         }
-        if (cell < table->cell_count) {
+        if (cell < end) {
             write_row(table, part, (const char *const *)&table->cells[cell], text);
         }
     }
@@ -317,6 +337,7 @@ void table_write(const Table *table, Text *text)
         take_all(table, &all);
         write_parts(table, &all, text);
     }
+    write_left_out(table, text);
     part_finish(&all);
     free(is_dropped);
 }

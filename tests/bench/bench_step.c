@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/sorted.h"
 #include "kept.h"
+#include "model/kinematics.h"
 #include "ode/engine.h"
 #include "ode/world.h"
 #include "run/registry.h"
@@ -20,7 +21,7 @@ enum { REPETITIONS = 9, BARE_STEPS = 60000, ROWS = 9 };
 // The engine alone: the crank placed, the world stepped, nothing read.
 static double bare_us(const Scenario *scenario)
 {
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     linkage_start(&scenario->linkage, motions);
     World world;
     Err err = {ERR_NONE, ""};

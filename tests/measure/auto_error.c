@@ -14,6 +14,7 @@
 #include "measure/chosen_run.h"
 #include "measure/error.h"
 #include "model/distance.h"
+#include "model/kinematics.h"
 #include "run/registry.h"
 
 #include <assert.h>
@@ -76,7 +77,7 @@ static bool load(const Work *work, Scenario *scenario, Err *err)
 static double error_until(const Trajectory *run, const Trajectory *judge, const Truth *truth,
                           double until_s)
 {
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale scales[KINEMATICS_BODY_MAX];
     distance_scales(truth->trajectory, scales);
     double largest = 0.0;
     for (size_t k = 0; k < judge->sample_count && judge->times[k] <= until_s; k++) {

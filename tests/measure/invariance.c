@@ -12,6 +12,7 @@
 #include "../support/kept.h"
 #include "commands/check/check_measure.h"
 #include "measure/error.h"
+#include "model/kinematics.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,7 +38,7 @@ static Answers answer(const Scenario *scenario, unsigned seed, size_t members)
     Answers answers = {.truth = truth_make(scenario, NOBODY)};
     answers.evaluations = answers.truth.trajectory->evaluations;
     const Starts starts = {PERTURBATION, seed, members};
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale scales[KINEMATICS_BODY_MAX];
     distance_scales(answers.truth.trajectory, scales);
     Scenario longer = kept_copy(scenario);
     longer.run.revolutions = TURNS;

@@ -6,6 +6,7 @@
 // angle theta from the vertical:
 //     theta'' = k sin theta,   k = g 3 (3 N + 1) / (2 (4 N + 1)),   theta(0) = 0, theta'(0) = 1
 #include "kept.h"
+#include "model/kinematics.h"
 #include "ode_error.h"
 
 #include <stdio.h>
@@ -110,7 +111,7 @@ static void seven_four_bars_are_as_many_as_a_linkage_holds(void **state)
 {
     (void)state;
     const Scenario scenario = four_bars(7, 1.0);
-    assert_true(scenario.linkage.body_count + 2 > LINKAGE_BODY_MAX);
+    assert_true(scenario.linkage.body_count + 2 > KINEMATICS_BODY_MAX);
     const double theta = exact_angle(7, 1.0);
     Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
     assert_near(tip_error(run, sin(theta), cos(theta)), 0.0, 1e-9);

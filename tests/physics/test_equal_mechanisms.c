@@ -73,7 +73,7 @@ static Scenario four_bar(void)
 {
     Scenario scenario = mechanism_paper();
     Linkage *linkage = &scenario.linkage;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     Err err = {ERR_NONE, ""};
     linkage_start(linkage, motions);
     for (int degree = 1; degree <= 60; degree++) {

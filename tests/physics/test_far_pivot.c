@@ -11,6 +11,7 @@
 #include "starts.h"
 
 #include "measure/error.h"
+#include "model/kinematics.h"
 
 enum { PIN = 2, ROCKER = 2, STARTS = 24 };
 
@@ -89,7 +90,7 @@ static void median_horizons_and_forces_are_the_same(void **state)
     Median horizon[2];
     Median force[2];
     Median impulse[2];
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale scales[KINEMATICS_BODY_MAX];
     Scenario scenario;
     for (int i = 0; i < 2; i++) {
         scenario = rocker_of(i == 0 ? 100.0 : 1000.0, 1e-12, 3.0);

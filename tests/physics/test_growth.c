@@ -5,6 +5,7 @@
 #include "mechanism.h"
 
 #include "model/growth.h"
+#include "model/kinematics.h"
 #include "run/registry.h"
 
 #include <stdlib.h>
@@ -14,7 +15,7 @@ enum { DIRECTIONS = 20 };
 typedef struct Bench {
     Scenario scenario;
     Trajectory *beside;
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale scales[KINEMATICS_BODY_MAX];
     PerturbBasis basis;
 } Bench;
 
@@ -73,7 +74,7 @@ static PerturbBasis turned(const PerturbBasis *basis, double angle)
     PerturbBasis other = *basis;
     const double c = cos(angle);
     const double s = sin(angle);
-    for (size_t i = 0; i < LINKAGE_BODY_MAX; i++) {
+    for (size_t i = 0; i < KINEMATICS_BODY_MAX; i++) {
         const SpeedChange a = basis->changes[0][i];
         const SpeedChange b = basis->changes[1][i];
         other.changes[0][i] = (SpeedChange){
@@ -89,7 +90,7 @@ static PerturbBasis turned(const PerturbBasis *basis, double angle)
 static void every_freedom_has_a_direction(void **state)
 {
     (void)state;
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale scales[KINEMATICS_BODY_MAX];
     PerturbBasis basis;
     for (size_t joints = 0; joints <= 3; joints++) {
         Scenario scenario = joints == 0 ? mechanism_paper() : mechanism_loose(joints);

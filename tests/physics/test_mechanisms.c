@@ -115,7 +115,7 @@ static void a_driven_body_pays_for_its_springs(void **state)
     (void)state;
     Scenario scenario = load_with(RUN_UP, "run.samples=60");
     Linkage *linkage = &scenario.linkage;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     Err err = {0};
     for (size_t i = 0; i < linkage->joint_count; i++) {
         linkage->joints[i].kind = JOINT_REVOLUTE;

@@ -3,6 +3,7 @@
 
 #include "mechanism.h"
 
+#include "model/kinematics.h"
 #include "ode/engine.h"
 #include "ode/world.h"
 #include "run/registry.h"
@@ -120,7 +121,7 @@ static void redundant_joint_rows_are_refused_before_ode_sees_them(void **state)
     // five joints beside the driven one, three rows each; two legs would do to carry the bar
     assert_non_null(
         strstr(trajectory->message, "1 of the 15 rows of the ideal joints follow from the others"));
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     linkage_start(&scenario.linkage, motions);
     World world;
     Err err = {ERR_NONE, ""};

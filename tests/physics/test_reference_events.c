@@ -6,6 +6,7 @@
 
 #include "measure/error.h"
 #include "measure/truth.h"
+#include "model/kinematics.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -130,21 +131,21 @@ static void many_contacts_may_begin_at_once(void **state)
     (void)state;
     Scenario scenario = mechanism_pin(0.1, 1e-4);
     Linkage *linkage = &scenario.linkage;
-    for (int i = 1; i < LINKAGE_BODY_MAX; i++) {
+    for (int i = 1; i < KINEMATICS_BODY_MAX; i++) {
         linkage->bodies[i] = linkage->bodies[0];
         linkage->joints[i] = linkage->joints[0];
         linkage->joints[i].body_b = i;
         snprintf(linkage->bodies[i].name, LINKAGE_NAME_SIZE, "pin-%d", i);
         snprintf(linkage->joints[i].name, LINKAGE_NAME_SIZE, "hole-%d", i);
     }
-    linkage->body_count = LINKAGE_BODY_MAX;
-    linkage->joint_count = LINKAGE_BODY_MAX;
+    linkage->body_count = KINEMATICS_BODY_MAX;
+    linkage->joint_count = KINEMATICS_BODY_MAX;
     scenario.gravity = 9.80665;
     scenario.contact.stiffness = 6.6e10;
     scenario.run.duration = 0.02;
     scenario.run.samples = 10;
     Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
-    for (int i = 0; i < LINKAGE_BODY_MAX; i++) {
+    for (int i = 0; i < KINEMATICS_BODY_MAX; i++) {
         assert_int_equal(trajectory->joints[i].impacts, trajectory->joints[0].impacts);
         assert_near(trajectory_motion(trajectory, 10, (size_t)i)->position.y,
                     trajectory_motion(trajectory, 10, 0)->position.y, 1e-12);

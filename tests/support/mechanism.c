@@ -27,7 +27,7 @@ static void add_joint(Linkage *linkage, const char *name, int a, Vec2 anchor_a, 
 static void assemble(Scenario *scenario)
 {
     Linkage *linkage = &scenario->linkage;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     linkage_start(linkage, motions);
     Err err = {ERR_NONE, ""};
     const bool is_closed = kinematics_solve(linkage, linkage->driver.start, motions, &err);

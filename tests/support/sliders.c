@@ -1,6 +1,7 @@
 #include "sliders.h"
 
 #include "mechanism.h"
+#include "model/kinematics.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -43,7 +44,7 @@ static Sliders begin(double speed, double start)
 
 static Sliders end(Sliders made, void (*motion)(const Scenario *, double, Motion *))
 {
-    Motion motions[LINKAGE_BODY_MAX] = {{.angle = 0.0}};
+    Motion motions[KINEMATICS_BODY_MAX] = {{.angle = 0.0}};
     made.motion = motion;
     motion(&made.scenario, 0.0, motions);
     for (size_t i = 0; i < made.scenario.linkage.body_count; i++) {

@@ -3,6 +3,7 @@
 #include "base/sorted.h"
 #include "kept.h"
 #include "model/growth.h"
+#include "model/kinematics.h"
 #include "run/registry.h"
 #include "run/run.h"
 
@@ -38,7 +39,7 @@ static Scenario start_of(const Scenario *scenario, const DistanceScale *scales, 
     return beside;
 }
 
-void starts_scales(const Scenario *scenario, DistanceScale scales[LINKAGE_BODY_MAX])
+void starts_scales(const Scenario *scenario, DistanceScale scales[KINEMATICS_BODY_MAX])
 {
     Trajectory *own = run(scenario, BACKEND_REFERENCE);
     distance_scales(own, scales);
@@ -47,7 +48,7 @@ void starts_scales(const Scenario *scenario, DistanceScale scales[LINKAGE_BODY_M
 
 static double horizon_of(const Scenario *scenario)
 {
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale scales[KINEMATICS_BODY_MAX];
     PerturbBasis basis;
     Trajectory *own = run(scenario, BACKEND_REFERENCE);
     distance_scales(own, scales);

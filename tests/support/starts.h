@@ -2,6 +2,7 @@
 #pragma once
 
 #include "model/distance.h"
+#include "model/kinematics.h"
 
 enum { STARTS_MAX = 256 };
 
@@ -17,7 +18,7 @@ typedef struct Starts {
 } Starts;
 
 // What a perturbation is relative to: the largest speeds of the reference's run.
-void starts_scales(const Scenario *scenario, DistanceScale scales[LINKAGE_BODY_MAX]);
+void starts_scales(const Scenario *scenario, DistanceScale scales[KINEMATICS_BODY_MAX]);
 
 // Up to when a start can be followed, s: to where small perturbations have grown 1e5 times.
 Median starts_horizon(const Scenario *scenario, const DistanceScale *scales, Starts starts);

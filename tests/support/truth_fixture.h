@@ -6,6 +6,7 @@
 typedef struct TruthFixture {
     Fixture *fixture;
     Truth truth;
+    SpikeMatch found[RUNS][4]; // of the four joints
     RunMatches matches[RUNS];
     Ensemble ensembles[RUNS];
 } TruthFixture;
@@ -43,6 +44,9 @@ static inline int truth_fixture_set_up(void **state)
         .growth = 3.5e7,
         .is_limited = true,
     };
+    for (int i = 0; i < RUNS; i++) {
+        own->matches[i].joints = own->found[i];
+    }
     own->matches[1].joints[1] = (SpikeMatch){
         .pair_count = 1,
         .pairs = {{0, 0, 2.5e-6, -0.125, 0.0625}},

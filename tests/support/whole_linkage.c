@@ -1,6 +1,7 @@
 #include "whole_linkage.h"
 
 #include "base/dense.h"
+#include "model/kinematics.h"
 
 #include <assert.h>
 #include <string.h>
@@ -14,7 +15,7 @@ static void add_rows(WholeLinkage *whole, size_t joint, bool with_turns)
     const int still = whole->with_driven ? LINKAGE_GROUND : linkage_driven_body(whole->linkage);
     for (size_t column = 0; column < whole->columns; column++) {
         const size_t body = column / 3;
-        Motion unit[LINKAGE_BODY_MAX];
+        Motion unit[KINEMATICS_BODY_MAX];
         for (size_t i = 0; i < whole->linkage->body_count; i++) {
             unit[i] = whole->motions[i];
             unit[i].velocity = (Vec2){0.0, 0.0};
@@ -120,7 +121,7 @@ void whole_load(const WholeLinkage *whole, const double *impulses, double *loads
 // The rows' rates at the bodies' velocities, the driven one's too, a moment before or later.
 static void rates_after(const WholeLinkage *whole, double time_s, double *rates)
 {
-    Motion moved[LINKAGE_BODY_MAX];
+    Motion moved[KINEMATICS_BODY_MAX];
     double values[WHOLE_COLUMN_MAX];
     for (size_t i = 0; i < whole->linkage->body_count; i++) {
         const Motion *motion = &whole->motions[i];

@@ -6,9 +6,10 @@
 // of the joints' ends, one unit velocity after the other.
 #pragma once
 
+#include "model/kinematics.h"
 #include "model/response.h"
 
-enum { WHOLE_COLUMN_MAX = 3 * LINKAGE_BODY_MAX };
+enum { WHOLE_COLUMN_MAX = 3 * KINEMATICS_BODY_MAX };
 
 // Rows: two of each ideal joint but the driven one, then two of each joint with play, or four with
 // the turns of its two bodies.

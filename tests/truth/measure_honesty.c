@@ -7,6 +7,7 @@
 #include "casefile/casefile.h"
 #include "measure/error.h"
 #include "measure/truth.h"
+#include "model/kinematics.h"
 #include "run/registry.h"
 #include "truth_trajectory.h"
 
@@ -24,7 +25,7 @@ static bool find_end(const Scenario *scenario, double *end_s, Err *err)
 {
     const Solver *solver = registry_solver(BACKEND_REFERENCE);
     const double whole_s = scenario_duration(scenario);
-    bool was_touching[LINKAGE_JOINT_MAX] = {false};
+    bool was_touching[KINEMATICS_JOINT_MAX] = {false};
     size_t contacts = 0;
     void *state = NULL;
     *end_s = 0.0;

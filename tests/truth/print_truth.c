@@ -1,5 +1,6 @@
 // Prints the angular velocities of coupler and follower at twelve equidistant times.
 //     print_truth PROBLEM [TOLERANCE [DURATION_S]]
+#include "model/kinematics.h"
 #include "problems.h"
 #include "quad_truth.h"
 
@@ -26,7 +27,7 @@ int main(int argc, char **argv)
     for (int i = 0; i < SAMPLE_COUNT; i++) {
         times[i] = duration * (i + 1) / SAMPLE_COUNT;
     }
-    TruthSample samples[SAMPLE_COUNT * LINKAGE_BODY_MAX];
+    TruthSample samples[SAMPLE_COUNT * KINEMATICS_BODY_MAX];
     TruthFigures figures;
     const clock_t start = clock();
     const bool is_complete = truth_run(&problem, &options, SAMPLE_COUNT, times, samples, &figures);

@@ -14,6 +14,7 @@
 // d, m; F, N; c, N s/m; v0 closing speed at the onset, m/s. F_el: quad_law.h.
 #include "quad_mechanism.h"
 
+#include "model/kinematics.h"
 #include "quad_rows.h"
 
 #include <assert.h>
@@ -228,7 +229,7 @@ static void add_corners(const Scenario *scenario, const Joint *joint, QuadProble
         const Quad end = i % 2 == 0 ? 0.5 : -0.5;
         const Quad height = side * guide->height;
         const Quad length = end * guide->length;
-        assert(problem->joint_count < LINKAGE_JOINT_MAX);
+        assert(problem->joint_count < KINEMATICS_JOINT_MAX);
         problem->joints[problem->joint_count++] = (QuadJoint){
             .held = QUAD_HELD_NEVER,
             .has_play = true,

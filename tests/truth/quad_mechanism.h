@@ -5,9 +5,10 @@
 // data come from there. gcc with libquadmath.
 #pragma once
 
+#include "model/kinematics.h"
 #include "quad_law.h"
 
-enum { QUAD_COORDINATE_MAX = 3 * LINKAGE_BODY_MAX };
+enum { QUAD_COORDINATE_MAX = 3 * KINEMATICS_BODY_MAX };
 
 typedef struct QuadVec {
     Quad x;
@@ -57,9 +58,9 @@ typedef struct QuadJoint {
 // floor), and friction on the pin is -mu F tanh(v_t / v_s) along the wall, at the wall.
 typedef struct QuadProblem {
     size_t body_count;
-    QuadBody bodies[LINKAGE_BODY_MAX];
+    QuadBody bodies[KINEMATICS_BODY_MAX];
     size_t joint_count;
-    QuadJoint joints[LINKAGE_JOINT_MAX];
+    QuadJoint joints[KINEMATICS_JOINT_MAX];
     int driver_joint;                         // the joint about which the driven body turns, or -1
     int driven_body;                          // moves as prescribed, or LINKAGE_GROUND
     Quad drive_speed;                         // rad/s
@@ -82,8 +83,8 @@ typedef enum QuadMode {
 } QuadMode;
 
 typedef struct QuadContacts {
-    QuadMode mode[LINKAGE_JOINT_MAX];
-    Quad speed[LINKAGE_JOINT_MAX]; // v0, m/s, of a joint that is not free
+    QuadMode mode[KINEMATICS_JOINT_MAX];
+    Quad speed[KINEMATICS_JOINT_MAX]; // v0, m/s, of a joint that is not free
 } QuadContacts;
 
 // How two bodies stand where they can touch.

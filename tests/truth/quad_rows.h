@@ -1,9 +1,10 @@
 // Quadruple precision in the plane, and the rows of the ideal joints of a mechanism.
 #pragma once
 
+#include "model/kinematics.h"
 #include "quad_mechanism.h"
 
-enum { QUAD_ROW_MAX = 2 * LINKAGE_JOINT_MAX };
+enum { QUAD_ROW_MAX = 2 * KINEMATICS_JOINT_MAX };
 
 // One side of a row: what it takes of the body's x, y and angle.
 typedef struct QuadRow {
@@ -15,7 +16,7 @@ typedef struct QuadRow {
 // The rows of the joints taken as ideal, at one position, ready to be solved.
 typedef struct QuadRows {
     size_t joint_count;
-    size_t joints[LINKAGE_JOINT_MAX];
+    size_t joints[KINEMATICS_JOINT_MAX];
     QuadRow row[QUAD_ROW_MAX][2];            // of body a, of body b
     Quad factor[QUAD_ROW_MAX][QUAD_ROW_MAX]; // L and D of J M^-1 J^T
 } QuadRows;

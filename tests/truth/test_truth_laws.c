@@ -8,6 +8,7 @@
 #include "contact/damping.h"
 #include "contact/law.h"
 #include "mechanism.h"
+#include "model/kinematics.h"
 
 enum { LAWS = LAW_PAPER_TABLE_3 + 1 };
 
@@ -31,7 +32,7 @@ static Quad given_back(const QuadProblem *problem, double tolerance)
 {
     TruthOptions options = truth_options_default();
     options.tolerance = tolerance;
-    TruthSample pin[LINKAGE_BODY_MAX];
+    TruthSample pin[KINEMATICS_BODY_MAX];
     TruthFigures figures = {.ends = 0};
     // until it has left the wall, and is on its way to the other
     for (double time = 1e-4; figures.ends == 0 && time < 1e-2; time += 5e-5) {

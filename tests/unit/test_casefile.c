@@ -93,7 +93,7 @@ static void the_crossed_assembly_is_on_the_other_side(void **state)
 static void check_eccentricity(const Scenario *scenario, const char *name, double x, double y)
 {
     const Joint *joint = &scenario->linkage.joints[linkage_find_joint(&scenario->linkage, name)];
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     linkage_start(&scenario->linkage, motions);
     const Vec2 e = vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b),
                             linkage_point(motions, joint->body_a, joint->anchor_a));

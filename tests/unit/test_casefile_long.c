@@ -66,7 +66,7 @@ static void refuse(const char *text, const char *override, const char *message)
 
 static Vec2 eccentricity(const Linkage *linkage, size_t number)
 {
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     linkage_start(linkage, motions);
     const Joint *joint = &linkage->joints[number];
     return vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b),
@@ -116,7 +116,7 @@ static void a_four_bar_as_bodies_moves_as_the_short_form_says(void **state)
     (void)state;
     const Scenario truth = load_file("cases/paper/ideal-nominal.yaml", "drive.start=50 deg");
     const Linkage *links = &truth.linkage;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     Text text;
     text_init(&text);
     text_append(&text, "bodies:\n");
@@ -219,7 +219,7 @@ static void a_body_far_from_its_joints_is_placed(void **state)
 
 static Vec2 parting(const Linkage *linkage, size_t number)
 {
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     linkage_start(linkage, motions);
     const Joint *joint = &linkage->joints[number];
     return vec2_sub(linkage_point_velocity(motions, joint->body_b, joint->anchor_b),
@@ -342,7 +342,7 @@ static void the_cases_of_the_literature_load(void **state)
         snprintf(path, sizeof path, "cases/literature/%s.yaml", CASES[i]);
         const Scenario scenario = load_file(path, NULL);
         assert_true(scenario_has_clearance(&scenario));
-        Motion motions[LINKAGE_BODY_MAX];
+        Motion motions[KINEMATICS_BODY_MAX];
         linkage_start(&scenario.linkage, motions);
         // with the play open nothing is redundant: each freedom is one a body, less two a joint
         size_t held = 0;

@@ -4,6 +4,7 @@
 #include "close.h"
 #include "contact/law.h"
 #include "model/joint_rows.h"
+#include "model/kinematics.h"
 
 #include <string.h>
 
@@ -50,7 +51,7 @@ static Scenario load(const char *text)
 
 static JointRows rows_at_start(const Linkage *linkage, int joint)
 {
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     JointRows rows;
     linkage_start(linkage, motions);
     joint_rows_find(linkage, motions, joint, &rows);

@@ -6,6 +6,7 @@
 #include "analytic/fourbar_motion.h"
 #include "analytic/inverse_dynamics.h"
 #include "analytic/summary.h"
+#include "model/kinematics.h"
 
 #include <string.h>
 
@@ -98,7 +99,7 @@ static void reactions_that_are_not_determined_are_refused(void **state)
 {
     (void)state;
     const Scenario redundant = mechanism_parallelogram();
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     linkage_start(&redundant.linkage, motions);
     Reactions reactions;
     Err err = {ERR_NONE, ""};

@@ -21,7 +21,7 @@ static void newton_and_the_closed_form_agree_over_a_turn(void **state)
     const Scenario scenario = mechanism_paper();
     const FourBarLengths lengths = fourbar_motion_nominal(&scenario.fourbar);
     const double speed = scenario.linkage.driver.speed;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     copy_start(&scenario.linkage, motions);
     Err err = {ERR_NONE, ""};
     for (int degree = 0; degree <= 360; degree += 5) {
@@ -46,7 +46,7 @@ static void a_fourbar_has_one_freedom_and_two_more_with_each_loose_joint(void **
 {
     (void)state;
     Scenario scenario = mechanism_paper();
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     copy_start(&scenario.linkage, motions);
     assert_int_equal(kinematics_mobility(&scenario.linkage, motions, true), 1);
     mechanism_loosen(&scenario, "crank-coupler");
@@ -61,7 +61,7 @@ static void a_redundant_bar_leaves_the_freedom_that_counting_denies(void **state
     (void)state;
     // counting gives 3 * 4 - 2 * 6 = 0; three parallel cranks of one length move all the same
     const Scenario scenario = mechanism_parallelogram();
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     copy_start(&scenario.linkage, motions);
     assert_int_equal(kinematics_mobility(&scenario.linkage, motions, true), 1);
     Err err = {ERR_NONE, ""};
@@ -74,7 +74,7 @@ static void a_linkage_that_cannot_close_says_so_and_stays_where_it_was(void **st
     (void)state;
     Scenario scenario = mechanism_paper();
     scenario.linkage.joints[3].anchor_b.x = 0.9;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     copy_start(&scenario.linkage, motions);
     Err err = {ERR_NONE, ""};
     assert_false(kinematics_solve(&scenario.linkage, 0.0, motions, &err));
@@ -86,7 +86,7 @@ static void closure_error_is_the_largest_gap_between_anchors(void **state)
 {
     (void)state;
     const Scenario scenario = mechanism_paper();
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     copy_start(&scenario.linkage, motions);
     assert_true(kinematics_closure_error(&scenario.linkage, motions) <= 1e-13);
     motions[2].position.x += 3e-4;
@@ -99,7 +99,7 @@ static void without_a_driver_there_is_no_motion_to_solve(void **state)
     (void)state;
     Scenario scenario = mechanism_paper();
     scenario.linkage.driver.is_present = false;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     copy_start(&scenario.linkage, motions);
     Err err = {ERR_NONE, ""};
     assert_false(kinematics_solve(&scenario.linkage, 0.0, motions, &err));

@@ -51,7 +51,7 @@ static void a_slider_on_a_line_off_the_pivot_follows_the_closed_form(void **stat
     guide->anchor_a = vec2_rotate(inclined, (Vec2){0.07, offset});
     guide->direction = inclined;
     guide->held_angle = 0.4;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     linkage_start(&scenario.linkage, motions);
     Err err = {0};
     for (int degree = 0; degree <= 360; degree += 5) {
@@ -95,7 +95,7 @@ static void a_block_on_a_turning_lever_follows_the_closed_form(void **state)
     (void)state;
     const double omega = 200.0;
     const Scenario scenario = slider_lever(omega);
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     linkage_start(&scenario.linkage, motions);
     Err err = {0};
     double largest = 0.0;
@@ -147,7 +147,7 @@ static void a_scotch_yoke_moves_as_the_cosine(void **state)
     (void)state;
     const double omega = 100.0;
     const Scenario scenario = scotch_yoke(omega);
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     linkage_start(&scenario.linkage, motions);
     Err err = {0};
     for (int degree = 0; degree <= 720; degree += 15) {
@@ -266,8 +266,8 @@ static void a_guide_leaves_two_freedoms_more_and_a_stop_takes_none(void **state)
     (void)state;
     Scenario scenario = slider_driven(&SLIDER_USUAL, 100.0);
     Linkage *linkage = &scenario.linkage;
-    Motion motions[LINKAGE_BODY_MAX];
-    Motion with_stop[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
+    Motion with_stop[KINEMATICS_BODY_MAX];
     Err err = {0};
     linkage_start(linkage, motions);
     memcpy(with_stop, motions, sizeof motions);
@@ -289,7 +289,7 @@ static void the_opening_of_a_guide_counts_its_tilt_at_the_bodys_reach(void **sta
 {
     (void)state;
     Scenario scenario = slider_driven(&SLIDER_USUAL, 100.0);
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     linkage_start(&scenario.linkage, motions);
     motions[2].angle = 1e-3;
     const double reach = linkage_reach(&scenario.linkage, 2);
@@ -304,7 +304,7 @@ static void speeds_across_the_line_are_seen_and_taken_away(void **state)
 {
     (void)state;
     Scenario scenario = slider_crank(&SLIDER_USUAL, 100.0);
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     int joint;
     double distance;
     linkage_start(&scenario.linkage, motions);
@@ -329,7 +329,7 @@ static void a_crank_that_is_too_long_for_its_rod_locks(void **state)
     const SliderSizes sizes = {0.1, 0.12, {0.3, 0.2, 0.1}, {1e-4, 1e-4, 1e-4}};
     Scenario scenario = slider_driven(&sizes, 100.0);
     scenario.linkage.joints[SLIDER_GUIDE].anchor_a.y = offset;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     Err err = {0};
     linkage_start(&scenario.linkage, motions);
     assert_true(kinematics_solve(&scenario.linkage, 0.0, motions, &err));

@@ -5,6 +5,7 @@
 #include "commands/map/mapping_inverse.h"
 #include "contact/damping.h"
 #include "measure/mapping.h"
+#include "model/kinematics.h"
 #include "run/registry.h"
 
 #include <stdio.h>
@@ -29,7 +30,7 @@ static void a_lone_pin_has_its_own_mass_and_speed(void **state)
 {
     (void)state;
     const Scenario scenario = thrown_pin(0.3);
-    MappingJoint joints[LINKAGE_JOINT_MAX];
+    MappingJoint joints[KINEMATICS_JOINT_MAX];
     size_t count = 0;
     Err err = {ERR_NONE, ""};
     assert_true(mapping_joint_measure(&scenario, (RunWatch){0}, joints, &count, &err));
@@ -47,7 +48,7 @@ static void in_a_linkage_the_mass_depends_on_where_it_is_pushed(void **state)
 {
     (void)state;
     const Scenario scenario = mechanism_loose(2);
-    MappingJoint joints[LINKAGE_JOINT_MAX];
+    MappingJoint joints[KINEMATICS_JOINT_MAX];
     size_t count = 0;
     Err err = {ERR_NONE, ""};
     assert_true(mapping_joint_measure(&scenario, (RunWatch){0}, joints, &count, &err));
@@ -76,7 +77,7 @@ static void every_contact_of_the_run_is_counted(void **state)
     // across the hole and back: walls are met at 1 mm, 3 mm, 5 mm of the way, the last of them
     // (two contacts of 76 us later) within the last 240th of the run
     scenario.run.duration = 5e-3 / 0.3 * 1.0105;
-    MappingJoint joints[LINKAGE_JOINT_MAX];
+    MappingJoint joints[KINEMATICS_JOINT_MAX];
     size_t count = 0;
     Err err = {ERR_NONE, ""};
     assert_true(mapping_joint_measure(&scenario, (RunWatch){0}, joints, &count, &err));

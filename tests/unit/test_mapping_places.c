@@ -4,6 +4,7 @@
 #include "mechanism.h"
 
 #include "measure/mapping.h"
+#include "model/kinematics.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -52,7 +53,7 @@ static Scenario falling_disc(bool on_disc, double speed)
 
 static MappingJoint measure(const Scenario *scenario)
 {
-    MappingJoint joints[LINKAGE_JOINT_MAX];
+    MappingJoint joints[KINEMATICS_JOINT_MAX];
     size_t count = 0;
     Err err = {ERR_NONE, ""};
     if (!mapping_joint_measure(scenario, (RunWatch){0}, joints, &count, &err)) {

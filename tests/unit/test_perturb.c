@@ -5,13 +5,14 @@
 #include "rocker.h"
 
 #include "kept.h"
+#include "model/kinematics.h"
 #include "model/nearest.h"
 #include "model/perturb.h"
 
 enum { SEEDS = 20 };
 
 // The scales of a scenario's start, as of a trajectory of one sample.
-static void start_scales(const Scenario *scenario, DistanceScale scales[LINKAGE_BODY_MAX])
+static void start_scales(const Scenario *scenario, DistanceScale scales[KINEMATICS_BODY_MAX])
 {
     Trajectory *trajectory = trajectory_create(scenario, "start");
     trajectory->sample_count = 1;
@@ -22,7 +23,7 @@ static void start_scales(const Scenario *scenario, DistanceScale scales[LINKAGE_
 
 static Scenario perturbed(const Scenario *scenario, double size, unsigned member)
 {
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale scales[KINEMATICS_BODY_MAX];
     start_scales(scenario, scales);
     Scenario beside = kept_copy(scenario);
     assert_true(perturb_start(&beside, scales, size, member));
@@ -44,7 +45,7 @@ static void a_start_of_some_size_is_that_far_away(void **state)
 {
     (void)state;
     Scenario scenario = mechanism_loose(1);
-    DistanceScale scales[LINKAGE_BODY_MAX];
+    DistanceScale scales[KINEMATICS_BODY_MAX];
     start_scales(&scenario, scales);
     for (unsigned member = 1; member <= SEEDS; member++) {
         const Scenario beside = perturbed(&scenario, 1e-4, member);
@@ -55,7 +56,7 @@ static void a_start_of_some_size_is_that_far_away(void **state)
             largest = fmax(largest, moving / scales[i].moving);
         }
         assert_close(largest, 1e-4, 1e-9);
-        Motion motions[LINKAGE_BODY_MAX];
+        Motion motions[KINEMATICS_BODY_MAX];
         int joint;
         double distance;
         linkage_start(&beside.linkage, motions);
@@ -72,7 +73,7 @@ static void where_nothing_is_free_nothing_is_perturbed(void **state)
     const Scenario *const scenarios[] = {&ideal, &redundant};
     for (int i = 0; i < 2; i++) {
         Scenario beside = *scenarios[i];
-        DistanceScale scales[LINKAGE_BODY_MAX];
+        DistanceScale scales[KINEMATICS_BODY_MAX];
         start_scales(&beside, scales);
         assert_false(perturb_start(&beside, scales, 1e-3, 1));
         assert_memory_equal(&beside, scenarios[i], sizeof beside);

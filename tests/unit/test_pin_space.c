@@ -113,7 +113,7 @@ static void the_approach_speed_is_the_rate_of_the_depth_and_the_power_goes_with_
     const size_t count = places_of(&scenario, places);
     uint64_t seed = lcg_stirred(7);
     for (int i = 0; i < 200; i++) {
-        SpaceMotion motions[LINKAGE_BODY_MAX];
+        SpaceMotion motions[SPACE_BODY_MAX];
         space_start(linkage, motions);
         for (int body = 0; body < 2; body++) {
             SpaceMotion *motion = &motions[body];

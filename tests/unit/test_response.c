@@ -31,7 +31,7 @@ static double some_number(size_t number)
 // The four-bar with play in its first joints after the drive's, with or without turns.
 typedef struct Case {
     Scenario scenario;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     Response response;
     WholeLinkage whole;
 } Case;
@@ -262,13 +262,13 @@ static void a_joint_may_stand_there_many_times(void **state)
     Scenario scenario = mechanism_pin(1.0, 1e-3);
     Linkage *linkage = &scenario.linkage;
     linkage->joints[0].anchor_b = (Vec2){0.02, 0.01};
-    while (linkage->joint_count < LINKAGE_JOINT_MAX) {
+    while (linkage->joint_count < KINEMATICS_JOINT_MAX) {
         linkage->joints[linkage->joint_count++] = linkage->joints[0];
     }
     Response response;
     response_init(linkage, true, &response);
     const size_t width = response_play_rows(&response);
-    assert_int_equal(width, LINKAGE_JOINT_MAX * RESPONSE_ROWS_A_JOINT);
+    assert_int_equal(width, KINEMATICS_JOINT_MAX * RESPONSE_ROWS_A_JOINT);
     assert_true(response_place(&response, &linkage->bodies[0].start));
     double *mobility = malloc(width * width * sizeof *mobility);
     assert_non_null(mobility);
@@ -301,7 +301,7 @@ static void redundant_ideal_joints_are_told(void **state)
     Scenario scenario = mechanism_parallelogram();
     Linkage *linkage = &scenario.linkage;
     Response response;
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion motions[KINEMATICS_BODY_MAX];
     // at many angles: what rounding leaves of the last pivot may be of either sign
     for (double angle = 0.3; angle < 3.0; angle += 0.1) {
         place_parallelogram(angle, motions);

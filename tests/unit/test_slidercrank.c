@@ -27,7 +27,7 @@ static double kinematics_error(const Scenario *scenario, const SliderCrank *shap
 {
     const double speed = scenario->linkage.driver.speed;
     const double reach = shape->crank + shape->rod;
-    Motion solved[LINKAGE_BODY_MAX];
+    Motion solved[KINEMATICS_BODY_MAX];
     linkage_start(&scenario->linkage, solved);
     double worst = 0.0;
     for (int degree = 0; degree < 360; degree++) {

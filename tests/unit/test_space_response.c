@@ -23,7 +23,7 @@ static Vec3 drawn(uint64_t *seed, double size)
 
 typedef struct Case {
     Scenario scenario;
-    SpaceMotion motions[LINKAGE_BODY_MAX];
+    SpaceMotion motions[SPACE_BODY_MAX];
     size_t place_count;
     PinSpace places[PIN_SPACE_MAX];
     PinSpaceRows rows[PIN_SPACE_MAX];
@@ -141,7 +141,7 @@ static void pushes_are_answered_as_the_whole_system_answers(void **state)
             double truth[SYSTEM];
             double impulses[SPACE_RESPONSE_PLAY_MAX] = {0.0};
             double reactions[SPACE_COLUMN_MAX];
-            SpaceChange changes[LINKAGE_BODY_MAX];
+            SpaceChange changes[SPACE_BODY_MAX];
             impulses[row] = 1.0;
             solve_whole(&here, &here.play_rows[row], truth);
             space_response_apply(here.response, impulses, changes);
@@ -198,7 +198,7 @@ static void rates_of_rows_change_as_they_are_said_to(void **state)
         Case here = make_case(number);
         double least_off = INFINITY;
         for (size_t i = 0; i < here.place_count; i++) {
-            SpaceMotion motions[2][LINKAGE_BODY_MAX];
+            SpaceMotion motions[2][SPACE_BODY_MAX];
             double position[2][2];
             double speed[2][PIN_SPACE_ROWS];
             double drift[PIN_SPACE_ROWS];
@@ -209,7 +209,7 @@ static void rates_of_rows_change_as_they_are_said_to(void **state)
                                      speed[k]);
             }
             pin_space_rows_drift(&here.places[i], &here.rows[i], here.motions, drift);
-            SpaceMotion resting[LINKAGE_BODY_MAX];
+            SpaceMotion resting[SPACE_BODY_MAX];
             memcpy(resting, here.motions, sizeof resting);
             for (size_t k = 0; k < here.scenario.linkage.body_count; k++) {
                 resting[k].velocity = resting[k].omega = (Vec3){0.0, 0.0, 0.0};

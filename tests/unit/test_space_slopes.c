@@ -39,7 +39,7 @@ static Pressed *press(size_t joints)
     Err err = {ERR_NONE, ""};
     assert_true(space_dynamics_init(scenario, dynamics, &err));
     const size_t n = dynamics->tree.coordinate_count;
-    SpaceMotion motions[LINKAGE_BODY_MAX];
+    SpaceMotion motions[SPACE_BODY_MAX];
     space_start(&scenario->linkage, motions);
     space_tree_start(&dynamics->tree, motions, pressed->y + n);
     space_loops_start(&dynamics->tree, &dynamics->loops, pressed->y, pressed->y + n,

@@ -253,6 +253,11 @@ CheckAdd check_add_begin(const Scenario *scenario, const char *group, CheckMeasu
     return work;
 }
 
+void check_add_end(CheckAdd *work)
+{
+    scale_free(&work->speeds);
+}
+
 void check_add_run(CheckAdd *work, const Trajectory *run, BackendKind backend)
 {
     add_bodies(work, run, backend);

@@ -44,7 +44,9 @@ typedef struct CheckAdd {
     double energy; // J, of everything at the scale of speeds
 } CheckAdd;
 
+// For check_add_end.
 CheckAdd check_add_begin(const Scenario *scenario, const char *group, CheckMeasure *measure);
+void check_add_end(CheckAdd *work);
 
 // Adds extremes, spikes, contacts, energy and cost of a run.
 void check_add_run(CheckAdd *work, const Trajectory *run, BackendKind backend);

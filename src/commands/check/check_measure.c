@@ -6,6 +6,7 @@
 
 #include "base/printable.h"
 #include "base/text.h"
+#include "base/zeroed.h"
 #include "commands/check/expect_value.h"
 #include "measure/backend_run.h"
 #include "model/perturb.h"
@@ -130,6 +131,7 @@ static void measure_group(const Scenario *scenario, const char *group, bool has_
         }
     }
     trajectory_destroy(truth);
+    check_add_end(&work);
 }
 
 // The scenario up to the horizon, on the backends that feel it.
@@ -181,7 +183,7 @@ void check_measure_start(Scenario *scenario, CheckStart start)
         shake_inputs(scenario, start.shake);
     }
     if (start.member > 0) {
-        DistanceScale scales[LINKAGE_BODY_MAX];
+        DistanceScale *scales = zeroed(scenario->linkage.body_count, sizeof *scales);
         Trajectory *own = backend_run(scenario, motion_backend(scenario), NULL, NOBODY, NULL);
         // a run that fails here will fail when it is measured
         if (own->is_complete) {
@@ -189,6 +191,7 @@ void check_measure_start(Scenario *scenario, CheckStart start)
             perturb_start(scenario, scales, start.share, start.member);
         }
         trajectory_destroy(own);
+        free(scales);
     }
 }
 

@@ -74,7 +74,7 @@ void compare_spread_write(const CompareReport *report, const Style *style, Text 
         text,
         "\n%sThe whole run from %d starts, their speeds a little apart: median [least, most]%s\n",
         style->heading, ENSEMBLE_MEMBERS, style->end);
-    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+    for (size_t joint = 0; joint < ensemble_joint_count(linkage); joint++) {
         if (linkage_kind_has_play(linkage->joints[joint].kind)) {
             write_joint(report, joint, style, text);
         }

@@ -142,7 +142,7 @@ static bool add_masses(const MapOptions *options, const Scenario *scenario, Inve
                        "one, such as --mass '0.1 kg'",
                        scenario->path);
     }
-    MappingJoint joints[LINKAGE_JOINT_MAX];
+    MappingJoint joints[MAPPING_JOINT_MAX];
     size_t count = 0;
     if (!mapping_joint_measure(scenario, (RunWatch){0}, joints, &count, err)) {
         return false;

@@ -3,11 +3,12 @@
 
 #include "base/text.h"
 #include "measure/impact.h"
+#include "measure/mapping_joint.h"
 #include "write/style.h"
 
 #include <jansson.h>
 
-enum { INVERSE_READING_COUNT = 3, INVERSE_MASS_MAX = LINKAGE_JOINT_MAX };
+enum { INVERSE_READING_COUNT = 3, INVERSE_MASS_MAX = MAPPING_JOINT_MAX };
 
 // The maps by which a row can be read that stays the same through a contact.
 extern const OdeMap INVERSE_READINGS[INVERSE_READING_COUNT];

@@ -107,7 +107,7 @@ static bool run_penalty(const Scenario *turned, const MappingJoint *joint, const
 static bool fill_row(const Scenario *scenario, const PenaltyMap *map, PenaltyMapRow *row, Err *err)
 {
     row->turned = at_speed(scenario, row->rpm);
-    MappingJoint joints[LINKAGE_JOINT_MAX];
+    MappingJoint joints[MAPPING_JOINT_MAX];
     size_t count = 0;
     if (!mapping_joint_measure(&row->turned, (RunWatch){0}, joints, &count, err)) {
         return false;

@@ -2,6 +2,7 @@
 #include "commands/run/case_run.h"
 
 #include "base/side_by_side.h"
+#include "base/zeroed.h"
 #include "cli/long_work.h"
 #include "measure/backend_run.h"
 #include "run/registry.h"
@@ -81,6 +82,7 @@ static void match_contacts(CaseRun *run)
     const Linkage *linkage = &run->scenario.linkage;
     for (size_t i = 0; i < run->scenario.run.backend_count; i++) {
         const Trajectory *trajectory = run->runs[i];
+        run->matches[i].joints = zeroed(linkage->joint_count, sizeof *run->matches[i].joints);
         for (size_t k = 0; trajectory != run->truth.trajectory && k < linkage->joint_count; k++) {
             if (trajectory_feels_play(trajectory, &linkage->joints[k])) {
                 run->matches[i].joints[k] =
@@ -167,6 +169,7 @@ void case_run_finish(CaseRun *run)
             trajectory_destroy(run->runs[i]);
         }
         run->runs[i] = NULL;
+        free(run->matches[i].joints);
     }
     truth_finish(&run->truth);
     scenario_free(&run->scenario);

@@ -15,7 +15,7 @@
 
 // The contacts of one run beside the reference's, by joint.
 typedef struct RunMatches {
-    SpikeMatch joints[LINKAGE_JOINT_MAX];
+    SpikeMatch *joints; // owned by the CaseRun
 } RunMatches;
 
 typedef struct RunReport {

@@ -1,4 +1,5 @@
 // What was run, how was it modelled, and what came out?
+#include "base/zeroed.h"
 #include "commands/run/run_report.h"
 #include "contact/law.h"
 #include "contact/penalty.h"
@@ -12,13 +13,15 @@
 static size_t mobility(const Linkage *linkage, bool ideal_only)
 {
     if (linkage->is_spatial) {
-        SpaceMotion motions[LINKAGE_BODY_MAX];
+        SpaceMotion motions[SPACE_BODY_MAX];
         space_start(linkage, motions);
         return space_rows_mobility(linkage, motions, ideal_only);
     }
-    Motion motions[LINKAGE_BODY_MAX];
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
     linkage_start(linkage, motions);
-    return kinematics_mobility(linkage, motions, ideal_only);
+    const size_t freedoms = kinematics_mobility(linkage, motions, ideal_only);
+    free(motions);
+    return freedoms;
 }
 
 static void write_freedoms(const Linkage *linkage, bool has_play, Text *text)

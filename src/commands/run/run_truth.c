@@ -269,7 +269,7 @@ void run_truth_ensembles(const RunReport *report, const Style *style, Text *text
     snprintf(heading, sizeof heading, "Over starts that differ by %g of the speeds",
              ENSEMBLE_PERTURBATION);
     Table *table = section_begin(heading, 8, HEADS, style, text);
-    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+    for (size_t joint = 0; joint < ensemble_joint_count(linkage); joint++) {
         const bool has_play = linkage_kind_has_play(linkage->joints[joint].kind);
         for (size_t metric = 0; has_play && metric < ENSEMBLE_METRIC_COUNT; metric++) {
             ensemble_rows(table, report, joint, metric);

@@ -272,7 +272,7 @@ static bool write_laws(const Scenario *scenario, Text *text, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
     text_append(text, "\n// ---- the contact laws, by joint ----\n\n"
-                      "static const ForceLaw JOINT_LAWS[LINKAGE_JOINT_MAX] = {\n");
+                      "static const ForceLaw JOINT_LAWS[] = {\n");
     if (!scenario_has_clearance(scenario)) {
         text_append(text, "    {0}, // no joint has play\n");
     }

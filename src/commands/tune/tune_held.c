@@ -79,7 +79,7 @@ static void add_impact(const TuneSearch *search, const MappingJoint *joint, doub
 bool tune_held_constants(const TuneSearch *search, Err *err)
 {
     const TuneContact *contact = &search->tune->contact;
-    MappingJoint joints[LINKAGE_JOINT_MAX];
+    MappingJoint joints[MAPPING_JOINT_MAX];
     size_t count = 0;
     const RunWatch watch = {watch_run, (void *)search};
     if (!mapping_joint_measure(search->scenario, watch, joints, &count, err)) {
