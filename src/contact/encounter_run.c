@@ -9,8 +9,7 @@
 // are found to rounding, and steps end there.
 #include "contact/encounter.h"
 
-#include "contact/encounter_error.h"
-#include "contact/encounter_flight.h"
+#include "contact/encounter_events.h"
 #include "contact/encounter_force.h"
 #include "contact/encounter_rates.h"
 #include "contact/encounter_step.h"
@@ -22,13 +21,6 @@
 
 // beyond this a step of the world holds more of a contact than anybody can want
 enum { NODE_MAX = 100000 };
-
-enum { ROOT_STEPS = 60 };
-
-static const double TURNED = 1e-12; // of a flight, before which a pin has turned by rounding
-
-enum { EVENT_STEPS = 8 };
-static const double EVENT_ROUNDING = 1e-14; // of a local step
 
 // rad: of implicit steps, where the phase is not given
 static const double STIFF_PHASE = 0.05;
@@ -47,13 +39,6 @@ static const double FIRST = 50.0;
 
 // restitutions below a tenth or so
 static const double OVERDAMPED = 8.0;
-
-// of a local step: contacts that begin or end nearer to each other than this do so together, for
-// rounding of positions keeps the contacts of equal mechanisms apart by no less
-static const double AT_ONCE = 1e-7;
-
-// how many roundings of its depth a pin may be off the wall that it is at
-static const double AT_WALL = 64.0;
 
 Encounter encounter_start(double friction, double friction_speed, double phase)
 {
@@ -186,122 +171,6 @@ static void settle_contacts(Encounter *encounter, const EncounterPoint *point)
     }
 }
 
-// The width at which a joint's depth passes zero, between 0 and `width_s`, by the Illinois method.
-static double find_crossing(Encounter *encounter, EncounterStep *step, size_t joint, double first,
-                            double width_s, double last)
-{
-    double low = 0.0;
-    double high = width_s;
-    double width = high;
-    int side = 0;
-    for (int i = 0; i < ROOT_STEPS && high - low > 1e-15 * width_s; i++) {
-        width = (low * last - high * first) / (last - first);
-        const double depth = encounter_step_depth(encounter, step, joint, width);
-        if (depth == 0.0) {
-            break;
-        }
-        if ((depth > 0.0) == (last > 0.0)) {
-            high = width;
-            last = depth;
-            first *= side == -1 ? 0.5 : 1.0;
-            side = -1;
-        } else {
-            low = width;
-            first = depth;
-            last *= side == 1 ? 0.5 : 1.0;
-            side = 1;
-        }
-    }
-    return width;
-}
-
-// Whether the depth of a joint passes zero in a step, and between which widths and depths: at the
-// step's end, or, of a pin that comes to the wall and leaves again in between, where it turns.
-static bool find_bracket(Encounter *encounter, EncounterStep *step, size_t joint,
-                         const EncounterPoint *to, double *first, double *width_s, double *last)
-{
-    const EncounterPoint *from = step->from;
-    const PinHole start =
-        encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
-    const PinHole end = encounter_force_pose(encounter, joint, to->time_s, to->impulse, to->moment);
-    *first = start.penetration;
-    *last = end.penetration;
-    if (encounter->joints[joint].is_touching) {
-        if (start.penetration < 0.0 && start.approach_speed > 0.0 && end.approach_speed > 0.0) {
-            return false; // moved off the wall by the step of the world, and not back there yet
-        }
-        *first = fmax(*first, 1e-30); // at the wall, where the contact began
-        return *last < 0.0;
-    }
-    if (*first >= 0.0 && start.approach_speed < 0.0) {
-        return false; // at the wall or inside, and on its way out
-    }
-    // a pin that rounding has put inside meets the wall at the very start, not before it
-    *first = fmin(*first, 0.0);
-    if (!(*last > 0.0) && start.approach_speed > 0.0 && end.approach_speed < 0.0) {
-        *width_s *= start.approach_speed / (start.approach_speed - end.approach_speed);
-        *last = encounter_step_depth(encounter, step, joint, *width_s);
-    }
-    return *last > 0.0;
-}
-
-// Whether a pin that does not touch is at its wall, to rounding, and on its way off it.
-static bool is_leaving(const Encounter *encounter, const EncounterPoint *from, size_t joint)
-{
-    const PinHole pose =
-        encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
-    const double rounding = encounter_error_rounding(encounter, joint, from->time_s);
-    return !encounter->joints[joint].is_touching && pose.penetration >= -AT_WALL * rounding &&
-           pose.approach_speed < 0.0;
-}
-
-// Shortens a step to where the first contact begins or ends in it. Returns which do there, one bit
-// a joint.
-static uint32_t find_events(Encounter *encounter, EncounterStep *step, const EncounterPoint *to,
-                            double *width_s)
-{
-    const double whole_s = *width_s;
-    double crossings[ENCOUNTER_JOINT_MAX];
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        double bracket_s = whole_s;
-        double first;
-        double last;
-        crossings[i] = INFINITY;
-        if (step->method == ENCOUNTER_FLIGHT && is_leaving(encounter, step->from, i)) {
-            crossings[i] = encounter_flight_time(encounter, i, step->from, whole_s);
-            *width_s = fmin(*width_s, crossings[i]);
-        } else if (find_bracket(encounter, step, i, to, &first, &bracket_s, &last)) {
-            crossings[i] = find_crossing(encounter, step, i, first, bracket_s, last);
-            *width_s = fmin(*width_s, crossings[i]);
-        }
-    }
-    uint32_t events = 0;
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        events |= crossings[i] <= *width_s + AT_ONCE * whole_s ? UINT32_C(1) << i : 0;
-    }
-    return events;
-}
-
-// Shortens a step in which a pin goes away from its wall and comes to it, while another one
-// touches, to where it turns: from there on the next crossing can be found.
-static bool shorten_flight(const Encounter *encounter, const EncounterPoint *from,
-                           const EncounterPoint *to, double *width_s)
-{
-    const double whole_s = *width_s;
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        const PinHole start =
-            encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment);
-        const PinHole end = encounter_force_pose(encounter, i, to->time_s, to->impulse, to->moment);
-        if (!encounter->joints[i].is_touching && start.approach_speed < 0.0 &&
-            end.approach_speed > 0.0 && (start.penetration >= 0.0 || end.penetration > 0.0)) {
-            const double share = start.approach_speed / (start.approach_speed - end.approach_speed);
-            // one that turns right away has turned
-            *width_s = share > TURNED ? fmin(*width_s, share * whole_s) : *width_s;
-        }
-    }
-    return *width_s < whole_s;
-}
-
 static void change_contacts(Encounter *encounter, uint32_t events, const EncounterPoint *point)
 {
     for (size_t i = 0; i < encounter->joint_count; i++) {
@@ -318,32 +187,6 @@ static void change_contacts(Encounter *encounter, uint32_t events, const Encount
     }
 }
 
-// Steps to where the first of some contacts begins or ends: the length is right but for the error
-// of what was known between the ends of the step.
-static bool step_to_event(Encounter *encounter, EncounterStep *step, uint32_t events,
-                          double *width_s, EncounterPoint *to)
-{
-    const double whole_s = *width_s;
-    size_t first = 0;
-    while ((events >> first & 1) == 0) {
-        first++;
-    }
-    for (int i = 0;; i++) {
-        if (!encounter_step_try(encounter, step, *width_s, to)) {
-            return false;
-        }
-        const PinHole pose =
-            encounter_force_pose(encounter, first, to->time_s, to->impulse, to->moment);
-        const double later_s = -pose.penetration / pose.approach_speed;
-        if (i == EVENT_STEPS || step->method != ENCOUNTER_EXPLICIT ||
-            !(fabs(later_s) > EVENT_ROUNDING * whole_s) || !(*width_s + later_s > 0.0) ||
-            !(fabs(later_s) < whole_s)) {
-            return true;
-        }
-        *width_s += later_s;
-    }
-}
-
 // A local step of at most `left_s` up to the first event in it; `events` are the joints it is of.
 // Returns false where the step is to be tried again. An event at its very start leaves no length.
 static bool advance_step(Encounter *encounter, EncounterStep *step, double left_s,
@@ -352,12 +195,13 @@ static bool advance_step(Encounter *encounter, EncounterStep *step, double left_
     double width_s = encounter_step_take(encounter, step, left_s, to);
     const double whole_s = width_s;
     bool is_solved = true;
-    if (step->method != ENCOUNTER_FLIGHT && shorten_flight(encounter, step->from, to, &width_s)) {
+    if (step->method != ENCOUNTER_FLIGHT &&
+        encounter_events_shorten(encounter, step->from, to, &width_s)) {
         is_solved = encounter_step_try(encounter, step, width_s, to);
     }
-    *events = is_solved ? find_events(encounter, step, to, &width_s) : 0;
+    *events = is_solved ? encounter_events_find(encounter, step, to, &width_s) : 0;
     if (*events != 0) {
-        is_solved = step_to_event(encounter, step, *events, &width_s, to);
+        is_solved = encounter_events_step(encounter, step, *events, &width_s, to);
     }
     if (!is_solved) {
         encounter->stiff_width_s = 0.5 * whole_s;

@@ -12,8 +12,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double SOFT = 1e-12;       // on the diagonal of ones
-static const double INDEPENDENT = 1e-9; // of a row squared: what is left of one beside the others
+static const double ROW_SOFTNESS = 1e-12; // on the diagonal of ones
+static const double ROW_INDEPENDENT =
+    1e-9; // of a row squared: what is left of one beside the others
 
 enum { PASSES = 4 }; // each leaves some 1e-6 of what was missing, in a chain of a thousand bodies
 
@@ -64,7 +65,7 @@ static void scale_block(const JointSystem *system, JointBlock *block)
     }
 }
 
-static JointBlock *add_block(JointSystem *system, size_t rows, int body_a, int body_b)
+static JointBlock *add_joint_block(JointSystem *system, size_t rows, int body_a, int body_b)
 {
     JointBlock *block = &system->blocks[system->block_count++];
     block->first_row = system->row_count;
@@ -82,13 +83,14 @@ static void add_blocks(const Motion *motions, const bool *include, bool with_dri
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         if (joint->kind != JOINT_STOP && (include == NULL || include[i])) {
-            JointBlock *block = add_block(system, JOINT_ROWS, joint->body_a, joint->body_b);
+            JointBlock *block = add_joint_block(system, JOINT_ROWS, joint->body_a, joint->body_b);
             find_entries(linkage, motions, (int)i, block);
             scale_block(system, block);
         }
     }
     if (with_driver && linkage->driver.is_present) {
-        JointBlock *block = add_block(system, 1, LINKAGE_GROUND, linkage_driven_body(linkage));
+        JointBlock *block =
+            add_joint_block(system, 1, LINKAGE_GROUND, linkage_driven_body(linkage));
         block->entries[0][1][2] = 1.0;
         scale_block(system, block);
     }
@@ -178,7 +180,7 @@ static void set_own_products(const JointSystem *system)
         double *values = sparse_block(&system->products, block, block, &is_transposed);
         for (size_t i = 0; i < own->row_count; i++) {
             for (size_t k = 0; k < own->row_count; k++) {
-                values[i * own->row_count + k] = (i == k ? SOFT : 0.0) +
+                values[i * own->row_count + k] = (i == k ? ROW_SOFTNESS : 0.0) +
                                                  product(own, i, 0, own, k, 0) +
                                                  product(own, i, 1, own, k, 1);
             }
@@ -237,7 +239,7 @@ size_t joint_system_rank(const JointSystem *system)
     size_t rank = 0;
     for (size_t i = 0; i < system->row_count; i++) {
         const double inverse = system->products.diagonals[i];
-        rank += 1.0 / (inverse * inverse) > INDEPENDENT ? 1 : 0;
+        rank += 1.0 / (inverse * inverse) > ROW_INDEPENDENT ? 1 : 0;
     }
     return rank;
 }
