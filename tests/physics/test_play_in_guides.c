@@ -17,7 +17,7 @@ static Scenario flores(double stiffness, double friction)
     Scenario scenario = slider_flores_loose(stiffness);
     scenario.contact.friction = friction;
     scenario.contact.friction_speed = 1e-3;
-    scenario.reference.tolerance = 1e-12;
+    scenario.reference.tolerance = 1e-13;
     scenario.run.duration = 3e-3;
     scenario.run.samples = 3;
     return scenario;

@@ -255,7 +255,9 @@ static void looking_changes_no_run(void **state)
         Trajectory *alone = run_scenario(&scenario, registry_solver(backend), (RunWatch){0});
         assert_true(looked_at->hash == alone->hash);
         assert_int_equal(looked_at->steps, alone->steps);
-        assert_int_equal(looked_at->evaluations, alone->evaluations);
+        // inside a step the reference evaluates its equations where somebody asks, and there alone
+        assert_true(looked_at->evaluations > alone->evaluations || backend == BACKEND_ODE);
+        assert_true(looked_at->evaluations == alone->evaluations || backend != BACKEND_ODE);
         assert_false(alone->alpha_spikes[1].is_known);
         trajectory_destroy(looked_at);
         trajectory_destroy(alone);
