@@ -199,7 +199,8 @@ static Solved *solve(const Linkage *linkage, double other)
     Tree *tree = &solved->tree;
     tree_build(linkage, tree);
     Layout layout = {NULL, 0};
-    tree_state_lay(tree, &layout, &(TreeState){NULL});
+    TreeState measured;
+    tree_state_lay(tree, &layout, &measured);
     solved->memory = test_calloc(1, layout.used);
     solved->state = test_calloc(1, sizeof *solved->state);
     tree_state_lay(tree, &(Layout){(char *)solved->memory, 0}, solved->state);
