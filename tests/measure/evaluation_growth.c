@@ -1,8 +1,8 @@
 // How does the cost of an evaluation of the reference's equations of motion grow with a mechanism?
 //
-// evaluation_growth: microseconds of processor time and bytes for N = 1, 2, 4 ... 1024 of each kind,
-// with the exponents between the first and the last four of N.
-// evaluation_growth KIND N COUNT: so many evaluations, to count their instructions.
+// evaluation_growth: microseconds of processor time and bytes for N = 1, 2, 4 ... 1024 of each
+// kind, with the exponents between the first and the last four of N. evaluation_growth KIND N
+// COUNT: so many evaluations, to count their instructions.
 #include "base/clock.h"
 #include "reference/plane_system.h"
 
@@ -110,11 +110,11 @@ typedef struct Kind {
 } Kind;
 
 static const Kind KINDS[] = {
-    {"chain", chain, 0.0},          {"chain-loose", chain, 1e-4},
-    {"pendula", pendula, 0.0},      {"pendula-loose", pendula, 1e-4},
-    {"four-bars", four_bars, 0.0},  {"four-bars-loose", four_bars, 1e-4},
-    {"row", in_a_row, 0.0},         {"row-loose", in_a_row, 1e-4},
-    {"scissor", scissor, 0.0},      {"scissor-loose", scissor, 1e-4},
+    {"chain", chain, 0.0},         {"chain-loose", chain, 1e-4},
+    {"pendula", pendula, 0.0},     {"pendula-loose", pendula, 1e-4},
+    {"four-bars", four_bars, 0.0}, {"four-bars-loose", four_bars, 1e-4},
+    {"row", in_a_row, 0.0},        {"row-loose", in_a_row, 1e-4},
+    {"scissor", scissor, 0.0},     {"scissor-loose", scissor, 1e-4},
 };
 enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 

@@ -21,8 +21,8 @@ typedef struct CaseRun {
 } CaseRun;
 
 // Runs the scenario that stands in it, with the reference certified unless it is to run alone, on
-// the processors that there are, and from many starts where the motion cannot be predicted; every run is watched. A backend that fails is a
-// run that is not complete, and counted.
+// the processors that there are, and from many starts where the motion cannot be predicted; every
+// run is watched. A backend that fails is a run that is not complete, and counted.
 void case_run_execute(CaseRun *run, Progress *progress);
 
 void case_run_finish(CaseRun *run);
