@@ -22,7 +22,8 @@ typedef struct Position {
 
 const char *entries_name(const Entries *entries, const SchemaRow *row, size_t index)
 {
-    return entries->names[row->family].names[index];
+    const EntryNames *names = &entries->names[row->family];
+    return index < names->count ? names->names[index] : "";
 }
 
 size_t entries_family_size(const Entries *entries, const SchemaRow *row)

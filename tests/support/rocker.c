@@ -1,5 +1,7 @@
 #include "rocker.h"
 
+#include "kept.h"
+
 #include "casefile/casefile.h"
 
 #include <assert.h>
@@ -90,5 +92,5 @@ Scenario rocker_make(RockerView view)
     }
     assert(is_made);
     text_finish(&writer.text);
-    return scenario;
+    return kept_instead(&scenario);
 }

@@ -81,6 +81,7 @@ static void the_example_loads(void **state)
     assert_true(
         casefile_load_text("example", start, (size_t)(end - start), NULL, 0, &scenario, &err));
     assert_true(scenario_has_clearance(&scenario));
+    scenario_free(&scenario);
     text_finish(&page);
 }
 

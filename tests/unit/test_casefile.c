@@ -248,6 +248,7 @@ static void defaults_are_those_of_the_options(void **state)
     assert_near(scenario.run.step, defaults.run.step, 0.0);
     assert_near(scenario.gravity, 9.80665, 0.0);
     assert_string_equal(scenario.title, "");
+    scenario_free(&scenario);
 }
 
 // A collider that answers for a contact row needs one: map impulse has none.
@@ -270,12 +271,14 @@ static void a_collider_brings_the_map_and_the_step_it_needs(void **state)
         assert_int_equal(scenario.ode.stepping, ODE_STAGGERED);
         assert_int_equal(scenario.ode.map, i == 0 ? ODE_MAP_IMPULSE : ODE_MAP_MIDPOINT);
         assert_near(scenario.run.step, i == 0 ? 0.0 : OPTIONS_GIVEN_STEP, 0.0);
+        scenario_free(&scenario);
     }
     static const char *const PLAIN[] = {"ode.collider=staves", "ode.stepping=plain"};
     Scenario scenario;
     Err err = {0};
     assert_true(casefile_load_text("memory", TEXT, strlen(TEXT), PLAIN, 2, &scenario, &err));
     assert_int_equal(scenario.ode.map, ODE_MAP_TEXTBOOK);
+    scenario_free(&scenario);
 }
 
 static void marks_tabs_and_returns_are_no_mistakes(void **state)
@@ -293,6 +296,7 @@ static void marks_tabs_and_returns_are_no_mistakes(void **state)
     if (!casefile_load_text("memory", TEXT, strlen(TEXT), NULL, 0, &scenario, &err)) {
         fail_msg("%s", err.text);
     }
+    scenario_free(&scenario);
 }
 
 static void what_is_no_readable_file_says_so(void **state)

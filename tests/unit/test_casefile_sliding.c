@@ -2,6 +2,7 @@
 #include "casefile/casefile.h"
 
 #include "close.h"
+#include "kept.h"
 #include "contact/law.h"
 #include "model/joint_rows.h"
 #include "model/kinematics.h"
@@ -46,7 +47,7 @@ static Scenario load(const char *text)
     if (!casefile_load_text("memory", text, strlen(text), NULL, 0, &scenario, &err)) {
         fail_msg("%s", err.text);
     }
-    return scenario;
+    return kept_instead(&scenario);
 }
 
 static JointRows rows_at_start(const Linkage *linkage, int joint)

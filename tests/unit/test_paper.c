@@ -152,6 +152,7 @@ static void the_crank_turns_clockwise_as_in_the_paper(void **state)
         assert_true(embedded_load((EmbeddedCase)i, &scenario, &err));
         assert_close(scenario.linkage.driver.speed, -1000.0 / 30.0 * acos(-1.0), 1e-12);
         assert_int_equal(scenario_has_clearance(&scenario), i >= EMBEDDED_STACKUP_POISSON);
+        scenario_free(&scenario);
     }
 }
 
@@ -197,6 +198,7 @@ static void the_real_pin_forces_are_those_of_inverse_dynamics(void **state)
     assert_close(forces[1], 1.0607e-3 * 1e4, 5e-5);
     // control: gravity matters at 100 rpm
     assert_true(fabs(forces[1] - 12.0) > 1.0);
+    scenario_free(&nominal);
 }
 
 static void the_contact_under_the_real_force_is_johnsons(void **state)
@@ -228,6 +230,7 @@ static void a_four_bar_that_is_not_one_is_refused(void **state)
     err = (Err){0};
     assert_false(physical_compute(&scenario, &physical, &err));
     assert_non_null(strstr(err.text, "does not turn fully"));
+    scenario_free(&scenario);
 }
 
 static void every_typo_says_what_it_is(void **state)

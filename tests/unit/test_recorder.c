@@ -133,6 +133,7 @@ static void the_order_of_steps_is_part_of_the_hash(void **state)
             add_step(&recorder, &steps, i, 0.0, 0.0);
         }
         hashes[order] = trajectory->hash;
+        recorder_finish(&recorder);
         trajectory_destroy(trajectory);
     }
     assert_true(hashes[0] != hashes[1]);

@@ -239,7 +239,7 @@ static Scenario load_text(const char *text)
     if (!casefile_load_text("text", text, strlen(text), NULL, 0, &scenario, &err)) {
         fail_msg("%s", err.text);
     }
-    return scenario;
+    return kept_instead(&scenario);
 }
 
 static void the_short_form_makes_the_same_linkage(void **state)

@@ -56,6 +56,7 @@ static void what_is_said_is_kept(void **state)
     assert_true(design_scenario(&spec, values, &scenario, &backend, &err));
     assert_string_equal(scenario.title, "one: two");
     assert_true(scenario.linkage.joints[1].clearance.start.x == -3e-6);
+    scenario_free(&scenario);
     spec_finish(&spec);
 }
 
@@ -215,6 +216,7 @@ static void the_studies_of_the_program_are_good(void **state)
             if (!design_scenario(&spec, values, &scenario, &backend, &err)) {
                 fail_msg("%s", err.text);
             }
+            scenario_free(&scenario);
         }
         spec_finish(&spec);
     }

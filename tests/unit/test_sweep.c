@@ -95,6 +95,7 @@ static void open_study(Study *study, int steps, bool has_truth, const char *limi
     design_values(&study->spec, 0, values);
     assert_true(design_scenario(&study->spec, values, scenario, &backend, &err));
     metrics_layout(&study->spec, scenario, &study->layout);
+    scenario_free(scenario);
     free(scenario);
     open_store(study);
 }
@@ -527,6 +528,7 @@ static void the_usual_work_makes_what_one_run_makes_by_itself(void **state)
         Trajectory *trajectory = complete_run(scenario, backend);
         assert_true(study->rows[i].hash == trajectory->hash);
         trajectory_destroy(trajectory);
+        scenario_free(scenario);
         free(scenario);
     }
 }
