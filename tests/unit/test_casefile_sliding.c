@@ -2,8 +2,8 @@
 #include "casefile/casefile.h"
 
 #include "close.h"
-#include "kept.h"
 #include "contact/law.h"
+#include "kept.h"
 #include "model/joint_rows.h"
 #include "model/kinematics.h"
 
