@@ -111,8 +111,8 @@ static bool init_encounter(ImpulseStep *step, Err *err)
         const size_t rows = response_place_rows(&step->response.places[i]);
         if (!encounter_add(&step->encounter, &added, rows)) {
             return err_set(err, ERR_SOLVER,
-                           "the joints with play touch at more than %d places or have more than %d "
-                           "rows: more than contacts can be integrated with",
+                           "the joints have more places and rows of contact than the %d and %d "
+                           "that map impulse can integrate; use map midpoint",
                            ENCOUNTER_JOINT_MAX, RESPONSE_ROW_MAX);
         }
     }
