@@ -8,12 +8,9 @@
 
 #include <math.h>
 
-enum { ROOT_STEPS = 60 };
-
-enum { EVENT_STEPS = 8 };
+enum { ROOT_STEPS = 60, EVENT_STEPS = 8 };
 
 static const double TURNED = 1e-12; // of a flight, before which a pin has turned by rounding
-
 static const double EVENT_ROUNDING = 1e-14; // of a local step
 
 // of a local step: contacts that begin or end nearer to each other than this do so together, for

@@ -13,36 +13,23 @@
 #include <string.h>
 
 static const double ROW_SOFTNESS = 1e-12; // on the diagonal of ones
-static const double ROW_INDEPENDENT =
-    1e-9; // of a row squared: what is left of one beside the others
+
+// of a row squared: what is left of one beside the others
+static const double ROW_INDEPENDENT = 1e-9;
 
 enum { PASSES = 4 }; // each leaves some 1e-6 of what was missing, in a chain of a thousand bodies
 
-// Takes the rows of a pin or slider as the linkage has them.
+// Takes the rows of a joint as the linkage has them.
 static void find_entries(const Linkage *linkage, const Motion *motions, int joint,
                          JointBlock *block)
 {
-    if (joint_rows_is_angle(linkage->joints[joint].kind, 1)) {
-        JointRows rows;
-        joint_rows_find(linkage, motions, joint, &rows);
-        for (int i = 0; i < JOINT_ROWS; i++) {
-            for (int side = 0; side < 2; side++) {
-                block->entries[i][side][0] = rows.rows[i].x[side];
-                block->entries[i][side][1] = rows.rows[i].y[side];
-                block->entries[i][side][2] = rows.rows[i].turn[side];
-            }
-        }
-        return;
-    }
-    for (int side = 0; side < 2; side++) {
-        const JointEnd end = linkage_end(&linkage->joints[joint], side);
-        const double sign = side == 0 ? -1.0 : 1.0;
-        if (end.body != LINKAGE_GROUND) {
-            const Vec2 arm = vec2_rotate(motions[end.body].angle, end.anchor);
-            block->entries[0][side][0] = sign;
-            block->entries[0][side][2] = -sign * arm.y;
-            block->entries[1][side][1] = sign;
-            block->entries[1][side][2] = sign * arm.x;
+    JointRows rows;
+    joint_rows_find(linkage, motions, joint, &rows);
+    for (int i = 0; i < JOINT_ROWS; i++) {
+        for (int side = 0; side < 2; side++) {
+            block->entries[i][side][0] = rows.rows[i].x[side];
+            block->entries[i][side][1] = rows.rows[i].y[side];
+            block->entries[i][side][2] = rows.rows[i].turn[side];
         }
     }
 }

@@ -25,23 +25,20 @@ static void fill_freedoms(const Linkage *linkage, const Motion *motions, int joi
     for (size_t i = 0; i < BODY_FREEDOMS * BALL_ROWS; i++) {
         freedoms[i / BALL_ROWS][i % BALL_ROWS] = 0.0;
     }
-    if (of->kind == JOINT_PRISMATIC) {
-        JointRows rows;
-        joint_rows_find(linkage, motions, joint, &rows);
-        for (size_t k = 0; k < JOINT_ROWS; k++) {
-            freedoms[0][k] = rows.rows[k].x[side];
-            freedoms[1][k] = rows.rows[k].y[side];
-            freedoms[5][k] = rows.rows[k].turn[side];
-        }
-        return;
+    JointRows rows;
+    joint_rows_find(linkage, motions, joint, &rows);
+    for (size_t k = 0; k < JOINT_ROWS; k++) {
+        freedoms[0][k] = rows.rows[k].x[side];
+        freedoms[1][k] = rows.rows[k].y[side];
+        freedoms[5][k] = rows.rows[k].turn[side];
     }
-    const double sign = side == 0 ? -1.0 : 1.0;
-    const Vec2 arm = vec2_rotate(motions[end.body].angle, end.anchor);
-    freedoms[0][0] = freedoms[1][1] = freedoms[2][2] = sign;
-    freedoms[5][0] = -sign * arm.y;
-    freedoms[5][1] = sign * arm.x;
-    freedoms[3][2] = sign * arm.y;
-    freedoms[4][2] = -sign * arm.x;
+    if (of->kind != JOINT_PRISMATIC) {
+        const double sign = side == 0 ? -1.0 : 1.0;
+        const Vec2 arm = vec2_rotate(motions[end.body].angle, end.anchor);
+        freedoms[2][2] = sign;
+        freedoms[3][2] = sign * arm.y;
+        freedoms[4][2] = -sign * arm.x;
+    }
 }
 
 // The rows of a linkage, as nodes of a sparse matrix.

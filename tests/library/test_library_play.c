@@ -1,6 +1,8 @@
 // Do joints with play rebound as asked, show the gap asked for, and keep momentum and energy?
 #include "close.h"
 
+#include "ode_group.h"
+
 #include "base/lcg.h"
 
 #include <jointplay/jointplay.h>
@@ -456,19 +458,6 @@ static void the_limit_is_that_of_the_body_as_it_is_held(void **state)
     }
 }
 
-static int setup(void **state)
-{
-    (void)state;
-    return dInitODE2(0) ? 0 : 1;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    dCloseODE();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -483,5 +472,5 @@ int main(void)
         cmocka_unit_test(the_coordinate_is_that_of_ode),
         cmocka_unit_test(the_limit_is_that_of_the_body_as_it_is_held),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, ode_group_setup, ode_group_teardown);
 }

@@ -1,6 +1,8 @@
 // Is a wrong call an error with a sentence, and is what it was to fill in left alone?
 #include "close.h"
 
+#include "ode_group.h"
+
 #include <jointplay/jointplay.h>
 
 #include <string.h>
@@ -257,19 +259,6 @@ static void a_world_that_has_left_all_numbers_is_refused(void **state)
     scene_finish(&scene);
 }
 
-static int setup(void **state)
-{
-    (void)state;
-    return dInitODE2(0) ? 0 : 1;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    dCloseODE();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -282,5 +271,5 @@ int main(void)
         cmocka_unit_test(a_drive_that_is_none_is_refused),
         cmocka_unit_test(a_world_that_has_left_all_numbers_is_refused),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, ode_group_setup, ode_group_teardown);
 }

@@ -2,6 +2,8 @@
 // a world alone?
 #include "close.h"
 
+#include "ode_group.h"
+
 #include <jointplay/jointplay.h>
 
 #include <ode/ode.h>
@@ -57,13 +59,9 @@ static void pendulum_rates(const double state[3], double rates[3])
     rates[2] = 0.0;
 }
 
-static double pendulum_error(JpStepping stepping, int steps)
+// A level arm on a hinge about z, under gravity.
+static dJointID hang_arm(dWorldID world)
 {
-    double truth[3] = {0.0};
-    for (int i = 0; i < 10000; i++) {
-        truth_step(pendulum_rates, 1e-4, truth);
-    }
-    const dWorldID world = dWorldCreate();
     dWorldSetGravity(world, 0, -9.81, 0);
     dWorldSetERP(world, 1.0); // what the hinge is open by is (h^2/2) / ERP times its arm's
     const dBodyID body = make_body(world, 1.0, 0.02, 0.02, 0.01);
@@ -72,6 +70,17 @@ static double pendulum_error(JpStepping stepping, int steps)
     dJointAttach(hinge, body, 0);
     dJointSetHingeAnchor(hinge, 0, 0, 0);
     dJointSetHingeAxis(hinge, 0, 0, 1);
+    return hinge;
+}
+
+static double pendulum_error(JpStepping stepping, int steps)
+{
+    double truth[3] = {0.0};
+    for (int i = 0; i < 10000; i++) {
+        truth_step(pendulum_rates, 1e-4, truth);
+    }
+    const dWorldID world = dWorldCreate();
+    const dJointID hinge = hang_arm(world);
     JpWorld *play = make_world(world, stepping);
     JpJoint *joint = NULL;
     JpStops stops = jp_stops_default();
@@ -120,14 +129,7 @@ static double bouncing_error(JpStepping stepping, int steps, JpWorldStats *stats
         }
     }
     const dWorldID world = dWorldCreate();
-    dWorldSetGravity(world, 0, -9.81, 0);
-    dWorldSetERP(world, 1.0);
-    const dBodyID body = make_body(world, 1.0, 0.02, 0.02, 0.01);
-    dBodySetPosition(body, ARM, 0, 0);
-    const dJointID hinge = dJointCreateHinge(world, 0);
-    dJointAttach(hinge, body, 0);
-    dJointSetHingeAnchor(hinge, 0, 0, 0);
-    dJointSetHingeAxis(hinge, 0, 0, 1);
+    const dJointID hinge = hang_arm(world);
     JpWorld *play = make_world(world, stepping);
     JpJoint *joint = NULL;
     JpStops stops = jp_stops_default();
@@ -323,19 +325,6 @@ static void contacts_are_asked_for_at_mid_step(void **state)
     dWorldDestroy(world);
 }
 
-static int setup(void **state)
-{
-    (void)state;
-    return dInitODE2(0) ? 0 : 1;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    dCloseODE();
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -346,5 +335,5 @@ int main(void)
         cmocka_unit_test(bodies_that_are_not_known_are_asked_for),
         cmocka_unit_test(contacts_are_asked_for_at_mid_step),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, ode_group_setup, ode_group_teardown);
 }
