@@ -196,6 +196,13 @@ static void take_point(Valley *valley, Point u)
     }
 }
 
+static bool are_alike(const Valley *one, const Valley *other)
+{
+    return one->left == other->left && one->right == other->right && one->z.x == other->z.x &&
+           one->w.x == other->w.x && one->v.x == other->v.x && one->step == other->step &&
+           one->former == other->former;
+}
+
 bool root_minimum(RootFunction f, void *context, double low, double middle, double high, double *x)
 {
     // a minimum's position is known to the root of the rounding only
@@ -212,13 +219,19 @@ bool root_minimum(RootFunction f, void *context, double low, double middle, doub
     if (!isfinite(valley.v.f)) {
         return false;
     }
-    for (int i = 0; i < ROOT_ITERATION_MAX && valley.right - valley.left > width; i++) {
+    bool is_moving = true;
+    for (int i = 0; i < ROOT_ITERATION_MAX && is_moving && valley.right - valley.left > width;
+         i++) {
+        const Valley before = valley;
         const double next = next_point(&valley);
         const Point u = {next, f(next, context)};
         if (!isfinite(u.f)) {
             break;
         }
         take_point(&valley, u);
+        // the step at which values differ by rounding alone may be wider than the width: what has
+        // changed nothing would be done again and again
+        is_moving = !are_alike(&before, &valley);
     }
     *x = valley.z.x;
     return true;

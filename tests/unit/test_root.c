@@ -194,6 +194,31 @@ static void minima_are_those_of_gsl_to_the_last_bit(void **state)
     assert_true(found > 1000);
 }
 
+typedef struct Wave {
+    double at; // where it is lowest
+    size_t calls;
+} Wave;
+
+static double wave(double x, void *context)
+{
+    Wave *of = context;
+    of->calls++;
+    return -cos(x - of->at);
+}
+
+// So far from zero, rounding of x leaves more of the interval than is asked for.
+static void a_minimum_far_from_zero_takes_few_calls(void **state)
+{
+    (void)state;
+    for (double at = 1.0; at < 1e6; at *= 10.0) {
+        Wave far = {at, 0};
+        double x;
+        assert_true(root_minimum(wave, &far, at - 0.02, at + 0.001, at + 0.015, &x));
+        assert_true(fabs(x - at) <= 4.0 * sqrt(DBL_EPSILON) * at);
+        assert_true(far.calls < 60);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -205,6 +230,7 @@ int main(void)
         cmocka_unit_test(a_root_at_zero_ends),
         cmocka_unit_test(roots_are_those_of_gsl_to_the_last_bit),
         cmocka_unit_test(minima_are_those_of_gsl_to_the_last_bit),
+        cmocka_unit_test(a_minimum_far_from_zero_takes_few_calls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
