@@ -104,7 +104,8 @@ typedef struct PaperResult {
     int ideal_as_printed;                      // cells of them that round to the printed number
 } PaperResult;
 
-// Recomputes everything. The watch follows the two ODE runs, which take nearly all the time.
+// Recomputes everything. The watch follows one of the two ODE runs, which take
+// nearly all the time and go side by side.
 // Fails where an embedded case cannot be loaded or solved in closed form.
 bool paper_compute(PaperResult *result, RunWatch watch, Err *err);
 
