@@ -7,6 +7,7 @@
 #include "casefile/check.h"
 #include "casefile/closure.h"
 #include "casefile/joint_kind.h"
+#include "casefile/limits.h"
 #include "casefile/slider.h"
 #include "casefile/store.h"
 #include "model/space.h"
@@ -33,6 +34,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         joint->kind = joint_kind_find(entries, i);
         joint->stop.is_disc = entries_find(entries, "joints.*.discs", i) != NULL;
         joint->contact.has_restitution = entries_find(entries, "joints.*.restitution", i) != NULL;
+        joint->limits = limits_prepare(entries, i);
         joint->space.axis = (Vec3){0.0, 0.0, 1.0};
     }
     for (size_t i = 0; i < linkage->body_count; i++) {
@@ -104,6 +106,9 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
         }
     }
     scenario->linkage.torque.joint = scenario->linkage.driver.joint;
+    if (!limits_join_gears(entries, &scenario->linkage, err)) {
+        return false;
+    }
     store_partners(entries, scenario);
     scenario->linkage.is_spatial = scenario->space == SCENARIO_SPATIAL;
     space_complete(&scenario->linkage);
@@ -122,7 +127,9 @@ static bool build_long(const Entries *entries, Scenario *scenario, Err *err)
     if (scenario->linkage.is_spatial && !space_is_upright(&scenario->linkage)) {
         return build_spatial(entries, scenario, err);
     }
-    return build_linkage(entries, scenario, err) && closure_check_ideal(entries, scenario, err);
+    return build_linkage(entries, scenario, err) &&
+           limits_check_starts(entries, &scenario->linkage, err) &&
+           closure_check_ideal(entries, scenario, err);
 }
 
 // What remains is wrong as a whole; it is shown at the drive, or at the top where there is none.

@@ -8,6 +8,7 @@
 
 #include "base/zeroed.h"
 #include "casefile/keys.h"
+#include "casefile/limits.h"
 #include "model/forces.h"
 #include "model/joint_rows.h"
 #include "model/kinematics.h"
@@ -171,6 +172,9 @@ static void set_anchors(Linkage *linkage, const Motion *motions)
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Joint *joint = &linkage->joints[i];
         const Vec2 point = joint->anchor_a;
+        if (joint->kind == JOINT_GEAR) {
+            continue; // its anchors are those of its pivots
+        }
         const Vec2 other = joint->kind == JOINT_STOP ? joint->anchor_b : point;
         joint->anchor_a = to_body(motions, joint->body_a, point);
         joint->anchor_b = to_body(motions, joint->body_b, other);
@@ -195,6 +199,7 @@ static void set_anchors(Linkage *linkage, const Motion *motions)
         }
         driver->start = motions[joint->body_b].angle;
     }
+    limits_place_gears(linkage, motions);
 }
 
 static bool check_redundancy(const Entries *entries, const Linkage *linkage, const Motion *motions,
@@ -343,6 +348,7 @@ bool build_linkage(const Entries *entries, Scenario *scenario, Err *err)
     const bool is_started = start_linkage(entries, &scenario->linkage, motions, err);
     free(motions);
     if (is_started) {
+        limits_settle(&scenario->linkage);
         relax_springs(entries, &scenario->linkage);
     }
     return is_started;

@@ -254,12 +254,15 @@ static bool check_collider(const Entries *entries, const Scenario *scenario, Err
     for (int i = 0; i < (int)scenario->linkage.joint_count; i++) {
         Err own = {0};
         const Joint *joint = &scenario->linkage.joints[i];
-        if (joint->kind == JOINT_GUIDE || joint->kind == JOINT_STOP) {
+        if (linkage_has_play(joint) && joint->kind != JOINT_CLEARANCE) {
             return entries_refuse(entries_blame(entries, "ode.collider", 0), err,
                                   "collider %s sees pins in their holes only, and '%s' is a %s\n"
                                   "allowed: pin-hole",
                                   OPTIONS_ODE_COLLIDERS[ode->collider], joint->name,
-                                  joint->kind == JOINT_GUIDE ? "block between guides" : "stop");
+                                  joint->kind == JOINT_GUIDE             ? "block between guides"
+                                  : joint->kind == JOINT_GEAR            ? "pair of gears"
+                                  : joint->limits.kind == LIMIT_BACKLASH ? "joint with backlash"
+                                                                         : "stop");
         }
         if (joint->kind == JOINT_CLEARANCE && !facets_check(scenario, i, &own)) {
             return entries_refuse(entries_blame(entries, "ode.facets ode.collider", 0), err,
@@ -328,7 +331,7 @@ static bool check_drive(const Entries *entries, const Linkage *linkage, Err *err
         return true;
     }
     const Joint *driven = &linkage->joints[linkage->driver.joint];
-    const bool has_play = linkage_kind_has_play(driven->kind);
+    const bool has_play = linkage_has_play(driven);
     const bool turns = driven->kind == JOINT_REVOLUTE;
     if (entries_find(entries, "drive.force", 0) != NULL) {
         return driven->kind == JOINT_PRISMATIC ||
@@ -339,6 +342,12 @@ static bool check_drive(const Entries *entries, const Linkage *linkage, Err *err
     }
     if (turns && linkage->torque.table.count > 0) {
         return true;
+    }
+    if (turns && has_play) {
+        return entries_refuse(entry, err,
+                              "the drive leads joint '%s', and so nothing can press at its "
+                              "limits\nallowed: a torque, or another joint",
+                              driven->name);
     }
     if (turns && (driven->body_a == LINKAGE_GROUND || driven->body_b == LINKAGE_GROUND)) {
         return true;

@@ -1,6 +1,7 @@
 // Do the values of a joint with play fit together?
 #include "casefile/check_joints.h"
 
+#include "casefile/limits.h"
 #include "contact/damping.h"
 #include "contact/law.h"
 
@@ -124,7 +125,12 @@ static bool check_restitution(const Entries *entries, size_t index, const Scenar
 
 static bool check_joint(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
 {
-    switch (scenario->linkage.joints[index].kind) {
+    const Joint *joint = &scenario->linkage.joints[index];
+    if (joint->kind == JOINT_GEAR || joint->limits.kind != LIMIT_NONE) {
+        return limits_check(entries, index, scenario, err) &&
+               check_restitution(entries, index, scenario, err);
+    }
+    switch (joint->kind) {
     case JOINT_CLEARANCE:
         return check_pin(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);

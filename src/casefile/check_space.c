@@ -46,7 +46,8 @@ bool check_space(const Entries *entries, const Scenario *scenario, Err *err)
     }
     for (size_t i = 0; linkage->is_spatial && i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE) {
+        if (joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE &&
+            joint->kind != JOINT_GEAR) {
             return entries_refuse_group(entries_group(entries, "joints.*", i), err,
                                         "joint '%s' slides or stops, which is not available in "
                                         "space\nallowed: space: planar, or pins in holes",

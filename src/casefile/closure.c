@@ -7,6 +7,7 @@
 // these is a cosine, its angle is a dead centre. Play in the joints widens both ends of the range.
 #include "casefile/closure.h"
 
+#include "model/joint_rows.h"
 #include "model/lock.h"
 
 #include <math.h>
@@ -282,7 +283,7 @@ static double shortest_link(const Entries *entries, const Scenario *scenario, si
     }
     double shortest = INFINITY;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_STOP) {
+        if (joint_rows_count(linkage->joints[i].kind) == 0) {
             continue;
         }
         // in a case with bodies every joint still stands at its place in the world

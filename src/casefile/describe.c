@@ -93,7 +93,8 @@ static void append_kinds(const SchemaRow *row, Text *text)
         (is_of_hinges && is_of_stops)) {
         return;
     }
-    text_append(text, is_of_hinges                              ? " but of a stop"
+    text_append(text, schema_is_of_kind(row, JOINT_GEAR)        ? " of gears"
+                      : is_of_hinges                            ? " but of a stop"
                       : is_of_stops                             ? " of a stop"
                       : schema_is_of_kind(row, JOINT_PRISMATIC) ? " of a prismatic joint or guide"
                                                                 : " of a guide");

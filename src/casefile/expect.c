@@ -182,8 +182,7 @@ static bool find_number(const Path *path, ExpectGroup group, const Scenario *sce
 {
     const size_t last = path->count - 1;
     const bool is_ideal =
-        group == EXPECT_JOINTS &&
-        !linkage_kind_has_play(scenario->linkage.joints[expectation->member].kind);
+        group == EXPECT_JOINTS && !linkage_has_play(&scenario->linkage.joints[expectation->member]);
     const char *choices[CHOICE_MAX];
     size_t count = 0;
     for (int i = 0; i < EXPECTED_NUMBER_COUNT; i++) {

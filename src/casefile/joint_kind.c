@@ -1,6 +1,8 @@
 // Which kind of joint do the keys of a case make, and do they go together?
 #include "casefile/joint_kind.h"
 
+#include "casefile/limits.h"
+
 #include <string.h>
 
 enum { SLIDER_GUIDE = 3 }; // number of the slider-crank's joint that slides
@@ -15,6 +17,8 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
         {JOINT_STOP, "joints.*.at-a joints.*.at-b joints.*.normal joints.*.radius joints.*.discs"},
         {JOINT_GUIDE, "joints.*.guide joints.*.block joints.*.length"},
         {JOINT_PRISMATIC, "joints.*.along"},
+        {JOINT_GEAR, "joints.*.gears joints.*.teeth"},
+        {JOINT_REVOLUTE, "joints.*.backlash joints.*.low joints.*.high"},
         {JOINT_CLEARANCE, "joints.*.hole joints.*.pin joints.*.radial-clearance joints.*.width "
                           "joints.*.start"},
     };
@@ -40,8 +44,16 @@ static const char *describe_kind(JointKind kind)
         [JOINT_PRISMATIC] = "a prismatic joint without play",
         [JOINT_GUIDE] = "a block between guides",
         [JOINT_STOP] = "a stop",
+        [JOINT_GEAR] = "a pair of gears",
     };
     return WORDS[kind];
+}
+
+// Whether a key says how bodies touch, which those of an ideal joint do at its limits alone.
+static bool is_of_play(const SchemaRow *row)
+{
+    return row->type == SCHEMA_STIFFNESS || row->type == SCHEMA_DAMPER ||
+           row->type == SCHEMA_START || strcmp(row->path, "joints.*.restitution") == 0;
 }
 
 // Refuses a key of another kind with those that the joint may have.
@@ -71,7 +83,9 @@ bool joint_kind_check(const Entries *entries, Err *err)
         const Entry *entry = &entries->entries[i];
         if (entry->row->family == SCHEMA_JOINT) {
             const JointKind kind = joint_kind_find(entries, entry->index);
-            if (!schema_is_of_kind(entry->row, kind)) {
+            const bool is_firm =
+                linkage_kind_is_ideal(kind) && !limits_are_given(entries, entry->index);
+            if (!schema_is_of_kind(entry->row, kind) || (is_firm && is_of_play(entry->row))) {
                 return refuse_key(entries, entry, kind, err);
             }
         }

@@ -7,7 +7,6 @@
 
 #include "base/printable.h"
 
-#include <assert.h>
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -295,38 +294,56 @@ bool quantity_tolerated(const char *text, ToleratedLength *length, Complaint *co
     return true;
 }
 
-bool quantity_stiffness(const char *text, double *stiffness, double *exponent, Complaint *complaint)
+// Takes a power off a unit whose last word has one: "N/m^1.5", "N m/rad^1.5". Inertias and
+// pressures have powers of their own and stay as they are.
+static bool take_power(char *name, Dimension dimension, double *exponent, Complaint *complaint)
+{
+    char *power = strchr(name, '^');
+    const bool is_its = dimension == DIMENSION_STIFFNESS
+                            ? strncmp(name, "N/m", 3) == 0 && strcmp(name, "N/mm^2") != 0
+                            : strstr(name, "/rad^") != NULL || strstr(name, "/deg^") != NULL;
+    *exponent = 1.0;
+    if (power != NULL && is_its) {
+        *power = '\0';
+        if (!quantity_number(power + 1, exponent, complaint)) {
+            return false;
+        }
+    }
+    if (!(*exponent >= EXPONENT_MIN && *exponent <= EXPONENT_MAX)) {
+        snprintf(complaint->allowed, sizeof complaint->allowed, "an exponent from %g to %g",
+                 EXPONENT_MIN, EXPONENT_MAX);
+        return complain(complaint, "the exponent of the unit is %g", *exponent);
+    }
+    return true;
+}
+
+bool quantity_stiffness(const char *text, Dimension dimension, double *stiffness, double *exponent,
+                        Complaint *complaint)
 {
     complaint->allowed[0] = '\0';
     const char *rest = text;
     double value;
-    if (!take_number(&rest, DIMENSION_STIFFNESS, &value, complaint)) {
+    double read_exponent;
+    if (!take_number(&rest, dimension, &value, complaint)) {
         return false;
     }
     if (*rest == '\0') {
-        return complain_of(complaint, DIMENSION_STIFFNESS, "'%.*s' has no unit", SHOWN_MAX, text);
+        return complain_of(complaint, dimension, "'%.*s' has no unit", SHOWN_MAX, text);
     }
     char name[UNITS_NAME_SIZE];
     units_normalise(rest, name);
-    char *power = strchr(name, '^');
-    double read_exponent = 1.0;
-    if (power != NULL && strncmp(name, "N/m", 3) == 0 && strcmp(name, "N/mm^2") != 0) {
-        *power = '\0';
-        if (!quantity_number(power + 1, &read_exponent, complaint)) {
-            return false;
-        }
+    if (!take_power(name, dimension, &read_exponent, complaint)) {
+        return false;
     }
-    if (!(read_exponent >= EXPONENT_MIN && read_exponent <= EXPONENT_MAX)) {
-        snprintf(complaint->allowed, sizeof complaint->allowed, "an exponent from %g to %g",
-                 EXPONENT_MIN, EXPONENT_MAX);
-        return complain(complaint, "the exponent of the unit is %g", read_exponent);
-    }
-    const Unit *unit = read_unit(name, DIMENSION_STIFFNESS, complaint);
+    const Unit *unit = read_unit(name, dimension, complaint);
     if (unit == NULL) {
         return false;
     }
-    assert(unit->denominator == 1.0);
-    if (!take_finite(value * pow(unit->numerator, read_exponent), text, stiffness, complaint)) {
+    // of N/mm^n and N m/deg^n the length and the angle have the power, of N mm/rad^n neither
+    const bool has_power = dimension == DIMENSION_STIFFNESS || strstr(name, "/deg") != NULL;
+    const double factor = unit->numerator / unit->denominator;
+    if (!take_finite(value * pow(factor, has_power ? read_exponent : 1.0), text, stiffness,
+                     complaint)) {
         return false;
     }
     *exponent = read_exponent;

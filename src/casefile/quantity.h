@@ -34,8 +34,9 @@ bool quantity_parse_unit(const char *text, Dimension dimension, double *si, cons
 // that is missing in front is that of the tolerance.
 bool quantity_tolerated(const char *text, ToleratedLength *length, Complaint *complaint);
 
-// A stiffness in N/m^n or N/mm^n, and the exponent n that its unit gives (1 to 3).
-bool quantity_stiffness(const char *text, double *stiffness, double *exponent,
+// A stiffness and the exponent n that its unit gives (1 to 3): in N/m^n or N/mm^n of
+// DIMENSION_STIFFNESS, in N m/rad^n of DIMENSION_TORSION_SPRING.
+bool quantity_stiffness(const char *text, Dimension dimension, double *stiffness, double *exponent,
                         Complaint *complaint);
 
 // A time, or `1 revolution`, `2.5 revolutions`: then the number is that of turns.

@@ -107,6 +107,10 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         [SCHEMA_DIRECTION] = {"[x, y, z]", "a direction such as [0, 0, 1]"},
         [SCHEMA_START] = {"centred, or a length in [x, y], or [distance, tilt]",
                           "centred, or [x, y] such as [5 um, 0 um]"},
+        [SCHEMA_COORDINATE] = {"an angle, or a length", "an angle such as 0.6 deg, or a length "
+                                                        "such as 0.2 mm"},
+        [SCHEMA_PIVOTS] = {"[joint, joint]", "two pivots such as [pinion, wheel]"},
+        [SCHEMA_TEETH] = {"[number, number]", "two numbers such as [20, 60]"},
         [SCHEMA_DISCS] = {"[length, length]", "two diameters such as [20 mm, 20 mm]"},
         [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},
         [SCHEMA_BODY_NAME] = {"a body", "a body"},
@@ -142,6 +146,9 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
     case SCHEMA_TEXT:
     case SCHEMA_DIRECTION:
     case SCHEMA_START:
+    case SCHEMA_COORDINATE:
+    case SCHEMA_PIVOTS:
+    case SCHEMA_TEETH:
     case SCHEMA_DISCS:
     case SCHEMA_BETWEEN:
     case SCHEMA_BODY_NAME:

@@ -4,6 +4,8 @@
 #include "casefile/build.h"
 #include "contact/law.h"
 
+#include <math.h>
+
 static unsigned bit(unsigned need, bool is_met)
 {
     return is_met ? need : 0;
@@ -21,6 +23,18 @@ static unsigned step_bits(const Scenario *scenario, bool is_impact)
            bit(LOCAL, is_impact && (!is_given || ode->map == ODE_MAP_IMPULSE));
 }
 
+// Whether a key of a joint whose coordinate may be limited says how it is.
+static bool limits_apply(const SchemaRow *row, const Joint *joint, const void *field)
+{
+    const LimitKind kind = joint->limits.kind;
+    if (row->type == SCHEMA_COORDINATE) {
+        return kind == (row->side == 0 ? LIMIT_BACKLASH : LIMIT_STOPS) &&
+               isfinite(*(const double *)field);
+    }
+    return row->type != SCHEMA_START || kind == LIMIT_BACKLASH || joint->kind == JOINT_CLEARANCE ||
+           joint->kind == JOINT_GUIDE;
+}
+
 bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index)
 {
     const Linkage *linkage = &scenario->linkage;
@@ -34,9 +48,11 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
     const Joint *joint = is_joint ? &linkage->joints[index] : NULL;
     const Joint *pushed = schema_member(scenario, SCHEMA_JOINT, (size_t)linkage->torque.joint);
     const bool is_force = pushed->kind == JOINT_PRISMATIC;
-    const bool is_own = is_joint && joint->contact.stiffness > 0.0 && !contact->is_for_all;
+    const bool is_own = is_joint && joint->contact.stiffness > 0.0 &&
+                        (!contact->is_for_all || linkage_is_torsional(joint));
     unsigned met = bit(MEMBER, is_member) | bit(OWN_STIFFNESS, is_own) |
                    bit(OWN_RESTITUTION, is_joint && joint->contact.has_restitution) |
+                   bit(OWN_VISCOUS, is_joint && joint->contact.viscous > 0.0) |
                    bit(FREE, !build_is_determined(linkage)) |
                    bit(DRIVE, linkage->driver.is_present) |
                    bit(TORQUE, linkage->torque.table.count > 0 && !is_force) |
@@ -60,6 +76,9 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
     const SchemaForm form = scenario->has_fourbar       ? SCHEMA_FOUR_BAR
                             : scenario->has_slidercrank ? SCHEMA_SLIDER_CRANK
                                                         : SCHEMA_LONG;
+    if (is_joint && !limits_apply(row, joint, schema_field_const(row, scenario, index))) {
+        return false;
+    }
     return (row->needs & ~met) == 0 && (!is_joint || schema_is_of_kind(row, joint->kind)) &&
            schema_is_of_form(row, form);
 }

@@ -31,8 +31,9 @@ enum {
     FACETED = 1 << 23,         // the collider takes holes for polygons
     SPATIAL = 1 << 24,         // bodies move in space
     TORQUE = 1 << 25,          // a torque drives
-    FORCE = 1 << 28,           // or a force
+    FORCE = 1 << 29,           // or a force
     DRIVEN = 1 << 26,          // there is a drive, a torque or a force
     OWN_RESTITUTION = 1 << 27, // the joint has a restitution of its own
+    OWN_VISCOUS = 1 << 30,     // or a viscous coefficient
     TURNING = 1 << 28,         // the drive's speed is constant: revolutions measure the run
 };

@@ -62,13 +62,22 @@ static void set_tolerated(CasefileSetting *setting, const ToleratedLength *lengt
     setting->number_count = length->lower < 0.0 || length->upper > 0.0 ? 3 : 1;
 }
 
-static void set_stiffness(CasefileSetting *setting, double stiffness, double exponent)
+static void set_stiffness(CasefileSetting *setting, const char *unit, double stiffness,
+                          double exponent)
 {
     set_number(setting, stiffness);
     if (exponent == 1.0) {
-        text_copy(setting->unit, sizeof setting->unit, "N/m");
+        text_copy(setting->unit, sizeof setting->unit, unit);
     } else {
-        snprintf(setting->unit, sizeof setting->unit, "N/m^%.6g", exponent);
+        snprintf(setting->unit, sizeof setting->unit, "%s^%.6g", unit, exponent);
+    }
+}
+
+// The unit of a number that is of an angle where the joint's limited coordinate is one.
+static void set_turning(CasefileSetting *setting, const Joint *joint, Dimension dimension)
+{
+    if (linkage_is_torsional(joint)) {
+        text_copy(setting->unit, sizeof setting->unit, units_si(dimension));
     }
 }
 
@@ -78,9 +87,13 @@ static void set_own_stiffness(CasefileSetting *setting, const SchemaRow *row,
 {
     if (row->family == SCHEMA_JOINT) {
         const Joint *joint = schema_member(scenario, SCHEMA_JOINT, index);
-        set_stiffness(setting, joint->contact.stiffness, joint->contact.exponent);
+        set_stiffness(
+            setting,
+            units_si(linkage_is_torsional(joint) ? DIMENSION_TORSION_SPRING : DIMENSION_SPRING),
+            joint->contact.stiffness, joint->contact.exponent);
     } else {
-        set_stiffness(setting, scenario->contact.stiffness, scenario->contact.exponent);
+        set_stiffness(setting, units_si(DIMENSION_SPRING), scenario->contact.stiffness,
+                      scenario->contact.exponent);
     }
 }
 
@@ -125,6 +138,11 @@ static void set_direction(CasefileSetting *setting, Vec3 direction)
 static void set_start(CasefileSetting *setting, const Joint *joint)
 {
     const bool is_guide = joint->kind == JOINT_GUIDE;
+    if (joint->limits.kind != LIMIT_NONE) {
+        set_number(setting, joint->limits.start);
+        set_turning(setting, joint, DIMENSION_ANGLE);
+        return;
+    }
     set_vector(setting, is_guide ? joint->guide.start : joint->clearance.start);
     if (is_guide) {
         text_copy(setting->unit, sizeof setting->unit, "m, rad");
@@ -211,6 +229,13 @@ static void set_speed(CasefileSetting *setting, const SchemaRow *row, const Driv
     }
 }
 
+static void set_pivots(CasefileSetting *setting, const Scenario *scenario, const Gear *gear)
+{
+    const Joint *first = schema_member(scenario, SCHEMA_JOINT, (size_t)gear->pivots[0]);
+    const Joint *second = schema_member(scenario, SCHEMA_JOINT, (size_t)gear->pivots[1]);
+    set_words(setting, first->name, second->name);
+}
+
 static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scenario *scenario,
                       size_t index)
 {
@@ -257,6 +282,20 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         break;
     case SCHEMA_START:
         set_start(setting, joint);
+        break;
+    case SCHEMA_COORDINATE:
+        set_number(setting, *(const double *)field);
+        set_turning(setting, joint, DIMENSION_ANGLE);
+        break;
+    case SCHEMA_DAMPER:
+        set_number(setting, *(const double *)field);
+        set_turning(setting, joint, DIMENSION_TORSION_DAMPING);
+        break;
+    case SCHEMA_PIVOTS:
+        set_pivots(setting, scenario, field);
+        break;
+    case SCHEMA_TEETH:
+        set_vector(setting, (Vec2){joint->gear.teeth[0], joint->gear.teeth[1]});
         break;
     case SCHEMA_DISCS:
         set_vector(setting, (Vec2){2.0 * joint->stop.radius_a, 2.0 * joint->stop.radius_b});

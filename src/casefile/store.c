@@ -2,6 +2,7 @@
 #include "casefile/store.h"
 
 #include "casefile/expect.h"
+#include "casefile/limits.h"
 #include "casefile/over_time.h"
 #include "casefile/target.h"
 
@@ -13,20 +14,6 @@
 static const double PIN_RADIUS = 5e-3; // m, where only the radial clearance is given: the paper's
 
 static const double ROUNDING = 1e-9; // of a radial clearance, and far below a nanometre
-
-// That of the contact, or a joint's own.
-static void store_stiffness(const SchemaRow *row, const TargetNumber *number, size_t index,
-                            Scenario *scenario)
-{
-    if (row->family == SCHEMA_JOINT) {
-        JointContact *own = &scenario->linkage.joints[index].contact;
-        own->stiffness = number->value;
-        own->exponent = number->exponent;
-        return;
-    }
-    scenario->contact.stiffness = number->value;
-    scenario->contact.exponent = number->exponent;
-}
 
 // A number of any kind, or the word that stands for 0.
 static bool store_number(const Target *target, Scenario *scenario)
@@ -57,7 +44,8 @@ static bool store_number(const Target *target, Scenario *scenario)
         *(ToleratedLength *)target->field = number.length;
         break;
     case SCHEMA_STIFFNESS:
-        store_stiffness(row, &number, target->entry->index, scenario);
+        scenario->contact.stiffness = number.value;
+        scenario->contact.exponent = number.exponent;
         break;
     case SCHEMA_SPAN:
         scenario->run.report_from = number.value;
@@ -183,6 +171,9 @@ static bool store_start(const Target *target, Joint *joint)
                                    .high = 0.5 * M_PI};
     const Node *node = target->entry->node;
     const Node *pair[2];
+    if (joint->limits.kind != LIMIT_NONE) {
+        return limits_store(target, joint);
+    }
     if (joint->kind != JOINT_GUIDE) {
         const bool is_stored = store_vector(target);
         seat_pin(&joint->clearance);
@@ -267,6 +258,17 @@ static bool find_name(const Target *target, const Node *node, SchemaFamily famil
     return true; // the ground is LINKAGE_GROUND, which is what an unknown name has
 }
 
+// The two pivots of a pair of gears.
+static bool store_pivots(const Target *target, Gear *gear)
+{
+    const Node *pair[2];
+    return target_pair(target->entry->node, pair)
+               ? find_name(target, pair[0], SCHEMA_JOINT, false, &gear->pivots[0]) &&
+                     find_name(target, pair[1], SCHEMA_JOINT, false, &gear->pivots[1])
+               : target_refuse(target, target->entry->node->span, "%s takes the two pivots",
+                               target->path);
+}
+
 static bool store_between(const Target *target, int *body_a, int *body_b)
 {
     const Node *node = target->entry->node;
@@ -319,6 +321,18 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return store_vector(&target);
     case SCHEMA_START:
         return store_start(&target, &scenario->linkage.joints[entry->index]);
+    case SCHEMA_STIFFNESS:
+        if (entry->row->family != SCHEMA_JOINT) {
+            return store_number(&target, scenario);
+        }
+        return limits_store(&target, &scenario->linkage.joints[entry->index]);
+    case SCHEMA_COORDINATE:
+    case SCHEMA_DAMPER:
+        return limits_store(&target, &scenario->linkage.joints[entry->index]);
+    case SCHEMA_PIVOTS:
+        return store_pivots(&target, target.field);
+    case SCHEMA_TEETH:
+        return limits_store_teeth(&target, &scenario->linkage.joints[entry->index].gear);
     case SCHEMA_DISCS:
         return store_discs(&target, target.field);
     case SCHEMA_DIRECTION:

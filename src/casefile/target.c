@@ -80,7 +80,8 @@ bool target_read(const SchemaRow *row, const char *text, TargetNumber *number, C
         number->value = (double)whole; // exact: it is at most 2^53
         return is_read;
     case SCHEMA_STIFFNESS:
-        return quantity_stiffness(text, &number->value, &number->exponent, complaint);
+        return quantity_stiffness(text, row->dimension, &number->value, &number->exponent,
+                                  complaint);
     case SCHEMA_SPAN:
         return quantity_span(text, &number->value, &number->is_in_turns, complaint);
     case SCHEMA_TOLERATED:

@@ -4,9 +4,14 @@
 ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
 {
     ContactOptions own = *contact;
-    if (joint->contact.stiffness > 0.0 && !contact->is_for_all) {
+    // one stiffness for all joints is one of lengths
+    if (joint->contact.stiffness > 0.0 && (!contact->is_for_all || linkage_is_torsional(joint))) {
         own.stiffness = joint->contact.stiffness;
         own.exponent = joint->contact.exponent;
+    }
+    if (joint->contact.viscous > 0.0) {
+        own.damping = DAMPING_VISCOUS;
+        own.viscous_coefficient = joint->contact.viscous;
     }
     if (joint->contact.has_restitution) {
         own.restitution = joint->contact.restitution;
@@ -18,8 +23,7 @@ bool law_is_asked(const Scenario *scenario)
 {
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
-        if (linkage_kind_has_play(joint->kind) &&
-            law_options(&scenario->contact, joint).stiffness == 0.0) {
+        if (linkage_has_play(joint) && law_options(&scenario->contact, joint).stiffness == 0.0) {
             return true;
         }
     }

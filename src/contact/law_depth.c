@@ -17,6 +17,11 @@ double law_touching_radius(const Joint *joint)
     switch (joint->kind) {
     case JOINT_GUIDE:
         return 0.5 * fmin(joint->guide.height, joint->guide.opening);
+    case JOINT_GEAR:
+        return fmin(fabs(joint->gear.radius_a), fabs(joint->gear.radius_b));
+    case JOINT_REVOLUTE:
+    case JOINT_PRISMATIC:
+        return INFINITY; // at its limits
     case JOINT_STOP:
         return fmin(stop->radius_b > 0.0 ? stop->radius_b : INFINITY, other);
     default:
@@ -34,6 +39,7 @@ bool law_check_depth(const ForceLaw *law, const Joint *joint, double depth, doub
         [JOINT_CLEARANCE] = {"pin", "the wall of its hole"},
         [JOINT_GUIDE] = {"block", "its guide"},
         [JOINT_STOP] = {"second body", "what stops it"},
+        [JOINT_GEAR] = {"second gear", "the first one"},
     };
     return err_set(
         err, ERR_SOLVER, "the %s of %s is %.4g mm inside %s; no contact law holds beyond %.4g mm",

@@ -50,8 +50,46 @@ static Touch place_stop(const Joint *joint, int number)
     };
 }
 
+// The ends of a limited coordinate. Of a slider they are lines across its own line, and anchor b is
+// a point.
+static size_t place_ends(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
+{
+    static const TouchShape SHAPES[] = {
+        [JOINT_REVOLUTE] = TOUCH_TURN, [JOINT_PRISMATIC] = TOUCH_LINE, [JOINT_GEAR] = TOUCH_TEETH};
+    const double ends[2] = {coordinate_low(joint), coordinate_high(joint)};
+    const Vec2 along = vec2_rotate(joint->direction, (Vec2){1.0, 0.0});
+    size_t count = 0;
+    for (int i = 0; i < 2; i++) {
+        if (!isfinite(ends[i])) {
+            continue;
+        }
+        const double sign = i == 0 ? 1.0 : -1.0;
+        Touch *end = &places[count++];
+        *end = (Touch){
+            .joint = number,
+            .place = i,
+            .shape = SHAPES[joint->kind],
+            .anchor_a = joint->anchor_a,
+            .anchor_b = joint->anchor_b,
+        };
+        if (end->shape == TOUCH_LINE) {
+            end->anchor_a = vec2_add(joint->anchor_a, vec2_scale(ends[i], along));
+            end->direction = joint->direction + (i == 0 ? 0.0 : M_PI);
+            continue;
+        }
+        end->sign = sign;
+        end->clearance = sign * ends[i];
+        end->radius_a = joint->gear.radius_a;
+        end->radius_b = joint->gear.radius_b;
+    }
+    return count;
+}
+
 size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
 {
+    if (joint->limits.kind != LIMIT_NONE) {
+        return place_ends(joint, number, places);
+    }
     switch (joint->kind) {
     case JOINT_CLEARANCE:
         places[0] = (Touch){
@@ -79,7 +117,7 @@ bool touch_too_many(Err *err)
 {
     return err_set(err, ERR_CASE,
                    "the joints with play touch at more places than the %d allowed: one a pin or "
-                   "stop, four a block between guides",
+                   "stop, two a backlash, four a block between guides",
                    TOUCH_MAX);
 }
 
@@ -126,6 +164,24 @@ TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 lin
     return pose;
 }
 
+// An angle or teeth at one end.
+static TouchPose pose_of_end(const Linkage *linkage, const Touch *place, const Motion *motions,
+                             Vec2 offset, Vec2 velocity)
+{
+    const double position = coordinate_position(linkage, motions, place->joint);
+    const bool has_direction = place->shape == TOUCH_TEETH;
+    return (TouchPose){
+        .offset = offset,
+        .velocity = velocity,
+        .gap = place->sign * position - place->clearance,
+        .has_normal = true,
+        .normal = has_direction ? vec2_scale(place->sign,
+                                             coordinate_along_teeth(linkage, motions, place->joint))
+                                : (Vec2){0.0, 0.0},
+        .approach_speed = -place->sign * coordinate_rate(linkage, motions, place->joint),
+    };
+}
+
 TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions)
 {
     const Joint *joint = &linkage->joints[place->joint];
@@ -133,6 +189,9 @@ TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *m
                                  linkage_point(motions, joint->body_a, place->anchor_a));
     const Vec2 velocity = vec2_sub(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
                                    linkage_point_velocity(motions, joint->body_a, place->anchor_a));
+    if (place->shape == TOUCH_TURN || place->shape == TOUCH_TEETH) {
+        return pose_of_end(linkage, place, motions, offset, velocity);
+    }
     const bool is_ground = joint->body_a == LINKAGE_GROUND;
     const double angle = is_ground ? 0.0 : motions[joint->body_a].angle;
     const double omega = is_ground ? 0.0 : motions[joint->body_a].omega;
@@ -150,6 +209,11 @@ void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 
     } else if (place->shape == TOUCH_DISC) {
         *from_a = vec2_scale(place->radius_a, pose->normal);
         *from_b = vec2_sub(*from_a, pose->offset);
+    } else if (place->shape == TOUCH_TEETH) {
+        // where the pitch circles touch, on the line of the centres
+        const double share = place->radius_a / (place->radius_a + place->radius_b);
+        *from_a = vec2_scale(share, pose->offset);
+        *from_b = vec2_sub(*from_a, pose->offset);
     } else {
         // on body b: the circle's lowest point; of body a the point beside it
         *from_b = vec2_scale(-place->radius_b, pose->normal);
@@ -160,6 +224,9 @@ void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 
 double touch_sliding(const Linkage *linkage, const Touch *place, const TouchPose *pose,
                      const Motion *motions)
 {
+    if (place->shape == TOUCH_TURN || place->shape == TOUCH_TEETH) {
+        return 0.0; // pitch circles roll on one another
+    }
     const Joint *joint = &linkage->joints[place->joint];
     const int bodies[2] = {joint->body_a, joint->body_b};
     Vec2 arms[2];
@@ -179,11 +246,12 @@ void touch_response(const Linkage *linkage, const Touch *places, size_t count, b
 {
     ResponsePlace *rows = zeroed(count, sizeof *rows);
     for (size_t i = 0; i < count; i++) {
-        const bool is_line = places[i].shape == TOUCH_LINE;
+        const bool is_circle = !touch_is_scalar(&places[i]);
         rows[i] = (ResponsePlace){
             .joint = places[i].joint,
-            .is_line = is_line,
-            .has_turns = has_friction && !is_line,
+            .is_line = places[i].shape == TOUCH_LINE,
+            .sign = places[i].sign,
+            .has_turns = has_friction && is_circle,
             .anchor_a = places[i].anchor_a,
             .anchor_b = places[i].anchor_b,
             .direction = places[i].direction,

@@ -1,5 +1,6 @@
 // The places at which the bodies of a joint with play touch in the plane: a pin in its hole at one,
-// a block between its guides (or a sleeve round a rod) at its four corners, a stop at one.
+// a block between its guides (or a sleeve round a rod) at its four corners, a stop at one, a joint
+// whose coordinate is limited at its two ends: place 0 is the low one, place 1 the high one.
 //
 // At every place a circle on body b (of radius 0: a point) meets a line or a circle of body a.
 // With d from the anchor on body a to that on body b, n the direction of the force on body b, and
@@ -7,10 +8,17 @@
 //     hole    gap = c - |d|,      n = -d / |d|       c radial clearance
 //     disc    gap = |d| - c,      n =  d / |d|       c sum of the radii
 //     line    gap = m . d - c,    n =  m             m the line's normal, c radius on body b
+// The ends of a slider's coordinate are lines across it. Of an angle and of teeth the gap is that
+// of the coordinate q itself (model/coordinate.h):
+//     turn    gap = s q - c,      no n               a torque s N on body b, in the sense of q
+//     teeth   gap = s q - c,      n = s t            t the pitch circles' tangent
+// s is 1 at the low end and c its value, -1 at the high end and c less its value. Lengths are
+// angles at a turn, and forces torques.
 #pragma once
 
 #include "contact/force_law.h"
 #include "contact/pin_hole.h"
+#include "model/coordinate.h"
 #include "model/response.h"
 #include "model/scenario.h"
 
@@ -18,6 +26,8 @@ typedef enum TouchShape {
     TOUCH_HOLE,
     TOUCH_DISC,
     TOUCH_LINE,
+    TOUCH_TURN,  // an end of a revolute joint's angle
+    TOUCH_TEETH, // a flank of a pair of gears
 } TouchShape;
 
 enum {
@@ -32,8 +42,9 @@ typedef struct Touch {
     Vec2 anchor_a;    // in body a's frame, m: centre of hole or disc, a point of the line
     Vec2 anchor_b;    // in body b's frame, m: centre of the circle
     double direction; // rad, in body a's frame: of a line's normal, away from the wall
-    double clearance; // m, c above
-    double radius_a;  // m, of hole or disc; 0 of a line
+    double clearance; // m, or rad at a turn: c above
+    double sign;      // s above; 0 of other shapes
+    double radius_a;  // m, of hole, disc or pitch circle; 0 of a line
     double radius_b;  // m
     ForceLaw law;     // of this place alone
 } Touch;
@@ -42,11 +53,19 @@ typedef struct Touch {
 typedef struct TouchPose {
     Vec2 offset;           // d, m
     Vec2 velocity;         // m/s: of anchor b less that of anchor a
-    double gap;            // m, negative inside the metal
+    double gap;            // m (rad at a turn), negative inside the metal
     bool has_normal;       // false of a circle whose centre is that of the other
-    Vec2 normal;           // unit: direction of the force on body b; zero without a normal
+    Vec2 normal;           // unit: direction of the force on body b; zero at a turn and without
+                           // a normal
     double approach_speed; // m/s, rate of the penetration; without a normal the relative speed
 } TouchPose;
+
+// Whether the gap of a place is a coordinate by itself, whose rate is the first of the place's rows
+// in the response: it has a normal always, and no curvature.
+static inline bool touch_is_scalar(const Touch *place)
+{
+    return place->shape != TOUCH_HOLE && place->shape != TOUCH_DISC;
+}
 
 // Makes a list of the places of all joints with play, joint by joint, with their laws, which free()
 // gives back. Fails with ERR_CASE where a law does not fit a joint.
@@ -74,8 +93,8 @@ static inline TouchPose touch_pose_in_hole(const PinHole *pin, Vec2 velocity)
 // The pose of a place whose bodies move so.
 TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions);
 
-// The same from what it is made of: the offset and the velocity, and of a line its normal in the
-// world and the angular velocity of body a, rad/s.
+// The same of circles and lines from what it is made of: the offset and the velocity, and of a line
+// its normal in the world and the angular velocity of body a, rad/s.
 TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 line, double omega_a);
 
 // The point at which the force acts, seen from the anchor on body a and from that on body b, m.

@@ -79,7 +79,7 @@ void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch
     free(scales);
     const size_t joints = ensemble_joint_count(&scenario->linkage);
     for (size_t i = 0; ensemble->members > 0 && i < joints; i++) {
-        if (!linkage_kind_has_play(scenario->linkage.joints[i].kind)) {
+        if (!linkage_has_play(&scenario->linkage.joints[i])) {
             continue;
         }
         for (int metric = 0; metric < ENSEMBLE_METRIC_COUNT; metric++) {

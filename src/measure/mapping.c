@@ -119,7 +119,7 @@ static bool make_contacts(Mapping *mapping, MappingWatch watch, Err *err)
         }
     } else {
         for (size_t i = 0; i < linkage->joint_count; i++) {
-            if (linkage_kind_has_play(linkage->joints[i].kind)) {
+            if (linkage_has_play(&linkage->joints[i])) {
                 joints[count++].joint = (int)i;
             }
         }

@@ -55,7 +55,7 @@ static Gathering *gathering_start(const Scenario *scenario)
     assert(gathering != NULL);
     gathering->scenario = scenario;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        if (linkage_kind_has_play(scenario->linkage.joints[i].kind) &&
+        if (linkage_has_play(&scenario->linkage.joints[i]) &&
             gathering->play_count < MAPPING_JOINT_MAX) {
             gathering->masses[gathering->play_count] = calloc(MASS_COUNT, sizeof(double));
             assert(gathering->masses[gathering->play_count] != NULL);
@@ -206,7 +206,7 @@ bool mapping_joint_check(const Scenario *scenario, Err *err)
 {
     size_t count = 0;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        count += linkage_kind_has_play(scenario->linkage.joints[i].kind) ? 1 : 0;
+        count += linkage_has_play(&scenario->linkage.joints[i]) ? 1 : 0;
     }
     return count <= MAPPING_JOINT_MAX ||
            err_set(err, ERR_SOLVER, "%zu joints have play; a mapping takes at most %d", count,

@@ -4,7 +4,7 @@
 // that on body a. Of a prismatic joint and of a block between guides: the distance of body b's
 // anchor from the line of body a, along the line's normal (its direction turned by a quarter turn
 // counter-clockwise); and the tilt, the angle of body b less that of body a less the angle held. A
-// stop has no rows.
+// stop has no rows, and nor has a pair of gears.
 #pragma once
 
 #include "model/linkage.h"
@@ -26,10 +26,10 @@ typedef struct JointRows {
     double bias[JOINT_ROWS];     // m/s^2, or rad/s^2: the rate's own rate without accelerations
 } JointRows;
 
-// The number of rows of a kind of joint: JOINT_ROWS, or 0 of a stop.
+// The number of rows of a kind of joint: JOINT_ROWS, or 0 of stops and gears.
 static inline size_t joint_rows_count(JointKind kind)
 {
-    return kind == JOINT_STOP ? 0 : JOINT_ROWS;
+    return kind == JOINT_STOP || kind == JOINT_GEAR ? 0 : JOINT_ROWS;
 }
 
 // Whether a row of a kind of joint is an angle rather than a length.

@@ -69,7 +69,7 @@ static void add_blocks(const Motion *motions, const bool *include, bool with_dri
     const Linkage *linkage = system->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (joint->kind != JOINT_STOP && (include == NULL || include[i])) {
+        if (joint_rows_count(joint->kind) > 0 && (include == NULL || include[i])) {
             JointBlock *block = add_joint_block(system, JOINT_ROWS, joint->body_a, joint->body_b);
             find_entries(linkage, motions, (int)i, block);
             scale_block(system, block);

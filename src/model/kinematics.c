@@ -74,7 +74,7 @@ void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bo
     memset(jacobian->entries, 0, row_most * jacobian->columns * sizeof *jacobian->entries);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const JointKind kind = linkage->joints[i].kind;
-        if (kind == JOINT_STOP || (include != NULL && !include[i])) {
+        if (joint_rows_count(kind) == 0 || (include != NULL && !include[i])) {
             continue;
         }
         double *first = jacobian->entries + jacobian->rows * jacobian->columns;
@@ -134,8 +134,8 @@ Vec2 kinematics_opening(const Linkage *linkage, const Motion *motions, int joint
 {
     const JointKind kind = linkage->joints[joint].kind;
     if (!joint_rows_is_angle(kind, 1)) {
-        return kind == JOINT_STOP ? (Vec2){0.0, 0.0}
-                                  : linkage_joint_gap(linkage, motions, joint).position;
+        return joint_rows_count(kind) == 0 ? (Vec2){0.0, 0.0}
+                                           : linkage_joint_gap(linkage, motions, joint).position;
     }
     JointRows rows;
     joint_rows_find(linkage, motions, joint, &rows);

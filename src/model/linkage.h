@@ -66,6 +66,8 @@ typedef enum JointKind {
                      // a rod of body a, with play between them
     JOINT_STOP,      // a disc on body b that touches a line or a disc of body a from outside; it
                      // holds nothing while apart
+    JOINT_GEAR,      // two gears, bodies a and b, on pivots of one carrier, with play between their
+                     // teeth; the pivots are joints of their own
 } JointKind;
 
 // The sizes of a pin in its hole.
@@ -96,12 +98,44 @@ typedef struct Stop {
     double radius_b; // m, of the disc about the anchor of body b; 0: a point
 } Stop;
 
-// What a joint with play has of its own in place of what the contact's options say.
+typedef enum LimitKind {
+    LIMIT_NONE,
+    LIMIT_BACKLASH, // flanks to both sides, with a gap between them
+    LIMIT_STOPS,    // stops at two values, or at one
+} LimitKind;
+
+// What limits the coordinate of a joint (model/coordinate.h): the angle of a JOINT_REVOLUTE, the
+// position of a JOINT_PRISMATIC, the way along the pitch circles of a JOINT_GEAR. Beyond the limits
+// flanks or stops press it back.
+typedef struct Limits {
+    LimitKind kind;
+    double backlash; // rad or m, from flank to flank, 0 or more
+    double start;    // rad or m: of a backlash, coordinate less the middle of the gap at time zero
+    double middle;   // rad or m: the coordinate in the middle of the gap, set where bodies start
+    double low;      // rad or m, of LIMIT_STOPS; -INFINITY: none
+    double high;     // rad or m; INFINITY: none
+} Limits;
+
+// A pair of gears. Their pitch circles touch on the line of their centres; the radius of an
+// internal gear is negative, and both together are the distance of the centres.
+typedef struct Gear {
+    int pivots[2];          // numbers of the joints about which body a and body b turn
+    int carrier;            // the body that has both pivots, or LINKAGE_GROUND
+    double teeth[2];        // numbers of teeth, or in their ratio; of an internal gear negative
+    double radius_a;        // m, of the pitch circles; set where bodies are placed
+    double radius_b;        // m
+    bool is_backlash_angle; // until then: whether Limits.backlash is an angle of body b, rad
+    bool is_start_angle;    // likewise Limits.start
+} Gear;
+
+// What a joint with play has of its own in place of what the contact's options say. Of a joint
+// whose limited coordinate is an angle forces are torques, N m, and lengths angles, rad.
 typedef struct JointContact {
     double stiffness;     // N/m^exponent; 0: none of its own
     double exponent;      // 1, of that stiffness
     bool has_restitution; // whether it has its own
     double restitution;   // 1
+    double viscous;       // N s/m: its damping is viscous, with this; 0: none of its own
 } JointContact;
 
 // What a joint has only in space.
@@ -125,6 +159,8 @@ typedef struct Joint {
     Clearance clearance; // of a JOINT_CLEARANCE
     Guide guide;         // of a JOINT_GUIDE
     Stop stop;           // of a JOINT_STOP
+    Gear gear;           // of a JOINT_GEAR
+    Limits limits;       // of a JOINT_REVOLUTE or JOINT_PRISMATIC, and of every JOINT_GEAR
     JointContact contact;
     JointSpace space;
 } Joint;
@@ -205,17 +241,25 @@ static inline JointEnd linkage_end(const Joint *joint, int side)
                      : (JointEnd){joint->body_b, joint->anchor_b};
 }
 
-// Whether a joint of that kind holds its bodies without play.
+// Whether a joint of that kind holds its bodies in its rows without play; its own coordinate may
+// have limits all the same.
 static inline bool linkage_kind_is_ideal(JointKind kind)
 {
     return kind == JOINT_REVOLUTE || kind == JOINT_PRISMATIC;
 }
 
-// Whether bodies touch in a joint of that kind: a pin in its hole, a block between its guides, a
-// stop.
-static inline bool linkage_kind_has_play(JointKind kind)
+// Whether bodies touch in a joint: a pin in its hole, a block between its guides, a stop, teeth, or
+// what limits the coordinate of an ideal joint.
+static inline bool linkage_has_play(const Joint *joint)
 {
-    return !linkage_kind_is_ideal(kind);
+    return !linkage_kind_is_ideal(joint->kind) || joint->limits.kind != LIMIT_NONE;
+}
+
+// Whether what touches in a joint are flanks or stops that turn it: its contact has torques, N m,
+// and angles, rad, in place of forces and lengths.
+static inline bool linkage_is_torsional(const Joint *joint)
+{
+    return joint->kind == JOINT_REVOLUTE && joint->limits.kind != LIMIT_NONE;
 }
 
 // The least gap of a block's corners to the guides (of a sleeve's to the rod), m, negative inside
@@ -231,7 +275,8 @@ double linkage_guide_tilt(const Guide *guide);
 // the opening (of a sleeve more), m; 0 of other kinds.
 double linkage_radial_clearance(const Joint *joint);
 
-// Whether a joint is ideal and not the drive's: one that constrains how bodies move.
+// Whether a joint holds its bodies in its rows and is not the drive's: one that constrains how
+// bodies move.
 bool linkage_is_ideal(const Linkage *linkage, size_t joint);
 
 // The body that a joint turns and the one that it turns against: its bodies b and a, but the other

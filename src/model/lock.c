@@ -38,7 +38,7 @@ static Linkage idealised(const Linkage *linkage, LockJoints joints)
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const bool is_ideal = linkage_kind_is_ideal(joint->kind);
-        if (joint->kind == JOINT_STOP || (!is_ideal && joints == LOCK_IDEAL_ONLY)) {
+        if (joint_rows_count(joint->kind) == 0 || (!is_ideal && joints == LOCK_IDEAL_ONLY)) {
             continue;
         }
         if ((int)i == linkage->driver.joint) {

@@ -123,7 +123,7 @@ static bool demand_positions(const Linkage *linkage, const Motion *motions, Dema
         const Vec2 hole = linkage_point(motions, joint->body_a, joint->anchor_a);
         const Vec2 pin = linkage_point(motions, joint->body_b, joint->anchor_b);
         size = fmax(size, vec2_length(hole));
-        demand->include[i] = joint->kind != JOINT_STOP;
+        demand->include[i] = joint_rows_count(joint->kind) > 0;
         if (joint_rows_is_angle(joint->kind, 1)) {
             const Vec2 opening = kinematics_opening(linkage, motions, (int)i);
             add_demand_rows(linkage, (int)i, vec2_sub(joint_rows_start(joint), opening), demand);
@@ -168,7 +168,7 @@ static int demand_speeds(const Linkage *linkage, const Motion *motions, bool wit
         const Vec2 a = linkage_point_velocity(motions, joint->body_a, joint->anchor_a);
         const Vec2 b = linkage_point_velocity(motions, joint->body_b, joint->anchor_b);
         demand->include[i] =
-            joint->kind != JOINT_STOP && (with_play || linkage_kind_is_ideal(joint->kind));
+            joint_rows_count(joint->kind) > 0 && (with_play || linkage_kind_is_ideal(joint->kind));
         largest = fmax(largest, fmax(vec2_length(a), vec2_length(b)));
         Vec2 missing = vec2_sub(a, b);
         if (joint_rows_is_angle(joint->kind, 1)) {

@@ -8,9 +8,10 @@
 //               t . d' - w_a (n . d - r) - w_b r             of sliding
 //     theirs    n . d'' + 2 w_a t . d' - w_a^2 n . d + alpha_a t . d
 //               t . d'' - 2 w_a n . d' - w_a^2 t . d - alpha_a (n . d - r) - alpha_b r
+// Ends of a coordinate: model/coordinate.h.
 #include "model/response_rows.h"
 
-#include "model/joint_rows.h"
+#include "model/coordinate.h"
 
 static bool is_fixed(const Linkage *linkage, int body)
 {
@@ -82,6 +83,24 @@ static void place_line(Response *response, size_t row, const ResponsePlace *plac
     }
 }
 
+// One row, along the coordinate of a joint; nothing pushes in the other.
+static void place_coordinate(Response *response, size_t row, const ResponsePlace *place,
+                             const Motion *motions)
+{
+    const Joint *joint = &response->linkage->joints[place->joint];
+    JointRow along;
+    coordinate_row(response->linkage, motions, place->joint, &along);
+    response->rows[row + 1] = (ResponseRow){.body = {LINKAGE_GROUND, LINKAGE_GROUND}};
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(joint, side).body;
+        ResponseRow *of = &response->rows[row];
+        of->body[side] = is_fixed(response->linkage, body) ? LINKAGE_GROUND : body;
+        of->x[side] = place->sign * along.x[side];
+        of->y[side] = place->sign * along.y[side];
+        of->turn[side] = place->sign * along.turn[side];
+    }
+}
+
 // The turn of one body of a joint, as a row of its own.
 static void place_turn(Response *response, size_t row, int end)
 {
@@ -109,7 +128,9 @@ void response_rows_place(Response *response, const Motion *motions)
         const ResponsePlace *place = &response->places[i];
         const JointEnd ends[2] = {{joints[place->joint].body_a, place->anchor_a},
                                   {joints[place->joint].body_b, place->anchor_b}};
-        if (place->is_line) {
+        if (place->sign != 0.0) {
+            place_coordinate(response, row, place, motions);
+        } else if (place->is_line) {
             place_line(response, row, place, ends, motions);
         } else {
             place_point(response, row, ends, motions);
@@ -189,6 +210,25 @@ static void line_free(const Linkage *linkage, const ResponsePlace *place, const 
                free_turning(linkage, motions, b, loads) * place->radius;
 }
 
+// The rate of the rate of a coordinate's row, from the relative acceleration of the anchors:
+// between gears the pivots' distance is fixed, and its direction turns with what the teeth push
+// along.
+static void coordinate_free(const Linkage *linkage, const ResponsePlace *place,
+                            const Motion *motions, const BodyLoad *loads, Vec2 relative,
+                            double *gamma)
+{
+    const Joint *joint = &linkage->joints[place->joint];
+    const double a = free_turning(linkage, motions, joint->body_a, loads);
+    const double b = free_turning(linkage, motions, joint->body_b, loads);
+    gamma[0] = place->sign * coordinate_sense(joint) * (b - a);
+    gamma[1] = 0.0;
+    if (joint->kind == JOINT_GEAR) {
+        const Vec2 along = coordinate_along_teeth(linkage, motions, place->joint);
+        gamma[0] = place->sign * (vec2_dot(along, relative) - joint->gear.radius_a * a -
+                                  joint->gear.radius_b * b);
+    }
+}
+
 // The rates of the rates of a prismatic joint's rows: their own and those of the bodies.
 static void prismatic_free(const Linkage *linkage, int joint, const Motion *motions, double gravity,
                            const BodyLoad *loads, double *gamma)
@@ -240,7 +280,9 @@ void response_rows_loose(const Response *response, const Motion *motions, double
                                                     place->anchor_b, gravity, loads);
         gamma[row] = relative.x;
         gamma[row + 1] = relative.y;
-        if (place->is_line) {
+        if (place->sign != 0.0) {
+            coordinate_free(linkage, place, motions, loads, relative, gamma + row);
+        } else if (place->is_line) {
             line_free(linkage, place, motions, loads, relative, gamma + row);
         }
         row += 2;

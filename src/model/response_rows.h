@@ -13,11 +13,13 @@ enum {
 // A place at which the bodies of a joint with play touch. It has two rows: x and y in the world of
 // anchor b less anchor a; or, at a line of body a, the rates at which the touching points of body b
 // and body a part along the line's normal and along its tangent, the normal turned by a quarter
-// turn. With turns, two more: the angular velocities of body a and of body b. Friction at a line
-// acts in the second row and needs none.
+// turn; or, at an end of a limited coordinate, the rate at which it comes away from there and a row
+// of nothing. With turns, two more: the angular velocities of body a and of body b. Friction at a
+// line acts in the second row and needs none.
 typedef struct ResponsePlace {
     int joint; // number in the linkage
     bool is_line;
+    double sign; // of the joint's coordinate (model/coordinate.h) at one of its ends; else 0
     bool has_turns;
     Vec2 anchor_a;    // in body a's frame, m
     Vec2 anchor_b;    // in body b's frame, m

@@ -91,7 +91,7 @@ void scenario_set_stiffness(Scenario *scenario, double stiffness, double exponen
 bool scenario_has_clearance(const Scenario *scenario)
 {
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        if (linkage_kind_has_play(scenario->linkage.joints[i].kind)) {
+        if (linkage_has_play(&scenario->linkage.joints[i])) {
             return true;
         }
     }

@@ -222,7 +222,7 @@ double trajectory_contact_share(const Trajectory *trajectory, size_t joint)
 
 bool trajectory_feels_play(const Trajectory *trajectory, const Joint *joint)
 {
-    return trajectory->is_complete && linkage_kind_has_play(joint->kind) &&
+    return trajectory->is_complete && linkage_has_play(joint) &&
            strcmp(trajectory->backend, OPTIONS_BACKENDS[BACKEND_ANALYTIC]) != 0;
 }
 

@@ -127,7 +127,7 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
             make_sliding(linkage, (int)i, &scenario->ode, world);
         } else if (linkage_is_ideal(linkage, i) && world->hold == NULL) {
             make_ball(linkage, motions, i, &scenario->ode, world);
-        } else if (linkage_kind_has_play(linkage->joints[i].kind) &&
+        } else if (linkage_has_play(&linkage->joints[i]) &&
                    !make_pairs(scenario, (int)i, world, err)) {
             return false;
         }

@@ -63,6 +63,12 @@ static bool list_contacts(const Scenario *scenario, Dynamics *dynamics, Err *err
     }
     for (size_t i = 0; i < system->contact_count; i++) {
         const Touch *touch = &touches[i];
+        const Joint *joint = &scenario->linkage.joints[touch->joint];
+        if (joint->limits.kind != LIMIT_NONE) {
+            free(touches);
+            return err_set(err, ERR_CASE, "joint '%s' has limits, which are not built yet",
+                           joint->name);
+        }
         const bool is_corner = scenario->linkage.joints[touch->joint].kind == JOINT_GUIDE;
         system->contacts[i] = (Contact){
             .joint = touch->joint,

@@ -249,7 +249,7 @@ void recorder_add(Recorder *recorder, const StepRecord *step)
     }
     for (size_t i = 0; i < trajectory->joint_count; i++) {
         hash = hash_number(hash, step->joints[i].force);
-        if (linkage_kind_has_play(recorder->scenario->linkage.joints[i].kind)) {
+        if (linkage_has_play(&recorder->scenario->linkage.joints[i])) {
             add_contact(recorder, i, step);
         }
     }

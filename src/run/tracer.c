@@ -103,7 +103,7 @@ static double parts_for(double first, double last, double mean, double tolerance
 
 static bool has_play(const Tracer *tracer, size_t joint)
 {
-    return linkage_kind_has_play(tracer->scenario->linkage.joints[joint].kind);
+    return linkage_has_play(&tracer->scenario->linkage.joints[joint]);
 }
 
 static int count_parts(const Tracer *tracer, const StepRecord *step)

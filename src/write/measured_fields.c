@@ -47,7 +47,7 @@ json_t *ensemble_joints_json(const Linkage *linkage, const Ensemble *ensemble)
 {
     json_t *joints = json_object();
     for (size_t i = 0; i < ensemble_joint_count(linkage); i++) {
-        if (linkage_kind_has_play(linkage->joints[i].kind)) {
+        if (linkage_has_play(&linkage->joints[i])) {
             json_object_set_new(joints, linkage->joints[i].name,
                                 fields_json(METRIC_FIELDS, FIELD_JSON, ensemble->joints[i]));
         }
@@ -60,7 +60,7 @@ bool ensemble_joints_read(const Linkage *linkage, const json_t *joints, Ensemble
     bool is_right = true;
     for (size_t i = 0; is_right && i < ensemble_joint_count(linkage); i++) {
         is_right =
-            !linkage_kind_has_play(linkage->joints[i].kind) ||
+            !linkage_has_play(&linkage->joints[i]) ||
             fields_json_read(METRIC_FIELDS, FIELD_STORE,
                              json_object_get(joints, linkage->joints[i].name), ensemble->joints[i]);
     }

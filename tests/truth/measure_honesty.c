@@ -36,8 +36,8 @@ static bool find_end(const Scenario *scenario, double *end_s, Err *err)
         const StepRecord record = solver->record(state);
         *end_s = record.end_s;
         for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-            const bool is_contact = linkage_kind_has_play(scenario->linkage.joints[i].kind) &&
-                                    record.joints[i].is_touching;
+            const bool is_contact =
+                linkage_has_play(&scenario->linkage.joints[i]) && record.joints[i].is_touching;
             contacts += is_contact && !was_touching[i] ? 1 : 0;
             was_touching[i] = is_contact;
         }
@@ -69,7 +69,7 @@ static size_t count_play(const Linkage *linkage)
 {
     size_t count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        count += linkage_kind_has_play(linkage->joints[i].kind) ? 1 : 0;
+        count += linkage_has_play(&linkage->joints[i]) ? 1 : 0;
     }
     return count;
 }

@@ -127,14 +127,18 @@ static void the_unit_of_a_stiffness_gives_its_exponent(void **state)
     Complaint complaint;
     double stiffness = 0.0;
     double exponent = 0.0;
-    assert_true(quantity_stiffness("6.6e10 N/m^1.5", &stiffness, &exponent, &complaint));
+    assert_true(quantity_stiffness("6.6e10 N/m^1.5", DIMENSION_STIFFNESS, &stiffness, &exponent,
+                                   &complaint));
     assert_true(stiffness == 6.6e10 && exponent == 1.5);
-    assert_true(quantity_stiffness("2e7 N/m", &stiffness, &exponent, &complaint));
+    assert_true(
+        quantity_stiffness("2e7 N/m", DIMENSION_STIFFNESS, &stiffness, &exponent, &complaint));
     assert_true(stiffness == 2e7 && exponent == 1.0);
-    assert_true(quantity_stiffness("2e4 N/mm", &stiffness, &exponent, &complaint));
+    assert_true(
+        quantity_stiffness("2e4 N/mm", DIMENSION_STIFFNESS, &stiffness, &exponent, &complaint));
     assert_true(stiffness == 2e7 && exponent == 1.0);
     // F = K d^n with d = 1 m = 1000 mm: 1 N/mm^1.5 is 1000^1.5 N/m^1.5
-    assert_true(quantity_stiffness("1 N/mm^1.5", &stiffness, &exponent, &complaint));
+    assert_true(
+        quantity_stiffness("1 N/mm^1.5", DIMENSION_STIFFNESS, &stiffness, &exponent, &complaint));
     assert_close(stiffness, 31622.776601683792, 1e-15);
     assert_true(exponent == 1.5);
 
@@ -142,7 +146,8 @@ static void the_unit_of_a_stiffness_gives_its_exponent(void **state)
                                         "1 N/m^4",      "x N/m",       "1 kg",         "1 N/mm^2",
                                         "1e308 N/mm^3", "1 N/kg^2",    "1 N/m^n"};
     for (size_t i = 0; i < sizeof WRONG / sizeof WRONG[0]; i++) {
-        assert_false(quantity_stiffness(WRONG[i], &stiffness, &exponent, &complaint));
+        assert_false(
+            quantity_stiffness(WRONG[i], DIMENSION_STIFFNESS, &stiffness, &exponent, &complaint));
         assert_true(exponent == 1.5);
         assert_true(strlen(complaint.text) > 0);
     }

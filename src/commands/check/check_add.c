@@ -132,14 +132,14 @@ static void add_joints(CheckAdd *work, const Trajectory *run, BackendKind backen
         const Joint *joint = &work->scenario->linkage.joints[i];
         const JointExtremes *extremes = &run->joints[i];
         // the reference looks for the peak of a contact between its steps
-        if (is_by_samples(backend) && !linkage_kind_has_play(joint->kind)) {
+        if (is_by_samples(backend) && !linkage_has_play(joint)) {
             add_real(work, run, joint->name, "force_max_at_samples_N", force_at_samples(run, i),
                      0.0);
         } else {
             add_real(work, run, joint->name, "force_max_N", extremes->force_max.value, 0.0);
         }
         // the closed form takes every joint as ideal
-        if (!linkage_kind_has_play(joint->kind) || backend == BACKEND_ANALYTIC) {
+        if (!linkage_has_play(joint) || backend == BACKEND_ANALYTIC) {
             continue;
         }
         add_count(work, run, joint->name, "impacts", extremes->impacts);

@@ -75,7 +75,7 @@ void compare_spread_write(const CompareReport *report, const Style *style, Text 
         "\n%sThe whole run from %d starts, their speeds a little apart: median [least, most]%s\n",
         style->heading, ENSEMBLE_MEMBERS, style->end);
     for (size_t joint = 0; joint < ensemble_joint_count(linkage); joint++) {
-        if (linkage_kind_has_play(linkage->joints[joint].kind)) {
+        if (linkage_has_play(&linkage->joints[joint])) {
             write_joint(report, joint, style, text);
         }
     }

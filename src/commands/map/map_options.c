@@ -38,7 +38,7 @@ static bool read_kp(const char *text, void *target, Err *err)
     Complaint complaint;
     double exponent = 1.0;
     if (!quantity_number(text, &options->kp, &complaint) &&
-        !quantity_stiffness(text, &options->kp, &exponent, &complaint)) {
+        !quantity_stiffness(text, DIMENSION_STIFFNESS, &options->kp, &exponent, &complaint)) {
         return err_set(err, ERR_USAGE, "--kp: %s; allowed: a stiffness such as 1e7 N/m",
                        complaint.text);
     }

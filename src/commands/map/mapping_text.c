@@ -23,8 +23,8 @@ void mapping_report_law(const MappingContact *contact, char law[MAPPING_REPORT_L
 static bool has_lines(const Linkage *linkage)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const JointKind kind = linkage->joints[i].kind;
-        if (linkage_kind_has_play(kind) && kind != JOINT_CLEARANCE) {
+        const Joint *joint = &linkage->joints[i];
+        if (linkage_has_play(joint) && joint->kind != JOINT_CLEARANCE) {
             return true;
         }
     }
@@ -59,9 +59,9 @@ static void write_head(const MappingReport *report, const Style *style, Text *te
 // Where else than in one position a joint's mass was looked up.
 static const char *mass_words(const Joint *joint)
 {
-    return joint->kind == JOINT_GUIDE  ? " and all corners"
-           : joint->kind == JOINT_STOP ? ""
-                                       : " and all directions";
+    return joint->kind == JOINT_GUIDE       ? " and all corners"
+           : joint->kind == JOINT_CLEARANCE ? " and all directions"
+                                            : "";
 }
 
 static const char *source_words(MappingSource source)

@@ -14,7 +14,7 @@ bool plot_look_shows(const RunReport *report, bool is_joint, size_t index)
 {
     const Linkage *linkage = &report->scenario->linkage;
     return is_joint ? !scenario_has_clearance(report->scenario) ||
-                          linkage_kind_has_play(linkage->joints[index].kind)
+                          linkage_has_play(&linkage->joints[index])
                     : (int)index != linkage_driven_body(linkage);
 }
 

@@ -54,7 +54,7 @@ static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const JointExtremes *extremes = &run->joints[i];
         json_t *joint = json_object();
-        const bool has_play = linkage_kind_has_play(linkage->joints[i].kind);
+        const bool has_play = linkage_has_play(&linkage->joints[i]);
         // without play that is felt there is no contact to count: null, not 0
         const bool is_felt = trajectory_feels_play(run, &linkage->joints[i]);
         json_object_set_new(joint, "impacts",

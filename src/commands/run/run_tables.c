@@ -193,7 +193,7 @@ void run_tables_spikes(const RunReport *report, size_t limit, const Style *style
         Table *table = fields_table(heading, RUN_CONTACT_FIELDS, where, style, text);
         for (size_t joint = 0; joint < linkage->joint_count; joint++) {
             const JointExtremes *extremes = &run->joints[joint];
-            const bool has_play = linkage_kind_has_play(linkage->joints[joint].kind);
+            const bool has_play = linkage_has_play(&linkage->joints[joint]);
             for (size_t k = 0; has_play && k < extremes->spike_count && k < limit; k++) {
                 table_cell(table, "%s", linkage->joints[joint].name);
                 fields_table_row(RUN_CONTACT_FIELDS, where, &extremes->spikes[k], table);

@@ -196,7 +196,7 @@ static void write_contact(const Scenario *scenario, Text *text)
     const ContactOptions *contact = &scenario->contact;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
-        if (!linkage_kind_has_play(joint->kind)) {
+        if (!linkage_has_play(joint)) {
             continue;
         }
         if (contact->model == CONTACT_IMPACT) {

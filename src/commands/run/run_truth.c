@@ -270,7 +270,7 @@ void run_truth_ensembles(const RunReport *report, const Style *style, Text *text
              ENSEMBLE_PERTURBATION);
     Table *table = section_begin(heading, 8, HEADS, style, text);
     for (size_t joint = 0; joint < ensemble_joint_count(linkage); joint++) {
-        const bool has_play = linkage_kind_has_play(linkage->joints[joint].kind);
+        const bool has_play = linkage_has_play(&linkage->joints[joint]);
         for (size_t metric = 0; has_play && metric < ENSEMBLE_METRIC_COUNT; metric++) {
             ensemble_rows(table, report, joint, metric);
         }

@@ -48,7 +48,7 @@ static bool has_papers_play(const Linkage *linkage)
     bool is_so = false;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (linkage_kind_has_play(joint->kind)) {
+        if (linkage_has_play(joint)) {
             is_so = i == PAPER_JOINT && is_near(linkage_radial_clearance(joint), PAPER_CLEARANCE);
             if (!is_so) {
                 break;

@@ -7,7 +7,7 @@
 static bool has_joint(const RunReport *report, const Trajectory *run, size_t joint)
 {
     return run->is_complete && run->force_spikes[joint].is_known &&
-           linkage_kind_has_play(report->scenario->linkage.joints[joint].kind);
+           linkage_has_play(&report->scenario->linkage.joints[joint]);
 }
 
 static bool looked_for_any(const RunReport *report, const Trajectory *run)

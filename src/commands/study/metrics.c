@@ -198,7 +198,7 @@ static bool find_member(const Linkage *linkage, Owner owner, size_t member, cons
     }
     if (owner == OF_JOINT) {
         *name = linkage->joints[member].name;
-        return linkage_kind_has_play(linkage->joints[member].kind);
+        return linkage_has_play(&linkage->joints[member]);
     }
     *name = "";
     return true;

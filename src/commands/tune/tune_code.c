@@ -278,7 +278,7 @@ static bool write_laws(const Scenario *scenario, Text *text, Err *err)
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         ForceLaw law;
-        if (!linkage_kind_has_play(linkage->joints[i].kind)) {
+        if (!linkage_has_play(&linkage->joints[i])) {
             continue;
         }
         if (!law_of_joint(scenario, &linkage->joints[i], &law, err)) {

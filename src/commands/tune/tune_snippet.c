@@ -119,7 +119,7 @@ bool tune_snippet_write(const TuneReport *report, const TuneTrial *trial, Text *
     for (size_t i = 0; i < linkage->joint_count && fits; i++) {
         ForceLaw law;
         Err unused = {ERR_NONE, ""};
-        if (linkage_kind_has_play(linkage->joints[i].kind)) {
+        if (linkage_has_play(&linkage->joints[i])) {
             fits = law_of_joint(scenario, &linkage->joints[i], &law, &unused);
             write_surface(&linkage->joints[i], &law, scenario, map, &lines);
         }

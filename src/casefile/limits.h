@@ -1,0 +1,32 @@
+// What a case says about the coordinate of a joint: its backlash or stops, their contact, and pairs
+// of gears.
+#pragma once
+
+#include "casefile/target.h"
+
+// Whether the keys of a joint limit its coordinate.
+bool limits_are_given(const Entries *entries, size_t joint);
+
+// Prepares the limits of a joint before values are stored.
+Limits limits_prepare(const Entries *entries, size_t joint);
+
+// Stores a value of a key that depends on what the coordinate of its joint is: an angle or a
+// length. Of the kinds SCHEMA_COORDINATE, SCHEMA_DAMPER, SCHEMA_STIFFNESS and SCHEMA_START.
+bool limits_store(const Target *target, Joint *joint);
+
+// Stores the teeth of a pair of gears.
+bool limits_store_teeth(const Target *target, Gear *gear);
+
+// Finds the bodies and the carrier of every pair of gears from their pivots, once the joints'
+// bodies are known.
+bool limits_join_gears(const Entries *entries, Linkage *linkage, Err *err);
+
+// Gives gears their pitch radii and anchors, once anchors are those of the bodies' frames.
+void limits_place_gears(Linkage *linkage, const Motion *motions);
+
+// Centres gaps about where the bodies start, once that is known.
+void limits_settle(Linkage *linkage);
+
+// Checks a joint that has limits; with the bodies' starts where the linkage is built.
+bool limits_check(const Entries *entries, size_t index, const Scenario *scenario, Err *err);
+bool limits_check_starts(const Entries *entries, const Linkage *linkage, Err *err);

@@ -1,0 +1,107 @@
+// Do the limits of a joint's coordinate go with the rest of the case?
+#include "casefile/limits.h"
+
+#include "base/zeroed.h"
+#include "model/coordinate.h"
+
+#include <math.h>
+
+static const char *describe(const Joint *joint)
+{
+    return joint->kind == JOINT_GEAR              ? "a pair of gears"
+           : joint->limits.kind == LIMIT_BACKLASH ? "a joint with backlash"
+                                                  : "a joint with stops";
+}
+
+// In which unit a stiffness, and a damping, of a joint's limits stand.
+static const char *stiffness_example(const Joint *joint)
+{
+    return joint->kind == JOINT_REVOLUTE ? "500 N m/rad here" : "1e8 N/m here or in contact";
+}
+
+static bool check_order(const Entries *entries, size_t index, const Joint *joint, Err *err)
+{
+    const Limits *limits = &joint->limits;
+    if (limits->kind == LIMIT_STOPS && !(limits->low < limits->high)) {
+        return entries_refuse(entries_blame(entries, "joints.*.high joints.*.low", index), err,
+                              "the stops of joint '%s' leave nothing between them\nallowed: a low "
+                              "below the high",
+                              joint->name);
+    }
+    // half of a gap, and what rounding makes of it
+    return limits->kind != LIMIT_BACKLASH ||
+           fabs(limits->start) <= (0.5 + LINKAGE_SEATED) * limits->backlash ||
+           entries_refuse(entries_find(entries, "joints.*.start", index), err,
+                          "joint '%s' starts beyond its backlash\nallowed: up to half of the "
+                          "backlash to either side, or centred",
+                          joint->name);
+}
+
+static bool check_contact(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[index];
+    const EntryGroup *group = entries_group(entries, "joints.*", index);
+    const bool is_turning = joint->kind == JOINT_REVOLUTE;
+    if (scenario->contact.model != CONTACT_IMPACT) {
+        return entries_refuse(entries_find(entries, "contact.model", 0), err,
+                              "the poisson model is for pins in holes, and joint '%s' is "
+                              "%s\nallowed: impact",
+                              joint->name, describe(joint));
+    }
+    if (!(joint->contact.stiffness > 0.0) && (is_turning || !(scenario->contact.stiffness > 0.0))) {
+        return entries_refuse_group(group, err,
+                                    "joint '%s', %s, needs a stiffness\nallowed: stiffness: %s",
+                                    joint->name, describe(joint), stiffness_example(joint));
+    }
+    return !is_turning || joint->contact.viscous > 0.0 ||
+           scenario->contact.damping != DAMPING_VISCOUS ||
+           entries_refuse_group(group, err,
+                                "joint '%s', %s, needs a viscous-coefficient of its own: that of "
+                                "the contact is a force over a speed\nallowed: "
+                                "viscous-coefficient: 0.1 N m s/rad, or another contact.damping",
+                                joint->name, describe(joint));
+}
+
+bool limits_check(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[index];
+    if (scenario->linkage.is_spatial) {
+        return entries_refuse_group(entries_group(entries, "joints.*", index), err,
+                                    "joint '%s' is %s, which is not available in space\nallowed: "
+                                    "space: planar, or pins in holes",
+                                    joint->name, describe(joint));
+    }
+    if (joint->kind == JOINT_GEAR && joint->limits.kind == LIMIT_NONE) {
+        return entries_refuse_group(entries_group(entries, "joints.*", index), err,
+                                    "joints.%s.backlash is missing\nallowed: a length at the pitch "
+                                    "circle such as 0.1 mm, or an angle of the second gear",
+                                    joint->name);
+    }
+    return check_order(entries, index, joint, err) && check_contact(entries, index, scenario, err);
+}
+
+bool limits_check_starts(const Entries *entries, const Linkage *linkage, Err *err)
+{
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
+    linkage_start(linkage, motions);
+    bool is_right = true;
+    for (size_t i = 0; is_right && i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const Limits *limits = &joint->limits;
+        if (limits->kind != LIMIT_STOPS) {
+            continue;
+        }
+        const double at = coordinate_position(linkage, motions, (int)i);
+        const double rounding = LINKAGE_SEATED * fmin(limits->high - limits->low, 1.0);
+        const bool is_turning = joint->kind == JOINT_REVOLUTE;
+        is_right =
+            (at >= limits->low - rounding && at <= limits->high + rounding) ||
+            entries_refuse(entries_blame(entries, "joints.*.low joints.*.high", i), err,
+                           "joint '%s' starts at %.6g %s, beyond its stops\nallowed: stops to both "
+                           "sides of where it starts",
+                           joint->name, at * (is_turning ? 180.0 / M_PI : 1e3),
+                           is_turning ? "deg" : "mm");
+    }
+    free(motions);
+    return is_right;
+}

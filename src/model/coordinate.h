@@ -1,0 +1,30 @@
+// The coordinate of a joint that flanks or stops limit (Limits in model/linkage.h).
+//
+// Of a revolute joint the angle, rad, as linkage_turning has it; of a prismatic joint the position
+// of body b's anchor along the line, m; of a pair of gears how far the pitch circle of body b has
+// come round against that of body a where they touch, m. Angles count beyond a turn.
+#pragma once
+
+#include "model/joint_rows.h"
+
+// The values between which the coordinate is free.
+double coordinate_low(const Joint *joint);
+double coordinate_high(const Joint *joint);
+
+double coordinate_position(const Linkage *linkage, const Motion *motions, int joint);
+
+// Its rate, rad/s or m/s, in the bodies' velocities: that of gears holds while their pivots do.
+double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint);
+
+// The sign with which the coordinate of a revolute joint follows the angle of body b less that of
+// body a: -1 where b is the ground.
+double coordinate_sense(const Joint *joint);
+
+// The direction in which the teeth of gear b move against those of gear a as the coordinate grows:
+// the line from the centre of gear a to that of gear b, turned by a quarter turn; unit.
+Vec2 coordinate_along_teeth(const Linkage *linkage, const Motion *motions, int joint);
+
+// What the rate is made of. A push along the coordinate acts on the bodies with the same
+// coefficients: on a hinge torques, between gears forces at the point where their pitch circles
+// touch, along their common tangent.
+void coordinate_row(const Linkage *linkage, const Motion *motions, int joint, JointRow *row);

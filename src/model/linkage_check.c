@@ -1,0 +1,249 @@
+// Is what a linkage is made of a linkage at all?
+#include "model/coordinate.h"
+
+#include <math.h>
+
+static bool check_bodies(const Linkage *linkage, Err *err)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Body *body = &linkage->bodies[i];
+        if (!(body->mass > 0.0) || !isfinite(body->mass)) {
+            return err_set(err, ERR_CASE, "body '%s': mass %g kg, allowed: above 0", body->name,
+                           body->mass);
+        }
+        if (!(body->inertia > 0.0) || !isfinite(body->inertia)) {
+            return err_set(err, ERR_CASE, "body '%s': inertia %g kg m^2, allowed: above 0",
+                           body->name, body->inertia);
+        }
+        if (linkage_find_body(linkage, body->name) != (int)i) {
+            return err_set(err, ERR_CASE, "two bodies are named '%s'", body->name);
+        }
+    }
+    return true;
+}
+
+static bool check_pin(const Joint *joint, Err *err)
+{
+    const Clearance *clearance = &joint->clearance;
+    if (!(clearance->pin_radius > 0.0) || !(clearance->hole_radius > clearance->pin_radius)) {
+        return err_set(err, ERR_CASE,
+                       "joint '%s': pin radius %.9g m and hole radius %.9g m, allowed: a pin above "
+                       "0 and smaller than its hole",
+                       joint->name, clearance->pin_radius, clearance->hole_radius);
+    }
+    if (!(vec2_length(clearance->start) <= linkage_radial_clearance(joint))) {
+        return err_set(err, ERR_CASE,
+                       "joint '%s': start eccentricity %.9g m, allowed: up to the radial "
+                       "clearance %.9g m",
+                       joint->name, vec2_length(clearance->start), linkage_radial_clearance(joint));
+    }
+    return true;
+}
+
+static bool check_guide(const Joint *joint, Err *err)
+{
+    const Guide *guide = &joint->guide;
+    if (!(guide->opening > 0.0) || !(guide->height > 0.0) || guide->opening == guide->height ||
+        !(guide->length > 0.0) || !isfinite(guide->opening + guide->height + guide->length)) {
+        return err_set(err, ERR_CASE,
+                       "joint '%s': guide %.9g m, block %.9g m and its length %.9g m, allowed: all "
+                       "above 0, and a block that is not as high as the guide is wide",
+                       joint->name, guide->opening, guide->height, guide->length);
+    }
+    const double gap = linkage_guide_gap(guide, guide->start.x, guide->start.y);
+    if (!(gap >= -LINKAGE_SEATED * linkage_radial_clearance(joint))) {
+        return err_set(err, ERR_CASE, "joint '%s': the block starts %.9g m inside the metal",
+                       joint->name, -gap);
+    }
+    return true;
+}
+
+static bool check_stop(const Joint *joint, Err *err)
+{
+    const Stop *stop = &joint->stop;
+    const double size = stop->radius_b + (stop->is_disc ? stop->radius_a : 0.0);
+    return (stop->radius_a >= 0.0 && stop->radius_b >= 0.0 && isfinite(size) &&
+            (!stop->is_disc || size > 0.0)) ||
+           err_set(err, ERR_CASE,
+                   "joint '%s': discs of radius %.9g m and %.9g m, allowed: 0 or more, and one of "
+                   "two discs above 0",
+                   joint->name, stop->radius_a, stop->radius_b);
+}
+
+static bool check_own_contact(const Joint *joint, Err *err)
+{
+    const JointContact *own = &joint->contact;
+    const bool is_stiffness =
+        own->stiffness == 0.0 || (own->stiffness > 0.0 && own->exponent > 0.0);
+    return (is_stiffness && own->restitution >= 0.0 && own->restitution <= 1.0) ||
+           err_set(err, ERR_CASE,
+                   "joint '%s': stiffness %g and restitution %g of its own, allowed: above 0, and "
+                   "0 to 1",
+                   joint->name, own->stiffness, own->restitution);
+}
+
+static bool check_limits(const Linkage *linkage, const Joint *joint, Err *err)
+{
+    const Limits *limits = &joint->limits;
+    if (limits->kind == LIMIT_NONE) {
+        return true;
+    }
+    if (linkage->is_spatial) {
+        return err_set(err, ERR_CASE, "joint '%s': backlash, stops and gears are for the plane",
+                       joint->name);
+    }
+    const double low = coordinate_low(joint);
+    const double high = coordinate_high(joint);
+    if (!(low <= high) || !(isfinite(low) || isfinite(high))) {
+        return err_set(err, ERR_CASE,
+                       "joint '%s': limits %.9g and %.9g, allowed: one that is finite, and the "
+                       "first no higher than the second",
+                       joint->name, low, high);
+    }
+    return joint->contact.stiffness > 0.0 || joint->kind != JOINT_REVOLUTE ||
+           err_set(err, ERR_CASE, "joint '%s': its limits need a torsional stiffness", joint->name);
+}
+
+static bool check_gear(const Linkage *linkage, const Joint *joint, Err *err)
+{
+    const Gear *gear = &joint->gear;
+    for (int i = 0; i < 2; i++) {
+        const int pivot = gear->pivots[i];
+        if (pivot < 0 || pivot >= (int)linkage->joint_count ||
+            linkage->joints[pivot].kind != JOINT_REVOLUTE) {
+            return err_set(err, ERR_CASE, "joint '%s': its gears need ideal pivots", joint->name);
+        }
+    }
+    const double distance = gear->radius_a + gear->radius_b;
+    return (distance > 0.0 && isfinite(distance)) ||
+           err_set(err, ERR_CASE,
+                   "joint '%s': pitch radii %.9g m and %.9g m, allowed: together above 0",
+                   joint->name, gear->radius_a, gear->radius_b);
+}
+
+static bool check_joint(const Linkage *linkage, size_t number, Err *err)
+{
+    const Joint *joint = &linkage->joints[number];
+    const int count = (int)linkage->body_count;
+    if (linkage_find_joint(linkage, joint->name) != (int)number) {
+        return err_set(err, ERR_CASE, "two joints are named '%s'", joint->name);
+    }
+    if (joint->body_a < LINKAGE_GROUND || joint->body_a >= count ||
+        joint->body_b < LINKAGE_GROUND || joint->body_b >= count ||
+        joint->body_a == joint->body_b) {
+        return err_set(err, ERR_CASE, "joint '%s' must join two different bodies of the linkage",
+                       joint->name);
+    }
+    if (!isfinite(joint->direction + joint->held_angle)) {
+        return err_set(err, ERR_CASE, "joint '%s': its direction is no number", joint->name);
+    }
+    if (linkage->is_spatial && joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE) {
+        return err_set(err, ERR_CASE, "joint '%s': guides, stops and gears are for the plane",
+                       joint->name);
+    }
+    if (!check_limits(linkage, joint, err)) {
+        return false;
+    }
+    switch (joint->kind) {
+    case JOINT_CLEARANCE:
+        return check_pin(joint, err) && check_own_contact(joint, err);
+    case JOINT_GUIDE:
+        return check_guide(joint, err) && check_own_contact(joint, err);
+    case JOINT_STOP:
+        return check_stop(joint, err) && check_own_contact(joint, err);
+    case JOINT_GEAR:
+        return check_gear(linkage, joint, err) && check_own_contact(joint, err);
+    default:
+        return joint->limits.kind == LIMIT_NONE || check_own_contact(joint, err);
+    }
+}
+
+static bool check_driver(const Linkage *linkage, Err *err)
+{
+    const Driver *driver = &linkage->driver;
+    if (!driver->is_present) {
+        return true;
+    }
+    if (driver->joint < 0 || driver->joint >= (int)linkage->joint_count) {
+        return err_set(err, ERR_CASE, "the driver's joint does not exist");
+    }
+    const Joint *joint = &linkage->joints[driver->joint];
+    if (joint->kind != JOINT_REVOLUTE || joint->body_a != LINKAGE_GROUND) {
+        return err_set(err, ERR_CASE,
+                       "the driver turns a body about joint '%s', which must be an ideal joint "
+                       "with the ground",
+                       joint->name);
+    }
+    if (!(driver->speed != 0.0) || !isfinite(driver->speed) || !isfinite(driver->start)) {
+        return err_set(err, ERR_CASE, "drive speed %g rad/s, allowed: any speed but 0",
+                       driver->speed);
+    }
+    if (driver->speeds.count > 0 && driver->speed != time_table_largest(&driver->speeds)) {
+        return err_set(err, ERR_CASE, "drive speed %g rad/s is not the largest of its table",
+                       driver->speed);
+    }
+    return time_table_is_ordered(&driver->speeds) ||
+           err_set(err, ERR_CASE, "the times of a speed must increase");
+}
+
+static bool check_springs(const Linkage *linkage, Err *err)
+{
+    const int count = (int)linkage->body_count;
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const Spring *spring = &linkage->springs[i];
+        if (spring->body_a < LINKAGE_GROUND || spring->body_a >= count ||
+            spring->body_b < LINKAGE_GROUND || spring->body_b >= count ||
+            spring->body_a == spring->body_b) {
+            return err_set(err, ERR_CASE,
+                           "spring '%s' must join two different bodies of the linkage",
+                           spring->name);
+        }
+        if (!isfinite(spring->stiffness + spring->length) || !(spring->damping >= 0.0)) {
+            return err_set(err, ERR_CASE, "spring '%s' has a number that is out of range",
+                           spring->name);
+        }
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        if (spring->joint < 0 || spring->joint >= (int)linkage->joint_count ||
+            !isfinite(spring->stiffness + spring->angle) || !(spring->damping >= 0.0)) {
+            return err_set(err, ERR_CASE, "torsion spring '%s' needs a joint and finite numbers",
+                           spring->name);
+        }
+    }
+    return true;
+}
+
+static bool check_torque(const Linkage *linkage, Err *err)
+{
+    const Torque *torque = &linkage->torque;
+    if (torque->table.count > 0 &&
+        (torque->joint < 0 || torque->joint >= (int)linkage->joint_count)) {
+        return err_set(err, ERR_CASE, "the joint of the torque does not exist");
+    }
+    return time_table_is_ordered(&torque->table) ||
+           err_set(err, ERR_CASE, "the times of a torque must increase");
+}
+
+bool linkage_check(const Linkage *linkage, Err *err)
+{
+    if (linkage->body_count == 0) {
+        return err_set(err, ERR_CASE, "no bodies, allowed: 1 or more");
+    }
+    if (linkage->is_spatial &&
+        (linkage->body_count > SPACE_BODY_MAX || linkage->joint_count > SPACE_JOINT_MAX)) {
+        return err_set(err, ERR_CASE,
+                       "%zu bodies and %zu joints in space, allowed: 1 to %d and 0 to %d; in the "
+                       "plane there may be any number",
+                       linkage->body_count, linkage->joint_count, SPACE_BODY_MAX, SPACE_JOINT_MAX);
+    }
+    if (!check_bodies(linkage, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (!check_joint(linkage, i, err)) {
+            return false;
+        }
+    }
+    return check_springs(linkage, err) && check_driver(linkage, err) && check_torque(linkage, err);
+}
