@@ -6,7 +6,7 @@
 #include <time.h>
 
 // a part of a turn is as good as all of it
-#define PART "run.revolutions=0.3"
+#define PART "run.revolutions=0.1"
 static const char CHEAP[] = "compare $cases/paper/ideal-nominal.yaml --store s.jsonl "
                             "--steps '100 us, 30us, 50 us' --set " PART " ";
 

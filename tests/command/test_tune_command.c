@@ -2,7 +2,7 @@
 #include "program.h"
 
 // its contacts are all in the first degrees
-#define K66_CASE "$cases/paper/impact-k66.yaml --set run.revolutions=0.2"
+#define K66_CASE "$cases/paper/impact-k66.yaml --set run.revolutions=0.1"
 static const char K66[] = K66_CASE;
 static const char IDEAL[] = "$cases/paper/ideal-nominal.yaml";
 
@@ -128,13 +128,13 @@ static void a_cost_that_is_too_small_ends_with_status_1(void **state)
 {
     Program *program = *state;
     char line[PROGRAM_PATH_SIZE];
-    snprintf(line, sizeof line, "%s --error 1e-3 --max-cost 80 --out out", K66);
+    snprintf(line, sizeof line, "%s --error 1e-3 --max-cost 40 --out out", K66);
     json_t *root = tune(program, line, 1);
     assert_true(json_is_false(json_object_get(root, "is_met")));
     const json_t *least = json_object_get(root, "least_error");
-    assert_true(number(least, "steps") <= 80.0);
+    assert_true(number(least, "steps") <= 40.0);
     assert_true(number(least, "error_omega") > 1e-3);
-    assert_true(number(json_object_get(root, "cheapest"), "steps") > 80.0);
+    assert_true(number(json_object_get(root, "cheapest"), "steps") > 40.0);
     json_decref(root);
     assert_says(program->errors, "no setting within --max-cost meets an error of 0.001");
     read_tables(program);
