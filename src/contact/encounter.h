@@ -19,7 +19,6 @@
 #include <stdint.h>
 
 enum {
-    ENCOUNTER_JOINT_MAX = 32, // one bit each in a node
     ENCOUNTER_ROWS_PLAIN = 2, // of a joint without friction
     ENCOUNTER_ROWS_MOST = 9,  // with friction in space; RESPONSE_ROWS_A_JOINT in the plane
 };
@@ -50,33 +49,38 @@ typedef struct EncounterJoint {
 
 typedef struct Encounter {
     size_t joint_count;
-    EncounterJoint joints[ENCOUNTER_JOINT_MAX];
-    size_t row_count;               // all joints together
-    int joint_of[RESPONSE_ROW_MAX]; // of a row: which of the joints here
-    double friction;                // 1, Coulomb's coefficient
+    EncounterJoint *joints; // owned, as are all arrays
+    size_t row_count;       // all joints together
+    int *joint_of;          // of a row: which of the joints here
+    size_t joint_room;      // of these arrays
+    size_t row_room;
+    double friction; // 1, Coulomb's coefficient
     double friction_speed;
     double phase;        // rad of a contact's oscillation in one local step; 0: as many as suit
     double stiff_phase;  // rad, likewise, where steps are implicit
     double stable;       // time constants of a contact's damping in an explicit local step, at most
     double longest_s[2]; // of the next explicit step, of order 4 and 5
     double duration_before_s;       // of the step of the world before; 0: there was none
-    struct EncounterStages *stages; // of implicit steps; owned, NULL before the first
-    double stiff_width_s;           // of the next implicit step; 0 where a contact has just begun
+    struct EncounterStages *stages; // of implicit steps; NULL before the first
+    struct EncounterWork *work;
+    double stiff_width_s; // of the next implicit step; 0 where a contact has just begun
 
     // of the step under way, to be filled in before encounter_run
-    double mobility[RESPONSE_ROW_MAX * RESPONSE_ROW_MAX]; // row by row, without gaps
-    double free[RESPONSE_ROW_MAX];                        // acceleration while nothing acts
-    double position[RESPONSE_ROW_MAX];                    // at the start, m; of a line the gap
-                                                          // and 0; not of turns
-    double speed[RESPONSE_ROW_MAX];                       // at the start, m/s, rad/s
+    double *mobility; // row by row: all of a row, or what is next to its diagonal
+    size_t reach;     // rows further apart do not move each other
+    size_t pitch;     // of `mobility`: between what two neighbouring rows have in one column
+    size_t origin;    // likewise: of the first row and column
+    double *free;     // acceleration while nothing acts
+    double *position; // at the start, m; of a line the gap and 0; not of turns
+    double *speed;    // at the start, m/s, rad/s
 
     // what came of it: nodes, the first at the start, two where a contact begins or ends
     size_t node_count;
     size_t node_room;
-    double *times;      // s, since the start; owned, like the two below
+    double *times;      // s, since the start
     double *values;     // by node: impulse, its integral over time, force; each by row
     double *losses;     // by node: J lost in damping and in friction since the start
-    uint32_t *touching; // by node: which joints touch from there on, one bit each
+    uint64_t *touching; // by node: which joints touch from there on, a word for each 64
     size_t evaluations; // of the forces, since the beginning
 } Encounter;
 
@@ -92,9 +96,19 @@ typedef struct EncounterPose {
 Encounter encounter_start(double friction, double friction_speed, double phase);
 
 // Adds a joint, of which the first six parts are given, with its rows: ENCOUNTER_ROWS_PLAIN, or
-// more of one with friction, but for a line's. Returns false where there is no room for it.
-bool encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t rows);
+// more of one with friction, but for a line's.
+void encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t rows);
+
+// Makes room for what a step is given, once all joints are there: mobilities, all zero, between
+// rows that are no further apart than `reach`.
+void encounter_make_room(Encounter *encounter, size_t reach);
 void encounter_finish(Encounter *encounter);
+
+// The mobility of two rows no further apart than `reach`, by their numbers.
+static inline double *encounter_mobility(const Encounter *encounter, size_t row, size_t column)
+{
+    return encounter->mobility + encounter->origin + row * encounter->pitch + column;
+}
 
 // The number of rows, all joints together.
 size_t encounter_rows(const Encounter *encounter);
@@ -106,12 +120,16 @@ bool encounter_run(Encounter *encounter, double duration);
 // Impulses and their integrals over time, by row, and the losses, from the start to a time in the
 // step, and the forces then.
 typedef struct EncounterSums {
-    double impulse[RESPONSE_ROW_MAX]; // N s, N m s
-    double moment[RESPONSE_ROW_MAX];  // N s^2: integral of the impulse
-    double force[RESPONSE_ROW_MAX];   // N, N m
-    double dissipated;                // J
-    double friction;                  // J
+    double *impulse;   // N s, N m s; owned, as the next two
+    double *moment;    // N s^2: integral of the impulse
+    double *force;     // N, N m
+    double dissipated; // J
+    double friction;   // J
 } EncounterSums;
+
+// Sums of so many rows, all zero.
+EncounterSums encounter_sums(size_t rows);
+void encounter_sums_free(EncounterSums *sums);
 
 // The sums at a time between two neighbouring nodes, of which `node` is the first.
 void encounter_at(const Encounter *encounter, size_t node, double time_s, EncounterSums *sums);
@@ -122,3 +140,11 @@ EncounterPose encounter_pose(const Encounter *encounter, size_t joint, size_t no
 
 // The node at or before a time: the last of several at that time.
 size_t encounter_node(const Encounter *encounter, double time_s);
+
+// Whether a joint touches from a node on, and whether any does.
+static inline bool encounter_touches(const Encounter *encounter, size_t node, size_t joint)
+{
+    const size_t words = (encounter->joint_count + 63) / 64;
+    return (encounter->touching[node * words + joint / 64] >> joint % 64 & 1) != 0;
+}
+bool encounter_touches_any(const Encounter *encounter, size_t node);

@@ -15,13 +15,13 @@ static const double ROUNDINGS = 8.0 * 0x1p-52; // of what a depth is the differe
 static void move_rows(const Encounter *encounter, size_t joint, const double *impulse,
                       double *moved)
 {
-    const size_t all = encounter_rows(encounter);
     const size_t first = encounter->joints[joint].first_row;
     const size_t own = encounter->joints[joint].row_count;
     for (size_t i = 0; i < own; i++) {
-        const double *mobility = encounter->mobility + (first + i) * all;
+        const double *mobility = encounter_mobility(encounter, first + i, 0);
+        const EncounterSpan span = encounter_span(encounter, first + i);
         moved[i] = 0.0;
-        for (size_t k = 0; k < all; k++) {
+        for (size_t k = span.first; k < span.end; k++) {
             moved[i] += mobility[k] * impulse[k];
         }
     }

@@ -89,11 +89,12 @@ static bool is_leaving(const Encounter *encounter, const EncounterPoint *from, s
            pose.approach_speed < 0.0;
 }
 
-uint32_t encounter_events_find(Encounter *encounter, EncounterStep *step, const EncounterPoint *to,
-                               double *width_s)
+size_t encounter_events_find(Encounter *encounter, EncounterStep *step, const EncounterPoint *to,
+                             double *width_s)
 {
     const double whole_s = *width_s;
-    double crossings[ENCOUNTER_JOINT_MAX];
+    double *crossings = encounter->work->crossings_s;
+    size_t found = 0;
     for (size_t i = 0; i < encounter->joint_count; i++) {
         double bracket_s = whole_s;
         double first;
@@ -102,14 +103,17 @@ uint32_t encounter_events_find(Encounter *encounter, EncounterStep *step, const 
         if (step->method == ENCOUNTER_FLIGHT && is_leaving(encounter, step->from, i)) {
             crossings[i] = encounter_flight_time(encounter, i, step->from, whole_s);
             *width_s = fmin(*width_s, crossings[i]);
+            found++;
         } else if (find_bracket(encounter, step, i, to, &first, &bracket_s, &last)) {
             crossings[i] = find_crossing(encounter, step, i, first, bracket_s, last);
             *width_s = fmin(*width_s, crossings[i]);
+            found++;
         }
     }
-    uint32_t events = 0;
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        events |= crossings[i] <= *width_s + AT_ONCE * whole_s ? UINT32_C(1) << i : 0;
+    size_t events = 0;
+    for (size_t i = 0; found > 0 && i < encounter->joint_count; i++) {
+        encounter->work->has_event[i] = crossings[i] <= *width_s + AT_ONCE * whole_s;
+        events += encounter->work->has_event[i] ? 1 : 0;
     }
     return events;
 }
@@ -132,12 +136,12 @@ bool encounter_events_shorten(const Encounter *encounter, const EncounterPoint *
     return *width_s < whole_s;
 }
 
-bool encounter_events_step(Encounter *encounter, EncounterStep *step, uint32_t events,
-                           double *width_s, EncounterPoint *to)
+bool encounter_events_step(Encounter *encounter, EncounterStep *step, double *width_s,
+                           EncounterPoint *to)
 {
     const double whole_s = *width_s;
     size_t first = 0;
-    while ((events >> first & 1) == 0) {
+    while (!encounter->work->has_event[first]) {
         first++;
     }
     for (int i = 0;; i++) {

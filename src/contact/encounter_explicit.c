@@ -76,28 +76,28 @@ static void finish_order_4(const Encounter *encounter, const EncounterPoint *fro
 static void finish_order_5(Encounter *encounter, const EncounterPoint *from, double h,
                            const EncounterPoint *inside, EncounterPoint *to)
 {
-    EncounterPoint last;
-    last.time_s = from->time_s + h;
+    EncounterPoint *last = &encounter->work->last;
+    last->time_s = from->time_s + h;
     for (size_t i = 0; i < encounter->row_count; i++) {
         const double rates = 0.25 * h * (3.0 * inside->rate[i] - from->rate[i]);
         const double second =
             0.5 * from->force[i] + h * (from->rate[i] / 16.0 + 5.0 / 48.0 * inside->rate[i]);
-        last.impulse[i] = from->impulse[i] + h * (from->force[i] + rates);
-        last.moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
+        last->impulse[i] = from->impulse[i] + h * (from->force[i] + rates);
+        last->moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
     }
-    encounter_rates_find(encounter, &last);
+    encounter_rates_find(encounter, last);
     for (size_t i = 0; i < encounter->row_count; i++) {
         const double rates =
-            h * (from->rate[i] / 8.0 + 25.0 / 72.0 * inside->rate[i] + last.rate[i] / 36.0);
+            h * (from->rate[i] / 8.0 + 25.0 / 72.0 * inside->rate[i] + last->rate[i] / 36.0);
         const double second =
-            from->force[i] / 8.0 + 25.0 / 72.0 * inside->force[i] + last.force[i] / 36.0;
+            from->force[i] / 8.0 + 25.0 / 72.0 * inside->force[i] + last->force[i] / 36.0;
         to->impulse[i] = from->impulse[i] + h * (from->force[i] + rates);
         to->moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
     }
     for (size_t i = 0; i < POWERS; i++) {
         const double rates =
             h * (from->power_rates[i] / 8.0 + 25.0 / 72.0 * inside->power_rates[i] +
-                 last.power_rates[i] / 36.0);
+                 last->power_rates[i] / 36.0);
         to->losses[i] = from->losses[i] + h * (from->powers[i] + rates);
     }
 }
@@ -108,13 +108,14 @@ void encounter_explicit_step(Encounter *encounter, const EncounterPoint *from, i
     step->order = order;
     step->width_s = width_s;
     step->middle = MIDDLES[order - 4];
-    find_middle_point(encounter, from, step->middle * width_s, &step->inside);
-    encounter_rates_find(encounter, &step->inside);
+    step->inside = &encounter->work->inside;
+    find_middle_point(encounter, from, step->middle * width_s, step->inside);
+    encounter_rates_find(encounter, step->inside);
     to->time_s = from->time_s + width_s;
     if (order == 4) {
-        finish_order_4(encounter, from, width_s, &step->inside, to);
+        finish_order_4(encounter, from, width_s, step->inside, to);
     } else {
-        finish_order_5(encounter, from, width_s, &step->inside, to);
+        finish_order_5(encounter, from, width_s, step->inside, to);
     }
 }
 
@@ -138,8 +139,8 @@ void encounter_explicit_inside(const Encounter *encounter, const EncounterExplic
         double a;
         double b;
         const double slope = h * from->rate[i];
-        find_cubic(step->middle, from->force[i], slope, step->inside.force[i],
-                   h * step->inside.rate[i], &a, &b);
+        find_cubic(step->middle, from->force[i], slope, step->inside->force[i],
+                   h * step->inside->rate[i], &a, &b);
         impulse[i] = from->impulse[i] +
                      h * s * (from->force[i] + s * (slope / 2.0 + s * (a / 3.0 + s * b / 4.0)));
         moment[i] = from->moment[i] + h * s * from->impulse[i] +
@@ -155,8 +156,8 @@ void encounter_explicit_extend(const Encounter *encounter, const EncounterExplic
     for (size_t i = 0; i < encounter->row_count; i++) {
         double a;
         double b;
-        find_cubic(step->middle, from->force[i], h * from->rate[i], step->inside.force[i],
-                   h * step->inside.rate[i], &a, &b);
+        find_cubic(step->middle, from->force[i], h * from->rate[i], step->inside->force[i],
+                   h * step->inside->rate[i], &a, &b);
         to->force[i] = from->force[i] + h * from->rate[i] + a + b;
     }
 }
@@ -168,8 +169,8 @@ static double third_change(const EncounterJoint *joint, const EncounterExplicit 
     double square = 0.0;
     for (size_t i = joint->first_row; i < joint->first_row + ENCOUNTER_ROWS_PLAIN; i++) {
         const double c = step->middle;
-        const double missed = step->inside.force[i] - from->force[i] -
-                              0.5 * c * step->width_s * (from->rate[i] + step->inside.rate[i]);
+        const double missed = step->inside->force[i] - from->force[i] -
+                              0.5 * c * step->width_s * (from->rate[i] + step->inside->rate[i]);
         square += missed * missed;
     }
     return 12.0 * sqrt(square) / (step->middle * step->middle * step->middle);
@@ -179,7 +180,7 @@ double encounter_explicit_error(const Encounter *encounter, EncounterExplicit *s
                                 const EncounterPoint *from, double longest_s[2])
 {
     const double h = step->width_s;
-    const EncounterPoint *inside = &step->inside;
+    const EncounterPoint *inside = step->inside;
     double worst = 0.0;
     longest_s[0] = longest_s[1] = INFINITY;
     step->extends = true;

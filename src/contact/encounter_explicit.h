@@ -7,9 +7,9 @@
 typedef struct EncounterExplicit {
     int order; // 4 or 5
     double width_s;
-    double middle;         // the share of the width at which the forces below are
-    EncounterPoint inside; // there
-    bool extends;          // whether the forces at its end follow from it well enough
+    double middle;          // the share of the width at which the forces below are
+    EncounterPoint *inside; // there, in the encounter's work
+    bool extends;           // whether the forces at its end follow from it well enough
 } EncounterExplicit;
 
 // Takes a step of an order and length. Of its end all is written but the forces.

@@ -18,26 +18,29 @@
 enum { WIDE = 8 };
 
 // Where a row is and how fast it goes, from the impulses so far.
-static double row_position(const Encounter *encounter, size_t row, double time_s,
-                           const double *moment)
+static inline double row_motion(const Encounter *encounter, size_t row, double time_s,
+                                const double *impulse, const double *moment, double *position)
 {
-    const size_t width = encounter->row_count;
-    const double *mobility = encounter->mobility + row * width;
-    double position = encounter->position[row] +
-                      time_s * (encounter->speed[row] + 0.5 * time_s * encounter->free[row]);
-    for (size_t k = 0; k < width; k++) {
-        position += mobility[k] * moment[k];
+    const double *mobility = encounter_mobility(encounter, row, 0);
+    const EncounterSpan span = encounter_span(encounter, row);
+    double speed = encounter->speed[row] + time_s * encounter->free[row];
+    double place = encounter->position[row] +
+                   time_s * (encounter->speed[row] + 0.5 * time_s * encounter->free[row]);
+    for (size_t k = span.first; k < span.end; k++) {
+        place += mobility[k] * moment[k];
+        speed += mobility[k] * impulse[k];
     }
-    return position;
+    *position = place;
+    return speed;
 }
 
 double encounter_force_row_speed(const Encounter *encounter, size_t row, double time_s,
                                  const double *impulse)
 {
-    const size_t width = encounter->row_count;
-    const double *mobility = encounter->mobility + row * width;
+    const double *mobility = encounter_mobility(encounter, row, 0);
+    const EncounterSpan span = encounter_span(encounter, row);
     double speed = encounter->speed[row] + time_s * encounter->free[row];
-    for (size_t k = 0; k < width; k++) {
+    for (size_t k = span.first; k < span.end; k++) {
         speed += mobility[k] * impulse[k];
     }
     return speed;
@@ -94,62 +97,62 @@ PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double ti
                              const double *impulse, const double *moment)
 {
     const size_t row = encounter->joints[joint].first_row;
+    double position[2];
+    double speed[2];
+    speed[0] = row_motion(encounter, row, time_s, impulse, moment, &position[0]);
     if (encounter->joints[joint].shape == TOUCH_LINE) {
-        return line_pose(row_position(encounter, row, time_s, moment),
-                         encounter_force_row_speed(encounter, row, time_s, impulse));
+        return line_pose(position[0], speed[0]);
     }
-    const double position[2] = {row_position(encounter, row, time_s, moment),
-                                row_position(encounter, row + 1, time_s, moment)};
-    const double speed[2] = {encounter_force_row_speed(encounter, row, time_s, impulse),
-                             encounter_force_row_speed(encounter, row + 1, time_s, impulse)};
+    speed[1] = row_motion(encounter, row + 1, time_s, impulse, moment, &position[1]);
     return pose_of(encounter, joint, position, speed);
 }
 
 // All rows at once: the same sums in the same order, but for rows side by side, which the compiler
 // turns into vectors. The mobility is symmetric.
-typedef struct AllRows {
-    double position[RESPONSE_ROW_MAX];
-    double speed[RESPONSE_ROW_MAX];
-} AllRows;
-
 static void find_all_rows(const Encounter *encounter, double time_s, const double *impulse,
-                          const double *moment, AllRows *all)
+                          const double *moment, double *positions, double *speeds)
 {
     const size_t width = encounter->row_count;
     for (size_t i = 0; i < width; i++) {
-        all->speed[i] = encounter->speed[i] + time_s * encounter->free[i];
-        all->position[i] = encounter->position[i] +
-                           time_s * (encounter->speed[i] + 0.5 * time_s * encounter->free[i]);
+        speeds[i] = encounter->speed[i] + time_s * encounter->free[i];
+        positions[i] = encounter->position[i] +
+                       time_s * (encounter->speed[i] + 0.5 * time_s * encounter->free[i]);
     }
     for (size_t k = 0; k < width; k++) {
-        const double *mobility = encounter->mobility + k * width;
+        const double *mobility = encounter_mobility(encounter, k, 0);
+        const EncounterSpan span = encounter_span(encounter, k);
         const double pushed = impulse[k];
         const double moved = moment[k];
         // rows of a joint that has not touched yet
         if (pushed == 0.0 && moved == 0.0) {
             continue;
         }
-        for (size_t i = 0; i < width; i++) {
-            all->speed[i] += mobility[i] * pushed;
-            all->position[i] += mobility[i] * moved;
+        for (size_t i = span.first; i < span.end; i++) {
+            speeds[i] += mobility[i] * pushed;
+            positions[i] += mobility[i] * moved;
         }
     }
 }
 
-// Where one joint's rows are, and how fast they go.
+// Where one joint's rows are, and how fast they go; of many rows as they were found together.
 static void find_own_rows(const Encounter *encounter, size_t joint, double time_s,
-                          const double *impulse, const double *moment, const AllRows *all,
+                          const double *impulse, const double *moment, bool is_wide,
                           double position[2], double *speed)
 {
     const size_t row = encounter->joints[joint].first_row;
     const size_t count = encounter->joints[joint].row_count;
+    const EncounterWork *work = encounter->work;
     for (size_t i = 0; i < count; i++) {
-        speed[i] = all != NULL ? all->speed[row + i]
-                               : encounter_force_row_speed(encounter, row + i, time_s, impulse);
+        if (is_wide) {
+            speed[i] = work->speeds[row + i];
+        } else if (i < 2) {
+            speed[i] = row_motion(encounter, row + i, time_s, impulse, moment, &position[i]);
+        } else {
+            speed[i] = encounter_force_row_speed(encounter, row + i, time_s, impulse);
+        }
     }
-    for (size_t i = 0; i < 2; i++) {
-        position[i] =
-            all != NULL ? all->position[row + i] : row_position(encounter, row + i, time_s, moment);
+    for (size_t i = 0; is_wide && i < 2; i++) {
+        position[i] = work->positions[row + i];
     }
 }
 
@@ -221,11 +224,11 @@ static double pressing(const EncounterJoint *joint, const EncounterTouch *touch)
 
 // How a joint is; of its rows beyond the first two only where there is friction.
 static void find_touch(const Encounter *encounter, size_t joint, double time_s,
-                       const double *impulse, const double *moment, const AllRows *all,
+                       const double *impulse, const double *moment, bool is_wide,
                        EncounterTouch *touch)
 {
     double position[2];
-    find_own_rows(encounter, joint, time_s, impulse, moment, all, position, touch->speed);
+    find_own_rows(encounter, joint, time_s, impulse, moment, is_wide, position, touch->speed);
     touch->pose = pose_of(encounter, joint, position, touch->speed);
     force_law_both(&encounter->joints[joint].law, touch->pose.penetration, &touch->elastic,
                    &touch->tangent);
@@ -235,7 +238,6 @@ void encounter_force_find_touching(Encounter *encounter, double time_s, const do
                                    const double *moment, double *force, double powers[2],
                                    EncounterTouch *touching)
 {
-    AllRows rows;
     const bool is_wide = encounter->row_count >= WIDE;
     bool is_any = false;
     powers[0] = powers[1] = 0.0;
@@ -247,11 +249,12 @@ void encounter_force_find_touching(Encounter *encounter, double time_s, const do
             continue;
         }
         if (!is_any && is_wide) {
-            find_all_rows(encounter, time_s, impulse, moment, &rows);
+            find_all_rows(encounter, time_s, impulse, moment, encounter->work->positions,
+                          encounter->work->speeds);
         }
         is_any = true;
         EncounterTouch *touch = &touching[i];
-        find_touch(encounter, i, time_s, impulse, moment, is_wide ? &rows : NULL, touch);
+        find_touch(encounter, i, time_s, impulse, moment, is_wide, touch);
         const PinHole *pose = &touch->pose;
         const double normal = pressing(joint, touch);
         own[0] = normal * pose->normal.x;
@@ -267,20 +270,20 @@ void encounter_force_find_touching(Encounter *encounter, double time_s, const do
 void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
                           const double *moment, double *force, double powers[2])
 {
-    EncounterTouch touching[ENCOUNTER_JOINT_MAX];
-    encounter_force_find_touching(encounter, time_s, impulse, moment, force, powers, touching);
+    encounter_force_find_touching(encounter, time_s, impulse, moment, force, powers,
+                                  encounter->work->touching);
 }
 
 // By how much the places that can press together with one move it along its normal, 1/kg; of a
 // block only the corners that touch, for most of its impacts are of one.
 static double mobility_between(const Encounter *encounter, const EncounterJoint *of, Vec2 normal)
 {
-    const size_t width = encounter->row_count;
     double sum = 0.0;
     for (int k = of->siblings[0]; k <= of->siblings[1]; k++) {
-        const double *other = encounter->mobility + of->first_row * width + of[k].first_row;
+        const double *other = encounter_mobility(encounter, of->first_row, of[k].first_row);
+        const double *below = other + encounter->pitch;
         const double between = normal.x * (other[0] * normal.x + other[1] * normal.y) +
-                               normal.y * (other[width] * normal.x + other[width + 1] * normal.y);
+                               normal.y * (below[0] * normal.x + below[1] * normal.y);
         const bool presses = of[k].is_touching || of[k].shape != TOUCH_LINE;
         sum += k != 0 && presses ? fabs(between) : 0.0;
     }
@@ -290,11 +293,10 @@ static double mobility_between(const Encounter *encounter, const EncounterJoint 
 // Mobility along the normal of a joint, 1/kg. Places that press together move each other.
 static inline double normal_mobility(const Encounter *encounter, size_t joint, Vec2 normal)
 {
-    const size_t width = encounter->row_count;
     const EncounterJoint *of = &encounter->joints[joint];
-    const double *first = encounter->mobility + of->first_row * width + of->first_row;
+    const double *first = encounter_mobility(encounter, of->first_row, of->first_row);
     const double own = normal.x * (first[0] * normal.x + 2.0 * first[1] * normal.y) +
-                       normal.y * first[width + 1] * normal.y;
+                       normal.y * first[encounter->pitch + 1] * normal.y;
     return of->siblings[0] == of->siblings[1] ? own : own + mobility_between(encounter, of, normal);
 }
 
@@ -314,12 +316,11 @@ double encounter_force_decay(const Encounter *encounter, size_t joint, Vec2 norm
 
 double encounter_force_friction_time(const Encounter *encounter, size_t joint, const double *force)
 {
-    const size_t width = encounter->row_count;
     const size_t row = encounter->joints[joint].first_row;
     const double arm = encounter->joints[joint].hole_radius;
     double mobility = 0.0;
     for (size_t k = 0; k < encounter->joints[joint].row_count; k++) {
-        const double diagonal = encounter->mobility[(row + k) * width + row + k];
+        const double diagonal = *encounter_mobility(encounter, row + k, row + k);
         const bool is_turn = k >= ENCOUNTER_ROWS_PLAIN && k != ENCOUNTER_ROW_AXIAL;
         mobility += is_turn ? arm * arm * diagonal : diagonal;
     }

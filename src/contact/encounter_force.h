@@ -17,13 +17,13 @@ enum {
 // The state of an encounter at one time.
 typedef struct EncounterPoint {
     double time_s;
-    double impulse[RESPONSE_ROW_MAX]; // N s, by row
-    double moment[RESPONSE_ROW_MAX];  // N s^2, its integral over time
-    double force[RESPONSE_ROW_MAX];   // N
-    double rate[RESPONSE_ROW_MAX];    // N/s, of the forces along the motion
-    double powers[2];                 // W, lost in damping and in friction
-    double power_rates[2];            // W/s
-    double losses[2];                 // J, likewise, since the start
+    double *impulse;       // N s, by row; the four are in one array that starts here
+    double *moment;        // N s^2, its integral over time
+    double *force;         // N
+    double *rate;          // N/s, of the forces along the motion
+    double powers[2];      // W, lost in damping and in friction
+    double power_rates[2]; // W/s
+    double losses[2];      // J, likewise, since the start
 } EncounterPoint;
 
 // How a joint that touches is at a point: its pose, how fast its rows go, what its spring presses
@@ -34,6 +34,42 @@ typedef struct EncounterTouch {
     double elastic;
     double tangent;
 } EncounterTouch;
+
+enum { ENCOUNTER_ERRORS = 5 };
+
+// What a step works with, by row and by joint.
+typedef struct EncounterWork {
+    EncounterPoint ends[2]; // of a local step
+    EncounterPoint inside;  // the points of an explicit step
+    EncounterPoint last;
+    EncounterPoint trial; // where a depth is looked at
+    EncounterTouch *touching;
+    double *forces;
+    double *positions; // of rows that are worked out together
+    double *speeds;
+    double *errors[ENCOUNTER_ERRORS]; // of an implicit step
+    double *crossings_s;              // when joints' depths are zero
+    bool *has_event;                  // whether a contact begins or ends at the end of a local step
+} EncounterWork;
+
+// A point of so many rows, all zero.
+EncounterPoint encounter_point(size_t rows);
+void encounter_point_free(EncounterPoint *point);
+
+// Which columns of a row's mobility may be other than zero.
+typedef struct EncounterSpan {
+    size_t first;
+    size_t end;
+} EncounterSpan;
+
+static inline EncounterSpan encounter_span(const Encounter *encounter, size_t row)
+{
+    const size_t end = row + encounter->reach + 1;
+    return (EncounterSpan){
+        .first = row > encounter->reach ? row - encounter->reach : 0,
+        .end = end < encounter->row_count ? end : encounter->row_count,
+    };
+}
 
 // Writes the forces in all rows, and the powers lost in damping and in friction.
 void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,

@@ -13,28 +13,34 @@
 
 static const double NARROW = 1e-7; // of the step of the world, that the quintic is used for
 
-void encounter_finish(Encounter *encounter)
+// Marks which joints touch from a node on.
+static void set_touching(const Encounter *encounter, uint64_t *words)
 {
-    free(encounter->times);
-    free(encounter->values);
-    free(encounter->losses);
-    free(encounter->touching);
-    encounter_stiff_finish(encounter);
-    *encounter = (Encounter){.joint_count = 0};
+    const size_t count = encounter->joint_count;
+    for (size_t first = 0; first < count; first += 64) {
+        uint64_t bits = 0;
+        for (size_t i = first; i < count && i < first + 64; i++) {
+            bits |= encounter->joints[i].is_touching ? UINT64_C(1) << (i - first) : 0;
+        }
+        words[first / 64] = bits;
+    }
 }
 
-static uint32_t touching_bits(const Encounter *encounter)
+bool encounter_touches_any(const Encounter *encounter, size_t node)
 {
-    uint32_t bits = 0;
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        bits |= encounter->joints[i].is_touching ? (uint32_t)1 << i : 0;
+    const size_t words = (encounter->joint_count + 63) / 64;
+    for (size_t i = 0; i < words; i++) {
+        if (encounter->touching[node * words + i] != 0) {
+            return true;
+        }
     }
-    return bits;
+    return false;
 }
 
 void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point)
 {
     const size_t rows = encounter_rows(encounter);
+    const size_t words = (encounter->joint_count + 63) / 64;
     if (encounter->node_count == encounter->node_room) {
         encounter->node_room = 2 * encounter->node_room + 64;
         const size_t room = encounter->node_room;
@@ -42,7 +48,8 @@ void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point)
         encounter->values =
             realloc(encounter->values, (3 * rows * room + 1) * sizeof *encounter->values);
         encounter->losses = realloc(encounter->losses, 2 * room * sizeof *encounter->losses);
-        encounter->touching = realloc(encounter->touching, room * sizeof *encounter->touching);
+        encounter->touching =
+            realloc(encounter->touching, (words * room + 1) * sizeof *encounter->touching);
         assert(encounter->times != NULL && encounter->values != NULL && encounter->losses != NULL &&
                encounter->touching != NULL);
     }
@@ -53,7 +60,7 @@ void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point)
     memcpy(values + rows, point->moment, rows * sizeof *values);
     memcpy(values + 2 * rows, point->force, rows * sizeof *values);
     memcpy(encounter->losses + 2 * node, point->losses, sizeof point->losses);
-    encounter->touching[node] = touching_bits(encounter);
+    set_touching(encounter, encounter->touching + words * node);
 }
 
 void encounter_nodes_settle(Encounter *encounter)
@@ -118,6 +125,6 @@ EncounterPose encounter_pose(const Encounter *encounter, size_t joint, size_t no
     return (EncounterPose){
         .pose = encounter_force_pose(encounter, joint, time_s, sums->impulse, sums->moment),
         .force = {sums->force[row], sums->force[row + 1]},
-        .is_touching = (encounter->touching[node] >> joint & 1) != 0,
+        .is_touching = encounter_touches(encounter, node, joint),
     };
 }

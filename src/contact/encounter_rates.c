@@ -203,12 +203,12 @@ static void rate_joint(const Encounter *encounter, Moving *moving, const Encount
 static void find_moving(const Encounter *encounter, const double *forces,
                         const EncounterTouch *touch, Moving *moving)
 {
-    const size_t rows = encounter->row_count;
     const size_t first = moving->joint->first_row;
     for (size_t k = 0; k < moving->joint->row_count; k++) {
-        const double *mobility = encounter->mobility + (first + k) * rows;
+        const double *mobility = encounter_mobility(encounter, first + k, 0);
+        const EncounterSpan span = encounter_span(encounter, first + k);
         double acceleration = encounter->free[first + k];
-        for (size_t m = 0; m < rows; m++) {
+        for (size_t m = span.first; m < span.end; m++) {
             acceleration += mobility[m] * forces[m];
         }
         moving->speed[k] = (Rated){touch->speed[k], acceleration};
@@ -218,10 +218,10 @@ static void find_moving(const Encounter *encounter, const double *forces,
 void encounter_rates_find(Encounter *encounter, EncounterPoint *point)
 {
     const size_t rows = encounter->row_count;
-    EncounterTouch touching[ENCOUNTER_JOINT_MAX];
-    double forces[RESPONSE_ROW_MAX];
+    const EncounterTouch *touching = encounter->work->touching;
+    double *forces = encounter->work->forces;
     encounter_force_find_touching(encounter, point->time_s, point->impulse, point->moment, forces,
-                                  point->powers, touching);
+                                  point->powers, encounter->work->touching);
     memset(point->force, 0, rows * sizeof *point->force);
     memset(point->rate, 0, rows * sizeof *point->rate);
     memset(point->powers, 0, sizeof point->powers);

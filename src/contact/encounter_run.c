@@ -14,16 +14,11 @@
 #include "contact/encounter_rates.h"
 #include "contact/encounter_step.h"
 
-#include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // beyond this a step of the world holds more of a contact than anybody can want
 enum { NODE_MAX = 100000 };
-
-// rad: of implicit steps, where the phase is not given
-static const double STIFF_PHASE = 0.05;
 
 // the error of a classical step of order 4 in its phase, which is what is meant where one is given
 static const double PHASE_ERROR = 1.0 / 120.0;
@@ -40,42 +35,6 @@ static const double FIRST = 50.0;
 // restitutions below a tenth or so
 static const double OVERDAMPED = 8.0;
 
-Encounter encounter_start(double friction, double friction_speed, double phase)
-{
-    return (Encounter){
-        .friction = friction,
-        .friction_speed = friction_speed,
-        .phase = phase,
-        .stiff_phase = phase > 0.0 ? phase : STIFF_PHASE,
-        .stable = 2.0,
-        .longest_s = {INFINITY, INFINITY},
-    };
-}
-
-size_t encounter_rows(const Encounter *encounter)
-{
-    return encounter->row_count;
-}
-
-bool encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t rows)
-{
-    if (encounter->joint_count == ENCOUNTER_JOINT_MAX ||
-        encounter->row_count + rows > RESPONSE_ROW_MAX) {
-        return false;
-    }
-    EncounterJoint *added = &encounter->joints[encounter->joint_count];
-    *added = *joint;
-    added->first_row = encounter->row_count;
-    added->row_count = rows;
-    added->has_friction =
-        encounter->friction > 0.0 && (rows > ENCOUNTER_ROWS_PLAIN || added->shape == TOUCH_LINE);
-    for (size_t i = 0; i < rows; i++) {
-        encounter->joint_of[encounter->row_count++] = (int)encounter->joint_count;
-    }
-    encounter->joint_count++;
-    return true;
-}
-
 // The force grows as the power 1.5 of the time since the onset.
 static void set_first_width(EncounterJoint *joint)
 {
@@ -89,9 +48,8 @@ static void set_first_width(EncounterJoint *joint)
 // middles, relative to it.
 static double response_change(const Encounter *encounter, const EncounterJoint *joint)
 {
-    const size_t width = encounter->row_count;
-    const double *own = encounter->mobility + joint->first_row * width + joint->first_row;
-    const double now[3] = {own[0], own[1], own[width + 1]};
+    const double *own = encounter_mobility(encounter, joint->first_row, joint->first_row);
+    const double now[3] = {own[0], own[1], own[encounter->pitch + 1]};
     double change = 0.0;
     double size = 0.0;
     for (size_t i = 0; i < 3; i++) {
@@ -109,8 +67,7 @@ static void set_tolerances(Encounter *encounter, double duration_s)
     const double between_s = 0.5 * (duration_s + encounter->duration_before_s);
     for (size_t i = 0; i < encounter->joint_count; i++) {
         EncounterJoint *joint = &encounter->joints[i];
-        const size_t width = encounter->row_count;
-        const double *own = encounter->mobility + joint->first_row * width + joint->first_row;
+        const double *own = encounter_mobility(encounter, joint->first_row, joint->first_row);
         if (phase > 0.0) {
             joint->tolerance = phase * phase * phase * phase * PHASE_ERROR;
         } else if (encounter->duration_before_s > 0.0) {
@@ -123,7 +80,7 @@ static void set_tolerances(Encounter *encounter, double duration_s)
         }
         joint->mobility_before[0] = own[0];
         joint->mobility_before[1] = own[1];
-        joint->mobility_before[2] = own[width + 1];
+        joint->mobility_before[2] = own[encounter->pitch + 1];
         set_first_width(joint);
     }
     encounter->duration_before_s = duration_s;
@@ -171,10 +128,10 @@ static void settle_contacts(Encounter *encounter, const EncounterPoint *point)
     }
 }
 
-static void change_contacts(Encounter *encounter, uint32_t events, const EncounterPoint *point)
+static void change_contacts(Encounter *encounter, const EncounterPoint *point)
 {
     for (size_t i = 0; i < encounter->joint_count; i++) {
-        if ((events >> i & 1) == 0) {
+        if (!encounter->work->has_event[i]) {
             continue;
         }
         if (encounter->joints[i].is_touching) {
@@ -187,10 +144,11 @@ static void change_contacts(Encounter *encounter, uint32_t events, const Encount
     }
 }
 
-// A local step of at most `left_s` up to the first event in it; `events` are the joints it is of.
-// Returns false where the step is to be tried again. An event at its very start leaves no length.
+// A local step of at most `left_s` up to the first event in it; `events` is how many joints it is
+// of. Returns false where the step is to be tried again. An event at its very start leaves no
+// length.
 static bool advance_step(Encounter *encounter, EncounterStep *step, double left_s,
-                         EncounterPoint *to, uint32_t *events)
+                         EncounterPoint *to, size_t *events)
 {
     double width_s = encounter_step_take(encounter, step, left_s, to);
     const double whole_s = width_s;
@@ -201,7 +159,7 @@ static bool advance_step(Encounter *encounter, EncounterStep *step, double left_
     }
     *events = is_solved ? encounter_events_find(encounter, step, to, &width_s) : 0;
     if (*events != 0) {
-        is_solved = encounter_events_step(encounter, step, *events, &width_s, to);
+        is_solved = encounter_events_step(encounter, step, &width_s, to);
     }
     if (!is_solved) {
         encounter->stiff_width_s = 0.5 * whole_s;
@@ -213,13 +171,21 @@ static bool advance_step(Encounter *encounter, EncounterStep *step, double left_
     return true;
 }
 
+// The point at the start of a step.
+static void begin_step(const Encounter *encounter, EncounterPoint *point)
+{
+    point->time_s = 0.0;
+    memset(point->impulse, 0, encounter->row_count * sizeof *point->impulse);
+    memset(point->moment, 0, encounter->row_count * sizeof *point->moment);
+    memset(point->losses, 0, sizeof point->losses);
+}
+
 bool encounter_run(Encounter *encounter, double duration)
 {
-    EncounterPoint points[2];
-    EncounterPoint *from = &points[0];
-    EncounterPoint *to = &points[1];
+    EncounterPoint *from = &encounter->work->ends[0];
+    EncounterPoint *to = &encounter->work->ends[1];
     EncounterStep step;
-    memset(from, 0, sizeof *from);
+    begin_step(encounter, from);
     encounter->node_count = 0;
     set_tolerances(encounter, duration);
     settle_contacts(encounter, from);
@@ -230,7 +196,7 @@ bool encounter_run(Encounter *encounter, double duration)
         if (encounter->node_count > NODE_MAX) {
             return false;
         }
-        uint32_t events;
+        size_t events;
         step.from = from;
         if (!advance_step(encounter, &step, duration - from->time_s, to, &events)) {
             continue;
@@ -245,7 +211,7 @@ bool encounter_run(Encounter *encounter, double duration)
         }
         encounter_nodes_add(encounter, to);
         if (events != 0) {
-            change_contacts(encounter, events, to);
+            change_contacts(encounter, to);
             encounter_rates_find(encounter, to);
             encounter_nodes_add(encounter, to);
         }

@@ -12,14 +12,17 @@
 // IV.8.
 #include "contact/encounter_stages.h"
 
-#include "base/dense.h"
+#include "base/zeroed.h"
 #include "contact/encounter_error.h"
 #include "contact/encounter_slopes.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { NEWTON_MOST = 12 };
+enum {
+    NEWTON_MOST = 12,
+    DENSE = 64, // rows up to which the equations are solved stage by stage, as one dense matrix
+};
 
 // clang-format off
 #define ROOT_6 2.449489742783178098
@@ -35,6 +38,57 @@ const double ENCOUNTER_COUPLING[ENCOUNTER_STAGES][ENCOUNTER_STAGES] = {
 static const double SOLVED = 1e-2;
 
 static const double FROM_DEPTH = 0.5; // of the depth at the start, a smooth force goes on linearly
+
+EncounterStages *encounter_stages_create(const Encounter *encounter)
+{
+    const size_t rows = encounter_rows(encounter);
+    EncounterStages *stages = zeroed(1, sizeof *stages);
+    stages->row_of = zeroed(rows, sizeof *stages->row_of);
+    stages->from_depth = zeroed(encounter->joint_count, sizeof *stages->from_depth);
+    for (size_t i = 0; i < ENCOUNTER_STAGES; i++) {
+        stages->moved[i] = zeroed(rows, sizeof *stages->moved[i]);
+        stages->impulse[i] = zeroed(rows, sizeof *stages->impulse[i]);
+        stages->moment[i] = zeroed(rows, sizeof *stages->moment[i]);
+    }
+    for (size_t i = 0; i <= ENCOUNTER_STAGES; i++) {
+        stages->forces[i] = zeroed(rows, sizeof *stages->forces[i]);
+    }
+    stages->change = zeroed(ENCOUNTER_STAGES * rows, sizeof *stages->change);
+    for (size_t i = 0; i < 2; i++) {
+        stages->changes[i] = zeroed(rows, sizeof *stages->changes[i]);
+    }
+    return stages;
+}
+
+void encounter_stages_destroy(EncounterStages *stages)
+{
+    if (stages == NULL) {
+        return;
+    }
+    free(stages->row_of);
+    free(stages->from_depth);
+    for (size_t i = 0; i < ENCOUNTER_STAGES; i++) {
+        free(stages->moved[i]);
+        free(stages->impulse[i]);
+        free(stages->moment[i]);
+    }
+    for (size_t i = 0; i <= ENCOUNTER_STAGES; i++) {
+        free(stages->forces[i]);
+        banded_finish(&stages->by_impulse[i]);
+        banded_finish(&stages->by_moment[i]);
+    }
+    banded_finish(&stages->matrix);
+    free(stages->change);
+    free(stages->changes[0]);
+    free(stages->changes[1]);
+    free(stages);
+}
+
+// The number of an unknown: of few rows stage by stage, of many all stages of a row together.
+static size_t unknown(const EncounterStages *stages, size_t stage, size_t row)
+{
+    return stages->count <= DENSE ? stage * stages->count + row : row * ENCOUNTER_STAGES + stage;
+}
 
 static void list_rows(const Encounter *encounter, EncounterStages *stages,
                       const EncounterPoint *from)
@@ -52,34 +106,57 @@ static void list_rows(const Encounter *encounter, EncounterStages *stages,
     }
 }
 
+static void shape_slopes(const Encounter *encounter, EncounterStages *stages, size_t which)
+{
+    // rows of one joint differ in what is in their reach
+    const size_t most = stages->count <= DENSE ? stages->count : encounter->reach;
+    banded_shape(&stages->by_impulse[which], stages->count, most + ENCOUNTER_ROWS_MOST);
+    banded_shape(&stages->by_moment[which], stages->count, most + ENCOUNTER_ROWS_MOST);
+}
+
+// The derivatives of one of a joint's rows: of the joint whose rows begin with `first`.
+static void differentiate_row(const Encounter *encounter, EncounterStages *stages, size_t which,
+                              size_t first, size_t own_row, const EncounterSlopes *slopes)
+{
+    const Banded *by_moment = &stages->by_moment[which];
+    const Banded *by_impulse = &stages->by_impulse[which];
+    const size_t row = stages->row_of[first];
+    const size_t own = encounter->joints[encounter->joint_of[row]].row_count;
+    for (size_t k = banded_first(by_moment, first + own_row);
+         k < banded_end(by_moment, first + own_row); k++) {
+        double moment = 0.0;
+        double impulse = 0.0;
+        for (size_t m = 0; m < own; m++) {
+            const EncounterSpan span = encounter_span(encounter, row + m);
+            if (stages->row_of[k] < span.first || stages->row_of[k] >= span.end) {
+                continue;
+            }
+            const double mobility = *encounter_mobility(encounter, row + m, stages->row_of[k]);
+            moment += m < 2 ? slopes->by_place[own_row][m] * mobility : 0.0;
+            impulse += slopes->by_speed[own_row][m] * mobility;
+        }
+        *banded_entry(by_moment, first + own_row, k) = moment;
+        *banded_entry(by_impulse, first + own_row, k) = impulse;
+    }
+}
+
 // Forces and their derivatives by impulses and moments at a stage, or at the start of the step.
 static void differentiate(const Encounter *encounter, EncounterStages *stages, size_t which,
                           double time_s, const double *impulse, const double *moment,
                           bool is_smooth)
 {
-    const size_t all = encounter_rows(encounter);
     const size_t n = stages->count;
+    shape_slopes(encounter, stages, which);
     for (size_t first = 0, own; first < n; first += own) {
         const size_t row = stages->row_of[first];
         const size_t joint = (size_t)encounter->joint_of[row];
-        const double *mobility = encounter->mobility + row * all;
         own = encounter->joints[joint].row_count;
         EncounterSlopes slopes;
         encounter_slopes_find(encounter, joint, time_s, impulse, moment,
                               is_smooth ? stages->from_depth[joint] : 0.0, &slopes);
         memcpy(stages->forces[which] + row, slopes.force, own * sizeof *slopes.force);
         for (size_t i = 0; i < own; i++) {
-            for (size_t k = 0; k < n; k++) {
-                const double *column = mobility + stages->row_of[k];
-                double by_moment = 0.0;
-                double by_impulse = 0.0;
-                for (size_t m = 0; m < own; m++) {
-                    by_moment += m < 2 ? slopes.by_place[i][m] * column[m * all] : 0.0;
-                    by_impulse += slopes.by_speed[i][m] * column[m * all];
-                }
-                stages->by_moment[which][(first + i) * n + k] = by_moment;
-                stages->by_impulse[which][(first + i) * n + k] = by_impulse;
-            }
+            differentiate_row(encounter, stages, which, first, i, &slopes);
         }
     }
 }
@@ -114,23 +191,30 @@ static void evaluate_stages(Encounter *encounter, EncounterStages *stages,
 static bool factor_stages(EncounterStages *stages, double width_s, bool from_start)
 {
     const size_t n = stages->count;
-    const size_t width = ENCOUNTER_STAGES * n;
+    const Banded *shape = &stages->by_impulse[from_start ? ENCOUNTER_STAGES : 0];
+    banded_shape(&stages->matrix, ENCOUNTER_STAGES * n, ENCOUNTER_STAGES * (shape->reach + 1));
     for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
         for (size_t q = 0; q < ENCOUNTER_STAGES; q++) {
-            const double *by_impulse = stages->by_impulse[from_start ? ENCOUNTER_STAGES : q];
-            for (size_t at = 0; at < n * n; at++) {
-                const double own = s == q && at / n == at % n ? 1.0 : 0.0;
-                double twice = 0.0;
-                for (size_t j = 0; j < ENCOUNTER_STAGES; j++) {
-                    twice += ENCOUNTER_COUPLING[s][j] * ENCOUNTER_COUPLING[j][q] *
-                             stages->by_moment[from_start ? ENCOUNTER_STAGES : j][at];
+            const Banded *by_impulse = &stages->by_impulse[from_start ? ENCOUNTER_STAGES : q];
+            for (size_t i = 0; i < n; i++) {
+                const size_t row = unknown(stages, s, i);
+                for (size_t k = banded_first(shape, i); k < banded_end(shape, i); k++) {
+                    const double own = s == q && i == k ? 1.0 : 0.0;
+                    double twice = 0.0;
+                    for (size_t j = 0; j < ENCOUNTER_STAGES; j++) {
+                        twice += ENCOUNTER_COUPLING[s][j] * ENCOUNTER_COUPLING[j][q] *
+                                 *banded_entry(
+                                     &stages->by_moment[from_start ? ENCOUNTER_STAGES : j], i, k);
+                    }
+                    *banded_entry(&stages->matrix, row, unknown(stages, q, k)) =
+                        own -
+                        width_s * (ENCOUNTER_COUPLING[s][q] * *banded_entry(by_impulse, i, k) +
+                                   width_s * twice);
                 }
-                stages->matrix[(s * n + at / n) * width + q * n + at % n] =
-                    own - width_s * (ENCOUNTER_COUPLING[s][q] * by_impulse[at] + width_s * twice);
             }
         }
     }
-    return dense_factor(width, stages->matrix, stages->pivots);
+    return banded_factor(&stages->matrix);
 }
 
 // Newton's next change of what the stages have moved. Returns the largest over what is allowed.
@@ -138,7 +222,7 @@ static double correct_stages(const Encounter *encounter, EncounterStages *stages
                              const EncounterPoint *from, double width_s)
 {
     const size_t n = stages->count;
-    double change[ENCOUNTER_STAGES * RESPONSE_ROW_MAX];
+    double *change = stages->change;
     for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
         for (size_t i = 0; i < n; i++) {
             const size_t row = stages->row_of[i];
@@ -146,19 +230,21 @@ static double correct_stages(const Encounter *encounter, EncounterStages *stages
             for (size_t j = 0; j < ENCOUNTER_STAGES; j++) {
                 sum += ENCOUNTER_COUPLING[s][j] * stages->forces[j][row];
             }
-            change[s * n + i] = width_s * sum - stages->moved[s][row];
+            change[unknown(stages, s, i)] = width_s * sum - stages->moved[s][row];
         }
     }
-    dense_substitute(ENCOUNTER_STAGES * n, stages->matrix, stages->pivots, change);
+    banded_substitute(&stages->matrix, change);
     double largest = 0.0;
     for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
-        double impulse[RESPONSE_ROW_MAX] = {0.0};
-        double moment[RESPONSE_ROW_MAX] = {0.0};
+        double *impulse = stages->changes[0];
+        double *moment = stages->changes[1];
+        memset(impulse, 0, encounter->row_count * sizeof *impulse);
+        memset(moment, 0, encounter->row_count * sizeof *moment);
         for (size_t i = 0; i < n; i++) {
             const size_t row = stages->row_of[i];
-            stages->moved[s][row] += change[s * n + i];
-            impulse[row] = change[s * n + i];
-            moment[row] = width_s * change[s * n + i];
+            stages->moved[s][row] += change[unknown(stages, s, i)];
+            impulse[row] = change[unknown(stages, s, i)];
+            moment[row] = width_s * change[unknown(stages, s, i)];
         }
         const double size = encounter_error_share(
             encounter, from, width_s, stages->moved[ENCOUNTER_STAGES - 1], impulse, moment);
@@ -198,7 +284,9 @@ static void extend_forces(const Encounter *encounter, EncounterStages *stages,
 static bool guess_stages(const Encounter *encounter, EncounterStages *stages,
                          const EncounterPoint *from, double width_s)
 {
-    memset(stages->moved, 0, sizeof stages->moved);
+    for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
+        memset(stages->moved[s], 0, encounter->row_count * sizeof *stages->moved[s]);
+    }
     differentiate(encounter, stages, ENCOUNTER_STAGES, from->time_s, from->impulse, from->moment,
                   true);
     for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {

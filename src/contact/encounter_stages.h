@@ -1,6 +1,7 @@
 // The stages of an implicit step of an encounter: Radau IIA of order 5.
 #pragma once
 
+#include "base/banded.h"
 #include "contact/encounter_force.h"
 
 enum { ENCOUNTER_STAGES = 3 };
@@ -11,21 +12,25 @@ extern const double ENCOUNTER_NODE[ENCOUNTER_STAGES];
 extern const double ENCOUNTER_COUPLING[ENCOUNTER_STAGES][ENCOUNTER_STAGES];
 
 typedef struct EncounterStages {
-    size_t count; // rows that touch
-    size_t row_of[RESPONSE_ROW_MAX];
-    double from_depth[ENCOUNTER_JOINT_MAX];           // m, below which a smooth force is linear
-    double moved[ENCOUNTER_STAGES][RESPONSE_ROW_MAX]; // N s: the impulses since the start, by row
-    double impulse[ENCOUNTER_STAGES][RESPONSE_ROW_MAX];
-    double moment[ENCOUNTER_STAGES][RESPONSE_ROW_MAX];
+    size_t count;                    // rows that touch
+    size_t *row_of;                  // owned, as are all arrays
+    double *from_depth;              // m, below which a smooth force is linear; by joint
+    double *moved[ENCOUNTER_STAGES]; // N s: the impulses since the start, by row
+    double *impulse[ENCOUNTER_STAGES];
+    double *moment[ENCOUNTER_STAGES];
     double powers[ENCOUNTER_STAGES][2];
     // forces by row, and their derivatives by impulses and moments between rows that touch: at the
     // stages, and last at the start of the step, where the damper may pull
-    double forces[ENCOUNTER_STAGES + 1][RESPONSE_ROW_MAX];
-    double by_impulse[ENCOUNTER_STAGES + 1][RESPONSE_ROW_MAX * RESPONSE_ROW_MAX];
-    double by_moment[ENCOUNTER_STAGES + 1][RESPONSE_ROW_MAX * RESPONSE_ROW_MAX];
-    double matrix[ENCOUNTER_STAGES * RESPONSE_ROW_MAX * ENCOUNTER_STAGES * RESPONSE_ROW_MAX];
-    size_t pivots[ENCOUNTER_STAGES * RESPONSE_ROW_MAX];
+    double *forces[ENCOUNTER_STAGES + 1];
+    Banded by_impulse[ENCOUNTER_STAGES + 1];
+    Banded by_moment[ENCOUNTER_STAGES + 1];
+    Banded matrix;  // Newton's, or that of an estimate
+    double *change; // by unknown: what Newton's method changes
+    double *changes[2];
 } EncounterStages;
+
+EncounterStages *encounter_stages_create(const Encounter *encounter);
+void encounter_stages_destroy(EncounterStages *stages);
 
 // Solves for the stages of a step of a length, s, from a completed point. Returns false where
 // Newton's method does not get there.

@@ -77,15 +77,15 @@ bool encounter_step_try(Encounter *encounter, EncounterStep *step, double width_
 
 double encounter_step_depth(Encounter *encounter, EncounterStep *step, size_t joint, double width_s)
 {
-    EncounterPoint at;
+    EncounterPoint *at = &encounter->work->trial;
     if (step->method != ENCOUNTER_EXPLICIT) {
-        encounter_step_try(encounter, step, width_s, &at);
+        encounter_step_try(encounter, step, width_s, at);
     } else {
-        at.time_s = step->from->time_s + width_s;
+        at->time_s = step->from->time_s + width_s;
         encounter_explicit_inside(encounter, &step->explicit, step->from,
-                                  width_s / step->explicit.width_s, at.impulse, at.moment);
+                                  width_s / step->explicit.width_s, at->impulse, at->moment);
     }
-    return encounter_force_pose(encounter, joint, at.time_s, at.impulse, at.moment).penetration;
+    return encounter_force_pose(encounter, joint, at->time_s, at->impulse, at->moment).penetration;
 }
 
 // How short a local step has to be at least next to the ends of a contact, of a share of its

@@ -12,13 +12,10 @@
 // Source: Hairer and Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996), IV.8.
 #include "contact/encounter_stiff.h"
 
-#include "base/dense.h"
 #include "contact/encounter_error.h"
 #include "contact/encounter_stages.h"
 
-#include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // clang-format off
@@ -36,7 +33,7 @@ static const double GROW_MOST = 6.0;
 
 void encounter_stiff_finish(Encounter *encounter)
 {
-    free(encounter->stages);
+    encounter_stages_destroy(encounter->stages);
     encounter->stages = NULL;
 }
 
@@ -64,23 +61,28 @@ bool encounter_stiff_is_needed(const Encounter *encounter, const EncounterPoint 
 // Factors the matrix of the estimate, in place of Newton's.
 static bool factor_estimate(EncounterStages *stages, double hg)
 {
-    const size_t n = stages->count;
-    for (size_t at = 0; at < n * n; at++) {
-        stages->matrix[at] = (at / n == at % n ? 1.0 : 0.0) -
-                             hg * stages->by_impulse[ENCOUNTER_STAGES][at] -
-                             hg * hg * stages->by_moment[ENCOUNTER_STAGES][at];
+    const Banded *by_impulse = &stages->by_impulse[ENCOUNTER_STAGES];
+    const Banded *by_moment = &stages->by_moment[ENCOUNTER_STAGES];
+    banded_shape(&stages->matrix, by_impulse->count, by_impulse->reach);
+    for (size_t i = 0; i < stages->count; i++) {
+        for (size_t k = banded_first(by_impulse, i); k < banded_end(by_impulse, i); k++) {
+            *banded_entry(&stages->matrix, i, k) = (i == k ? 1.0 : 0.0) -
+                                                   hg * *banded_entry(by_impulse, i, k) -
+                                                   hg * hg * *banded_entry(by_moment, i, k);
+        }
     }
-    return dense_factor(n, stages->matrix, stages->pivots);
+    return banded_factor(&stages->matrix);
 }
 
 // Writes the errors of impulses and moments, with the rates of both at the start of the step:
 // forces and impulses.
-static void find_errors(const EncounterStages *stages, const EncounterPoint *from, double hg,
-                        const double *force, const double *rate, double *impulse, double *moment)
+static void find_errors(const Encounter *encounter, const EncounterStages *stages,
+                        const EncounterPoint *from, double hg, const double *force,
+                        const double *rate, double *impulse, double *moment)
 {
     const size_t n = stages->count;
-    double position[RESPONSE_ROW_MAX];
-    double sum[RESPONSE_ROW_MAX];
+    double *position = encounter->work->positions;
+    double *sum = encounter->work->speeds;
     for (size_t i = 0; i < n; i++) {
         const size_t row = stages->row_of[i];
         sum[i] = hg * force[row];
@@ -91,11 +93,12 @@ static void find_errors(const EncounterStages *stages, const EncounterPoint *fro
         }
     }
     for (size_t i = 0; i < n; i++) {
-        for (size_t k = 0; k < n; k++) {
-            sum[i] += hg * stages->by_moment[ENCOUNTER_STAGES][i * n + k] * position[k];
+        const Banded *by_moment = &stages->by_moment[ENCOUNTER_STAGES];
+        for (size_t k = banded_first(by_moment, i); k < banded_end(by_moment, i); k++) {
+            sum[i] += hg * *banded_entry(by_moment, i, k) * position[k];
         }
     }
-    dense_substitute(n, stages->matrix, stages->pivots, sum);
+    banded_substitute(&stages->matrix, sum);
     for (size_t i = 0; i < n; i++) {
         impulse[stages->row_of[i]] = sum[i];
         moment[stages->row_of[i]] = position[i] + hg * sum[i];
@@ -109,26 +112,29 @@ static double estimate_error(Encounter *encounter, EncounterStages *stages,
 {
     const double hg = EIGENVALUE * width_s;
     const double *moved = stages->moved[ENCOUNTER_STAGES - 1];
-    double impulse[RESPONSE_ROW_MAX] = {0.0};
-    double moment[RESPONSE_ROW_MAX] = {0.0};
+    const size_t rows = encounter_rows(encounter);
+    double *impulse = encounter->work->errors[0];
+    double *moment = encounter->work->errors[1];
+    memset(impulse, 0, rows * sizeof *impulse);
+    memset(moment, 0, rows * sizeof *moment);
     if (!factor_estimate(stages, hg)) {
         return INFINITY;
     }
-    find_errors(stages, from, hg, from->force, from->impulse, impulse, moment);
+    find_errors(encounter, stages, from, hg, from->force, from->impulse, impulse, moment);
     const double first = encounter_error_share(encounter, from, width_s, moved, impulse, moment);
     if (first <= 1.0) {
         return first;
     }
-    double force[RESPONSE_ROW_MAX];
     double powers[2];
-    double rate[RESPONSE_ROW_MAX];
-    double sum[RESPONSE_ROW_MAX];
-    for (size_t i = 0; i < encounter_rows(encounter); i++) {
+    double *force = encounter->work->errors[2];
+    double *rate = encounter->work->errors[3];
+    double *sum = encounter->work->errors[4];
+    for (size_t i = 0; i < rows; i++) {
         rate[i] = from->impulse[i] + impulse[i];
         sum[i] = from->moment[i] + moment[i];
     }
     encounter_force_find(encounter, from->time_s, rate, sum, force, powers);
-    find_errors(stages, from, hg, force, rate, impulse, moment);
+    find_errors(encounter, stages, from, hg, force, rate, impulse, moment);
     return encounter_error_share(encounter, from, width_s, moved, impulse, moment);
 }
 
@@ -136,14 +142,14 @@ double encounter_stiff_step(Encounter *encounter, const EncounterPoint *from, do
                             EncounterPoint *to)
 {
     if (encounter->stages == NULL) {
-        encounter->stages = calloc(1, sizeof *encounter->stages);
-        assert(encounter->stages != NULL);
+        encounter->stages = encounter_stages_create(encounter);
     }
     EncounterStages *stages = encounter->stages;
     const bool is_solved = encounter_stages_solve(encounter, stages, from, width_s);
     to->time_s = from->time_s + width_s;
-    memcpy(to->impulse, stages->impulse[ENCOUNTER_STAGES - 1], sizeof to->impulse);
-    memcpy(to->moment, stages->moment[ENCOUNTER_STAGES - 1], sizeof to->moment);
+    const size_t rows = encounter_rows(encounter);
+    memcpy(to->impulse, stages->impulse[ENCOUNTER_STAGES - 1], rows * sizeof *to->impulse);
+    memcpy(to->moment, stages->moment[ENCOUNTER_STAGES - 1], rows * sizeof *to->moment);
     for (size_t i = 0; i < 2; i++) {
         double sum = 0.0;
         for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {

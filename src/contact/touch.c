@@ -113,14 +113,6 @@ size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
     }
 }
 
-bool touch_too_many(Err *err)
-{
-    return err_set(err, ERR_CASE,
-                   "the joints with play touch at more places than the %d allowed: one a pin or "
-                   "stop, two a backlash, four a block between guides",
-                   TOUCH_MAX);
-}
-
 bool touch_list(const Scenario *scenario, Touch **places, size_t *count, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;

@@ -30,10 +30,7 @@ typedef enum TouchShape {
     TOUCH_TEETH, // a flank of a pair of gears
 } TouchShape;
 
-enum {
-    TOUCH_CORNERS = 4,
-    TOUCH_MAX = 32, // of a linkage
-};
+enum { TOUCH_CORNERS = 4 };
 
 typedef struct Touch {
     int joint; // number in the linkage
@@ -70,9 +67,6 @@ static inline bool touch_is_scalar(const Touch *place)
 // Makes a list of the places of all joints with play, joint by joint, with their laws, which free()
 // gives back. Fails with ERR_CASE where a law does not fit a joint.
 bool touch_list(const Scenario *scenario, Touch **places, size_t *count, Err *err);
-
-// Says that there are more places than TOUCH_MAX; returns false.
-bool touch_too_many(Err *err);
 
 // Writes the places of one joint without their laws; returns how many there are, 0 of an ideal one.
 size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS]);

@@ -67,12 +67,24 @@ bool response_place(Response *response, const Motion *motions)
     return sparse_factor(&response->matrix, INDEPENDENT);
 }
 
-// The mobility between two places as they are stored, row by row: of the later one, from the other.
-static const double *mobility_block(const Response *response, size_t place, size_t other)
+const double *response_block(const Response *response, size_t place, size_t other)
 {
     const size_t first = response->ideal_rows / 2;
     bool is_transposed;
     return sparse_block(&response->matrix, first + place, first + other, &is_transposed);
+}
+
+size_t response_reach(const Response *response)
+{
+    size_t reach = 0;
+    for (size_t a = 0; a < response->place_count; a++) {
+        // the first of its partners is the furthest before it
+        const size_t first = response->partners[response->first_partner[a]];
+        const size_t end = response->first_row[a] + response_place_rows(&response->places[a]) - 1;
+        const size_t apart = end - response->first_row[first];
+        reach = apart > reach ? apart : reach;
+    }
+    return reach;
 }
 
 void response_mobility(const Response *response, double *mobility)
@@ -83,7 +95,7 @@ void response_mobility(const Response *response, double *mobility)
         const size_t row = response->first_row[a];
         const size_t rows = response_place_rows(&response->places[a]);
         for (size_t b = 0; b <= a; b++) {
-            const double *block = mobility_block(response, a, b);
+            const double *block = response_block(response, a, b);
             const size_t column = response->first_row[b];
             const size_t columns = response_place_rows(&response->places[b]);
             for (size_t i = 0; block != NULL && i < rows; i++) {
@@ -215,7 +227,7 @@ double response_between(const Response *response, size_t first_from, const doubl
     const size_t to_place = response_place_at(response, first_to);
     const size_t from_count = response_place_rows(&response->places[from_place]);
     const size_t to_count = response_place_rows(&response->places[to_place]);
-    const double *block = mobility_block(response, from_place, to_place);
+    const double *block = response_block(response, from_place, to_place);
     double sum = 0.0;
     for (size_t i = 0; block != NULL && i < from_count; i++) {
         for (size_t k = 0; k < to_count; k++) {
@@ -231,7 +243,7 @@ double response_mass(const Response *response, size_t first_row, Vec2 normal)
 {
     const size_t place = response_place_at(response, first_row);
     const size_t width = response_place_rows(&response->places[place]);
-    const double *block = mobility_block(response, place, place);
+    const double *block = response_block(response, place, place);
     const double xx = block[0];
     const double yx = block[width];
     const double yy = block[width + 1];

@@ -32,6 +32,13 @@ bool response_place(Response *response, const Motion *motions);
 // their rows' velocities change by W times the impulses that act there.
 void response_mobility(const Response *response, double *mobility);
 
+// The mobility between two places as it is stored, row by row: of the later one's rows, from the
+// other's. NULL where it is always zero.
+const double *response_block(const Response *response, size_t place, size_t other);
+
+// How far apart rows of play are at most that move each other.
+size_t response_reach(const Response *response);
+
 // Writes the acceleration of the rows of the joints with play while nothing acts in them: under
 // gravity, m/s^2 along -y, and loads on the bodies (NULL: none), at the velocities given; of the
 // driven body its own acceleration.

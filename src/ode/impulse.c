@@ -17,7 +17,8 @@ typedef struct Impulse {
     ImpulsePart part; // of it, the one that is handed on
     Motion *motions;  // by body; owned, as the next two
     JointState *joints;
-    double *depths; // m, by place
+    double *depths;     // m, by place
+    EncounterSums sums; // at the time that is asked for
 } Impulse;
 
 static void impulse_close(void *state)
@@ -29,6 +30,7 @@ static void impulse_close(void *state)
         free(impulse->motions);
         free(impulse->joints);
         free(impulse->depths);
+        encounter_sums_free(&impulse->sums);
         free(impulse);
     }
 }
@@ -39,7 +41,9 @@ static bool impulse_open(const Scenario *scenario, void **state, Err *err)
     assert(impulse != NULL);
     if (impulse_step_init(scenario, &impulse->step, err)) {
         const Linkage *linkage = &scenario->linkage;
-        impulse_part_init(&impulse->part, linkage);
+        const size_t rows = encounter_rows(&impulse->step.encounter);
+        impulse_part_init(&impulse->part, linkage, rows);
+        impulse->sums = encounter_sums(rows);
         impulse->motions = zeroed(linkage->body_count, sizeof *impulse->motions);
         impulse->joints = zeroed(linkage->joint_count, sizeof *impulse->joints);
         impulse->depths = zeroed(impulse->step.place_count, sizeof *impulse->depths);
@@ -112,10 +116,10 @@ static StepRecord impulse_record(const void *state)
 static void impulse_observe(const void *state, double time_s, Sample *sample)
 {
     const Impulse *impulse = state;
+    EncounterSums sums = impulse->sums; // which owns the arrays
     const Linkage *linkage = &impulse->step.scenario->linkage;
     const double since_s = fmin(fmax(time_s - impulse->step.start_s, 0.0), impulse->step.width_s);
     const size_t node = encounter_node(&impulse->step.encounter, since_s);
-    EncounterSums sums;
     encounter_at(&impulse->step.encounter, node, since_s, &sums);
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);

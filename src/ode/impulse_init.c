@@ -70,6 +70,7 @@ static void free_arrays(ImpulseStep *step)
 void impulse_step_finish(ImpulseStep *step)
 {
     encounter_finish(&step->encounter);
+    encounter_sums_free(&step->total);
     response_finish(&step->response);
     world_finish(&step->world);
     free_arrays(step);
@@ -109,13 +110,11 @@ static bool init_encounter(ImpulseStep *step, Err *err)
     for (size_t i = 0; i < step->place_count; i++) {
         const EncounterJoint added = joint_of(step, &step->places[i]);
         const size_t rows = response_place_rows(&step->response.places[i]);
-        if (!encounter_add(&step->encounter, &added, rows)) {
-            return err_set(err, ERR_SOLVER,
-                           "the joints have more places and rows of contact than the %d and %d "
-                           "that map impulse can integrate; use map midpoint",
-                           ENCOUNTER_JOINT_MAX, RESPONSE_ROW_MAX);
-        }
+        encounter_add(&step->encounter, &added, rows);
     }
+    const size_t rows = encounter_rows(&step->encounter);
+    encounter_make_room(&step->encounter, response_reach(&step->response));
+    step->total = encounter_sums(rows);
     return true;
 }
 

@@ -7,8 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-void impulse_part_init(ImpulsePart *part, const Linkage *linkage)
+void impulse_part_init(ImpulsePart *part, const Linkage *linkage, size_t rows)
 {
+    part->sums = encounter_sums(rows);
+    part->before = encounter_sums(rows);
     part->omega = zeroed(linkage->body_count, sizeof *part->omega);
     part->alpha = zeroed(linkage->body_count, sizeof *part->alpha);
     part->impulse = zeroed(linkage->joint_count, sizeof *part->impulse);
@@ -25,7 +27,9 @@ bool impulse_part_needs_step(const ImpulsePart *part)
 void impulse_part_begin(ImpulsePart *part, const Encounter *encounter, double start_s)
 {
     marks_find(&part->marks, encounter);
-    memset(&part->sums, 0, sizeof part->sums);
+    const size_t rows = encounter_rows(encounter);
+    memset(part->sums.impulse, 0, rows * sizeof *part->sums.impulse);
+    part->sums.dissipated = part->sums.friction = 0.0;
     part->end_s = start_s;
 }
 
@@ -36,7 +40,9 @@ const Mark *impulse_part_next(ImpulsePart *part, const Encounter *encounter, dou
     part->is_last = part->marks.next == part->marks.count;
     part->start_s = part->end_s;
     part->end_s = part->is_last ? step_end_s : step_start_s + mark->time_s;
+    const EncounterSums before = part->before;
     part->before = part->sums;
+    part->sums = before;
     encounter_at(encounter, mark->node, mark->time_s, &part->sums);
     return mark;
 }
@@ -71,7 +77,7 @@ void impulse_part_add_contacts(ImpulsePart *part, const Encounter *encounter, co
     }
     for (size_t i = 0; i < encounter->joint_count; i++) {
         const EncounterJoint *place = &encounter->joints[i];
-        const bool is_touching = (encounter->touching[mark->node] >> i & 1) != 0;
+        const bool is_touching = encounter_touches(encounter, mark->node, i);
         const size_t row = place->first_row;
         const int joint = place->joint;
         if (is_touching) {
@@ -97,6 +103,8 @@ void impulse_part_add_contacts(ImpulsePart *part, const Encounter *encounter, co
 void impulse_part_finish(ImpulsePart *part)
 {
     marks_finish(&part->marks);
+    encounter_sums_free(&part->sums);
+    encounter_sums_free(&part->before);
     free(part->omega);
     free(part->alpha);
     free(part->impulse);

@@ -12,7 +12,7 @@ typedef struct ImpulsePart {
     double start_s;
     double end_s;
     bool is_last;       // of its step
-    EncounterSums sums; // at its end
+    EncounterSums sums; // at its end; of these only the impulses are zero when a step begins
     EncounterSums before;
     double *omega; // by body; owned, as are all arrays
     double *alpha;
@@ -23,7 +23,8 @@ typedef struct ImpulsePart {
     StepRecord record;
 } ImpulsePart;
 
-void impulse_part_init(ImpulsePart *part, const Linkage *linkage);
+// For an encounter of so many rows.
+void impulse_part_init(ImpulsePart *part, const Linkage *linkage, size_t rows);
 
 // Whether the next part begins a new step, which is then to be taken and given to
 // impulse_part_begin.

@@ -144,6 +144,30 @@ static void find_columns(ImpulseStep *step)
     }
 }
 
+// Writes the mobilities of the rows of play that the step is given.
+static void fill_mobility(ImpulseStep *step)
+{
+    const Response *response = &step->response;
+    const Encounter *encounter = &step->encounter;
+    for (size_t a = 0; a < step->place_count; a++) {
+        for (size_t n = response->first_partner[a];
+             n < response->first_partner[a + 1] && response->partners[n] <= a; n++) {
+            const size_t b = response->partners[n];
+            const EncounterJoint *of = &encounter->joints[a];
+            const EncounterJoint *other = &encounter->joints[b];
+            const double *block = response_block(response, a, b);
+            for (size_t i = 0; i < of->row_count; i++) {
+                double *row = encounter_mobility(encounter, of->first_row + i, other->first_row);
+                for (size_t k = 0; k < other->row_count; k++) {
+                    row[k] = block[i * other->row_count + k];
+                    *encounter_mobility(encounter, other->first_row + k, of->first_row + i) =
+                        row[k];
+                }
+            }
+        }
+    }
+}
+
 // Lets the contacts run through the step by themselves.
 static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
 {
@@ -153,7 +177,7 @@ static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
                        "the ideal joints are redundant here: give one joint of the loop some play");
     }
     find_columns(step);
-    response_mobility(&step->response, encounter->mobility);
+    fill_mobility(step);
     const Applied *applied = &step->world.applied;
     response_free(&step->response, middle, step->scenario->gravity,
                   applied->is_any ? applied->loads : NULL, encounter->free);

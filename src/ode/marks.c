@@ -42,8 +42,8 @@ static double closing_at(const Encounter *encounter, size_t joint, size_t node,
 static double force_peak(const Encounter *encounter, size_t joint, size_t middle)
 {
     if (middle == 0 || middle + 1 >= encounter->node_count ||
-        (encounter->touching[middle - 1] >> joint & 1) == 0 ||
-        (encounter->touching[middle] >> joint & 1) == 0) {
+        !encounter_touches(encounter, middle - 1, joint) ||
+        !encounter_touches(encounter, middle, joint)) {
         return NAN;
     }
     const double t0 = encounter->times[middle - 1];
@@ -81,6 +81,32 @@ static void mark_maxima(Marks *marks, const Encounter *encounter, size_t joint, 
     }
 }
 
+// Whether a joint touches from a node on that did not from another on.
+static bool is_any_new(const Encounter *encounter, size_t behind, size_t node)
+{
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        if (encounter_touches(encounter, behind, i) && !encounter_touches(encounter, node, i)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// The maxima in the interval behind a node.
+static void mark_interval(Marks *marks, const Encounter *encounter, size_t node)
+{
+    if (!encounter_touches_any(encounter, node)) {
+        return;
+    }
+    encounter_at(encounter, node, encounter->times[node], &marks->sums[0]);
+    encounter_at(encounter, node + 1, encounter->times[node + 1], &marks->sums[1]);
+    for (size_t joint = 0; joint < encounter->joint_count; joint++) {
+        if (encounter_touches(encounter, node, joint)) {
+            mark_maxima(marks, encounter, joint, node, marks->sums);
+        }
+    }
+}
+
 // The last of the nodes at one time.
 static size_t last_at_once(const Encounter *encounter, size_t node)
 {
@@ -95,6 +121,9 @@ void marks_find(Marks *marks, const Encounter *encounter)
 {
     marks->count = 0;
     marks->next = 0;
+    for (size_t i = 0; i < 2 && marks->sums[i].impulse == NULL; i++) {
+        marks->sums[i] = encounter_sums(encounter_rows(encounter));
+    }
     const size_t last = encounter->node_count - 1;
     for (size_t node = 0; node < last; node++) {
         const size_t behind = last_at_once(encounter, node);
@@ -102,7 +131,7 @@ void marks_find(Marks *marks, const Encounter *encounter)
             // contacts end or begin, maybe several: the part before them ends here, and at an onset
             // a damper may press hardest
             add_mark(marks, encounter->times[node], node > 0 ? node - 1 : node);
-            if ((encounter->touching[behind] & ~encounter->touching[node]) != 0) {
+            if (is_any_new(encounter, behind, node)) {
                 add_mark(marks, encounter->times[node], behind);
             }
             if (behind == last) {
@@ -110,17 +139,7 @@ void marks_find(Marks *marks, const Encounter *encounter)
             }
             node = behind;
         }
-        const uint32_t touching = encounter->touching[node];
-        EncounterSums sums[2];
-        if (touching != 0) {
-            encounter_at(encounter, node, encounter->times[node], &sums[0]);
-            encounter_at(encounter, node + 1, encounter->times[node + 1], &sums[1]);
-        }
-        for (size_t joint = 0; touching != 0 && joint < encounter->joint_count; joint++) {
-            if ((touching >> joint & 1) != 0) {
-                mark_maxima(marks, encounter, joint, node, sums);
-            }
-        }
+        mark_interval(marks, encounter, node);
     }
     // what begins or ends at the very end has done so
     const bool is_inside = last > 0 && encounter->times[last - 1] < encounter->times[last];
@@ -130,5 +149,7 @@ void marks_find(Marks *marks, const Encounter *encounter)
 void marks_finish(Marks *marks)
 {
     free(marks->marks);
+    encounter_sums_free(&marks->sums[0]);
+    encounter_sums_free(&marks->sums[1]);
     *marks = (Marks){.count = 0};
 }

@@ -18,6 +18,7 @@ typedef struct SpaceImpulse {
     SpaceJoints joints;
     double depths[PIN_SPACE_MAX]; // m, by place
     bool are_ends[PIN_SPACE_MAX]; // whether a place is one, and no collar
+    EncounterSums sums;           // at the time that is asked for
 } SpaceImpulse;
 
 static void space_impulse_close(void *state)
@@ -26,6 +27,7 @@ static void space_impulse_close(void *state)
     if (impulse != NULL) {
         impulse_part_finish(&impulse->part);
         space_impulse_step_finish(&impulse->step);
+        encounter_sums_free(&impulse->sums);
         free(impulse);
     }
 }
@@ -34,8 +36,10 @@ static bool space_impulse_open(const Scenario *scenario, void **state, Err *err)
 {
     SpaceImpulse *impulse = calloc(1, sizeof *impulse);
     assert(impulse != NULL);
-    impulse_part_init(&impulse->part, &scenario->linkage);
     if (space_impulse_step_init(scenario, &impulse->step, err)) {
+        const size_t rows = encounter_rows(&impulse->step.encounter);
+        impulse_part_init(&impulse->part, &scenario->linkage, rows);
+        impulse->sums = encounter_sums(rows);
         *state = impulse;
         return true;
     }
@@ -118,7 +122,7 @@ static void space_impulse_observe(const void *state, double time_s, Sample *samp
     const Linkage *linkage = &step->scenario->linkage;
     const double since_s = fmin(fmax(time_s - step->start_s, 0.0), step->width_s);
     const size_t node = encounter_node(&step->encounter, since_s);
-    EncounterSums sums;
+    EncounterSums sums = impulse->sums; // which owns the arrays
     SpaceJoints joints;
     encounter_at(&step->encounter, node, since_s, &sums);
     sample->time_s = time_s;

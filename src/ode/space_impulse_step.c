@@ -28,6 +28,7 @@ void space_impulse_step_finish(SpaceImpulseStep *step)
     encounter_finish(&step->encounter);
     free(step->response);
     free(step->there);
+    encounter_sums_free(&step->total);
     world_finish(&step->world);
 }
 
@@ -52,13 +53,17 @@ static bool init_encounter(SpaceImpulseStep *step, Err *err)
             .joint = place->joint,
             .siblings = {place->place == 1 ? -1 : 0, place->place == 0 ? 1 : 0},
         };
-        if (!encounter_add(&step->encounter, &added, rows)) {
-            return err_set(err, ERR_SOLVER,
-                           "the joints have more places and rows of contact than the %d and %d "
-                           "that map impulse can integrate; use map midpoint",
-                           ENCOUNTER_JOINT_MAX, RESPONSE_ROW_MAX);
-        }
+        encounter_add(&step->encounter, &added, rows);
     }
+    const size_t rows = encounter_rows(&step->encounter);
+    if (rows > SPACE_RESPONSE_PLAY_MAX) {
+        return err_set(err, ERR_SOLVER,
+                       "the joints have more rows of contact than the %d that map impulse can "
+                       "integrate in space; use map midpoint",
+                       SPACE_RESPONSE_PLAY_MAX);
+    }
+    encounter_make_room(&step->encounter, rows);
+    step->total = encounter_sums(rows);
     return true;
 }
 

@@ -27,6 +27,7 @@ static inline Encounter lone_pin(ForceLaw law, double phase)
         .hole_radius = ONE_IMPACT_CLEARANCE + 5e-3,
     };
     encounter_add(&encounter, &joint, ENCOUNTER_ROWS_PLAIN);
+    encounter_make_room(&encounter, encounter.row_count);
     encounter.mobility[0] = encounter.mobility[3] = 1.0 / ONE_IMPACT_MASS;
     encounter.position[0] = ONE_IMPACT_CLEARANCE - LONE_PIN_GAP;
     encounter.speed[0] = ONE_IMPACT_SPEED;
@@ -46,12 +47,43 @@ static inline double lone_pin_duration(void)
     return 2.0 * sqrt(acos(-1.0)) * tgamma(1.4) / tgamma(0.9) * lone_pin_depth() / ONE_IMPACT_SPEED;
 }
 
-// The sums at the end of what has run, and a row's speed there.
-static inline EncounterSums lone_pin_end(const Encounter *encounter)
+enum { LONE_PIN_ROWS = 9 };
+
+// An encounter's sums at a time, by themselves.
+typedef struct PinSums {
+    double impulse[LONE_PIN_ROWS]; // N s
+    double moment[LONE_PIN_ROWS];  // N s^2
+    double force[LONE_PIN_ROWS];   // N
+    double dissipated;             // J
+    double friction;               // J
+} PinSums;
+
+static inline void pin_sums_at(const Encounter *encounter, size_t node, double time_s,
+                               PinSums *sums)
 {
-    EncounterSums sums;
+    EncounterSums found = {.impulse = sums->impulse, .moment = sums->moment, .force = sums->force};
+    assert_true(encounter_rows(encounter) <= LONE_PIN_ROWS);
+    encounter_at(encounter, node, time_s, &found);
+    sums->dissipated = found.dissipated;
+    sums->friction = found.friction;
+}
+
+// How a joint is then.
+static inline EncounterPose pin_pose_at(const Encounter *encounter, size_t joint, size_t node,
+                                        double time_s)
+{
+    PinSums sums;
+    pin_sums_at(encounter, node, time_s, &sums);
+    const EncounterSums at = {.impulse = sums.impulse, .moment = sums.moment, .force = sums.force};
+    return encounter_pose(encounter, joint, node, time_s, &at);
+}
+
+// The sums at the end of what has run, and a row's speed there.
+static inline PinSums lone_pin_end(const Encounter *encounter)
+{
+    PinSums sums;
     const size_t last = encounter->node_count - 1;
-    encounter_at(encounter, last, encounter->times[last], &sums);
+    pin_sums_at(encounter, last, encounter->times[last], &sums);
     return sums;
 }
 

@@ -12,6 +12,7 @@ static inline Encounter pressed_pin(uint64_t *seed, double friction, size_t rows
 {
     Encounter pin = encounter_start(friction, 5e-3, 0.05);
     encounter_add(&pin, &(EncounterJoint){.joint = 0}, rows);
+    encounter_make_room(&pin, rows);
     EncounterJoint *joint = &pin.joints[0];
     joint->law = force_law_power(6.6e10, 1.5);
     joint->law.hysteresis = 0.7;

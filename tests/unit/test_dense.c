@@ -1,5 +1,7 @@
-// Are small systems solved, and is a dependent row noticed?
+// Are systems solved, small and banded ones, and is a dependent row noticed?
+#include "base/banded.h"
 #include "base/dense.h"
+#include "base/lcg.h"
 
 // cmocka.h needs these before it
 #include <setjmp.h>
@@ -9,6 +11,7 @@
 
 #include <cmocka.h>
 #include <math.h>
+#include <string.h>
 
 static void a_system_that_needs_a_swap_is_solved(void **state)
 {
@@ -136,6 +139,45 @@ static void a_column_of_zeros_is_not_factored(void **state)
     assert_false(dense_factor(2, a, pivots));
 }
 
+// Small diagonals, so that rows are exchanged.
+static double banded_entry_of(uint64_t *seed, size_t row, size_t column)
+{
+    const double draw = lcg_draw(seed);
+    return row == column ? 0.01 * draw : draw;
+}
+
+static void a_banded_system_is_solved_as_a_dense_one(void **state)
+{
+    (void)state;
+    enum { N = 30, REACH = 3 };
+    Banded banded = {.count = 0};
+    for (unsigned number = 0; number < 20; number++) {
+        // the same matrix is shaped anew, banded and dense
+        const size_t reach = number % 2 == 0 ? REACH : N;
+        uint64_t seed = lcg_stirred(number);
+        double a[N * N] = {0.0};
+        double b[N];
+        double x[N];
+        banded_shape(&banded, N, reach);
+        for (size_t i = 0; i < N; i++) {
+            for (size_t k = banded_first(&banded, i); k < banded_end(&banded, i); k++) {
+                a[i * N + k] = *banded_entry(&banded, i, k) = banded_entry_of(&seed, i, k);
+            }
+            b[i] = lcg_draw(&seed);
+        }
+        memcpy(x, b, sizeof x);
+        assert_true(dense_solve(N, a, b));
+        assert_true(banded_factor(&banded));
+        banded_substitute(&banded, x);
+        for (size_t i = 0; i < N; i++) {
+            assert_true(fabs(x[i] - b[i]) <= 1e-9 * (1.0 + fabs(b[i])));
+        }
+    }
+    banded_shape(&banded, N, REACH);
+    assert_false(banded_factor(&banded));
+    banded_finish(&banded);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -143,6 +185,7 @@ int main(void)
         cmocka_unit_test(the_answer_fits_the_system),
         cmocka_unit_test(a_factored_matrix_serves_many_right_hand_sides),
         cmocka_unit_test(a_column_of_zeros_is_not_factored),
+        cmocka_unit_test(a_banded_system_is_solved_as_a_dense_one),
         cmocka_unit_test(a_singular_system_is_refused),
         cmocka_unit_test(unknowns_of_other_units_are_judged_by_themselves),
         cmocka_unit_test(a_matrix_that_is_not_finite_is_refused),

@@ -22,7 +22,8 @@ static void make_mobile(Encounter *pin, uint64_t *seed)
 // The point a little before or after, under the forces there.
 static EncounterPoint point_beside(Encounter *pin, const EncounterPoint *at, double since_s)
 {
-    EncounterPoint beside = {.time_s = at->time_s + since_s};
+    EncounterPoint beside = encounter_point(pin->row_count);
+    beside.time_s = at->time_s + since_s;
     for (size_t i = 0; i < pin->row_count; i++) {
         const double rise = 0.5 * since_s * at->rate[i];
         beside.impulse[i] = since_s * (at->force[i] + rise);
@@ -37,10 +38,10 @@ static EncounterPoint point_beside(Encounter *pin, const EncounterPoint *at, dou
 // the motion leads.
 static double mismatch(Encounter *pin, double stretched)
 {
-    EncounterPoint at = {.time_s = 0.0};
+    EncounterPoint at = encounter_point(pin->row_count);
     encounter_rates_find(pin, &at);
-    const EncounterPoint after = point_beside(pin, &at, stretched * APART_S);
-    const EncounterPoint before = point_beside(pin, &at, -stretched * APART_S);
+    EncounterPoint after = point_beside(pin, &at, stretched * APART_S);
+    EncounterPoint before = point_beside(pin, &at, -stretched * APART_S);
     double largest = 0.0;
     double apart = 0.0;
     for (size_t i = 0; i < pin->row_count; i++) {
@@ -53,13 +54,16 @@ static double mismatch(Encounter *pin, double stretched)
         // powers are forces times some 0.01 m/s
         apart = fmax(apart, 100.0 * fabs(at.power_rates[i] - expected));
     }
+    encounter_point_free(&at);
+    encounter_point_free(&after);
+    encounter_point_free(&before);
     return apart / largest;
 }
 
 static void check(Encounter *pin, uint64_t *seed)
 {
     make_mobile(pin, seed);
-    EncounterPoint at = {.time_s = 0.0};
+    EncounterPoint at = encounter_point(pin->row_count);
     double force[ENCOUNTER_ROWS_MOST];
     double powers[2];
     encounter_rates_find(pin, &at);
@@ -70,6 +74,7 @@ static void check(Encounter *pin, uint64_t *seed)
     }
     assert_near(at.powers[0], powers[0], 1e-13 * fabs(powers[0]));
     assert_near(at.powers[1], powers[1], 1e-13 * fabs(powers[1]));
+    encounter_point_free(&at);
     assert_true(mismatch(pin, 1.0) < 1e-5);
     // control: a motion that is a hundredth faster
     assert_true(mismatch(pin, 1.01) > 5e-3);

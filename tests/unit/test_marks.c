@@ -8,9 +8,9 @@ static const double DURATION_S = 2e-4;
 // The state at a mark.
 static EncounterPose pose_at(const Encounter *encounter, const Mark *mark)
 {
-    EncounterSums sums;
-    encounter_at(encounter, mark->node, mark->time_s, &sums);
-    return encounter_pose(encounter, 0, mark->node, mark->time_s, &sums);
+    PinSums sums;
+    pin_sums_at(encounter, mark->node, mark->time_s, &sums);
+    return pin_pose_at(encounter, 0, mark->node, mark->time_s);
 }
 
 static void the_greatest_force_and_depth_are_marked(void **state)

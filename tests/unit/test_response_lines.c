@@ -85,7 +85,7 @@ typedef struct Flight {
     Linkage linkage;
     Motion motions[2];
     BodyLoad loads[2];
-    Touch places[TOUCH_MAX];
+    Touch places[4 * TOUCH_CORNERS];
     Response response;
 } Flight;
 
