@@ -7,6 +7,7 @@
 #include "reference/dynamics.h"
 
 #include "model/forces.h"
+#include "reference/dynamics_places.h"
 #include "reference/dynamics_reactions.h"
 #include "reference/loops.h"
 
@@ -40,50 +41,6 @@ static void list_coordinates(Dynamics *dynamics)
             own->inertia += body->mass * vec2_dot(arm, arm);
         }
     }
-}
-
-// m: a place that is apart is looked at before its bodies have come so much nearer. Of a stop that
-// is no play, but how far the body that touches reaches from where it does.
-static double flight_of(const Linkage *linkage, const Touch *touch)
-{
-    const Joint *joint = &linkage->joints[touch->joint];
-    if (joint->kind != JOINT_STOP) {
-        return linkage_radial_clearance(joint);
-    }
-    const int body = joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b;
-    return touch->shape == TOUCH_DISC ? touch->clearance : linkage_reach(linkage, body);
-}
-
-static bool list_contacts(const Scenario *scenario, Dynamics *dynamics, Err *err)
-{
-    System *system = &dynamics->system;
-    Touch *touches;
-    if (!touch_list(scenario, &touches, &system->contact_count, err)) {
-        return false;
-    }
-    for (size_t i = 0; i < system->contact_count; i++) {
-        const Touch *touch = &touches[i];
-        const Joint *joint = &scenario->linkage.joints[touch->joint];
-        if (joint->limits.kind != LIMIT_NONE) {
-            free(touches);
-            return err_set(err, ERR_CASE, "joint '%s' has limits, which are not built yet",
-                           joint->name);
-        }
-        const bool is_corner = scenario->linkage.joints[touch->joint].kind == JOINT_GUIDE;
-        system->contacts[i] = (Contact){
-            .joint = touch->joint,
-            .law = touch->law,
-            .clearance = linkage_radial_clearance(&scenario->linkage.joints[touch->joint]),
-            .flight = flight_of(&scenario->linkage, touch),
-        };
-        dynamics->places[i] = (PlanePlace){
-            .touch = *touch,
-            .pair = is_corner ? dynamics->tree.corners[touch->joint] + touch->place : touch->joint,
-            .acts_beside = touch->shape == TOUCH_LINE || scenario->contact.friction > 0.0,
-        };
-    }
-    free(touches);
-    return true;
 }
 
 // All arrays, from a layout that counts or has the memory.
@@ -138,7 +95,7 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
     }
     list_coordinates(dynamics);
     dynamics->may_branch = tree->loop_count > 0 && tree->coordinate_count > 2 * tree->loop_count;
-    if (!list_contacts(scenario, dynamics, err)) {
+    if (!dynamics_places_list(scenario, dynamics, err)) {
         dynamics_finish(dynamics);
         return false;
     }
@@ -199,6 +156,12 @@ static void load_contact(const Dynamics *dynamics, size_t number, const TreeStat
     const int end = 2 * dynamics->places[number].pair;
     Vec2 from_a;
     Vec2 from_b;
+    if (force->couple != 0.0) {
+        const Tree *tree = &dynamics->tree;
+        dynamics_load_couple(tree, state, tree->end_bodies[end + 1], force->couple, loads);
+        dynamics_load_couple(tree, state, tree->end_bodies[end], -force->couple, loads);
+        return;
+    }
     dynamics_contact_points(&dynamics->places[number], &force->pose, &from_a, &from_b);
     dynamics_load_end(&dynamics->tree, state, end + 1, from_b, force->force, loads);
     dynamics_load_end(&dynamics->tree, state, end, from_a, vec2_scale(-1.0, force->force), loads);
@@ -296,7 +259,7 @@ static void fill_sums(const Dynamics *dynamics, const DynamicsState *state, doub
         const Vec2 force = state->contacts[i].force;
         sums[SYSTEM_DISSIPATED] += state->contacts[i].press.damping_power;
         sums[SYSTEM_FRICTION] += state->contacts[i].press.friction_power;
-        sums[SYSTEM_IMPULSES + i] = sqrt(vec2_dot(force, force));
+        sums[SYSTEM_IMPULSES + i] = sqrt(vec2_dot(force, force)) + fabs(state->contacts[i].couple);
     }
 }
 
@@ -335,8 +298,12 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
 {
     const Tree *tree = &dynamics->tree;
     TreeState *state = &dynamics->room.state->tree;
-    tree_evaluate_pair(tree, dynamics->places[contact].pair, since_s, y, y + tree->coordinate_count,
-                       state);
+    const double *u = y + tree->coordinate_count;
+    if (dynamics->places[contact].touch.shape == TOUCH_TEETH) {
+        tree_evaluate(tree, since_s, y, u, state); // their carrier counts, too
+    } else {
+        tree_evaluate_pair(tree, dynamics->places[contact].pair, since_s, y, u, state);
+    }
     ContactForce force;
     dynamics_contact_find(dynamics, contact, state, &force);
     return force;

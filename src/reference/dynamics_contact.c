@@ -10,6 +10,8 @@
 #include "reference/dynamics_contact.h"
 
 #include "contact/pin_hole.h"
+#include "model/coordinate.h"
+#include "reference/tree_coordinate.h"
 #include "reference/tree_line.h"
 
 #include <math.h>
@@ -57,12 +59,45 @@ static TouchPose pose_outside(const Tree *tree, const TreeState *state, const Pl
     return pose;
 }
 
+// An end of an angle, or a flank of teeth, which push at right angles to the line of the centres.
+static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const PlanePlace *place)
+{
+    const int joint = place->touch.joint;
+    const double sign = place->touch.sign;
+    const Vec2 offset = tree_pair_gap(tree, state, place->pair);
+    TouchPose pose = {
+        .offset = offset,
+        .velocity = tree_pair_velocity(tree, state, place->pair),
+        .gap = sign * tree_coordinate(tree, state, joint) - place->end,
+        .has_normal = true,
+        .approach_speed = -sign * tree_coordinate_rate(tree, state, joint),
+    };
+    if (place->touch.shape == TOUCH_TEETH) {
+        pose.normal = vec2_scale(sign / sqrt(vec2_dot(offset, offset)), vec2_perp(offset));
+    }
+    return pose;
+}
+
+static TouchPose pose_of(const Contact *contact, const Tree *tree, const TreeState *state,
+                         const PlanePlace *place)
+{
+    if (place->touch.shape == TOUCH_HOLE) {
+        return pose_in_hole(contact, tree, state, place->pair);
+    }
+    return dynamics_contact_is_turn(place) ? pose_of_end(tree, state, place)
+                                           : pose_outside(tree, state, place);
+}
+
 double dynamics_contact_second(const Dynamics *dynamics, size_t number, const TreeState *state,
                                const TouchPose *pose)
 {
     const PlanePlace *place = &dynamics->places[number];
     if (place->touch.shape == TOUCH_LINE) {
         return tree_line_second(&dynamics->tree, state, place->pair);
+    }
+    if (dynamics_contact_is_turn(place)) {
+        return place->touch.sign *
+               tree_coordinate_second(&dynamics->tree, state, place->touch.joint);
     }
     const double across = vec2_cross(pose->normal, pose->velocity);
     const double turning = across * across / sqrt(vec2_dot(pose->offset, pose->offset));
@@ -75,16 +110,19 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
 {
     const Contact *contact = &dynamics->system.contacts[number];
     const PlanePlace *place = &dynamics->places[number];
-    force->pose = place->touch.shape == TOUCH_HOLE
-                      ? pose_in_hole(contact, &dynamics->tree, state, place->pair)
-                      : pose_outside(&dynamics->tree, state, place);
+    force->pose = pose_of(contact, &dynamics->tree, state, place);
     force->press = press_find(contact, -force->pose.gap, force->pose.approach_speed);
     force->force = (Vec2){0.0, 0.0};
+    force->couple = 0.0;
     if (contact->mode != CONTACT_PRESSING) {
         return;
     }
     force->force = vec2_scale(force->press.normal, force->pose.normal);
-    if (dynamics->system.scenario->contact.friction > 0.0) {
+    if (place->touch.shape == TOUCH_TURN) {
+        const Joint *joint = &dynamics->tree.linkage->joints[contact->joint];
+        force->couple = place->touch.sign * coordinate_sense(joint) * force->press.normal;
+    }
+    if (dynamics->system.scenario->contact.friction > 0.0 && !dynamics_contact_is_turn(place)) {
         add_friction(dynamics, number, state, force);
     }
 }

@@ -18,6 +18,12 @@ static inline void dynamics_contact_points(const PlanePlace *place, const TouchP
     }
 }
 
+// Whether a contact's gap is that of an angle or of teeth.
+static inline bool dynamics_contact_is_turn(const PlanePlace *place)
+{
+    return place->touch.shape == TOUCH_TURN || place->touch.shape == TOUCH_TEETH;
+}
+
 // The second rate of a contact's gap, m/s^2, after tree_accelerate.
 double dynamics_contact_second(const Dynamics *dynamics, size_t number, const TreeState *state,
                                const TouchPose *pose);

@@ -8,10 +8,14 @@
 // with d the depth, d' = -n v and t at right angles to n:
 //     dn = +-t (t de) / |e|,   dN = (1 + chi d'/v0) k dd + (chi F_el / v0 + c) dd'
 // + of discs, - of a pin in its hole; a line's normal turns as slowly as the mechanism moves.
+//
+// A limited angle or teeth push along a coordinate q with steady shares w of the bodies' turns, and
+// hold no friction: dA = -M^-1 w ((1 + chi d'/v0) k w dq + (chi F_el / v0 + c) w du).
 #include "reference/dynamics_slopes.h"
 
 #include "reference/dynamics_loads.h"
 #include "reference/loops.h"
+#include "reference/tree_coordinate.h"
 #include "reference/tree_line.h"
 
 #include <math.h>
@@ -200,6 +204,41 @@ static void add_slopes(const Dynamics *dynamics, const Pressing *pressing, doubl
     }
 }
 
+// The same of a contact at an end of an angle or of teeth.
+static void add_turn_slopes(const Dynamics *dynamics, const TreeState *state, size_t number,
+                            double *by_position, double *by_rate)
+{
+    const Tree *tree = &dynamics->tree;
+    const Contact *contact = &dynamics->system.contacts[number];
+    const size_t n = tree->coordinate_count;
+    double *pushed = dynamics->room.pushed[0];
+    TreeCoordinatePart parts[TREE_COORDINATE_PARTS];
+    ContactForce force;
+    Loads loads = {.pushes = dynamics->room.zeros};
+    dynamics_contact_find(dynamics, number, state, &force);
+    tree_coordinate_parts(&tree->linkage->joints[contact->joint], parts);
+    for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
+        dynamics_load_couple(tree, state, parts[i].body, parts[i].share, &loads);
+    }
+    articulated_solve(dynamics->articulated, loads.pushes, NULL, pushed);
+    const double stiffness = (1.0 + contact->damping_rate * force.pose.approach_speed) *
+                             force_law_tangent(&contact->law, fabs(force.pose.gap));
+    const double damping = press_damping(contact, &force.press);
+    for (int part = 0; part < TREE_COORDINATE_PARTS; part++) {
+        const int body = parts[part].body;
+        if (body == LINKAGE_GROUND) {
+            continue;
+        }
+        loads.pushes[body] = (ArticulatedPush){{0.0, 0.0}, 0.0};
+        const int column = tree->angle_column[body];
+        for (size_t i = 0; column >= 0 && i < n; i++) {
+            const double share = parts[part].share * pushed[i];
+            by_position[i * n + (size_t)column] -= share * stiffness;
+            by_rate[i * n + (size_t)column] -= share * damping;
+        }
+    }
+}
+
 void dynamics_slopes(double since_s, const double *y, double *by_position, double *by_rate,
                      void *context)
 {
@@ -213,7 +252,12 @@ void dynamics_slopes(double since_s, const double *y, double *by_position, doubl
         by_position[i] = by_rate[i] = start;
     }
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
-        if (dynamics->system.contacts[i].mode == CONTACT_PRESSING) {
+        if (dynamics->system.contacts[i].mode != CONTACT_PRESSING) {
+            continue;
+        }
+        if (dynamics_contact_is_turn(&dynamics->places[i])) {
+            add_turn_slopes(dynamics, state, i, by_position, by_rate);
+        } else {
             const Pressing pressing = look_at(dynamics, state, i);
             find_pushed(dynamics, state, &pressing);
             add_slopes(dynamics, &pressing, by_position, by_rate);

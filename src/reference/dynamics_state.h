@@ -11,15 +11,17 @@
 typedef struct PlanePlace {
     Touch touch;
     int pair;         // of the tree: the ends that its distance is measured between
-    bool acts_beside; // whether the force's line may pass beside these ends: on a line, and with
-                      // friction
+    bool acts_beside; // whether the force's line may pass beside these ends: on a line, between
+                      // teeth, and with friction
+    double end; // rad or m, of a turn or teeth: gap = sign of the place (tree_coordinate) - end
 } PlanePlace;
 
 // A contact's quantities at one instant.
 typedef struct ContactForce {
     Press press;
     TouchPose pose;
-    Vec2 force; // N, on body b, friction included
+    Vec2 force;    // N, on body b, friction included
+    double couple; // N m, on body b, of a turn, which has no force
 } ContactForce;
 
 // Everything at one instant.

@@ -5,6 +5,7 @@
 #include "reference/dynamics.h"
 #include "reference/dynamics_slopes.h"
 #include "reference/loops.h"
+#include "reference/tree_coordinate.h"
 #include "reference/tree_line.h"
 
 #include <assert.h>
@@ -107,7 +108,13 @@ static void plane_sizes(const System *system, const SystemState *state, size_t c
                         double *length, double *speed)
 {
     const Tree *tree = &dynamics_of(system)->tree;
-    const int end = 2 * dynamics_of(system)->places[contact].pair;
+    const PlanePlace *place = &dynamics_of(system)->places[contact];
+    const int end = 2 * place->pair;
+    if (dynamics_contact_is_turn(place)) {
+        tree_coordinate_sizes(tree, &state_of(state)->tree, place->touch.joint, length, speed);
+        *length += fabs(place->end);
+        return;
+    }
     add_end_size(tree, &state_of(state)->tree, end, length, speed);
     add_end_size(tree, &state_of(state)->tree, end + 1, length, speed);
 }
@@ -119,6 +126,11 @@ static double plane_crossing(const System *system, const SystemState *state, siz
     const TreeState *at = &state_of(state)->tree;
     const Contact *of = &system->contacts[contact];
     const PlanePlace *place = &dynamics->places[contact];
+    if (dynamics_contact_is_turn(place)) {
+        const int joint = place->touch.joint;
+        return fabs(tree_coordinate_rate(tree, at, joint)) +
+               sqrt(of->flight * fabs(tree_coordinate_second(tree, at, joint)));
+    }
     if (place->touch.shape == TOUCH_LINE) {
         // along the line it may go as fast as it likes
         return fabs(tree_line_rate(tree, at, place->pair)) +
@@ -219,6 +231,32 @@ static void fill_ideal(const Dynamics *dynamics, const DynamicsState *at, int jo
     }
 }
 
+// A joint whose coordinate is limited before anything presses at its ends. What an ideal joint
+// holds stays in the force and moment on its body b; its size is that of what presses.
+static void fill_limited(const Dynamics *dynamics, const DynamicsState *at, int joint,
+                         JointState *to)
+{
+    const Joint *of = &dynamics->tree.linkage->joints[joint];
+    if (of->kind == JOINT_GEAR) {
+        *to = (JointState){.eccentricity = {tree_coordinate(&dynamics->tree, &at->tree, joint), 0}};
+    } else if (of->kind == JOINT_REVOLUTE) {
+        to->tilt = tree_coordinate_origin(of) + tree_coordinate(&dynamics->tree, &at->tree, joint);
+    }
+    to->gap = INFINITY;
+    to->force = 0.0;
+    to->is_touching = false;
+}
+
+// Adds what presses at one end.
+static void add_end(const ContactForce *end, bool is_touching, JointState *to)
+{
+    to->gap = fmin(to->gap, end->pose.gap);
+    to->force_on_b = vec2_add(to->force_on_b, end->force);
+    to->moment_on_b += end->couple;
+    to->force += sqrt(vec2_dot(end->force, end->force)) + fabs(end->couple);
+    to->is_touching = to->is_touching || is_touching;
+}
+
 // Adds what presses at one of a block's corners.
 static void add_corner(const Dynamics *dynamics, const DynamicsState *at, size_t number,
                        JointState *to)
@@ -250,6 +288,9 @@ static void plane_joints(const System *system, const SystemState *state, JointSt
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (linkage_kind_is_ideal(linkage->joints[i].kind)) {
             fill_ideal(dynamics, at, (int)i, &joints[i]);
+        }
+        if (linkage->joints[i].limits.kind != LIMIT_NONE) {
+            fill_limited(dynamics, at, (int)i, &joints[i]);
         } else if (linkage->joints[i].kind == JOINT_GUIDE) {
             joints[i] = (JointState){.gap = INFINITY};
             place_on_line(&dynamics->tree, &at->tree, (int)i, &joints[i]);
@@ -260,6 +301,10 @@ static void plane_joints(const System *system, const SystemState *state, JointSt
         JointState *joint = &joints[system->contacts[i].joint];
         if (linkage->joints[system->contacts[i].joint].kind == JOINT_GUIDE) {
             add_corner(dynamics, at, i, joint);
+            continue;
+        }
+        if (linkage->joints[system->contacts[i].joint].limits.kind != LIMIT_NONE) {
+            add_end(force, system->contacts[i].mode != CONTACT_APART, joint);
             continue;
         }
         *joint = (JointState){

@@ -18,8 +18,12 @@ typedef enum ContactMode {
 
 typedef struct Contact {
     int joint;
+    int partner; // of a limited coordinate: by how many contacts the one at its other end comes
+                 // later; 0: there is none
     ForceLaw law;
     double clearance;   // m, radial, or of a collar in space axial; 0 of a stop
+    double arm;         // m, by which an angle counts as a length and a torque as a force; 1 of
+                        // what is a length already
     double flight;      // m, by which it may come nearer between two looks while it is apart
     double hole_radius; // m, of a pin in space
     bool is_collar;     // of a pin in space: it stops the pin along its axis

@@ -75,6 +75,7 @@ bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err 
             .joint = places[i].joint,
             .law = places[i].law,
             .clearance = places[i].clearance,
+            .arm = 1.0,
             .flight = places[i].clearance,
             .hole_radius = joint->clearance.hole_radius,
             .is_collar = places[i].place == PIN_SPACE_COLLAR,

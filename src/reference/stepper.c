@@ -68,7 +68,7 @@ static void set_tolerances(Stepper *stepper)
     sums[SYSTEM_DISSIPATED] = energy_share * mass * moving * scale->moving;
     sums[SYSTEM_FRICTION] = energy_share * mass * moving * scale->moving;
     for (size_t i = 0; i < system->contact_count; i++) {
-        sums[SYSTEM_IMPULSES + i] = mass * moving;
+        sums[SYSTEM_IMPULSES + i] = mass * moving * system->contacts[i].arm;
     }
 }
 
@@ -93,11 +93,11 @@ static void allow_rounding(Stepper *stepper)
         const double depth = fmax(fabs(state->contacts[i].depth), rounding);
         if (contact->mode == CONTACT_PRESSING) {
             force += rounding * force_law_tangent(&contact->law, depth);
-            damped +=
-                ROUNDING * stepper->scale.moving * press_damping(contact, &state->contacts[i]);
+            damped += ROUNDING * stepper->scale.moving *
+                      press_damping(contact, &state->contacts[i]) / (contact->arm * contact->arm);
         }
         moved = moved > 0.0 ? fmin(moved, rounding) : rounding;
-        sums[SYSTEM_IMPULSES + i] = force + (is_stiff ? damped : 0.0);
+        sums[SYSTEM_IMPULSES + i] = (force + (is_stiff ? damped : 0.0)) * contact->arm;
     }
     for (size_t i = 0; i < n; i++) {
         const SystemCoordinate *coordinate = &system->coordinates[i];
@@ -230,7 +230,9 @@ static double flight_limit(const Stepper *stepper)
     double limit = smooth_limit(stepper);
     for (size_t i = 0; i < system->contact_count; i++) {
         const Contact *contact = &system->contacts[i];
-        if (contact->mode == CONTACT_PRESSING) {
+        // what presses at one end of a coordinate says how long steps are
+        if (contact->mode == CONTACT_PRESSING ||
+            (contact + contact->partner)->mode == CONTACT_PRESSING) {
             continue;
         }
         const double speed = system->kind->crossing(system, state_at_end(stepper), i);

@@ -41,7 +41,8 @@ static double smallest_depth(const System *system, const SystemState *state, dou
     for (size_t i = 0; i < system->contact_count; i++) {
         const Press *press = &state->contacts[i];
         if (system->contacts[i].mode == CONTACT_PRESSING) {
-            const double depth = fabs(press->depth) + step * fabs(press->closing);
+            const double depth =
+                (fabs(press->depth) + step * fabs(press->closing)) * system->contacts[i].arm;
             smallest = smallest > 0.0 ? fmin(smallest, depth) : depth;
         }
     }

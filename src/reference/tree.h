@@ -4,6 +4,10 @@
 #include "base/layout.h"
 #include "reference/tree_state.h"
 
+// The pairs that the places of a joint have of their own: those of corners and of a slider's stops.
+// Returns how many, with the places.
+size_t tree_own_pairs(const Joint *joint, int number, Touch places[TOUCH_CORNERS]);
+
 // Finds the tree of the linkage's ideal joints, which must outlive it (reference/tree_build.c).
 void tree_build(const Linkage *linkage, Tree *tree);
 void tree_finish(Tree *tree);

@@ -7,6 +7,7 @@
 
 #include "base/sincos.h"
 #include "model/joint_rows.h"
+#include "reference/tree_coordinate.h"
 #include "reference/tree_line.h"
 
 #include <float.h>
@@ -92,6 +93,12 @@ static void measure(Tree *tree)
         const Joint *joint = &tree->linkage->joints[i];
         tree->base_tilts[i] = (double)(base_angle_of(tree, joint->body_b) -
                                        base_angle_of(tree, joint->body_a) - joint->held_angle);
+    }
+    for (int i = 0; i < (int)tree->linkage->joint_count; i++) {
+        const Joint *joint = &tree->linkage->joints[i];
+        if (joint->limits.kind != LIMIT_NONE && joint->kind != JOINT_PRISMATIC) {
+            tree_coordinate_settle(tree, i);
+        }
     }
 }
 

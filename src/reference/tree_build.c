@@ -121,6 +121,12 @@ static void list_ends(Tree *tree)
     tree->end_firsts[0] = 0;
 }
 
+size_t tree_own_pairs(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
+{
+    const bool has_own = joint->kind == JOINT_GUIDE || joint->kind == JOINT_PRISMATIC;
+    return has_own ? touch_places(joint, number, places) : 0;
+}
+
 static void set_pairs(Tree *tree)
 {
     const Linkage *linkage = tree->linkage;
@@ -145,7 +151,8 @@ static void set_pairs(Tree *tree)
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         tree->corners[i] = corner;
-        for (size_t k = 0; joint->kind == JOINT_GUIDE && k < touch_places(joint, i, places); k++) {
+        const size_t own = tree_own_pairs(joint, i, places);
+        for (size_t k = 0; k < own; k++) {
             set_pair(tree, corner++, joint, &places[k], TREE_LINE);
         }
     }
@@ -181,14 +188,16 @@ static void lay(Tree *tree, Layout *layout)
     tree->base_gaps = layout_take(layout, pairs, sizeof *tree->base_gaps);
     tree->base_distances = layout_take(layout, pairs, sizeof *tree->base_distances);
     tree->base_tilts = layout_take(layout, joints, sizeof *tree->base_tilts);
+    tree->base_coordinates = layout_take(layout, joints, sizeof *tree->base_coordinates);
 }
 
 static void make_room(Tree *tree)
 {
     const Linkage *linkage = tree->linkage;
     tree->pair_count = linkage->joint_count;
+    Touch places[TOUCH_CORNERS];
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        tree->pair_count += linkage->joints[i].kind == JOINT_GUIDE ? TOUCH_CORNERS : 0;
+        tree->pair_count += tree_own_pairs(&linkage->joints[i], (int)i, places);
     }
     tree->normals = 2 * (int)tree->pair_count;
     tree->end_count = 3 * tree->pair_count;

@@ -11,7 +11,8 @@
 #include "contact/touch.h"
 
 // Pairs of points, one on body a and one on body b: pair j has the anchors of joint j, those behind
-// the joints' the corners of blocks between guides and points of the guides. End 2 p is on body a,
+// the joints' the corners of blocks between guides and points of the guides, and sliders with their
+// stops. End 2 p is on body a,
 // end 2 p + 1 on body b. Behind all of these are the unit normals of the lines of the pairs that
 // have one (Tree.normals): they turn with body a as arms do.
 
@@ -52,7 +53,7 @@ typedef struct Tree {
     int *angle_column;     // by body; -1 for the driven one and what slides on it
     int *node_of;          // by body; -1 for the driven one
     size_t pair_count;     // those of the joints first
-    int *corners;          // first pair of a block's corners, by joint
+    int *corners;          // first pair of a block's corners or a slider's stops, by joint
     size_t measured_count; // pairs with a line or discs, and which
     int *measured;         //
     TreeMeasure *measures; // by pair
@@ -80,6 +81,7 @@ typedef struct Tree {
     Vec2 *base_gaps;          // from the end on body a to that on body b, m
     double *base_distances;   // m, of measured pairs, offset subtracted
     double *base_tilts;       // rad, of prismatic joints and blocks
+    double *base_coordinates; // rad or m, of joints whose angle or teeth are limited, by joint
 } Tree;
 
 // Where the tree's bodies are and how their velocities depend on the coordinates' rates.

@@ -1,5 +1,6 @@
 // Are the derivatives that the implicit integrator works with those of the accelerations?
 #include "close.h"
+#include "kept.h"
 #include "mechanism.h"
 #include "slider.h"
 
@@ -49,6 +50,8 @@ static void press(Pressed *pressed, const Scenario *mechanism)
         contact->clearance = vec2_length(pose.offset) - DEPTH;
         // of lines and discs
         dynamics->tree.base_distances[dynamics->places[i].pair] -= pose.gap + DEPTH;
+        // of angles and teeth
+        dynamics->places[i].end += pose.gap + DEPTH;
     }
 }
 
@@ -133,6 +136,59 @@ static void derivatives_are_those_of_the_contacts_forces(void **state)
     }
 }
 
+// A gear on the ground and one on an arm that another gear's carrier is, the arm's hinge with
+// backlash, and a slider with stops on the arm.
+static Scenario geared(void)
+{
+    Scenario scenario = kept_default();
+    Linkage *linkage = &scenario.linkage;
+    linkage->body_count = 4;
+    for (size_t i = 0; i < 4; i++) {
+        linkage->bodies[i] = (Body){
+            .mass = 0.5,
+            .inertia = 1e-3,
+            .start = {.position = {i == 1 || i == 3 ? 0.08 : 0.0, i == 2 ? 0.02 : 0.0}},
+        };
+    }
+    const JointContact contact = {.stiffness = 1e5, .exponent = 1.5};
+    const Limits gap = {.kind = LIMIT_BACKLASH, .backlash = 1e-3};
+    // the sun and the arm (body 2) about the origin, the planet on the arm, the slider on the arm
+    linkage->joint_count = 5;
+    linkage->joints[0] = (Joint){.name = "sun", .body_a = LINKAGE_GROUND, .body_b = 0};
+    linkage->joints[1] = (Joint){.name = "arm",
+                                 .body_a = 0,
+                                 .body_b = 2,
+                                 .anchor_b = {0.0, -0.02},
+                                 .limits = gap,
+                                 .contact = contact};
+    linkage->joints[2] =
+        (Joint){.name = "planet", .body_a = 2, .body_b = 1, .anchor_a = {0.08, -0.02}};
+    linkage->joints[3] = (Joint){.name = "mesh",
+                                 .kind = JOINT_GEAR,
+                                 .body_a = 0,
+                                 .body_b = 1,
+                                 .gear = {{1, 2}, 2, {20, 60}, 0.02, 0.06, false, false},
+                                 .limits = gap};
+    linkage->joints[4] = (Joint){.name = "slide",
+                                 .kind = JOINT_PRISMATIC,
+                                 .body_a = 2,
+                                 .body_b = 3,
+                                 .anchor_a = {0.08, -0.02},
+                                 .limits = gap};
+    return scenario;
+}
+
+static void derivatives_are_those_of_angles_and_teeth(void **state)
+{
+    (void)state;
+    const Scenario scenario = geared();
+    Pressed pressed;
+    press(&pressed, &scenario);
+    assert_int_equal(pressed.dynamics.system.contact_count, 6);
+    assert_true(worst(&pressed) < 1e-3);
+    dynamics_finish(&pressed.dynamics);
+}
+
 static void derivatives_are_those_of_blocks_and_stops(void **state)
 {
     (void)state;
@@ -176,6 +232,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(derivatives_are_those_of_the_contacts_forces),
         cmocka_unit_test(derivatives_are_those_of_blocks_and_stops),
+        cmocka_unit_test(derivatives_are_those_of_angles_and_teeth),
         cmocka_unit_test(another_sliding_speed_has_other_derivatives),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
