@@ -25,9 +25,10 @@ typedef struct Task {
 Task task_make(const Ladder *ladder, const Scenario *scenario, LadderRun run, const Truth *truth);
 
 // Each is a ChildWork and takes a Task. What comes of it is, in this order: a LadderRun; a packed
-// truth; an Ensemble.
+// truth; the same by all processors, where nothing else goes on; an Ensemble.
 void task_measure(const void *task, void *run);
 void task_certify(const void *task, void *packed);
+void task_certify_alone(const void *task, void *packed);
 void task_spread(const void *task, void *ensemble);
 
 // What came of a child that did task_measure: its result, or where it did not come back the run

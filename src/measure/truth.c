@@ -13,27 +13,15 @@
 // on a grid of at least a thousand samples, for the case's own samples may be few.
 #include "measure/truth.h"
 
-#include "base/clock.h"
-#include "base/side_by_side.h"
 #include "measure/error.h"
+#include "measure/truth_runs.h"
 #include "model/distance.h"
-#include "model/growth.h"
-#include "model/shake.h"
 #include "run/registry.h"
 #include "run/tracer.h"
 
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-// tolerances of the second and third run over the first's
-static const double SECOND = 1.0 / 30.0;
-static const double THIRD = 1.0 / 10.0;
-
-// Tolerance of the perturbed runs over the perturbation: growth is then wrong by some hundredths.
-static const double PERTURBED_SHARE = 1e-3;
-
-enum { THIRD_SEED = 1 }; // of its inputs' rounding
 
 // 1: no speed is held to less than this share of itself
 static const double ROUNDING = 0x1p-53;
@@ -97,126 +85,41 @@ static void note_failure(const Trajectory *trajectory, Truth *truth)
     }
 }
 
-// Who watches the perturbed runs, which go on side by side.
-typedef struct Beats {
-    RunWatch watch;
-    double started_s;
-} Beats;
-
-static void beat(void *context)
+// Shortens the horizon to where the fastest of all perturbations has grown too much. Of large
+// mechanisms the other two runs alone say how far they can be predicted.
+static void take_growth(TruthRuns *runs, Truth *truth)
 {
-    const Beats *beats = context;
-    beats->watch.progress(0.0, clock_now_s() - beats->started_s, beats->watch.context);
-}
-
-// Shortens the horizon to where the fastest of all perturbations has grown too much.
-static void follow_growth(const Scenario *scenario, const Trajectory *beside, RunWatch watch,
-                          size_t threads, Truth *truth)
-{
-    Beats beats = {watch, clock_now_s()};
-    if (scenario->linkage.body_count > PERTURB_BODY_MAX) {
-        return; // the other two runs alone say how far it can be predicted
+    Growth growth;
+    if (!truth_runs_growth(runs, truth->horizon_s, &growth)) {
+        return;
     }
-    DistanceScale scales[PERTURB_BODY_MAX];
-    PerturbBasis *basis = malloc(sizeof *basis);
-    assert(basis != NULL);
-    distance_scales(beside, scales);
-    perturb_basis(scenario, scales, basis);
-    const Growth growth = growth_find(&(GrowthWork){
-        .solver = registry_solver(BACKEND_REFERENCE),
-        .scenario = scenario,
-        .beside = beside,
-        .scales = scales,
-        .basis = basis,
-        .size = DISTANCE_PERTURBATION,
-        .most = DISTANCE_GROWTH,
-        .until_s = truth->horizon_s,
-        .threads = threads,
-        .pulse = {watch.progress != NULL ? beat : NULL, &beats},
-    });
     truth->growth = growth.largest;
     truth->is_limited = truth->is_limited || growth.is_limited;
     truth->horizon_s = growth.until_s;
     if (growth.is_failed) {
         snprintf(truth->message, sizeof truth->message, "%s", growth.failure.text);
     }
-    free(basis);
-}
-
-// The scenario with another tolerance of the reference.
-static Scenario with_tolerance(const Scenario *scenario, double tolerance)
-{
-    Scenario other = *scenario;
-    other.reference.tolerance = tolerance;
-    return other;
-}
-
-// The runs that a truth is made of, at the same time where there are processors.
-enum { RUN_FIRST, RUN_SECOND, RUN_THIRD, RUN_FINE, RUN_COUNT };
-
-typedef struct Runs {
-    Scenario scenarios[RUN_COUNT]; // the third owns its linkage, the others share the caller's
-    Trajectory *trajectories[RUN_COUNT]; // owned, but where two are one
-    RunWatch watch;
-} Runs;
-
-static void make_run(size_t index, bool is_callers, void *context)
-{
-    Runs *runs = context;
-    const Scenario *scenario = &runs->scenarios[index];
-    const RunWatch watch = is_callers ? runs->watch : (RunWatch){NULL, NULL};
-    // spikes are those of the first alone
-    runs->trajectories[index] =
-        index == RUN_FIRST ? tracer_run(scenario, registry_solver(BACKEND_REFERENCE), watch)
-                           : run(scenario, BACKEND_REFERENCE, watch);
-}
-
-// The first on the case's own samples; on the fine grid itself, where these are fine enough.
-static void make_runs(const Scenario *scenario, size_t threads, Runs *runs)
-{
-    const double tolerance = scenario->reference.tolerance;
-    const Scenario fine = distance_grid(scenario);
-    runs->scenarios[RUN_FIRST] = *scenario;
-    runs->scenarios[RUN_FINE] = fine;
-    runs->scenarios[RUN_SECOND] = with_tolerance(&fine, SECOND * tolerance);
-    const Scenario third = with_tolerance(&fine, THIRD * tolerance);
-    runs->scenarios[RUN_THIRD] = scenario_copy(&third);
-    shake_inputs(&runs->scenarios[RUN_THIRD], THIRD_SEED);
-    const bool is_fine = scenario_sample_count(&fine) == scenario_sample_count(scenario);
-    side_by_side_run(is_fine ? RUN_FINE : RUN_COUNT, threads, make_run, runs);
-    if (is_fine) {
-        runs->trajectories[RUN_FINE] = runs->trajectories[RUN_FIRST];
-    }
-}
-
-// The tolerance of perturbed runs: theirs is the error of the distance to the second.
-static double perturbed_tolerance(const Scenario *scenario)
-{
-    const double first = scenario->reference.tolerance;
-    return fmin(first, fmax(SECOND * first, PERTURBED_SHARE * DISTANCE_PERTURBATION));
 }
 
 // Compares the first run on the fine grid with the second and third, and the second with perturbed
 // ones.
-static void certify(const Runs *runs, size_t threads, Truth *truth)
+static void certify(TruthRuns *runs, Truth *truth)
 {
-    const Scenario *fine = &runs->scenarios[RUN_FINE];
-    const Trajectory *first = runs->trajectories[RUN_FINE];
-    const Trajectory *second = runs->trajectories[RUN_SECOND];
-    const Trajectory *third = runs->trajectories[RUN_THIRD];
+    const Trajectory *first = truth_runs_fine(runs);
+    const Trajectory *second = truth_runs_second(runs);
+    const Trajectory *third = truth_runs_third(runs);
     note_failure(first, truth);
     note_failure(second, truth);
     note_failure(third, truth);
     truth->is_limited = false;
-    truth->horizon_s = scenario_duration(fine);
+    truth->horizon_s = truth_runs_duration(runs);
     const Apart from_second = apart_of(second, first);
     const Apart from_third = apart_of(first, third);
     const Apart between_both = apart_of(second, third);
     shorten_horizon(&from_second, truth);
     shorten_horizon(&between_both, truth);
     if (truth->message[0] == '\0') {
-        const Scenario perturbed = with_tolerance(fine, perturbed_tolerance(fine));
-        follow_growth(&perturbed, second, runs->watch, threads, truth);
+        take_growth(runs, truth);
     }
     // now that the horizon is known
     const double to_second = shorten_horizon(&from_second, truth);
@@ -243,21 +146,11 @@ BackendKind truth_backend(const Scenario *scenario)
 static Truth certified(const Scenario *scenario, RunWatch watch, size_t threads)
 {
     Truth truth = {.growth = 1.0, .horizon_s = 0.0, .is_limited = true, .uncertainty = INFINITY};
-    Runs *runs = calloc(1, sizeof *runs);
-    assert(runs != NULL);
-    runs->watch = watch;
-    make_runs(scenario, threads, runs);
-    truth.trajectory = runs->trajectories[RUN_FIRST];
-    if (truth.trajectory->is_complete) {
-        certify(runs, threads, &truth);
+    TruthRuns *runs = truth_runs_make(scenario, watch, threads);
+    if (truth_runs_first(runs)->is_complete) {
+        certify(runs, &truth);
     }
-    for (size_t i = RUN_SECOND; i < RUN_COUNT; i++) {
-        if (runs->trajectories[i] != truth.trajectory) {
-            trajectory_destroy(runs->trajectories[i]);
-        }
-    }
-    scenario_free(&runs->scenarios[RUN_THIRD]);
-    free(runs);
+    truth.trajectory = truth_runs_finish(runs);
     return truth;
 }
 

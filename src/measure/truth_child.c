@@ -60,7 +60,7 @@ bool truth_child_make(const TruthChild *work, Truth *truth, Err *err)
     *truth = (Truth){.trajectory = NULL};
     const Pool pool = {
         .jobs = 1,
-        .work = task_certify,
+        .work = task_certify_alone,
         .result_size = truth_pack_size(work->scenario),
         .limits = {.time_s = TASK_TRUTH_RUNS * work->run_limit_s,
                    .memory_bytes = TASK_MEMORY_LIMIT},

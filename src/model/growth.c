@@ -9,8 +9,6 @@
 // is that of the fastest of all perturbations. It does not depend on the directions that were run.
 #include "model/growth.h"
 
-#include "base/side_by_side.h"
-
 #include <assert.h>
 #include <stdlib.h>
 
@@ -30,22 +28,32 @@ typedef struct Walk {
     void *state; // of the solver
     bool has_step;
     double reached_s;
-    size_t sample; // the first of the samples that it has not come to
-    bool is_away;  // so far that the growth is above the most, at the last sample it came to
-    Err failure;   // why it did not come to the sample
-    Vec3 *apart;   // how far it is from the motion, by sample of the block and body; owned
+    size_t sample;     // the first of the samples that it has not come to
+    bool is_away;      // so far that the growth is above the most, at the last sample it came to
+    Err failure;       // why it did not come to the sample
+    Vec3 *apart;       // how far it is from the motion, by sample of the block and body; owned
+    bool is_under_way; // in the block
+    bool is_through;   // with the block
 } Walk;
 
 // The perturbed runs, side by side, and the samples that they go through next.
-typedef struct Runs {
-    const GrowthWork *work;
+struct GrowthRuns {
+    GrowthWork work;
     size_t count;
     Walk *walks; // owned, like the scenarios, to which solvers keep a pointer
     Scenario *scenarios;
-    size_t block_most; // samples
+    size_t sample_count; // to go through
+    size_t block;        // samples, at most so many of them
+    size_t block_most;
     size_t first;
     size_t end;
-} Runs;
+    bool is_going;
+    double *found; // growth, by sample; owned
+    size_t looked; // samples that it is known of
+    Err failure;   // why it is not known of the next one, where a run failed
+};
+
+typedef struct GrowthRuns Runs;
 
 static void beat(const GrowthWork *work, bool is_callers)
 {
@@ -93,11 +101,11 @@ static bool find_apart(const GrowthWork *work, const Sample *sample, size_t k, V
     return is_away;
 }
 
-// Takes one run through the block. Of all perturbations none grows less than this one.
-static void walk_block(size_t index, bool is_callers, void *context)
+// Of all perturbations none grows less than one that is run.
+void growth_walk(size_t index, bool is_callers, void *context)
 {
     Runs *runs = context;
-    const GrowthWork *work = runs->work;
+    const GrowthWork *work = &runs->work;
     Walk *walk = &runs->walks[index];
     const size_t bodies = work->beside->body_count;
     Sample sample = sample_create(&work->scenario->linkage);
@@ -111,17 +119,18 @@ static void walk_block(size_t index, bool is_callers, void *context)
     sample_free(&sample);
 }
 
-static bool open_runs(const GrowthWork *work, Runs *runs, Growth *growth)
+static bool open_runs(Runs *runs)
 {
-    runs->work = work;
+    const GrowthWork *work = &runs->work;
     runs->scenarios = calloc(work->basis->count + 1, sizeof *runs->scenarios);
     runs->walks = calloc(work->basis->count + 1, sizeof *runs->walks);
-    assert(runs->scenarios != NULL && runs->walks != NULL);
+    runs->found = calloc(runs->sample_count + 1, sizeof *runs->found);
+    assert(runs->scenarios != NULL && runs->walks != NULL && runs->found != NULL);
     for (size_t i = 0; i < work->basis->count; i++) {
         Walk *walk = &runs->walks[i];
         runs->scenarios[i] = scenario_copy(work->scenario);
         perturb_along(&runs->scenarios[i], work->basis->changes[i], work->size);
-        if (!work->solver->open(&runs->scenarios[i], &walk->state, &growth->failure)) {
+        if (!work->solver->open(&runs->scenarios[i], &walk->state, &runs->failure)) {
             return false;
         }
         runs->count++;
@@ -137,8 +146,9 @@ static bool open_runs(const GrowthWork *work, Runs *runs, Growth *growth)
     return true;
 }
 
-static void close_runs(const Solver *solver, Runs *runs, Growth *growth)
+static void close_runs(Runs *runs, Growth *growth)
 {
+    const Solver *solver = runs->work.solver;
     for (size_t i = 0; i < runs->count; i++) {
         const SolverModel model = solver->model(runs->walks[i].state);
         growth->steps += model.steps;
@@ -152,6 +162,8 @@ static void close_runs(const Solver *solver, Runs *runs, Growth *growth)
     }
     free(runs->walks);
     free(runs->scenarios);
+    free(runs->found);
+    free(runs);
 }
 
 // The products of the rows of (D_1b ... D_fb), of one body: a symmetric matrix of 3 by 3.
@@ -199,9 +211,9 @@ static double largest_singular(Gram gram)
 }
 
 // The growth at one sample of the block; false where a run does not come there.
-static bool find_at(const Runs *runs, size_t k, double *found, Growth *growth)
+static bool find_at(Runs *runs, size_t k, double *found)
 {
-    const GrowthWork *work = runs->work;
+    const GrowthWork *work = &runs->work;
     const size_t bodies = work->beside->body_count;
     for (size_t i = 0; i < runs->count; i++) {
         const Walk *walk = &runs->walks[i];
@@ -210,7 +222,7 @@ static bool find_at(const Runs *runs, size_t k, double *found, Growth *growth)
             return true;
         }
         if (walk->sample <= k) {
-            growth->failure = walk->failure;
+            runs->failure = walk->failure;
             return false;
         }
     }
@@ -231,39 +243,111 @@ static bool find_at(const Runs *runs, size_t k, double *found, Growth *growth)
 }
 
 // Looks at the samples of the block. Returns whether the runs are to go on.
-static bool look_at_block(const Runs *runs, Growth *growth)
+static bool look_at_block(Runs *runs)
 {
     for (size_t k = runs->first; k < runs->end; k++) {
-        double found;
-        growth->is_failed = !find_at(runs, k, &found, growth);
-        growth->is_limited = growth->is_failed || !(found <= runs->work->most);
-        if (growth->is_limited) {
+        if (!find_at(runs, k, &runs->found[k])) {
             return false;
         }
-        growth->largest = fmax(growth->largest, found);
-        growth->until_s = runs->work->beside->times[k];
+        runs->looked = k + 1;
+        if (!(runs->found[k] <= runs->work.most)) {
+            return false;
+        }
     }
     return true;
 }
 
-Growth growth_find(const GrowthWork *work)
+// Sets out for the next samples, if there are any.
+static void start_block(Runs *runs)
+{
+    const size_t block = runs->block < runs->block_most ? runs->block : runs->block_most;
+    const size_t left = runs->sample_count - runs->end;
+    runs->first = runs->end;
+    runs->end += block < left ? block : left;
+    runs->block = 2 * block;
+    runs->is_going = runs->is_going && runs->first < runs->end;
+    for (size_t i = 0; i < runs->count; i++) {
+        runs->walks[i].is_under_way = runs->walks[i].is_through = false;
+    }
+}
+
+GrowthRuns *growth_begin(const GrowthWork *work)
+{
+    GrowthRuns *runs = calloc(1, sizeof *runs);
+    assert(runs != NULL);
+    *runs = (GrowthRuns){.work = *work, .block = BLOCK_FIRST};
+    const Trajectory *beside = work->beside;
+    runs->sample_count = beside->sample_count;
+    while (runs->sample_count > 0 && !(beside->times[runs->sample_count - 1] <= work->until_s)) {
+        runs->sample_count--;
+    }
+    runs->is_going = open_runs(runs);
+    if (runs->is_going && runs->count == 0) {
+        // nothing can be changed: nothing grows
+        runs->looked = runs->sample_count;
+        runs->is_going = false;
+    }
+    start_block(runs);
+    return runs;
+}
+
+SideBySideNext growth_next(size_t *index, void *context)
+{
+    const GrowthRuns *runs = context;
+    if (!runs->is_going) {
+        return SIDE_BY_SIDE_NONE;
+    }
+    for (size_t i = 0; i < runs->count; i++) {
+        if (!runs->walks[i].is_under_way) {
+            runs->walks[i].is_under_way = true;
+            *index = i;
+            return SIDE_BY_SIDE_PIECE;
+        }
+    }
+    return SIDE_BY_SIDE_LATER;
+}
+
+void growth_walked(size_t index, void *context)
+{
+    GrowthRuns *runs = context;
+    runs->walks[index].is_through = true;
+    for (size_t i = 0; i < runs->count; i++) {
+        if (!runs->walks[i].is_through) {
+            return;
+        }
+    }
+    runs->is_going = look_at_block(runs);
+    start_block(runs);
+}
+
+Growth growth_end(GrowthRuns *runs, double until_s)
 {
     Growth growth = {.largest = 1.0};
-    Runs runs = {.count = 0};
-    const Trajectory *beside = work->beside;
-    size_t count = beside->sample_count;
-    while (count > 0 && !(beside->times[count - 1] <= work->until_s)) {
-        count--;
+    const Trajectory *beside = runs->work.beside;
+    for (size_t k = 0; k < runs->sample_count && beside->times[k] <= until_s; k++) {
+        growth.is_failed = k == runs->looked;
+        growth.is_limited = growth.is_failed || !(runs->found[k] <= runs->work.most);
+        if (growth.is_limited) {
+            break;
+        }
+        growth.largest = fmax(growth.largest, runs->found[k]);
+        growth.until_s = beside->times[k];
     }
-    growth.is_failed = !open_runs(work, &runs, &growth);
-    bool is_going = !growth.is_failed;
-    for (size_t block = BLOCK_FIRST; is_going && runs.first < count; block *= 2) {
-        block = block < runs.block_most ? block : runs.block_most;
-        runs.end = runs.first + block < count ? runs.first + block : count;
-        side_by_side_run(runs.count, work->threads, walk_block, &runs);
-        is_going = look_at_block(&runs, &growth);
-        runs.first = runs.end;
-    }
-    close_runs(work->solver, &runs, &growth);
+    growth.failure = runs->failure;
+    close_runs(runs, &growth);
     return growth;
+}
+
+Growth growth_find(const GrowthWork *work)
+{
+    GrowthRuns *runs = growth_begin(work);
+    const SideBySideTasks tasks = {
+        .most = work->basis->count,
+        .next = growth_next,
+        .work = growth_walk,
+        .end = growth_walked,
+        .context = runs,
+    };
+    side_by_side_tasks(&tasks, work->threads);
+    return growth_end(runs, work->until_s);
 }

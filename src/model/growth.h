@@ -1,6 +1,7 @@
 // How far small changes of the start drive two motions apart: by the fastest of all of them.
 #pragma once
 
+#include "base/side_by_side.h"
 #include "model/perturb.h"
 #include "model/solver.h"
 
@@ -35,3 +36,16 @@ typedef struct Growth {
 
 // Runs the starts of the basis side by side up to where the growth comes to the most.
 Growth growth_find(const GrowthWork *work);
+
+// The same among other work that goes on side by side (base/side_by_side.h): pieces of perturbed
+// runs, as many at a time as the basis has starts. The work and all that it points to must stay;
+// its number of threads does not matter.
+typedef struct GrowthRuns GrowthRuns;
+GrowthRuns *growth_begin(const GrowthWork *work);
+SideBySideNext growth_next(size_t *index, void *runs);
+void growth_walk(size_t index, bool is_callers, void *runs);
+void growth_walked(size_t index, void *runs);
+
+// What came of it up to a time, s, which may be known only now; no piece may be going on. Frees the
+// runs.
+Growth growth_end(GrowthRuns *runs, double until_s);

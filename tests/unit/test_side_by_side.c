@@ -66,12 +66,73 @@ static void no_piece_is_no_work(void **state)
     assert_true(side_by_side_processors() >= 1);
 }
 
+// Pieces of a chain of stages: one of a stage can begin when all of the one before have ended.
+enum { STAGES = 50, WIDTH = 3 };
+
+typedef struct Stages {
+    size_t begun; // pieces, in order
+    size_t ended;
+    atomic_int going[STAGES];
+    atomic_bool is_mixed; // whether two stages went on at the same time
+} Stages;
+
+static SideBySideNext next_of_stages(size_t *index, void *context)
+{
+    Stages *stages = context;
+    if (stages->begun == STAGES * WIDTH) {
+        return SIDE_BY_SIDE_NONE;
+    }
+    if (stages->begun / WIDTH > stages->ended / WIDTH) {
+        return SIDE_BY_SIDE_LATER;
+    }
+    *index = stages->begun++;
+    return SIDE_BY_SIDE_PIECE;
+}
+
+static void do_one_of_stages(size_t index, bool is_callers, void *context)
+{
+    (void)is_callers;
+    Stages *stages = context;
+    const size_t stage = index / WIDTH;
+    atomic_fetch_add(&stages->going[stage], 1);
+    if ((stage > 0 && atomic_load(&stages->going[stage - 1]) > 0) ||
+        (stage + 1 < STAGES && atomic_load(&stages->going[stage + 1]) > 0)) {
+        atomic_store(&stages->is_mixed, true);
+    }
+    atomic_fetch_sub(&stages->going[stage], 1);
+}
+
+static void end_one_of_stages(size_t index, void *context)
+{
+    (void)index;
+    ((Stages *)context)->ended++;
+}
+
+static void what_needs_others_waits_for_them(void **state)
+{
+    (void)state;
+    for (size_t threads = 1; threads <= 4; threads++) {
+        Stages stages = {.begun = 0};
+        const SideBySideTasks tasks = {
+            .most = WIDTH,
+            .next = next_of_stages,
+            .work = do_one_of_stages,
+            .end = end_one_of_stages,
+            .context = &stages,
+        };
+        side_by_side_tasks(&tasks, threads);
+        assert_int_equal(stages.ended, STAGES * WIDTH);
+        assert_false(atomic_load(&stages.is_mixed));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_piece_is_done_once),
         cmocka_unit_test(pieces_are_done_at_the_same_time),
         cmocka_unit_test(no_piece_is_no_work),
+        cmocka_unit_test(what_needs_others_waits_for_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
