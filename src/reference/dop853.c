@@ -13,6 +13,15 @@
 
 enum { STEP_STAGES = 12, END_STAGE = 12, FIRST_DENSE_STAGE = 13, BLOCK = 4 };
 
+// Where rows of weights stand behind those of the stages.
+enum {
+    ROW_ERROR_5 = DOP853_STAGES,
+    ROW_ERROR_3,
+    ROW_DENSE,
+    ROW_END = ROW_DENSE + DOP853_DENSE_ROWS,
+};
+static_assert((int)ROW_END == (int)DOP853_ROWS, "there is room for all rows");
+
 // Hairer's choices: steps aim at 0.9 of what the error would allow and change by at most these
 static const double SAFETY = 0.9;
 static const double SHRINK_MOST = 0.333;
@@ -22,6 +31,29 @@ static const double GROW_MOST = 6.0;
 static size_t padded(size_t size)
 {
     return (size + BLOCK - 1) / BLOCK * BLOCK;
+}
+
+// Keeps the weights that are not zero.
+static void set_row(const double *weights, Dop853Row *row)
+{
+    for (int i = 0; i < DOP853_STAGES; i++) {
+        if (weights[i] != 0.0) {
+            row->stages[row->count] = (unsigned char)i;
+            row->weights[row->count++] = weights[i];
+        }
+    }
+}
+
+static void set_rows(Dop853 *integrator)
+{
+    for (int i = 0; i < DOP853_STAGES; i++) {
+        set_row(DOP853_COUPLING[i], &integrator->rows[i]);
+    }
+    set_row(DOP853_ERROR_5, &integrator->rows[ROW_ERROR_5]);
+    set_row(DOP853_ERROR_3, &integrator->rows[ROW_ERROR_3]);
+    for (int i = 0; i < DOP853_DENSE_ROWS; i++) {
+        set_row(DOP853_DENSE[i], &integrator->rows[ROW_DENSE + i]);
+    }
 }
 
 void dop853_init(Dop853 *integrator, size_t size, size_t motion_size)
@@ -48,6 +80,7 @@ void dop853_init(Dop853 *integrator, size_t size, size_t motion_size)
         integrator->polynomial[i] = free_from;
     }
     integrator->end_rates = integrator->stages[END_STAGE];
+    set_rows(integrator);
 }
 
 void dop853_finish(Dop853 *integrator)
@@ -56,44 +89,46 @@ void dop853_finish(Dop853 *integrator)
     integrator->memory = NULL;
 }
 
-// Adds factor times a weighted sum of the stages to a vector, up to a number of equations, in
-// blocks that a compiler turns into vector instructions; what lies beyond the last equation is
-// zero.
-static void add_stages(const Dop853 *integrator, size_t size, const double *weights, int count,
-                       double factor, double *sum)
+// A weighted sum of the stages, from one block of equations on.
+static inline void add_up(const Dop853 *integrator, const Dop853Row *row, size_t block,
+                          double total[BLOCK])
 {
-    for (size_t block = 0; block < size; block += BLOCK) {
-        double total[BLOCK] = {0.0};
-        for (int j = 0; j < count; j++) {
-            if (weights[j] == 0.0) {
-                continue;
-            }
-            const double *rates = integrator->stages[j] + block;
-            for (int i = 0; i < BLOCK; i++) {
-                total[i] += weights[j] * rates[i];
-            }
-        }
+    for (int i = 0; i < BLOCK; i++) {
+        total[i] = 0.0;
+    }
+    for (int j = 0; j < row->count; j++) {
+        const double weight = row->weights[j];
+        const double *rates = integrator->stages[row->stages[j]] + block;
         for (int i = 0; i < BLOCK; i++) {
-            sum[block + i] += factor * total[i];
+            total[i] += weight * rates[i];
         }
     }
 }
 
-// The sum alone.
-static void sum_stages(const Dop853 *integrator, const double *weights, int count, double factor,
-                       double *sum)
+// Factor times a weighted sum of the stages, in blocks that a compiler turns into vector
+// instructions; what lies beyond the last equation is zero.
+static void sum_stages(const Dop853 *integrator, int row, double factor, double *sum)
 {
-    memset(sum, 0, padded(integrator->size) * sizeof *sum);
-    add_stages(integrator, integrator->size, weights, count, factor, sum);
+    for (size_t block = 0; block < integrator->size; block += BLOCK) {
+        double total[BLOCK];
+        add_up(integrator, &integrator->rows[row], block, total);
+        for (int i = 0; i < BLOCK; i++) {
+            sum[block + i] = factor * total[i];
+        }
+    }
 }
 
 // The motion at the nodes of one stage; the sums count for no rate.
 static const double *stage_state(Dop853 *integrator, int stage)
 {
-    const size_t size = integrator->motion_size;
-    memcpy(integrator->stage_y, integrator->y, padded(size) * sizeof *integrator->y);
-    add_stages(integrator, size, DOP853_COUPLING[stage], stage, integrator->tried,
-               integrator->stage_y);
+    for (size_t block = 0; block < integrator->motion_size; block += BLOCK) {
+        double total[BLOCK];
+        add_up(integrator, &integrator->rows[stage], block, total);
+        for (int i = 0; i < BLOCK; i++) {
+            integrator->stage_y[block + i] =
+                integrator->y[block + i] + integrator->tried * total[i];
+        }
+    }
     return integrator->stage_y;
 }
 
@@ -169,9 +204,9 @@ double dop853_try(Dop853 *integrator, double step)
     }
     double *e5 = integrator->errors[0];
     double *e3 = integrator->errors[1];
-    sum_stages(integrator, DOP853_COUPLING[END_STAGE], END_STAGE, step, integrator->change);
-    sum_stages(integrator, DOP853_ERROR_5, STEP_STAGES, 1.0, e5);
-    sum_stages(integrator, DOP853_ERROR_3, STEP_STAGES, 1.0, e3);
+    sum_stages(integrator, END_STAGE, step, integrator->change);
+    sum_stages(integrator, ROW_ERROR_5, 1.0, e5);
+    sum_stages(integrator, ROW_ERROR_3, 1.0, e3);
     dop853_end(integrator, integrator->change);
     return dop853_judge(integrator, e5, e3, fabs(step));
 }
@@ -233,7 +268,7 @@ void dop853_fill(Dop853 *integrator)
         p[3][i] = change - h * integrator->stages[END_STAGE][i] - p[2][i];
     }
     for (int row = 0; row < DOP853_DENSE_ROWS; row++) {
-        sum_stages(integrator, DOP853_DENSE[row], DOP853_STAGES, h, p[4 + row]);
+        sum_stages(integrator, ROW_DENSE + row, h, p[4 + row]);
     }
 }
 

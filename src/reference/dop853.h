@@ -7,7 +7,12 @@
 #include <stddef.h>
 
 // The method's coefficients (reference/dop853_table.c).
-enum { DOP853_STAGES = 16, DOP853_DENSE_ROWS = 4, DOP853_POLYNOMIAL = 8 };
+enum {
+    DOP853_STAGES = 16,
+    DOP853_DENSE_ROWS = 4,
+    DOP853_POLYNOMIAL = 8,
+    DOP853_ROWS = DOP853_STAGES + 2 + DOP853_DENSE_ROWS, // with the two of the errors
+};
 
 extern const double DOP853_NODE[DOP853_STAGES];
 extern const double DOP853_COUPLING[DOP853_STAGES][DOP853_STAGES]; // row 12: the step's weights
@@ -22,6 +27,13 @@ typedef void (*Dop853Rates)(double time, const double *y, double *rates, void *c
 // rows; see radau.h.
 typedef void (*Dop853Slopes)(double time, const double *y, double *by_position, double *by_rate,
                              void *context);
+
+// Of a row of coefficients those that are not zero.
+typedef struct Dop853Row {
+    int count;
+    unsigned char stages[DOP853_STAGES];
+    double weights[DOP853_STAGES];
+} Dop853Row;
 
 typedef struct Dop853 Dop853;
 
@@ -56,6 +68,7 @@ struct Dop853 {
     double *end_rates; // rates there, where has_end_rates says so; who has them may write them
     bool has_end_rates;
     bool is_filled; // whether the polynomial is that of the tried step
+    Dop853Row rows[DOP853_ROWS];
     double *stages[DOP853_STAGES];
     double *polynomial[DOP853_POLYNOMIAL];
     bool was_rejected; // the step before had to be shortened: the next must not grow

@@ -9,6 +9,7 @@
 #include "model/forces.h"
 #include "reference/dynamics_places.h"
 #include "reference/dynamics_reactions.h"
+#include "reference/hinged.h"
 #include "reference/loops.h"
 
 #include <assert.h>
@@ -100,6 +101,7 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
         return false;
     }
     dynamics->articulated = articulated_create(tree, tree->loop_count, tree->loops);
+    dynamics->hinged = hinged_create(dynamics);
     dynamics->room.state = dynamics_state_create(dynamics);
     return true;
 }
@@ -107,6 +109,7 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
 void dynamics_finish(Dynamics *dynamics)
 {
     free(dynamics->room.state);
+    hinged_destroy(dynamics->hinged);
     articulated_destroy(dynamics->articulated);
     free(dynamics->memory);
     tree_finish(&dynamics->tree);
@@ -314,6 +317,9 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
     const Dynamics *dynamics = context;
     const Tree *tree = &dynamics->tree;
     const size_t n = tree->coordinate_count;
+    if (dynamics->hinged != NULL && hinged_rates(dynamics->hinged, since_s, y, rates)) {
+        return;
+    }
     DynamicsState *state = dynamics->room.state;
     Loads loads = dynamics->room.loads;
     const double *solved = dynamics->room.solved;

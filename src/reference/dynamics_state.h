@@ -60,10 +60,13 @@ typedef struct DynamicsRoom {
     double *pushed[DYNAMICS_PUSHED];
 } DynamicsRoom;
 
+typedef struct Hinged Hinged; // of reference/hinged.h
+
 typedef struct Dynamics {
     System system; // the first
     Tree tree;
     Articulated *articulated; // owned
+    Hinged *hinged;           // owned; NULL where it has no such rates
     void *memory;             // owned; where all arrays are
     PlanePlace *places;       // by contact
     double *reach;            // m, of each body's points

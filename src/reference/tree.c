@@ -9,26 +9,17 @@
 #include "reference/tree.h"
 
 #include "reference/tree_slide.h"
+#include "reference/turned.h"
 
-// Turns a body's ends by an angle d since the base: the change of an arm s is
-//     sin d perp s - (1 - cos d) s
-// by a series while d is small. Up to 0.01 the first terms left out, d^9 / 9! and d^8 / 8!, are
-// below 3e-21.
+// Turns a body's ends by an angle d since the base.
 static inline void set_arms(const Tree *tree, int body, double d, TreeState *state)
 {
-    const double small = 0.01;
-    const double e = d * d;
-    double s = d * (1.0 - e * (1.0 / 6.0) * (1.0 - e * (1.0 / 20.0) * (1.0 - e * (1.0 / 42.0))));
-    double r = 0.5 * e * (1.0 - e * (1.0 / 12.0) * (1.0 - e * (1.0 / 30.0)));
-    if (!(fabs(d) <= small)) {
-        s = sin(d);
-        r = 2.0 * sin(0.5 * d) * sin(0.5 * d);
-    }
+    const TurnedBy by = turned_by(d);
     const size_t last = tree->end_firsts[body + 1];
     for (size_t i = tree->end_firsts[body]; i < last; i++) {
         const int end = tree->ends[i];
         const Vec2 arm = tree->base_arms[end];
-        const Vec2 turned = {-s * arm.y - r * arm.x, s * arm.x - r * arm.y};
+        const Vec2 turned = turned_arm(&by, arm);
         state->turned[end] = turned;
         state->arms[end] = vec2_add(arm, turned);
     }

@@ -1,4 +1,5 @@
-// Are the derivatives that the implicit integrator works with those of the accelerations?
+// Are the derivatives that the implicit integrator works with those of the accelerations, and do
+// hinges and pins have the same rates by the short way and by the long one?
 #include "close.h"
 #include "kept.h"
 #include "mechanism.h"
@@ -227,6 +228,89 @@ static void another_sliding_speed_has_other_derivatives(void **state)
     dynamics_finish(&pressed.dynamics);
 }
 
+// Rates at random states, in which contacts are in any of their modes: the short way and the long
+// one.
+static void compare_rates(const Scenario *scenario)
+{
+    Dynamics dynamics;
+    Err err = {ERR_NONE, ""};
+    assert_true(dynamics_init(scenario, &dynamics, &err));
+    assert_non_null(dynamics.hinged);
+    const size_t n = dynamics.tree.coordinate_count;
+    double y[SIZE] = {0.0};
+    double rates[2][SIZE];
+    Motion *motions = dynamics.room.state->tree.motions;
+    linkage_start(&scenario->linkage, motions);
+    tree_start(&dynamics.tree, motions, y + n);
+    Hinged *hinged = dynamics.hinged;
+    uint64_t seed = 1;
+    for (int i = 0; i < 200; i++) {
+        for (size_t k = 0; k < n; k++) {
+            // turns that are short enough for a series, and longer ones
+            y[k] = (i % 3 == 0 ? 0.1 : 1e-3) * lcg_draw(&seed);
+            y[n + k] = 10.0 * lcg_draw(&seed);
+        }
+        for (size_t k = 0; k < dynamics.system.contact_count; k++) {
+            Contact *contact = &dynamics.system.contacts[k];
+            contact->mode = (ContactMode)((i / 3 + (int)k) % 3);
+            contact->damping_rate = 1.0 + lcg_draw(&seed);
+        }
+        const double since_s = i % 2 == 0 ? 1e-5 : 1e-3;
+        dynamics.hinged = hinged;
+        dynamics_rates(since_s, y, rates[0], &dynamics);
+        dynamics.hinged = NULL;
+        dynamics_rates(since_s, y, rates[1], &dynamics);
+        for (size_t k = 0; k < system_size(&dynamics.system); k++) {
+            assert_true(rates[0][k] == rates[1][k]);
+        }
+    }
+    dynamics.hinged = hinged;
+    dynamics_finish(&dynamics);
+}
+
+static void hinges_and_pins_have_the_same_rates_to_the_last_bit(void **state)
+{
+    (void)state;
+    static const char *const PLAYS[][3] = {
+        {"crank-coupler"},
+        {"coupler-follower"},
+        {"follower-ground"},
+        {"crank-coupler", "coupler-follower"},
+        {"crank-coupler", "follower-ground"},
+        {"coupler-follower", "follower-ground"},
+        {"crank-coupler", "coupler-follower", "follower-ground"},
+    };
+    for (size_t i = 0; i < sizeof PLAYS / sizeof *PLAYS; i++) {
+        Scenario scenario = mechanism_paper();
+        for (size_t k = 0; k < 3 && PLAYS[i][k] != NULL; k++) {
+            mechanism_loosen(&scenario, PLAYS[i][k]);
+        }
+        scenario.contact.stiffness = 6.6e10;
+        scenario.contact.exponent = 1.5;
+        compare_rates(&scenario);
+        // without a drive the crank hangs on the ground as the others do
+        scenario.linkage.driver.is_present = false;
+        compare_rates(&scenario);
+    }
+}
+
+static void other_mechanisms_take_the_long_way(void **state)
+{
+    (void)state;
+    const Scenario ideal = mechanism_paper();
+    Scenario rubbing = mechanism_loose(1);
+    rubbing.contact.friction = 0.1;
+    const Scenario sliding = slider_lever(1.0);
+    const Scenario *const SCENARIOS[] = {&ideal, &rubbing, &sliding};
+    for (size_t i = 0; i < sizeof SCENARIOS / sizeof *SCENARIOS; i++) {
+        Dynamics dynamics;
+        Err err = {ERR_NONE, ""};
+        assert_true(dynamics_init(SCENARIOS[i], &dynamics, &err));
+        assert_null(dynamics.hinged);
+        dynamics_finish(&dynamics);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -234,6 +318,8 @@ int main(void)
         cmocka_unit_test(derivatives_are_those_of_blocks_and_stops),
         cmocka_unit_test(derivatives_are_those_of_angles_and_teeth),
         cmocka_unit_test(another_sliding_speed_has_other_derivatives),
+        cmocka_unit_test(hinges_and_pins_have_the_same_rates_to_the_last_bit),
+        cmocka_unit_test(other_mechanisms_take_the_long_way),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
