@@ -3,6 +3,8 @@
 
 #include "contact/force_law.h"
 #include "contact/map.h"
+#include "contact/overlap.h"
+#include "contact/tops.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -21,11 +23,8 @@ typedef struct Side {
     double last_step;    // s, of that step; 0 where it is not known
     double mobility;     // of the coordinate, found by trial in the contact under way; 0: not yet
     // what came of it
-    double force;     // N m or N, mean of the last step, >= 0
-    double forces[2]; // of the two steps before, in the contact under way
-    double depths[2];
-    bool has_series;
-    double since; // s, between them; at first from its onset
+    double force; // N m or N, mean of the last step, >= 0
+    Tops tops;    // of the contact under way
     double force_max;
     double depth_max;
     double impulse;
