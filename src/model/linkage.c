@@ -102,8 +102,21 @@ double linkage_reach(const Linkage *linkage, int body)
     return reach;
 }
 
+static bool has_limits(const Linkage *linkage)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage->joints[i].limits.kind != LIMIT_NONE) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool linkage_slides(const Linkage *linkage, int body)
 {
+    if (!linkage->driver.is_present && has_limits(linkage)) {
+        return true;
+    }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const bool is_its = joint->body_a == body || joint->body_b == body;

@@ -303,7 +303,9 @@ double linkage_period(const Linkage *linkage);
 // disc.
 double linkage_reach(const Linkage *linkage, int body);
 
-// Whether a body slides on another or stops at it: how it turns then does not say how it moves.
+// Whether a body is to be judged by the velocities of its points: where it slides on another or
+// stops at it, how it turns does not say how it moves; and where flanks, stops or teeth are all
+// that turns it, its centre may stay where it is.
 bool linkage_slides(const Linkage *linkage, int body);
 
 // The number of a body or joint by its name, or -1.

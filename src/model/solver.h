@@ -8,6 +8,12 @@
 
 #include "model/trajectory.h"
 
+// The largest force, N, and depth, m, in a joint.
+typedef struct JointTop {
+    double force;
+    double depth;
+} JointTop;
+
 // What happened in one step. The arrays hold as many entries as the linkage has bodies or joints
 // and stay valid until the next call.
 typedef struct StepRecord {
@@ -19,6 +25,8 @@ typedef struct StepRecord {
     const double *alpha;      // rad/s^2, of each body
     const JointState *joints; // force and gap as the force arose
     const SpaceJointState *space_joints; // likewise, of a linkage in space; else NULL
+    const JointTop *tops;                // of each joint, which the steps up to this one show to
+                                         // lie between them; NULL: `joints` has the largest
     const double *impulse;               // N s, of each joint in the step
     const double *approach;              // m/s, closing speed at which each joint's contact began
     double drive_work;                   // J, done by the drive in the step

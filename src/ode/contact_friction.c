@@ -114,7 +114,7 @@ static double dot_rows(const Share *share, const double *a, const double *b)
 static void share_rows(const FrictionRow *row, Share *share)
 {
     const Touch *touch = &row->pair->touch;
-    if (touch->shape == TOUCH_LINE) {
+    if (touch_is_scalar(touch)) {
         // which are its rows
         share->row_count = 2;
         share->along[0] = share->across[1] = 1.0;
@@ -148,6 +148,9 @@ static double find_force(const System *system, size_t row, double drift)
     Share *share = &system->shares[row];
     const double speed = system->contact->friction_speed;
     const double mobility = share->own[3];
+    if (system->rows[row].pair->is_end) {
+        return 0.0;
+    }
     const double most = system->contact->friction * system->forces[2 * row];
     const double stiffness = mobility * most / speed;
     share->theta = stiffness > 2.0 ? 1.0 - 1.0 / stiffness : 0.5;

@@ -23,10 +23,10 @@ const Motion *contact_mass_place(ContactMass *mass)
 static void set_along(const ContactMass *mass, const ContactRow *rows, size_t number,
                       double along[RESPONSE_ROWS_A_JOINT])
 {
-    const bool is_line = mass->world->pairs[number].touch.shape == TOUCH_LINE;
+    const bool is_scalar = touch_is_scalar(&mass->world->pairs[number].touch);
     const Vec2 normal = rows[number].normal;
-    along[0] = is_line ? 1.0 : normal.x;
-    along[1] = is_line ? 0.0 : normal.y;
+    along[0] = is_scalar ? 1.0 : normal.x;
+    along[1] = is_scalar ? 0.0 : normal.y;
     along[2] = along[3] = 0.0;
 }
 
@@ -65,8 +65,8 @@ void contact_mass_find(ContactMass *mass, ContactRow *rows, size_t number, bool 
     static const double SAME_NORMAL = 0.995; // the cosine of 6 degrees
     ContactRow *row = &rows[number];
     const WorldPair *pair = &mass->world->pairs[number];
-    const bool is_line = pair->touch.shape == TOUCH_LINE;
-    const bool is_known = !is_line && vec2_dot(row->mass_normal, row->normal) > SAME_NORMAL;
+    const bool is_scalar = touch_is_scalar(&pair->touch);
+    const bool is_known = !is_scalar && vec2_dot(row->mass_normal, row->normal) > SAME_NORMAL;
     if ((is_known && !is_exact) || contact_mass_place(mass) == NULL) {
         return;
     }
@@ -74,7 +74,7 @@ void contact_mass_find(ContactMass *mass, ContactRow *rows, size_t number, bool 
         share_mass(mass, rows, number);
         return;
     }
-    const Vec2 along = is_line ? (Vec2){1.0, 0.0} : row->normal;
+    const Vec2 along = is_scalar ? (Vec2){1.0, 0.0} : row->normal;
     row->mass = response_mass(&mass->response, response_first_row(&mass->response, number), along);
     row->stiff_mass = row->mass;
     row->mass_normal = row->normal;

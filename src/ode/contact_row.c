@@ -5,19 +5,28 @@
 // depth. Of all other places everything is.
 #include "ode/contact_row.h"
 
-// The contact of a pair. Where no collider is asked it is exact.
+#include "contact/overlap.h"
+
+// Of a place whose bodies say all.
+static bool find_exactly(const WorldPair *pair, const TouchPose *pose, const Overlap *overlap,
+                         ContactRow *row)
+{
+    if (!(overlap->depth > 0.0) || !pose->has_normal) {
+        return false;
+    }
+    row->depth = overlap->depth;
+    row->normal = pose->normal;
+    row->point = pair_point(pair, pose->normal);
+    pair_arms(pair, pose, row->arms, &row->lever);
+    return true;
+}
+
+// The contact of a pair.
 static bool find_collision(const World *world, const WorldPair *pair, const TouchPose *pose,
-                           ContactRow *row)
+                           const Overlap *overlap, ContactRow *row)
 {
     if (pair->hole == NULL) {
-        if (!(pose->gap < 0.0) || !pose->has_normal) {
-            return false;
-        }
-        row->depth = -pose->gap;
-        row->normal = pose->normal;
-        row->point = pair_point(pair, pose->normal);
-        pair_arms(pair, pose, row->arms, &row->lever);
-        return true;
+        return find_exactly(pair, pose, overlap, row);
     }
     Collision collision;
     if (!world->collider->find(pair->collision, pair->hole, pair->pin, &collision)) {
@@ -34,7 +43,8 @@ static bool find_collision(const World *world, const WorldPair *pair, const Touc
 // The speed at which bodies that overlap for the first time came to it, m/s: as found now,
 // or, where the steps before show it, its mean over the last step, taken on to the crossing by its
 // change from step to step.
-static double onset_speed(const ContactRow *row, bool is_staggered, double gap, double step_s)
+static double onset_speed(const ContactRow *row, bool is_staggered, double gap, double depth,
+                          double step_s)
 {
     if (!is_staggered || row->gaps_known == 0) {
         return row->closing;
@@ -45,7 +55,7 @@ static double onset_speed(const ContactRow *row, bool is_staggered, double gap, 
     }
     const double change = mean - (row->gaps[1] - row->gaps[0]) / step_s;
     // the mean stands in the middle of the last step
-    return mean + change * (0.5 - row->depth / (mean * step_s));
+    return mean + change * (0.5 - depth / (mean * step_s));
 }
 
 // Keeps the gaps that there were while nothing acted.
@@ -56,12 +66,32 @@ static void note_gap(ContactRow *row, double gap)
     row->gaps[0] = gap;
 }
 
+// What an end does in the step. Other places do what they do at mid-step: their forces grow gently.
+static Overlap overlap_of(const ContactRow *row, const WorldPair *pair, const TouchPose *pose,
+                          bool is_staggered, double step_s)
+{
+    return is_staggered && pair->is_end
+               ? overlap_find(&row->law, pose->gap, pose->approach_speed, step_s)
+               : (Overlap){.depth = -pose->gap, .share = 1.0};
+}
+
+// A contact begins, at a time since the step's start.
+static void begin(ContactRow *row, bool is_staggered, const TouchPose *pose, double onset_s,
+                  double step_s)
+{
+    row->impact_speed = onset_speed(row, is_staggered, pose->gap, row->inside, step_s);
+    tops_begin(&row->tops, row->law.viscous * row->impact_speed, 0.5 * step_s - onset_s);
+}
+
 void contact_row_find(ContactRow *row, const World *world, const WorldPair *pair, bool is_staggered,
                       double step_s, JointState *state)
 {
     const bool was_touching = row->is_touching;
     const TouchPose pose = pair_pose(pair);
-    row->is_touching = find_collision(world, pair, &pose, row);
+    const Overlap overlap = overlap_of(row, pair, &pose, is_staggered, step_s);
+    row->share = overlap.share;
+    row->is_touching = find_collision(world, pair, &pose, &overlap, row);
+    row->inside = pair->hole == NULL ? -pose.gap : row->depth;
     *state = (JointState){
         .eccentricity = pose.offset,
         .gap = pose.gap,
@@ -71,12 +101,12 @@ void contact_row_find(ContactRow *row, const World *world, const WorldPair *pair
         row->impact_speed = pose.approach_speed;
     } else {
         // of a polygon's side the circles' penetration and its rate are not the row's
-        row->excess = row->depth + pose.gap;
+        row->excess = pair->hole == NULL ? 0.0 : row->depth + pose.gap;
         row->closing =
             pair->hole == NULL ? pose.approach_speed : -vec2_dot(row->normal, pose.velocity);
         row->faster = row->closing - pose.approach_speed;
         if (!was_touching) {
-            row->impact_speed = onset_speed(row, is_staggered, pose.gap, step_s);
+            begin(row, is_staggered, &pose, overlap.onset, step_s);
         }
     }
     note_gap(row, pose.gap);

@@ -43,6 +43,9 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
                         : penalty_estimate(scenario->linkage.driver.speed, &scenario->material);
     for (size_t i = 0; i < world->pair_count; i++) {
         rows->rows[i].law = places[i].law;
+        if (world->pairs[i].row != NULL) {
+            dJointSetFeedback(world->pairs[i].row, &rows->rows[i].feedback);
+        }
     }
     free(places);
     rows->group = dJointGroupCreate(0);
@@ -80,7 +83,8 @@ static dSurfaceParameters surface_of(const ContactRows *rows, size_t number, Con
         return surface;
     }
     const double stiffness = force_law_secant(&row->law, row->depth);
-    row->damping = force_law_damping(&row->law, row->depth, row->impact_speed);
+    row->damping = force_law_damping(&row->law, row->depth, row->impact_speed) -
+                   row->law.viscous * (1.0 - row->share);
     const MapContact contact = {
         .stiffness = stiffness,
         .damping = row->damping,
@@ -96,8 +100,7 @@ static dSurfaceParameters surface_of(const ContactRows *rows, size_t number, Con
     return surface;
 }
 
-// What friction takes from a row along the normal.
-static FrictionRow friction_row(const ContactRows *rows, size_t number)
+FrictionRow contact_rows_friction(const ContactRows *rows, size_t number)
 {
     const ContactRow *row = &rows->rows[number];
     const WorldPair *pair = &rows->world->pairs[number];
@@ -139,7 +142,7 @@ static void find_friction(ContactRows *rows, double step_s)
     size_t count = 0;
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         if (rows->rows[i].is_touching) {
-            found[count] = friction_row(rows, i);
+            found[count] = contact_rows_friction(rows, i);
             found[count].target =
                 rows->rows[i].contact.surface.soft_erp / step_s * rows->rows[i].depth;
             numbers[count++] = i;
@@ -155,13 +158,21 @@ static void find_friction(ContactRows *rows, double step_s)
                               count);
     }
     for (size_t i = 0; i < count; i++) {
-        add_friction(&rows->rows[numbers[i]], &found[i]);
+        if (!found[i].pair->is_end) {
+            add_friction(&rows->rows[numbers[i]], &found[i]);
+        }
     }
 }
 
-static void make_row(ContactRows *rows, size_t number)
+static void make_row(ContactRows *rows, size_t number, double step_s)
 {
     ContactRow *row = &rows->rows[number];
+    const dJointID own = rows->world->pairs[number].row;
+    if (own != NULL) {
+        const dSurfaceParameters *surface = &row->contact.surface;
+        ends_press(own, surface->soft_cfm, surface->soft_erp / step_s * row->depth, step_s);
+        return;
+    }
     const dJointID joint = dJointCreateContact(rows->world->id, rows->group, &row->contact);
     const WorldPair *pair = &rows->world->pairs[number];
     dJointAttach(joint, pair->bodies[0], pair->bodies[1]);
@@ -178,9 +189,9 @@ static void make_contact_rows(ContactRows *rows, double step_s)
     }
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         if (rows->rows[i].is_touching) {
-            make_row(rows, i);
+            make_row(rows, i, step_s);
             rows->row_count++;
-            row_count += has_friction ? 2 : 1;
+            row_count += has_friction && !rows->world->pairs[i].is_end ? 2 : 1;
         }
     }
     rows->most_rows = row_count > rows->most_rows ? row_count : rows->most_rows;
@@ -226,8 +237,7 @@ static dContact contact_of(ContactRows *rows, size_t number, double step_s)
     };
 }
 
-// Whether a pair is the first of its joint's.
-static bool is_first(const ContactRows *rows, size_t number)
+bool contact_rows_is_first(const ContactRows *rows, size_t number)
 {
     const WorldPair *pairs = rows->world->pairs;
     return number == 0 || pairs[number - 1].joint != pairs[number].joint;
@@ -242,7 +252,7 @@ static void find_row(ContactRows *rows, size_t number, double step_s, JointState
     JointState *state = &states[pair->joint];
     JointState place;
     contact_row_find(row, rows->world, pair, rows->is_staggered, step_s, &place);
-    if (is_first(rows, number)) {
+    if (contact_rows_is_first(rows, number)) {
         *state = place;
         approach[pair->joint] = pair->is_corner && !row->is_touching ? 0.0 : row->impact_speed;
         return;
@@ -273,113 +283,4 @@ bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, dou
     }
     make_contact_rows(rows, step_s);
     return true;
-}
-
-// Work lost to friction in the step: the force on the pin along the wall, against how far the pin
-// slid. Of a staggered world that is the mean of the speeds before and after the step.
-static double friction_work(const ContactRows *rows, size_t number, Vec2 force, double step_s)
-{
-    const ContactRow *row = &rows->rows[number];
-    const FrictionRow friction = friction_row(rows, number);
-    const double after = contact_friction_sliding(&friction);
-    const double sliding = rows->is_staggered ? 0.5 * (row->sliding + after) : after;
-    return -vec2_dot(vec2_perp(row->normal), force) * sliding * step_s;
-}
-
-// What a contact lost and stored in the step, by its law: the damper at the speed after the step,
-// the spring at the depth after it. What the step itself gains or loses beyond that is ODE's error
-// and stays in the residual. The velocity-level model has no spring: all its work is lost.
-static void book_energy(ContactRows *rows, size_t number, Vec2 force, double step_s)
-{
-    ContactRow *row = &rows->rows[number];
-    row->elastic = 0.0;
-    row->dissipated = 0.0;
-    row->friction = 0.0;
-    if (!row->is_touching) {
-        return;
-    }
-    const TouchPose pose = pair_pose(&rows->world->pairs[number]);
-    // a polygon's side stays what it is within a step
-    const double penetration = row->excess - pose.gap;
-    const double speed = pose.approach_speed + row->faster;
-    const double pressing = vec2_dot(row->normal, force);
-    // of a staggered world the step stands in the middle between its two speeds, and its end
-    // between two positions
-    const double closing = rows->is_staggered ? 0.5 * (row->closing + speed) : speed;
-    const double depth = rows->is_staggered ? 0.5 * (row->depth + penetration) : penetration;
-    if (rows->scenario->contact.model == CONTACT_POISSON) {
-        row->dissipated = pressing * 0.5 * (row->closing + speed) * step_s;
-    } else {
-        row->dissipated = pressing > 0.0 ? row->damping * closing * closing * step_s : 0.0;
-        row->elastic = force_law_energy(&row->law, fmax(0.0, depth));
-    }
-    if (rows->scenario->contact.friction > 0.0) {
-        row->friction = friction_work(rows, number, force, step_s);
-    }
-}
-
-// The force of a row on body b, as ODE has it.
-static Vec2 row_force(const ContactRows *rows, size_t number)
-{
-    const ContactRow *row = &rows->rows[number];
-    if (!row->is_touching) {
-        return (Vec2){0.0, 0.0};
-    }
-    // ODE gives the force on the first body attached: a, if it is no ground
-    const double sign = rows->world->pairs[number].bodies[0] != NULL ? -1.0 : 1.0;
-    return (Vec2){sign * row->feedback.f1[0], sign * row->feedback.f1[1]};
-}
-
-// Adds the force at a corner to that of its joint.
-static void add_corner_force(const ContactRow *row, Vec2 force, JointState *state)
-{
-    state->force_on_b = vec2_add(state->force_on_b, force);
-    state->force += vec2_length(force);
-    state->moment_on_b += vec2_cross(row->lever, force);
-}
-
-void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
-{
-    bool any = false;
-    for (size_t i = 0; i < rows->world->pair_count; i++) {
-        const ContactRow *row = &rows->rows[i];
-        JointState *state = &states[rows->world->pairs[i].joint];
-        const Vec2 force = row_force(rows, i);
-        if (row->is_touching && rows->world->pairs[i].is_corner) {
-            add_corner_force(row, force, state);
-        } else if (row->is_touching) {
-            state->force_on_b = force;
-            state->force = vec2_length(force);
-        }
-        any = any || row->is_touching;
-        book_energy(rows, i, force, step_s);
-    }
-    if (any) {
-        dJointGroupEmpty(rows->group);
-    }
-}
-
-void contact_rows_offsets(const ContactRows *rows, int body, Vec2 *offsets)
-{
-    memset(offsets, 0, rows->scenario->linkage.joint_count * sizeof *offsets);
-    world_offsets(rows->world, body, offsets);
-    for (size_t i = 0; i < rows->world->pair_count; i++) {
-        const ContactRow *row = &rows->rows[i];
-        const int number = rows->world->pairs[i].joint;
-        const Joint *joint = &rows->scenario->linkage.joints[number];
-        if (row->is_touching) {
-            offsets[number] = row->arms[joint->body_a == body ? 0 : 1];
-        }
-    }
-}
-
-ContactEnergy contact_rows_energy(const ContactRows *rows)
-{
-    ContactEnergy sum = {0.0, 0.0, 0.0};
-    for (size_t i = 0; i < rows->world->pair_count; i++) {
-        sum.dissipated += rows->rows[i].dissipated;
-        sum.friction += rows->rows[i].friction;
-        sum.elastic += rows->rows[i].elastic;
-    }
-    return sum;
 }

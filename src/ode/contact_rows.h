@@ -3,7 +3,7 @@
 #pragma once
 
 #include "contact/map.h"
-#include "model/trajectory.h"
+#include "model/solver.h"
 #include "ode/contact_friction.h"
 #include "ode/contact_mass.h"
 
@@ -39,6 +39,12 @@ void contact_rows_finish(ContactRows *rows);
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err);
 
+// Whether a pair is the first of its joint's.
+bool contact_rows_is_first(const ContactRows *rows, size_t number);
+
+// What friction takes from a row along the normal.
+FrictionRow contact_rows_friction(const ContactRows *rows, size_t number);
+
 // By joint, from the anchor on a body to where the joint's force is said to act, m: of a pin or
 // stop at the contact, of a block or a prismatic joint at the anchor on body b. Zero for a joint
 // with play that has no row in this step.
@@ -54,5 +60,10 @@ typedef struct ContactEnergy {
 
 ContactEnergy contact_rows_energy(const ContactRows *rows);
 
-// After the step: fills in the joints' forces, books the energies, and removes the rows.
+// After the step, the forces of the ideal joints being known: fills in or adds those of the
+// contacts, books the energies, and removes the rows.
 void contact_rows_clear(ContactRows *rows, double step_s, JointState *states);
+
+// Once the rows are cleared: the largest force and depth of each joint; at the ends of coordinates,
+// where positions stand at mid-step, since the last step but one.
+void contact_rows_tops(const ContactRows *rows, const JointState *states, JointTop *tops);

@@ -27,6 +27,7 @@ static void make_arrays(ImpulseStep *step)
     work->motions = zeroed(bodies, sizeof *work->motions);
     work->loads = zeroed(bodies, sizeof *work->loads);
     work->offsets = zeroed(joints, sizeof *work->offsets);
+    work->joints = zeroed(joints, sizeof *work->joints);
     const size_t rows = encounter_rows(&step->encounter);
     for (size_t i = 0; rows <= FEW_ROWS && i < IMPULSE_COLUMNS; i++) {
         step->columns[i] = zeroed(3 * bodies * rows, sizeof *step->columns[i]);
@@ -63,6 +64,7 @@ static void free_arrays(ImpulseStep *step)
         free(work->motions);
         free(work->loads);
         free(work->offsets);
+        free(work->joints);
     }
     free(work);
 }
@@ -80,13 +82,14 @@ void impulse_step_finish(ImpulseStep *step)
 // What an encounter is given of a place.
 static EncounterJoint joint_of(const ImpulseStep *step, const Touch *place)
 {
-    // a disc outside is a hole of negative size
+    // a disc outside is a hole of negative size; of what is a coordinate by itself the rows are
+    // those of a line
     const double sign = place->shape == TOUCH_DISC ? -1.0 : 1.0;
-    const bool is_line = place->shape == TOUCH_LINE;
+    const bool is_line = touch_is_scalar(place);
     const bool has_corners = step->scenario->linkage.joints[place->joint].kind == JOINT_GUIDE;
     return (EncounterJoint){
         .law = place->law,
-        .shape = place->shape,
+        .shape = is_line ? TOUCH_LINE : place->shape,
         .radial_clearance = is_line ? 0.0 : sign * place->clearance,
         .hole_radius = is_line ? 0.0 : sign * place->radius_a,
         .joint = place->joint,

@@ -104,6 +104,38 @@ static JointState place_on_line(const Linkage *linkage, const Motion *motions, i
     return state;
 }
 
+void impulse_step_add_end(const Linkage *linkage, const Touch *place, double pressing,
+                          const Motion *motions, JointState *state)
+{
+    state->force += pressing;
+    if (place->shape == TOUCH_TURN) {
+        const double sense = coordinate_sense(&linkage->joints[place->joint]);
+        state->moment_on_b += sense * place->sign * pressing;
+        return;
+    }
+    const TouchPose pose = touch_pose(linkage, place, motions);
+    const Vec2 force = vec2_scale(pressing, pose.normal);
+    Vec2 arms[2];
+    touch_points(place, &pose, &arms[0], &arms[1]);
+    state->force_on_b = vec2_add(state->force_on_b, force);
+    state->moment_on_b += vec2_cross(arms[1], force);
+}
+
+// Adds one place at an end of a coordinate to the state of its joint, which has what holds the
+// joint beside it.
+static void add_end(const Linkage *linkage, const Touch *place, const EncounterPose *pose,
+                    bool is_first, const Motion *motions, JointState *state)
+{
+    if (is_first) {
+        state->gap = INFINITY;
+        state->force = 0.0;
+        state->is_touching = false;
+    }
+    state->gap = fmin(state->gap, pose->pose.gap);
+    state->is_touching = state->is_touching || pose->is_touching;
+    impulse_step_add_end(linkage, place, pose->force.x, motions, state);
+}
+
 // Adds one place at a line to the state of its joint.
 static void add_line(const Linkage *linkage, const Touch *place, const EncounterPose *pose,
                      const Motion *motions, JointState *state)
@@ -133,6 +165,11 @@ static void find_places(const ImpulseStep *step, size_t node, double since_s,
         const Touch *place = &step->places[i];
         const EncounterPose pose = encounter_pose(&step->encounter, i, node, since_s, sums);
         depths[i] = pose.pose.penetration;
+        if (linkage->joints[place->joint].limits.kind != LIMIT_NONE) {
+            const bool is_first = i == 0 || step->places[i - 1].joint != place->joint;
+            add_end(linkage, place, &pose, is_first, motions, &joints[place->joint]);
+            continue;
+        }
         if (place->shape != TOUCH_LINE) {
             joints[place->joint] = (JointState){
                 .eccentricity = pose.pose.eccentricity,
@@ -172,10 +209,11 @@ static void find_joints(const ImpulseStep *step, size_t node, double since_s,
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const JointKind kind = linkage->joints[i].kind;
-        joints[i].is_touching = joints[i].is_touching || linkage_kind_is_ideal(kind);
+        joints[i].is_touching = joints[i].is_touching || !linkage_has_play(&linkage->joints[i]);
         if (kind == JOINT_PRISMATIC) {
             stepping_observe_line(linkage, (int)i, motions, &joints[i]);
         }
+        stepping_observe_coordinate(linkage, (int)i, motions, &joints[i]);
     }
     if (step->driven >= 0) {
         Vec2 *offsets = step->work->offsets;

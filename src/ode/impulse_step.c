@@ -42,7 +42,7 @@ static void fill_rows(ImpulseStep *step)
         const Joint *joint = &linkage->joints[place->joint];
         double *position = encounter->position + encounter->joints[i].first_row;
         double *speed = encounter->speed + encounter->joints[i].first_row;
-        if (place->shape == TOUCH_LINE) {
+        if (touch_is_scalar(place)) {
             const TouchPose pose = touch_pose(linkage, place, step->before);
             position[0] = pose.gap;
             position[1] = 0.0;
@@ -305,7 +305,9 @@ void impulse_step_add_ideal(const ImpulseStep *step, size_t row, const double *v
     } else {
         state->force_on_b = vec2_add(state->force_on_b, (Vec2){values[0], values[1]});
     }
-    state->force = vec2_length(state->force_on_b);
+    if (linkage->joints[joint].limits.kind == LIMIT_NONE) {
+        state->force = vec2_length(state->force_on_b);
+    }
 }
 
 // The mean forces of the ideal joints: those of the step of the world, whose rows stand at

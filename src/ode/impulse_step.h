@@ -17,6 +17,7 @@ typedef struct ImpulseWork {
     Motion *motions;
     BodyLoad *loads;
     Vec2 *offsets;
+    JointState *joints;
 } ImpulseWork;
 
 typedef struct ImpulseStep {
@@ -68,6 +69,10 @@ void impulse_step_finish(ImpulseStep *step);
 // of which is given; a linkage's bodies are where the motions say.
 void impulse_step_add_ideal(const ImpulseStep *step, size_t row, const double *values,
                             const Motion *motions, JointState *state);
+
+// Adds what an end of a limited coordinate presses with, N or N m.
+void impulse_step_add_end(const Linkage *linkage, const Touch *place, double pressing,
+                          const Motion *motions, JointState *state);
 
 // Finds the mean forces of the joints with play and the works of the drive and of dampers in the
 // step that has just been taken, from the bodies at mid-step.

@@ -9,6 +9,8 @@
 
 #include "ode/stepping.h"
 
+#include <string.h>
+
 // The acceleration of a point of the driven body, by its arm from the centre.
 static Vec2 arm_acceleration(const Motion *driven, Vec2 arm)
 {
@@ -25,6 +27,10 @@ static void add_mean(const ImpulseStep *step, size_t number, const Motion *middl
     const Touch *place = &step->places[number];
     const double *sum = step->total.impulse + step->encounter.joints[number].first_row;
     const Vec2 force = {sum[0] / step->width_s, sum[1] / step->width_s};
+    if (step->scenario->linkage.joints[place->joint].limits.kind != LIMIT_NONE) {
+        impulse_step_add_end(&step->scenario->linkage, place, force.x, middle, mean);
+        return;
+    }
     if (place->shape != TOUCH_LINE) {
         mean->force_on_b = force;
         return;
@@ -46,16 +52,22 @@ static void add_mean(const ImpulseStep *step, size_t number, const Motion *middl
 static void find_play_means(ImpulseStep *step, const Motion *middle, Vec2 *offsets)
 {
     const Linkage *linkage = &step->scenario->linkage;
+    JointState *means = step->work->joints;
+    memcpy(means, step->mean, linkage->joint_count * sizeof *means);
     for (size_t i = 0; i < step->place_count; i++) {
-        step->mean[step->places[i].joint] = (JointState){.force = 0.0};
+        const int joint = step->places[i].joint;
+        // what holds a joint beside its limited coordinate is known
+        if (linkage->joints[joint].limits.kind == LIMIT_NONE) {
+            means[joint] = (JointState){.force = 0.0};
+        }
     }
     for (size_t i = 0; i < step->place_count; i++) {
-        add_mean(step, i, middle, &step->mean[step->places[i].joint]);
+        add_mean(step, i, middle, &means[step->places[i].joint]);
     }
     stepping_offsets(linkage, middle, step->driven, offsets);
     for (size_t i = 0; i < step->place_count; i++) {
         const int joint = step->places[i].joint;
-        if (step->places[i].shape == TOUCH_LINE && linkage->joints[joint].body_a == step->driven) {
+        if (touch_is_scalar(&step->places[i]) && linkage->joints[joint].body_a == step->driven) {
             offsets[joint] = linkage_joint_gap(linkage, middle, joint).position;
         }
     }
@@ -115,6 +127,20 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     return is_on_a ? -work : work;
 }
 
+// Likewise of an end of an angle, or of teeth: the driven body turns about the ground.
+static double work_at_end(const ImpulseStep *step, size_t number, const Motion *driven,
+                          bool is_on_a)
+{
+    const Touch *place = &step->places[number];
+    const Joint *joint = &step->scenario->linkage.joints[place->joint];
+    const size_t row = step->encounter.joints[number].first_row;
+    const double early = 0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
+    const double turn = place->shape == TOUCH_TEETH
+                            ? -(is_on_a ? place->radius_a : place->radius_b)
+                            : coordinate_sense(joint) * (is_on_a ? -1.0 : 1.0);
+    return early * place->sign * turn * driven->alpha;
+}
+
 // The bodies at mid-step with the means of their speeds.
 static void find_mean_motions(const ImpulseStep *step, const Motion *middle, Motion *motions)
 {
@@ -145,6 +171,8 @@ void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
         }
         if (step->places[i].shape == TOUCH_LINE) {
             work -= work_at_line(step, i, motions, is_on_a);
+        } else if (touch_is_scalar(&step->places[i])) {
+            work -= work_at_end(step, i, driven, is_on_a);
         } else {
             work -= work_at_point(step, i, driven, is_on_a);
             work -= work_of_turn(step, i, driven, is_on_a);
@@ -152,7 +180,7 @@ void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
     }
     const AppliedWork applied = applied_book(&step->world.applied, step->width_s);
     const BodyLoad load = applied_on(&step->world.applied, step->driven);
-    const double power = stepping_drive(step->scenario, driven, &load, offsets, step->mean);
+    const double power = stepping_drive(step->scenario, driven, &load, offsets, step->work->joints);
     step->damped = applied.damping;
     step->drive_work = work + step->width_s * power + applied.torque;
 }

@@ -34,28 +34,10 @@ static const Solver *choose(const Scenario *scenario)
     return is_spatial ? IN_SPACE[scenario->ode.stepping] : STEPPINGS[scenario->ode.stepping];
 }
 
-// Whether a joint has limits of its coordinate, which no stepping has rows for.
-static const Joint *find_limited(const Linkage *linkage)
-{
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].limits.kind != LIMIT_NONE) {
-            return &linkage->joints[i];
-        }
-    }
-    return NULL;
-}
-
 static bool ode_open(const Scenario *scenario, void **state, Err *err)
 {
     // measure/chosen_run.c finds one
     assert(scenario->run.step > 0.0);
-    const Joint *limited = find_limited(&scenario->linkage);
-    if (limited != NULL) {
-        return err_set(err, ERR_CASE,
-                       "joint '%s' has backlash, stops or teeth, which ode does not have yet; run "
-                       "the reference",
-                       limited->name);
-    }
     Ode *ode = calloc(1, sizeof *ode);
     assert(ode != NULL);
     ode->stepping = choose(scenario);

@@ -32,6 +32,14 @@ static bool make_geoms(const Scenario *scenario, const Collider *collider, World
     return true;
 }
 
+static void place_line_of(const Joint *joint, WorldPair *pair)
+{
+    const Touch *touch = &pair->touch;
+    pair->line = (Vec2){cos(touch->direction), sin(touch->direction)};
+    pair->beside[0] = vec2_sub(touch->anchor_a, joint->anchor_a);
+    pair->beside[1] = vec2_sub(touch->anchor_b, joint->anchor_b);
+}
+
 bool pair_make(const Scenario *scenario, const Touch *touch, const dBodyID bodies[2],
                const Collider *collider, WorldPair *pair, Err *err)
 {
@@ -51,11 +59,26 @@ bool pair_make(const Scenario *scenario, const Touch *touch, const dBodyID bodie
                        OPTIONS_ODE_COLLIDERS[scenario->ode.collider], joint->name,
                        joint->kind == JOINT_GUIDE ? "block between guides" : "stop");
     }
-    pair->line = (Vec2){cos(touch->direction), sin(touch->direction)};
+    place_line_of(joint, pair);
     pair->is_corner = joint->kind == JOINT_GUIDE;
-    pair->beside[0] = vec2_sub(touch->anchor_a, joint->anchor_a);
-    pair->beside[1] = vec2_sub(touch->anchor_b, joint->anchor_b);
     return true;
+}
+
+void pair_make_end(const Scenario *scenario, const Touch *touch, const dBodyID bodies[2],
+                   dWorldID world, WorldEnds *ends, WorldPair *pair)
+{
+    *pair = (WorldPair){
+        .joint = touch->joint,
+        .touch = *touch,
+        .bodies = {bodies[0], bodies[1]},
+        .is_corner = true,
+        .is_end = true,
+        .ends = touch->shape == TOUCH_LINE ? NULL : ends,
+    };
+    place_line_of(&scenario->linkage.joints[touch->joint], pair);
+    if (touch->shape == TOUCH_TURN) {
+        pair->row = ends_make_row(world, bodies, touch->sign);
+    }
 }
 
 void pair_finish(const Collider *collider, WorldPair *pair)
@@ -105,6 +128,9 @@ TouchPose pair_pose(const WorldPair *pair)
     if (pair->hole != NULL) {
         return hole_pose(pair);
     }
+    if (pair->ends != NULL) {
+        return touch_pose(pair->ends->linkage, &pair->touch, ends_look(pair->ends, pair->joint));
+    }
     const Snapshot a = snapshot_of(pair->bodies[0]);
     const Snapshot b = snapshot_of(pair->bodies[1]);
     const Vec2 arm_a = snapshot_turn(&a, pair->touch.anchor_a);
@@ -132,6 +158,16 @@ Vec2 pair_anchor_b(const WorldPair *pair)
     return pair->pin != NULL ? geom_position(pair->pin) : anchor_of(pair, 1);
 }
 
+// Where the pitch circles of gears touch.
+static Vec2 pitch_point(const WorldPair *pair)
+{
+    const Vec2 centre = anchor_of(pair, 0);
+    const Touch *touch = &pair->touch;
+    const Vec2 between = vec2_sub(anchor_of(pair, 1), centre);
+    return vec2_add(centre,
+                    vec2_scale(touch->radius_a / (touch->radius_a + touch->radius_b), between));
+}
+
 Vec2 pair_point(const WorldPair *pair, Vec2 normal)
 {
     const Touch *touch = &pair->touch;
@@ -140,6 +176,8 @@ Vec2 pair_point(const WorldPair *pair, Vec2 normal)
         return vec2_sub(pair_centre(pair), vec2_scale(touch->radius_a, normal));
     case TOUCH_DISC:
         return vec2_add(anchor_of(pair, 0), vec2_scale(touch->radius_a, normal));
+    case TOUCH_TEETH:
+        return pitch_point(pair);
     default:
         return vec2_sub(anchor_of(pair, 1), vec2_scale(touch->radius_b, normal));
     }

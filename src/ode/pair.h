@@ -1,27 +1,35 @@
-// A place at which a joint with play touches, in ODE's world. Of a pin in its hole the world's
-// collider is asked, about two geoms: a hole on one body, a cylinder on the other. Of any other
-// place the bodies' positions say all, exactly.
+// A place at which a joint with play touches, in ODE's world, or an end of a limited coordinate. Of
+// a pin in its hole the world's collider is asked, about two geoms: a hole on one body, a cylinder
+// on the other. Of any other place the bodies' positions say all, exactly.
 #pragma once
 
 #include "contact/touch.h"
 #include "ode/collider.h"
+#include "ode/ends.h"
 
 typedef struct WorldPair {
     int joint;         // number in the linkage
     Touch touch;       // the place, without its law
     Vec2 line;         // unit, of a TOUCH_LINE: its normal in body a's frame
-    bool is_corner;    // of a block: one of several places of its joint
+    bool is_corner;    // one of several places of its joint: of a block, or the next
+    bool is_end;       // of a limited coordinate: nothing slides there
     Vec2 beside[2];    // m, from the joint's anchors to the place's, in their bodies' frames
     dBodyID bodies[2]; // a and b; NULL: the ground
     dGeomID hole;      // of a TOUCH_HOLE, else NULL, like the next two
     dGeomID pin;
     void *collision; // what the world's collider keeps of the joint; owned
+    WorldEnds *ends; // of a TOUCH_TURN or TOUCH_TEETH, else NULL: the world's
+    dJointID row;    // of a TOUCH_TURN, else NULL
 } WorldPair;
 
 // Makes the place between two bodies. Fails with ERR_SOLVER where the collider cannot see such
 // contacts; the pair is to be finished then too.
 bool pair_make(const Scenario *scenario, const Touch *touch, const dBodyID bodies[2],
                const Collider *collider, WorldPair *pair, Err *err);
+
+// Makes the place at an end of a limited coordinate.
+void pair_make_end(const Scenario *scenario, const Touch *touch, const dBodyID bodies[2],
+                   dWorldID world, WorldEnds *ends, WorldPair *pair);
 void pair_finish(const Collider *collider, WorldPair *pair);
 
 // How the place is, and how it moves. Of a hole the two circles, whatever the collider takes it

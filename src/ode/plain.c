@@ -89,9 +89,9 @@ static bool advance(Plain *plain, Err *err)
         !world_step(&plain->world, plain->step_s, is_quick, err)) {
         return stepping_fail(plain->scenario, start_s, plain->steps + 1, plain->step_s, err);
     }
+    world_joint_forces(&plain->world, plain->joints);
     contact_rows_clear(&plain->contacts, plain->step_s, plain->joints);
     read_velocities(plain);
-    world_joint_forces(&plain->world, plain->joints);
     plain->applied = applied_book(&plain->world.applied, plain->step_s);
     plain->drive_work = drive_power(plain, &driven) * plain->step_s + plain->applied.torque;
     for (size_t i = 0; i < plain->scenario->linkage.joint_count; i++) {
@@ -203,7 +203,9 @@ static void plain_observe(const void *state, double time_s, Sample *sample)
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Snapshot now = world_snapshot(&plain->world, i);
-        sample->bodies[i] = between(&plain->before[i], &now, share, plain->step_s);
+        Motion *motion = &sample->bodies[i];
+        *motion = between(&plain->before[i], &now, share, plain->step_s);
+        motion->angle = ends_count_turns(plain->world.ends, i, motion->angle);
     }
     if (plain->driven >= 0) {
         sample->bodies[plain->driven] = stepping_driven(linkage, time_s);

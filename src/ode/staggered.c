@@ -38,6 +38,7 @@ typedef struct Stride {
     double *omega;
     double *alpha; // mean
     JointState *joints;
+    JointTop *tops;
     double *impulse;
     double *approach;
     double drive_work; // J
@@ -67,6 +68,7 @@ static void stride_init(const Linkage *linkage, Stride *stride)
     stride->omega = zeroed(linkage->body_count, sizeof *stride->omega);
     stride->alpha = zeroed(linkage->body_count, sizeof *stride->alpha);
     stride->joints = zeroed(linkage->joint_count, sizeof *stride->joints);
+    stride->tops = zeroed(linkage->joint_count, sizeof *stride->tops);
     stride->impulse = zeroed(linkage->joint_count, sizeof *stride->impulse);
     stride->approach = zeroed(linkage->joint_count, sizeof *stride->approach);
 }
@@ -78,6 +80,7 @@ static void stride_finish(Stride *stride)
     free(stride->omega);
     free(stride->alpha);
     free(stride->joints);
+    free(stride->tops);
     free(stride->impulse);
     free(stride->approach);
 }
@@ -245,8 +248,9 @@ static bool advance(Staggered *staggered, Stride *stride, Err *err)
         return stepping_fail(staggered->scenario, stride->start_s, staggered->steps + 1, step_s,
                              err);
     }
-    contact_rows_clear(&staggered->contacts, step_s, stride->joints);
     world_joint_forces(world, stride->joints);
+    contact_rows_clear(&staggered->contacts, step_s, stride->joints);
+    contact_rows_tops(&staggered->contacts, stride->joints, stride->tops);
     read_speeds(staggered, stride);
     book(staggered, &middle, stride);
     staggered->index++;
@@ -302,6 +306,7 @@ static StepRecord staggered_record(const void *state)
         .omega = now->omega,
         .alpha = now->alpha,
         .joints = now->joints,
+        .tops = now->tops,
         .impulse = now->impulse,
         .approach = now->approach,
         .drive_work = now->drive_work,
@@ -349,7 +354,9 @@ static void staggered_observe(const void *state, double time_s, Sample *sample)
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
     for (size_t i = 0; i < linkage->body_count; i++) {
-        sample->bodies[i] = motion_at(staggered, i, time_s - staggered->now->start_s);
+        Motion *motion = &sample->bodies[i];
+        *motion = motion_at(staggered, i, time_s - staggered->now->start_s);
+        motion->angle = ends_count_turns(staggered->world.ends, i, motion->angle);
     }
     if (staggered->driven >= 0) {
         sample->bodies[staggered->driven] = stepping_driven(linkage, time_s);

@@ -152,6 +152,17 @@ void stepping_observe_line(const Linkage *linkage, int joint, const Motion *moti
     state->tilt = remainder(rows.position[1], 2.0 * M_PI);
 }
 
+void stepping_observe_coordinate(const Linkage *linkage, int joint, const Motion *motions,
+                                 JointState *state)
+{
+    const Joint *data = &linkage->joints[joint];
+    if (data->kind == JOINT_GEAR) {
+        state->eccentricity = (Vec2){coordinate_position(linkage, motions, joint), 0.0};
+    } else if (data->kind == JOINT_REVOLUTE && data->limits.kind != LIMIT_NONE) {
+        state->tilt = coordinate_position(linkage, motions, joint);
+    }
+}
+
 // The smallest gap of a joint's places, m; infinite where it has none.
 static double smallest_gap(const Linkage *linkage, int joint, const Motion *motions)
 {
@@ -169,13 +180,15 @@ void stepping_observe_joint(const Linkage *linkage, size_t joint, Sample *sample
     const Joint *data = &linkage->joints[joint];
     const Vec2 hole = linkage_point(sample->bodies, data->body_a, data->anchor_a);
     const Vec2 pin = linkage_point(sample->bodies, data->body_b, data->anchor_b);
-    const bool is_ideal = linkage_kind_is_ideal(data->kind);
+    const bool is_limited = data->limits.kind != LIMIT_NONE;
+    const bool is_ideal = linkage_kind_is_ideal(data->kind) && !is_limited;
     JointState *state = &sample->joints[joint];
     state->eccentricity = vec2_sub(pin, hole);
     if (data->kind == JOINT_PRISMATIC || data->kind == JOINT_GUIDE) {
         stepping_observe_line(linkage, (int)joint, sample->bodies, state);
     }
-    if (data->kind == JOINT_GUIDE || data->kind == JOINT_STOP) {
+    stepping_observe_coordinate(linkage, (int)joint, sample->bodies, state);
+    if (data->kind == JOINT_GUIDE || data->kind == JOINT_STOP || is_limited) {
         state->gap = smallest_gap(linkage, (int)joint, sample->bodies);
     } else {
         state->gap =

@@ -51,5 +51,10 @@ void stepping_label(const Scenario *scenario, const char *stepping, const char *
 void stepping_observe_line(const Linkage *linkage, int joint, const Motion *motions,
                            JointState *state);
 
+// Where the limited coordinate of a pivot or of gears is: tilt, or the first part of the
+// eccentricity.
+void stepping_observe_coordinate(const Linkage *linkage, int joint, const Motion *motions,
+                                 JointState *state);
+
 // Where a joint stands in a sample whose bodies are filled in; its forces stay.
 void stepping_observe_joint(const Linkage *linkage, size_t joint, Sample *sample);

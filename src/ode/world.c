@@ -72,6 +72,10 @@ static bool make_pairs(const Scenario *scenario, int number, World *world, Err *
     const dBodyID bodies[2] = {body_of(world, joint->body_a), body_of(world, joint->body_b)};
     for (size_t i = 0; i < count; i++) {
         WorldPair *pair = &world->pairs[world->pair_count++];
+        if (joint->limits.kind != LIMIT_NONE) {
+            pair_make_end(scenario, &places[i], bodies, world->id, world->ends, pair);
+            continue;
+        }
         if (!pair_make(scenario, &places[i], bodies, world->collider, pair, err)) {
             return false;
         }
@@ -121,14 +125,15 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
     world->collider = collider_get(scenario->ode.collider);
     world->hold = world_hold_make(scenario);
     make_bodies(scenario, motions, world);
+    world->ends = ends_make(&scenario->linkage, world->bodies, motions);
     const Linkage *linkage = &scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (linkage->joints[i].kind == JOINT_PRISMATIC && world->hold == NULL) {
             make_sliding(linkage, (int)i, &scenario->ode, world);
         } else if (linkage_is_ideal(linkage, i) && world->hold == NULL) {
             make_ball(linkage, motions, i, &scenario->ode, world);
-        } else if (linkage_has_play(&linkage->joints[i]) &&
-                   !make_pairs(scenario, (int)i, world, err)) {
+        }
+        if (linkage_has_play(&linkage->joints[i]) && !make_pairs(scenario, (int)i, world, err)) {
             return false;
         }
     }
@@ -150,6 +155,7 @@ void world_finish(World *world)
     free(world->pairs);
     applied_finish(&world->applied);
     world_hold_free(world->hold);
+    ends_free(world->ends);
     memset(world, 0, sizeof *world);
 }
 

@@ -5,6 +5,7 @@
 #include "model/trajectory.h"
 #include "ode/applied.h"
 #include "ode/collider.h"
+#include "ode/ends.h"
 #include "ode/pair.h"
 #include "ode/sliding.h"
 #include "ode/snapshot.h"
@@ -22,6 +23,7 @@ typedef struct World {
     const Collider *collider; // of all pairs
     size_t pair_count;
     WorldPair *pairs;       // in the order of touch_list
+    WorldEnds *ends;        // of limited angles and teeth; NULL: there are none
     WorldHold *hold;        // of the ideal joints where they have no rows in ODE; else NULL
     size_t constraint_rows; // scalar rows of the ideal joints, all independent
     Applied applied;        // springs, dampers, torque

@@ -161,6 +161,19 @@ static void end_contact(Recorder *recorder, size_t number)
     }
 }
 
+static double depth_of(const JointState *state)
+{
+    return state->is_touching ? fmax(0.0, -state->gap) : 0.0;
+}
+
+// The largest force and depth of a joint at a step, as far as it knows.
+static JointTop top_of(const StepRecord *step, size_t number)
+{
+    const JointState *state = &step->joints[number];
+    return step->tops != NULL ? step->tops[number]
+                              : (JointTop){.force = state->force, .depth = depth_of(state)};
+}
+
 static void add_contact(Recorder *recorder, size_t number, const StepRecord *step)
 {
     const JointState *state = &step->joints[number];
@@ -180,8 +193,9 @@ static void add_contact(Recorder *recorder, size_t number, const StepRecord *ste
     if (state->is_touching) {
         spike->duration_s += duration;
         spike->impulse += step->impulse[number];
-        spike->force_max = fmax(spike->force_max, state->force);
-        spike->penetration_max = fmax(spike->penetration_max, -state->gap);
+        const JointTop top = top_of(step, number);
+        spike->force_max = fmax(spike->force_max, top.force);
+        spike->penetration_max = fmax(spike->penetration_max, top.depth);
         joint->contact_time += is_reported ? duration : 0.0;
         joint->impulse += is_reported ? step->impulse[number] : 0.0;
     } else if (recorder->was_touching[number]) {
@@ -200,12 +214,11 @@ static void raise_body(Recorder *recorder, size_t number, double omega, double a
     raise_to(&body->alpha_min, recorder->is_empty, alpha, -1.0, time_s);
 }
 
-static void raise_joint(Recorder *recorder, size_t number, const JointState *state, double time_s)
+static void raise_joint(Recorder *recorder, size_t number, const JointTop *top, double time_s)
 {
     JointExtremes *joint = &recorder->trajectory->joints[number];
-    const double depth = state->is_touching ? fmax(0.0, -state->gap) : 0.0;
-    raise_to(&joint->force_max, recorder->is_empty, state->force, 1.0, time_s);
-    raise_to(&joint->penetration_max, recorder->is_empty, depth, 1.0, time_s);
+    raise_to(&joint->force_max, recorder->is_empty, top->force, 1.0, time_s);
+    raise_to(&joint->penetration_max, recorder->is_empty, top->depth, 1.0, time_s);
 }
 
 // Of a block between guides.
@@ -234,7 +247,8 @@ static void raise_all(Recorder *recorder, const StepRecord *step)
         raise_body(recorder, i, step->omega[i], step->alpha[i], step->end_s);
     }
     for (size_t i = 0; i < recorder->trajectory->joint_count; i++) {
-        raise_joint(recorder, i, &step->joints[i], step->joint_s);
+        const JointTop top = top_of(step, i);
+        raise_joint(recorder, i, &top, step->joint_s);
         raise_tilt(recorder, i, &step->joints[i], step->joint_s);
     }
     recorder->is_empty = false;
@@ -287,7 +301,9 @@ void recorder_see(Recorder *recorder, const Sample *sample)
         raise_body(recorder, i, sample->bodies[i].omega, sample->bodies[i].alpha, time_s);
     }
     for (size_t i = 0; i < trajectory->joint_count; i++) {
-        raise_joint(recorder, i, &sample->joints[i], time_s);
+        const JointState *state = &sample->joints[i];
+        const JointTop top = {.force = state->force, .depth = depth_of(state)};
+        raise_joint(recorder, i, &top, time_s);
         raise_tilt(recorder, i, &sample->joints[i], time_s);
         if (recorder->scenario->linkage.is_spatial) {
             raise_joint_space(recorder, i, &sample->space_joints[i], time_s);

@@ -1,0 +1,165 @@
+// Which forces came of the rows of contacts in a step, and which energies?
+#include "ode/contact_rows.h"
+
+#include <string.h>
+
+// Work lost to friction in the step: the force on the pin along the wall, against how far the pin
+// slid. Of a staggered world that is the mean of the speeds before and after the step.
+static double friction_work(const ContactRows *rows, size_t number, Vec2 force, double step_s)
+{
+    const ContactRow *row = &rows->rows[number];
+    const FrictionRow friction = contact_rows_friction(rows, number);
+    const double after = contact_friction_sliding(&friction);
+    const double sliding = rows->is_staggered ? 0.5 * (row->sliding + after) : after;
+    return -vec2_dot(vec2_perp(row->normal), force) * sliding * step_s;
+}
+
+// What a contact lost and stored in the step, by its law: the damper at the speed after the step,
+// the spring at the depth after it. Where nothing presses that still overlaps, the damper takes all
+// that the spring gives. What the step itself gains or loses beyond that is ODE's error
+// and stays in the residual. The velocity-level model has no spring: all its work is lost.
+static void book_energy(ContactRows *rows, size_t number, Vec2 force, double step_s)
+{
+    ContactRow *row = &rows->rows[number];
+    row->elastic = 0.0;
+    row->dissipated = 0.0;
+    row->friction = 0.0;
+    if (!row->is_touching) {
+        return;
+    }
+    const TouchPose pose = pair_pose(&rows->world->pairs[number]);
+    // a polygon's side stays what it is within a step
+    const double penetration = row->excess - pose.gap;
+    const double speed = pose.approach_speed + row->faster;
+    const double pressing =
+        rows->world->pairs[number].row != NULL ? row->pressing : vec2_dot(row->normal, force);
+    // of a staggered world the step stands in the middle between its two speeds, and its end
+    // between two positions
+    const double closing = rows->is_staggered ? 0.5 * (row->closing + speed) : speed;
+    const double depth = rows->is_staggered ? 0.5 * (row->inside + penetration) : penetration;
+    if (rows->scenario->contact.model == CONTACT_POISSON) {
+        row->dissipated = pressing * 0.5 * (row->closing + speed) * step_s;
+    } else {
+        const double damped =
+            pressing > 0.0 ? row->damping * closing : -force_law_elastic(&row->law, row->depth);
+        row->dissipated = damped * closing * step_s;
+        row->elastic = force_law_energy(&row->law, fmax(0.0, depth));
+    }
+    if (rows->scenario->contact.friction > 0.0) {
+        row->friction = friction_work(rows, number, force, step_s);
+    }
+}
+
+// The force of a row on body b, as ODE has it; none at a turn.
+static Vec2 row_force(const ContactRows *rows, size_t number)
+{
+    const ContactRow *row = &rows->rows[number];
+    const WorldPair *pair = &rows->world->pairs[number];
+    if (!row->is_touching || pair->row != NULL) {
+        return (Vec2){0.0, 0.0};
+    }
+    // ODE gives the force on the first body attached: a, if it is no ground
+    const double sign = pair->bodies[0] != NULL ? -1.0 : 1.0;
+    return (Vec2){sign * row->feedback.f1[0], sign * row->feedback.f1[1]};
+}
+
+// Adds what a corner or an end does to what its joint does.
+static void add_corner(const ContactRow *row, const WorldPair *pair, Vec2 force, JointState *state)
+{
+    state->force_on_b = vec2_add(state->force_on_b, force);
+    state->force += row->pressing;
+    state->moment_on_b += vec2_cross(row->lever, force);
+    if (pair->row != NULL) {
+        const Joint *joint = &pair->ends->linkage->joints[pair->joint];
+        state->moment_on_b += coordinate_sense(joint) * pair->touch.sign * row->pressing;
+    }
+}
+
+// What the row pressed with, for the largest force of its contact.
+static void note_pressing(ContactRow *row, double step_s)
+{
+    const double depth = fmax(row->inside, 0.0);
+    if (row->share < 1.0) {
+        tops_note_part(&row->tops, row->pressing, depth, step_s);
+    } else {
+        tops_note(&row->tops, row->pressing, depth, row->tops.has_series ? step_s : 0.0);
+    }
+}
+
+// Reads what a row of the step did.
+static void read_row(ContactRows *rows, size_t number, double step_s, JointState *state)
+{
+    ContactRow *row = &rows->rows[number];
+    const WorldPair *pair = &rows->world->pairs[number];
+    const Vec2 force = row_force(rows, number);
+    row->pressing =
+        pair->row != NULL ? ends_pressing(pair->row, pair->touch.sign) : vec2_length(force);
+    if (pair->is_corner) {
+        add_corner(row, pair, force, state);
+    } else {
+        state->force_on_b = force;
+        state->force = row->pressing;
+    }
+    note_pressing(row, step_s);
+}
+
+void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
+{
+    bool any = false;
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        const WorldPair *pair = &rows->world->pairs[i];
+        if (pair->is_end && contact_rows_is_first(rows, i)) {
+            // what holds the joint beside its coordinate is not told of it
+            states[pair->joint].force = 0.0;
+        }
+        if (rows->rows[i].is_touching) {
+            read_row(rows, i, step_s, &states[pair->joint]);
+            any = true;
+        }
+        book_energy(rows, i, row_force(rows, i), step_s);
+    }
+    if (any) {
+        dJointGroupEmpty(rows->group);
+    }
+}
+
+void contact_rows_offsets(const ContactRows *rows, int body, Vec2 *offsets)
+{
+    memset(offsets, 0, rows->scenario->linkage.joint_count * sizeof *offsets);
+    world_offsets(rows->world, body, offsets);
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        const ContactRow *row = &rows->rows[i];
+        const int number = rows->world->pairs[i].joint;
+        const Joint *joint = &rows->scenario->linkage.joints[number];
+        if (row->is_touching) {
+            offsets[number] = row->arms[joint->body_a == body ? 0 : 1];
+        }
+    }
+}
+
+ContactEnergy contact_rows_energy(const ContactRows *rows)
+{
+    ContactEnergy sum = {0.0, 0.0, 0.0};
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        sum.dissipated += rows->rows[i].dissipated;
+        sum.friction += rows->rows[i].friction;
+        sum.elastic += rows->rows[i].elastic;
+    }
+    return sum;
+}
+
+void contact_rows_tops(const ContactRows *rows, const JointState *states, JointTop *tops)
+{
+    for (size_t i = 0; i < rows->scenario->linkage.joint_count; i++) {
+        const JointState *state = &states[i];
+        tops[i] = (JointTop){state->force, state->is_touching ? fmax(0.0, -state->gap) : 0.0};
+    }
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        const ContactRow *row = &rows->rows[i];
+        JointTop *top = &tops[rows->world->pairs[i].joint];
+        if (rows->world->pairs[i].is_end && row->is_touching) {
+            top->force = fmax(top->force, row->tops.force);
+            top->depth = fmax(top->depth, row->tops.depth);
+        }
+    }
+}

@@ -1,0 +1,166 @@
+// Do flanks and stops of a joint's coordinate rebound in ODE as the law of their contact asks, show
+// the gap that is asked for, and keep the energy?
+#include "complete_run.h"
+
+#include "kept.h"
+#include "limited_joint.h"
+
+#include <stdio.h>
+
+enum { IMPACTS = 100 };
+
+// The worst of seeded impacts at so many steps to a contact or more.
+static LimitedOff worst_of(OdeStepping stepping, OdeMap map, double fewest, double ratio)
+{
+    uint64_t random = lcg_stirred(7);
+    LimitedOff worst = {0.0, 0.0, 0.0};
+    for (int i = 0; i < IMPACTS; i++) {
+        const LimitedKind kind = (LimitedKind)(i % LIMITED_KINDS);
+        const LimitedImpact impact = limited_impact_draw(&random, kind, fewest, ratio, 0.2);
+        const LimitedOff off = limited_impact_run(&impact, stepping, map, ODE_DIRECT);
+        worst = limited_worse(worst, off);
+    }
+    return worst;
+}
+
+static void flanks_rebound_as_asked_down_to_ten_steps_a_contact(void **state)
+{
+    (void)state;
+    const LimitedOff off = worst_of(ODE_STAGGERED, ODE_MAP_MIDPOINT, 10.0, 10.0);
+    assert_near(off.restitution, 0.0, 0.01);
+    assert_near(off.force, 0.0, 0.01);
+    const LimitedOff exact = worst_of(ODE_STAGGERED, ODE_MAP_EXACT, 10.0, 10.0);
+    assert_near(exact.restitution, 0.0, 0.01);
+    const LimitedOff plain = worst_of(ODE_PLAIN, ODE_MAP_CORRECTED, 10.0, 10.0);
+    assert_near(plain.restitution, 0.0, 0.01);
+    // the control: ODE's textbook
+    const LimitedOff textbook = worst_of(ODE_PLAIN, ODE_MAP_TEXTBOOK, 10.0, 10.0);
+    assert_true(textbook.restitution > 0.2 && textbook.force > 0.1);
+}
+
+// From forty steps a contact to ten contacts a step.
+static void flanks_rebound_as_asked_at_any_step_by_impulse(void **state)
+{
+    (void)state;
+    const LimitedOff off = worst_of(ODE_STAGGERED, ODE_MAP_IMPULSE, 0.1, 400.0);
+    assert_near(off.restitution, 0.0, 1e-3);
+    assert_near(off.force, 0.0, 1e-3);
+    assert_near(off.depth, 0.0, 1e-3);
+}
+
+static const double BACKLASH = 0.01;   // rad
+static const double TORQUE = 2.0;      // N m
+static const double STIFFNESS = 500.0; // N m/rad
+
+// A rotor in its backlash under a torque that is reversed slowly.
+static Scenario reversal(double backlash, OdeStepping stepping, OdeMap map)
+{
+    Scenario scenario = kept_default();
+    Linkage *linkage = &scenario.linkage;
+    linkage->body_count = linkage->joint_count = 1;
+    linkage->bodies[0] = (Body){.name = "rotor", .mass = 1.0, .inertia = 0.01};
+    linkage->joints[0] = (Joint){
+        .name = "hinge",
+        .kind = JOINT_REVOLUTE,
+        .body_a = LINKAGE_GROUND,
+        .limits = {.kind = LIMIT_BACKLASH, .backlash = backlash},
+        .contact = {.stiffness = STIFFNESS, .exponent = 1.0, .viscous = 4.0},
+    };
+    linkage->torque = (Torque){
+        .joint = 0,
+        .table = {.count = 4,
+                  .times = {0.0, 0.35, 0.75, 1.2},
+                  .values = {TORQUE, TORQUE, -TORQUE, -TORQUE}},
+    };
+    scenario.ode.stepping = stepping;
+    scenario.ode.map = map;
+    scenario.run.step = 2e-4;
+    scenario.run.duration = 1.2;
+    scenario.run.samples = 4;
+    return scenario;
+}
+
+// The gap that the reversal shows: the way from rest to rest less what both flanks give way.
+static double gap_shown(double backlash, OdeStepping stepping, OdeMap map)
+{
+    const Scenario scenario = reversal(backlash, stepping, map);
+    Trajectory *run = complete_run(&scenario, BACKEND_ODE);
+    const double before = trajectory_motion(run, 1, 0)->angle;
+    const double after = trajectory_motion(run, 4, 0)->angle;
+    assert_near(trajectory_state(run, 1, 0)->force, TORQUE, 1e-6 * TORQUE);
+    assert_near(trajectory_state(run, 4, 0)->moment_on_b, TORQUE, 1e-6 * TORQUE);
+    assert_near(trajectory_state(run, 1, 0)->gap, -TORQUE / STIFFNESS, 1e-9);
+    trajectory_destroy(run);
+    return before - after - 2.0 * TORQUE / STIFFNESS;
+}
+
+static void a_slow_reversal_shows_the_gap_that_is_asked_for(void **state)
+{
+    (void)state;
+    assert_near(gap_shown(BACKLASH, ODE_PLAIN, ODE_MAP_TEXTBOOK), BACKLASH, 1e-9);
+    assert_near(gap_shown(BACKLASH, ODE_PLAIN, ODE_MAP_CORRECTED), BACKLASH, 1e-9);
+    assert_near(gap_shown(BACKLASH, ODE_STAGGERED, ODE_MAP_MIDPOINT), BACKLASH, 1e-9);
+    assert_near(gap_shown(BACKLASH, ODE_STAGGERED, ODE_MAP_IMPULSE), BACKLASH, 1e-9);
+    // (map exact gives the spring's motion, not its depth under a load)
+    // the control: a gap that is 1e-8 rad wider
+    const double wider = gap_shown(BACKLASH + 1e-8, ODE_STAGGERED, ODE_MAP_MIDPOINT);
+    assert_true(fabs(wider - BACKLASH) > 5e-9);
+}
+
+// What is missing in the balance of a run's energy, of what the flanks took, at a step.
+static double missing_energy(OdeMap map, double step_s)
+{
+    Scenario scenario = reversal(BACKLASH, ODE_STAGGERED, map);
+    scenario.linkage.joints[0].contact.viscous = 0.5;
+    scenario.run.step = step_s;
+    Trajectory *run = complete_run(&scenario, BACKEND_ODE);
+    const double missing = fabs(run->energy.residual) / run->energy.dissipated;
+    assert_true(run->energy.dissipated > 0.01);
+    trajectory_destroy(run);
+    return missing;
+}
+
+static void the_energy_audit_closes(void **state)
+{
+    (void)state;
+    const OdeMap maps[] = {ODE_MAP_MIDPOINT, ODE_MAP_IMPULSE};
+    for (size_t i = 0; i < 2; i++) {
+        const double coarse = missing_energy(maps[i], 4e-4);
+        const double fine = missing_energy(maps[i], 5e-5);
+        assert_true(coarse < 2e-3 && fine < 4e-5 && fine < coarse / 32.0);
+    }
+}
+
+// Half a turn at a time is all that ODE knows of an angle.
+static void flanks_are_met_after_many_turns(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        const LimitedImpact impact = {
+            .kind = LIMITED_HINGE_STOP,
+            .is_high = i == 0,
+            .inertia = 0.01,
+            .speed = 40.0,
+            .stiffness = 1e5,
+            .restitution = 0.8,
+            .step = 2e-5,
+            .flight = 21.0,
+        };
+        const LimitedOff off =
+            limited_impact_run(&impact, ODE_STAGGERED, ODE_MAP_MIDPOINT, ODE_DIRECT);
+        assert_near(off.restitution, 0.0, 2e-3);
+        assert_near(off.force, 0.0, 2e-3);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(flanks_rebound_as_asked_down_to_ten_steps_a_contact),
+        cmocka_unit_test(flanks_rebound_as_asked_at_any_step_by_impulse),
+        cmocka_unit_test(a_slow_reversal_shows_the_gap_that_is_asked_for),
+        cmocka_unit_test(the_energy_audit_closes),
+        cmocka_unit_test(flanks_are_met_after_many_turns),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
