@@ -205,8 +205,22 @@ static bool find_number(const Path *path, ExpectGroup group, const Scenario *sce
                        choices, count, err);
 }
 
+// The row of a number: of a joint whose limits turn it forces are torques and lengths angles.
+static ExpectRow row_of(const Scenario *scenario, ExpectGroup group, const Expectation *expectation)
+{
+    ExpectRow row = EXPECT_ROWS[expectation->number];
+    if (group == EXPECT_JOINTS &&
+        linkage_is_torsional(&scenario->linkage.joints[expectation->member])) {
+        row.dimension = row.dimension == DIMENSION_FORCE     ? DIMENSION_TORQUE
+                        : row.dimension == DIMENSION_IMPULSE ? DIMENSION_ANGULAR_IMPULSE
+                        : row.dimension == DIMENSION_LENGTH  ? DIMENSION_ANGLE
+                                                             : row.dimension;
+    }
+    return row;
+}
+
 // A limit; what is wrong with it is shown where it stands, if the text is that of the file.
-static bool read_limit(const Path *path, Expectation *expectation, Err *err)
+static bool read_limit(const Path *path, const ExpectRow *row, Expectation *expectation, Err *err)
 {
     const Node *node = path->node;
     if (node->kind != NODE_SCALAR || node->text[0] == '\0') {
@@ -217,8 +231,7 @@ static bool read_limit(const Path *path, Expectation *expectation, Err *err)
     Complaint complaint = {.allowed = ""};
     size_t start = 0;
     size_t length = 0;
-    if (expect_limit_read(node->text, &EXPECT_ROWS[expectation->number], expectation, &complaint,
-                          &start, &length)) {
+    if (expect_limit_read(node->text, row, expectation, &complaint, &start, &length)) {
         return true;
     }
     Span span = node->span;
@@ -241,7 +254,11 @@ static bool read_one(const Entries *entries, const Entry *entry, const Node *nod
     }
     take_backend(&path, &read);
     if (!find_group(&path, &group, err) || !find_member(&path, entries, group, &read, err) ||
-        !find_number(&path, group, scenario, &read, err) || !read_limit(&path, &read, err)) {
+        !find_number(&path, group, scenario, &read, err)) {
+        return false;
+    }
+    const ExpectRow row = row_of(scenario, group, &read);
+    if (!read_limit(&path, &row, &read, err)) {
         return false;
     }
     text_copy(read.path, sizeof read.path, node->key->text + path.starts[path.first]);

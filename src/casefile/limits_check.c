@@ -9,8 +9,8 @@
 static const char *describe(const Joint *joint)
 {
     return joint->kind == JOINT_GEAR              ? "a pair of gears"
-           : joint->limits.kind == LIMIT_BACKLASH ? "a joint with backlash"
-                                                  : "a joint with stops";
+           : joint->limits.kind == LIMIT_BACKLASH ? "one with backlash"
+                                                  : "one with stops";
 }
 
 // In which unit a stiffness, and a damping, of a joint's limits stand.

@@ -10,18 +10,22 @@
 
 enum { TRAJECTORY_LABEL_SIZE = 96, TRAJECTORY_SPIKE_MAX = 12 };
 
-// One joint at one instant.
+// One joint at one instant. Of a joint whose limits turn it (linkage_is_torsional) gap and force
+// are an angle and a torque, here and in all that is made of them.
 typedef struct JointState {
     Vec2 eccentricity;  // pin centre minus hole centre, m; of a prismatic joint or a block between
-                        // guides: along and across the line (x along body a's direction)
-    double tilt;        // rad, of a prismatic joint or a block between guides
+                        // guides: along and across the line (x along body a's direction); of gears
+                        // x is their coordinate less the middle of the gap
+    double tilt;        // rad, of a prismatic joint or a block between guides; of a pivot with
+                        // limits its coordinate
     double gap;         // radial clearance less eccentricity, m; negative inside the metal; of a
-                        // block the smallest of its corners
-    double force;       // size of the force in the joint, N; of a block the sum of its corners'
+                        // block the smallest of its corners, of a limited coordinate of its ends
+    double force;       // size of the force in the joint, N; of a block the sum of its corners'; of
+                        // a limited coordinate that of its ends, without what the joint holds
     Vec2 force_on_b;    // the force itself, on body b, N
     double moment_on_b; // N m, about the anchor of body b, of prismatic joints and blocks between
-                        // guides: the couple that comes with the force
-    bool is_touching;   // pin and hole overlap (an ideal joint always touches)
+                        // guides: the couple that comes with the force; the torque of limits
+    bool is_touching;   // pin and hole overlap (an ideal joint without limits always touches)
 } JointState;
 
 // What a joint with play has in space beside that. There `eccentricity` is that of the pin's middle

@@ -41,15 +41,35 @@ const Field METRIC_FIELDS[ENSEMBLE_METRIC_COUNT + 1] = {
      .of = DISTRIBUTION_FIELDS},
     {0},
 };
+
+static const Field TURNING_METRIC_FIELDS[ENSEMBLE_METRIC_COUNT + 1] = {
+    {"force_max_N_m", FIELD_GROUP, KEPT, "force max", "N m", METRIC(ENSEMBLE_FORCE_MAX),
+     .of = DISTRIBUTION_FIELDS},
+    {"impulse_N_m_s", FIELD_GROUP, KEPT, "impulse", "N m s", METRIC(ENSEMBLE_IMPULSE),
+     .of = DISTRIBUTION_FIELDS},
+    {"impacts", FIELD_GROUP, KEPT, "impacts", "", METRIC(ENSEMBLE_IMPACTS),
+     .of = DISTRIBUTION_FIELDS},
+    {"penetration_max_rad", FIELD_GROUP, KEPT, "deepest", "mrad", METRIC(ENSEMBLE_PENETRATION_MAX),
+     .of = DISTRIBUTION_FIELDS},
+    {"contact_fraction", FIELD_GROUP, KEPT, "in contact", "%", METRIC(ENSEMBLE_CONTACT_SHARE),
+     .of = DISTRIBUTION_FIELDS},
+    {0},
+};
 // clang-format on
+
+const Field *measured_metric_fields(const Joint *joint)
+{
+    return linkage_is_torsional(joint) ? TURNING_METRIC_FIELDS : METRIC_FIELDS;
+}
 
 json_t *ensemble_joints_json(const Linkage *linkage, const Ensemble *ensemble)
 {
     json_t *joints = json_object();
     for (size_t i = 0; i < ensemble_joint_count(linkage); i++) {
         if (linkage_has_play(&linkage->joints[i])) {
+            const Field *fields = measured_metric_fields(&linkage->joints[i]);
             json_object_set_new(joints, linkage->joints[i].name,
-                                fields_json(METRIC_FIELDS, FIELD_JSON, ensemble->joints[i]));
+                                fields_json(fields, FIELD_JSON, ensemble->joints[i]));
         }
     }
     return joints;
@@ -61,7 +81,7 @@ bool ensemble_joints_read(const Linkage *linkage, const json_t *joints, Ensemble
     for (size_t i = 0; is_right && i < ensemble_joint_count(linkage); i++) {
         is_right =
             !linkage_has_play(&linkage->joints[i]) ||
-            fields_json_read(METRIC_FIELDS, FIELD_STORE,
+            fields_json_read(measured_metric_fields(&linkage->joints[i]), FIELD_STORE,
                              json_object_get(joints, linkage->joints[i].name), ensemble->joints[i]);
     }
     return is_right;

@@ -11,6 +11,9 @@ extern const Field ERROR_FIELDS[];
 // Of the Distributions of one joint, by EnsembleMetric: a group each.
 extern const Field METRIC_FIELDS[ENSEMBLE_METRIC_COUNT + 1];
 
+// The same in the units of a joint: those of a joint whose limits turn it are torques and angles.
+const Field *measured_metric_fields(const Joint *joint);
+
 // New reference: the distributions of the joints with play, by joint and metric.
 json_t *ensemble_joints_json(const Linkage *linkage, const Ensemble *ensemble);
 

@@ -1,8 +1,10 @@
 // What stands in a row of a series?
 #include "write/series_rows.h"
 
+#include "model/coordinate.h"
 #include "model/joint_rows.h"
 #include "write/csv.h"
+#include "write/joint_units.h"
 #include "write/units.h"
 
 static void write_range_heads(const Linkage *linkage, FILE *stream)
@@ -14,8 +16,11 @@ static void write_range_heads(const Linkage *linkage, FILE *stream)
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const char *name = linkage->joints[i].name;
-        fprintf(stream, ",%s_gap_min_m,%s_gap_max_m", name, name);
-        fprintf(stream, ",%s_force_min_N,%s_force_max_N", name, name);
+        const JointUnits *units = joint_units(&linkage->joints[i]);
+        const char *length = units->length_key;
+        const char *force = units->force_key;
+        fprintf(stream, ",%s_gap_min_%s,%s_gap_max_%s", name, length, name, length);
+        fprintf(stream, ",%s_force_min_%s,%s_force_max_%s", name, force, name, force);
     }
 }
 
@@ -80,6 +85,29 @@ static void write_slides(const Linkage *linkage, const Trajectory *trajectory, s
     }
 }
 
+// The coordinate of a joint that has limits, whichever of its kind.
+static void write_limit_heads(const Linkage *linkage, FILE *stream)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint->limits.kind != LIMIT_NONE) {
+            fprintf(stream, ",%s_coordinate_%s", joint->name, joint_units(joint)->length_key);
+        }
+    }
+}
+
+static void write_limits(const Linkage *linkage, const Trajectory *trajectory, size_t sample,
+                         FILE *stream)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage->joints[i].limits.kind != LIMIT_NONE) {
+            const double at =
+                coordinate_position(linkage, trajectory_motion(trajectory, sample, 0), (int)i);
+            write_cells(&at, 1, stream);
+        }
+    }
+}
+
 // What a linkage in space has more than one in the plane.
 static void write_space_heads(const Linkage *linkage, FILE *stream)
 {
@@ -127,13 +155,16 @@ static void write_head(const Scenario *scenario, const Trajectory *trajectory, F
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const char *name = linkage->joints[i].name;
-        fprintf(stream, ",%s_ex_m,%s_ey_m,%s_gap_m,%s_force_N", name, name, name, name);
+        const JointUnits *units = joint_units(&linkage->joints[i]);
+        fprintf(stream, ",%s_ex_m,%s_ey_m,%s_gap_%s,%s_force_%s", name, name, name,
+                units->length_key, name, units->force_key);
     }
     for (size_t i = 0; i < scenario->point_count; i++) {
         const char *name = scenario->points[i].name;
         fprintf(stream, ",%s_x_m,%s_y_m", name, name);
     }
     write_slide_heads(linkage, stream);
+    write_limit_heads(linkage, stream);
     if (linkage->is_spatial) {
         write_space_heads(linkage, stream);
     }
@@ -166,6 +197,7 @@ static void write_row(const Scenario *scenario, const Trajectory *trajectory, si
         write_cells((const double[]){position.x, position.y}, 2, stream);
     }
     write_slides(&scenario->linkage, trajectory, sample, stream);
+    write_limits(&scenario->linkage, trajectory, sample, stream);
     if (scenario->linkage.is_spatial) {
         write_space(&scenario->linkage, trajectory, sample, stream);
     }

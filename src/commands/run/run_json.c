@@ -1,11 +1,22 @@
 // What do other programs read of the runs of a case?
 #include "commands/run/run_report.h"
 #include "commands/run/slide_range.h"
+#include "model/coordinate.h"
+#include "write/joint_units.h"
 #include "write/json_value.h"
 #include "write/settings_json.h"
 #include "write/units.h"
 
 #include <inttypes.h>
+#include <stdio.h>
+
+// A number whose key ends in its unit.
+static void set_in(json_t *object, const char *name, const char *unit, double value)
+{
+    char key[64];
+    snprintf(key, sizeof key, "%s_%s", name, unit);
+    json_value_set(object, key, value);
+}
 
 static json_t *bodies_object(const Linkage *linkage, const Trajectory *run)
 {
@@ -20,12 +31,13 @@ static json_t *bodies_object(const Linkage *linkage, const Trajectory *run)
     return bodies;
 }
 
-static json_t *contacts_array(const JointExtremes *extremes, bool is_felt)
+static json_t *contacts_array(const Joint *joint, const JointExtremes *extremes, bool is_felt)
 {
+    const unsigned where = FIELD_JSON | run_report_contact(joint);
     json_t *contacts = json_array();
     for (size_t i = 0; is_felt && i < extremes->spike_count; i++) {
         json_array_append_new(contacts,
-                              fields_json(RUN_CONTACT_FIELDS, FIELD_JSON, &extremes->spikes[i]));
+                              fields_json(RUN_CONTACT_FIELDS, where, &extremes->spikes[i]));
     }
     return contacts;
 }
@@ -48,37 +60,65 @@ static void set_slide(json_t *object, const Linkage *linkage, const Trajectory *
     }
 }
 
+// The ends of a limited coordinate, and where it was at the samples.
+static void set_limits(json_t *object, const Linkage *linkage, const Trajectory *run, size_t number)
+{
+    const Joint *joint = &linkage->joints[number];
+    const char *unit = joint_units(joint)->length_key;
+    double least = INFINITY;
+    double most = -INFINITY;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        const double now = coordinate_position(linkage, trajectory_motion(run, i, 0), (int)number);
+        least = fmin(least, now);
+        most = fmax(most, now);
+    }
+    set_in(object, "limit_low", unit, coordinate_low(joint));
+    set_in(object, "limit_high", unit, coordinate_high(joint));
+    set_in(object, "coordinate_min", unit, least);
+    set_in(object, "coordinate_max", unit, most);
+}
+
+static json_t *joint_object(const Linkage *linkage, const Trajectory *run, size_t number)
+{
+    const Joint *of = &linkage->joints[number];
+    const JointExtremes *extremes = &run->joints[number];
+    const JointUnits *units = joint_units(of);
+    const bool has_play = linkage_has_play(of);
+    // without play that is felt there is no contact to count: null, not 0
+    const bool is_felt = trajectory_feels_play(run, of);
+    json_t *joint = json_object();
+    json_object_set_new(joint, "impacts",
+                        is_felt ? json_integer((json_int_t)extremes->impacts) : json_null());
+    set_in(joint, "force_max", units->force_key, extremes->force_max.value);
+    json_value_set(joint, "force_max_crank_deg", extremes->force_max.crank_rad * UNITS_DEG);
+    set_in(joint, "impulse", units->impulse_key, is_felt ? extremes->impulse : NAN);
+    set_in(joint, "penetration_max", units->length_key,
+           is_felt ? extremes->penetration_max.value : NAN);
+    if (linkage->is_spatial) {
+        json_value_set(joint, "tilt_max_rad", is_felt ? extremes->tilt_max.value : NAN);
+        json_value_set(joint, "axial_max_m", is_felt ? extremes->axial_max.value : NAN);
+    }
+    if (slide_range_has(of)) {
+        set_slide(joint, linkage, run, number, is_felt);
+    }
+    json_value_set(joint, "contact_fraction",
+                   is_felt ? trajectory_contact_share(run, number) : NAN);
+    json_object_set_new(joint, "has_play", json_boolean(has_play));
+    if (of->limits.kind != LIMIT_NONE) {
+        set_limits(joint, linkage, run, number);
+    } else if (has_play && of->kind != JOINT_STOP) {
+        json_value_set(joint, "radial_clearance_m", linkage_radial_clearance(of));
+    }
+    json_object_set_new(joint, "spikes", contacts_array(of, extremes, is_felt));
+    spike_json_set(joint, run_report_force(of), linkage, &run->force_spikes[number]);
+    return joint;
+}
+
 static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
 {
     json_t *joints = json_object();
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const JointExtremes *extremes = &run->joints[i];
-        json_t *joint = json_object();
-        const bool has_play = linkage_has_play(&linkage->joints[i]);
-        // without play that is felt there is no contact to count: null, not 0
-        const bool is_felt = trajectory_feels_play(run, &linkage->joints[i]);
-        json_object_set_new(joint, "impacts",
-                            is_felt ? json_integer((json_int_t)extremes->impacts) : json_null());
-        json_value_set(joint, "force_max_N", extremes->force_max.value);
-        json_value_set(joint, "force_max_crank_deg", extremes->force_max.crank_rad * UNITS_DEG);
-        json_value_set(joint, "impulse_N_s", is_felt ? extremes->impulse : NAN);
-        json_value_set(joint, "penetration_max_m", is_felt ? extremes->penetration_max.value : NAN);
-        if (linkage->is_spatial) {
-            json_value_set(joint, "tilt_max_rad", is_felt ? extremes->tilt_max.value : NAN);
-            json_value_set(joint, "axial_max_m", is_felt ? extremes->axial_max.value : NAN);
-        }
-        if (slide_range_has(&linkage->joints[i])) {
-            set_slide(joint, linkage, run, i, is_felt);
-        }
-        json_value_set(joint, "contact_fraction", is_felt ? trajectory_contact_share(run, i) : NAN);
-        json_object_set_new(joint, "has_play", json_boolean(has_play));
-        if (has_play && linkage->joints[i].kind != JOINT_STOP) {
-            json_value_set(joint, "radial_clearance_m",
-                           linkage_radial_clearance(&linkage->joints[i]));
-        }
-        json_object_set_new(joint, "spikes", contacts_array(extremes, is_felt));
-        spike_json_set(joint, RUN_FORCE, linkage, &run->force_spikes[i]);
-        json_object_set_new(joints, linkage->joints[i].name, joint);
+        json_object_set_new(joints, linkage->joints[i].name, joint_object(linkage, run, i));
     }
     return joints;
 }

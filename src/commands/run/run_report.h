@@ -85,6 +85,9 @@ enum {
     RUN_ALPHA = FIELD_OWN << 2,
     RUN_FORCE = FIELD_OWN << 3,
     RUN_NO_CRANK = FIELD_OWN << 4, // in JSON: there is no angle of a crank
+    RUN_TORQUE = FIELD_OWN << 5,   // of spikes of a torque
+    RUN_PUSHED = FIELD_OWN << 6,   // of contacts: forces and lengths,
+    RUN_TURNED = FIELD_OWN << 7,   // or torques and angles
 };
 
 // The columns of a table of this mechanism.
@@ -92,6 +95,17 @@ static inline unsigned run_report_columns(const RunReport *report)
 {
     return FIELD_TABLE |
            (drive_is_steady(&report->scenario->linkage.driver) ? RUN_DRIVEN : RUN_FREE);
+}
+
+// What contacts of a joint are in, and the signal of its spikes.
+static inline unsigned run_report_contact(const Joint *joint)
+{
+    return linkage_is_torsional(joint) ? RUN_TURNED : RUN_PUSHED;
+}
+
+static inline unsigned run_report_force(const Joint *joint)
+{
+    return linkage_is_torsional(joint) ? RUN_TORQUE : RUN_FORCE;
 }
 
 // The fields of Trajectory, BodyExtremes, Spike, SignalSpike and Energy.

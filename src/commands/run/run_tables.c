@@ -1,5 +1,6 @@
 // What did the bodies do, what did the joints feel, how far off is it, and at what cost?
 #include "commands/run/run_report.h"
+#include "write/joint_units.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -43,7 +44,8 @@ static void contact_row(Table *table, const RunReport *report, const Trajectory 
     section_number(table, extremes->force_max.value);
     run_when_cell(table, report, extremes->force_max.time_s, extremes->force_max.crank_rad);
     section_number(table, extremes->impulse);
-    section_number(table, extremes->penetration_max.value * UNITS_UM);
+    section_number(table,
+                   extremes->penetration_max.value * units_per_si(joint_units(joint)->length));
     table_cell(table, "%.1f", trajectory_contact_share(run, number) * UNITS_PERCENT);
 }
 
@@ -74,13 +76,14 @@ static void write_still(const RunReport *report, const Trajectory *run, size_t j
 }
 
 // A run without a single contact has no spikes, and is hardly what was wanted.
-static void write_untouched(const RunReport *report, Text *text)
+static void write_untouched(const RunReport *report, bool is_torsional, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
             if (!trajectory_feels_play(run, &linkage->joints[joint]) ||
+                linkage_is_torsional(&linkage->joints[joint]) != is_torsional ||
                 run->joints[joint].contact_time > 0.0) {
                 continue;
             }
@@ -94,24 +97,41 @@ static void write_untouched(const RunReport *report, Text *text)
     }
 }
 
-void run_tables_contacts(const RunReport *report, const Style *style, Text *text)
+// The contacts of joints that push, or of those that turn.
+static void write_contacts(const RunReport *report, bool is_torsional, const Style *style,
+                           Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"joint", "", TABLE_LEFT},      {"backend", "", TABLE_LEFT},
-        {"impacts", "", TABLE_RIGHT},   {"force max", "N", TABLE_RIGHT},
-        {"", "", TABLE_RIGHT},          {"impulse", "N s", TABLE_RIGHT | TABLE_DETAIL},
-        {"deepest", "um", TABLE_RIGHT}, {"in contact", "%", TABLE_RIGHT},
+    static const SectionHead HEADS[][8] = {
+        {{"joint", "", TABLE_LEFT},
+         {"backend", "", TABLE_LEFT},
+         {"impacts", "", TABLE_RIGHT},
+         {"force max", "N", TABLE_RIGHT},
+         {"", "", TABLE_RIGHT},
+         {"impulse", "N s", TABLE_RIGHT | TABLE_DETAIL},
+         {"deepest", "um", TABLE_RIGHT},
+         {"in contact", "%", TABLE_RIGHT}},
+        {{"joint", "", TABLE_LEFT},
+         {"backend", "", TABLE_LEFT},
+         {"impacts", "", TABLE_RIGHT},
+         {"torque max", "N m", TABLE_RIGHT},
+         {"", "", TABLE_RIGHT},
+         {"impulse", "N m s", TABLE_RIGHT | TABLE_DETAIL},
+         {"deepest", "mrad", TABLE_RIGHT},
+         {"in contact", "%", TABLE_RIGHT}},
     };
     const Linkage *linkage = &report->scenario->linkage;
     Table *table = NULL;
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
-            if (!trajectory_feels_play(run, &linkage->joints[joint])) {
+            if (!trajectory_feels_play(run, &linkage->joints[joint]) ||
+                linkage_is_torsional(&linkage->joints[joint]) != is_torsional) {
                 continue;
             }
             if (table == NULL) {
-                table = section_begin("Contacts in the joints with play", 8, HEADS, style, text);
+                table = section_begin(is_torsional ? "Contacts at the limits of pivots"
+                                                   : "Contacts in the joints with play",
+                                      8, HEADS[is_torsional ? 1 : 0], style, text);
                 run_when_head(table, 4, report);
             }
             contact_row(table, report, run, joint);
@@ -119,8 +139,14 @@ void run_tables_contacts(const RunReport *report, const Style *style, Text *text
     }
     if (table != NULL) {
         section_end(table, text);
-        write_untouched(report, text);
+        write_untouched(report, is_torsional, text);
     }
+}
+
+void run_tables_contacts(const RunReport *report, const Style *style, Text *text)
+{
+    write_contacts(report, false, style, text);
+    write_contacts(report, true, style, text);
 }
 
 static void pin_row(Table *table, const RunReport *report, const Trajectory *run, size_t number)
@@ -169,38 +195,50 @@ void run_tables_pins(const RunReport *report, const Style *style, Text *text)
     }
 }
 
-// The contacts that were kept of all joints with play.
-static size_t count_spikes(const Linkage *linkage, const Trajectory *run)
+// The contacts that were kept of all joints with play that are of one kind.
+static size_t count_spikes(const Linkage *linkage, const Trajectory *run, unsigned kind)
 {
     size_t count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        count += trajectory_feels_play(run, &linkage->joints[i]) ? run->joints[i].spike_count : 0;
+        const Joint *joint = &linkage->joints[i];
+        const bool is_its = trajectory_feels_play(run, joint) && run_report_contact(joint) == kind;
+        count += is_its ? run->joints[i].spike_count : 0;
     }
     return count;
 }
 
-void run_tables_spikes(const RunReport *report, size_t limit, const Style *style, Text *text)
+static void write_strongest(const RunReport *report, const Trajectory *run, unsigned kind,
+                            size_t limit, const Style *style, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
-    const unsigned where = run_report_columns(report);
-    for (size_t i = report->run_count; i-- > 0;) {
-        const Trajectory *run = report->runs[i];
-        if (count_spikes(linkage, run) == 0) {
-            continue;
+    const unsigned where = run_report_columns(report) | kind;
+    char heading[128];
+    snprintf(heading, sizeof heading, "Strongest contacts%s, %s",
+             kind == RUN_TURNED ? " at the limits of pivots" : "", run->backend);
+    Table *table = fields_table(heading, RUN_CONTACT_FIELDS, where, style, text);
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        const JointExtremes *extremes = &run->joints[joint];
+        const Joint *of = &linkage->joints[joint];
+        const bool is_its = linkage_has_play(of) && run_report_contact(of) == kind;
+        for (size_t k = 0; is_its && k < extremes->spike_count && k < limit; k++) {
+            table_cell(table, "%s", of->name);
+            fields_table_row(RUN_CONTACT_FIELDS, where, &extremes->spikes[k], table);
         }
-        char heading[128];
-        snprintf(heading, sizeof heading, "Strongest contacts, %s", run->backend);
-        Table *table = fields_table(heading, RUN_CONTACT_FIELDS, where, style, text);
-        for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-            const JointExtremes *extremes = &run->joints[joint];
-            const bool has_play = linkage_has_play(&linkage->joints[joint]);
-            for (size_t k = 0; has_play && k < extremes->spike_count && k < limit; k++) {
-                table_cell(table, "%s", linkage->joints[joint].name);
-                fields_table_row(RUN_CONTACT_FIELDS, where, &extremes->spikes[k], table);
+    }
+    section_end(table, text);
+}
+
+void run_tables_spikes(const RunReport *report, size_t limit, const Style *style, Text *text)
+{
+    static const unsigned KINDS[] = {RUN_PUSHED, RUN_TURNED};
+    for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) {
+        for (size_t i = report->run_count; i-- > 0;) {
+            const Trajectory *run = report->runs[i];
+            if (count_spikes(&report->scenario->linkage, run, KINDS[k]) > 0) {
+                write_strongest(report, run, KINDS[k], limit, style, text);
+                break;
             }
         }
-        section_end(table, text);
-        return;
     }
 }
 

@@ -88,8 +88,42 @@ static void write_stop(const Joint *joint, Text *text)
     }
 }
 
+// What limits a coordinate: in degrees of a pivot, mm of a slider, and um of teeth.
+static void write_limits(const Joint *joint, Text *text)
+{
+    const Limits *limits = &joint->limits;
+    const bool is_turning = linkage_is_torsional(joint);
+    const double scale = is_turning ? UNITS_DEG : UNITS_MM;
+    const char *unit = is_turning ? "deg" : "mm";
+    if (joint->kind == JOINT_GEAR) {
+        text_append(text, "  gears       %s: %.6g and %.6g teeth, pitch radii %.6g and %.6g mm,\n",
+                    joint->name, joint->gear.teeth[0], joint->gear.teeth[1],
+                    joint->gear.radius_a * UNITS_MM, joint->gear.radius_b * UNITS_MM);
+        text_append(text, "              backlash %.4g um, %.4g deg of the second\n",
+                    limits->backlash * UNITS_UM,
+                    limits->backlash / fabs(joint->gear.radius_b) * UNITS_DEG);
+    } else if (limits->kind == LIMIT_BACKLASH) {
+        text_append(text, "  backlash    %s: %.6g %s\n", joint->name, limits->backlash * scale,
+                    unit);
+    } else {
+        text_append(text, "  stops       %s:", joint->name);
+        if (isfinite(limits->low)) {
+            text_append(text, " low %.6g %s%s", limits->low * scale, unit,
+                        isfinite(limits->high) ? "," : "");
+        }
+        if (isfinite(limits->high)) {
+            text_append(text, " high %.6g %s", limits->high * scale, unit);
+        }
+        text_append(text, "\n");
+    }
+}
+
 static void write_joint(const Joint *joint, bool is_spatial, Text *text)
 {
+    if (joint->limits.kind != LIMIT_NONE) {
+        write_limits(joint, text);
+        return;
+    }
     switch (joint->kind) {
     case JOINT_CLEARANCE:
         write_pin(joint, is_spatial, text);
@@ -161,11 +195,12 @@ static void write_drive(const Scenario *scenario, Text *text)
     }
 }
 
-static void write_damping(const ContactOptions *contact, Text *text)
+static void write_damping(const ContactOptions *contact, bool is_turning, Text *text)
 {
     text_append(text, ", damping %s", OPTIONS_DAMPINGS[contact->damping]);
     if (contact->damping == DAMPING_VISCOUS) {
-        text_append(text, " %.4g N s/m", contact->viscous_coefficient);
+        text_append(text, " %.4g %s", contact->viscous_coefficient,
+                    is_turning ? "N m s/rad" : "N s/m");
     } else if (contact->damping != DAMPING_NONE) {
         text_append(text, ", restitution %.4g", contact->restitution);
     }
@@ -174,6 +209,7 @@ static void write_damping(const ContactOptions *contact, Text *text)
 static void write_impact_law(const Scenario *scenario, const Joint *joint, Text *text)
 {
     const ContactOptions own = law_options(&scenario->contact, joint);
+    const bool is_turning = linkage_is_torsional(joint);
     ForceLaw law;
     Err err = {0};
     text_append(text, "  contact     %s: %s", joint->name,
@@ -182,12 +218,13 @@ static void write_impact_law(const Scenario *scenario, const Joint *joint, Text 
                    &law, &err)) {
         text_append(text, " (%s)", err.text);
     } else if (law.family == FORCE_LAW_POWER) {
-        text_append(text, ", K = %.4g N/m^%.4g", law.stiffness, law.exponent);
+        text_append(text, ", K = %.4g %s^%.4g", law.stiffness, is_turning ? "N m/rad" : "N/m",
+                    law.exponent);
     } else {
         text_append(text, ", d = A F (B - ln F) with A = %.4g m/N, B = %.4g", law.compliance,
                     law.offset);
     }
-    write_damping(&own, text);
+    write_damping(&own, is_turning, text);
     text_append(text, "\n");
 }
 

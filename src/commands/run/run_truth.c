@@ -244,7 +244,8 @@ static void ensemble_rows(Table *table, const RunReport *report, size_t joint, s
     for (size_t i = 0; i < report->run_count; i++) {
         const Ensemble *ensemble = &report->ensembles[i];
         if (ensemble->members > 0) {
-            const Field *field = &METRIC_FIELDS[metric];
+            const Joint *of = &report->scenario->linkage.joints[joint];
+            const Field *field = &measured_metric_fields(of)[metric];
             table_cell(table, "%s", report->scenario->linkage.joints[joint].name);
             table_cell(table, "%s%s%s", field->title, field->unit[0] != '\0' ? ", " : "",
                        field->unit);

@@ -16,7 +16,7 @@ void spike_json_set(json_t *object, unsigned where, const Linkage *linkage,
 {
     const bool is_alpha = where == RUN_ALPHA;
     const char *name = is_alpha ? "alpha" : "force";
-    const char *unit = is_alpha ? "rad_s2" : "N";
+    const char *unit = is_alpha ? "rad_s2" : where == RUN_FORCE ? "N" : "N_m";
     const unsigned columns =
         where | FIELD_JSON | (linkage->driver.is_present ? RUN_DRIVEN : RUN_NO_CRANK);
     char key[64];

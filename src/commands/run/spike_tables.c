@@ -1,5 +1,6 @@
 // Which spikes did the accelerations and the forces have?
 #include "commands/run/run_report.h"
+#include "write/joint_units.h"
 #include "write/units.h"
 
 #include <stdio.h>
@@ -68,8 +69,9 @@ static void write_counts(const RunReport *report, const Style *style, Text *text
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
             if (has_joint(report, run, joint)) {
-                count_row(table, report, run, "force", linkage->joints[joint].name, "N",
-                          &run->force_spikes[joint]);
+                const Joint *of = &linkage->joints[joint];
+                count_row(table, report, run, linkage_is_torsional(of) ? "torque" : "force",
+                          of->name, joint_units(of)->force, &run->force_spikes[joint]);
             }
         }
     }
