@@ -1,0 +1,375 @@
+// How well, and at which cost, are N four-bars in a row followed through their change points?
+//
+// four_bars reference      the reference at 1 to 40 four-bars, up to 20 s, beside the exact values
+// four_bars order          ODE's error over its step, N = 2 at 4 s, and the order observed
+// four_bars steps          error and time of a step over N at one step: ODE's direct solver, and
+//                          its quick one with more and more iterations
+// four_bars equal          the cheapest way of each solver to an error, over N
+// four_bars own            the direct solver with ODE's own dense matrix, over N
+// four_bars branch         is the branch of parallelograms kept for 20 s, over N
+// Without a word: all of them, some minutes. The problem: tests/support/four_bars.h.
+#include "four_bars.h"
+#include "base/clock.h"
+#include "run/registry.h"
+#include "run/run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const size_t COUNTS[] = {1, 4, 16, 64, 256, 1000};
+enum { COUNT_COUNT = sizeof COUNTS / sizeof *COUNTS };
+
+static const double DURATION = 2.0; // s: two change points
+
+// A run and what it took.
+typedef struct Made {
+    Trajectory *run;
+    double spent_s; // processor time
+} Made;
+
+static Made make(const Scenario *scenario, BackendKind backend)
+{
+    const double started_s = clock_processor_s();
+    Trajectory *run = run_scenario(scenario, registry_solver(backend), (RunWatch){NULL, NULL});
+    return (Made){run, clock_processor_s() - started_s};
+}
+
+static Scenario four_bars(size_t count, double duration_s)
+{
+    Scenario scenario = scenario_default();
+    scenario.linkage = linkage_create((LinkageRoom){2 * count + 1, 3 * count + 1, 0, 0});
+    four_bars_fill(&scenario, count, duration_s);
+    return scenario;
+}
+
+// Where the tip of the first upright is and how fast it moves, by a series of order 40 in 50
+// digits.
+typedef struct Exact {
+    size_t count;
+    double time_s;
+    double x;
+    double y;
+    double vx;
+    double vy;
+} Exact;
+
+static const Exact EXACT[] = {
+    {1, 1, -.26071267518365037752, -.96541643915907315865, -6.6378094961217215, 1.7925539703889306},
+    {1, 10, .47838505776097056676, .87815017879120926825, 1.7272640755471536, -.9409521793715156},
+    {2, 1, -.19502030194943509311, -.98079920566217382305, -6.6766780368811585, 1.3275783251604871},
+    {2, 10, .32845811154081538952, .94451853817860098594, 1.4230514702069441, -.4948688454870430},
+    {2, 20, .83974657430684351844, .54297853635288462204, 1.8382226441967427, -2.8429137892740970},
+    {40, 10, .18051222668672839422, .98357274058231158875, 1.1484412774694142, -.2107700667794239},
+    {40, 20, .41090115376294522598, .91167990097198070565, 1.5667853719090699, -.7061622355938373},
+};
+
+// The largest kinetic energy, J.
+static double swing(const Scenario *scenario, const Trajectory *run)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        most = fmax(most, linkage_kinetic_energy(&scenario->linkage, trajectory_motion(run, i, 0)));
+    }
+    return most;
+}
+
+static void tabulate_reference(void)
+{
+    printf(
+        "The reference: the tip of the first upright beside its exact values, over all tips, and "
+        "the energy's drift\n"
+        "    N  time, s   position, m  velocity, m/s  all tips, m  energy, J   of, J  "
+        "evaluations  ms\n");
+    for (size_t i = 0; i < sizeof EXACT / sizeof *EXACT; i++) {
+        const Exact *exact = &EXACT[i];
+        Scenario scenario = four_bars(exact->count, exact->time_s);
+        const Made made = make(&scenario, BACKEND_REFERENCE);
+        const Trajectory *run = made.run;
+        printf("%5zu %8g", exact->count, exact->time_s);
+        if (run->is_complete) {
+            const Motion *motion = trajectory_motion(run, run->sample_count - 1, 0);
+            const double x = cos(motion->angle);
+            const double y = sin(motion->angle);
+            printf("  %12.1e  %13.1e  %11.1e  %9.1e  %6.4g  %11zu  %.0f\n",
+                   hypot(x - exact->x, y - exact->y),
+                   hypot(-motion->omega * y - exact->vx, motion->omega * x - exact->vy),
+                   four_bars_error(run, atan2(exact->x, exact->y)), fabs(run->energy.residual),
+                   swing(&scenario, run), run->evaluations, 1e3 * made.spent_s);
+        } else {
+            printf("  %s\n", run->message);
+        }
+        trajectory_destroy(made.run);
+        linkage_free(&scenario.linkage);
+    }
+}
+
+static const OdeStepping STEPPINGS[] = {ODE_PLAIN, ODE_STAGGERED, ODE_EXTRAPOLATED};
+enum { STEPPING_COUNT = sizeof STEPPINGS / sizeof *STEPPINGS };
+
+static void tabulate_order(void)
+{
+    enum { COUNT = 2, HALVINGS = 4 };
+    const double duration_s = 4.0;
+    const double theta = four_bars_angle(COUNT, duration_s).theta;
+    printf("ODE, direct: error of the tips, m, N = %d at %g s, and the order from the step before\n"
+           "  step, us",
+           COUNT, duration_s);
+    for (int way = 0; way < STEPPING_COUNT; way++) {
+        printf("  %18s", OPTIONS_ODE_STEPPINGS[STEPPINGS[way]]);
+    }
+    printf("\n");
+    double before[STEPPING_COUNT] = {0};
+    for (int k = 0; k <= HALVINGS; k++) {
+        Scenario scenario = four_bars(COUNT, duration_s);
+        scenario.run.step = 2e-3 / (1 << k);
+        printf("%10g", 1e6 * scenario.run.step);
+        for (int way = 0; way < STEPPING_COUNT; way++) {
+            scenario.ode.stepping = STEPPINGS[way];
+            const Made made = make(&scenario, BACKEND_ODE);
+            const double error = made.run->is_complete ? four_bars_error(made.run, theta) : NAN;
+            printf("  %11.1e", error);
+            if (k > 0) {
+                printf("  %5.2f", log2(before[way] / error));
+            } else {
+                printf("       ");
+            }
+            before[way] = error;
+            trajectory_destroy(made.run);
+        }
+        printf("\n");
+        linkage_free(&scenario.linkage);
+    }
+}
+
+// One run of ODE.
+typedef struct Way {
+    OdeStepping stepping;
+    size_t iterations; // of the quick solver; 0: the direct one
+    double step_s;
+    bool is_dense; // the direct solver with rows of ODE's own alone
+} Way;
+
+typedef struct Point {
+    double error;    // m, of the tips at the end; NAN where it failed
+    double step_us;  // processor time
+    double total_ms; // likewise, a simulated second
+} Point;
+
+static Point solve(const Way *way, size_t count)
+{
+    // rows with a softness below any rounding are not put together outside ODE
+    const double no_softness = 1e-30;
+    Scenario scenario = four_bars(count, DURATION);
+    scenario.run.step = way->step_s;
+    scenario.ode.stepping = way->stepping;
+    scenario.ode.cfm = way->is_dense ? no_softness : 0.0;
+    scenario.ode.solver = way->iterations > 0 ? ODE_QUICK : ODE_DIRECT;
+    scenario.ode.iterations = way->iterations > 0 ? way->iterations : scenario.ode.iterations;
+    const Made made = make(&scenario, BACKEND_ODE);
+    const double theta = four_bars_angle(count, DURATION).theta;
+    const Point point = {
+        .error = made.run->is_complete ? four_bars_error(made.run, theta) : NAN,
+        .step_us = 1e6 * made.spent_s / (double)made.run->steps,
+        .total_ms = 1e3 * made.spent_s / DURATION,
+    };
+    trajectory_destroy(made.run);
+    linkage_free(&scenario.linkage);
+    return point;
+}
+
+// The power of N with which a time grows between the third and the last N.
+static double exponent(const double *times)
+{
+    return log(times[COUNT_COUNT - 1] / times[2]) /
+           log((double)COUNTS[COUNT_COUNT - 1] / (double)COUNTS[2]);
+}
+
+static void tabulate_steps(void)
+{
+    static const size_t ITERATIONS[] = {0, 5, 10, 20, 50, 100};
+    enum { WAY_COUNT = sizeof ITERATIONS / sizeof *ITERATIONS };
+    double times[WAY_COUNT][COUNT_COUNT];
+    printf("ODE, staggered, step 1 ms, %g s: error of the tips, m, and processor time of a step, "
+           "us, with the direct solver and with the quick one's iterations\n"
+           "    N            direct",
+           DURATION);
+    for (size_t k = 1; k < WAY_COUNT; k++) {
+        printf("  %16zu", ITERATIONS[k]);
+    }
+    printf("\n");
+    for (size_t i = 0; i < COUNT_COUNT; i++) {
+        printf("%5zu", COUNTS[i]);
+        for (size_t k = 0; k < WAY_COUNT; k++) {
+            const Way way = {ODE_STAGGERED, ITERATIONS[k], 1e-3, false};
+            const Point point = solve(&way, COUNTS[i]);
+            times[k][i] = point.step_us;
+            printf("  %7.1e %8.1f", point.error, point.step_us);
+            fflush(stdout);
+        }
+        printf("\n");
+    }
+    printf("time ~N^");
+    for (size_t k = 0; k < WAY_COUNT; k++) {
+        printf("%*.2f", k == 0 ? 15 : 18, exponent(times[k]));
+    }
+    printf("\n");
+}
+
+// Solves only where a way may be cheaper than the best one so far: by what a step took before.
+static void improve(const Way *way, size_t count, double target, double *step_us, Way *best,
+                    Point *at)
+{
+    if (*step_us * 1e-3 / way->step_s > 1.2 * at->total_ms) {
+        return;
+    }
+    const Point point = solve(way, count);
+    *step_us = point.step_us;
+    if (point.error <= target && point.total_ms < at->total_ms) {
+        *best = *way;
+        *at = point;
+    }
+}
+
+// The cheapest of many ways to an error, of the direct or of the quick solver.
+static Point find_cheapest(size_t count, double target, bool is_quick, Way *best)
+{
+    static const double STEPS[] = {8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4};
+    static const size_t ITERATIONS[] = {5, 7, 10, 15, 20, 30, 50, 100, 200};
+    Point at = {.error = NAN, .total_ms = INFINITY};
+    for (size_t k = 0; k < (is_quick ? sizeof ITERATIONS / sizeof *ITERATIONS : 1); k++) {
+        for (OdeStepping stepping = ODE_PLAIN; stepping <= ODE_EXTRAPOLATED; stepping++) {
+            double step_us = 0.0;
+            for (size_t i = 0; i < sizeof STEPS / sizeof *STEPS; i++) {
+                const Way way = {stepping, is_quick ? ITERATIONS[k] : 0, STEPS[i], false};
+                improve(&way, count, target, &step_us, best, &at);
+            }
+        }
+    }
+    return at;
+}
+
+static void print_cheapest(const Way *way, const Point *point)
+{
+    char words[64] = "none";
+    if (isfinite(point->total_ms)) {
+        snprintf(words, sizeof words, "%s %g ms", OPTIONS_ODE_STEPPINGS[way->stepping],
+                 1e3 * way->step_s);
+    }
+    printf("  %-20s %9.3g", words, point->total_ms);
+}
+
+static void tabulate_equal(void)
+{
+    static const double TARGETS[] = {1e-2, 1e-3, 1e-4};
+    for (size_t t = 0; t < sizeof TARGETS / sizeof *TARGETS; t++) {
+        double times[2][COUNT_COUNT];
+        printf("Processor time a simulated second, ms, of the cheapest way of each solver to an "
+               "error of the tips of %g m at %g s\n"
+               "    N  %-20s %9s  %-20s %9s  iterations  quick/direct\n",
+               TARGETS[t], DURATION, "direct", "", "quick", "");
+        for (size_t i = 0; i < COUNT_COUNT; i++) {
+            printf("%5zu", COUNTS[i]);
+            for (int k = 0; k < 2; k++) {
+                Way way = {0};
+                const Point point = find_cheapest(COUNTS[i], TARGETS[t], k == 1, &way);
+                times[k][i] = point.total_ms;
+                print_cheapest(&way, &point);
+                if (k == 1) {
+                    printf("  %10zu", way.iterations);
+                }
+                fflush(stdout);
+            }
+            printf("  %12.2f\n", times[1][i] / times[0][i]);
+        }
+        printf("time ~N^ %28.2f %31.2f\n", exponent(times[0]), exponent(times[1]));
+    }
+}
+
+static void tabulate_own(void)
+{
+    printf("Plain steps of 1 ms, us a step: the direct solver as it is, with ODE's own dense "
+           "matrix, and 20 iterations\n"
+           "    N    direct  dense, ODE's     quick  quick/dense\n");
+    for (size_t count = 1; count <= 64; count *= 2) {
+        const Way ways[] = {
+            {ODE_PLAIN, 0, 1e-3, false}, {ODE_PLAIN, 0, 1e-3, true}, {ODE_PLAIN, 20, 1e-3, false}};
+        double times[3];
+        for (int k = 0; k < 3; k++) {
+            times[k] = solve(&ways[k], count).step_us;
+        }
+        printf("%5zu  %8.1f  %12.1f  %8.1f  %11.2f\n", count, times[0], times[1], times[2],
+               times[2] / times[1]);
+        fflush(stdout);
+    }
+}
+
+// Runs for 20 s, eighteen change points and more, and says what has become of the branch.
+static void follow(size_t count, BackendKind backend, size_t iterations)
+{
+    const double duration_s = 20.0;
+    Scenario scenario = four_bars(count, duration_s);
+    scenario.run.step = 1e-3;
+    scenario.ode.stepping = ODE_STAGGERED;
+    scenario.ode.solver = iterations > 0 ? ODE_QUICK : ODE_DIRECT;
+    scenario.ode.iterations = iterations > 0 ? iterations : scenario.ode.iterations;
+    const Made made = make(&scenario, backend);
+    const FourBarsAngle angle = four_bars_angle(count, duration_s);
+    char way[32];
+    snprintf(way, sizeof way, backend == BACKEND_REFERENCE ? "reference" : "%s %zu",
+             iterations > 0 ? "quick" : "direct", iterations);
+    printf("%5zu  %-12s", count, way);
+    if (made.run->is_complete) {
+        const double spread = four_bars_spread(made.run);
+        printf("  %-6s %.1e rad, tips %.1e m\n", spread < 0.1 ? "kept" : "LEFT", spread,
+               four_bars_error(made.run, angle.theta));
+    } else {
+        printf("  says so: %s\n", made.run->message);
+    }
+    fflush(stdout);
+    trajectory_destroy(made.run);
+    linkage_free(&scenario.linkage);
+}
+
+static void tabulate_branch(void)
+{
+    const double theta = four_bars_angle(40, 20.0).theta;
+    printf("The branch over 20 s, %.0f change points: the most that any upright is turned against "
+           "the first\n"
+           "    N  solver\n",
+           floor(theta / M_PI + 0.5));
+    for (size_t i = 0; i < COUNT_COUNT; i++) {
+        follow(COUNTS[i], BACKEND_REFERENCE, 0);
+        follow(COUNTS[i], BACKEND_ODE, 0);
+        if (COUNTS[i] <= 256) {
+            follow(COUNTS[i], BACKEND_ODE, 1);
+            follow(COUNTS[i], BACKEND_ODE, 20);
+        }
+    }
+}
+
+typedef struct Part {
+    const char *name;
+    void (*tabulate)(void);
+} Part;
+
+int main(int argc, char **argv)
+{
+    static const Part PARTS[] = {
+        {"reference", tabulate_reference}, {"order", tabulate_order}, {"steps", tabulate_steps},
+        {"equal", tabulate_equal},         {"own", tabulate_own},     {"branch", tabulate_branch},
+    };
+    bool is_known = argc == 1;
+    for (size_t i = 0; i < sizeof PARTS / sizeof *PARTS; i++) {
+        if (argc == 1 || (argc == 2 && strcmp(argv[1], PARTS[i].name) == 0)) {
+            PARTS[i].tabulate();
+            printf(argc == 1 && i + 1 < sizeof PARTS / sizeof *PARTS ? "\n" : "");
+            is_known = true;
+        }
+    }
+    if (!is_known) {
+        fprintf(stderr, "usage: four_bars [reference|order|steps|equal|own|branch]\n");
+    }
+    return is_known ? 0 : 2;
+}
