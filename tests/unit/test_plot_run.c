@@ -149,6 +149,97 @@ static void a_body_that_does_not_turn_shows_its_speed(void **state)
     }
 }
 
+// Pendulums with play side by side; what happens to one goes up and down with its number.
+static RunReport make_many(size_t count, Scenario *scenario, Trajectory **runs,
+                           TrajectoryError *errors)
+{
+    *scenario = scenario_default();
+    scenario->linkage = linkage_create((LinkageRoom){count, count, 0, 0});
+    scenario->run.duration = 0.1;
+    scenario->run.samples = 50;
+    Linkage *linkage = &scenario->linkage;
+    for (size_t i = 0; i < count; i++) {
+        Body *body = &linkage->bodies[linkage->body_count++];
+        Joint *joint = &linkage->joints[linkage->joint_count++];
+        *body = (Body){.mass = 1.0, .inertia = 1.0};
+        snprintf(body->name, sizeof body->name, "bar-%zu", i);
+        *joint = (Joint){.kind = JOINT_CLEARANCE, .body_a = LINKAGE_GROUND, .body_b = (int)i};
+        joint->clearance = (Clearance){5.1e-3, 5e-3, 1e-2, {0.0, 0.0}};
+        snprintf(joint->name, sizeof joint->name, "pin-%zu", i);
+    }
+    for (size_t run = 0; run < 2; run++) {
+        runs[run] = trajectory_create(scenario, run == 0 ? "reference" : "ode");
+        runs[run]->is_complete = true;
+        runs[run]->duration_s = scenario_duration(scenario);
+        for (size_t i = 0; i < count; i++) {
+            const double size = 1.5 + sin(0.7 * (double)i);
+            runs[run]->bodies[i].alpha_max.value = size;
+            runs[run]->joints[i].force_max.value = 1e3 * size;
+            for (size_t k = 0; k < runs[run]->sample_count; k++) {
+                runs[run]->motions[k * count + i].omega = sin(0.1 * (double)(i + k));
+                runs[run]->motions[k * count + i].alpha = size;
+                runs[run]->states[k * count + i].force = 1e3 * size;
+            }
+        }
+    }
+    return (RunReport){.scenario = scenario, .run_count = 2, .runs = runs, .errors = errors};
+}
+
+static size_t count_words(const char *text, const char *words)
+{
+    size_t count = 0;
+    for (const char *c = text; (c = strstr(c, words)) != NULL; c++) {
+        count++;
+    }
+    return count;
+}
+
+static void draw_many(size_t count, Text *svg)
+{
+    Scenario scenario;
+    Trajectory *runs[2];
+    const TrajectoryError errors[2] = {{.is_known = false}, {.is_known = false}};
+    const RunReport report = make_many(count, &scenario, runs, (TrajectoryError *)errors);
+    text_init(svg);
+    plot_run_write(&report, svg);
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+    linkage_free(&scenario.linkage);
+}
+
+static void of_a_thousand_bodies_those_are_drawn_that_most_happens_to(void **state)
+{
+    (void)state;
+    Text svg;
+    draw_many(1000, &svg);
+    expect_well_formed(svg.data);
+    assert_null(strstr(svg.data, "nan"));
+    assert_true(svg.length < 2000000);
+    assert_non_null(strstr(svg.data, "12 of 1000 bodies are drawn, those of the largest "
+                                     "accelerations; grey: the range of the others"));
+    assert_non_null(strstr(svg.data, "12 of 1000 joints are drawn"));
+    assert_non_null(strstr(svg.data, "All bodies: the largest of the whole run"));
+    assert_int_equal(count_words(svg.data, "<title>ode: alpha bar-"), 12);
+    assert_int_equal(count_words(svg.data, "<title>ode: alpha of all others"), 1);
+    // sin(0.7 i) is largest at i = 92, where 0.7 i is 2.6e-3 from ten turns and a quarter
+    assert_non_null(strstr(svg.data, "<title>ode: alpha bar-92</title>"));
+    assert_null(strstr(svg.data, "<title>ode: alpha bar-0</title>"));
+    text_finish(&svg);
+}
+
+// The control: as many as can be told apart are drawn, all of them and nothing more.
+static void of_twenty_bodies_all_are_drawn(void **state)
+{
+    (void)state;
+    Text svg;
+    draw_many(20, &svg);
+    assert_int_equal(count_words(svg.data, "<title>ode: alpha bar-"), 20);
+    assert_null(strstr(svg.data, "are drawn"));
+    assert_null(strstr(svg.data, "of all others"));
+    assert_null(strstr(svg.data, "All bodies"));
+    text_finish(&svg);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -164,6 +255,8 @@ int main(void)
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_spiky_quantity_gets_decades_on_both_sides, fixture_set_up,
                                         fixture_tear_down),
+        cmocka_unit_test(of_a_thousand_bodies_those_are_drawn_that_most_happens_to),
+        cmocka_unit_test(of_twenty_bodies_all_are_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -52,13 +52,15 @@ static void widen_force_range(const RunReport *report, const Trajectory *run, si
 }
 
 // The range of the forces that are drawn, in whole decades.
-static void choose_force_range(const RunReport *report, Axis *axis)
+static void choose_force_range(const PlotView *view, Axis *axis)
 {
+    const RunReport *report = view->report;
+    const PlotSet *joints = &view->joints;
     Range forces = {INFINITY, 0.0};
     for (size_t run = 0; run < report->run_count; run++) {
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
-            if (trajectory->is_complete && plot_look_shows(report, true, joint)) {
+            if (trajectory->is_complete && (joints->is_shown[joint] || joints->is_other[joint])) {
                 widen_force_range(report, trajectory, joint, &forces);
             }
         }
@@ -68,40 +70,43 @@ static void choose_force_range(const RunReport *report, Axis *axis)
                      FORCE_DEPTH * axis->high);
 }
 
-static void draw_spikes(const RunReport *report, const PlotPanel *panel, size_t run, size_t joint)
+static void draw_spikes(const PlotView *view, const PlotPanel *panel, size_t run, size_t joint)
 {
+    const RunReport *report = view->report;
     const JointExtremes *extremes = &report->runs[run]->joints[joint];
     const Joint *shape = &report->scenario->linkage.joints[joint];
     const bool is_shown = trajectory_feels_play(report->runs[run], shape);
     for (size_t i = 0; is_shown && i < extremes->spike_count; i++) {
         const Spike *spike = &extremes->spikes[i];
-        plot_dot(panel, plot_look_x(report, spike->crank_rad, spike->onset_s), spike->force_max,
-                 plot_style(1, plot_look_colour(report, true, joint)));
+        plot_dot(panel, plot_look_x(view, spike->crank_rad, spike->onset_s), spike->force_max,
+                 plot_style(1, plot_look_colour(view, true, joint)));
     }
 }
 
-void plot_joints_forces(const RunReport *report, PlotPanel panel)
+void plot_joints_forces(const PlotView *view, PlotPanel panel)
 {
+    const RunReport *report = view->report;
     panel.y = (Axis){.title = "force, N", .scale = AXIS_LOG};
-    choose_force_range(report, &panel.y);
+    choose_force_range(view, &panel.y);
     if (scenario_has_clearance(report->scenario)) {
         panel.title = "Force in the joint; dots: strongest contacts";
     }
     plot_enter(&panel);
-    plot_look_shade(report, &panel);
+    plot_look_shade(view, &panel);
+    plot_look_others(view, &panel, FORCE);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-            if (plot_look_shows(report, true, joint) &&
+            if (plot_look_shows(view, true, joint) &&
                 knows_force(report, report->runs[run], joint)) {
-                plot_look_draw(report, &panel, run, FORCE, joint);
-                draw_spikes(report, &panel, run, joint);
+                plot_look_draw(view, &panel, run, FORCE, joint);
+                draw_spikes(view, &panel, run, joint);
             }
         }
     }
-    const Trajectory *spiky = plot_look_spike_run(report);
+    const Trajectory *spiky = plot_look_spike_run(view);
     for (size_t joint = 0; spiky != NULL && joint < spiky->joint_count; joint++) {
-        if (plot_look_shows(report, true, joint)) {
-            plot_look_marks(report, &panel, &spiky->force_spikes[joint], FORCE, joint, "N");
+        if (plot_look_shows(view, true, joint)) {
+            plot_look_marks(view, &panel, &spiky->force_spikes[joint], FORCE, joint, "N");
         }
     }
     plot_leave(&panel);
@@ -117,15 +122,17 @@ static Vec2 pin_at(const RunReport *report, const Trajectory *run, size_t sample
 
 // How far from the hole's centre a pin comes in x or y: in a unit given as its number per metre, or
 // where that is 0 as a share of the joint's radial clearance.
-static double farthest(const RunReport *report, double per_metre)
+static double farthest(const PlotView *view, double per_metre)
 {
+    const RunReport *report = view->report;
     double most = 0.0;
     for (size_t run = 0; run < report->run_count; run++) {
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
             const Joint *shape = &report->scenario->linkage.joints[joint];
-            const bool is_shown =
-                shape->kind == JOINT_CLEARANCE && trajectory_feels_play(trajectory, shape);
+            const bool is_shown = !view->joints.is_left_out[joint] &&
+                                  shape->kind == JOINT_CLEARANCE &&
+                                  trajectory_feels_play(trajectory, shape);
             for (size_t i = 0; is_shown && i < trajectory->sample_count; i++) {
                 const Vec2 e = trajectory_state(trajectory, i, joint)->eccentricity;
                 const double scale =
@@ -137,8 +144,9 @@ static double farthest(const RunReport *report, double per_metre)
     return most;
 }
 
-void plot_joints_paths(const RunReport *report, PlotPanel panel)
+void plot_joints_paths(const PlotView *view, PlotPanel panel)
 {
+    const RunReport *report = view->report;
     static const PlotStyle WALL = {"#222222", 1.6, 1.0, "6 4"};
     const Linkage *linkage = &report->scenario->linkage;
     size_t joints_with_play = 0;
@@ -152,7 +160,7 @@ void plot_joints_paths(const RunReport *report, PlotPanel panel)
     const bool is_one = joints_with_play == 1;
     const double radius = is_one ? clearance * UNITS_UM : 1.0;
     // the same scale in both directions: the circle is one
-    const double high = fmax(1.15 * radius, 1.06 * farthest(report, is_one ? UNITS_UM : 0.0));
+    const double high = fmax(1.15 * radius, 1.06 * farthest(view, is_one ? UNITS_UM : 0.0));
     const double wide = high * panel.width / panel.height;
     panel.title = "Pin in its hole; dashed: where they touch";
     panel.x =
@@ -162,12 +170,13 @@ void plot_joints_paths(const RunReport *report, PlotPanel panel)
     plot_enter(&panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-            if (linkage->joints[joint].kind == JOINT_CLEARANCE &&
+            if (!view->joints.is_left_out[joint] &&
+                linkage->joints[joint].kind == JOINT_CLEARANCE &&
                 trajectory_feels_play(report->runs[run], &linkage->joints[joint])) {
                 const double play = linkage_radial_clearance(&linkage->joints[joint]);
                 const PlotPath path = {
                     .joint = joint, .per_metre = is_one ? UNITS_UM : 1.0 / play, .at = pin_at};
-                plot_look_path(report, &panel, run, &path);
+                plot_look_path(view, &panel, run, &path);
             }
         }
     }
@@ -214,8 +223,9 @@ static void choose_error_range(const RunReport *report, const Trajectory *truth,
     axis->low = fmax(axis->high / ERROR_DECADES, 1e-3 * pow(10.0, floor(log10(rounding))));
 }
 
-void plot_joints_errors(const RunReport *report, PlotPanel panel)
+void plot_joints_errors(const PlotView *view, PlotPanel panel)
 {
+    const RunReport *report = view->report;
     static const PlotQuantity ERROR = {"difference of omega", false, -1, omega_error};
     const Trajectory *truth = find_truth(report);
     char title[128];
@@ -231,8 +241,8 @@ void plot_joints_errors(const RunReport *report, PlotPanel panel)
     plot_enter(&panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t body = 0; report->errors[run].is_known && body < truth->body_count; body++) {
-            if (plot_look_shows(report, false, body)) {
-                plot_look_draw(report, &panel, run, ERROR, body);
+            if (plot_look_shows(view, false, body)) {
+                plot_look_draw(view, &panel, run, ERROR, body);
             }
         }
     }

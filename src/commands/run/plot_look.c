@@ -10,31 +10,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-bool plot_look_shows(const RunReport *report, bool is_joint, size_t index)
+bool plot_look_shows(const PlotView *view, bool is_joint, size_t index)
 {
-    const Linkage *linkage = &report->scenario->linkage;
-    return is_joint ? !scenario_has_clearance(report->scenario) ||
-                          linkage_has_play(&linkage->joints[index])
-                    : (int)index != linkage_driven_body(linkage);
+    return plot_view_set(view, is_joint)->is_shown[index];
 }
 
-// The colours of the bodies that are shown come first.
-size_t plot_look_colour(const RunReport *report, bool is_joint, size_t index)
+size_t plot_look_colour(const PlotView *view, bool is_joint, size_t index)
 {
-    const size_t bodies = is_joint ? report->scenario->linkage.body_count : index;
-    size_t colour = 0;
-    for (size_t body = 0; body < bodies; body++) {
-        colour += plot_look_shows(report, false, body) ? 1 : 0;
-    }
-    for (size_t joint = 0; is_joint && joint < index; joint++) {
-        colour += plot_look_shows(report, true, joint) ? 1 : 0;
-    }
-    return colour;
+    return plot_view_set(view, is_joint)->of_palette[index];
 }
 
-Axis plot_look_x_axis(const RunReport *report)
+Axis plot_look_x_axis(const PlotView *view)
 {
-    const Scenario *scenario = report->scenario;
+    const Scenario *scenario = view->report->scenario;
     if (!drive_is_steady(&scenario->linkage.driver)) {
         return (Axis){.title = "time, ms", .high = scenario_duration(scenario) * UNITS_MS};
     }
@@ -48,9 +36,9 @@ Axis plot_look_x_axis(const RunReport *report)
     };
 }
 
-double plot_look_x(const RunReport *report, double crank_rad, double time_s)
+double plot_look_x(const PlotView *view, double crank_rad, double time_s)
 {
-    const Linkage *linkage = &report->scenario->linkage;
+    const Linkage *linkage = &view->report->scenario->linkage;
     return drive_is_steady(&linkage->driver) ? fabs(crank_rad - linkage->driver.start) * UNITS_DEG
                                              : time_s * UNITS_MS;
 }
@@ -86,17 +74,18 @@ PlotStretch plot_look_stretch(const RunReport *report, const Trajectory *run, Pl
                          ranges_over(ranges, signal, stretch, stretch + 1)};
 }
 
-void plot_look_shade(const RunReport *report, const PlotPanel *panel)
+void plot_look_shade(const PlotView *view, const PlotPanel *panel)
 {
-    const double from_s = scenario_report_from(report->scenario);
+    const double from_s = scenario_report_from(view->report->scenario);
     if (from_s > 0.0) {
-        const double crank = linkage_crank_angle(&report->scenario->linkage, from_s);
-        plot_shade(panel, panel->x.low, plot_look_x(report, crank, from_s));
+        const double crank = linkage_crank_angle(&view->report->scenario->linkage, from_s);
+        plot_shade(panel, panel->x.low, plot_look_x(view, crank, from_s));
     }
 }
 
-const Trajectory *plot_look_spike_run(const RunReport *report)
+const Trajectory *plot_look_spike_run(const PlotView *view)
 {
+    const RunReport *report = view->report;
     const Trajectory *last = NULL;
     for (size_t i = 0; i < report->run_count; i++) {
         const Trajectory *run = report->runs[i];
@@ -110,50 +99,101 @@ const Trajectory *plot_look_spike_run(const RunReport *report)
     return last;
 }
 
-void plot_look_marks(const RunReport *report, const PlotPanel *panel, const SignalSpikes *spikes,
+void plot_look_marks(const PlotView *view, const PlotPanel *panel, const SignalSpikes *spikes,
                      PlotQuantity quantity, size_t index, const char *unit)
 {
     for (size_t i = 0; spikes->is_known && i < spikes->kept; i++) {
         const SignalSpike *spike = &spikes->spikes[i];
         char title[2 * LINKAGE_NAME_SIZE + 96];
         snprintf(title, sizeof title, "%s %s: %.6g %s at %.7g ms", quantity.name,
-                 name_of(report, quantity, index), spike->value, unit, spike->time_s * UNITS_MS);
-        plot_mark(panel, plot_look_x(report, spike->crank_rad, spike->time_s), spike->value,
+                 name_of(view->report, quantity, index), spike->value, unit,
+                 spike->time_s * UNITS_MS);
+        plot_mark(panel, plot_look_x(view, spike->crank_rad, spike->time_s), spike->value,
                   spike->value < 0.0, title,
-                  plot_style(1, plot_look_colour(report, quantity.is_joint, index)));
+                  plot_style(1, plot_look_colour(view, quantity.is_joint, index)));
     }
 }
 
-void plot_look_draw(const RunReport *report, const PlotPanel *panel, size_t run,
-                    PlotQuantity quantity, size_t index)
+// What a band is drawn through: by stretch with values, where it is and from where to where.
+typedef struct Curve {
+    size_t count;
+    double *x; // owned, with the two below
+    double *low;
+    double *high;
+} Curve;
+
+static Curve curve_begin(size_t most)
 {
-    const Trajectory *trajectory = report->runs[run];
-    const size_t most = plot_look_stretch_count(trajectory, quantity);
     double *x = calloc(3 * most, sizeof *x);
     assert(x != NULL);
-    double *low = x + most;
-    double *high = low + most;
-    size_t count = 0;
+    return (Curve){0, x, x + most, x + 2 * most};
+}
+
+static void curve_add(const PlotView *view, double time_s, Range range, Curve *curve)
+{
+    const double crank = linkage_crank_angle(&view->report->scenario->linkage, time_s);
+    if (range.least <= range.most) {
+        curve->x[curve->count] = plot_look_x(view, crank, time_s);
+        curve->low[curve->count] = range.least;
+        curve->high[curve->count++] = range.most;
+    }
+}
+
+void plot_look_draw(const PlotView *view, const PlotPanel *panel, size_t run, PlotQuantity quantity,
+                    size_t index)
+{
+    const RunReport *report = view->report;
+    const Trajectory *trajectory = report->runs[run];
+    const size_t most = plot_look_stretch_count(trajectory, quantity);
+    Curve curve = curve_begin(most);
     for (size_t i = 0; i < most; i++) {
         const PlotStretch stretch = plot_look_stretch(report, trajectory, quantity, i, index);
-        const double crank = linkage_crank_angle(&report->scenario->linkage, stretch.time_s);
-        if (stretch.range.least <= stretch.range.most) {
-            x[count] = plot_look_x(report, crank, stretch.time_s);
-            low[count] = stretch.range.least;
-            high[count++] = stretch.range.most;
-        }
+        curve_add(view, stretch.time_s, stretch.range, &curve);
     }
     char title[TRAJECTORY_LABEL_SIZE + 2 * LINKAGE_NAME_SIZE];
     snprintf(title, sizeof title, "%s: %s %s", trajectory->backend, quantity.name,
              name_of(report, quantity, index));
-    plot_band(panel, count, x, low, high, title,
-              plot_style(run, plot_look_colour(report, quantity.is_joint, index)));
-    free(x);
+    plot_band(panel, curve.count, curve.x, curve.low, curve.high, title,
+              plot_style(run, plot_look_colour(view, quantity.is_joint, index)));
+    free(curve.x);
 }
 
-void plot_look_path(const RunReport *report, const PlotPanel *panel, size_t run,
-                    const PlotPath *path)
+void plot_look_others(const PlotView *view, const PlotPanel *panel, PlotQuantity quantity)
 {
+    const RunReport *report = view->report;
+    const PlotSet *set = plot_view_set(view, quantity.is_joint);
+    const Trajectory *last = NULL;
+    for (size_t i = 0; i < report->run_count; i++) {
+        last = report->runs[i]->is_complete ? report->runs[i] : last;
+    }
+    if (last == NULL || set->left_out == 0) {
+        return;
+    }
+    const size_t most = plot_look_stretch_count(last, quantity);
+    const size_t count = quantity.is_joint ? last->joint_count : last->body_count;
+    Curve curve = curve_begin(most);
+    for (size_t i = 0; i < most; i++) {
+        Range range = RANGE_EMPTY;
+        double time_s = 0.0;
+        for (size_t k = 0; k < count; k++) {
+            if (set->is_other[k]) {
+                const PlotStretch stretch = plot_look_stretch(report, last, quantity, i, k);
+                time_s = stretch.time_s;
+                range_join(&range, &stretch.range);
+            }
+        }
+        curve_add(view, time_s, range, &curve);
+    }
+    char title[TRAJECTORY_LABEL_SIZE + LINKAGE_NAME_SIZE];
+    snprintf(title, sizeof title, "%s: %s of all others", last->backend, quantity.name);
+    plot_band(panel, curve.count, curve.x, curve.low, curve.high, title,
+              (PlotStyle){"#d0d0d0", 1.3, 1.0, NULL});
+    free(curve.x);
+}
+
+void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, const PlotPath *path)
+{
+    const RunReport *report = view->report;
     const Trajectory *trajectory = report->runs[run];
     const size_t count = trajectory->sample_count;
     double *x = calloc(2 * count, sizeof *x);
@@ -164,7 +204,7 @@ void plot_look_path(const RunReport *report, const PlotPanel *panel, size_t run,
         x[i] = place.x;
         y[i] = place.y;
     }
-    PlotStyle style = plot_style(1, plot_look_colour(report, true, path->joint));
+    PlotStyle style = plot_style(1, plot_look_colour(view, true, path->joint));
     style.width = 1.0;
     style.opacity = 0.8;
     style.dash = path->end == 0 ? NULL : "3 2";

@@ -1,7 +1,7 @@
 // Which line, colour and axis stands for what in the picture of a run.
 #pragma once
 
-#include "commands/run/run_report.h"
+#include "commands/run/plot_view.h"
 #include "write/plot.h"
 
 // Something drawn over the crank angle: of a body or a joint, its number in the ranges of a run or,
@@ -24,31 +24,35 @@ size_t plot_look_stretch_count(const Trajectory *run, PlotQuantity quantity);
 PlotStretch plot_look_stretch(const RunReport *report, const Trajectory *run, PlotQuantity quantity,
                               size_t stretch, size_t index);
 
-// Driven bodies are not shown; ideal joints only where no joint has play.
-bool plot_look_shows(const RunReport *report, bool is_joint, size_t index);
+// Whether the panels of all bodies or joints draw one.
+bool plot_look_shows(const PlotView *view, bool is_joint, size_t index);
 
 // The number of the colour of a body or joint.
-size_t plot_look_colour(const RunReport *report, bool is_joint, size_t index);
+size_t plot_look_colour(const PlotView *view, bool is_joint, size_t index);
 
 // The axis of the crank angle from the start, or of time where no driver turns at constant speed.
-Axis plot_look_x_axis(const RunReport *report);
+Axis plot_look_x_axis(const PlotView *view);
 
 // Where on it an instant stands.
-double plot_look_x(const RunReport *report, double crank_rad, double time_s);
+double plot_look_x(const PlotView *view, double crank_rad, double time_s);
 
 // Greys what is before the reported time.
-void plot_look_shade(const RunReport *report, const PlotPanel *panel);
+void plot_look_shade(const PlotView *view, const PlotPanel *panel);
 
 // The run whose strongest spikes the tables list, the last that has any; NULL where none has.
-const Trajectory *plot_look_spike_run(const RunReport *report);
+const Trajectory *plot_look_spike_run(const PlotView *view);
 
 // Marks the spikes of one signal that the tables list.
-void plot_look_marks(const RunReport *report, const PlotPanel *panel, const SignalSpikes *spikes,
+void plot_look_marks(const PlotView *view, const PlotPanel *panel, const SignalSpikes *spikes,
                      PlotQuantity quantity, size_t index, const char *unit);
 
 // Draws one quantity of one body or joint of one run.
-void plot_look_draw(const RunReport *report, const PlotPanel *panel, size_t run,
-                    PlotQuantity quantity, size_t index);
+void plot_look_draw(const PlotView *view, const PlotPanel *panel, size_t run, PlotQuantity quantity,
+                    size_t index);
+
+// Draws in grey, of all bodies or joints that are left out, from the least to the largest value of
+// a quantity in the last run that is complete; nothing where none is.
+void plot_look_others(const PlotView *view, const PlotPanel *panel, PlotQuantity quantity);
 
 // Where the path of a joint stands at a sample, in the units of its panel.
 typedef struct PlotPath {
@@ -60,30 +64,34 @@ typedef struct PlotPath {
 } PlotPath;
 
 // Draws the path of one joint of one run.
-void plot_look_path(const RunReport *report, const PlotPanel *panel, size_t run,
-                    const PlotPath *path);
+void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, const PlotPath *path);
 
 // Joint forces over the crank angle, every step of them, with a dot for the strongest contacts and
 // marks for the spikes of the table.
-void plot_joints_forces(const RunReport *report, PlotPanel panel);
+void plot_joints_forces(const PlotView *view, PlotPanel panel);
 
 // The path of each pin in its hole, as the eccentricity over the radial clearance where several
 // joints have play.
-void plot_joints_paths(const RunReport *report, PlotPanel panel);
+void plot_joints_paths(const PlotView *view, PlotPanel panel);
 
 // Of a linkage in space: how each pin tilts, and the path of its axis at both ends of its hole in
 // the last run that has any.
-void plot_pins_tilts(const RunReport *report, PlotPanel panel);
-void plot_pins_ends(const RunReport *report, PlotPanel panel);
+void plot_pins_tilts(const PlotView *view, PlotPanel panel);
+void plot_pins_ends(const PlotView *view, PlotPanel panel);
 
 // Of blocks between guides: the path of each over its play and its tilt, both over the crank angle,
 // and where its corners touch; of any slider its acceleration along its line; of stops how far the
 // bodies are from them.
-void plot_slides_paths(const RunReport *report, PlotPanel panel);
-void plot_slides_accelerations(const RunReport *report, PlotPanel panel);
-void plot_slides_offsets(const RunReport *report, PlotPanel panel);
-void plot_slides_tilts(const RunReport *report, PlotPanel panel);
-void plot_slides_stops(const RunReport *report, PlotPanel panel);
+void plot_slides_paths(const PlotView *view, PlotPanel panel);
+void plot_slides_accelerations(const PlotView *view, PlotPanel panel);
+void plot_slides_offsets(const PlotView *view, PlotPanel panel);
+void plot_slides_tilts(const PlotView *view, PlotPanel panel);
+void plot_slides_stops(const PlotView *view, PlotPanel panel);
+
+// Of a mechanism of which something is left out: the largest value of every body and joint in each
+// run, over their numbers in the case.
+void plot_overview_bodies(const PlotView *view, PlotPanel panel);
+void plot_overview_joints(const PlotView *view, PlotPanel panel);
 
 // Where no joint has play: how far omega is from the run that is taken as the truth.
-void plot_joints_errors(const RunReport *report, PlotPanel panel);
+void plot_joints_errors(const PlotView *view, PlotPanel panel);

@@ -12,9 +12,11 @@ static double tilt_of(const RunReport *report, const Trajectory *run, size_t sam
 
 static const PlotQuantity TILT = {"tilt, mrad", true, -1, tilt_of};
 
-static bool shows(const RunReport *report, size_t run, size_t joint)
+static bool shows(const PlotView *view, size_t run, size_t joint)
 {
-    return trajectory_feels_play(report->runs[run], &report->scenario->linkage.joints[joint]);
+    return !view->joints.is_left_out[joint] &&
+           trajectory_feels_play(view->report->runs[run],
+                                 &view->report->scenario->linkage.joints[joint]);
 }
 
 // The tilt at which a pin touches at both ends, mrad.
@@ -24,17 +26,19 @@ static double tilt_limit(const Joint *joint)
            UNITS_MRAD;
 }
 
-void plot_pins_tilts(const RunReport *report, PlotPanel panel)
+void plot_pins_tilts(const PlotView *view, PlotPanel panel)
 {
+    const RunReport *report = view->report;
     const Linkage *linkage = &report->scenario->linkage;
     panel.title = "Tilt of the pin; dashed: both ends touch";
     panel.y.title = "tilt, mrad";
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-        const bool has_play = linkage->joints[joint].kind == JOINT_CLEARANCE;
+        const bool has_play =
+            linkage->joints[joint].kind == JOINT_CLEARANCE && !view->joints.is_left_out[joint];
         const double limit = has_play ? tilt_limit(&linkage->joints[joint]) : 0.0;
         panel.y.high = fmax(panel.y.high, 1.08 * limit);
         for (size_t run = 0; run < report->run_count; run++) {
-            for (size_t i = 0; shows(report, run, joint) && i < report->runs[run]->sample_count;
+            for (size_t i = 0; shows(view, run, joint) && i < report->runs[run]->sample_count;
                  i++) {
                 panel.y.high =
                     fmax(panel.y.high, 1.05 * tilt_of(report, report->runs[run], i, joint));
@@ -42,17 +46,17 @@ void plot_pins_tilts(const RunReport *report, PlotPanel panel)
         }
     }
     plot_enter(&panel);
-    plot_look_shade(report, &panel);
+    plot_look_shade(view, &panel);
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-        if (linkage->joints[joint].kind == JOINT_CLEARANCE) {
+        if (linkage->joints[joint].kind == JOINT_CLEARANCE && !view->joints.is_left_out[joint]) {
             const double limit = tilt_limit(&linkage->joints[joint]);
             const PlotStyle style = {"#222222", 1.2, 1.0, "6 4"};
             plot_line(&panel, 2, (const double[]){panel.x.low, panel.x.high},
                       (const double[]){limit, limit}, style);
         }
         for (size_t run = 0; run < report->run_count; run++) {
-            if (shows(report, run, joint)) {
-                plot_look_draw(report, &panel, run, TILT, joint);
+            if (shows(view, run, joint)) {
+                plot_look_draw(view, &panel, run, TILT, joint);
             }
         }
     }
@@ -76,12 +80,13 @@ static Vec2 end_at(const RunReport *report, const Trajectory *run, size_t sample
 }
 
 // How far the axis of any pin comes from the middle of an end of its hole, of its play.
-static double farthest(const RunReport *report)
+static double farthest(const PlotView *view)
 {
+    const RunReport *report = view->report;
     double most = 0.0;
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-            for (size_t i = 0; shows(report, run, joint) && i < report->runs[run]->sample_count;
+            for (size_t i = 0; shows(view, run, joint) && i < report->runs[run]->sample_count;
                  i++) {
                 for (int end = 0; end < 2; end++) {
                     const PlotPath path = {.joint = joint, .end = end};
@@ -93,10 +98,11 @@ static double farthest(const RunReport *report)
     return most;
 }
 
-void plot_pins_ends(const RunReport *report, PlotPanel panel)
+void plot_pins_ends(const PlotView *view, PlotPanel panel)
 {
+    const RunReport *report = view->report;
     static const PlotStyle WALL = {"#222222", 1.6, 1.0, "6 4"};
-    const double high = fmax(1.15, 1.06 * farthest(report));
+    const double high = fmax(1.15, 1.06 * farthest(view));
     const double wide = high * panel.width / panel.height;
     panel.title = "Pin's axis at the hole's ends; broken: front";
     panel.x = (Axis){.title = "across, of the radial clearance", .low = -wide, .high = wide};
@@ -105,8 +111,8 @@ void plot_pins_ends(const RunReport *report, PlotPanel panel)
     for (size_t run = report->run_count; run-- > 0;) {
         bool is_drawn = false;
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-            for (int end = 0; shows(report, run, joint) && end < 2; end++) {
-                plot_look_path(report, &panel, run,
+            for (int end = 0; shows(view, run, joint) && end < 2; end++) {
+                plot_look_path(view, &panel, run,
                                &(PlotPath){.joint = joint, .end = end, .at = end_at});
                 is_drawn = true;
             }

@@ -51,39 +51,13 @@ static double acceleration_of(const RunReport *report, const Trajectory *run, si
     return hypot(acceleration.x, acceleration.y);
 }
 
-// Does any body turn by more than rounding? A body without friction in a round hole does not, and
-// its angular velocity would be a picture of noise. Its energy of rotation is held against its
-// energy of translation: speeds that differ by 1e-10 are rounding over many steps.
-static bool any_turns(const RunReport *report)
-{
-    const double turning = 1e-10 * 1e-10;
-    for (size_t i = 0; i < report->run_count; i++) {
-        const Trajectory *run = report->runs[i];
-        for (size_t body = 0; run->is_complete && body < run->body_count; body++) {
-            const Body *shape = &report->scenario->linkage.bodies[body];
-            double rotation = 0.0;
-            double translation = 0.0;
-            for (size_t sample = 0; sample < run->sample_count; sample++) {
-                const double omega = omega_of(report, run, sample, body);
-                const double speed = speed_of(report, run, sample, body);
-                rotation = fmax(rotation, shape->inertia * omega * omega);
-                translation = fmax(translation, shape->mass * speed * speed);
-            }
-            if (rotation > turning * translation) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
 // The part of a picture that is drawn below its legend.
 typedef struct Sheet {
     Text *svg;
     double top; // of the first row of panels
 } Sheet;
 
-static PlotPanel place_panel(const RunReport *report, Sheet sheet, int row, int column,
+static PlotPanel place_panel(const PlotView *view, Sheet sheet, int row, int column,
                              const char *title)
 {
     return (PlotPanel){
@@ -93,7 +67,7 @@ static PlotPanel place_panel(const RunReport *report, Sheet sheet, int row, int 
         .top = sheet.top + row * ROW_HEIGHT,
         .width = PANEL_WIDTH,
         .height = PANEL_HEIGHT,
-        .x = plot_look_x_axis(report),
+        .x = plot_look_x_axis(view),
     };
 }
 
@@ -111,15 +85,19 @@ static int by_size(const void *a, const void *b)
     return (first > second) - (first < second);
 }
 
-static Reach find_reach(const RunReport *report, const Trajectory *run, PlotQuantity quantity)
+static Reach find_reach(const PlotView *view, const Trajectory *run, PlotQuantity quantity)
 {
+    const PlotSet *bodies = &view->bodies;
     Reach reach = {0};
     const size_t count = plot_look_stretch_count(run, quantity);
     double *sizes = calloc(count, sizeof *sizes);
     assert(sizes != NULL);
-    for (size_t body = 0; body < run->body_count; body++) {
-        for (size_t i = 0; plot_look_shows(report, false, body) && i < count; i++) {
-            const Range range = plot_look_stretch(report, run, quantity, i, body).range;
+    for (size_t i = 0; i < count; i++) {
+        for (size_t body = 0; body < run->body_count; body++) {
+            if (!bodies->is_shown[body] && !bodies->is_other[body]) {
+                continue;
+            }
+            const Range range = plot_look_stretch(view->report, run, quantity, i, body).range;
             if (range.least <= range.most) {
                 reach.low = fmin(reach.low, range.least);
                 reach.high = fmax(reach.high, range.most);
@@ -134,14 +112,15 @@ static Reach find_reach(const RunReport *report, const Trajectory *run, PlotQuan
 }
 
 // A linear scale, unless one backend dwarfs another, or spikes dwarf the rest of a run.
-static void choose_scale(const RunReport *report, PlotQuantity quantity, Axis *axis)
+static void choose_scale(const PlotView *view, PlotQuantity quantity, Axis *axis)
 {
+    const RunReport *report = view->report;
     double least = INFINITY;
     for (size_t i = 0; i < report->run_count; i++) {
         if (!report->runs[i]->is_complete) {
             continue;
         }
-        const Reach reach = find_reach(report, report->runs[i], quantity);
+        const Reach reach = find_reach(view, report->runs[i], quantity);
         const double size = fmax(-reach.low, reach.high);
         least = size > 0.0 ? fmin(least, size) : least;
         least = reach.usual > 0.0 ? fmin(least, reach.usual) : least;
@@ -159,23 +138,25 @@ static void choose_scale(const RunReport *report, PlotQuantity quantity, Axis *a
     }
 }
 
-static void draw_motion(const RunReport *report, PlotPanel panel, PlotQuantity quantity,
+static void draw_motion(const PlotView *view, PlotPanel panel, PlotQuantity quantity,
                         bool has_spikes)
 {
-    choose_scale(report, quantity, &panel.y);
+    const RunReport *report = view->report;
+    choose_scale(view, quantity, &panel.y);
     plot_enter(&panel);
-    plot_look_shade(report, &panel);
+    plot_look_shade(view, &panel);
+    plot_look_others(view, &panel, quantity);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t body = 0; body < report->scenario->linkage.body_count; body++) {
-            if (plot_look_shows(report, false, body) && report->runs[run]->is_complete) {
-                plot_look_draw(report, &panel, run, quantity, body);
+            if (plot_look_shows(view, false, body) && report->runs[run]->is_complete) {
+                plot_look_draw(view, &panel, run, quantity, body);
             }
         }
     }
-    const Trajectory *spiky = has_spikes ? plot_look_spike_run(report) : NULL;
+    const Trajectory *spiky = has_spikes ? plot_look_spike_run(view) : NULL;
     for (size_t body = 0; spiky != NULL && body < spiky->body_count; body++) {
-        if (plot_look_shows(report, false, body)) {
-            plot_look_marks(report, &panel, &spiky->alpha_spikes[body], quantity, body, "rad/s^2");
+        if (plot_look_shows(view, false, body)) {
+            plot_look_marks(view, &panel, &spiky->alpha_spikes[body], quantity, body, "rad/s^2");
         }
     }
     plot_leave(&panel);
@@ -220,11 +201,11 @@ static void add_marks(Legend *legend, const Trajectory *run)
 }
 
 // The colour of a body or joint that is shown.
-static void add_colour(Legend *legend, const RunReport *report, bool is_joint, size_t index,
+static void add_colour(Legend *legend, const PlotView *view, bool is_joint, size_t index,
                        const char *what, const char *name)
 {
-    if (plot_look_shows(report, is_joint, index)) {
-        PlotStyle style = plot_style(1, plot_look_colour(report, is_joint, index));
+    if (plot_look_shows(view, is_joint, index)) {
+        PlotStyle style = plot_style(1, plot_look_colour(view, is_joint, index));
         style.width = 3.0;
         char words[LINKAGE_NAME_SIZE + 16];
         snprintf(words, sizeof words, "%s%s", what, name);
@@ -232,9 +213,23 @@ static void add_colour(Legend *legend, const RunReport *report, bool is_joint, s
     }
 }
 
-// Returns where its last row stands.
-static double draw_legend(const RunReport *report, Text *svg)
+// Says how many of a set are drawn, and which.
+static void add_left_out(Legend *legend, const PlotSet *set, const char *what, const char *by)
 {
+    if (set->left_out > 0) {
+        char words[128];
+        snprintf(words, sizeof words,
+                 "%zu of %zu %s are drawn, those of the largest %s; grey: the range of the others",
+                 set->drawn, set->drawn + set->left_out, what, by);
+        legend->y += LEGEND_ROW;
+        plot_text(legend->svg, PANEL_LEFT[0], legend->y, "start", "note", words);
+    }
+}
+
+// Returns where its last row stands.
+static double draw_legend(const PlotView *view, Text *svg)
+{
+    const RunReport *report = view->report;
     Legend legend = {svg, PANEL_LEFT[0], LEGEND_TOP};
     for (size_t i = 0; i < report->run_count; i++) {
         const Trajectory *run = report->runs[i];
@@ -248,41 +243,43 @@ static double draw_legend(const RunReport *report, Text *svg)
     legend.y += LEGEND_ROW;
     const Linkage *linkage = &report->scenario->linkage;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        add_colour(&legend, report, false, i, "", linkage->bodies[i].name);
+        add_colour(&legend, view, false, i, "", linkage->bodies[i].name);
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        add_colour(&legend, report, true, i, "joint ", linkage->joints[i].name);
+        add_colour(&legend, view, true, i, "joint ", linkage->joints[i].name);
     }
-    const Trajectory *spiky = plot_look_spike_run(report);
+    const Trajectory *spiky = plot_look_spike_run(view);
     if (spiky != NULL) {
         add_marks(&legend, spiky);
     }
+    add_left_out(&legend, &view->bodies, "bodies", "accelerations");
+    add_left_out(&legend, &view->joints, "joints", "forces");
     return legend.y;
 }
 
 // The rotation of the bodies, or the motion of their centres where nothing turns.
-static void draw_motions(const RunReport *report, Sheet sheet)
+static void draw_motions(const PlotView *view, Sheet sheet)
 {
     static const PlotQuantity OMEGA = {"omega", false, RANGES_OMEGA, omega_of};
     static const PlotQuantity ALPHA = {"alpha", false, RANGES_ALPHA, alpha_of};
     static const PlotQuantity SPEED = {"speed", false, -1, speed_of};
     static const PlotQuantity ACCELERATION = {"acceleration", false, RANGES_ACCELERATION,
                                               acceleration_of};
-    const bool turns = report->scenario->linkage.driver.is_present || any_turns(report);
-    PlotPanel panel = place_panel(report, sheet, 0, 0,
-                                  turns ? "Angular velocity" : "Speed of the centre of mass");
+    const bool turns = view->turns;
+    PlotPanel panel =
+        place_panel(view, sheet, 0, 0, turns ? "Angular velocity" : "Speed of the centre of mass");
     panel.y.title = turns ? "omega, rad/s" : "speed, m/s";
-    draw_motion(report, panel, turns ? OMEGA : SPEED, false);
-    panel = place_panel(report, sheet, 0, 1,
+    draw_motion(view, panel, turns ? OMEGA : SPEED, false);
+    panel = place_panel(view, sheet, 0, 1,
                         turns ? "Angular acceleration" : "Acceleration of the centre of mass");
     panel.y.title = turns ? "alpha, rad/s^2" : "acceleration, m/s^2";
-    draw_motion(report, panel, turns ? ALPHA : ACCELERATION, turns);
+    draw_motion(view, panel, turns ? ALPHA : ACCELERATION, turns);
 }
 
 // What is drawn from the second panel of the second row on.
-typedef void (*DrawPanel)(const RunReport *report, PlotPanel panel);
+typedef void (*DrawPanel)(const PlotView *view, PlotPanel panel);
 
-enum { PANEL_MAX = 10 };
+enum { PANEL_MAX = 12 };
 
 static bool has_joint(const RunReport *report, JointKind kind)
 {
@@ -296,8 +293,9 @@ static bool has_joint(const RunReport *report, JointKind kind)
 }
 
 // The panels of the joints that the mechanism has.
-static size_t choose_panels(const RunReport *report, DrawPanel panels[PANEL_MAX])
+static size_t choose_panels(const PlotView *view, DrawPanel panels[PANEL_MAX])
 {
+    const RunReport *report = view->report;
     size_t count = 0;
     if (!scenario_has_clearance(report->scenario)) {
         panels[count++] = plot_joints_errors;
@@ -320,6 +318,12 @@ static size_t choose_panels(const RunReport *report, DrawPanel panels[PANEL_MAX]
     if (has_joint(report, JOINT_STOP)) {
         panels[count++] = plot_slides_stops;
     }
+    if (view->bodies.left_out > 0) {
+        panels[count++] = plot_overview_bodies;
+    }
+    if (view->joints.left_out > 0) {
+        panels[count++] = plot_overview_joints;
+    }
     return count;
 }
 
@@ -327,23 +331,25 @@ void plot_run_write(const void *of, Text *svg)
 {
     const RunReport *report = of;
     const char *title = report->scenario->title;
+    PlotView view = plot_view_begin(report);
     DrawPanel panels[PANEL_MAX];
-    const size_t count = choose_panels(report, panels);
+    const size_t count = choose_panels(&view, panels);
     const int more_rows = (int)count / 2;
     Text legend;
     text_init(&legend);
-    const double pushed = fmax(0.0, draw_legend(report, &legend) - LEGEND_END);
+    const double pushed = fmax(0.0, draw_legend(&view, &legend) - LEGEND_END);
     const Sheet sheet = {svg, PANEL_TOP + pushed};
     plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT + pushed + more_rows * ROW_HEIGHT, title);
     plot_text(svg, PANEL_LEFT[0], 34.0, "start", "title", title);
     text_append(svg, "%s", legend.data);
     text_finish(&legend);
-    draw_motions(report, sheet);
-    plot_joints_forces(report, place_panel(report, sheet, 1, 0, "Force in the joint"));
+    draw_motions(&view, sheet);
+    plot_joints_forces(&view, place_panel(&view, sheet, 1, 0, "Force in the joint"));
     for (size_t i = 0; i < count; i++) {
         // the first stands beside the forces
         const int place = (int)i + 1;
-        panels[i](report, place_panel(report, sheet, 1 + place / 2, place % 2, ""));
+        panels[i](&view, place_panel(&view, sheet, 1 + place / 2, place % 2, ""));
     }
     plot_end(svg);
+    plot_view_finish(&view);
 }

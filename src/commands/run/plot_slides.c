@@ -21,15 +21,17 @@ static const Joint *joint_of(const RunReport *report, size_t joint)
 }
 
 // Whether a run shows the play of a joint of that kind.
-static bool shows(const RunReport *report, size_t run, size_t joint, JointKind kind)
+static bool shows(const PlotView *view, size_t run, size_t joint, JointKind kind)
 {
-    const Joint *of = joint_of(report, joint);
-    return of->kind == kind && trajectory_feels_play(report->runs[run], of);
+    const Joint *of = joint_of(view->report, joint);
+    return of->kind == kind && !view->joints.is_left_out[joint] &&
+           trajectory_feels_play(view->report->runs[run], of);
 }
 
-static bool shows_acceleration(const RunReport *report, size_t run, size_t joint)
+static bool shows_acceleration(const PlotView *view, size_t run, size_t joint)
 {
-    return report->runs[run]->is_complete && slide_range_has(joint_of(report, joint));
+    return view->report->runs[run]->is_complete && !view->joints.is_left_out[joint] &&
+           slide_range_has(joint_of(view->report, joint));
 }
 
 static double offset_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
@@ -62,22 +64,23 @@ typedef struct SlidePanel {
     const char *axis;
     PlotQuantity quantity;
     JointKind kind;
-    double (*limit)(const Joint *joint);                              // NULL: none
-    bool (*shows)(const RunReport *report, size_t run, size_t joint); // NULL: those of the kind
+    double (*limit)(const Joint *joint);                           // NULL: none
+    bool (*shows)(const PlotView *view, size_t run, size_t joint); // NULL: those of the kind
 } SlidePanel;
 
-static bool panel_shows(const SlidePanel *slide, const RunReport *report, size_t run, size_t joint)
+static bool panel_shows(const SlidePanel *slide, const PlotView *view, size_t run, size_t joint)
 {
-    return slide->shows != NULL ? slide->shows(report, run, joint)
-                                : shows(report, run, joint, slide->kind);
+    return slide->shows != NULL ? slide->shows(view, run, joint)
+                                : shows(view, run, joint, slide->kind);
 }
 
-static void widen(const SlidePanel *slide, const RunReport *report, PlotPanel *panel)
+static void widen(const SlidePanel *slide, const PlotView *view, PlotPanel *panel)
 {
+    const RunReport *report = view->report;
     for (size_t run = 0; run < report->run_count; run++) {
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
-            const bool is_shown = panel_shows(slide, report, run, joint);
+            const bool is_shown = panel_shows(slide, view, run, joint);
             const double limit =
                 is_shown && slide->limit != NULL ? slide->limit(joint_of(report, joint)) : 0.0;
             panel->y.high = fmax(panel->y.high, 1.08 * limit);
@@ -92,11 +95,12 @@ static void widen(const SlidePanel *slide, const RunReport *report, PlotPanel *p
     axis_round(&panel->y.low, &panel->y.high);
 }
 
-static void draw_limits(const SlidePanel *slide, const RunReport *report, const PlotPanel *panel)
+static void draw_limits(const SlidePanel *slide, const PlotView *view, const PlotPanel *panel)
 {
+    const RunReport *report = view->report;
     for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-        for (int side = -1;
-             slide->limit != NULL && joint_of(report, joint)->kind == slide->kind && side <= 1;
+        for (int side = -1; slide->limit != NULL && !view->joints.is_left_out[joint] &&
+                            joint_of(report, joint)->kind == slide->kind && side <= 1;
              side += 2) {
             const double limit = side * slide->limit(joint_of(report, joint));
             plot_line(panel, 2, (const double[]){panel->x.low, panel->x.high},
@@ -105,18 +109,19 @@ static void draw_limits(const SlidePanel *slide, const RunReport *report, const 
     }
 }
 
-static void draw(const SlidePanel *slide, const RunReport *report, PlotPanel panel)
+static void draw(const SlidePanel *slide, const PlotView *view, PlotPanel panel)
 {
+    const RunReport *report = view->report;
     panel.title = slide->title;
     panel.y.title = slide->axis;
-    widen(slide, report, &panel);
+    widen(slide, view, &panel);
     plot_enter(&panel);
-    plot_look_shade(report, &panel);
-    draw_limits(slide, report, &panel);
+    plot_look_shade(view, &panel);
+    draw_limits(slide, view, &panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-            if (panel_shows(slide, report, run, joint)) {
-                plot_look_draw(report, &panel, run, slide->quantity, joint);
+            if (panel_shows(slide, view, run, joint)) {
+                plot_look_draw(view, &panel, run, slide->quantity, joint);
             }
         }
     }
@@ -133,7 +138,7 @@ static double tilt_limit(const Joint *joint)
     return linkage_guide_tilt(&joint->guide) * UNITS_MRAD;
 }
 
-void plot_slides_offsets(const RunReport *report, PlotPanel panel)
+void plot_slides_offsets(const PlotView *view, PlotPanel panel)
 {
     static const SlidePanel OFFSET = {
         .title = "Block across its guides; dashed: not tilted",
@@ -142,10 +147,10 @@ void plot_slides_offsets(const RunReport *report, PlotPanel panel)
         .kind = JOINT_GUIDE,
         .limit = offset_limit,
     };
-    draw(&OFFSET, report, panel);
+    draw(&OFFSET, view, panel);
 }
 
-void plot_slides_tilts(const RunReport *report, PlotPanel panel)
+void plot_slides_tilts(const PlotView *view, PlotPanel panel)
 {
     static const SlidePanel TILT = {
         .title = "Tilt of the block; dashed: opposite corners touch",
@@ -154,10 +159,10 @@ void plot_slides_tilts(const RunReport *report, PlotPanel panel)
         .kind = JOINT_GUIDE,
         .limit = tilt_limit,
     };
-    draw(&TILT, report, panel);
+    draw(&TILT, view, panel);
 }
 
-void plot_slides_accelerations(const RunReport *report, PlotPanel panel)
+void plot_slides_accelerations(const PlotView *view, PlotPanel panel)
 {
     static const SlidePanel ACCELERATION = {
         .title = "Acceleration of the slider along its line",
@@ -165,10 +170,10 @@ void plot_slides_accelerations(const RunReport *report, PlotPanel panel)
         .quantity = {"acceleration", true, -1, acceleration_of},
         .shows = shows_acceleration,
     };
-    draw(&ACCELERATION, report, panel);
+    draw(&ACCELERATION, view, panel);
 }
 
-void plot_slides_stops(const RunReport *report, PlotPanel panel)
+void plot_slides_stops(const PlotView *view, PlotPanel panel)
 {
     static const SlidePanel GAP = {
         .title = "Distance from the stop",
@@ -176,7 +181,7 @@ void plot_slides_stops(const RunReport *report, PlotPanel panel)
         .quantity = {"gap, mm", true, -1, gap_of},
         .kind = JOINT_STOP,
     };
-    draw(&GAP, report, panel);
+    draw(&GAP, view, panel);
 }
 
 // The path of one block: its offset over the play, its tilt over the tilt at which it jams.
@@ -189,15 +194,16 @@ static Vec2 block_at(const RunReport *report, const Trajectory *run, size_t samp
 }
 
 // How far any block goes in either direction, of its limits.
-static double farthest(const RunReport *report)
+static double farthest(const PlotView *view)
 {
+    const RunReport *report = view->report;
     double most = 1.15;
     for (size_t run = 0; run < report->run_count; run++) {
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
             const Joint *of = joint_of(report, joint);
-            for (size_t i = 0;
-                 shows(report, run, joint, JOINT_GUIDE) && i < trajectory->sample_count; i++) {
+            for (size_t i = 0; shows(view, run, joint, JOINT_GUIDE) && i < trajectory->sample_count;
+                 i++) {
                 const double offset = fabs(offset_of(report, trajectory, i, joint));
                 const double tilt = fabs(tilt_of(report, trajectory, i, joint));
                 most = fmax(most, 1.06 * offset / offset_limit(of));
@@ -208,17 +214,18 @@ static double farthest(const RunReport *report)
     return most;
 }
 
-void plot_slides_paths(const RunReport *report, PlotPanel panel)
+void plot_slides_paths(const PlotView *view, PlotPanel panel)
 {
-    const double high = farthest(report);
+    const RunReport *report = view->report;
+    const double high = farthest(view);
     panel.title = "Block between its guides; dashed: corners touch";
     panel.x = (Axis){.title = "offset / play to either side", .low = -high, .high = high};
     panel.y = (Axis){.title = "tilt / largest tilt", .low = -high, .high = high};
     plot_enter(&panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-            if (shows(report, run, joint, JOINT_GUIDE)) {
-                plot_look_path(report, &panel, run, &(PlotPath){.joint = joint, .at = block_at});
+            if (shows(view, run, joint, JOINT_GUIDE)) {
+                plot_look_path(view, &panel, run, &(PlotPath){.joint = joint, .at = block_at});
             }
         }
     }
