@@ -321,6 +321,46 @@ typedef struct JpJointState {
 } JpJointState;
 JP_API JpStatus jp_joint_state(const JpJoint *joint, JpJointState *state, JpError *error);
 
+/* ---- pins in holes ----------------------------------------------------------------------------
+ *
+ * A round pin in a round hole of another body, or of the world. With a width the pin touches at the
+ * two ends of its hole, each with half of the contact's force, and may tilt; without one it touches
+ * at the hole's centre, for pins that stay parallel to their holes: your other joints hold all but
+ * the play then. The force on the pin is along the line from its axis to the hole's centre. */
+typedef struct JpPinInHole {
+    double hole_radius;
+    double pin_radius; /* m, smaller: the difference is the radial play */
+    double width;      /* m, of the hole along its axis; 0: it touches at its centre alone */
+    double axial_play; /* m, to either side until a collar stops the pin; may be infinity */
+    double hole[3];    /* m, the hole's centre in the frame of its body, or in the world */
+    double pin[3];     /* m, the pin's centre in the frame of its body, or in the world */
+    double axis[3];    /* of both, in the world as the bodies stand now; of any length */
+    JpContact contact; /* of the whole pin; jp_contact_of_pin has the laws */
+    double friction;   /* 1, mu: mu F tanh(v / friction_speed) against the sliding at the wall */
+    double friction_speed; /* m/s, > 0 */
+} JpPinInHole;
+
+/* No radii yet; no width, no collars, at the centres of the bodies, about z; the default contact,
+ * no friction, a friction speed of 1e-3. */
+JP_API JpPinInHole jp_pin_default(void);
+
+/* One of the bodies may be NULL, the world. */
+JP_API JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInHole *given,
+                              JpJoint **created, JpError *error);
+
+typedef struct JpPinState {
+    double eccentricity[3]; /* m, in the world: of the pin's axis from the hole's centre */
+    double axial;           /* m, of the pin's centre along the hole's axis */
+    double tilt;            /* rad, of the pin's axis against the hole's */
+    double force[3];        /* N, in the world, on the pin, mean of the last step */
+    double gap;             /* m, of the end that is nearest to the wall; below 0 inside */
+    bool is_touching;       /* anywhere */
+    size_t end_count;       /* 1, or 2 of a hole with a width */
+    JpSide ends[2];         /* along the line to the hole's centre; at -width/2 first */
+    JpSide collars[2];      /* along the axis; the first pushes the pin up it */
+} JpPinState;
+JP_API JpStatus jp_pin_state(const JpJoint *joint, JpPinState *state, JpError *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -9,22 +9,32 @@
 
 #include <math.h>
 
-Overlap overlap_find(const ForceLaw *law, double gap, double closing, double step_s)
+// From the depths at mid-step and at the step's ends, and the way between these.
+static Overlap overlap_of(const ForceLaw *law, double middle, double start, double end, double way)
 {
-    const double start = -gap - closing * (0.5 * step_s);
-    const double end = start + closing * step_s;
     if (start >= 0.0 && end >= 0.0) {
-        return (Overlap){.depth = -gap, .share = 1.0};
+        return (Overlap){.depth = middle, .share = 1.0};
     }
     const double deepest = fmax(start, end);
     if (!(deepest > 0.0)) {
         return (Overlap){.depth = 0.0};
     }
-    const double way = fabs(closing) * step_s;
     const double mean = force_law_energy(law, deepest) / way;
-    return (Overlap){
-        .depth = force_law_penetration(law, mean),
-        .share = deepest / way,
-        .onset = closing > 0.0 ? -start / closing : 0.0,
-    };
+    return (Overlap){.depth = force_law_penetration(law, mean), .share = deepest / way};
+}
+
+Overlap overlap_find(const ForceLaw *law, double gap, double closing, double step_s)
+{
+    const double start = -gap - closing * (0.5 * step_s);
+    const double end = start + closing * step_s;
+    Overlap found = overlap_of(law, -gap, start, end, fabs(closing) * step_s);
+    found.onset = start < 0.0 && end > 0.0 ? -start / closing : 0.0;
+    return found;
+}
+
+Overlap overlap_between(const ForceLaw *law, double gap, const double gaps[2], double step_s)
+{
+    Overlap found = overlap_of(law, -gap, -gaps[0], -gaps[1], fabs(gaps[1] - gaps[0]));
+    found.onset = gaps[0] > 0.0 && gaps[1] < 0.0 ? step_s * gaps[0] / (gaps[0] - gaps[1]) : 0.0;
+    return found;
 }

@@ -13,3 +13,6 @@ typedef struct Overlap {
 
 // From the gap at mid-step, m, negative inside, and the closing speed at the step's start, m/s.
 Overlap overlap_find(const ForceLaw *law, double gap, double closing, double step_s);
+
+// From the gaps at mid-step and at the step's ends, between which it goes one way.
+Overlap overlap_between(const ForceLaw *law, double gap, const double gaps[2], double step_s);

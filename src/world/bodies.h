@@ -23,7 +23,8 @@ typedef struct BodyRecord {
     dVector3 last_omega; // at its end
     dVector3 last_alpha;
     bool has_last;
-    bool is_gyrating; // its gyroscopic torque is ours in the step under way
+    double opening[6]; // m and rad: what it was moved by so that ODE's joints are as open as found
+    bool is_gyrating;  // its gyroscopic torque is ours in the step under way
 } BodyRecord;
 
 typedef struct Bodies {

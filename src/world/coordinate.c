@@ -114,103 +114,14 @@ double coordinate_read(Coordinate *coordinate)
            dot(coordinate->offset, coordinate->axis);
 }
 
-void coordinate_axis(const Coordinate *coordinate, dVector3 axis)
+Direction coordinate_direction(const Coordinate *coordinate)
 {
+    dVector3 axis;
     into_world(coordinate->bodies[1], coordinate->axis, axis);
-}
-
-void coordinate_point(const Coordinate *coordinate, dVector3 point)
-{
+    if (coordinate->is_angle) {
+        return direction_about(coordinate->bodies, axis);
+    }
+    dVector3 point;
     position_of(coordinate->bodies[coordinate->bodies[0] != NULL ? 0 : 1], point);
-}
-
-// The rate of the first body against the second along or about an axis at a point.
-double coordinate_rate(const Coordinate *coordinate)
-{
-    dVector3 axis;
-    coordinate_axis(coordinate, axis);
-    double rate = 0.0;
-    for (int i = 0; i < 2; i++) {
-        const dBodyID body = coordinate->bodies[i];
-        if (body == NULL) {
-            continue;
-        }
-        dVector3 velocity;
-        if (coordinate->is_angle) {
-            memcpy(velocity, dBodyGetAngularVel(body), sizeof velocity);
-        } else {
-            dVector3 point;
-            coordinate_point(coordinate, point);
-            dBodyGetPointVel(body, point[0], point[1], point[2], velocity);
-        }
-        rate += (i == 0 ? 1.0 : -1.0) * dot(axis, velocity);
-    }
-    return rate;
-}
-
-void coordinate_push(const Coordinate *coordinate, double force)
-{
-    dVector3 axis;
-    dVector3 point;
-    coordinate_axis(coordinate, axis);
-    coordinate_point(coordinate, point);
-    for (int i = 0; i < 2; i++) {
-        const dBodyID body = coordinate->bodies[i];
-        const double push = i == 0 ? force : -force;
-        if (body == NULL) {
-            continue;
-        }
-        if (coordinate->is_angle) {
-            dBodyAddTorque(body, push * axis[0], push * axis[1], push * axis[2]);
-        } else {
-            dBodyAddForceAtPos(body, push * axis[0], push * axis[1], push * axis[2], point[0],
-                               point[1], point[2]);
-        }
-    }
-}
-
-// x . I^-1 x of a body, x in the world.
-static double turning_mobility(dBodyID body, const dReal *x)
-{
-    dMass mass;
-    dMatrix3 inverse;
-    dVector3 local;
-    dVector3 turned;
-    dBodyGetMass(body, &mass);
-    if (!dInvertPDMatrix(mass.I, inverse, 3)) {
-        return 0.0;
-    }
-    into_body(body, x, local);
-    dMultiply0_331(turned, inverse, local);
-    return dot(local, turned);
-}
-
-double coordinate_mobility(const Coordinate *coordinate)
-{
-    dVector3 axis;
-    dVector3 point;
-    coordinate_axis(coordinate, axis);
-    coordinate_point(coordinate, point);
-    double mobility = 0.0;
-    for (int i = 0; i < 2; i++) {
-        const dBodyID body = coordinate->bodies[i];
-        if (body == NULL || dBodyIsKinematic(body)) {
-            continue;
-        }
-        if (coordinate->is_angle) {
-            mobility += turning_mobility(body, axis);
-        } else {
-            dMass mass;
-            dVector3 arm;
-            dVector3 couple;
-            dBodyGetMass(body, &mass);
-            const dReal *centre = dBodyGetPosition(body);
-            for (int k = 0; k < 3; k++) {
-                arm[k] = point[k] - centre[k];
-            }
-            dCalcVectorCross3(couple, arm, axis);
-            mobility += 1.0 / mass.mass + turning_mobility(body, couple);
-        }
-    }
-    return mobility;
+    return direction_along(coordinate->bodies, axis, point, point);
 }

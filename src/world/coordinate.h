@@ -2,9 +2,7 @@
 // second.
 #pragma once
 
-#include <ode/ode.h>
-
-#include <stdbool.h>
+#include "world/direction.h"
 
 typedef struct Coordinate {
     dJointID joint;
@@ -23,16 +21,5 @@ Coordinate coordinate_of(dJointID joint);
 // Where it is, rad or m: an angle goes on beyond half a turn.
 double coordinate_read(Coordinate *coordinate);
 
-// Its rate, rad/s or m/s.
-double coordinate_rate(const Coordinate *coordinate);
-
-// The axis in the world, and, of a slider, where a force along it acts on both bodies.
-void coordinate_axis(const Coordinate *coordinate, dVector3 axis);
-void coordinate_point(const Coordinate *coordinate, dVector3 point);
-
-// Pushes the bodies apart along it, N m or N, in the next step.
-void coordinate_push(const Coordinate *coordinate, double force);
-
-// Its acceleration for a force of 1, with both bodies free: more than they have where joints hold
-// them. 1/(kg m^2) or 1/kg.
-double coordinate_mobility(const Coordinate *coordinate);
+// The direction in which it grows, as the bodies stand.
+Direction coordinate_direction(const Coordinate *coordinate);

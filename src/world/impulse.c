@@ -1,8 +1,12 @@
 // How does a world step whose contacts are shorter than the step?
 //
-// A world that is not at a bound answers linearly to pushes in its joints. Its answer is found by
-// steps that are taken back: one without contacts gives the accelerations g of all coordinates; one
-// with a push in a joint, a column of their mobility W, and what the push does to all bodies, A.
+// A world that is not at a bound answers linearly to pushes in the places at which its joints with
+// play touch. Rows J of these are frozen at mid-step: of a hinge or slider its coordinate, of a pin
+// two directions across its axis. Their answer is found by steps that are taken back: one without
+// contacts gives their accelerations g; one with a push in a row, a column of their mobility W, and
+// what the push does to all bodies, A. How fast rows turn with the bodies follows from their rates
+// at the start, u0' with the rows of there and J v with those of mid-step:
+//     g = (J v' - J v) / h + (J v - u0') / (h/2)
 // With them the contacts are integrated within the step (world/inside.h), to impulses P and their
 // integrals over time Q. Then the world steps, for good, under the mean forces P / h, and positions
 // that have moved by h/2 along the new velocities are moved on by A (Q - (h/2) P).
@@ -11,9 +15,11 @@
 // friction, of a motor, of a contact that opened. Then g and W are found again about that step, up
 // to ROUNDS times; if they still differ, the step stands as it is and is counted as a fallback.
 //
-// With n joints that touch a step costs n + 2 steps of ODE, and 1 where none does.
+// With n rows in which joints touch a step costs n + 2 steps of ODE, and 1 where none does.
 #include "world/impulse.h"
 
+#include "world/inside.h"
+#include "world/opening.h"
 #include "world/trial.h"
 
 #include <math.h>
@@ -22,283 +28,148 @@
 
 enum { ROUNDS = 4, BODY_NUMBERS = 6 };
 
-// of the coordinates' speeds: above what rounding in ODE's factorisation leaves
+// of the rows' speeds: above what rounding in ODE's factorisation leaves
 static const double PROMISE = 1e-7;
 
-static bool make_room(const JpWorld *world, Impulse *impulse)
+// The accelerations of all rows less their rotors while nothing presses, from the rates of a step
+// under the impulses of the base.
+static void set_free(Answer *answer, double step)
 {
-    size_t n = 0;
-    for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-        n++;
-    }
-    const size_t body = BODY_NUMBERS * world->bodies.count;
-    const size_t numbers = 4 * n + n * n + (n + 1) * body + n * n + INSIDE_ROOM(n);
-    impulse->joint_count = n;
-    impulse->memory = calloc(
-        1, numbers * sizeof(double) +
-               n * (sizeof(JpJoint *) + 2 * sizeof(InsideJoint) + sizeof(size_t) + sizeof(bool)) +
-               1);
-    if (impulse->memory == NULL) {
-        return false;
-    }
-    double *at = impulse->memory;
-    impulse->rates = at;
-    impulse->pushed = impulse->rates + 3 * n;
-    impulse->columns = impulse->pushed + n;
-    impulse->bodies = impulse->columns + n * n;
-    impulse->base = impulse->bodies + n * body;
-    impulse->mobility = impulse->base + body;
-    impulse->room = impulse->mobility + n * n;
-    impulse->contacts = (InsideJoint *)(impulse->room + INSIDE_ROOM(n));
-    impulse->joints = (JpJoint **)(impulse->contacts + 2 * n);
-    impulse->active = (size_t *)(impulse->joints + n);
-    impulse->is_active = (bool *)(impulse->active + n);
-    return true;
-}
-
-void impulse_free(Impulse *impulse)
-{
-    free(impulse->memory);
-    *impulse = (Impulse){0};
-}
-
-static void read_bodies(const JpWorld *world, double *speeds)
-{
-    for (size_t i = 0; i < world->bodies.count; i++) {
-        const dBodyID id = world->bodies.records[i].id;
-        memcpy(&speeds[BODY_NUMBERS * i], dBodyGetLinearVel(id), 3 * sizeof(double));
-        memcpy(&speeds[BODY_NUMBERS * i + 3], dBodyGetAngularVel(id), 3 * sizeof(double));
-    }
-}
-
-static void read_rates(const Impulse *impulse, double *rates)
-{
-    for (size_t i = 0; i < impulse->joint_count; i++) {
-        rates[i] = coordinate_rate(&impulse->joints[i]->coordinate);
-    }
-}
-
-static double net_impulse(const InsideJoint *contact)
-{
-    return contact->impulse[0] - contact->impulse[1];
-}
-
-// A step under the mean forces of the impulses that there are, and the rates after it.
-static JpStatus step_under(JpWorld *world, const Impulse *impulse, double step, double *rates,
-                           JpError *error)
-{
-    for (size_t i = 0; i < impulse->joint_count; i++) {
-        if (impulse->pushed[i] != 0.0) {
-            coordinate_push(&impulse->joints[i]->coordinate, impulse->pushed[i] / step);
+    for (size_t i = 0; i < answer->place_count; i++) {
+        const AnswerPlace *of = &answer->places[i];
+        const Rotor *rotor = &of->joint->rotor;
+        for (size_t k = 0; k < of->place->row_count; k++) {
+            const size_t row = of->first_row + k;
+            const double gained =
+                answer->base[row] - answer->frozen[row] - answer_to(answer, answer->pushed, row);
+            const double turned = answer->frozen[row] - rotor->speed - of->place->start_rate[k];
+            answer->free[row] = (gained + 2.0 * turned) / step - rotor->drive / rotor->inertia;
         }
     }
-    REFUSAL_TRY(trial_step(world, step, error));
-    read_rates(impulse, rates);
-    return JP_OK;
-}
-
-// The answer to a push in one joint, beside the step that the base and the last rates are of.
-static JpStatus find_column(JpWorld *world, Impulse *impulse, size_t number, double step,
-                            JpError *error)
-{
-    const size_t n = impulse->joint_count;
-    const JpJoint *joint = impulse->joints[number];
-    const double *rates = &impulse->rates[n];
-    double *column = &impulse->columns[number * n];
-    double *bodies = &impulse->bodies[number * BODY_NUMBERS * world->bodies.count];
-    // as hard as the contact will be, and away from where it presses
-    const double speed = fabs(joint->rate) + fabs(rates[number] - impulse->rates[number]) +
-                         joint->sides[0].law.impact_speed_floor;
-    const double position = impulse->contacts[number].position;
-    const bool is_low = side_gap(&joint->sides[0], position) < side_gap(&joint->sides[1], position);
-    const double push = (is_low ? speed : -speed) / play_mobility(joint);
-    coordinate_push(&joint->coordinate, push / step);
-    JpStatus status = step_under(world, impulse, step, column, error);
-    read_bodies(world, bodies);
-    bodies_put_back(&world->bodies);
-    for (size_t i = 0; i < n; i++) {
-        column[i] = (column[i] - rates[i]) / push;
-    }
-    for (size_t i = 0; i < BODY_NUMBERS * world->bodies.count; i++) {
-        bodies[i] = (bodies[i] - impulse->base[i]) / push;
-    }
-    return status;
-}
-
-// Joins a joint to those whose contacts are integrated.
-static void activate(Impulse *impulse, size_t number)
-{
-    impulse->is_active[number] = true;
-    impulse->active[impulse->active_count++] = number;
-}
-
-// The accelerations of all coordinates less their rotors while nothing presses, from the rates of a
-// step under the impulses that there are.
-static void set_free(Impulse *impulse, double step)
-{
-    const size_t n = impulse->joint_count;
-    for (size_t i = 0; i < n; i++) {
-        const Rotor *rotor = &impulse->joints[i]->rotor;
-        double gained = impulse->rates[n + i] - impulse->rates[i];
-        for (size_t j = 0; j < n; j++) {
-            gained -= impulse->columns[j * n + i] * impulse->pushed[j];
-        }
-        impulse->contacts[i].free = gained / step - rotor->drive / rotor->inertia;
-    }
-}
-
-// Sides as the step before left them, and the motion at the step's start.
-static void reset_contacts(Impulse *impulse, double step)
-{
-    for (size_t i = 0; i < impulse->joint_count; i++) {
-        JpJoint *joint = impulse->joints[i];
-        InsideJoint *contact = &impulse->contacts[i];
-        memcpy(contact->sides, joint->sides, sizeof contact->sides);
-        contact->position = play_position(joint) - 0.5 * step * joint->rate;
-        contact->speed = joint->rate;
-        contact->impulse[0] = contact->impulse[1] = contact->moment = 0.0;
-        contact->sides[0].force = contact->sides[1].force = 0.0;
-    }
-}
-
-// Integrates the contacts of the active joints; false where that takes too many local steps.
-static bool integrate(Impulse *impulse, double step)
-{
-    const size_t n = impulse->joint_count;
-    const size_t count = impulse->active_count;
-    InsideJoint *packed = impulse->contacts + n;
-    for (size_t i = 0; i < count; i++) {
-        const size_t row = impulse->active[i];
-        packed[i] = impulse->contacts[row];
-        for (size_t j = 0; j < count; j++) {
-            const double own = i == j ? 1.0 / impulse->joints[row]->rotor.inertia : 0.0;
-            impulse->mobility[i * count + j] = impulse->columns[impulse->active[j] * n + row] + own;
-        }
-    }
-    Inside inside = {count, packed, impulse->mobility, impulse->room};
-    if (!inside_run(&inside, step)) {
-        return false;
-    }
-    for (size_t i = 0; i < count; i++) {
-        impulse->contacts[impulse->active[i]] = packed[i];
-    }
-    return true;
 }
 
 // Whether the rates after the step are those that g and W promise.
-static bool is_as_promised(const Impulse *impulse, double step)
+static bool is_as_promised(const Answer *answer, const double *pushed_before)
 {
-    const size_t n = impulse->joint_count;
     double scale = 0.0;
     double off = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        const Rotor *rotor = &impulse->joints[i]->rotor;
-        double promised =
-            impulse->rates[i] + step * (impulse->contacts[i].free + rotor->drive / rotor->inertia);
-        for (size_t j = 0; j < n; j++) {
-            const double part = impulse->columns[j * n + i] * net_impulse(&impulse->contacts[j]);
-            promised += part;
-            scale = fmax(scale, fabs(part));
-        }
-        off = fmax(off, fabs(impulse->rates[2 * n + i] - promised));
-        scale = fmax(scale, fabs(impulse->rates[i]));
+    for (size_t i = 0; i < answer->row_count; i++) {
+        const double part = answer_to(answer, answer->net, i);
+        const double before = answer_to(answer, pushed_before, i);
+        off = fmax(off, fabs(answer->found[i] - answer->base[i] - part + before));
+        scale = fmax(scale, fmax(fabs(part), fabs(answer->frozen[i])));
     }
     return off <= PROMISE * scale;
 }
 
-// Joints that come near a side in the step, with what the others' contacts do to them, become
-// active.
-static bool activate_near(Impulse *impulse, double step)
+// Takes what ODE's joints are open by out of where the places are.
+static JpStatus close_joints(Answer *answer, double step, JpError *error)
 {
-    const size_t n = impulse->joint_count;
-    const size_t before = impulse->active_count;
-    for (size_t i = 0; i < n; i++) {
-        if (impulse->is_active[i]) {
-            continue;
-        }
-        InsideJoint ahead = impulse->contacts[i];
-        bool is_near = inside_is_near(&ahead, step);
-        // the same with the others' impulses at the start
-        for (size_t j = 0; j < n; j++) {
-            ahead.speed += impulse->columns[j * n + i] * net_impulse(&impulse->contacts[j]);
-        }
-        is_near = is_near || inside_is_near(&ahead, step);
-        if (is_near) {
-            activate(impulse, i);
+    REFUSAL_TRY(opening_find(answer->world, step, answer->speeds, error));
+    for (size_t i = 0; i < answer->place_count; i++) {
+        Place *place = answer->places[i].place;
+        for (size_t k = 0; k < place->row_count && k < PLACE_ROWS_PLANE; k++) {
+            place->start[k] -= opening_shift(answer->world, &place->rows[k]);
         }
     }
-    return impulse->active_count > before;
+    return JP_OK;
+}
+
+// Whether a place comes to touch with what the contacts of others do to it, at the step's start.
+static bool is_near(const Answer *answer, const AnswerPlace *of, double step)
+{
+    const Place *place = of->place;
+    const double *free = &answer->free[of->first_row];
+    if (place_is_near(place, place->start_rate, free, step)) {
+        return true;
+    }
+    double speed[PLACE_ROWS_MOST];
+    for (size_t k = 0; k < place->row_count; k++) {
+        speed[k] = place->start_rate[k] + answer_to(answer, answer->net, of->first_row + k);
+    }
+    return place_is_near(place, speed, free, step);
+}
+
+// Activates all places of joints of which one comes near its sides in the step, with what the
+// others' contacts do to it. Returns whether there are any new ones.
+static bool activate_near(Answer *answer, double step)
+{
+    bool is_any = false;
+    for (size_t i = 0; i < answer->place_count; i++) {
+        AnswerPlace *of = &answer->places[i];
+        if (of->is_active || !is_near(answer, of, step)) {
+            continue;
+        }
+        is_any = true;
+        for (size_t k = 0; k < answer->place_count; k++) {
+            answer->places[k].is_active |= answer->places[k].joint == of->joint;
+        }
+    }
+    return is_any;
 }
 
 // The contacts of the step by the world's answer about the base; joints that they bring near their
-// sides join in. False where it takes too many local steps.
-static JpStatus find_contacts(JpWorld *world, Impulse *impulse, double step, bool *is_found,
-                              JpError *error)
+// sides join in. `is_found` is false where that takes too many local steps.
+static JpStatus find_contacts(Answer *answer, double step, bool *is_found, JpError *error)
 {
-    size_t known = 0;
+    for (size_t i = 0; i < answer->place_count; i++) {
+        answer->places[i].is_known = false;
+    }
     do {
-        for (; known < impulse->active_count; known++) {
-            REFUSAL_TRY(find_column(world, impulse, impulse->active[known], step, error));
-        }
-        set_free(impulse, step);
-        reset_contacts(impulse, step);
-        *is_found = integrate(impulse, step);
-    } while (*is_found && activate_near(impulse, step));
+        REFUSAL_TRY(answer_find_columns(answer, step, error));
+        set_free(answer, step);
+        *is_found = inside_run(answer, step);
+    } while (*is_found && activate_near(answer, step));
     return JP_OK;
 }
 
 // Rounds of contacts and the step under them, which stays in the end.
-static JpStatus make_rounds(JpWorld *world, Impulse *impulse, double step, bool *is_done,
-                            JpError *error)
+static JpStatus make_rounds(Answer *answer, double step, bool *is_done, JpError *error)
 {
-    const size_t n = impulse->joint_count;
+    JpWorld *world = answer->world;
+    const size_t size = answer->row_count * sizeof(double);
     for (int round = 1;; round++) {
-        REFUSAL_TRY(find_contacts(world, impulse, step, is_done, error));
+        REFUSAL_TRY(find_contacts(answer, step, is_done, error));
         if (!*is_done) {
             return JP_OK;
         }
-        for (size_t i = 0; i < n; i++) {
-            impulse->pushed[i] = net_impulse(&impulse->contacts[i]);
-        }
-        double *found = &impulse->rates[2 * n];
-        REFUSAL_TRY(step_under(world, impulse, step, found, error));
-        const bool is_promised = is_as_promised(impulse, step);
+        double *before = answer->free; // which is found anew
+        memcpy(before, answer->pushed, size);
+        memcpy(answer->pushed, answer->net, size);
+        REFUSAL_TRY(answer_step(answer, step, answer->found, error));
+        const bool is_promised = is_as_promised(answer, before);
         if (is_promised || round == ROUNDS) {
             world->stats.fallbacks += is_promised ? 0 : 1;
             return JP_OK;
         }
-        memcpy(&impulse->rates[n], found, n * sizeof(double));
-        read_bodies(world, impulse->base);
+        memcpy(answer->base, answer->found, size);
+        answer_read_bodies(world, answer->speeds);
         bodies_put_back(&world->bodies);
     }
 }
 
-JpStatus impulse_step(JpWorld *world, double step, Impulse *impulse, bool *is_done, JpError *error)
+JpStatus impulse_step(JpWorld *world, double step, Answer *answer, bool *is_done, JpError *error)
 {
-    *impulse = (Impulse){0};
-    if (!make_room(world, impulse)) {
+    if (!answer_make(world, step, answer)) {
         return refusal(error, JP_ERROR_MEMORY, "there is no memory for the contacts of a step");
     }
-    size_t number = 0;
-    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-        impulse->joints[number] = joint;
-        impulse->rates[number++] = joint->rate + joint->rotor.speed;
-    }
     REFUSAL_TRY(trial_check(world, error));
-    REFUSAL_TRY(step_under(world, impulse, step, &impulse->rates[impulse->joint_count], error));
-    read_bodies(world, impulse->base);
-    set_free(impulse, step);
-    reset_contacts(impulse, step);
+    REFUSAL_TRY(answer_step(answer, step, answer->base, error));
+    answer_read_bodies(world, answer->speeds);
+    set_free(answer, step);
     *is_done = true;
-    if (!activate_near(impulse, step)) {
+    if (!activate_near(answer, step)) {
         return JP_OK;
     }
     bodies_put_back(&world->bodies);
-    world->stats.rows += impulse->active_count;
-    return make_rounds(world, impulse, step, is_done, error);
+    REFUSAL_TRY(close_joints(answer, step, error));
+    for (size_t i = 0; i < answer->place_count; i++) {
+        world->stats.rows += answer->places[i].is_active ? 1 : 0;
+    }
+    return make_rounds(answer, step, is_done, error);
 }
 
-// Moves a body on along what an impulse of a joint does to it, times a moment, N s^2.
+// Moves a body on along what an impulse in a row does to it, times a moment, N s^2.
 static void move_on(dBodyID body, const double *speeds, double moment)
 {
     const dReal *at = dBodyGetPosition(body);
@@ -309,23 +180,43 @@ static void move_on(dBodyID body, const double *speeds, double moment)
     dBodySetQuaternion(body, turned);
 }
 
-void impulse_finish(JpWorld *world, double step, Impulse *impulse)
+// Rotors, and the mean forces on pins.
+static void finish_place(const AnswerPlace *of, const Answer *answer, double step)
 {
-    for (size_t i = 0; i < impulse->joint_count; i++) {
-        JpJoint *joint = impulse->joints[i];
-        const InsideJoint *contact = &impulse->contacts[i];
-        Rotor *rotor = &joint->rotor;
-        const double net = impulse->pushed[i];
-        const double late = contact->moment - 0.5 * step * net;
-        for (int k = 0; k < SIDE_COUNT; k++) {
-            joint->sides[k] = contact->sides[k];
-            joint->sides[k].force = contact->impulse[k] / step;
-        }
-        rotor->speed += (step * rotor->drive - net) / rotor->inertia;
-        rotor->position += 0.5 * step * rotor->speed - late / rotor->inertia;
-        for (size_t b = 0; late != 0.0 && b < world->bodies.count; b++) {
-            const double *speeds = &impulse->bodies[BODY_NUMBERS * (i * world->bodies.count + b)];
-            move_on(world->bodies.records[b].id, speeds, late);
+    Rotor *rotor = &of->joint->rotor;
+    const double *net = &answer->net[of->first_row];
+    if (isfinite(rotor->inertia)) {
+        const double late = answer->moment[of->first_row] - 0.5 * step * net[0];
+        rotor->speed += (step * rotor->drive - net[0]) / rotor->inertia;
+        rotor->position -= late / rotor->inertia;
+    }
+    for (size_t k = 0; k < of->place->row_count; k++) {
+        const Direction *row = answer->rows[of->first_row + k];
+        const Vec3 axis = {row->axis[0], row->axis[1], row->axis[2]};
+        if (!row->is_turn) {
+            of->joint->force = vec3_add(of->joint->force, vec3_scale(net[k] / step, axis));
         }
     }
+}
+
+void impulse_finish(JpWorld *world, double step, Answer *answer)
+{
+    const size_t numbers = BODY_NUMBERS * world->bodies.count;
+    for (size_t i = 0; i < answer->row_count; i++) {
+        const double late = answer->moment[i] - 0.5 * step * answer->net[i];
+        for (size_t b = 0; late != 0.0 && b < world->bodies.count; b++) {
+            move_on(world->bodies.records[b].id, &answer->bodies[i * numbers + BODY_NUMBERS * b],
+                    late);
+        }
+    }
+    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        joint->force = (Vec3){0.0, 0.0, 0.0};
+    }
+    for (size_t i = 0; i < answer->place_count; i++) {
+        finish_place(&answer->places[i], answer, step);
+    }
+    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        joint->rotor.position += 0.5 * step * joint->rotor.speed;
+    }
+    inside_book(answer);
 }

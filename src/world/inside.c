@@ -1,265 +1,295 @@
-// What do contacts do within a step in which the world around them hardly changes?
+// What do the contacts of joints with play do within a step of the world?
 //
-// With P_j the impulses and Q_j their integrals over time, g the accelerations while nothing
-// presses and W the mobility,
-//     u_i = u0_i + v0_i t + g_i t^2/2 + sum W_ij Q_j,   v_i = v0_i + g_i t + sum W_ij P_j
-//     P' = F(u, v),  Q' = P
-// by the classic Runge-Kutta method of order 4, in local steps of LOCAL_PHASE radians of the
-// contact's own oscillation. Where a side begins or ends to touch, the local step is cut there to
-// rounding; flights between contacts are one step each, to the exact time of the next contact.
+// An active place is one joint of an encounter (contact/encounter.h), or two: each side of a line
+// meets a line of its own, whose gap is s (q - limit), s the side's sign, so that what acts in it
+// acts in the place's row times s. The mobility between rows is what the trials gave, and of a line
+// with a rotor of inertia J another s s' / J.
+//
+// Works and tops are found from the poses between the nodes, by Lobatto's rule on four points.
 #include "world/inside.h"
-
-#include "contact/map_impact.h"
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-static const double LOCAL_PHASE = 0.05; // rad: leaves about phase^4 / 100 of an impact
-static const double LOCAL_DECAY = 0.25; // time constants of a damper: stable below 2.8
-enum { LOCAL_STEPS_MOST = 1000000, CUTS = 48 };
+static const double LOCAL_PHASE = 0.05; // rad: leaves about 1e-7 of an impact
 
-// The local step under way.
-typedef struct Local {
-    Inside *inside;
-    double time; // s, since the start
-    double *state;
-    double *next;
-    double *work; // of the Runge-Kutta method
-} Local;
-
-static void motion_of(const Local *local, const double *state, double time, size_t number,
-                      double *position, double *speed)
+static bool has_side(const Place *place, size_t side)
 {
-    const Inside *inside = local->inside;
-    const InsideJoint *joint = &inside->joints[number];
-    const double *mobility = &inside->mobility[number * inside->count];
-    *position = joint->position + time * (joint->speed + 0.5 * time * joint->free);
-    *speed = joint->speed + time * joint->free;
-    for (size_t i = 0; i < inside->count; i++) {
-        const double *other = &state[INSIDE_STATE * i];
-        *position += mobility[i] * other[2];
-        *speed += mobility[i] * (other[0] - other[1]);
-    }
+    return side < place_side_count(place) && isfinite(place->sides[side].limit);
 }
 
-// A damper presses from the first touch on, at no depth yet.
-static double force_of(const Side *side, double position, double speed)
+static size_t rows_of_side(const Place *place)
 {
-    const double depth = fmax(-side_gap(side, position), DBL_MIN);
-    return side->is_touching
-               ? force_law_force(&side->law, depth, -side->sign * speed, side->impact_speed)
-               : 0.0;
+    return place->shape == PLACE_LINE ? ENCOUNTER_ROWS_PLAIN : place->row_count;
 }
 
-static void rates_of(const Local *local, const double *state, double time, double *rates)
-{
-    for (size_t i = 0; i < local->inside->count; i++) {
-        double position;
-        double speed;
-        motion_of(local, state, time, i, &position, &speed);
-        const Side *sides = local->inside->joints[i].sides;
-        double *rate = &rates[INSIDE_STATE * i];
-        rate[0] = force_of(&sides[0], position, speed);
-        rate[1] = force_of(&sides[1], position, speed);
-        rate[2] = state[INSIDE_STATE * i] - state[INSIDE_STATE * i + 1];
-        rate[3] = rate[0] * speed;
-        rate[4] = -rate[1] * speed;
-    }
-}
+// Calls a function for the active sides, in order, until it says no.
+typedef bool (*SideVisit)(Answer *answer, const AnswerPlace *of, size_t side, size_t number);
 
-// From the state to the next one.
-static void step_by(const Local *local, double length)
+static bool visit_sides(Answer *answer, SideVisit visit)
 {
-    static const double SHARES[] = {0.0, 0.5, 0.5, 1.0};
-    static const double WEIGHTS[] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
-    const size_t size = INSIDE_STATE * local->inside->count;
-    double *at = local->work;
-    double *rates = local->work + size;
-    memcpy(local->next, local->state, size * sizeof(double));
-    memset(rates, 0, size * sizeof(double));
-    for (int stage = 0; stage < 4; stage++) {
-        const double ahead = SHARES[stage] * length;
-        for (size_t i = 0; i < size; i++) {
-            at[i] = local->state[i] + ahead * rates[i];
-        }
-        rates_of(local, at, local->time + ahead, rates);
-        for (size_t i = 0; i < size; i++) {
-            local->next[i] += WEIGHTS[stage] * length * rates[i];
-        }
-    }
-}
-
-// Whether a side does at a time what it did not before: touch, or not touch.
-static bool side_changes(const Side *side, double position)
-{
-    return side->is_touching == (side_gap(side, position) > 0.0);
-}
-
-static bool any_changes(const Local *local, const double *state, double time)
-{
-    for (size_t i = 0; i < local->inside->count; i++) {
-        double position;
-        double speed;
-        motion_of(local, state, time, i, &position, &speed);
-        const Side *sides = local->inside->joints[i].sides;
-        if (side_changes(&sides[0], position) || side_changes(&sides[1], position)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-// The length of the local step, cut to just behind the first change in it; takes it into `next`.
-static double cut_step(const Local *local, double length)
-{
-    step_by(local, length);
-    if (!any_changes(local, local->next, local->time + length)) {
-        return length;
-    }
-    double before = 0.0;
-    double behind = length;
-    for (int i = 0; i < CUTS; i++) {
-        const double middle = 0.5 * (before + behind);
-        step_by(local, middle);
-        *(any_changes(local, local->next, local->time + middle) ? &behind : &before) = middle;
-    }
-    step_by(local, behind);
-    return behind;
-}
-
-// The first time after now at which gap + speed t + half bend t^2 is 0, coming from above; infinite
-// where there is none.
-static double first_touch(double gap, double speed, double half_bend)
-{
-    if (half_bend == 0.0) {
-        return speed < 0.0 ? -gap / speed : INFINITY;
-    }
-    const double square = speed * speed - 4.0 * half_bend * gap;
-    if (square < 0.0 || (speed >= 0.0 && half_bend > 0.0)) {
-        return INFINITY;
-    }
-    // without a difference of almost equal numbers
-    return speed < 0.0 ? -2.0 * gap / (speed - sqrt(square))
-                       : (-speed - sqrt(square)) / (2.0 * half_bend);
-}
-
-bool inside_is_near(const InsideJoint *joint, double duration)
-{
-    for (int i = 0; i < 2; i++) {
-        const Side *side = &joint->sides[i];
-        const double gap = side_gap(side, joint->position);
-        if (side->is_touching || gap < 0.0 ||
-            first_touch(gap, side->sign * joint->speed, 0.5 * side->sign * joint->free) <=
-                duration) {
-            return true;
-        }
-    }
-    return false;
-}
-
-// How long a local step may be for a side that touches.
-static double side_step(const Side *side, double position, double speed, double mobility)
-{
-    const double depth = fmax(-side_gap(side, position), 0.0);
-    const MapImpactCase impact = {.law = side->law,
-                                  .mass = 1.0 / mobility,
-                                  .speed = fabs(speed) + side->law.impact_speed_floor};
-    const double ahead = map_impact_depth(&impact); // to be expected
-    const double deepest = depth > ahead || isnan(ahead) ? depth : ahead;
-    const double frequency = sqrt(force_law_tangent(&side->law, deepest) * mobility);
-    const double decay = force_law_damping(&side->law, deepest, side->impact_speed) * mobility;
-    return fmin(LOCAL_PHASE / frequency, LOCAL_DECAY / decay);
-}
-
-// How long the next local step may be: of flights to the next contact.
-static double longest_step(const Local *local, double left)
-{
-    const Inside *inside = local->inside;
-    double longest = left;
-    for (size_t i = 0; i < inside->count; i++) {
-        const InsideJoint *joint = &inside->joints[i];
-        double reach = 0.0; // of all joints together
-        for (size_t j = 0; j < inside->count; j++) {
-            reach += fabs(inside->mobility[i * inside->count + j]);
-        }
-        double position;
-        double speed;
-        motion_of(local, local->state, local->time, i, &position, &speed);
-        for (int k = 0; k < 2; k++) {
-            const Side *side = &joint->sides[k];
-            const double flight = first_touch(side_gap(side, position), side->sign * speed,
-                                              0.5 * side->sign * joint->free);
-            longest =
-                fmin(longest, side->is_touching ? side_step(side, position, speed, reach) : flight);
-        }
-    }
-    return longest;
-}
-
-// Notes where sides are after a local step of a length, or at the start: what begins, ends, and is
-// largest.
-static void note(const Local *local, double length)
-{
-    for (size_t i = 0; i < local->inside->count; i++) {
-        double position;
-        double speed;
-        motion_of(local, local->state, local->time, i, &position, &speed);
-        for (int k = 0; k < 2; k++) {
-            Side *side = &local->inside->joints[i].sides[k];
-            side->inside = fmax(-side_gap(side, position), 0.0);
-            side->share = 1.0;
-            if (side->is_touching && length > 0.0) {
-                side_note_tops(side, force_of(side, position, speed), length);
-            }
-            if (side_changes(side, position)) {
-                side->is_touching = !side->is_touching;
-                if (side->is_touching) {
-                    side_begin(side, -side->sign * speed);
-                }
+    size_t number = 0;
+    for (size_t i = 0; i < answer->place_count; i++) {
+        const AnswerPlace *of = &answer->places[i];
+        for (size_t k = 0; of->is_active && k < SIDE_COUNT; k++) {
+            if (has_side(of->place, k) && !visit(answer, of, k, number++)) {
+                return false;
             }
         }
     }
+    return true;
 }
 
-static void add_totals(const Local *local, double duration)
+// Whether a side is of the same form as a joint of the encounter.
+static bool is_laid_out(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
 {
-    for (size_t i = 0; i < local->inside->count; i++) {
-        InsideJoint *joint = &local->inside->joints[i];
-        const double *state = &local->state[INSIDE_STATE * i];
-        joint->moment = state[2];
-        for (int k = 0; k < 2; k++) {
-            joint->impulse[k] = state[k];
-            joint->sides[k].impulse += state[k];
-            joint->sides[k].work += state[3 + k];
-            joint->sides[k].force = state[k] / duration;
+    (void)side;
+    const Encounter *encounter = answer->world->encounter;
+    return number < encounter->joint_count &&
+           encounter->joints[number].row_count == rows_of_side(of->place);
+}
+
+static bool lay_out(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
+{
+    (void)number;
+    encounter_add(answer->world->encounter, &of->place->inside[side], rows_of_side(of->place));
+    return true;
+}
+
+static bool count_side(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
+{
+    (void)of;
+    (void)side;
+    answer->side_count = number + 1;
+    return true;
+}
+
+// The world's encounter with a joint for each active side. What it keeps is laid out by its rows.
+static Encounter *make_encounter(Answer *answer)
+{
+    JpWorld *world = answer->world;
+    if (world->encounter == NULL) {
+        world->encounter = calloc(1, sizeof *world->encounter);
+    }
+    Encounter *encounter = world->encounter;
+    if (encounter == NULL) {
+        return NULL;
+    }
+    visit_sides(answer, count_side);
+    if (encounter->joint_count != answer->side_count || !visit_sides(answer, is_laid_out)) {
+        encounter_finish(encounter);
+        *encounter = encounter_start(0.0, 1.0, LOCAL_PHASE);
+        visit_sides(answer, lay_out);
+        encounter_make_room(encounter, encounter->row_count);
+    }
+    return encounter;
+}
+
+// Fills in the rows of a side, of which a line's second moves nothing.
+static void fill_rows(Answer *answer, const AnswerPlace *of, size_t number, size_t first)
+{
+    Encounter *encounter = answer->world->encounter;
+    const Place *place = of->place;
+    const Side *side = &place->sides[number];
+    const bool is_line = place->shape == PLACE_LINE;
+    for (size_t own = 0; own < rows_of_side(place); own++) {
+        const size_t row = first + own;
+        if (is_line && own > 0) {
+            answer->inside[row] = 0;
+            encounter->position[row] = encounter->speed[row] = encounter->free[row] = 0.0;
+            continue;
+        }
+        const double sign = is_line ? side->sign : 1.0;
+        answer->inside[row] = of->first_row + own + 1;
+        answer->signs[row] = sign;
+        encounter->speed[row] = sign * place->start_rate[own];
+        encounter->free[row] = sign * answer->free[of->first_row + own];
+        encounter->position[row] = is_line                  ? side_gap(side, place->start[0])
+                                   : own < PLACE_ROWS_PLANE ? place->start[own]
+                                                            : 0.0;
+    }
+}
+
+// Fills in one side, as the step before left it.
+static bool fill_side(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
+{
+    EncounterJoint *joint = &answer->world->encounter->joints[number];
+    const EncounterJoint laid_out = *joint;
+    const Place *place = of->place;
+    const Side *from = &place->sides[side];
+    *joint = place->inside[side];
+    joint->law = from->law;
+    joint->shape = place->shape == PLACE_LINE ? TOUCH_LINE : TOUCH_HOLE;
+    joint->radial_clearance = place->clearance;
+    joint->hole_radius = place->hole_radius;
+    joint->has_friction = laid_out.has_friction;
+    joint->first_row = laid_out.first_row;
+    joint->row_count = laid_out.row_count;
+    joint->is_touching = from->is_touching;
+    joint->impact_speed = from->impact_speed;
+    if (from->is_touching && joint->frequency == 0.0) {
+        // a contact that began in a step with rows
+        joint->frequency = sqrt(force_law_tangent(&from->law, fmax(from->inside, DBL_MIN)) *
+                                play_mobility(of->joint, place));
+    }
+    fill_rows(answer, of, side, joint->first_row);
+    return true;
+}
+
+// The mobility between two rows of the encounter.
+static double mobility_between(const Answer *answer, size_t i, size_t k)
+{
+    const size_t n = answer->row_count;
+    const size_t row = answer->inside[i];
+    const size_t other = answer->inside[k];
+    if (row == 0 || other == 0) {
+        return 0.0;
+    }
+    const double there = answer->columns[(other - 1) * n + row - 1];
+    const double back = answer->columns[(row - 1) * n + other - 1];
+    const double rotor = row == other ? answer->rotors[row - 1] : 0.0;
+    return answer->signs[i] * answer->signs[k] * (0.5 * (there + back) + rotor);
+}
+
+static void fill_mobility(Answer *answer)
+{
+    Encounter *encounter = answer->world->encounter;
+    for (size_t i = 0; i < encounter->row_count; i++) {
+        for (size_t k = 0; k < encounter->row_count; k++) {
+            *encounter_mobility(encounter, i, k) = mobility_between(answer, i, k);
         }
     }
 }
 
-bool inside_run(Inside *inside, double duration)
+// Sums what the encounter's rows did by row here.
+static bool add_totals(Answer *answer, double step)
 {
-    const size_t size = INSIDE_STATE * inside->count;
-    Local local = {.inside = inside,
-                   .state = inside->room,
-                   .next = inside->room + size,
-                   .work = inside->room + 2 * size};
-    memset(local.state, 0, size * sizeof(double));
-    note(&local, 0.0); // sides that are inside without having been before
-    for (int i = 0; i < LOCAL_STEPS_MOST; i++) {
-        const double left = duration - local.time;
-        if (!(left > 0.0)) {
-            add_totals(&local, duration);
-            return true;
+    const Encounter *encounter = answer->world->encounter;
+    EncounterSums total = encounter_sums(encounter->row_count);
+    encounter_at(encounter, encounter->node_count - 1, step, &total);
+    memset(answer->net, 0, answer->row_count * sizeof(double));
+    memset(answer->moment, 0, answer->row_count * sizeof(double));
+    for (size_t i = 0; i < encounter->row_count; i++) {
+        if (answer->inside[i] > 0) {
+            answer->net[answer->inside[i] - 1] += answer->signs[i] * total.impulse[i];
+            answer->moment[answer->inside[i] - 1] += answer->signs[i] * total.moment[i];
         }
-        const double length = longest_step(&local, left);
-        // a flight that rounding ends too early still has to get on
-        const double taken = cut_step(&local, fmax(length, 0x1p-52 * duration));
-        double *swap = local.state;
-        local.state = local.next;
-        local.next = swap;
-        local.time = taken >= left ? duration : local.time + taken;
-        note(&local, taken);
     }
-    return false;
+    encounter_sums_free(&total);
+    return true;
+}
+
+bool inside_run(Answer *answer, double step)
+{
+    Encounter *encounter = make_encounter(answer);
+    if (encounter == NULL) {
+        return false;
+    }
+    visit_sides(answer, fill_side);
+    fill_mobility(answer);
+    return encounter_run(encounter, step) && add_totals(answer, step);
+}
+
+// A side while what happened to it in the step is read.
+typedef struct Reading {
+    const Encounter *encounter;
+    EncounterSums *sums;
+    size_t number; // of its joint there
+    Side *side;
+    double force; // at the point read last
+    double power; // W, done by the contact there
+    double impulse;
+} Reading;
+
+static PinHole pose_at(Reading *reading, size_t node, double time)
+{
+    encounter_at(reading->encounter, node, time, reading->sums);
+    return encounter_pose(reading->encounter, reading->number, node, time, reading->sums).pose;
+}
+
+// How the side is at a time behind a node; a damper presses from the first touch on, at no depth
+// yet.
+static void read_at(Reading *reading, size_t node, double time)
+{
+    Side *side = reading->side;
+    const PinHole pose = pose_at(reading, node, time);
+    side->inside = fmax(pose.penetration, 0.0);
+    reading->force = force_law_force(&side->law, fmax(side->inside, DBL_MIN), pose.approach_speed,
+                                     side->impact_speed);
+    reading->power = -reading->force * pose.approach_speed;
+}
+
+// Adds what a side did between a node and the next.
+static void read_interval(Reading *reading, size_t node)
+{
+    static const double SHARES[] = {0.27639320225002103, 0.72360679774997897, 1.0};
+    static const double WEIGHTS[] = {5.0 / 12.0, 5.0 / 12.0, 1.0 / 12.0};
+    const double start = reading->encounter->times[node];
+    const double width = reading->encounter->times[node + 1] - start;
+    Side *side = reading->side;
+    read_at(reading, node, start);
+    double impulse = reading->force / 12.0;
+    double work = reading->power / 12.0;
+    for (int i = 0; i < 3; i++) {
+        read_at(reading, node, start + SHARES[i] * width);
+        side_note_tops(side, reading->force, (SHARES[i] - (i > 0 ? SHARES[i - 1] : 0.0)) * width);
+        impulse += WEIGHTS[i] * reading->force;
+        work += WEIGHTS[i] * reading->power;
+    }
+    reading->impulse += width * impulse;
+    side->work += width * work;
+}
+
+static void read_side(Reading *reading)
+{
+    const Encounter *encounter = reading->encounter;
+    Side *side = reading->side;
+    for (size_t node = 0; node < encounter->node_count; node++) {
+        const double start = encounter->times[node];
+        const bool was_touching = side->is_touching;
+        side->is_touching = encounter_touches(encounter, node, reading->number);
+        if (side->is_touching && !was_touching) {
+            side_begin(side, pose_at(reading, node, start).approach_speed);
+        }
+        if (side->is_touching && node + 1 < encounter->node_count &&
+            encounter->times[node + 1] > start) {
+            read_interval(reading, node);
+        }
+    }
+}
+
+// A side of a place, from its joint in the encounter.
+static bool book_side(Answer *answer, const AnswerPlace *of, size_t number, size_t joint)
+{
+    const Encounter *encounter = answer->world->encounter;
+    Side *side = &of->place->sides[number];
+    EncounterSums sums = encounter_sums(encounter->row_count);
+    Reading reading = {encounter, &sums, joint, side, 0.0, 0.0, 0.0};
+    of->place->inside[number] = encounter->joints[joint];
+    read_side(&reading);
+    if (of->place->shape == PLACE_LINE) {
+        // to rounding
+        const double end = encounter->times[encounter->node_count - 1];
+        encounter_at(encounter, encounter->node_count - 1, end, &sums);
+        reading.impulse = sums.impulse[encounter->joints[joint].first_row];
+    }
+    encounter_sums_free(&sums);
+    side->impulse += reading.impulse;
+    side->force = reading.impulse / answer->step;
+    side->share = 1.0;
+    return true;
+}
+
+void inside_book(Answer *answer)
+{
+    for (size_t i = 0; i < answer->place_count; i++) {
+        const AnswerPlace *of = &answer->places[i];
+        for (size_t k = 0; !of->is_active && k < SIDE_COUNT; k++) {
+            of->place->sides[k].force = 0.0;
+            of->place->sides[k].is_touching = false;
+        }
+    }
+    visit_sides(answer, book_side);
 }

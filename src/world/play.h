@@ -1,12 +1,11 @@
-// A joint with play: two sides on the coordinate of a hinge or a slider, with or without a rotor.
+// A joint with play: the places at which its bodies touch, on the coordinate of a hinge or slider
+// with or without a rotor, or of a pin in its hole.
 #pragma once
 
 #include "world/bodies.h"
 #include "world/coordinate.h"
+#include "world/place.h"
 #include "world/refusal.h"
-#include "world/side.h"
-
-enum { SIDE_COUNT = 2 }; // the low one first
 
 // What turns or slides between the two sides: a number, not a body.
 typedef struct Rotor {
@@ -16,20 +15,40 @@ typedef struct Rotor {
     double drive; // N m or N, on it
 } Rotor;
 
+typedef enum PlayKind {
+    PLAY_STOPS,
+    PLAY_BACKLASH,
+    PLAY_PIN,
+} PlayKind;
+
+enum {
+    PIN_ENDS = 2,
+    PLACES_MOST = PIN_ENDS + 1, // of a joint
+};
+
+// A pin in its hole. Places are the middle of the hole, or its two ends, and the collars.
+typedef struct Pin {
+    size_t hole_count;
+    Vec3 holes[PIN_ENDS];  // m, in the frame of the hole's body: middle, or ends
+    Vec3 middle;           // m, likewise, of the hole
+    Vec3 pin;              // m, in the frame of the pin's body: its middle
+    Vec3 axes[2];          // unit, in the frames of the pin's body and of the hole's
+    double friction;       // 1, Coulomb's coefficient
+    double friction_speed; // m/s, of its law mu N tanh(v / v_s)
+} Pin;
+
 struct JpJoint {
     JpWorld *world;
     JpJoint *next;
-    Coordinate coordinate;
-    Rotor rotor; // of stops: at 0 for ever
-    bool is_backlash;
+    PlayKind kind;
+    dBodyID bodies[2];     // NULL is the world; of a pin in its hole the pin's first
+    Coordinate coordinate; // not of a pin
+    Pin pin;
+    Rotor rotor;          // of stops and pins: at 0 for ever
     double rotor_inertia; // as it was given: what a rotor that is driven again has
-    Side sides[SIDE_COUNT];
-    dJointID motor;   // the row of an angle; NULL of a slider
-    dJointID contact; // the row of a slider in the step under way
-    dJointFeedback feedback;
-    dVector3 row_axis; // in the world: a push of the row on the first body of ODE's joint
-    double pushed;     // N: what was put on from outside beside the row
-    double rate;       // of the coordinate less the rotor's, at the start of the step under way
+    Vec3 force;           // N, of a pin: on the pin, mean of the last step
+    size_t place_count;
+    Place places[PLACES_MOST];
 };
 
 struct JpWorld {
@@ -37,16 +56,21 @@ struct JpWorld {
     JpWorldOptions options;
     Bodies bodies;
     JpJoint *joints;
-    dJointGroupID rows; // contacts of sliders, of the step under way
+    dJointGroupID rows;   // contacts of the step under way
+    Encounter *encounter; // owned, NULL before the first
     JpWorldStats stats;
+    double last_step;          // s, of the step before; 0: there was none
     size_t known_when_counted; // bodies, when it was last made sure that all are known
 };
 
-// The rate of the coordinate less the rotor's.
-double play_rate(const JpJoint *joint);
+// Adds a joint to a world; NULL where there is no memory.
+JpJoint *play_add(JpWorld *world, PlayKind kind, const dBodyID bodies[2]);
 
-// Where the coordinate is, less the rotor.
-double play_position(JpJoint *joint);
+// The mobility of a place along its direction with all bodies free, its rotor's included.
+double play_mobility(const JpJoint *joint, const Place *place);
 
-// The acceleration of that for a force of 1 with all bodies free.
-double play_mobility(const JpJoint *joint);
+// The rate of a place along its direction, as it was found, with the present velocities.
+double play_rate(const JpJoint *joint, const Place *place);
+
+// How a side is, to be read.
+JpSide play_side(const Side *side, double position);

@@ -13,64 +13,65 @@
 // so that rounding does not reach the limit
 static const double LIMIT_SHARE = 0.999;
 
-static void make_angle_row(JpJoint *joint, double cfm, double erp)
+static void make_angle_row(PlaceRow *row, double cfm, double erp)
 {
-    const dReal *axis = joint->row_axis;
-    dJointSetAMotorAxis(joint->motor, 0, 0, axis[0], axis[1], axis[2]);
-    dJointSetAMotorAngle(joint->motor, 0, -1.0);
-    dJointSetAMotorParam(joint->motor, dParamStopERP, erp);
-    dJointSetAMotorParam(joint->motor, dParamStopCFM, cfm);
+    const dReal *axis = row->axis;
+    dJointSetAMotorAxis(row->motor, 0, 0, axis[0], axis[1], axis[2]);
+    dJointSetAMotorAngle(row->motor, 0, -1.0);
+    dJointSetAMotorParam(row->motor, dParamStopERP, erp);
+    dJointSetAMotorParam(row->motor, dParamStopCFM, cfm);
 }
 
-static void make_contact(JpJoint *joint, const Side *side, double cfm, double speed,
-                         dJointGroupID group)
+static void make_contact(JpJoint *joint, Place *place, const Side *side, double cfm, double speed)
 {
+    PlaceRow *row = &place->row;
     const dWorldID world = joint->world->id;
     const double limit = LIMIT_SHARE * dWorldGetContactMaxCorrectingVel(world);
     if (speed > limit) {
-        joint->pushed = (speed - limit) / cfm;
-        coordinate_push(&joint->coordinate, side->sign * joint->pushed);
+        row->pushed = (speed - limit) / cfm;
+        direction_push(&place->along, side->sign * row->pushed);
     }
     dContact contact;
     memset(&contact, 0, sizeof contact);
     contact.surface.mode = dContactSoftERP | dContactSoftCFM | dContactMotionN;
     contact.surface.soft_cfm = cfm;
     contact.surface.motionN = fmin(speed, limit);
-    coordinate_point(&joint->coordinate, contact.geom.pos);
+    contact.geom.pos[0] = place->point.x;
+    contact.geom.pos[1] = place->point.y;
+    contact.geom.pos[2] = place->point.z;
     // ODE turns the normal where the first body is the world, and so does its feedback
-    const double first = joint->coordinate.bodies[0] != NULL ? 1.0 : -1.0;
+    const double first = joint->bodies[0] != NULL ? 1.0 : -1.0;
     for (int i = 0; i < 3; i++) {
-        contact.geom.normal[i] = first * joint->row_axis[i];
+        contact.geom.normal[i] = first * row->axis[i];
     }
-    joint->contact = dJointCreateContact(world, group, &contact);
-    dJointAttach(joint->contact, joint->coordinate.bodies[0], joint->coordinate.bodies[1]);
-    dJointSetFeedback(joint->contact, &joint->feedback);
+    row->contact = dJointCreateContact(world, joint->world->rows, &contact);
+    dJointAttach(row->contact, joint->bodies[0], joint->bodies[1]);
+    dJointSetFeedback(row->contact, &row->feedback);
 }
 
-void row_make(JpJoint *joint, const Side *side, double cfm, double speed, double step,
-              dJointGroupID group)
+void row_make(JpJoint *joint, Place *place, const Side *side, double cfm, double speed, double step)
 {
-    memset(&joint->feedback, 0, sizeof joint->feedback);
-    joint->pushed = 0.0;
-    dVector3 axis;
-    coordinate_axis(&joint->coordinate, axis);
-    const double sign = joint->coordinate.bodies[0] != NULL ? side->sign : -side->sign;
+    PlaceRow *row = &place->row;
+    memset(&row->feedback, 0, sizeof row->feedback);
+    row->pushed = 0.0;
+    const double sign = joint->bodies[0] != NULL ? side->sign : -side->sign;
     for (int i = 0; i < 3; i++) {
-        joint->row_axis[i] = sign * axis[i];
+        row->axis[i] = sign * place->along.axis[i];
     }
-    if (joint->coordinate.is_angle) {
-        make_angle_row(joint, cfm, speed * step);
+    if (row->motor != NULL) {
+        make_angle_row(row, cfm, speed * step);
     } else {
-        make_contact(joint, side, cfm, speed, group);
+        make_contact(joint, place, side, cfm, speed);
     }
 }
 
-double row_take(JpJoint *joint)
+double row_take(Place *place)
 {
-    const dReal *found = joint->coordinate.is_angle ? joint->feedback.t1 : joint->feedback.f1;
-    if (joint->coordinate.is_angle) {
-        dJointSetAMotorAngle(joint->motor, 0, 1.0);
+    PlaceRow *row = &place->row;
+    const dReal *found = row->motor != NULL ? row->feedback.t1 : row->feedback.f1;
+    if (row->motor != NULL) {
+        dJointSetAMotorAngle(row->motor, 0, 1.0);
     }
-    joint->contact = NULL;
-    return dCalcVectorDot3(joint->row_axis, found) + joint->pushed;
+    row->contact = NULL;
+    return dCalcVectorDot3(row->axis, found) + row->pushed;
 }

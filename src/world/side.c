@@ -10,10 +10,10 @@
 
 #include <math.h>
 
-static Overlap find_overlap(const Side *side, double gap, double earlier, double step)
+static Overlap find_overlap(const Side *side, const SideMotion *motion, double step)
 {
-    return earlier > 0.0 ? overlap_find(&side->law, gap, side->closing, step)
-                         : (Overlap){.depth = fmax(-gap, 0.0), .share = 1.0};
+    return motion->earlier > 0.0 ? overlap_between(&side->law, motion->gap, motion->gaps, step)
+                                 : (Overlap){.depth = fmax(-motion->gap, 0.0), .share = 1.0};
 }
 
 void side_begin(Side *side, double closing)
@@ -24,24 +24,25 @@ void side_begin(Side *side, double closing)
     tops_begin(&side->tops, side->law.viscous * side->impact_speed, 0.0);
 }
 
-void side_find(Side *side, double position, double rate, double earlier, double step)
+void side_find(Side *side, const SideMotion *motion, double step)
 {
-    const double gap = side_gap(side, position);
     const bool was_touching = side->is_touching;
-    side->closing = -side->sign * rate;
-    const Overlap overlap = find_overlap(side, gap, earlier, step);
+    const double start = motion->start_closing;
+    const double earlier = motion->earlier;
+    side->closing = motion->closing;
+    const Overlap overlap = find_overlap(side, motion, step);
     side->is_touching = overlap.depth > 0.0;
     side->depth = overlap.depth;
     side->share = overlap.share;
-    side->inside = fmax(-gap, 0.0);
+    side->inside = fmax(-motion->gap, 0.0);
     if (side->is_touching && !was_touching) {
         const double change =
-            side->last_step > 0.0 ? (side->closing - side->last_closing) / side->last_step : 0.0;
-        const double late = earlier > 0.0 ? overlap.onset : -side->depth / side->closing;
-        side_begin(side, side->closing + (side->closing > 0.0 ? change * late : 0.0));
+            side->last_step > 0.0 ? (start - side->last_closing) / side->last_step : 0.0;
+        const double late = earlier > 0.0 ? overlap.onset : -side->depth / start;
+        side_begin(side, start + (start > 0.0 ? change * late : 0.0));
         side->tops.since = earlier > 0.0 ? earlier - late : -late;
     }
-    side->last_closing = side->closing;
+    side->last_closing = start;
     side->last_step = side->is_touching ? 0.0 : step;
 }
 

@@ -19,7 +19,8 @@ typedef struct Side {
     double share;        // 1, of the step in which it touches
     double inside;       // the depth where the step finds it
     double closing;      // at its start
-    double last_closing; // at the start of the step before, where nothing touched then
+    double last_closing; // where bodies were at the start of the step before, where nothing touched
+                         // then
     double last_step;    // s, of that step; 0 where it is not known
     double mobility;     // of the coordinate, found by trial in the contact under way; 0: not yet
     // what came of it
@@ -38,9 +39,16 @@ static inline double side_gap(const Side *side, double position)
     return side->sign * (position - side->limit);
 }
 
-// Notes how a step finds the side: the position, and the rate of the coordinate at the step's
-// start, which is earlier than the position by a time, s.
-void side_find(Side *side, double position, double rate, double earlier, double step);
+// How a step finds a side.
+typedef struct SideMotion {
+    double gap;           // where forces are evaluated
+    double gaps[2];       // at the step's start, and at its end as bodies go
+    double closing;       // rate of the depth there with the velocities of the step's start
+    double start_closing; // the same where bodies are at the step's start
+    double earlier;       // s: the start, before forces are evaluated
+} SideMotion;
+
+void side_find(Side *side, const SideMotion *motion, double step);
 
 // The contact as a map looks at it, of a side that touches.
 MapContact side_contact(const Side *side, double step);

@@ -13,6 +13,8 @@
 // a row of ODE's bodies alone.
 #include "world/gyration.h"
 #include "world/impulse.h"
+#include "world/joints.h"
+#include "world/opening.h"
 #include "world/row.h"
 #include "world/trial.h"
 
@@ -40,8 +42,8 @@ static JpStatus gather(JpWorld *world, JpError *error)
     if (is_done) {
         size_t filled = 0;
         for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-            seeds[filled++] = joint->coordinate.bodies[0];
-            seeds[filled++] = joint->coordinate.bodies[1];
+            seeds[filled++] = joint->bodies[0];
+            seeds[filled++] = joint->bodies[1];
         }
         is_done = bodies_gather(&world->bodies, seeds, count);
     }
@@ -52,21 +54,23 @@ static JpStatus gather(JpWorld *world, JpError *error)
 
 // The mobility with which a side meets the stability limit: of free bodies where that is low
 // enough, or, once in a contact, found by trial.
-static JpStatus find_mobility(JpJoint *joint, Side *side, double step, JpError *error)
+static JpStatus find_mobility(JpJoint *joint, Place *place, Side *side, double step, JpError *error)
 {
     const double limit = map_of(joint->world)->stability_limit;
-    if (side->mobility > 0.0 || side_is_stable(side, limit, play_mobility(joint), step)) {
+    if (side->mobility > 0.0 || side_is_stable(side, limit, play_mobility(joint, place), step)) {
         return JP_OK;
     }
     const double force = side->sign * force_law_elastic(&side->law, side->depth);
-    return trial_mobility(joint, force, step, &side->mobility, error);
+    REFUSAL_TRY(trial_mobility(joint->world, &place->along, force, step, &side->mobility, error));
+    side->mobility += 1.0 / joint->rotor.inertia;
+    return JP_OK;
 }
 
-static JpStatus make_row(JpJoint *joint, Side *side, double step, JpError *error)
+static JpStatus make_row(JpJoint *joint, Place *place, Side *side, double step, JpError *error)
 {
     JpWorld *world = joint->world;
     const Map *map = map_of(world);
-    const double mobility = side->mobility > 0.0 ? side->mobility : play_mobility(joint);
+    const double mobility = side->mobility > 0.0 ? side->mobility : play_mobility(joint, place);
     const MapContact contact = side_contact(side, step);
     const bool falls_back = !side_is_stable(side, map->stability_limit, mobility, step);
     const ErpCfm row = (falls_back ? map_get(ODE_MAP_TEXTBOOK) : map)->convert(&contact);
@@ -80,17 +84,22 @@ static JpStatus make_row(JpJoint *joint, Side *side, double step, JpError *error
                        "step of %g s may be too long",
                        side->depth, step);
     }
-    row_make(joint, side, row.cfm + yield, speed, step, world->rows);
+    row_make(joint, place, side, row.cfm + yield, speed, step);
     world->stats.rows++;
     world->stats.fallbacks += falls_back ? 1 : 0;
     return JP_OK;
 }
 
-// Bodies where forces are evaluated, contacts made, everything kept.
+static void find_places(JpWorld *world)
+{
+    joints_find(world, world->options.stepping == JP_STEPPING_IMPULSE);
+}
+
+// Bodies where forces are evaluated, contacts made, places found.
 static void go_there(JpWorld *world, double step)
 {
+    joints_start(world);
     for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-        joint->rate = play_rate(joint);
         if (is_staggered(world)) {
             joint->rotor.position += 0.5 * step * joint->rotor.speed;
         }
@@ -101,53 +110,80 @@ static void go_there(JpWorld *world, double step)
     if (world->options.collide != NULL) {
         world->options.collide(world->id, world->options.collide_data);
     }
+    find_places(world);
 }
 
-typedef JpStatus (*SideFunction)(JpJoint *joint, Side *side, double step, JpError *error);
+typedef JpStatus (*SideFunction)(JpJoint *joint, Place *place, Side *side, double step,
+                                 JpError *error);
 
 static JpStatus each_touching(JpWorld *world, SideFunction function, double step, JpError *error)
 {
     for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-        for (int i = 0; i < SIDE_COUNT; i++) {
-            if (joint->sides[i].is_touching) {
-                REFUSAL_TRY(function(joint, &joint->sides[i], step, error));
+        for (size_t i = 0; i < joint->place_count; i++) {
+            Place *place = &joint->places[i];
+            for (size_t k = 0; k < place_side_count(place); k++) {
+                if (place->sides[k].is_touching) {
+                    REFUSAL_TRY(function(joint, place, &place->sides[k], step, error));
+                }
             }
         }
     }
     return JP_OK;
 }
 
+static void find_sides(JpJoint *joint, double earlier, double step)
+{
+    for (size_t i = 0; i < joint->place_count; i++) {
+        Place *place = &joint->places[i];
+        for (size_t k = 0; k < place_side_count(place); k++) {
+            const SideMotion motion = place_motion(place, k, earlier, step);
+            side_find(&place->sides[k], &motion, step);
+        }
+    }
+}
+
 static JpStatus make_rows(JpWorld *world, double step, JpError *error)
 {
     const double earlier = is_staggered(world) ? 0.5 * step : 0.0;
     for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-        const double position = play_position(joint);
-        for (int i = 0; i < SIDE_COUNT; i++) {
-            side_find(&joint->sides[i], position, joint->rate, earlier, step);
-        }
+        find_sides(joint, earlier, step);
     }
     // trials see the world without our rows
     JpStatus status = each_touching(world, find_mobility, step, error);
     return status == JP_OK ? each_touching(world, make_row, step, error) : status;
 }
 
-static void book(JpJoint *joint, double step)
+// Takes the forces of a place's rows, and moves its rotor on by them.
+static void take_forces(JpJoint *joint, Place *place, double step, double forces[SIDE_COUNT])
 {
-    double forces[SIDE_COUNT] = {0.0};
-    for (int i = 0; i < SIDE_COUNT; i++) {
-        if (joint->sides[i].is_touching) {
-            forces[i] = row_take(joint);
+    forces[0] = forces[1] = 0.0;
+    for (size_t i = 0; i < place_side_count(place); i++) {
+        if (place->sides[i].is_touching) {
+            forces[i] = row_take(place);
         }
     }
     Rotor *rotor = &joint->rotor;
     if (isfinite(rotor->inertia)) {
         rotor->speed += step / rotor->inertia * (rotor->drive - forces[0] + forces[1]);
     }
-    const double rate = play_rate(joint);
-    for (int i = 0; i < SIDE_COUNT; i++) {
-        side_book(&joint->sides[i], forces[i], joint->rate, rate, step);
+}
+
+static void book(JpJoint *joint, double step)
+{
+    joint->force = (Vec3){0.0, 0.0, 0.0};
+    for (size_t i = 0; i < joint->place_count; i++) {
+        Place *place = &joint->places[i];
+        double forces[SIDE_COUNT];
+        take_forces(joint, place, step, forces);
+        const double rate = play_rate(joint, place);
+        for (size_t k = 0; k < place_side_count(place); k++) {
+            side_book(&place->sides[k], forces[k], place->rate, rate, step);
+        }
+        const dReal *axis = place->along.axis;
+        joint->force = vec3_add(
+            joint->force, vec3_scale(forces[0] - forces[1], (Vec3){axis[0], axis[1], axis[2]}));
     }
-    rotor->position += (is_staggered(joint->world) ? 0.5 : 1.0) * step * rotor->speed;
+    joint->rotor.position += (is_staggered(joint->world) ? 0.5 : 1.0) * step * joint->rotor.speed;
 }
 
 static void take_back(JpWorld *world, double step)
@@ -170,10 +206,10 @@ static JpStatus step_with_rows(JpWorld *world, double step, JpError *error)
 }
 
 // The same with contacts integrated within the step; with rows where that cannot be.
-static JpStatus step_with_impulses(JpWorld *world, double step, Impulse *impulse, bool *is_done,
+static JpStatus step_with_impulses(JpWorld *world, double step, Answer *answer, bool *is_done,
                                    JpError *error)
 {
-    REFUSAL_TRY(impulse_step(world, step, impulse, is_done, error));
+    REFUSAL_TRY(impulse_step(world, step, answer, is_done, error));
     if (*is_done) {
         return JP_OK;
     }
@@ -181,7 +217,7 @@ static JpStatus step_with_impulses(JpWorld *world, double step, Impulse *impulse
     return step_with_rows(world, step, error);
 }
 
-static void move_on(JpWorld *world, double step, Impulse *impulse, bool is_impulse)
+static void move_on(JpWorld *world, double step, Answer *answer, bool is_impulse)
 {
     if (is_staggered(world)) {
         gyration_finish(&world->bodies, step);
@@ -189,12 +225,24 @@ static void move_on(JpWorld *world, double step, Impulse *impulse, bool is_impul
         bodies_drift(&world->bodies, 0.5 * step);
     }
     if (is_impulse) {
-        impulse_finish(world, step, impulse);
+        impulse_finish(world, step, answer);
         return;
     }
     for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
         book(joint, step);
     }
+}
+
+// Opens ODE's joints as far as they stay open at the step.
+static JpStatus settle(JpWorld *world, double step, JpError *error)
+{
+    const JpStatus status = opening_settle(world, step, error);
+    if (status != JP_OK) {
+        take_back(world, step);
+        return status;
+    }
+    find_places(world);
+    return JP_OK;
 }
 
 static JpStatus step_bodies(JpWorld *world, double step, JpError *error)
@@ -203,17 +251,20 @@ static JpStatus step_bodies(JpWorld *world, double step, JpError *error)
         gyration_push(&world->bodies, step);
     }
     bodies_keep(&world->bodies);
-    Impulse impulse = {0};
+    if (is_staggered(world) && world->last_step != step) {
+        REFUSAL_TRY(settle(world, step, error));
+    }
+    Answer answer = {0};
     bool is_impulse = false;
     const JpStatus status = world->options.stepping == JP_STEPPING_IMPULSE
-                                ? step_with_impulses(world, step, &impulse, &is_impulse, error)
+                                ? step_with_impulses(world, step, &answer, &is_impulse, error)
                                 : step_with_rows(world, step, error);
     if (status == JP_OK) {
-        move_on(world, step, &impulse, is_impulse);
+        move_on(world, step, &answer, is_impulse);
     } else {
         take_back(world, step);
     }
-    impulse_free(&impulse);
+    answer_free(&answer);
     return status;
 }
 
@@ -235,5 +286,6 @@ JpStatus jp_world_step(JpWorld *world, double step, JpError *error)
         return status;
     }
     world->stats.steps++;
+    world->last_step = step;
     return refusal_none(error);
 }

@@ -28,23 +28,24 @@ JpStatus trial_check(JpWorld *world, JpError *error)
     return JP_OK;
 }
 
-// The rate of the coordinate after a step under a push, which is taken back.
-static JpStatus rate_under(JpJoint *joint, double force, double step, double *rate, JpError *error)
+// The rate in a direction after a step under a push, which is taken back.
+static JpStatus rate_under(JpWorld *world, const Direction *direction, double force, double step,
+                           double *rate, JpError *error)
 {
-    JpWorld *world = joint->world;
-    coordinate_push(&joint->coordinate, force);
+    direction_push(direction, force);
     const JpStatus status = trial_step(world, step, error);
-    *rate = coordinate_rate(&joint->coordinate);
+    *rate = direction_rate(direction);
     bodies_put_back(&world->bodies);
     return status;
 }
 
-JpStatus trial_mobility(JpJoint *joint, double force, double step, double *mobility, JpError *error)
+JpStatus trial_mobility(JpWorld *world, const Direction *direction, double force, double step,
+                        double *mobility, JpError *error)
 {
     double rates[2];
-    REFUSAL_TRY(trial_check(joint->world, error));
-    REFUSAL_TRY(rate_under(joint, 0.0, step, &rates[0], error));
-    REFUSAL_TRY(rate_under(joint, force, step, &rates[1], error));
-    *mobility = (rates[1] - rates[0]) / (step * force) + 1.0 / joint->rotor.inertia;
+    REFUSAL_TRY(trial_check(world, error));
+    REFUSAL_TRY(rate_under(world, direction, 0.0, step, &rates[0], error));
+    REFUSAL_TRY(rate_under(world, direction, force, step, &rates[1], error));
+    *mobility = (rates[1] - rates[0]) / (step * force);
     return JP_OK;
 }

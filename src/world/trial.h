@@ -9,7 +9,7 @@ JpStatus trial_step(JpWorld *world, double step, JpError *error);
 // Fails where the world has bodies that are not known: a trial would move them for good.
 JpStatus trial_check(JpWorld *world, JpError *error);
 
-// The acceleration of a joint's coordinate for a force of 1, from two steps that are taken back:
-// with a force, and without. Bodies are as they were kept.
-JpStatus trial_mobility(JpJoint *joint, double force, double step, double *mobility,
-                        JpError *error);
+// The acceleration in a direction for a force of 1, from two steps that are taken back: with a
+// force, and without. Bodies are as they were kept.
+JpStatus trial_mobility(JpWorld *world, const Direction *direction, double force, double step,
+                        double *mobility, JpError *error);

@@ -46,6 +46,10 @@ void jp_world_destroy(JpWorld *world)
     }
     dJointGroupDestroy(world->rows);
     bodies_finish(&world->bodies);
+    if (world->encounter != NULL) {
+        encounter_finish(world->encounter);
+    }
+    free(world->encounter);
     free(world);
 }
 

@@ -245,6 +245,75 @@ static void a_drive_that_is_none_is_refused(void **state)
     scene_finish(&scene);
 }
 
+static void a_pin_in_no_hole_is_refused(void **state)
+{
+    (void)state;
+    Scene scene = scene_make();
+    const dBodyID body = dJointGetBody(scene.hinge, 0);
+    JpPinInHole pin = jp_pin_default();
+    pin.hole_radius = 0.01;
+    pin.pin_radius = 0.0099;
+    pin.contact = good();
+    JpJoint *joint = NULL;
+    assert_refused(jp_pin_create(NULL, NULL, body, &pin, &joint, &error));
+    assert_refused(jp_pin_create(scene.play, NULL, body, NULL, &joint, &error));
+    assert_refused(jp_pin_create(scene.play, NULL, body, &pin, NULL, &error));
+    assert_refused(jp_pin_create(scene.play, body, body, &pin, &joint, &error));
+    assert_refused(jp_pin_create(scene.play, NULL, NULL, &pin, &joint, &error));
+    const dWorldID other = dWorldCreate();
+    assert_refused(jp_pin_create(scene.play, dBodyCreate(other), body, &pin, &joint, &error));
+    assert_refused(jp_pin_create(scene.play, NULL, dBodyCreate(other), &pin, &joint, &error));
+    dWorldDestroy(other);
+    double *const numbers[] = {&pin.hole_radius, &pin.pin_radius, &pin.width,
+                               &pin.axial_play,  &pin.hole[1],    &pin.pin[2],
+                               &pin.axis[0],     &pin.friction,   &pin.friction_speed};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        const double before = *numbers[i];
+        *numbers[i] = NAN;
+        assert_refused(jp_pin_create(scene.play, NULL, body, &pin, &joint, &error));
+        *numbers[i] = i < 4 || i > 6 ? -1.0 : -INFINITY;
+        assert_refused(jp_pin_create(scene.play, NULL, body, &pin, &joint, &error));
+        *numbers[i] = before;
+    }
+    pin.pin_radius = pin.hole_radius;
+    assert_refused(jp_pin_create(scene.play, NULL, body, &pin, &joint, &error));
+    pin.pin_radius = 0.0099;
+    pin.axis[2] = 0.0;
+    assert_refused(jp_pin_create(scene.play, NULL, body, &pin, &joint, &error));
+    pin.axis[2] = 1.0;
+    pin.contact.stiffness = 0.0;
+    assert_refused(jp_pin_create(scene.play, NULL, body, &pin, &joint, &error));
+    assert_null(joint);
+    scene_finish(&scene);
+}
+
+static void a_state_of_another_kind_of_joint_is_refused(void **state)
+{
+    (void)state;
+    Scene scene = scene_make();
+    JpPinInHole pin = jp_pin_default();
+    pin.hole_radius = 0.01;
+    pin.pin_radius = 0.0099;
+    pin.contact = good();
+    JpStops stops = jp_stops_default();
+    stops.contact = good();
+    JpJoint *pinned = NULL;
+    JpJoint *stopped = NULL;
+    JpPinState of_pin;
+    JpJointState now;
+    assert_int_equal(
+        jp_pin_create(scene.play, NULL, dJointGetBody(scene.hinge, 0), &pin, &pinned, NULL), JP_OK);
+    assert_int_equal(jp_stops_create(scene.play, scene.hinge, &stops, &stopped, NULL), JP_OK);
+    assert_refused(jp_pin_state(stopped, &of_pin, &error));
+    assert_refused(jp_pin_state(NULL, &of_pin, &error));
+    assert_refused(jp_pin_state(pinned, NULL, &error));
+    assert_refused(jp_joint_state(pinned, &now, &error));
+    assert_refused(jp_backlash_drive(pinned, 1.0, &error));
+    assert_refused(jp_backlash_lead(pinned, 0.0, 1.0, &error));
+    assert_int_equal(jp_pin_state(pinned, &of_pin, NULL), JP_OK);
+    scene_finish(&scene);
+}
+
 static void a_world_that_has_left_all_numbers_is_refused(void **state)
 {
     (void)state;
@@ -269,6 +338,8 @@ int main(void)
         cmocka_unit_test(a_world_that_is_none_is_refused),
         cmocka_unit_test(a_joint_that_is_none_is_refused),
         cmocka_unit_test(a_drive_that_is_none_is_refused),
+        cmocka_unit_test(a_pin_in_no_hole_is_refused),
+        cmocka_unit_test(a_state_of_another_kind_of_joint_is_refused),
         cmocka_unit_test(a_world_that_has_left_all_numbers_is_refused),
     };
     return cmocka_run_group_tests(tests, ode_group_setup, ode_group_teardown);

@@ -1,0 +1,339 @@
+// Where is a pin in its hole, and in which directions can it touch?
+//
+// As contact/pin_space.h has it: with O the centre of the hole, or of one of its ends, a the pin's
+// axis, M its middle and B = M - O,
+//     P = M - (B . a) a,   e = P - O,   gap = c - |e|,   force on the pin along -e / |e|
+//     e' = r - (a . r + e . a') a,   r = v_pin(P) - v_hole(O),   a' = omega_pin x a
+// The force acts on the line through O and P. Along the hole's axis u, with C its middle, the pin
+// is at u . (M - C) between its collars, at a rate of u . (v_pin(M) - v_hole(M)).
+#include "world/pin.h"
+
+#include "world/contact.h"
+
+#include <math.h>
+
+enum { PIN, HOLE }; // of a joint's bodies
+
+JpPinInHole jp_pin_default(void)
+{
+    return (JpPinInHole){
+        .axis = {0.0, 0.0, 1.0},
+        .axial_play = INFINITY,
+        .contact = jp_contact_default(),
+        .friction_speed = 1e-3,
+    };
+}
+
+static Vec3 vec3_of(const dReal *v)
+{
+    return (Vec3){v[0], v[1], v[2]};
+}
+
+static Vec3 point_of(dBodyID body, Vec3 local)
+{
+    dVector3 point;
+    if (body == NULL) {
+        return local;
+    }
+    dBodyGetRelPointPos(body, local.x, local.y, local.z, point);
+    return vec3_of(point);
+}
+
+static Vec3 axis_of(dBodyID body, Vec3 local)
+{
+    dVector3 axis;
+    if (body == NULL) {
+        return local;
+    }
+    dBodyVectorToWorld(body, local.x, local.y, local.z, axis);
+    return vec3_of(axis);
+}
+
+static Vec3 omega_of(dBodyID body)
+{
+    return body == NULL ? (Vec3){0.0, 0.0, 0.0} : vec3_of(dBodyGetAngularVel(body));
+}
+
+static Vec3 velocity_at(dBodyID body, Vec3 point)
+{
+    if (body == NULL) {
+        return (Vec3){0.0, 0.0, 0.0};
+    }
+    const Vec3 arm = vec3_sub(point, vec3_of(dBodyGetPosition(body)));
+    return vec3_add(vec3_of(dBodyGetLinearVel(body)), vec3_cross(omega_of(body), arm));
+}
+
+static Direction along(const JpJoint *joint, Vec3 axis, Vec3 at_pin, Vec3 at_hole)
+{
+    return direction_along(joint->bodies, (dVector3){axis.x, axis.y, axis.z},
+                           (dVector3){at_pin.x, at_pin.y, at_pin.z},
+                           (dVector3){at_hole.x, at_hole.y, at_hole.z});
+}
+
+// The pin against the hole, or one end of it.
+typedef struct End {
+    Vec3 axis; // of the pin
+    Vec3 at_pin;
+    Vec3 at_hole;
+    Vec3 offset;   // e
+    Vec3 velocity; // e'
+    Vec3 sliding;  // r
+} End;
+
+static End end_of(const JpJoint *joint, Vec3 hole)
+{
+    const Vec3 axis = axis_of(joint->bodies[PIN], joint->pin.axes[PIN]);
+    const Vec3 at_hole = point_of(joint->bodies[HOLE], hole);
+    const Vec3 middle = point_of(joint->bodies[PIN], joint->pin.pin);
+    const Vec3 offset = vec3_across(vec3_sub(middle, at_hole), axis);
+    const Vec3 at_pin = vec3_add(at_hole, offset);
+    const Vec3 sliding = vec3_sub(velocity_at(joint->bodies[PIN], at_pin),
+                                  velocity_at(joint->bodies[HOLE], at_hole));
+    const Vec3 turning = vec3_cross(omega_of(joint->bodies[PIN]), axis);
+    const double lengthwise = vec3_dot(axis, sliding) + vec3_dot(offset, turning);
+    return (End){
+        .axis = axis,
+        .at_pin = at_pin,
+        .at_hole = at_hole,
+        .offset = offset,
+        .velocity = vec3_sub(sliding, vec3_scale(lengthwise, axis)),
+        .sliding = sliding,
+    };
+}
+
+// Its direction, and where it is along the hole's axis.
+static Direction between_collars(const JpJoint *joint, double *position)
+{
+    const Vec3 axis = axis_of(joint->bodies[HOLE], joint->pin.axes[HOLE]);
+    const Vec3 pin = point_of(joint->bodies[PIN], joint->pin.pin);
+    const Vec3 hole = point_of(joint->bodies[HOLE], joint->pin.middle);
+    *position = vec3_dot(axis, vec3_sub(pin, hole));
+    return along(joint, axis, pin, pin);
+}
+
+void pin_start(JpJoint *joint)
+{
+    for (size_t i = 0; i < joint->place_count; i++) {
+        Place *place = &joint->places[i];
+        if (place->shape == PLACE_HOLE) {
+            const End end = end_of(joint, joint->pin.holes[i]);
+            place->offset = end.offset;
+            place->velocity = end.velocity;
+            place->sliding = end.sliding;
+        } else {
+            const Direction direction = between_collars(joint, &place->line_before);
+            place->rate_before = direction_rate(&direction);
+        }
+    }
+}
+
+// The rows across the pin's axis, and where the pin was and how fast it went in them.
+static void find_rows(const JpJoint *joint, const End *end, Place *place)
+{
+    const Vec3 first = vec3_normal_to(end->axis);
+    const Vec3 across[PLACE_ROWS_PLANE] = {first, vec3_cross(end->axis, first)};
+    place->row_count = PLACE_ROWS_PLANE;
+    for (size_t i = 0; i < PLACE_ROWS_PLANE; i++) {
+        place->rows[i] = along(joint, across[i], end->at_pin, end->at_hole);
+        place->start[i] = vec3_dot(across[i], place->offset);
+        place->start_rate[i] = vec3_dot(across[i], place->velocity);
+    }
+}
+
+// Towards the hole's centre; of a centred pin against the way that it goes.
+static Vec3 inwards(const End *end)
+{
+    const Vec3 out = vec3_length(end->offset) > 0.0 ? end->offset : end->velocity;
+    const double size = vec3_length(out);
+    return size > 0.0 ? vec3_scale(-1.0 / size, out) : vec3_normal_to(end->axis);
+}
+
+void pin_find(JpJoint *joint, bool has_rows)
+{
+    for (size_t i = 0; i < joint->place_count; i++) {
+        Place *place = &joint->places[i];
+        if (place->shape != PLACE_HOLE) {
+            place->along = between_collars(joint, &place->position);
+            place->point = point_of(joint->bodies[PIN], joint->pin.pin);
+            continue;
+        }
+        const End end = end_of(joint, joint->pin.holes[i]);
+        const Vec3 normal = inwards(&end);
+        place->position = place->clearance - vec3_length(end.offset);
+        place->along = along(joint, normal, end.at_pin, end.at_hole);
+        place->point = vec3_sub(end.at_hole, vec3_scale(place->hole_radius, normal));
+        if (has_rows) {
+            find_rows(joint, &end, place);
+        }
+    }
+}
+
+static JpStatus check_bodies(const JpWorld *world, dBodyID hole, dBodyID pin, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(world, "the world", error));
+    if (hole == pin) {
+        return refusal(error, JP_ERROR_ARGUMENT,
+                       "hole and pin are on the same body; one of them may be on the world, NULL");
+    }
+    const dBodyID bodies[] = {hole, pin};
+    for (int i = 0; i < 2; i++) {
+        if (bodies[i] != NULL && dBodyGetWorld(bodies[i]) != world->id) {
+            return refusal(error, JP_ERROR_ARGUMENT, "the %s's body is in another world",
+                           i == 0 ? "hole" : "pin");
+        }
+    }
+    return JP_OK;
+}
+
+static JpStatus check_sizes(const JpPinInHole *pin, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_positive(pin->hole_radius, "the hole's radius", error));
+    REFUSAL_TRY(refusal_of_positive(pin->pin_radius, "the pin's radius", error));
+    REFUSAL_TRY(refusal_of_negative(pin->width, "the hole's width", error));
+    if (!(pin->pin_radius < pin->hole_radius)) {
+        return refusal(error, JP_ERROR_ARGUMENT,
+                       "the pin's radius is %g and the hole's %g; the pin must be smaller",
+                       pin->pin_radius, pin->hole_radius);
+    }
+    REFUSAL_TRY(refusal_of_negative(pin->friction, "the pin's friction", error));
+    REFUSAL_TRY(refusal_of_positive(pin->friction_speed, "the friction speed", error));
+    if (pin->friction > 0.0) {
+        return refusal(error, JP_ERROR_ARGUMENT, "pins have no friction yet; set it to 0");
+    }
+    return pin->axial_play == INFINITY
+               ? JP_OK
+               : refusal_of_negative(pin->axial_play, "the axial play", error);
+}
+
+static JpStatus check_vectors(const JpPinInHole *pin, JpError *error)
+{
+    double size = 0.0;
+    for (int i = 0; i < 3; i++) {
+        REFUSAL_TRY(refusal_of_finite(pin->hole[i], "a coordinate of the hole", error));
+        REFUSAL_TRY(refusal_of_finite(pin->pin[i], "a coordinate of the pin", error));
+        REFUSAL_TRY(refusal_of_finite(pin->axis[i], "a coordinate of the axis", error));
+        size = hypot(size, pin->axis[i]);
+    }
+    return refusal_of_positive(size, "the length of the axis", error);
+}
+
+static Vec3 into_body(dBodyID body, Vec3 axis)
+{
+    dVector3 local;
+    if (body == NULL) {
+        return axis;
+    }
+    dBodyVectorFromWorld(body, axis.x, axis.y, axis.z, local);
+    return vec3_of(local);
+}
+
+// Where hole and pin are in their bodies.
+static Pin place_pin(const dBodyID bodies[2], const JpPinInHole *given)
+{
+    const Vec3 asked = vec3_of(given->axis);
+    const Vec3 axis = vec3_scale(1.0 / vec3_length(asked), asked);
+    Pin pin = {
+        .hole_count = given->width > 0.0 ? PIN_ENDS : 1,
+        .middle = vec3_of(given->hole),
+        .pin = vec3_of(given->pin),
+        .axes = {into_body(bodies[PIN], axis), into_body(bodies[HOLE], axis)},
+    };
+    const Vec3 half = vec3_scale(0.5 * given->width, pin.axes[HOLE]);
+    pin.holes[0] = vec3_sub(pin.middle, half);
+    pin.holes[1] = vec3_add(pin.middle, half);
+    return pin;
+}
+
+static void make_places(JpJoint *joint, const JpPinInHole *given, const ForceLaw *law)
+{
+    const size_t holes = joint->pin.hole_count;
+    const ForceLaw share = force_law_share(law, 1.0 / (double)holes);
+    for (size_t i = 0; i < holes; i++) {
+        joint->places[joint->place_count++] = (Place){
+            .shape = PLACE_HOLE,
+            .clearance = given->hole_radius - given->pin_radius,
+            .hole_radius = given->hole_radius,
+            .sides = {{.law = holes > 1 ? share : *law, .sign = 1.0}},
+        };
+    }
+    if (isfinite(given->axial_play)) {
+        Place *collars = &joint->places[joint->place_count++];
+        collars->shape = PLACE_LINE;
+        for (int i = 0; i < SIDE_COUNT; i++) {
+            const double sign = i == 0 ? 1.0 : -1.0;
+            collars->sides[i] =
+                (Side){.law = *law, .sign = sign, .limit = -sign * given->axial_play};
+        }
+    }
+}
+
+JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInHole *given,
+                       JpJoint **created, JpError *error)
+{
+    ForceLaw law;
+    REFUSAL_TRY(refusal_of_null(created, "where the joint is to go", error));
+    REFUSAL_TRY(refusal_of_null(given, "the pin", error));
+    REFUSAL_TRY(check_bodies(world, hole, pin, error));
+    REFUSAL_TRY(check_sizes(given, error));
+    REFUSAL_TRY(check_vectors(given, error));
+    REFUSAL_TRY(contact_law(&given->contact, &law, error));
+    const dBodyID bodies[2] = {[PIN] = pin, [HOLE] = hole};
+    JpJoint *joint = play_add(world, PLAY_PIN, bodies);
+    if (joint == NULL) {
+        return refusal(error, JP_ERROR_MEMORY, "there is no memory for a joint");
+    }
+    joint->pin = place_pin(bodies, given);
+    make_places(joint, given, &law);
+    *created = joint;
+    return refusal_none(error);
+}
+
+static JpStatus check_pin(const JpJoint *joint, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(joint, "the joint", error));
+    return joint->kind == PLAY_PIN
+               ? JP_OK
+               : refusal(error, JP_ERROR_ARGUMENT,
+                         "the joint is no pin in a hole; read it with jp_joint_state");
+}
+
+static void write_vector(Vec3 from, double to[3])
+{
+    to[0] = from.x;
+    to[1] = from.y;
+    to[2] = from.z;
+}
+
+JpStatus jp_pin_state(const JpJoint *joint, JpPinState *state, JpError *error)
+{
+    REFUSAL_TRY(check_pin(joint, error));
+    REFUSAL_TRY(refusal_of_null(state, "the state", error));
+    const Vec3 axis = axis_of(joint->bodies[HOLE], joint->pin.axes[HOLE]);
+    const End middle = end_of(joint, joint->pin.middle);
+    JpPinState found = {.gap = INFINITY, .end_count = joint->pin.hole_count};
+    write_vector(middle.offset, found.eccentricity);
+    write_vector(joint->force, found.force);
+    const Vec3 askew = vec3_cross(axis, middle.axis);
+    found.tilt = atan2(vec3_length(askew), vec3_dot(axis, middle.axis));
+    between_collars(joint, &found.axial);
+    for (int i = 0; i < SIDE_COUNT; i++) {
+        found.collars[i].gap = INFINITY;
+    }
+    for (size_t i = 0; i < joint->place_count; i++) {
+        const Place *place = &joint->places[i];
+        if (place->shape == PLACE_HOLE) {
+            const End end = end_of(joint, joint->pin.holes[i]);
+            const double gap = place->clearance - vec3_length(end.offset);
+            found.ends[i] = play_side(&place->sides[0], gap);
+            found.gap = fmin(found.gap, gap);
+            found.is_touching = found.is_touching || gap < 0.0;
+            continue;
+        }
+        for (int k = 0; k < SIDE_COUNT; k++) {
+            found.collars[k] = play_side(&place->sides[k], found.axial);
+            found.is_touching = found.is_touching || found.collars[k].is_touching;
+        }
+    }
+    *state = found;
+    return refusal_none(error);
+}

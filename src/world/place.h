@@ -1,0 +1,62 @@
+// A place at which the two bodies of a joint with play can touch.
+#pragma once
+
+#include "base/vec3.h"
+#include "contact/encounter.h"
+#include "world/direction.h"
+#include "world/side.h"
+
+typedef enum PlaceShape {
+    PLACE_LINE, // a coordinate between two sides
+    PLACE_HOLE, // the axis of a pin in a round hole, whose one side is the wall
+} PlaceShape;
+
+enum {
+    SIDE_COUNT = 2,       // the low one first
+    PLACE_ROWS_MOST = 9,  // with friction in space
+    PLACE_ROWS_PLANE = 2, // of a hole without friction
+};
+
+// What a row of ODE's is made and read by.
+typedef struct PlaceRow {
+    dJointID motor;   // the row of an angle; else NULL
+    dJointID contact; // the row of a way in the step under way
+    dJointFeedback feedback;
+    dVector3 axis; // in the world: a push of the row on the first body of ODE's joint
+    double pushed; // N: what was put on from outside beside the row
+} PlaceRow;
+
+typedef struct Place {
+    PlaceShape shape;
+    double clearance;                  // m, of a hole
+    double hole_radius;                // m, of a hole
+    Side sides[SIDE_COUNT];            // the position of a hole's is the gap
+    EncounterJoint inside[SIDE_COUNT]; // as steps with contacts inside them left it
+    PlaceRow row;
+    // of the step under way
+    double position; // where the step evaluates forces: of a line, less the rotor's, or the gap
+    double rate;     // of that, with the velocities of the step's start
+    Direction along; // in which it grows
+    Vec3 point;      // m, in the world: where the force of a way acts
+    Vec3 offset;     // of a hole at the step's start, m: of the pin's axis from the hole's centre
+    Vec3 velocity;   // m/s, of that
+    Vec3 sliding;    // m/s, of the pin's point against the hole's there
+    double line_before; // of a line at the step's start
+    double rate_before;
+    // where contacts are integrated within the step: the first two across a pin's axis
+    size_t row_count;
+    Direction rows[PLACE_ROWS_MOST];
+    double start[PLACE_ROWS_PLANE];     // where these are at the step's start, m or rad
+    double start_rate[PLACE_ROWS_MOST]; // and how fast all go there
+} Place;
+
+// The sides that a place has.
+size_t place_side_count(const Place *place);
+
+// How a step finds a side, that starts earlier than forces are evaluated by a time, s.
+SideMotion place_motion(const Place *place, size_t side, double earlier, double step);
+
+// Whether a place comes to touch within a time, s, by its first rows: from where they are at the
+// step's start, at speeds, with accelerations.
+bool place_is_near(const Place *place, const double *speed, const double *acceleration,
+                   double duration);

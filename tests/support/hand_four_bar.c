@@ -1,0 +1,82 @@
+// cases/paper/impact-k66.yaml in numbers. The crank is a body without dynamics whose origin is its
+// pivot, so that its angular velocity is all that there is to it.
+#include "hand_four_bar.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double GROUND = 0.254; // m, as are the three links' lengths
+static const double LENGTHS[HAND_BODIES] = {0.108, 0.2794, 0.2705};
+static const double MASSES[HAND_BODIES] = {0.12, 0.29, 0.28};                    // kg
+static const double INERTIAS[HAND_BODIES] = {173.92e-6, 2070.46e-6, 1988.39e-6}; // kg m^2
+
+static dBodyID make_link(dWorldID world, int link, const HandMotion *motion)
+{
+    dMass mass;
+    const double inertia = INERTIAS[link];
+    dMassSetParameters(&mass, MASSES[link], 0, 0, 0, inertia, inertia, inertia, 0, 0, 0);
+    const dBodyID body = dBodyCreate(world);
+    dBodySetMass(body, &mass);
+    const dQuaternion turn = {cos(0.5 * motion->angle), 0.0, 0.0, sin(0.5 * motion->angle)};
+    dBodySetQuaternion(body, turn);
+    dBodySetAngularVel(body, 0, 0, motion->omega);
+    if (link == 0) {
+        dBodySetKinematic(body);
+    } else {
+        dBodySetPosition(body, motion->position[0], motion->position[1], 0);
+        dBodySetLinearVel(body, motion->velocity[0], motion->velocity[1], 0);
+    }
+    return body;
+}
+
+static void make_hinge(dWorldID world, dBodyID first, dBodyID second, const dReal *anchor)
+{
+    const dJointID hinge = dJointCreateHinge(world, 0);
+    dJointAttach(hinge, first, second);
+    dJointSetHingeAnchor(hinge, anchor[0], anchor[1], 0);
+    dJointSetHingeAxis(hinge, 0, 0, 1);
+}
+
+static JpPinInHole pin_of(const HandOptions *options)
+{
+    JpPinInHole pin = jp_pin_default();
+    pin.hole_radius = 0.01;
+    pin.pin_radius = pin.hole_radius - 14.5e-6;
+    pin.hole[0] = LENGTHS[0];
+    pin.pin[0] = -0.5 * LENGTHS[1];
+    pin.contact.stiffness = 6.6e10;
+    pin.contact.exponent = 1.5;
+    pin.contact.damping = JP_DAMPING_LANKARANI_NIKRAVESH;
+    pin.contact.restitution = 0.9;
+    pin.contact.speed_floor = options->speed_floor;
+    pin.friction = options->friction;
+    pin.friction_speed = options->friction_speed;
+    return pin;
+}
+
+bool hand_four_bar_make(const HandOptions *options, const HandMotion start[HAND_BODIES],
+                        HandFourBar *made, JpError *error)
+{
+    *made = (HandFourBar){.world = dWorldCreate()};
+    dWorldSetGravity(made->world, 0, -9.80665, 0);
+    dWorldSetERP(made->world, options->erp);
+    for (int i = 0; i < HAND_BODIES; i++) {
+        made->bodies[i] = make_link(made->world, i, &start[i]);
+    }
+    dVector3 end;
+    dBodyGetRelPointPos(made->bodies[1], 0.5 * LENGTHS[1], 0, 0, end);
+    make_hinge(made->world, made->bodies[1], made->bodies[2], end);
+    make_hinge(made->world, made->bodies[2], 0, (dVector3){GROUND, 0, 0});
+    const JpPinInHole pin = pin_of(options);
+    JpWorldOptions chosen = jp_world_options_default();
+    chosen.stepping = options->stepping;
+    return jp_world_create(made->world, &chosen, &made->play, error) == JP_OK &&
+           jp_pin_create(made->play, made->bodies[0], made->bodies[1], &pin, &made->pin, error) ==
+               JP_OK;
+}
+
+void hand_four_bar_destroy(HandFourBar *made)
+{
+    jp_world_destroy(made->play);
+    dWorldDestroy(made->world);
+}
