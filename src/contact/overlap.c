@@ -10,7 +10,8 @@
 #include <math.h>
 
 // From the depths at mid-step and at the step's ends, and the way between these.
-static Overlap overlap_of(const ForceLaw *law, double middle, double start, double end, double way)
+static Overlap overlap_by_ends(const ForceLaw *law, double middle, double start, double end,
+                               double way)
 {
     if (start >= 0.0 && end >= 0.0) {
         return (Overlap){.depth = middle, .share = 1.0};
@@ -27,14 +28,14 @@ Overlap overlap_find(const ForceLaw *law, double gap, double closing, double ste
 {
     const double start = -gap - closing * (0.5 * step_s);
     const double end = start + closing * step_s;
-    Overlap found = overlap_of(law, -gap, start, end, fabs(closing) * step_s);
+    Overlap found = overlap_by_ends(law, -gap, start, end, fabs(closing) * step_s);
     found.onset = start < 0.0 && end > 0.0 ? -start / closing : 0.0;
     return found;
 }
 
 Overlap overlap_between(const ForceLaw *law, double gap, const double gaps[2], double step_s)
 {
-    Overlap found = overlap_of(law, -gap, -gaps[0], -gaps[1], fabs(gaps[1] - gaps[0]));
+    Overlap found = overlap_by_ends(law, -gap, -gaps[0], -gaps[1], fabs(gaps[1] - gaps[0]));
     found.onset = gaps[0] > 0.0 && gaps[1] < 0.0 ? step_s * gaps[0] / (gaps[0] - gaps[1]) : 0.0;
     return found;
 }
