@@ -23,6 +23,9 @@ static const CodeRange HIDDEN[] = {
 
 static bool is_hidden(unsigned code)
 {
+    if (code >= ' ' && code <= '~') {
+        return false;
+    }
     for (size_t i = 0; i < sizeof HIDDEN / sizeof *HIDDEN; i++) {
         if (code >= HIDDEN[i].first && code <= HIDDEN[i].last) {
             return true;

@@ -53,12 +53,23 @@ void text_append_list(Text *text, const char *format, va_list arguments)
 {
     va_list again;
     va_copy(again, arguments);
-    const int needed = vsnprintf(NULL, 0, format, arguments);
+    const size_t room = text->capacity - text->length;
+    const int needed = vsnprintf(text->data + text->length, room, format, arguments);
     assert(needed >= 0);
-    text_reserve(text, (size_t)needed);
-    vsnprintf(text->data + text->length, (size_t)needed + 1, format, again);
+    if ((size_t)needed >= room) {
+        text_reserve(text, (size_t)needed);
+        vsnprintf(text->data + text->length, (size_t)needed + 1, format, again);
+    }
     va_end(again);
     text->length += (size_t)needed;
+}
+
+void text_append_bytes(Text *text, const char *bytes, size_t count)
+{
+    text_reserve(text, count);
+    memcpy(text->data + text->length, bytes, count);
+    text->length += count;
+    text->data[text->length] = '\0';
 }
 
 void text_append_shown(Text *text, const char *words)
@@ -93,8 +104,8 @@ void text_show(Text *text, const char *const *marks)
         const size_t mark = mark_size(at, marks);
         const bool is_shown = mark > 0 || *at == '\n' || character.escape[0] == '\0';
         const size_t size = mark > 0 ? mark : character.size;
-        text_append(&target, "%.*s", is_shown ? (int)size : PRINTABLE_ESCAPE_SIZE,
-                    is_shown ? at : character.escape);
+        text_append_bytes(&target, is_shown ? at : character.escape,
+                          is_shown ? size : strlen(character.escape));
         i += size;
     }
     text_finish(text);

@@ -16,6 +16,9 @@ void text_append(Text *text, const char *format, ...) __attribute__((format(prin
 void text_append_list(Text *text, const char *format, va_list arguments)
     __attribute__((format(printf, 2, 0)));
 
+// Appends bytes as they are.
+void text_append_bytes(Text *text, const char *bytes, size_t count);
+
 // Appends a path or another text of a user's as it can be shown on one line, see base/printable.h.
 void text_append_shown(Text *text, const char *words);
 

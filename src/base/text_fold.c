@@ -103,7 +103,8 @@ void text_fold(Text *text, size_t width)
     while (*line != '\0') {
         const size_t length = strcspn(line, "\n");
         if (is_set_out(line, length) || text_width(line, length) <= width) {
-            text_append(&target, "%.*s\n", (int)length, line);
+            text_append_bytes(&target, line, length);
+            text_append_bytes(&target, "\n", 1);
         } else {
             fold_line(line, length, width, &target);
         }

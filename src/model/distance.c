@@ -65,9 +65,9 @@ Vec3 distance_change(const Trajectory *trajectory, size_t sample, size_t body,
 double distance_between(Vec3 a, Vec3 b)
 {
     const Vec3 apart = vec3_sub(a, b);
-    // of turning in the plane
-    if (apart.y == 0.0 && apart.z == 0.0) {
-        return fabs(apart.x);
+    // of turning in the plane, and of moving
+    if (apart.z == 0.0) {
+        return apart.y == 0.0 ? fabs(apart.x) : hypot(apart.x, apart.y);
     }
     return hypot(hypot(apart.x, apart.y), apart.z);
 }
@@ -87,8 +87,12 @@ static DistanceScale body_scale(const Trajectory *reference, size_t body)
         const double changing =
             distance_between(distance_change(reference, k, body, centre), still);
         const double speeding = distance_between(distance_change(reference, k, body, turn), still);
-        const double rate = distance_between(distance_rate(reference, k, body, own), still);
-        const double change = distance_between(distance_change(reference, k, body, own), still);
+        double rate = own.by_velocity ? moving : turning;
+        double change = own.by_velocity ? changing : speeding;
+        if (own.reach > 0.0) {
+            rate = distance_between(distance_rate(reference, k, body, own), still);
+            change = distance_between(distance_change(reference, k, body, own), still);
+        }
         scale.omega = fmax(scale.omega, rate);
         scale.alpha = fmax(scale.alpha, change);
         scale.moving = fmax(scale.moving, moving + turning * reach);

@@ -312,14 +312,11 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
     return force;
 }
 
-void dynamics_rates(double since_s, const double *y, double *rates, void *context)
+// The rates of any mechanism.
+static void find_all_rates(const Dynamics *dynamics, double since_s, const double *y, double *rates)
 {
-    const Dynamics *dynamics = context;
     const Tree *tree = &dynamics->tree;
     const size_t n = tree->coordinate_count;
-    if (dynamics->hinged != NULL && hinged_rates(dynamics->hinged, since_s, y, rates)) {
-        return;
-    }
     DynamicsState *state = dynamics->room.state;
     Loads loads = dynamics->room.loads;
     const double *solved = dynamics->room.solved;
@@ -344,4 +341,12 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
     }
     find_drive(dynamics, &loads, state);
     fill_rates(dynamics, state, y, rates);
+}
+
+void dynamics_rates(double since_s, const double *y, double *rates, void *context)
+{
+    const Dynamics *dynamics = context;
+    if (dynamics->hinged == NULL || !hinged_rates(dynamics->hinged, since_s, y, rates)) {
+        find_all_rates(dynamics, since_s, y, rates);
+    }
 }

@@ -47,7 +47,7 @@ void json_value_write(const json_t *value, size_t flags, Text *text)
         if (character.escape[0] != '\0' && *at != '\n') {
             append_escape(text, character.code);
         } else {
-            text_append(text, "%.*s", (int)character.size, at);
+            text_append_bytes(text, at, character.size);
         }
         at += character.size;
         size -= character.size;
