@@ -6,7 +6,7 @@
 #include "casefile/units.h"
 #include "model/scenario.h"
 
-enum { SCHEMA_PATH_SIZE = 160, SCHEMA_CHILD_MAX = 24 };
+enum { SCHEMA_PATH_SIZE = 160, SCHEMA_CHILD_MAX = 40 };
 
 // How a value is written, and what it becomes in the scenario.
 typedef enum SchemaType {
