@@ -1,8 +1,11 @@
 // Which coordinates move a linkage? Found once: bodies hang on known ones by ideal joints, those
-// that hang on nothing float, and ideal joints that are left over close loops.
+// that hang on nothing float, and ideal joints that are left over close loops
+// (reference/tree_span.h).
 #include "reference/tree.h"
 
 #include "base/layout.h"
+#include "reference/tree_span.h"
+
 #include <assert.h>
 #include <stdlib.h>
 
@@ -35,36 +38,6 @@ static void add_node(Tree *tree, int body, int joint, int parent)
     }
     tree->angle_column[body] = node->angle_column;
     tree->node_of[body] = (int)tree->node_count - 1;
-}
-
-// Which bodies and joints the tree has taken in so far.
-typedef struct Growth {
-    bool *is_known; // by body and the ground, which stands before the first
-    bool *is_used;  // by joint
-} Growth;
-
-// Hangs on every body that an unused ideal joint connects with a known one, until none is left.
-static void grow(Tree *tree, Growth *growth)
-{
-    const Linkage *linkage = tree->linkage;
-    bool *is_known = growth->is_known + 1;
-    bool has_grown = true;
-    while (has_grown) {
-        has_grown = false;
-        for (size_t i = 0; i < linkage->joint_count; i++) {
-            const Joint *joint = &linkage->joints[i];
-            const bool is_taken = growth->is_used[i] || !linkage_kind_is_ideal(joint->kind);
-            if (is_taken || is_known[joint->body_a] == is_known[joint->body_b]) {
-                continue;
-            }
-            const bool a_known = is_known[joint->body_a];
-            const int child = a_known ? joint->body_b : joint->body_a;
-            add_node(tree, child, (int)i, a_known ? joint->body_a : joint->body_b);
-            is_known[child] = true;
-            growth->is_used[i] = true;
-            has_grown = true;
-        }
-    }
 }
 
 static void set_end(Tree *tree, int end, int body, Vec2 anchor)
@@ -227,27 +200,17 @@ void tree_build(const Linkage *linkage, Tree *tree)
     *tree = (Tree){.linkage = linkage, .driven = linkage_driven_body(linkage)};
     make_room(tree);
     set_pairs(tree);
-    bool *known = calloc(linkage->body_count + 1 + linkage->joint_count, sizeof *known);
-    assert(known != NULL);
-    Growth growth = {known, known + linkage->body_count + 1};
-    known[0] = true;
     if (tree->driven >= 0) {
         tree->angle_column[tree->driven] = -1;
         tree->node_of[tree->driven] = -1;
         tree->is_carried[tree->driven] = true;
-        known[tree->driven + 1] = true;
-        growth.is_used[linkage->driver.joint] = true;
     }
-    grow(tree, &growth);
-    for (int body = 0; body < (int)linkage->body_count; body++) {
-        if (!known[body + 1]) {
-            add_node(tree, body, -1, LINKAGE_GROUND);
-            known[body + 1] = true;
-            grow(tree, &growth);
-        }
+    Span span = span_find(linkage);
+    for (size_t i = 0; i < span.count; i++) {
+        add_node(tree, span.steps[i].body, span.steps[i].joint, span.steps[i].parent);
     }
-    list_loops(tree, growth.is_used);
-    free(known);
+    list_loops(tree, span.is_used);
+    span_finish(&span);
 }
 
 void tree_finish(Tree *tree)

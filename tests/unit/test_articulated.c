@@ -4,6 +4,7 @@
 
 #include "base/dense.h"
 #include "base/lcg.h"
+#include "reference/articulated_plan.h"
 #include "reference/loops.h"
 #include "reference/tree_line.h"
 
@@ -292,6 +293,79 @@ static void another_push_moves_otherwise(void **state)
     assert_true(apart(scissor(4), 1e-3) > 100.0 * ROUNDED);
 }
 
+enum { IN_A_ROW = 64 };
+
+// Four-bars in a row that share their uprights, and crossed bars in a row. A foot is on the ground,
+// where a four-bar or the first bar has one.
+static Linkage in_a_row(bool is_crossed)
+{
+    Linkage linkage = linkage_create((LinkageRoom){2 * IN_A_ROW + 1, 3 * IN_A_ROW + 1, 0, 0});
+    for (int i = 0; i < IN_A_ROW; i++) {
+        const int pairs[3][2] = {
+            {is_crossed && i > 0 ? 2 * i - 1 : LINKAGE_GROUND, 2 * i},
+            {2 * i, 2 * i + 1},
+            {is_crossed ? 2 * i : 2 * i + 1, is_crossed ? 2 * i + 3 : 2 * i + 2},
+        };
+        for (int k = 0; k < 3; k++) {
+            // the last bars have no neighbours
+            if (pairs[k][1] <= 2 * IN_A_ROW - (is_crossed ? 1 : 0)) {
+                linkage.joints[linkage.joint_count++] =
+                    (Joint){.body_a = pairs[k][0], .body_b = pairs[k][1]};
+            }
+        }
+    }
+    linkage.body_count = 2 * IN_A_ROW + (is_crossed ? 0 : 1);
+    if (!is_crossed) {
+        linkage.joints[linkage.joint_count++] =
+            (Joint){.body_a = LINKAGE_GROUND, .body_b = 2 * IN_A_ROW};
+    }
+    for (size_t i = 0; i < linkage.body_count; i++) {
+        linkage.bodies[i] = (Body){.mass = 1.0, .inertia = 1.0};
+    }
+    return linkage;
+}
+
+// The most loops that meet in one step of the elimination.
+static size_t most_in_a_front(const Linkage *linkage)
+{
+    Tree tree;
+    Plan plan;
+    tree_build(linkage, &tree);
+    articulated_plan_make(&tree, tree.loop_count, tree.loops, &plan);
+    size_t most = 0;
+    for (size_t i = 0; i < plan.front_count; i++) {
+        most = plan.fronts[i].loop_count > most ? plan.fronts[i].loop_count : most;
+    }
+    articulated_plan_finish(&plan);
+    tree_finish(&tree);
+    return most;
+}
+
+// Exchanges each joint with another of the rest.
+static void shuffle(Linkage *linkage, uint64_t *seed)
+{
+    for (size_t i = linkage->joint_count; i > 1; i--) {
+        const size_t k = (size_t)((0.5 + 0.499 * lcg_draw(seed)) * (double)i);
+        const Joint joint = linkage->joints[i - 1];
+        linkage->joints[i - 1] = linkage->joints[k];
+        linkage->joints[k] = joint;
+    }
+}
+
+static void loops_stay_with_their_neighbours_whatever_the_order_of_the_joints(void **state)
+{
+    (void)state;
+    uint64_t seed = 7;
+    for (int is_crossed = 0; is_crossed < 2; is_crossed++) {
+        Linkage linkage = in_a_row(is_crossed == 1);
+        for (int i = 0; i < 8; i++) {
+            assert_true(most_in_a_front(&linkage) <= 4);
+            shuffle(&linkage, &seed);
+        }
+        linkage_free(&linkage);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -299,6 +373,7 @@ int main(void)
         cmocka_unit_test(loops_in_a_row_move_as_their_whole_matrix_says),
         cmocka_unit_test(slides_move_as_their_whole_matrix_says),
         cmocka_unit_test(another_push_moves_otherwise),
+        cmocka_unit_test(loops_stay_with_their_neighbours_whatever_the_order_of_the_joints),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
