@@ -319,27 +319,33 @@ static inline void subtract_below(const Sparse *sparse, const double *rows, size
     }
 }
 
+// Finds the unknowns of one column from those behind it.
+static inline void go_back_to(const Sparse *sparse, size_t p, bool with_kept, double *rows)
+{
+    const size_t n = size_at(sparse, p);
+    const size_t first = sparse->first_block[p];
+    const size_t kept = eliminated_end(sparse, p);
+    const size_t end = with_kept ? sparse->first_block[p + 1] : kept;
+    const double *own = sparse->values + sparse->block_value[first];
+    double *x = rows + sparse->first_row[sparse->node_at[p]];
+    for (size_t k = n; k-- > 0;) {
+        for (size_t b = kept; b < end; b++) {
+            subtract_below(sparse, rows, b, n, k, x);
+        }
+        for (size_t j = k + 1; j < n; j++) {
+            x[k] -= own[j * n + k] * x[j];
+        }
+        for (size_t b = first + 1; b < kept; b++) {
+            subtract_below(sparse, rows, b, n, k, x);
+        }
+        x[k] /= own[k * n + k];
+    }
+}
+
 static void go_back(const Sparse *sparse, bool with_kept, double *rows)
 {
     for (size_t p = sparse->eliminated; p-- > 0;) {
-        const size_t n = size_at(sparse, p);
-        const size_t first = sparse->first_block[p];
-        const size_t kept = eliminated_end(sparse, p);
-        const size_t end = with_kept ? sparse->first_block[p + 1] : kept;
-        const double *own = sparse->values + sparse->block_value[first];
-        double *x = rows + sparse->first_row[sparse->node_at[p]];
-        for (size_t k = n; k-- > 0;) {
-            for (size_t b = kept; b < end; b++) {
-                subtract_below(sparse, rows, b, n, k, x);
-            }
-            for (size_t j = k + 1; j < n; j++) {
-                x[k] -= own[j * n + k] * x[j];
-            }
-            for (size_t b = first + 1; b < kept; b++) {
-                subtract_below(sparse, rows, b, n, k, x);
-            }
-            x[k] /= own[k * n + k];
-        }
+        go_back_to(sparse, p, with_kept, rows);
     }
 }
 
@@ -351,6 +357,13 @@ void sparse_forward(const Sparse *sparse, double *rows)
 void sparse_back(const Sparse *sparse, double *rows)
 {
     go_back(sparse, true, rows);
+}
+
+void sparse_back_some(const Sparse *sparse, size_t count, const size_t *nodes, double *rows)
+{
+    for (size_t i = count; i-- > 0;) {
+        go_back_to(sparse, sparse->order[nodes[i]], true, rows);
+    }
 }
 
 void sparse_solve(const Sparse *sparse, double *rows)

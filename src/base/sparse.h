@@ -60,6 +60,10 @@ void sparse_forward(const Sparse *sparse, double *rows);
 // the kept rows.
 void sparse_back(const Sparse *sparse, double *rows);
 
+// The same for some eliminated nodes, in the order of their elimination: with each, all eliminated
+// ones that it has a block with.
+void sparse_back_some(const Sparse *sparse, size_t count, const size_t *nodes, double *rows);
+
 // Solves A x = b for the eliminated rows in place, the unknowns of the kept rows being zero; those
 // rows are left alone.
 void sparse_solve(const Sparse *sparse, double *rows);

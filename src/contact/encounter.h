@@ -102,6 +102,9 @@ void encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t row
 // Makes room for what a step is given, once all joints are there: mobilities, all zero, between
 // rows that are no further apart than `reach`.
 void encounter_make_room(Encounter *encounter, size_t reach);
+
+// Makes room for positions, speeds and free accelerations alone, of one that is not run.
+void encounter_make_rows(Encounter *encounter);
 void encounter_finish(Encounter *encounter);
 
 // The mobility of two rows no further apart than `reach`, by their numbers.

@@ -107,6 +107,21 @@ PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double ti
     return pose_of(encounter, joint, position, speed);
 }
 
+PinHole encounter_force_flight(const Encounter *encounter, size_t joint, double time_s,
+                               const double moved[2], const double speeds[2])
+{
+    const size_t row = encounter->joints[joint].first_row;
+    double position[2];
+    double speed[2];
+    for (size_t i = 0; i < 2; i++) {
+        speed[i] = encounter->speed[row + i] + time_s * encounter->free[row + i] + speeds[i];
+        position[i] =
+            encounter->position[row + i] + moved[i] +
+            time_s * (encounter->speed[row + i] + 0.5 * time_s * encounter->free[row + i]);
+    }
+    return pose_of(encounter, joint, position, speed);
+}
+
 // All rows at once: the same sums in the same order, but for rows side by side, which the compiler
 // turns into vectors. The mobility is symmetric.
 static void find_all_rows(const Encounter *encounter, double time_s, const double *impulse,

@@ -84,6 +84,11 @@ void encounter_force_find_touching(Encounter *encounter, double time_s, const do
 PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double time_s,
                              const double *impulse, const double *moment);
 
+// The same of what the joint's first two rows have moved, and how much faster they have become,
+// beside the free motion.
+PinHole encounter_force_flight(const Encounter *encounter, size_t joint, double time_s,
+                               const double moved[2], const double speeds[2]);
+
 // The rate of a row, m/s or rad/s, after impulses.
 double encounter_force_row_speed(const Encounter *encounter, size_t row, double time_s,
                                  const double *impulse);

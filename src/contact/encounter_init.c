@@ -120,6 +120,14 @@ static void free_work(EncounterWork *work)
     free(work);
 }
 
+void encounter_make_rows(Encounter *encounter)
+{
+    const size_t rows = encounter->row_count;
+    encounter->free = zeroed(rows, sizeof *encounter->free);
+    encounter->position = zeroed(rows, sizeof *encounter->position);
+    encounter->speed = zeroed(rows, sizeof *encounter->speed);
+}
+
 void encounter_make_room(Encounter *encounter, size_t reach)
 {
     const size_t rows = encounter->row_count;
@@ -130,9 +138,7 @@ void encounter_make_room(Encounter *encounter, size_t reach)
     encounter->pitch = is_dense ? rows : 2 * reach;
     encounter->mobility =
         zeroed(rows * (is_dense ? rows : 2 * reach + 1), sizeof *encounter->mobility);
-    encounter->free = zeroed(rows, sizeof *encounter->free);
-    encounter->position = zeroed(rows, sizeof *encounter->position);
-    encounter->speed = zeroed(rows, sizeof *encounter->speed);
+    encounter_make_rows(encounter);
     encounter->work = make_work(rows, encounter->joint_count);
 }
 

@@ -74,19 +74,6 @@ const double *response_block(const Response *response, size_t place, size_t othe
     return sparse_block(&response->matrix, first + place, first + other, &is_transposed);
 }
 
-size_t response_reach(const Response *response)
-{
-    size_t reach = 0;
-    for (size_t a = 0; a < response->place_count; a++) {
-        // the first of its partners is the furthest before it
-        const size_t first = response->partners[response->first_partner[a]];
-        const size_t end = response->first_row[a] + response_place_rows(&response->places[a]) - 1;
-        const size_t apart = end - response->first_row[first];
-        reach = apart > reach ? apart : reach;
-    }
-    return reach;
-}
-
 void response_mobility(const Response *response, double *mobility)
 {
     const size_t width = response_play_rows(response);
@@ -133,6 +120,11 @@ static void add_row(const Linkage *linkage, const ResponseRow *row, double impul
             sum[2] += row->turn[end] * impulse / inertia;
         }
     }
+}
+
+void response_add_row(const Response *response, size_t row, double impulse, double *changes)
+{
+    add_row(response->linkage, &response->rows[row], impulse, changes);
 }
 
 // All impulses that impulses in the joints with play bring with them, by row.

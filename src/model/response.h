@@ -36,9 +36,6 @@ void response_mobility(const Response *response, double *mobility);
 // other's. NULL where it is always zero.
 const double *response_block(const Response *response, size_t place, size_t other);
 
-// How far apart rows of play are at most that move each other.
-size_t response_reach(const Response *response);
-
 // Writes the acceleration of the rows of the joints with play while nothing acts in them: under
 // gravity, m/s^2 along -y, and loads on the bodies (NULL: none), at the velocities given; of the
 // driven body its own acceleration.
@@ -60,6 +57,9 @@ void response_hold(const Response *response, const double *reactions, double *lo
 // Writes by how much impulses in the joints with play, N s (N m s), change the velocities of all
 // bodies: x, y, angle, three a body. The ideal joints' own impulses are in it.
 void response_apply(const Response *response, const double *impulses, double *changes);
+
+// Adds by how much an impulse in one of all rows, by itself, changes the velocities of its bodies.
+void response_add_row(const Response *response, size_t row, double impulse, double *changes);
 
 // Solves D x = b for the rows of the ideal joints, D = J M^-1 J', in place.
 void response_solve(const Response *response, double *rows);

@@ -4,7 +4,7 @@
 // A step is handed on in parts (ode/impulse_part.c).
 #include "base/zeroed.h"
 #include "contact/law.h"
-#include "ode/impulse_part.h"
+#include "ode/impulse_islands.h"
 #include "ode/impulse_parts.h"
 #include "ode/impulse_step.h"
 #include "ode/stepping.h"
@@ -14,8 +14,9 @@
 
 typedef struct Impulse {
     ImpulseStep step;
-    ImpulsePart part; // of it, the one that is handed on
-    Motion *motions;  // by body; owned, as the next two
+    ImpulsePart part;        // of it, the one that is handed on
+    ImpulseIslands *islands; // where the step has them; owned
+    Motion *motions;         // by body; owned, as the next two
     JointState *joints;
     double *depths;     // m, by place
     EncounterSums sums; // at the time that is asked for
@@ -26,6 +27,7 @@ static void impulse_close(void *state)
     Impulse *impulse = state;
     if (impulse != NULL) {
         impulse_part_finish(&impulse->part);
+        impulse_islands_destroy(impulse->islands);
         impulse_step_finish(&impulse->step);
         free(impulse->motions);
         free(impulse->joints);
@@ -44,6 +46,9 @@ static bool impulse_open(const Scenario *scenario, void **state, Err *err)
         const size_t rows = encounter_rows(&impulse->step.encounter);
         impulse_part_init(&impulse->part, linkage, rows);
         impulse->sums = encounter_sums(rows);
+        if (impulse->step.islands != NULL) {
+            impulse->islands = impulse_islands_create(&impulse->step);
+        }
         impulse->motions = zeroed(linkage->body_count, sizeof *impulse->motions);
         impulse->joints = zeroed(linkage->joint_count, sizeof *impulse->joints);
         impulse->depths = zeroed(impulse->step.place_count, sizeof *impulse->depths);
@@ -57,7 +62,10 @@ static bool impulse_open(const Scenario *scenario, void **state, Err *err)
 static bool check_depths(const Impulse *impulse, Err *err)
 {
     const ImpulseStep *step = &impulse->step;
-    for (size_t i = 0; i < step->place_count; i++) {
+    const ImpulseScope *scope =
+        impulse->islands != NULL ? impulse_islands_scope(impulse->islands) : &step->whole;
+    for (size_t n = 0; n < scope->part.place_count; n++) {
+        const size_t i = scope->part.places[n];
         const Joint *joint = &step->scenario->linkage.joints[step->places[i].joint];
         if (!law_check_depth(&step->places[i].law, joint, impulse->depths[i], 1.0, err)) {
             return false;
@@ -73,8 +81,9 @@ static void take_part(Impulse *impulse)
     ImpulsePart *part = &impulse->part;
     Motion *motions = impulse->motions;
     const Mark *mark = impulse_part_next(part, &step->encounter, step->start_s, step->end_s);
-    impulse_step_inside(step, mark->node, mark->time_s, !part->is_last, &part->sums, motions,
-                        impulse->joints, impulse->depths);
+    const ImpulseTime at = {mark->time_s, mark->node, !part->is_last};
+    impulse_step_inside(step, &step->whole, at, &part->sums, motions, impulse->joints,
+                        impulse->depths);
     impulse_part_record(part, &step->scenario->linkage, impulse->joints);
     for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
         part->omega[i] = motions[i].omega;
@@ -85,18 +94,36 @@ static void take_part(Impulse *impulse)
     part->record.dissipated += part->is_last ? step->damped : 0.0;
 }
 
+// Takes the next step and begins to hand it on.
+static bool begin_step_of(Impulse *impulse, Err *err)
+{
+    if (!impulse_step_take(&impulse->step, err)) {
+        return false;
+    }
+    if (impulse->islands != NULL) {
+        impulse_islands_begin(impulse->islands, &impulse->part);
+    } else {
+        impulse_part_begin(&impulse->part, &impulse->step.encounter, impulse->step.start_s);
+    }
+    return true;
+}
+
 static bool impulse_step(void *state, double stop_s, Err *err)
 {
     (void)stop_s; // samples are looked up inside the step
     Impulse *impulse = state;
-    ImpulseStep *step = &impulse->step;
-    if (impulse_part_needs_step(&impulse->part)) {
-        if (!impulse_step_take(step, err)) {
-            return false;
-        }
-        impulse_part_begin(&impulse->part, &step->encounter, step->start_s);
+    const ImpulseStep *step = &impulse->step;
+    const bool needs_step = impulse->islands != NULL ? impulse_islands_need_step(impulse->islands)
+                                                     : impulse_part_needs_step(&impulse->part);
+    if (needs_step && !begin_step_of(impulse, err)) {
+        return false;
     }
-    take_part(impulse);
+    if (impulse->islands != NULL) {
+        impulse_islands_next(impulse->islands, &impulse->part, impulse->motions, impulse->joints,
+                             impulse->depths);
+    } else {
+        take_part(impulse);
+    }
     return check_depths(impulse, err) ||
            stepping_fail(step->scenario, impulse->part.end_s, step->count, step->width_s, err);
 }
@@ -119,12 +146,17 @@ static void impulse_observe(const void *state, double time_s, Sample *sample)
     EncounterSums sums = impulse->sums; // which owns the arrays
     const Linkage *linkage = &impulse->step.scenario->linkage;
     const double since_s = fmin(fmax(time_s - impulse->step.start_s, 0.0), impulse->step.width_s);
-    const size_t node = encounter_node(&impulse->step.encounter, since_s);
-    encounter_at(&impulse->step.encounter, node, since_s, &sums);
+    ImpulseTime at = {since_s, 0, true};
+    if (impulse->islands != NULL) {
+        encounter_islands_look(impulse->step.islands, since_s, &sums);
+    } else {
+        at.node = encounter_node(&impulse->step.encounter, since_s);
+        encounter_at(&impulse->step.encounter, at.node, since_s, &sums);
+    }
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
-    impulse_step_inside(&impulse->step, node, since_s, true, &sums, sample->bodies, sample->joints,
-                        impulse->depths);
+    impulse_step_inside(&impulse->step, &impulse->step.whole, at, &sums, sample->bodies,
+                        sample->joints, impulse->depths);
 }
 
 static SolverModel impulse_model(const void *state)

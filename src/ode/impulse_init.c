@@ -9,6 +9,9 @@
 // for them together so many times
 enum { FEW_ROWS = 4 };
 
+// places up to which all are integrated together: what islands save they cost as well
+enum { FEW_PLACES = 16 };
+
 static void make_arrays(ImpulseStep *step)
 {
     const size_t bodies = step->scenario->linkage.body_count;
@@ -37,6 +40,39 @@ static void make_arrays(ImpulseStep *step)
         work->rows[i] = zeroed(step->response.row_count, sizeof *work->rows[i]);
         work->changes[i] = zeroed(3 * bodies, sizeof *work->changes[i]);
     }
+}
+
+static size_t *make_numbers(size_t count)
+{
+    size_t *numbers = zeroed(count, sizeof *numbers);
+    for (size_t i = 0; i < count; i++) {
+        numbers[i] = i;
+    }
+    return numbers;
+}
+
+static void make_whole(ImpulseStep *step)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    step->whole = (ImpulseScope){
+        .is_whole = true,
+        .has_drive = step->driven >= 0,
+        .body_count = linkage->body_count,
+        .bodies = make_numbers(linkage->body_count),
+        .joint_count = linkage->joint_count,
+        .joints = make_numbers(linkage->joint_count),
+        .part.place_count = step->place_count,
+        .part.places = make_numbers(step->place_count),
+    };
+}
+
+void impulse_scope_finish(ImpulseScope *scope)
+{
+    free(scope->bodies);
+    free(scope->joints);
+    free(scope->part.groups);
+    free(scope->part.places);
+    *scope = (ImpulseScope){.body_count = 0};
 }
 
 static void free_arrays(ImpulseStep *step)
@@ -71,6 +107,9 @@ static void free_arrays(ImpulseStep *step)
 
 void impulse_step_finish(ImpulseStep *step)
 {
+    encounter_islands_destroy(step->islands);
+    response_groups_finish(&step->groups);
+    impulse_scope_finish(&step->whole);
     encounter_finish(&step->encounter);
     encounter_sums_free(&step->total);
     response_finish(&step->response);
@@ -98,6 +137,21 @@ static EncounterJoint joint_of(const ImpulseStep *step, const Touch *place)
     };
 }
 
+static const double *block_of(const void *context, size_t place, size_t other)
+{
+    return response_block(context, place, other);
+}
+
+EncounterCoupling impulse_step_coupling(const Response *response)
+{
+    return (EncounterCoupling){
+        .first_partner = response->first_partner,
+        .partners = response->partners,
+        .block = block_of,
+        .context = response,
+    };
+}
+
 static bool init_encounter(ImpulseStep *step, Err *err)
 {
     const Scenario *scenario = step->scenario;
@@ -116,8 +170,15 @@ static bool init_encounter(ImpulseStep *step, Err *err)
         encounter_add(&step->encounter, &added, rows);
     }
     const size_t rows = encounter_rows(&step->encounter);
-    encounter_make_room(&step->encounter, response_reach(&step->response));
     step->total = encounter_sums(rows);
+    if (step->place_count <= FEW_PLACES) {
+        encounter_make_room(&step->encounter, rows);
+        return true;
+    }
+    const EncounterCoupling coupling = impulse_step_coupling(&step->response);
+    encounter_make_rows(&step->encounter);
+    step->islands = encounter_islands_create(&step->encounter, &coupling);
+    response_groups_init(&step->response, &step->groups);
     return true;
 }
 
@@ -130,6 +191,7 @@ bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
         return false;
     }
     make_arrays(step);
+    make_whole(step);
     linkage_start(&scenario->linkage, step->after);
     return world_build(scenario, step->after, &step->world, err);
 }

@@ -10,35 +10,49 @@
 
 #include <string.h>
 
-// How the bodies move at a time within the step, from the contacts' sums up to then.
-static void find_motions(const ImpulseStep *step, double since_s, const EncounterSums *sums,
-                         Motion *motions)
+// What impulses in the rows of play do to the speeds of a scope's bodies.
+static void apply(const ImpulseStep *step, const ImpulseScope *scope, const double *impulses,
+                  double *changes)
 {
-    if (since_s == step->width_s) {
+    if (scope->is_whole) {
+        impulse_step_apply(step, impulses, changes);
+        return;
+    }
+    for (size_t n = 0; n < scope->body_count; n++) {
+        memset(changes + 3 * scope->bodies[n], 0, 3 * sizeof *changes);
+    }
+    response_groups_apply(&step->response, &step->groups, &scope->part, impulses, changes);
+}
+
+// How the bodies move at a time within the step, from the contacts' sums up to then.
+static void find_motions(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
+                         const EncounterSums *sums, Motion *motions)
+{
+    if (since_s == step->width_s && scope->is_whole) {
         memcpy(motions, step->after, step->scenario->linkage.body_count * sizeof *motions);
         return;
     }
     double *speeds = step->work->changes[0];
     double *positions = step->work->changes[1];
-    impulse_step_apply(step, sums->impulse, speeds);
-    impulse_step_apply(step, sums->moment, positions);
+    apply(step, scope, sums->impulse, speeds);
+    apply(step, scope, sums->moment, positions);
     const double share = since_s / step->width_s;
-    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
+    for (size_t n = 0; n < scope->body_count; n++) {
+        const size_t i = scope->bodies[n];
         const Motion *first = &step->before[i];
         const double v[3] = {first->velocity.x, first->velocity.y, first->omega};
         double q[3] = {first->position.x, first->position.y, first->angle};
         double w[3];
         for (size_t k = 0; k < 3; k++) {
-            const size_t n = 3 * i + k;
-            const double mean = step->free[n];
-            w[k] = v[k] + since_s * mean + speeds[n];
-            q[k] += since_s * (v[k] + 0.5 * since_s * mean) + positions[n] +
-                    share * share * step->rest[n];
+            const double mean = step->free[3 * i + k];
+            w[k] = v[k] + since_s * mean + speeds[3 * i + k];
+            q[k] += since_s * (v[k] + 0.5 * since_s * mean) + positions[3 * i + k] +
+                    share * share * step->rest[3 * i + k];
         }
         motions[i] = (Motion){
             .position = {q[0], q[1]}, .angle = q[2], .velocity = {w[0], w[1]}, .omega = w[2]};
     }
-    if (step->driven >= 0) {
+    if (scope->has_drive) {
         motions[step->driven] =
             stepping_driven_since(&step->scenario->linkage, step->start_s, step->start_s + since_s);
     }
@@ -47,9 +61,14 @@ static void find_motions(const ImpulseStep *step, double since_s, const Encounte
 // What the contacts' forces do to all speeds. It turns with the bodies: of few rows it is a
 // parabola in time through this step and the two before; else the response is taken where the
 // bodies are, at a peak, or at mid-step.
-static void find_contact_rates(const ImpulseStep *step, double since_s, bool is_peak,
-                               const EncounterSums *sums, const Motion *motions, double *rates)
+static void find_contact_rates(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
+                               bool is_peak, const EncounterSums *sums, const Motion *motions,
+                               double *rates)
 {
+    if (!scope->is_whole || step->islands != NULL) {
+        apply(step, scope, sums->force, rates);
+        return;
+    }
     if (step->columns[0] == NULL || step->count < IMPULSE_COLUMNS) {
         const bool is_placed = is_peak && response_place(&step->work->there, motions);
         response_apply(is_placed ? &step->work->there : &step->response, sums->force, rates);
@@ -75,19 +94,21 @@ static void find_contact_rates(const ImpulseStep *step, double since_s, bool is_
 }
 
 // Fills in the accelerations: those beside the contacts', linear in time, and the contacts'.
-static void find_accelerations(const ImpulseStep *step, double since_s, bool is_peak,
-                               const EncounterSums *sums, Motion *motions)
+static void find_accelerations(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
+                               bool is_peak, const EncounterSums *sums, Motion *motions)
 {
     double *rates = step->work->changes[0];
     const double off_middle_s = since_s - 0.5 * step->width_s;
-    find_contact_rates(step, since_s, is_peak, sums, motions, rates);
-    for (size_t n = 0; n < 3 * step->scenario->linkage.body_count; n++) {
-        rates[n] += step->free[n] + off_middle_s * step->free_rate[n];
-    }
-    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
+    find_contact_rates(step, scope, since_s, is_peak, sums, motions, rates);
+    for (size_t n = 0; n < scope->body_count; n++) {
+        const size_t i = scope->bodies[n];
         if (impulse_step_is_free(step, i)) {
-            motions[i].acceleration = (Vec2){rates[3 * i], rates[3 * i + 1]};
-            motions[i].alpha = rates[3 * i + 2];
+            double all[3];
+            for (size_t k = 3 * i; k < 3 * i + 3; k++) {
+                all[k - 3 * i] = rates[k] + (step->free[k] + off_middle_s * step->free_rate[k]);
+            }
+            motions[i].acceleration = (Vec2){all[0], all[1]};
+            motions[i].alpha = all[2];
         }
     }
 }
@@ -155,15 +176,24 @@ static void add_line(const Linkage *linkage, const Touch *place, const Encounter
     }
 }
 
+static EncounterPose pose_in_step(const ImpulseStep *step, size_t place, ImpulseTime at,
+                                  const EncounterSums *sums)
+{
+    return step->islands != NULL
+               ? encounter_islands_pose(step->islands, place, at.since_s, sums)
+               : encounter_pose(&step->encounter, place, at.node, at.since_s, sums);
+}
+
 // The states of the joints with play, and how deep each place is.
-static void find_places(const ImpulseStep *step, size_t node, double since_s,
+static void find_places(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                         const EncounterSums *sums, const Motion *motions, JointState *joints,
                         double *depths)
 {
     const Linkage *linkage = &step->scenario->linkage;
-    for (size_t i = 0; i < step->place_count; i++) {
+    for (size_t n = 0; n < scope->part.place_count; n++) {
+        const size_t i = scope->part.places[n];
         const Touch *place = &step->places[i];
-        const EncounterPose pose = encounter_pose(&step->encounter, i, node, since_s, sums);
+        const EncounterPose pose = pose_in_step(step, i, at, sums);
         depths[i] = pose.pose.penetration;
         if (linkage->joints[place->joint].limits.kind != LIMIT_NONE) {
             const bool is_first = i == 0 || step->places[i - 1].joint != place->joint;
@@ -187,27 +217,57 @@ static void find_places(const ImpulseStep *step, size_t node, double since_s,
     }
 }
 
-// The states of all joints at a time within the step.
-static void find_joints(const ImpulseStep *step, size_t node, double since_s,
+// What the ideal joints do: their mean forces, and how they answer what the contacts do beyond
+// theirs.
+static void find_ideal(const ImpulseStep *step, const ImpulseScope *scope,
+                       const EncounterSums *sums, const Motion *motions, JointState *joints)
+{
+    const Encounter *encounter = &step->encounter;
+    double *beyond = step->work->rows[0];
+    double *reactions = step->work->rows[1];
+    if (scope->is_whole) {
+        for (size_t i = 0; i < encounter_rows(encounter); i++) {
+            beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
+        }
+        response_react(&step->response, beyond, reactions);
+        for (size_t row = 0; row < step->response.ideal_rows; row += 2) {
+            impulse_step_add_ideal(step, row, reactions + row, motions,
+                                   &joints[step->response.joint_of[row]]);
+        }
+        return;
+    }
+    for (size_t n = 0; n < scope->part.place_count; n++) {
+        const EncounterJoint *joint = &encounter->joints[scope->part.places[n]];
+        for (size_t i = joint->first_row; i < joint->first_row + joint->row_count; i++) {
+            beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
+        }
+    }
+    const ResponseGroups *groups = &step->groups;
+    const double *all = response_groups_apply(&step->response, groups, &scope->part, beyond,
+                                              step->work->changes[0]);
+    for (size_t n = 0; n < scope->part.group_count; n++) {
+        const size_t group = scope->part.groups[n];
+        for (size_t k = groups->first_node[group]; k < groups->first_node[group + 1]; k++) {
+            const size_t row = 2 * groups->nodes[k];
+            impulse_step_add_ideal(step, row, all + row, motions,
+                                   &joints[step->response.joint_of[row]]);
+        }
+    }
+}
+
+// The states of the joints at a time within the step.
+static void find_joints(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                         const EncounterSums *sums, const Motion *motions, JointState *joints,
                         double *depths)
 {
-    const Encounter *encounter = &step->encounter;
     const Linkage *linkage = &step->scenario->linkage;
-    memcpy(joints, step->mean, linkage->joint_count * sizeof *joints);
-    find_places(step, node, since_s, sums, motions, joints, depths);
-    // the ideal joints' mean forces, and how they answer what the contacts do beyond theirs
-    double *beyond = step->work->rows[0];
-    double *reactions = step->work->rows[1];
-    for (size_t i = 0; i < encounter_rows(encounter); i++) {
-        beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
+    for (size_t n = 0; n < scope->joint_count; n++) {
+        joints[scope->joints[n]] = step->mean[scope->joints[n]];
     }
-    response_react(&step->response, beyond, reactions);
-    for (size_t row = 0; row < step->response.ideal_rows; row += 2) {
-        impulse_step_add_ideal(step, row, reactions + row, motions,
-                               &joints[step->response.joint_of[row]]);
-    }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
+    find_places(step, scope, at, sums, motions, joints, depths);
+    find_ideal(step, scope, sums, motions, joints);
+    for (size_t n = 0; n < scope->joint_count; n++) {
+        const size_t i = scope->joints[n];
         const JointKind kind = linkage->joints[i].kind;
         joints[i].is_touching = joints[i].is_touching || !linkage_has_play(&linkage->joints[i]);
         if (kind == JOINT_PRISMATIC) {
@@ -215,7 +275,7 @@ static void find_joints(const ImpulseStep *step, size_t node, double since_s,
         }
         stepping_observe_coordinate(linkage, (int)i, motions, &joints[i]);
     }
-    if (step->driven >= 0) {
+    if (scope->has_drive) {
         Vec2 *offsets = step->work->offsets;
         memset(offsets, 0, linkage->joint_count * sizeof *offsets);
         const BodyLoad load = applied_on(&step->world.applied, step->driven);
@@ -223,11 +283,11 @@ static void find_joints(const ImpulseStep *step, size_t node, double since_s,
     }
 }
 
-void impulse_step_inside(const ImpulseStep *step, size_t node, double since_s, bool is_peak,
+void impulse_step_inside(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                          const EncounterSums *sums, Motion *motions, JointState *joints,
                          double *depths)
 {
-    find_motions(step, since_s, sums, motions);
-    find_accelerations(step, since_s, is_peak, sums, motions);
-    find_joints(step, node, since_s, sums, motions, joints, depths);
+    find_motions(step, scope, at.since_s, sums, motions);
+    find_accelerations(step, scope, at.since_s, at.is_peak, sums, motions);
+    find_joints(step, scope, at, sums, motions, joints, depths);
 }

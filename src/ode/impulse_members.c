@@ -3,25 +3,15 @@
 // Those whose bodies no joint and no spring connects, not by way of the driven body either.
 #include "ode/impulse_members.h"
 
+#include "base/leaders.h"
 #include "base/zeroed.h"
 #include "ode/stepping.h"
 
 // The first body of those that a body is known to be connected with.
-static size_t leader_of(size_t *leaders, size_t body)
-{
-    while (leaders[body] != body) {
-        leaders[body] = leaders[leaders[body]];
-        body = leaders[body];
-    }
-    return body;
-}
-
 static void connect(size_t *leaders, int a, int b)
 {
     if (a != LINKAGE_GROUND && b != LINKAGE_GROUND) {
-        const size_t first = leader_of(leaders, (size_t)a);
-        const size_t second = leader_of(leaders, (size_t)b);
-        leaders[first > second ? first : second] = first > second ? second : first;
+        leaders_join(leaders, (size_t)a, (size_t)b);
     }
 }
 
@@ -30,9 +20,7 @@ static size_t number_members(const Linkage *linkage, size_t *member_of)
 {
     size_t *leaders = zeroed(linkage->body_count, sizeof *leaders);
     size_t count = 0;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        leaders[i] = i;
-    }
+    leaders_start(leaders, linkage->body_count);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         connect(leaders, linkage->joints[i].body_a, linkage->joints[i].body_b);
     }
@@ -40,7 +28,7 @@ static size_t number_members(const Linkage *linkage, size_t *member_of)
         connect(leaders, linkage->springs[i].body_a, linkage->springs[i].body_b);
     }
     for (size_t i = 0; i < linkage->body_count; i++) {
-        const size_t leader = leader_of(leaders, i);
+        const size_t leader = leaders_find(leaders, i);
         member_of[i] = leader == i ? count++ : member_of[leader];
     }
     free(leaders);

@@ -66,36 +66,40 @@ void impulse_part_record(ImpulsePart *part, const Linkage *linkage, const JointS
     }
 }
 
+void impulse_part_add_place(ImpulsePart *part, const EncounterJoint *place, bool is_touching,
+                            double pushed)
+{
+    const int joint = place->joint;
+    part->impulse[joint] = part->is_known[joint] ? part->impulse[joint] + pushed : pushed;
+    const double touching_s = is_touching ? place->touching_s : INFINITY;
+    if (!part->is_known[joint] || touching_s < part->since_s[joint]) {
+        part->approach[joint] = place->impact_speed;
+        part->since_s[joint] = touching_s;
+    }
+    part->is_known[joint] = true;
+}
+
 void impulse_part_add_contacts(ImpulsePart *part, const Encounter *encounter, const Mark *mark,
                                const double *depths, const bool *counts)
 {
-    double *since_s = part->since_s;
-    bool *is_known = part->is_known;
     size_t touching = 0;
     for (size_t i = 0; i < encounter->joint_count; i++) {
-        is_known[encounter->joints[i].joint] = false;
+        part->is_known[encounter->joints[i].joint] = false;
     }
     for (size_t i = 0; i < encounter->joint_count; i++) {
         const EncounterJoint *place = &encounter->joints[i];
         const bool is_touching = encounter_touches(encounter, mark->node, i);
         const size_t row = place->first_row;
-        const int joint = place->joint;
         if (is_touching) {
             part->record.elastic += force_law_energy(&place->law, depths[i]);
             touching++;
         }
-        if (counts != NULL && !counts[i]) {
-            continue;
+        if (counts == NULL || counts[i]) {
+            const double pushed =
+                hypot(part->sums.impulse[row] - part->before.impulse[row],
+                      part->sums.impulse[row + 1] - part->before.impulse[row + 1]);
+            impulse_part_add_place(part, place, is_touching, pushed);
         }
-        const double pushed = hypot(part->sums.impulse[row] - part->before.impulse[row],
-                                    part->sums.impulse[row + 1] - part->before.impulse[row + 1]);
-        part->impulse[joint] = is_known[joint] ? part->impulse[joint] + pushed : pushed;
-        const double touching_s = is_touching ? place->touching_s : INFINITY;
-        if (!is_known[joint] || touching_s < since_s[joint]) {
-            part->approach[joint] = place->impact_speed;
-            since_s[joint] = touching_s;
-        }
-        is_known[joint] = true;
     }
     part->most_rows = touching > part->most_rows ? touching : part->most_rows;
 }

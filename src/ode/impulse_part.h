@@ -47,4 +47,8 @@ void impulse_part_record(ImpulsePart *part, const Linkage *linkage, const JointS
 void impulse_part_add_contacts(ImpulsePart *part, const Encounter *encounter, const Mark *mark,
                                const double *depths, const bool *counts);
 
+// Adds one place with the impulse, N s, that came of it in the part.
+void impulse_part_add_place(ImpulsePart *part, const EncounterJoint *place, bool is_touching,
+                            double pushed);
+
 void impulse_part_finish(ImpulsePart *part);

@@ -144,30 +144,6 @@ static void find_columns(ImpulseStep *step)
     }
 }
 
-// Writes the mobilities of the rows of play that the step is given.
-static void fill_mobility(ImpulseStep *step)
-{
-    const Response *response = &step->response;
-    const Encounter *encounter = &step->encounter;
-    for (size_t a = 0; a < step->place_count; a++) {
-        for (size_t n = response->first_partner[a];
-             n < response->first_partner[a + 1] && response->partners[n] <= a; n++) {
-            const size_t b = response->partners[n];
-            const EncounterJoint *of = &encounter->joints[a];
-            const EncounterJoint *other = &encounter->joints[b];
-            const double *block = response_block(response, a, b);
-            for (size_t i = 0; i < of->row_count; i++) {
-                double *row = encounter_mobility(encounter, of->first_row + i, other->first_row);
-                for (size_t k = 0; k < other->row_count; k++) {
-                    row[k] = block[i * other->row_count + k];
-                    *encounter_mobility(encounter, other->first_row + k, of->first_row + i) =
-                        row[k];
-                }
-            }
-        }
-    }
-}
-
 // Lets the contacts run through the step by themselves.
 static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
 {
@@ -177,16 +153,26 @@ static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
                        "the ideal joints are redundant here: give one joint of the loop some play");
     }
     find_columns(step);
-    fill_mobility(step);
     const Applied *applied = &step->world.applied;
     response_free(&step->response, middle, step->scenario->gravity,
                   applied->is_any ? applied->loads : NULL, encounter->free);
-    if (!encounter_run(encounter, step->width_s)) {
+    bool is_run;
+    if (step->islands != NULL) {
+        is_run = encounter_islands_run(step->islands, step->width_s);
+    } else {
+        const EncounterCoupling coupling = impulse_step_coupling(&step->response);
+        encounter_fill(encounter, &coupling, NULL);
+        is_run = encounter_run(encounter, step->width_s);
+    }
+    if (!is_run) {
         return err_set(err, ERR_SOLVER,
                        "contact sub-stepping exceeded 100000 steps in one step; reduce run.step");
     }
-    const size_t last = encounter->node_count - 1;
-    encounter_at(encounter, last, step->width_s, &step->total);
+    if (step->islands != NULL) {
+        encounter_islands_look(step->islands, step->width_s, &step->total);
+    } else {
+        encounter_at(encounter, encounter->node_count - 1, step->width_s, &step->total);
+    }
     return true;
 }
 

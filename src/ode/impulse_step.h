@@ -1,8 +1,9 @@
 // One step of the world with the contacts integrated inside it, and the state at any time in it.
 #pragma once
 
-#include "contact/encounter.h"
+#include "contact/encounter_islands.h"
 #include "contact/touch.h"
+#include "model/response_groups.h"
 #include "model/trajectory.h"
 #include "ode/world.h"
 
@@ -20,11 +21,25 @@ typedef struct ImpulseWork {
     JointState *joints;
 } ImpulseWork;
 
+// What is looked at within a step: bodies, joints and places; all, or those of one island.
+typedef struct ImpulseScope {
+    bool is_whole;
+    bool has_drive; // whether the driven body is among the bodies
+    size_t body_count;
+    size_t *bodies; // owned, as are all arrays
+    size_t joint_count;
+    size_t *joints;
+    ResponsePart part; // the places, and, of an island, the groups of bodies that they move
+} ImpulseScope;
+
 typedef struct ImpulseStep {
     const Scenario *scenario;
     World world;
-    Response response;   // at mid-step
-    Encounter encounter; // a joint of it is a place
+    Response response;         // at mid-step
+    Encounter encounter;       // a joint of it is a place
+    EncounterIslands *islands; // of the encounter's places; NULL where they are few
+    ResponseGroups groups;     // where there are islands
+    ImpulseScope whole;
     size_t place_count;
     Touch *places; // owned, as are all arrays here
     int driven;    // body, or LINKAGE_GROUND
@@ -65,6 +80,11 @@ static inline bool impulse_step_is_free(const ImpulseStep *step, size_t body)
 bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err);
 void impulse_step_finish(ImpulseStep *step);
 
+void impulse_scope_finish(ImpulseScope *scope);
+
+// How the places of a response move each other.
+EncounterCoupling impulse_step_coupling(const Response *response);
+
 // Adds what an ideal joint does to its body b: the values of its two rows, forces in N, the first
 // of which is given; a linkage's bodies are where the motions say.
 void impulse_step_add_ideal(const ImpulseStep *step, size_t row, const double *values,
@@ -89,9 +109,15 @@ bool impulse_step_take(ImpulseStep *step, Err *err);
 void impulse_step_push(ImpulseStep *step, const Motion *middle);
 void impulse_step_push_late(ImpulseStep *step, const Motion *middle);
 
-// How the bodies move and what the joints do at a time since the step's start, from the contacts'
-// sums up to then, and how deep each place is, m. Accelerations at a peak are worked out where the
-// bodies are, else at mid-step.
-void impulse_step_inside(const ImpulseStep *step, size_t node, double since_s, bool is_peak,
+// A time within a step.
+typedef struct ImpulseTime {
+    double since_s; // since the step's start
+    size_t node;    // of the encounter; islands have been looked at then
+    bool is_peak;   // whether accelerations are worked out where the bodies are, not at mid-step
+} ImpulseTime;
+
+// How the bodies of a scope move and what its joints do then, from the contacts' sums up to then,
+// and how deep each place is, m.
+void impulse_step_inside(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                          const EncounterSums *sums, Motion *motions, JointState *joints,
                          double *depths);

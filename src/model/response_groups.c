@@ -1,0 +1,181 @@
+// What do impulses in a few joints with play do to the few bodies that they move?
+//
+// As model/response.h has it for all joints. Ideal joints of different groups share no body that
+// can give way: their columns of the factor have nothing in common.
+#include "model/response_groups.h"
+
+#include "base/leaders.h"
+#include "base/zeroed.h"
+#include "model/joint_nodes.h"
+
+#include <string.h>
+
+// The bodies that an ideal joint can move; the ground where there are fewer than two.
+static void find_movers(const Response *response, size_t node, int movers[2])
+{
+    for (int side = 0; side < 2; side++) {
+        movers[side] = joint_nodes_mover(response->linkage, response->joint_of[2 * node], side);
+    }
+    if (movers[0] == LINKAGE_GROUND) {
+        movers[0] = movers[1];
+        movers[1] = LINKAGE_GROUND;
+    }
+}
+
+static void number_groups(const Response *response, ResponseGroups *groups)
+{
+    const size_t body_count = response->linkage->body_count;
+    const int driven = linkage_driven_body(response->linkage);
+    size_t *leaders = zeroed(body_count, sizeof *leaders);
+    leaders_start(leaders, body_count);
+    for (size_t node = 0; node < response->ideal_rows / 2; node++) {
+        int movers[2];
+        find_movers(response, node, movers);
+        if (movers[1] != LINKAGE_GROUND) {
+            leaders_join(leaders, (size_t)movers[0], (size_t)movers[1]);
+        }
+    }
+    for (size_t i = 0; i < body_count; i++) {
+        const size_t leader = leaders_find(leaders, i);
+        if ((int)i != driven) {
+            groups->group_of[i] = leader == i ? groups->count++ : groups->group_of[leader];
+        }
+    }
+    if (driven >= 0) {
+        groups->group_of[driven] = groups->count;
+    }
+    free(leaders);
+}
+
+// Sorts things into groups, in their order: `group_of` of each, or the number of groups.
+static void sort_into(size_t count, const size_t *group_of, size_t groups, size_t *first,
+                      size_t *sorted)
+{
+    size_t *next = zeroed(groups + 2, sizeof *next);
+    for (size_t i = 0; i < count; i++) {
+        next[group_of[i] + 1]++;
+    }
+    for (size_t g = 0; g <= groups; g++) {
+        next[g + 1] += next[g];
+        first[g] = next[g];
+    }
+    for (size_t i = 0; i < count; i++) {
+        sorted[next[group_of[i]]++] = i;
+    }
+    free(next);
+}
+
+// Lists the places of each group, which those between two groups have in common.
+static void list_places(const Response *response, ResponseGroups *groups)
+{
+    const size_t count = response->place_count;
+    size_t *group_of = zeroed(2 * count, sizeof *group_of);
+    for (size_t i = 0; i < 2 * count; i++) {
+        const int body =
+            joint_nodes_mover(response->linkage, response->places[i / 2].joint, (int)(i % 2));
+        group_of[i] = body == LINKAGE_GROUND ? groups->count : groups->group_of[body];
+    }
+    groups->first_place = zeroed(groups->count + 1, sizeof *groups->first_place);
+    groups->places = zeroed(2 * count, sizeof *groups->places);
+    sort_into(2 * count, group_of, groups->count, groups->first_place, groups->places);
+    for (size_t i = 0; i < 2 * count; i++) {
+        groups->places[i] /= 2;
+    }
+    free(group_of);
+}
+
+void response_groups_init(const Response *response, ResponseGroups *groups)
+{
+    const Sparse *matrix = &response->matrix;
+    const size_t body_count = response->linkage->body_count;
+    const size_t ideal = response->ideal_rows / 2;
+    *groups = (ResponseGroups){.group_of = zeroed(body_count, sizeof *groups->group_of)};
+    number_groups(response, groups);
+    groups->first_body = zeroed(groups->count + 1, sizeof *groups->first_body);
+    groups->bodies = zeroed(body_count, sizeof *groups->bodies);
+    sort_into(body_count, groups->group_of, groups->count, groups->first_body, groups->bodies);
+    list_places(response, groups);
+    groups->first_node = zeroed(groups->count + 1, sizeof *groups->first_node);
+    groups->nodes = zeroed(ideal, sizeof *groups->nodes);
+    size_t *group_at = zeroed(ideal, sizeof *group_at);
+    for (size_t p = 0; p < ideal; p++) {
+        int movers[2];
+        find_movers(response, matrix->node_at[p], movers);
+        group_at[p] = movers[0] == LINKAGE_GROUND ? groups->count : groups->group_of[movers[0]];
+    }
+    sort_into(ideal, group_at, groups->count, groups->first_node, groups->nodes);
+    for (size_t i = 0; i < ideal; i++) {
+        groups->nodes[i] = matrix->node_at[groups->nodes[i]];
+    }
+    free(group_at);
+}
+
+void response_groups_finish(ResponseGroups *groups)
+{
+    free(groups->group_of);
+    free(groups->first_body);
+    free(groups->bodies);
+    free(groups->first_place);
+    free(groups->places);
+    free(groups->first_node);
+    free(groups->nodes);
+    *groups = (ResponseGroups){.count = 0};
+}
+
+// Writes impulses of places, by row of play, among those of all rows; of all other places of the
+// groups they are zero.
+static void set_impulses(const Response *response, const ResponseGroups *groups,
+                         const ResponsePart *part, const double *impulses, double *all)
+{
+    for (size_t i = 0; i < part->group_count; i++) {
+        const size_t group = part->groups[i];
+        for (size_t n = groups->first_place[group]; n < groups->first_place[group + 1]; n++) {
+            const size_t place = groups->places[n];
+            memset(all + response->ideal_rows + response->first_row[place], 0,
+                   response_place_rows(&response->places[place]) * sizeof *all);
+        }
+    }
+    for (size_t i = 0; i < part->place_count; i++) {
+        const size_t place = part->places[i];
+        const size_t row = response->first_row[place];
+        memcpy(all + response->ideal_rows + row, impulses + row,
+               response_place_rows(&response->places[place]) * sizeof *all);
+    }
+}
+
+const double *response_groups_apply(const Response *response, const ResponseGroups *groups,
+                                    const ResponsePart *part, const double *impulses,
+                                    double *changes)
+{
+    double *all = response->work;
+    set_impulses(response, groups, part, impulses, all);
+    for (size_t i = 0; i < part->group_count; i++) {
+        const size_t group = part->groups[i];
+        const size_t first = groups->first_node[group];
+        const size_t count = groups->first_node[group + 1] - first;
+        for (size_t n = 0; n < count; n++) {
+            const size_t row = 2 * groups->nodes[first + n];
+            all[row] = all[row + 1] = 0.0;
+        }
+        sparse_back_some(&response->matrix, count, groups->nodes + first, all);
+        for (size_t b = groups->first_body[group]; b < groups->first_body[group + 1]; b++) {
+            memset(changes + 3 * groups->bodies[b], 0, 3 * sizeof *changes);
+        }
+    }
+    for (size_t i = 0; i < part->group_count; i++) {
+        const size_t group = part->groups[i];
+        for (size_t n = groups->first_node[group]; n < groups->first_node[group + 1]; n++) {
+            const size_t row = 2 * groups->nodes[n];
+            response_add_row(response, row, all[row], changes);
+            response_add_row(response, row + 1, all[row + 1], changes);
+        }
+    }
+    for (size_t i = 0; i < part->place_count; i++) {
+        const size_t place = part->places[i];
+        const size_t row = response->ideal_rows + response->first_row[place];
+        for (size_t k = 0; k < response_place_rows(&response->places[place]); k++) {
+            response_add_row(response, row + k, all[row + k], changes);
+        }
+    }
+    return all;
+}

@@ -1,0 +1,35 @@
+// The bodies of a linkage in groups that ideal joints hold together: what acts in a joint with play
+// moves the groups of its bodies, and no others.
+#pragma once
+
+#include "model/response.h"
+
+typedef struct ResponseGroups {
+    size_t count;
+    size_t *group_of;   // by body; `count` of the driven body. Owned, as are all arrays
+    size_t *first_body; // of a group, and behind the last one
+    size_t *bodies;
+    size_t *first_place; // likewise: the places that have one of its bodies
+    size_t *places;
+    size_t *first_node; // likewise: the ideal joints as nodes of the response's matrix, in the
+                        // order of their elimination
+    size_t *nodes;
+} ResponseGroups;
+
+void response_groups_init(const Response *response, ResponseGroups *groups);
+void response_groups_finish(ResponseGroups *groups);
+
+// Some groups, and the places in which impulses act; their bodies are in the groups.
+typedef struct ResponsePart {
+    size_t group_count;
+    size_t *groups;
+    size_t place_count;
+    size_t *places;
+} ResponsePart;
+
+// Writes by how much impulses in the places of a part, by row of play, change the velocities of its
+// groups' bodies: x, y, angle, three a body. Returns the impulses in all rows, of which those of
+// the groups' ideal joints are right until the response is used again.
+const double *response_groups_apply(const Response *response, const ResponseGroups *groups,
+                                    const ResponsePart *part, const double *impulses,
+                                    double *changes);

@@ -1,0 +1,341 @@
+// What does a part of a step say of one island of contacts?
+//
+// Its bodies, joints and places at a mark of its own. All else is as it was when it was looked at
+// last: no contact begins or ends there in between, so that contacts begin, last and end in the
+// record when they do. The last part is the end of the step, of all.
+#include "ode/impulse_islands.h"
+
+#include "base/zeroed.h"
+
+#include <math.h>
+#include <string.h>
+
+// A mark of one of the islands, but for their last.
+typedef struct IslandMark {
+    double time_s;
+    size_t node;
+    size_t island;
+} IslandMark;
+
+struct ImpulseIslands {
+    ImpulseStep *step;
+    Marks marks; // of one island at a time
+    size_t count;
+    size_t room;
+    size_t next; // the first mark that has not been handed on; `count` of the step's end
+    bool is_ended;
+    IslandMark *order; // of all islands; owned, as are all arrays
+    EncounterSums sums;
+    double *before;       // by row: impulses at the last part
+    double (*losses)[2];  // by island: J, likewise
+    double *elastic;      // J, by place: what is stored there
+    double elastic_total; // J
+    bool *is_touching;    // by place
+    size_t touching;
+    ImpulseScope scope; // of the island that is looked at
+    bool *has_body;     // whether it is in the scope
+    bool *has_joint;
+    bool *has_group;
+};
+
+ImpulseIslands *impulse_islands_create(ImpulseStep *step)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    const size_t rows = encounter_rows(&step->encounter);
+    const size_t places = step->place_count;
+    ImpulseIslands *islands = zeroed(1, sizeof *islands);
+    islands->step = step;
+    islands->is_ended = true;
+    islands->sums = encounter_sums(rows);
+    islands->before = zeroed(rows, sizeof *islands->before);
+    islands->losses = zeroed(places, sizeof *islands->losses);
+    islands->elastic = zeroed(places, sizeof *islands->elastic);
+    islands->is_touching = zeroed(places, sizeof *islands->is_touching);
+    islands->scope.bodies = zeroed(linkage->body_count, sizeof *islands->scope.bodies);
+    islands->scope.joints = zeroed(linkage->joint_count, sizeof *islands->scope.joints);
+    islands->scope.part.groups = zeroed(step->groups.count, sizeof *islands->scope.part.groups);
+    islands->scope.part.places = zeroed(places, sizeof *islands->scope.part.places);
+    islands->has_body = zeroed(linkage->body_count, sizeof *islands->has_body);
+    islands->has_joint = zeroed(linkage->joint_count, sizeof *islands->has_joint);
+    islands->has_group = zeroed(step->groups.count, sizeof *islands->has_group);
+    return islands;
+}
+
+void impulse_islands_destroy(ImpulseIslands *islands)
+{
+    if (islands == NULL) {
+        return;
+    }
+    marks_finish(&islands->marks);
+    free(islands->order);
+    encounter_sums_free(&islands->sums);
+    free(islands->before);
+    free(islands->losses);
+    free(islands->elastic);
+    free(islands->is_touching);
+    impulse_scope_finish(&islands->scope);
+    free(islands->has_body);
+    free(islands->has_joint);
+    free(islands->has_group);
+    free(islands);
+}
+
+static int compare_marks(const void *a, const void *b)
+{
+    const IslandMark *first = a;
+    const IslandMark *second = b;
+    if (first->time_s != second->time_s) {
+        return first->time_s < second->time_s ? -1 : 1;
+    }
+    if (first->island != second->island) {
+        return first->island < second->island ? -1 : 1;
+    }
+    return (first->node > second->node) - (first->node < second->node);
+}
+
+// Lists the marks of an island but for that of the step's end.
+static void list_marks(ImpulseIslands *islands, size_t number)
+{
+    const EncounterIsland *island = islands->step->islands->islands[number];
+    marks_find(&islands->marks, &island->encounter);
+    const size_t count = islands->marks.count - 1;
+    if (islands->count + count > islands->room) {
+        islands->room = 2 * (islands->count + count);
+        islands->order = realloc(islands->order, islands->room * sizeof *islands->order);
+        assert(islands->order != NULL);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const Mark *mark = &islands->marks.marks[i];
+        islands->order[islands->count++] = (IslandMark){mark->time_s, mark->node, number};
+    }
+    // rows of islands differ
+    marks_finish(&islands->marks);
+}
+
+void impulse_islands_begin(ImpulseIslands *islands, ImpulsePart *part)
+{
+    const ImpulseStep *step = islands->step;
+    islands->count = islands->next = 0;
+    islands->is_ended = false;
+    for (size_t i = 0; i < step->islands->count; i++) {
+        list_marks(islands, i);
+        islands->losses[i][0] = islands->losses[i][1] = 0.0;
+    }
+    if (islands->count > 0) {
+        qsort(islands->order, islands->count, sizeof *islands->order, compare_marks);
+    }
+    memset(islands->before, 0, encounter_rows(&step->encounter) * sizeof *islands->before);
+    part->end_s = step->start_s;
+}
+
+bool impulse_islands_need_step(const ImpulseIslands *islands)
+{
+    return islands->is_ended;
+}
+
+const ImpulseScope *impulse_islands_scope(const ImpulseIslands *islands)
+{
+    return islands->is_ended ? &islands->step->whole : &islands->scope;
+}
+
+static void add_group(ImpulseIslands *islands, size_t group)
+{
+    const ImpulseStep *step = islands->step;
+    const ResponseGroups *groups = &step->groups;
+    ImpulseScope *scope = &islands->scope;
+    islands->has_group[group] = true;
+    scope->part.groups[scope->part.group_count++] = group;
+    for (size_t n = groups->first_node[group]; n < groups->first_node[group + 1]; n++) {
+        const size_t joint = (size_t)step->response.joint_of[2 * groups->nodes[n]];
+        if (!islands->has_joint[joint]) {
+            islands->has_joint[joint] = true;
+            scope->joints[scope->joint_count++] = joint;
+        }
+    }
+    for (size_t n = groups->first_body[group]; n < groups->first_body[group + 1]; n++) {
+        if (!islands->has_body[groups->bodies[n]]) {
+            islands->has_body[groups->bodies[n]] = true;
+            scope->bodies[scope->body_count++] = groups->bodies[n];
+        }
+    }
+}
+
+// Adds a place with its joint, its bodies, and all that its impulses move.
+static void add_place(ImpulseIslands *islands, size_t place)
+{
+    const ImpulseStep *step = islands->step;
+    const size_t number = (size_t)step->places[place].joint;
+    const Joint *joint = &step->scenario->linkage.joints[number];
+    const int bodies[2] = {joint->body_a, joint->body_b};
+    ImpulseScope *scope = &islands->scope;
+    scope->part.places[scope->part.place_count++] = place;
+    if (!islands->has_joint[number]) {
+        islands->has_joint[number] = true;
+        scope->joints[scope->joint_count++] = number;
+    }
+    for (int i = 0; i < 2; i++) {
+        if (bodies[i] == LINKAGE_GROUND) {
+            continue;
+        }
+        const size_t body = (size_t)bodies[i];
+        const size_t group = step->groups.group_of[body];
+        if (group < step->groups.count && !islands->has_group[group]) {
+            add_group(islands, group);
+        }
+        if (!islands->has_body[body]) {
+            islands->has_body[body] = true;
+            scope->bodies[scope->body_count++] = body;
+        }
+        scope->has_drive = scope->has_drive || bodies[i] == step->driven;
+    }
+}
+
+// Makes the scope that of an island.
+static void set_scope(ImpulseIslands *islands, const EncounterIsland *island)
+{
+    ImpulseScope *scope = &islands->scope;
+    for (size_t i = 0; i < scope->body_count; i++) {
+        islands->has_body[scope->bodies[i]] = false;
+    }
+    for (size_t i = 0; i < scope->joint_count; i++) {
+        islands->has_joint[scope->joints[i]] = false;
+    }
+    for (size_t i = 0; i < scope->part.group_count; i++) {
+        islands->has_group[scope->part.groups[i]] = false;
+    }
+    scope->has_drive = false;
+    scope->body_count = scope->joint_count = 0;
+    scope->part.group_count = scope->part.place_count = 0;
+    for (size_t i = 0; i < island->encounter.joint_count; i++) {
+        add_place(islands, island->places[i]);
+    }
+}
+
+// Writes the sums of an island's rows among those of all.
+static void scatter(ImpulseIslands *islands, const EncounterIsland *island)
+{
+    const Encounter *all = &islands->step->encounter;
+    for (size_t i = 0; i < island->encounter.joint_count; i++) {
+        const EncounterJoint *joint = &island->encounter.joints[i];
+        const size_t row = all->joints[island->places[i]].first_row;
+        const size_t size = joint->row_count * sizeof(double);
+        memcpy(islands->sums.impulse + row, island->sums.impulse + joint->first_row, size);
+        memcpy(islands->sums.moment + row, island->sums.moment + joint->first_row, size);
+        memcpy(islands->sums.force + row, island->sums.force + joint->first_row, size);
+    }
+}
+
+// Adds the contacts of a scope's places to the record.
+static void add_contacts(ImpulseIslands *islands, ImpulsePart *part, const ImpulseScope *scope,
+                         double since_s, const double *depths)
+{
+    const ImpulseStep *step = islands->step;
+    for (size_t n = 0; n < scope->joint_count; n++) {
+        part->is_known[scope->joints[n]] = false;
+    }
+    for (size_t n = 0; n < scope->part.place_count; n++) {
+        const size_t i = scope->part.places[n];
+        const EncounterJoint *place = &step->encounter.joints[i];
+        const double *impulse = islands->sums.impulse + place->first_row;
+        double *before = islands->before + place->first_row;
+        const bool is_touching =
+            encounter_islands_pose(step->islands, i, since_s, &islands->sums).is_touching;
+        const double elastic = is_touching ? force_law_energy(&place->law, depths[i]) : 0.0;
+        const double pushed = hypot(impulse[0] - before[0], impulse[1] - before[1]);
+        islands->elastic_total += elastic - islands->elastic[i];
+        islands->elastic[i] = elastic;
+        islands->touching += (is_touching ? 1 : 0);
+        islands->touching -= (islands->is_touching[i] ? 1 : 0);
+        islands->is_touching[i] = is_touching;
+        impulse_part_add_place(part, place, is_touching, pushed);
+        before[0] = impulse[0];
+        before[1] = impulse[1];
+    }
+    part->record.elastic = islands->elastic_total;
+    part->most_rows = islands->touching > part->most_rows ? islands->touching : part->most_rows;
+}
+
+static void tell_bodies(const ImpulseScope *scope, const Motion *motions, ImpulsePart *part)
+{
+    for (size_t n = 0; n < scope->body_count; n++) {
+        const size_t i = scope->bodies[n];
+        part->omega[i] = motions[i].omega;
+        part->alpha[i] = motions[i].alpha;
+    }
+}
+
+// The part up to a mark of an island.
+static void take_island(ImpulseIslands *islands, ImpulsePart *part, const IslandMark *mark,
+                        Motion *motions, JointState *joints, double *depths)
+{
+    const ImpulseStep *step = islands->step;
+    EncounterIsland *island = step->islands->islands[mark->island];
+    double *losses = islands->losses[mark->island];
+    set_scope(islands, island);
+    encounter_island_look(island, mark->node, mark->time_s);
+    scatter(islands, island);
+    part->end_s = step->start_s + mark->time_s;
+    const ImpulseTime at = {mark->time_s, mark->node, true};
+    impulse_step_inside(step, &islands->scope, at, &islands->sums, motions, joints, depths);
+    part->record.dissipated = island->sums.dissipated - losses[0];
+    part->record.friction = island->sums.friction - losses[1];
+    losses[0] = island->sums.dissipated;
+    losses[1] = island->sums.friction;
+    tell_bodies(&islands->scope, motions, part);
+    add_contacts(islands, part, &islands->scope, mark->time_s, depths);
+}
+
+// The part up to the end of the step.
+static void take_end(ImpulseIslands *islands, ImpulsePart *part, Motion *motions,
+                     JointState *joints, double *depths)
+{
+    const ImpulseStep *step = islands->step;
+    encounter_islands_look(step->islands, step->width_s, &islands->sums);
+    part->end_s = step->end_s;
+    const ImpulseTime at = {step->width_s, 0, false};
+    impulse_step_inside(step, &step->whole, at, &islands->sums, motions, joints, depths);
+    part->record.dissipated = islands->sums.dissipated + step->damped;
+    part->record.friction = islands->sums.friction;
+    for (size_t i = 0; i < step->islands->count; i++) {
+        part->record.dissipated -= islands->losses[i][0];
+        part->record.friction -= islands->losses[i][1];
+    }
+    part->record.drive_work = step->drive_work;
+    // of ideal joints in the whole step
+    for (size_t i = 0; i < step->whole.joint_count; i++) {
+        part->impulse[i] = step->mean[i].force * step->width_s;
+    }
+    // what rounding left of sums of differences ends here
+    memset(islands->elastic, 0, step->place_count * sizeof *islands->elastic);
+    islands->elastic_total = 0.0;
+    tell_bodies(&step->whole, motions, part);
+    add_contacts(islands, part, &step->whole, step->width_s, depths);
+    islands->is_ended = true;
+}
+
+void impulse_islands_next(ImpulseIslands *islands, ImpulsePart *part, Motion *motions,
+                          JointState *joints, double *depths)
+{
+    const ImpulseStep *step = islands->step;
+    // what was pushed in the part before has been told
+    const ImpulseScope *told = islands->next == 0 ? &step->whole : &islands->scope;
+    for (size_t n = 0; n < told->joint_count; n++) {
+        part->impulse[told->joints[n]] = 0.0;
+    }
+    part->start_s = part->end_s;
+    part->is_last = islands->next == islands->count;
+    part->record = (StepRecord){
+        .omega = part->omega,
+        .alpha = part->alpha,
+        .joints = joints,
+        .impulse = part->impulse,
+        .approach = part->approach,
+    };
+    if (part->is_last) {
+        take_end(islands, part, motions, joints, depths);
+    } else {
+        take_island(islands, part, &islands->order[islands->next++], motions, joints, depths);
+    }
+    part->record.start_s = part->start_s;
+    part->record.end_s = part->record.joint_s = part->end_s;
+}
