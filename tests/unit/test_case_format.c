@@ -1,6 +1,7 @@
 // Does docs/case-format.md say what the program does? Runs in the source root; with --write it
 // writes the page to standard output instead.
 #include "casefile/casefile.h"
+#include "casefile/schema.h"
 
 #include "close.h"
 #include "kept.h"
@@ -52,6 +53,26 @@ static void both_descriptions_name_every_key(void **state)
     text_finish(&words);
 }
 
+// A mistake in any group is answered with all that is allowed there.
+static void there_is_room_for_the_keys_of_every_group(void **state)
+{
+    (void)state;
+    char names[SCHEMA_CHILD_MAX][LINKAGE_NAME_SIZE];
+    size_t most = 0;
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        char group[SCHEMA_PATH_SIZE];
+        snprintf(group, sizeof group, "%s", SCHEMA_ROWS[i].path);
+        for (char *dot = strrchr(group, '.'); dot != NULL; dot = strrchr(group, '.')) {
+            *dot = '\0';
+            for (size_t form = 0; form < SCHEMA_FORM_COUNT; form++) {
+                const size_t count = schema_children(group, SCHEMA_FORMS[form].form, names);
+                most = count > most ? count : most;
+            }
+        }
+    }
+    assert_in_range(most, 12, SCHEMA_CHILD_MAX);
+}
+
 static void words_for_a_terminal_fit_its_width(void **state)
 {
     (void)state;
@@ -98,6 +119,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_page_is_what_the_program_describes),
         cmocka_unit_test(both_descriptions_name_every_key),
+        cmocka_unit_test(there_is_room_for_the_keys_of_every_group),
         cmocka_unit_test(words_for_a_terminal_fit_its_width),
         cmocka_unit_test(the_example_loads),
     };
