@@ -70,6 +70,15 @@ static void the_code_gives_the_same_run_bit_for_bit(void **state)
     check_codes(state, RUNS, sizeof RUNS / sizeof *RUNS);
 }
 
+static void the_code_of_limited_joints_too(void **state)
+{
+    static const char *const RUNS[] = {
+        "$cases/mechanisms/gear-pair.yaml --error 1e-2 --schemes direct/staggered/impulse",
+        "$cases/mechanisms/stop-rebound.yaml --error 1e-1 --schemes quick/plain/corrected",
+    };
+    check_codes(state, RUNS, sizeof RUNS / sizeof *RUNS);
+}
+
 static void the_code_of_ideal_joints_too(void **state)
 {
     static const char *const RUNS[] = {
@@ -93,6 +102,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_code_gives_the_same_run_bit_for_bit, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(the_code_of_limited_joints_too, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(the_code_of_ideal_joints_too, program_set_up,
                                         program_tear_down),

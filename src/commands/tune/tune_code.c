@@ -118,7 +118,7 @@ static void write_joint(const Joint *joint, Text *text)
     static const char *const KINDS[] = {
         [JOINT_REVOLUTE] = "JOINT_REVOLUTE",   [JOINT_CLEARANCE] = "JOINT_CLEARANCE",
         [JOINT_PRISMATIC] = "JOINT_PRISMATIC", [JOINT_GUIDE] = "JOINT_GUIDE",
-        [JOINT_STOP] = "JOINT_STOP",
+        [JOINT_STOP] = "JOINT_STOP",           [JOINT_GEAR] = "JOINT_GEAR",
     };
     const Clearance *clearance = &joint->clearance;
     text_append(text, "        {.name = ");
@@ -131,6 +131,7 @@ static void write_joint(const Joint *joint, Text *text)
     if (joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE) {
         write_sliding(joint, text);
     }
+    tune_code_limits(joint, text);
     if (joint->contact.has_restitution) {
         text_append(text, "         .contact = {.has_restitution = true, .restitution = %s},\n",
                     number_shortest(joint->contact.restitution).text);

@@ -1,8 +1,10 @@
-// How are springs, dampers and a torque written as data of a C program?
+// How are springs, dampers, a torque and limits of joints written as data of a C program?
 #include "commands/tune/tune_code_forces.h"
 
 #include "model/forces.h"
 #include "write/number.h"
+
+#include <math.h>
 
 static void write_springs(const Linkage *linkage, Text *text)
 {
@@ -74,5 +76,38 @@ void tune_code_forces(const Linkage *linkage, Text *text)
         write_springs(linkage, text);
         write_torsions(linkage, text);
         write_torque(&linkage->torque, text);
+    }
+}
+
+// One that may be infinite.
+static void write_limit(const char *name, double value, Text *text)
+{
+    text_append(text, ", .%s = %s", name,
+                isfinite(value) ? number_shortest(value).text
+                : value < 0.0   ? "-INFINITY"
+                                : "INFINITY");
+}
+
+void tune_code_limits(const Joint *joint, Text *text)
+{
+    const Limits *limits = &joint->limits;
+    const Gear *gear = &joint->gear;
+    if (limits->kind == LIMIT_NONE) {
+        return;
+    }
+    // rad or m
+    text_append(text, "         .limits = {.kind = %s",
+                limits->kind == LIMIT_BACKLASH ? "LIMIT_BACKLASH" : "LIMIT_STOPS");
+    write_limit("backlash", limits->backlash, text);
+    write_limit("middle", limits->middle, text);
+    write_limit("low", limits->low, text);
+    write_limit("high", limits->high, text);
+    text_append(text, "},\n");
+    if (joint->kind == JOINT_GEAR) {
+        text_append(text,
+                    "         .gear = {.pivots = {%d, %d}, .carrier = %d,\n"
+                    "                  .radius_a = %s, // m\n                  .radius_b = %s},\n",
+                    gear->pivots[0], gear->pivots[1], gear->carrier,
+                    number_shortest(gear->radius_a).text, number_shortest(gear->radius_b).text);
     }
 }

@@ -10,15 +10,16 @@
 
 #include <string.h>
 
-static void write_elastic(const ForceLaw *law, Text *text)
+static void write_elastic(const ForceLaw *law, bool is_angle, Text *text)
 {
+    const char *unit = is_angle ? "N m/rad" : "N/m";
     if (law->family == FORCE_LAW_POWER && law->exponent == 1.0) {
-        text_append(text, "    const double k = %s; // N/m\n",
-                    number_shortest(law->stiffness).text);
+        text_append(text, "    const double k = %s; // %s\n", number_shortest(law->stiffness).text,
+                    unit);
     } else if (law->family == FORCE_LAW_POWER) {
-        text_append(text, "    const double k = %s * pow(depth, %s); // F(depth) / depth, N/m\n",
-                    number_shortest(law->stiffness).text,
-                    number_shortest(law->exponent - 1.0).text);
+        text_append(text, "    const double k = %s * pow(depth, %s); // F(depth) / depth, %s\n",
+                    number_shortest(law->stiffness).text, number_shortest(law->exponent - 1.0).text,
+                    unit);
     } else {
         text_append(text,
                     "    double force = depth / %s; // N: depth = A F (B - ln F)\n"
@@ -31,53 +32,99 @@ static void write_elastic(const ForceLaw *law, Text *text)
     }
 }
 
-static void write_damping(const ForceLaw *law, Text *text)
+static void write_damping(const ForceLaw *law, bool is_angle, Text *text)
 {
+    const char *unit = is_angle ? "N m s/rad" : "N s/m";
     if (law->hysteresis > 0.0) {
         text_append(text,
-                    "    // N s/m; v0: closing speed when this contact began, m/s, which you keep\n"
+                    "    // %s; v0: closing speed when this contact began, %s, which you keep\n"
                     "    const double c =\n        %s * k * depth / fmax(v0, %s);\n",
-                    number_shortest(law->hysteresis).text,
+                    unit, is_angle ? "rad/s" : "m/s", number_shortest(law->hysteresis).text,
                     number_shortest(law->impact_speed_floor).text);
     } else {
-        text_append(text, "    const double c = %s; // N s/m\n    (void)v0;\n",
-                    number_shortest(law->viscous).text);
+        text_append(text, "    const double c = %s; // %s\n    (void)v0;\n",
+                    number_shortest(law->viscous).text, unit);
     }
 }
 
-static void write_map(const ForceLaw *law, OdeMap map, Text *text)
+// ERP and CFM of the row, as two lines that end each in its own way.
+typedef struct RowLines {
+    const char *erp;
+    const char *cfm;
+    const char *end;
+} RowLines;
+
+static void write_map(const ForceLaw *law, OdeMap map, RowLines lines, Text *text)
 {
     const bool has_damper = law->hysteresis > 0.0 || law->viscous > 0.0;
+    const char *erp = "H * k / c";
+    const char *cfm = "1.0 / c";
     if (map == ODE_MAP_TEXTBOOK) {
-        text_append(text, "    surface->soft_erp = H * k / (H * k + c);\n"
-                          "    surface->soft_cfm = 1.0 / (H * k + c);\n");
+        erp = "H * k / (H * k + c)";
+        cfm = "1.0 / (H * k + c)";
     } else if (has_damper) {
-        text_append(text,
-                    "    // stable for H < 2 / sqrt(slope / m), m the mass met, slope dF/ddepth\n"
-                    "    surface->soft_erp = H * k / c; // may exceed 1\n"
-                    "    surface->soft_cfm = 1.0 / c;\n");
+        text_append(text, "    // stable for H < 2 / sqrt(slope / m), m the mass met, slope "
+                          "dF/ddepth\n    // ERP may exceed 1\n");
     } else {
-        text_append(text, "    // without a damper a tiny one stands in\n"
-                          "    surface->soft_erp = 1e10;\n"
-                          "    surface->soft_cfm = 1e10 / (H * k);\n");
+        text_append(text, "    // without a damper a tiny one stands in\n");
+        erp = "1e10";
+        cfm = "1e10 / (H * k)";
     }
+    text_append(text, "    %s%s%s;\n    %s%s%s;\n", lines.erp, erp, lines.end, lines.cfm, cfm,
+                lines.end);
 }
 
-static void write_surface(const Joint *joint, const ForceLaw *law, const Scenario *scenario,
-                          OdeMap map, Text *text)
+// The name of a joint as a part of that of a function.
+static void write_name(const Joint *joint, Text *text)
 {
-    text_append(text, "// %s: depth > 0 in metres, as dContactGeom has it\n", joint->name);
-    text_append(text, "static void set_surface_");
     for (const char *letter = joint->name; *letter != '\0'; letter++) {
         const bool is_plain = (*letter >= 'a' && *letter <= 'z') ||
                               (*letter >= 'A' && *letter <= 'Z') ||
                               (*letter >= '0' && *letter <= '9');
         text_append(text, "%c", is_plain ? *letter : '_');
     }
+}
+
+// The stop of ODE's own hinge or slider is the same row.
+static void write_stop(const Joint *joint, const ForceLaw *law, OdeMap map, Text *text)
+{
+    static const RowLines HINGE = {"dJointSetHingeParam(hinge, dParamStopERP, ",
+                                   "dJointSetHingeParam(hinge, dParamStopCFM, ", ")"};
+    static const RowLines SLIDER = {"dJointSetSliderParam(slider, dParamStopERP, ",
+                                    "dJointSetSliderParam(slider, dParamStopCFM, ", ")"};
+    const bool is_hinge = joint->kind == JOINT_REVOLUTE;
+    const char *name = is_hinge ? "hinge" : "slider";
+    text_append(text,
+                "// %s: between dParamLoStop and dParamHiStop of ODE's %s;\n"
+                "// depth > 0 beyond one of them, in %s\nstatic void set_stop_",
+                joint->name, name, is_hinge ? "rad" : "metres");
+    write_name(joint, text);
+    text_append(text, "(dJointID %s, double depth, double v0)\n{\n", name);
+    write_elastic(law, is_hinge, text);
+    write_damping(law, is_hinge, text);
+    write_map(law, map, is_hinge ? HINGE : SLIDER, text);
+    text_append(text, "}\n\n");
+}
+
+static void write_surface(const Joint *joint, const ForceLaw *law, const Scenario *scenario,
+                          OdeMap map, Text *text)
+{
+    static const RowLines SURFACE = {"surface->soft_erp = ", "surface->soft_cfm = ", ""};
+    if (joint->kind == JOINT_GEAR) {
+        text_append(
+            text,
+            "// %s: a contact of yours where the pitch circles touch, along their tangent;\n"
+            "// depth > 0 in metres of the pitch circles beyond the backlash\n",
+            joint->name);
+    } else {
+        text_append(text, "// %s: depth > 0 in metres, as dContactGeom has it\n", joint->name);
+    }
+    text_append(text, "static void set_surface_");
+    write_name(joint, text);
     text_append(text, "(\n    dSurfaceParameters *surface, double depth, double v0)\n{\n");
-    write_elastic(law, text);
-    write_damping(law, text);
-    if (scenario->contact.friction > 0.0) {
+    write_elastic(law, false, text);
+    write_damping(law, false, text);
+    if (scenario->contact.friction > 0.0 && joint->kind != JOINT_GEAR) {
         text_append(text,
                     "    surface->mode = dContactSoftERP | dContactSoftCFM | dContactApprox1;\n"
                     "    surface->mu = %s;\n",
@@ -86,8 +133,14 @@ static void write_surface(const Joint *joint, const ForceLaw *law, const Scenari
         text_append(text, "    surface->mode = dContactSoftERP | dContactSoftCFM;\n"
                           "    surface->mu = 0.0; // one row, along the normal\n");
     }
-    write_map(law, map, text);
+    write_map(law, map, SURFACE, text);
     text_append(text, "}\n\n");
+}
+
+// Whether the ends of a joint are stops of ODE's own hinge or slider.
+static bool has_stops(const Joint *joint)
+{
+    return linkage_kind_is_ideal(joint->kind) && joint->limits.kind != LIMIT_NONE;
 }
 
 static void write_loop(const Scenario *scenario, Text *text)
@@ -100,7 +153,7 @@ static void write_loop(const Scenario *scenario, Text *text)
                       "dWorldSetContactMaxCorrectingVel(world, dInfinity);\n"
                       "// of each body\ndBodySetFiniteRotationMode(body, 1);\n"
                       "// each step; a driven body is kinematic and put on its path first\n"
-                      "// calls set_surface_..., one point a joint\n"
+                      "// calls set_surface_..., one point a joint; set_stop_... beyond a stop\n"
                       "dSpaceCollide(space, NULL, near_callback);\n"
                       "dWorldStep(world, H);\n"
                       "dJointGroupEmpty(contacts);\n");
@@ -121,7 +174,11 @@ bool tune_snippet_write(const TuneReport *report, const TuneTrial *trial, Text *
         Err unused = {ERR_NONE, ""};
         if (linkage_has_play(&linkage->joints[i])) {
             fits = law_of_joint(scenario, &linkage->joints[i], &law, &unused);
-            write_surface(&linkage->joints[i], &law, scenario, map, &lines);
+            if (has_stops(&linkage->joints[i])) {
+                write_stop(&linkage->joints[i], &law, map, &lines);
+            } else {
+                write_surface(&linkage->joints[i], &law, scenario, map, &lines);
+            }
         }
     }
     if (fits) {
