@@ -67,8 +67,8 @@ static void note_gap(ContactRow *row, double gap)
 }
 
 // What an end does in the step. Other places do what they do at mid-step: their forces grow gently.
-static Overlap overlap_of(const ContactRow *row, const WorldPair *pair, const TouchPose *pose,
-                          bool is_staggered, double step_s)
+static Overlap end_overlap(const ContactRow *row, const WorldPair *pair, const TouchPose *pose,
+                           bool is_staggered, double step_s)
 {
     return is_staggered && pair->is_end
                ? overlap_find(&row->law, pose->gap, pose->approach_speed, step_s)
@@ -88,7 +88,7 @@ void contact_row_find(ContactRow *row, const World *world, const WorldPair *pair
 {
     const bool was_touching = row->is_touching;
     const TouchPose pose = pair_pose(pair);
-    const Overlap overlap = overlap_of(row, pair, &pose, is_staggered, step_s);
+    const Overlap overlap = end_overlap(row, pair, &pose, is_staggered, step_s);
     row->share = overlap.share;
     row->is_touching = find_collision(world, pair, &pose, &overlap, row);
     row->inside = pair->hole == NULL ? -pose.gap : row->depth;
