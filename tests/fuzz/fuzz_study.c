@@ -53,15 +53,17 @@ int LLVMFuzzerInitialize(int *argc, char ***argv)
 // The first, the middle and the last run: each a scenario, or refused with a reason.
 static void check_runs(const Spec *spec)
 {
-    static Scenario scenario; // too large for the stack
     const uint64_t count = design_run_count(spec);
     fuzz_check(count > 0, "a study has runs");
     for (uint64_t i = 0; i < RUN_MAX; i++) {
         Cell values[RECORD_SETTING_MAX];
+        Scenario scenario;
         BackendKind backend;
         Err err = {0};
         design_values(spec, i * ((count - 1) / (RUN_MAX - 1)), values);
-        if (!design_scenario(spec, values, &scenario, &backend, &err)) {
+        if (design_scenario(spec, values, &scenario, &backend, &err)) {
+            scenario_free(&scenario);
+        } else {
             fuzz_check_err(&err);
         }
     }
