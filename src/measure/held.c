@@ -9,6 +9,8 @@
 // / m). That is how they are predicted and how they are run.
 #include "measure/held.h"
 
+#include "model/coordinate.h"
+
 #include <assert.h>
 #include <float.h>
 #include <math.h>
@@ -320,7 +322,8 @@ void held_find(const MappingContact *contact, double step_s, Held *held)
     *held = (Held){
         .step_s = step_s,
         .flight = contact->impact.speed * step_s,
-        .play = 2.0 * linkage_radial_clearance(joint),
+        .play = 2.0 * (joint->limits.kind != LIMIT_NONE ? coordinate_play(joint)
+                                                        : linkage_radial_clearance(joint)),
     };
     for (int i = 0; i < HELD_MAP_COUNT; i++) {
         HeldSetting *setting = &held->settings[i];

@@ -1,6 +1,7 @@
 // What does one impact of a lone pin give in ODE, and what was to be expected of it?
 //
-// Of a block between guides or a stop a disc stands for the pin, and a line for the wall.
+// Of a block between guides, a stop or the end of a coordinate a disc stands for the pin, and a
+// line for the wall; what turns is run with its inertia for a mass and its angles for lengths.
 //
 // The pin starts so far from the wall that it overlaps it for the first time at a depth that the
 // phase chooses: whole steps of flight, and a share of one more. The shares are the middles of
@@ -10,6 +11,7 @@
 #include "measure/impact.h"
 
 #include "contact/law.h"
+#include "model/coordinate.h"
 #include "run/registry.h"
 #include "run/run.h"
 
@@ -54,6 +56,9 @@ static Joint lone_joint(const Joint *from, double play)
 // How far the lone body flies from the middle to the wall, m. A stop has no wall on the other side.
 static double lone_play(const Joint *from)
 {
+    if (from->limits.kind != LIMIT_NONE) {
+        return coordinate_play(from);
+    }
     return from->kind == JOINT_STOP ? INFINITY : linkage_radial_clearance(from);
 }
 

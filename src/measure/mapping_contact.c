@@ -100,10 +100,12 @@ static bool ask(MappingContact *contact, const Joint *at, Err *err)
                        at->name, impact->mass, impact->speed, contact->law_name, 1e6 * holds);
     }
     if (!contact->asked.is_ended || !(contact->asked.restitution > 0.0)) {
+        const bool is_turning = linkage_is_torsional(at);
         return err_set(err, ERR_SOLVER,
-                       "%s: after an impact of %.4g kg at %.4g m/s the damping of the law %s keeps "
+                       "%s: after an impact of %.4g %s at %.4g %s the damping of the law %s keeps "
                        "the pin at the wall",
-                       at->name, impact->mass, impact->speed, contact->law_name);
+                       at->name, impact->mass, is_turning ? "kg m^2" : "kg", impact->speed,
+                       is_turning ? "rad/s" : "m/s", contact->law_name);
     }
     return true;
 }

@@ -76,8 +76,8 @@ static void add_mass(Gathering *gathering, size_t play, size_t place, Vec2 along
 static void add_place(Gathering *gathering, size_t play, size_t place, const Motion *motions)
 {
     const Touch *touch = &gathering->places[place];
-    if (touch->shape == TOUCH_LINE) {
-        // its rows are along the normal and across
+    if (touch_is_scalar(touch)) {
+        // its rows are along the normal or the coordinate, and across
         add_mass(gathering, play, place, (Vec2){1.0, 0.0});
     } else if (touch->shape == TOUCH_DISC) {
         const TouchPose pose = touch_pose(&gathering->scenario->linkage, touch, motions);

@@ -32,19 +32,31 @@ static const double ORDER_SHARE = 0.9;
 static const double ORDER_LEAST = 0.4;
 static const double ORDER_MOST = 0.9;
 
-// A depth of a contact: a tenth of the clearance, or of a stop, which has none, what the fastest
-// point of the linkage would press in. Laws of stops are powers.
+// How fast the sides of a place may meet: as the fastest point of the linkage, or at a turn as the
+// faster of its two bodies turns at the most.
+static double meeting_speed(const Scenario *scenario, const Touch *place)
+{
+    SpeedScale scale = scale_speeds(scenario);
+    double speed = place->shape == TOUCH_TURN ? 0.0 : scale.moving;
+    for (int side = 0; place->shape == TOUCH_TURN && side < 2; side++) {
+        const int body = linkage_end(&scenario->linkage.joints[place->joint], side).body;
+        speed = body == LINKAGE_GROUND ? speed : fmax(speed, scale.turning[body]);
+    }
+    scale_free(&scale);
+    return speed;
+}
+
+// A depth of a contact: a tenth of the clearance, or of stops and of the ends of a coordinate what
+// their bodies would press in. Laws of these are powers.
 static double contact_depth(const Scenario *scenario, const Touch *place, double mass)
 {
     static const double DEPTH = 0.1;
     const Joint *joint = &scenario->linkage.joints[place->joint];
-    if (joint->kind != JOINT_STOP) {
+    if (joint->kind == JOINT_CLEARANCE || joint->kind == JOINT_GUIDE) {
         return fmin(DEPTH * linkage_radial_clearance(joint),
                     0.5 * force_law_depth_limit(&place->law));
     }
-    SpeedScale scale = scale_speeds(scenario);
-    const double speed = scale.moving;
-    scale_free(&scale);
+    const double speed = meeting_speed(scenario, place);
     const double power = place->law.exponent + 1.0;
     return pow(0.5 * power * mass * speed * speed / place->law.stiffness, 1.0 / power);
 }
@@ -58,7 +70,7 @@ static double shortest_time(const Scenario *scenario, const Response *response, 
         const size_t row = response_first_row(response, i);
         // the first row of a line is along its normal
         const double along = response_mass(response, row, (Vec2){1.0, 0.0});
-        const double mass = places[i].shape == TOUCH_LINE
+        const double mass = touch_is_scalar(&places[i])
                                 ? along
                                 : fmin(along, response_mass(response, row, (Vec2){0.0, 1.0}));
         const double depth = contact_depth(scenario, &places[i], mass);
@@ -98,7 +110,7 @@ StepChoice step_choice_begin(const Scenario *scenario)
     const OdeOptions *ode = &scenario->ode;
     bool is_smooth = true;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        is_smooth = is_smooth && linkage_kind_is_ideal(linkage->joints[i].kind);
+        is_smooth = is_smooth && !linkage_has_play(&linkage->joints[i]);
     }
     return (StepChoice){
         .scenario = scenario,

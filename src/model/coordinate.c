@@ -25,6 +25,12 @@ double coordinate_high(const Joint *joint)
     return limits->kind == LIMIT_BACKLASH ? limits->middle + 0.5 * limits->backlash : limits->high;
 }
 
+double coordinate_play(const Joint *joint)
+{
+    const double play = 0.5 * (coordinate_high(joint) - coordinate_low(joint));
+    return play > 0.0 ? play : INFINITY;
+}
+
 double coordinate_sense(const Joint *joint)
 {
     return joint->body_b == LINKAGE_GROUND ? -1.0 : 1.0;

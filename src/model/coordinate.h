@@ -11,6 +11,10 @@
 double coordinate_low(const Joint *joint);
 double coordinate_high(const Joint *joint);
 
+// Half of the gap between the ends; infinite of a stop without another, and between flanks without
+// a gap, of which one presses at any time.
+double coordinate_play(const Joint *joint);
+
 double coordinate_position(const Linkage *linkage, const Motion *motions, int joint);
 
 // Its rate, rad/s or m/s, in the bodies' velocities: that of gears holds while their pivots do.

@@ -16,14 +16,13 @@ static double flight_of(const Linkage *linkage, const Touch *touch)
 {
     const Joint *joint = &linkage->joints[touch->joint];
     if (joint->limits.kind != LIMIT_NONE) {
-        const double half = 0.5 * (coordinate_high(joint) - coordinate_low(joint));
+        const double half = coordinate_play(joint);
         const double beyond =
             joint->kind == JOINT_PRISMATIC
                 ? linkage_reach(linkage,
                                 joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b)
                 : 1.0;
-        // without a gap one of the two flanks presses at any time
-        return isfinite(half) && half > 0.0 ? half : beyond;
+        return isfinite(half) ? half : beyond;
     }
     if (joint->kind != JOINT_STOP) {
         return linkage_radial_clearance(joint);

@@ -32,16 +32,23 @@ static void setting_row(const MappingContact *contact, const HeldSetting *settin
 
 static void write_table(const MappingContact *contact, const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"map", "", TABLE_LEFT},           {"ERP", "1", TABLE_RIGHT},
-        {"CFM", "1/(N s/m)", TABLE_RIGHT}, {"spring", "N/m", TABLE_RIGHT},
-        {"damper", "N s/m", TABLE_RIGHT},  {"restit.", "in ODE", TABLE_RIGHT},
-        {"peak", "of law", TABLE_RIGHT},   {"depth", "of law", TABLE_RIGHT},
+    const JointUnits *units = mapping_report_units(contact);
+    char cfm[32];
+    snprintf(cfm, sizeof cfm, "1/(%s)", units->damping);
+    const SectionHead heads[] = {
+        {"map", "", TABLE_LEFT},
+        {"ERP", "1", TABLE_RIGHT},
+        {"CFM", cfm, TABLE_RIGHT},
+        {"spring", units->stiffness, TABLE_RIGHT},
+        {"damper", units->damping, TABLE_RIGHT},
+        {"restit.", "in ODE", TABLE_RIGHT},
+        {"peak", "of law", TABLE_RIGHT},
+        {"depth", "of law", TABLE_RIGHT},
     };
     char heading[HEADING_SIZE];
     snprintf(heading, sizeof heading, "Best constants at %.4g us",
              contact->held->step_s * UNITS_US);
-    Table *table = section_begin(heading, 8, HEADS, style, text);
+    Table *table = section_begin(heading, 8, heads, style, text);
     for (int i = 0; i < HELD_MAP_COUNT; i++) {
         setting_row(contact, &contact->held->settings[i], table);
     }
@@ -93,12 +100,15 @@ static void write_worth(const MappingContact *contact, const HeldSetting *settin
 static void write_beside(const MappingContact *contact, Text *text)
 {
     const Held *held = contact->held;
+    const JointUnits *units = mapping_report_units(contact);
+    const double length = units_per_si(units->length);
     const double step_us = held->step_s * UNITS_US;
     if (held->flight > held->play) {
         text_append(text,
-                    "  In a step of %.4g us the pin flies %.3g um and has %.3g um from wall to "
+                    "  In a step of %.4g us the pin flies %.3g %s and has %.3g %s from wall to "
                     "wall: whatever the constants, it can pass through the wall undetected.\n",
-                    step_us, held->flight * UNITS_UM, held->play * UNITS_UM);
+                    step_us, held->flight * length, units->length, held->play * length,
+                    units->length);
     }
     Text maps;
     text_init(&maps);
@@ -118,18 +128,22 @@ void mapping_held_text(const MappingContact *contact, const Style *style, Text *
 {
     const HeldSetting *pair = &contact->held->settings[0];
     const HeldSetting *row = &contact->held->settings[1];
+    const JointUnits *units = mapping_report_units(contact);
     char values[HEADING_SIZE];
     write_table(contact, style, text);
     text_append(text, "\n");
-    snprintf(values, sizeof values, "kp = %.5g N/m, kd = %.4g N s/m", pair->stiffness,
-             pair->damping);
+    snprintf(values, sizeof values, "kp = %.5g %s, kd = %.4g %s", pair->stiffness, units->stiffness,
+             pair->damping, units->damping);
     write_worth(contact, pair, "Gazebo", values, text);
-    snprintf(values, sizeof values, "ERP = %.5g, CFM = %.5g m/(N s)", row->row.erp, row->row.cfm);
+    snprintf(values, sizeof values, "ERP = %.5g, CFM = %.5g %s", row->row.erp, row->row.cfm,
+             units->cfm);
     write_worth(contact, row, "ERP and CFM", values, text);
-    text_append(
-        text,
-        "  Of two equal surfaces in Gazebo each has 2 kp = %.5g N/m and kd / 2 = %.4g N s/m.\n",
-        2.0 * pair->stiffness, 0.5 * pair->damping);
+    if (!linkage_is_torsional(mapping_report_joint(contact))) {
+        text_append(
+            text,
+            "  Of two equal surfaces in Gazebo each has 2 kp = %.5g N/m and kd / 2 = %.4g N s/m.\n",
+            2.0 * pair->stiffness, 0.5 * pair->damping);
+    }
     write_beside(contact, text);
     for (int i = 0; i < HELD_MAP_COUNT; i++) {
         const HeldSetting *setting = &contact->held->settings[i];

@@ -138,9 +138,10 @@ static void draw_contact(const MappingReport *report, size_t number, Text *svg)
     char law[MAPPING_REPORT_LAW_SIZE];
     char words[LINKAGE_NAME_SIZE + 256];
     mapping_report_law(contact, law);
-    snprintf(words, sizeof words, "%s, %s: %.4g kg at %.4g m/s, asked: restitution %.3g",
-             mapping_report_joint(contact)->name, law, contact->impact.mass, contact->impact.speed,
-             contact->asked.restitution);
+    const JointUnits *units = mapping_report_units(contact);
+    snprintf(words, sizeof words, "%s, %s: %.4g %s at %.4g %s, asked: restitution %.3g",
+             mapping_report_joint(contact)->name, law, contact->impact.mass, units->mass,
+             contact->impact.speed, units->rate, contact->asked.restitution);
     plot_text(svg, PANEL_LEFT, top - 14.0, "start", "", words);
     if (contact->lack[0] != '\0') {
         plot_text(svg, PANEL_LEFT, top + 14.0, "start", "note", "not mapped: see the tables");

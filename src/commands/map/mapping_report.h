@@ -4,6 +4,7 @@
 #include "commands/map/penalty_map.h"
 #include "measure/mapping.h"
 #include "write/fields.h"
+#include "write/joint_units.h"
 
 enum { MAPPING_REPORT_LAW_SIZE = 64 };
 
@@ -23,6 +24,12 @@ static inline bool mapping_report_is_poisson(const MappingReport *report)
 static inline const Joint *mapping_report_joint(const MappingContact *contact)
 {
     return &contact->scenario.linkage.joints[contact->joint.joint];
+}
+
+// The units of a contact.
+static inline const JointUnits *mapping_report_units(const MappingContact *contact)
+{
+    return joint_units(mapping_report_joint(contact));
 }
 
 // The law of a contact for people: a stiffness that the case gives shows its value.

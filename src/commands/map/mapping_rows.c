@@ -66,6 +66,11 @@ static const char *contact_status(const void *record)
     return ((const MappingContact *)record)->lack[0] == '\0' ? "ok" : "not mapped";
 }
 
+static json_t *is_torsional(const void *record)
+{
+    return json_boolean(linkage_is_torsional(mapping_report_joint(record)));
+}
+
 static const void *if_mapped(const void *record)
 {
     return ((const MappingContact *)record)->lack[0] == '\0' ? record : NULL;
@@ -112,7 +117,12 @@ static json_t *hardest_of(const void *record)
 }
 
 // the best constants have the figures without the rows that fell back
-enum { HELD = FIELD_OWN, BOTH = FIELD_JSON | HELD };
+enum {
+    HELD = FIELD_OWN,
+    BOTH = FIELD_JSON | HELD,
+    PUSHED = FIELD_OWN << 1, // of tables: of a contact that pushes, or one that turns
+    TURNED = FIELD_OWN << 2,
+};
 
 #define SPREAD(member)    .offset = offsetof(ImpactSpread, member)
 #define FIGURE(member)    .offset = offsetof(ImpactFigures, member)
@@ -188,7 +198,8 @@ static const Field ROW_FIELDS[] = {
      .align = TABLE_DETAIL},
     {"stability_limit", FIELD_NUMBER, FIELD_JSON, ROW(stability_limit)},
     {"erp", FIELD_NUMBER, FIELD_ALL, "ERP", "1", "%.6g", ROW(soft.erp)},
-    {"cfm_m_N_s", FIELD_NUMBER, FIELD_ALL, "CFM", "1/(N s/m)", "%.6g", ROW(soft.cfm)},
+    {"cfm_m_N_s", FIELD_NUMBER, FIELD_FILES | PUSHED, "CFM", "1/(N s/m)", "%.6g", ROW(soft.cfm)},
+    {NULL, FIELD_NUMBER, TURNED, "CFM", "1/(N m s/rad)", "%.6g", ROW(soft.cfm)},
     {"asked", FIELD_PART, FIELD_CSV, .of = ASKED_FIELDS, .part = asked_of},
     {"predicted", FIELD_GROUP, FIELD_CSV, ROW(predicted), .of = PREDICTED_FIELDS},
     {"delivered", FIELD_GROUP, FIELD_CSV, ROW(delivered), .of = DELIVERED_FIELDS},
@@ -236,6 +247,7 @@ static const Field MAPPED_FIELDS[] = {
 };
 static const Field CONTACT_FIELDS[] = {
     {"joint", FIELD_NAME, FIELD_JSON, .word = joint_of},
+    {"is_torsional", FIELD_VALUE, FIELD_JSON, .json = is_torsional},
     {"law", FIELD_NAME, FIELD_JSON, CONTACT(law_name)},
     {"status", FIELD_NAME, FIELD_JSON, .word = contact_status},
     {"message", FIELD_TEXT, FIELD_JSON, CONTACT(lack)},
@@ -330,10 +342,12 @@ void mapping_rows_begin(const MappingRow *rows, size_t index, Table *table)
 
 void mapping_rows_write_table(const MappingRow *rows, size_t count, const Style *style, Text *text)
 {
-    Table *table = fields_table("Settings", ROW_FIELDS, FIELD_TABLE, style, text);
+    const bool is_turning = count > 0 && linkage_is_torsional(mapping_report_joint(rows->contact));
+    const unsigned where = FIELD_TABLE | (is_turning ? TURNED : PUSHED);
+    Table *table = fields_table("Settings", ROW_FIELDS, where, style, text);
     for (size_t i = 0; i < count; i++) {
         mapping_rows_begin(rows, i, table);
-        fields_table_row(ROW_FIELDS, FIELD_TABLE, &rows[i], table);
+        fields_table_row(ROW_FIELDS, where, &rows[i], table);
     }
     section_end(table, text);
 }

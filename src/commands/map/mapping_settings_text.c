@@ -54,21 +54,27 @@ static void write_figures(const MappingContact *contact, const MappingRow *rows,
                           Text *text)
 {
     // the length of the contact is in the JSON and the CSV: 80 columns have no room for it
-    static const SectionHead HEADS[] = {
+    const JointUnits *units = mapping_report_units(contact);
+    const double depth_scale = units_per_si(units->length);
+    char peak[32];
+    char depth[32];
+    snprintf(peak, sizeof peak, "peak, %s", units->force);
+    snprintf(depth, sizeof depth, "depth, %s", units->length);
+    const SectionHead heads[] = {
         {"map", "", TABLE_LEFT},
         {"step", "us", TABLE_RIGHT | TABLE_KEY},
         {"restitution", "predicted", TABLE_RIGHT},
         {"", "in ODE", TABLE_RIGHT},
-        {"peak, N", "predicted", TABLE_RIGHT},
+        {peak, "predicted", TABLE_RIGHT},
         {"", "in ODE", TABLE_RIGHT},
-        {"depth, um", "predicted", TABLE_RIGHT},
+        {depth, "predicted", TABLE_RIGHT},
         {"", "in ODE", TABLE_RIGHT},
     };
-    Table *table = section_begin("Predicted and delivered", 8, HEADS, style, text);
+    Table *table = section_begin("Predicted and delivered", 8, heads, style, text);
     if (!mapping_contact_is_poisson(contact)) {
         const MapImpact *asked = &contact->asked;
         const double values[] = {asked->restitution, asked->force_max,
-                                 asked->penetration_max * UNITS_UM};
+                                 asked->penetration_max * depth_scale};
         table_cell(table, "asked");
         table_cell(table, "-");
         for (int i = 0; i < 3; i++) {
@@ -84,7 +90,7 @@ static void write_figures(const MappingContact *contact, const MappingRow *rows,
         pair_cells(table, &rows[i], &predicted->restitution, &delivered->restitution, 1.0);
         pair_cells(table, &rows[i], &predicted->force_max, &delivered->force_max, 1.0);
         pair_cells(table, &rows[i], &predicted->penetration_max, &delivered->penetration_max,
-                   UNITS_UM);
+                   depth_scale);
     }
     section_end(table, text);
 }

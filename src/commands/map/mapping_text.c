@@ -1,5 +1,6 @@
 // Which ERP, CFM and step for this joint, and what do they deliver?
 #include "commands/map/mapping_report.h"
+#include "contact/law.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -12,8 +13,8 @@ void mapping_report_law(const MappingContact *contact, char law[MAPPING_REPORT_L
 {
     const ForceLaw *built = &contact->impact.law;
     if (strcmp(contact->law_name, "stiffness") == 0) {
-        snprintf(law, MAPPING_REPORT_LAW_SIZE, "K = %.4g N/m^%.3g", built->stiffness,
-                 built->exponent);
+        snprintf(law, MAPPING_REPORT_LAW_SIZE, "K = %.4g %s^%.3g", built->stiffness,
+                 mapping_report_units(contact)->stiffness, built->exponent);
     } else {
         snprintf(law, MAPPING_REPORT_LAW_SIZE, "%s", contact->law_name);
     }
@@ -46,8 +47,8 @@ static void write_head(const MappingReport *report, const Style *style, Text *te
                 MAP_IMPACT_PHASES);
     if (has_lines(&scenario->linkage)) {
         text_append(text,
-                    "  at a line   the corner of a block, or a stop, is run as a disc against "
-                    "a line; a block's other corners are left out\n");
+                    "  at a line   the corner of a block, a stop, or an end of a coordinate is run "
+                    "as a disc against a line; a block's other corners are left out\n");
     }
     if (scenario->linkage.is_spatial) {
         text_append(text, "  in space    the pin is taken to stand straight: both ends of its hole "
@@ -80,15 +81,16 @@ static void write_sources(const MappingReport *report, const MappingContact *con
 {
     const MappingSettings *settings = &report->mapping->settings;
     const MappingJoint *joint = &contact->joint;
+    const JointUnits *units = mapping_report_units(contact);
     Text words;
     text_init(&words);
     if (joint->mass_most > 0.0) {
-        text_append(&words, "%s %.4g to %.4g kg over the run%s",
+        text_append(&words, "%s %.4g to %.4g %s over the run%s",
                     settings->mass_source == MAPPING_GIVEN ? "; the joint's is" : " of",
-                    joint->mass_least, joint->mass_most,
+                    joint->mass_least, joint->mass_most, units->mass,
                     mass_words(&report->scenario->linkage.joints[joint->joint]));
     }
-    text_append(text, "  mass        %.4g kg, %s%s\n", contact->impact.mass,
+    text_append(text, "  mass        %.4g %s, %s%s\n", contact->impact.mass, units->mass,
                 source_words(settings->mass_source), words.data);
     text_finish(&words);
     text_init(&words);
@@ -99,19 +101,21 @@ static void write_sources(const MappingReport *report, const MappingContact *con
             [MAPPING_FLOOR] = ":",
         };
         const bool is_most = contact->speed_source == MAPPING_MOST;
-        text_append(&words, "%s %zu contact%s of the reference's run, %.4g m/s %s",
+        text_append(&words, "%s %zu contact%s of the reference's run, %.4g %s %s",
                     LINKS[contact->speed_source], joint->onsets, joint->onsets == 1 ? "" : "s",
-                    is_most ? joint->speed_median : joint->speed_most,
+                    is_most ? joint->speed_median : joint->speed_most, units->rate,
                     is_most ? "in the median" : "at most");
     }
-    text_append(text, "  speed       %.4g m/s, %s%s\n", contact->impact.speed,
+    text_append(text, "  speed       %.4g %s, %s%s\n", contact->impact.speed, units->rate,
                 source_words(contact->speed_source), words.data);
     text_finish(&words);
 }
 
 static void write_law(const MappingReport *report, const MappingContact *contact, Text *text)
 {
-    const ContactOptions *options = &contact->scenario.contact;
+    const ContactOptions own =
+        law_options(&contact->scenario.contact, mapping_report_joint(contact));
+    const ContactOptions *options = &own;
     const MapImpact *asked = &contact->asked;
     if (mapping_report_is_poisson(report)) {
         text_append(text,
@@ -125,18 +129,21 @@ static void write_law(const MappingReport *report, const MappingContact *contact
         snprintf(damping, sizeof damping, " (%s for %.4g)", OPTIONS_DAMPINGS[options->damping],
                  options->restitution);
     }
+    const JointUnits *units = mapping_report_units(contact);
     text_append(
-        text, "  asks        restitution %.4g, peak %.4g N, depth %.4g um, %.4g us of contact%s\n",
-        asked->restitution, asked->force_max, asked->penetration_max * UNITS_UM,
+        text, "  asks        restitution %.4g, peak %.4g %s, depth %.4g %s, %.4g us of contact%s\n",
+        asked->restitution, asked->force_max, units->force,
+        asked->penetration_max * units_per_si(units->length), units->length,
         asked->duration * UNITS_US, damping);
     text_append(text,
-                "  stiffness   k = %.4g N/m at that depth (secant; tangent %.4g), Tc = %.4g us "
+                "  stiffness   k = %.4g %s at that depth (secant; tangent %.4g), Tc = %.4g us "
                 "without damping\n",
-                contact->secant, contact->tangent, contact->half_period_s * UNITS_US);
+                contact->secant, units->stiffness, contact->tangent,
+                contact->half_period_s * UNITS_US);
     text_append(text,
-                "  damping     c = %.4g N s/m at that depth; a viscous damper of %.4g beside "
+                "  damping     c = %.4g %s at that depth; a viscous damper of %.4g beside "
                 "that k loses as much\n",
-                contact->damping, contact->equivalent);
+                contact->damping, units->damping, contact->equivalent);
 }
 
 // How much harder the linkage's own load presses, and what that does to stability.
@@ -147,15 +154,18 @@ static void write_run(const MappingContact *contact, Text *text)
         return;
     }
     char stable[STABLE_SIZE] = "";
+    const JointUnits *units = mapping_report_units(contact);
     const double tangent = force_law_tangent(&contact->impact.law, joint->penetration_max);
     if (isfinite(tangent) && tangent > 0.0) {
         snprintf(stable, sizeof stable, "; omega h = 2 there at h = %.3g us, for the least mass",
                  2.0 * sqrt(joint->mass_least / tangent) * UNITS_US);
     }
-    text_append(text,
-                "  the run     %.4g N and %.4g um at most: these include the linkage's load, which "
-                "the impact does not%s\n",
-                joint->force_max, joint->penetration_max * UNITS_UM, stable);
+    text_append(
+        text,
+        "  the run     %.4g %s and %.4g %s at most: these include the linkage's load, which "
+        "the impact does not%s\n",
+        joint->force_max, units->force, joint->penetration_max * units_per_si(units->length),
+        units->length, stable);
 }
 
 static void write_longest(const MappingReport *report, const MappingContact *contact,
@@ -186,10 +196,11 @@ static void write_longest(const MappingReport *report, const MappingContact *con
     section_end(table, text);
     if (joint->onsets > 0) {
         text_append(text,
-                    "  hardest: %.4g kg at %.4g m/s, the lightest mass and the fastest contact of "
+                    "  hardest: %.4g %s at %.4g %s, the lightest mass and the fastest contact of "
                     "the run, together.\n",
-                    joint->mass_least,
-                    fmax(joint->speed_most, contact->impact.law.impact_speed_floor));
+                    joint->mass_least, mapping_report_units(contact)->mass,
+                    fmax(joint->speed_most, contact->impact.law.impact_speed_floor),
+                    mapping_report_units(contact)->rate);
     }
 }
 
