@@ -11,7 +11,7 @@
 static const CaseKind *const KINDS[] = {&CASE_FOUR_BAR,  &CASE_BODIES,     &CASE_PENDULA,
                                         &CASE_FOUR_BARS, &CASE_LOCK,       &CASE_CHANGE_POINT,
                                         &CASE_TOUCHING,  &CASE_SEPARATING, &CASE_SPRUNG,
-                                        &CASE_SLIDERS,   &CASE_BALLS};
+                                        &CASE_SLIDERS,   &CASE_BALLS,      &CASE_LIMITS};
 
 enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 

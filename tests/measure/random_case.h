@@ -16,6 +16,7 @@ extern const CaseKind CASE_BODIES;
 extern const CaseKind CASE_SPRUNG;
 extern const CaseKind CASE_SLIDERS;
 extern const CaseKind CASE_BALLS;
+extern const CaseKind CASE_LIMITS;
 
 extern const CaseKind CASE_PENDULA;
 extern const CaseKind CASE_FOUR_BARS;

@@ -1,9 +1,10 @@
 // Is any run of a random linkage wrong without a word? Runs seeded cases of every kind through the
 // closed form, the reference and ODE, for a short time each, and counts how they end.
 //
-// random_linkages FIRST LAST [SECONDS]
+// random_linkages FIRST LAST [SECONDS [KIND]]
 //   FIRST LAST  seeds; the kind of mechanism and the scheme of ODE follow from the seed
 //   SECONDS     of the clock that one linkage may take (default 10)
+//   KIND        of mechanism, of which all are then; seeds count these alone
 // Outcomes:
 //   refused   the case file, or the solver before its first step, says what is not allowed
 //   agrees    the error is below a limit: of the closed form and the reference AGREES_EXACT or
@@ -53,7 +54,7 @@ static const char *const PART_NAMES[] = {"case file", "closed form", "reference"
 static const CaseKind *const KINDS[] = {&CASE_FOUR_BAR,  &CASE_BODIES,     &CASE_PENDULA,
                                         &CASE_FOUR_BARS, &CASE_LOCK,       &CASE_CHANGE_POINT,
                                         &CASE_TOUCHING,  &CASE_SEPARATING, &CASE_SPRUNG,
-                                        &CASE_SLIDERS,   &CASE_BALLS};
+                                        &CASE_SLIDERS,   &CASE_BALLS,      &CASE_LIMITS};
 
 // every way of stepping ODE; the others' keys are the case's own
 static const char *const SCHEMES[][2] = {
@@ -266,10 +267,21 @@ static void print_counts(size_t counts[PART_TOTAL][OUTCOME_TOTAL])
     }
 }
 
+// The number of a kind; all of them where there is none of that name.
+static size_t find_kind(const char *name)
+{
+    size_t kind = 0;
+    while (kind < KIND_TOTAL && strcmp(KINDS[kind]->name, name) != 0) {
+        kind++;
+    }
+    return kind;
+}
+
 int main(int argc, char **argv)
 {
-    if (argc < 3) {
-        fprintf(stderr, "usage: random_linkages FIRST LAST [SECONDS]\n");
+    const size_t kind = argc > 4 ? find_kind(argv[4]) : 0;
+    if (argc < 3 || kind == KIND_TOTAL) {
+        fprintf(stderr, "usage: random_linkages FIRST LAST [SECONDS [KIND]]\n");
         return 2;
     }
     const uint64_t first = strtoull(argv[1], NULL, 10);
@@ -278,7 +290,8 @@ int main(int argc, char **argv)
     const bool is_loud = getenv("ALL") != NULL;
     static size_t counts[PART_TOTAL][OUTCOME_TOTAL];
     bool is_silent = false;
-    for (uint64_t seed = first; seed <= last; seed++) {
+    for (uint64_t number = first; number <= last; number++) {
+        const uint64_t seed = argc > 4 ? KIND_TOTAL * number + kind : number;
         Result result;
         run_linkage(seed, time_limit_s, &result);
         for (int part = 0; part < PART_TOTAL; part++) {
