@@ -195,12 +195,27 @@ static void match_rows(Table *table, const Joint *joint, const JointExtremes *tr
     }
 }
 
+// Of the largest forces, which are torques where the limits of pivots are met.
+static const char *unit_of_forces(const Linkage *linkage)
+{
+    bool is_torsional[2] = {false, false};
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage_has_play(&linkage->joints[i])) {
+            is_torsional[linkage_is_torsional(&linkage->joints[i])] = true;
+        }
+    }
+    return is_torsional[false] && is_torsional[true] ? "N, N m" : is_torsional[true] ? "N m" : "N";
+}
+
 void run_truth_matches(const RunReport *report, const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"joint", "", TABLE_LEFT},       {"reference's onset", "ms", TABLE_RIGHT},
-        {"force max", "N", TABLE_RIGHT}, {"later by", "us", TABLE_RIGHT},
-        {"force", "%", TABLE_RIGHT},     {"impulse", "%", TABLE_RIGHT},
+    const SectionHead heads[] = {
+        {"joint", "", TABLE_LEFT},
+        {"reference's onset", "ms", TABLE_RIGHT},
+        {"force max", unit_of_forces(&report->scenario->linkage), TABLE_RIGHT},
+        {"later by", "us", TABLE_RIGHT},
+        {"force", "%", TABLE_RIGHT},
+        {"impulse", "%", TABLE_RIGHT},
     };
     const Linkage *linkage = &report->scenario->linkage;
     for (size_t i = 0; report->matches != NULL && i < report->run_count; i++) {
@@ -215,7 +230,7 @@ void run_truth_matches(const RunReport *report, const Style *style, Text *text)
                 char heading[128];
                 snprintf(heading, sizeof heading, "Contacts matched within the horizon, %s",
                          report->runs[i]->backend);
-                table = section_begin(heading, 6, HEADS, style, text);
+                table = section_begin(heading, 6, heads, style, text);
             }
             match_rows(table, &linkage->joints[joint], &report->truth->trajectory->joints[joint],
                        match);
