@@ -8,9 +8,11 @@ folder=cases/mechanisms
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 . tests/command/held_cases.sh
-echo "1..10"
+echo "1..15"
 cases_hold slider-crank slider-crank-pin slider-crank-guide slider-crank-both woodpecker \
-    bouncing-ball newtons-cradle
-# a floor that takes more, spheres that lose some of their speed, a longer rod
+    bouncing-ball newtons-cradle gear-pair servo-backlash stop-rebound
+# a floor that takes more, spheres that lose some of their speed, a longer rod, teeth that keep to one
+# flank, gears that give way by more
 cases_do_not_hold "bouncing-ball contact.restitution=0.7" \
-    "newtons-cradle contact.damping=lankarani-nikravesh" "slider-crank slider-crank.rod.length=121mm"
+    "newtons-cradle contact.damping=lankarani-nikravesh" "slider-crank slider-crank.rod.length=121mm" \
+    "gear-pair torsion-springs.bearing.damping=6N*mm*s/rad" "servo-backlash joints.output.stiffness=160N*m/rad"
