@@ -80,7 +80,10 @@ static bool walk_to(const GrowthWork *work, Walk *walk, double time_s, bool is_c
         }
     }
     beat(work, is_callers);
-    work->solver->observe(walk->state, fmin(time_s, walk->reached_s), sample);
+    const Solver *solver = work->solver;
+    void (*look)(const void *, double, Sample *) =
+        solver->glance != NULL ? solver->glance : solver->observe;
+    look(walk->state, fmin(time_s, walk->reached_s), sample);
     return true;
 }
 

@@ -60,6 +60,9 @@ typedef struct Solver {
     // The state at a time in the last step, both ends included. An omega that is no number marks a
     // state that the joints do not determine: the run ends there.
     void (*observe)(const void *state, double time_s, Sample *sample);
+    // Optional: the bodies' positions and velocities alone, which may take less; the rest of the
+    // sample stays as it is. NULL: observe has them.
+    void (*glance)(const void *state, double time_s, Sample *sample);
     SolverModel (*model)(const void *state);
     // Optional: extremes from a time on known better than from steps (a closed form), which return
     // every turn. NULL: taken from records.

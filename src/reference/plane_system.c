@@ -323,6 +323,18 @@ static void plane_bodies(const System *system, const SystemState *state, Sample 
     memcpy(sample->bodies, state_of(state)->tree.motions, count * sizeof *sample->bodies);
 }
 
+static bool plane_place(const System *system, double since_s, const double *y, Sample *sample)
+{
+    const Dynamics *dynamics = dynamics_of(system);
+    if (dynamics->tree.loop_count > 0) {
+        return false;
+    }
+    DynamicsState *at = dynamics->room.state;
+    tree_evaluate(&dynamics->tree, since_s, y, y + system->coordinate_count, &at->tree);
+    plane_bodies(system, &at->shared, sample);
+    return true;
+}
+
 static size_t plane_rows(const System *system)
 {
     return 2 * dynamics_of(system)->tree.loop_count;
@@ -357,6 +369,7 @@ static const SystemKind PLANE = {
     .turning = plane_turning,
     .joints = plane_joints,
     .bodies = plane_bodies,
+    .place = plane_place,
     .rows = plane_rows,
     .destroy = plane_destroy,
 };

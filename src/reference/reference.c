@@ -234,17 +234,25 @@ static StepRecord reference_record(const void *state)
     };
 }
 
+// The integrator's vector at a time in the last step, since the base.
+static const double *look_up(const Reference *reference, double since_s)
+{
+    const System *system = reference->stepper->system;
+    Dop853 *integrator = &reference->stepper->integrator;
+    double *y = reference->seen;
+    memcpy(y, dop853_dense(integrator, since_s), integrator->size * sizeof *y);
+    system->kind->project(system, since_s, y);
+    return y;
+}
+
 static void reference_observe(const void *state, double time_s, Sample *sample)
 {
     const Reference *reference = state;
     const Linkage *linkage = &reference->stepper->scenario->linkage;
     const System *system = reference->stepper->system;
     SystemState *at = reference->scratch;
-    Dop853 *integrator = &reference->stepper->integrator;
-    double *y = reference->seen;
     const double since_s = system->kind->since(system, time_s);
-    memcpy(y, dop853_dense(integrator, since_s), integrator->size * sizeof *y);
-    system->kind->project(system, since_s, y);
+    const double *y = look_up(reference, since_s);
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
     if (!system->kind->evaluate(system, since_s, y, at, NULL)) {
@@ -256,6 +264,17 @@ static void reference_observe(const void *state, double time_s, Sample *sample)
     }
     system->kind->bodies(system, at, sample);
     system->kind->joints(system, at, sample->joints, sample->space_joints);
+}
+
+static void reference_glance(const void *state, double time_s, Sample *sample)
+{
+    const Reference *reference = state;
+    const System *system = reference->stepper->system;
+    const double since_s = system->kind->since(system, time_s);
+    if (system->kind->place == NULL ||
+        !system->kind->place(system, since_s, look_up(reference, since_s), sample)) {
+        reference_observe(state, time_s, sample);
+    }
 }
 
 static SolverModel reference_model(const void *state)
@@ -280,6 +299,7 @@ const Solver REFERENCE_SOLVER = {
     .step = reference_step,
     .record = reference_record,
     .observe = reference_observe,
+    .glance = reference_glance,
     .model = reference_model,
     .close = reference_close,
 };

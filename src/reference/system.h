@@ -71,6 +71,9 @@ typedef struct SystemKind {
     void (*joints)(const System *system, const SystemState *state, JointState *joints,
                    SpaceJointState *space_joints);
     void (*bodies)(const System *system, const SystemState *state, Sample *sample);
+    // Where the bodies are at a time and how fast they move, without their accelerations: of
+    // equations whose accelerations are always determined. NULL, or false, of others.
+    bool (*place)(const System *system, double since_s, const double *y, Sample *sample);
     // Rows of the joints that close loops.
     size_t (*rows)(const System *system);
     void (*destroy)(System *system);

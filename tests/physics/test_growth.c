@@ -127,6 +127,37 @@ static void threads_change_no_number(void **state)
     }
 }
 
+// Control: accelerations are what it leaves out.
+static void a_glance_sees_bodies_move_as_observing_does(void **state)
+{
+    const Bench *bench = *state;
+    const Solver *solver = registry_solver(BACKEND_REFERENCE);
+    const Linkage *linkage = &bench->scenario.linkage;
+    Sample whole = sample_create(linkage);
+    Sample glanced = sample_create(linkage);
+    void *run = NULL;
+    Err err = {ERR_NONE, ""};
+    assert_true(solver->open(&bench->scenario, &run, &err));
+    for (int i = 0; i < 200; i++) {
+        assert_true(solver->step(run, INFINITY, &err));
+        const StepRecord record = solver->record(run);
+        const double time_s = 0.5 * (record.start_s + record.end_s);
+        solver->glance(run, time_s, &glanced);
+        solver->observe(run, time_s, &whole);
+        for (size_t k = 0; k < linkage->body_count; k++) {
+            const Motion *a = &whole.bodies[k];
+            const Motion *b = &glanced.bodies[k];
+            assert_true(a->position.x == b->position.x && a->position.y == b->position.y);
+            assert_true(a->velocity.x == b->velocity.x && a->velocity.y == b->velocity.y);
+            assert_true(a->angle == b->angle && a->omega == b->omega);
+        }
+    }
+    assert_true(whole.bodies[1].alpha != glanced.bodies[1].alpha);
+    solver->close(run);
+    sample_free(&whole);
+    sample_free(&glanced);
+}
+
 // Each direction by itself, as brute force has it: the fastest of many is the one that was found.
 // Control: not every one is, so that a few at random are a matter of luck.
 static void the_fastest_of_many_single_directions_is_as_fast(void **state)
@@ -200,6 +231,7 @@ int main(void)
         cmocka_unit_test(every_freedom_has_a_direction),
         cmocka_unit_test(the_horizon_is_no_matter_of_directions_or_sizes),
         cmocka_unit_test(threads_change_no_number),
+        cmocka_unit_test(a_glance_sees_bodies_move_as_observing_does),
         cmocka_unit_test(the_fastest_of_many_single_directions_is_as_fast),
         cmocka_unit_test(mechanisms_that_nothing_connects_share_their_runs),
     };
