@@ -20,8 +20,9 @@ const SchemaGroup SCHEMA_GROUPS[] = {
                "make its kind: without sizes it is an ideal pivot; with hole and pin, or "
                "radial-clearance, a pin with play; with along an ideal prismatic joint; with guide, "
                "block and length as well a block with play between guides, or a sleeve round a "
-               "rod; with at-a and at-b a stop, where two bodies touch that are not joined. "
-               "Prismatic joints, guides and stops are for the plane."},
+               "rod; with at-a and at-b a stop, where two bodies touch that are not joined; with gears and teeth a "
+               "pair of gears. An ideal pivot or prismatic joint with backlash, or with low and high, has flanks "
+               "or stops at the ends of its own coordinate. All but pivots and pins are for the plane."},
     {"springs", "With bodies: springs with dampers along the line between two points, "
                 "with names of letters, digits, - and _. In the plane only."},
     {"torsion-springs", "With bodies: springs with dampers that turn the two bodies of a joint "
