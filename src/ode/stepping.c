@@ -157,7 +157,8 @@ void stepping_observe_coordinate(const Linkage *linkage, int joint, const Motion
 {
     const Joint *data = &linkage->joints[joint];
     if (data->kind == JOINT_GEAR) {
-        state->eccentricity = (Vec2){coordinate_position(linkage, motions, joint), 0.0};
+        const double position = coordinate_position(linkage, motions, joint);
+        state->eccentricity = (Vec2){position - data->limits.middle, 0.0};
     } else if (data->kind == JOINT_REVOLUTE && data->limits.kind != LIMIT_NONE) {
         state->tilt = coordinate_position(linkage, motions, joint);
     }

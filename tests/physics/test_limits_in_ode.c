@@ -185,6 +185,44 @@ static void a_gear_pair_that_rattles_follows_the_reference(void **state)
     trajectory_destroy(run);
 }
 
+// Where coordinates stand, what presses, and what contacts came to, against the reference.
+static void check_records(const Scenario *scenario, size_t joint)
+{
+    Trajectory *truth = complete_run(scenario, BACKEND_REFERENCE);
+    Trajectory *run = complete_run(scenario, BACKEND_ODE);
+    for (size_t k = 0; k < truth->sample_count; k++) {
+        const JointState *is = trajectory_state(run, k, joint);
+        const JointState *was = trajectory_state(truth, k, joint);
+        assert_near(is->tilt, was->tilt, 1e-7);
+        assert_near(is->eccentricity.x, was->eccentricity.x, 1e-7);
+        assert_near(is->gap, was->gap, 1e-7);
+        assert_true(is->is_touching == was->is_touching || fabs(was->gap) < 1e-7);
+    }
+    const JointExtremes *is = &run->joints[joint];
+    const JointExtremes *was = &truth->joints[joint];
+    assert_int_equal(is->impacts, was->impacts);
+    assert_true(was->impacts > 2);
+    assert_close(is->force_max.value, was->force_max.value, 1e-4);
+    assert_close(is->penetration_max.value, was->penetration_max.value, 1e-4);
+    assert_close(is->impulse, was->impulse, 1e-4);
+    assert_close(is->spikes[0].approach_speed, was->spikes[0].approach_speed, 1e-4);
+    assert_close(run->energy.dissipated, truth->energy.dissipated, 1e-5);
+    assert_near(run->energy.drive_work, truth->energy.drive_work, 1e-5 * truth->energy.dissipated);
+    trajectory_destroy(truth);
+    trajectory_destroy(run);
+}
+
+static void records_are_those_of_the_reference(void **state)
+{
+    (void)state;
+    Scenario gears = gear_pair(ODE_MAP_IMPULSE, 0.1);
+    gears.run.step = 2e-5;
+    check_records(&gears, 2);
+    Scenario stops = load("cases/mechanisms/stop-rebound.yaml", NULL, 0);
+    stops.run.step = 1e-4;
+    check_records(&stops, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -194,6 +232,7 @@ int main(void)
         cmocka_unit_test(the_energy_audit_closes),
         cmocka_unit_test(flanks_are_met_after_many_turns),
         cmocka_unit_test(a_gear_pair_that_rattles_follows_the_reference),
+        cmocka_unit_test(records_are_those_of_the_reference),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,6 +97,27 @@ static void a_picture_shows_the_panels_of_the_joints_that_are_there(void **state
     }
 }
 
+static void a_picture_shows_where_limited_coordinates_are(void **state)
+{
+    Fixture *fixture = *state;
+    static const char *const PANELS[] = {"Torque in the joint", "Angle of the joint"};
+    Joint *joint = &fixture->scenario.linkage.joints[2];
+    for (int is_limited = 0; is_limited < 2; is_limited++) {
+        if (is_limited == 1) {
+            // the only joint with play
+            fixture->scenario.linkage.joints[1].kind = JOINT_REVOLUTE;
+            joint->limits = (Limits){.kind = LIMIT_BACKLASH, .backlash = 0.01};
+        }
+        Text svg;
+        text_init(&svg);
+        plot_run_write(&fixture->report, &svg);
+        for (size_t i = 0; i < sizeof PANELS / sizeof *PANELS; i++) {
+            assert_true((strstr(svg.data, PANELS[i]) != NULL) == (is_limited == 1));
+        }
+        text_finish(&svg);
+    }
+}
+
 static void a_stop_says_what_touches_what(void **state)
 {
     Fixture *fixture = *state;
@@ -128,6 +149,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_block_has_its_own_lines_and_keys, fixture_set_up,
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_picture_shows_the_panels_of_the_joints_that_are_there,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_picture_shows_where_limited_coordinates_are,
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_stop_says_what_touches_what, fixture_set_up,
                                         fixture_tear_down),

@@ -1,6 +1,7 @@
 // What did the joints feel, and where was the pin in its hole?
 #include "commands/run/plot_look.h"
 
+#include "write/joint_units.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -83,14 +84,34 @@ static void draw_spikes(const PlotView *view, const PlotPanel *panel, size_t run
     }
 }
 
+// What the panel of forces has: those of joints whose limits turn them are torques.
+static void name_forces(const PlotView *view, PlotPanel *panel)
+{
+    const Linkage *linkage = &view->report->scenario->linkage;
+    bool is_any[2] = {false, false};
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const bool is_torque = linkage_is_torsional(&linkage->joints[i]);
+        is_any[is_torque ? 1 : 0] |= plot_look_shows(view, true, i);
+    }
+    const bool has_play = scenario_has_clearance(view->report->scenario);
+    if (is_any[0] && is_any[1]) {
+        panel->title = "Force or torque; dots: strongest contacts";
+        panel->y.title = "force, N, or torque, N m";
+    } else if (is_any[1]) {
+        panel->title = "Torque in the joint; dots: strongest contacts";
+        panel->y.title = "torque, N m";
+    } else {
+        panel->title = has_play ? "Force in the joint; dots: strongest contacts" : panel->title;
+        panel->y.title = "force, N";
+    }
+}
+
 void plot_joints_forces(const PlotView *view, PlotPanel panel)
 {
     const RunReport *report = view->report;
-    panel.y = (Axis){.title = "force, N", .scale = AXIS_LOG};
+    panel.y = (Axis){.scale = AXIS_LOG};
+    name_forces(view, &panel);
     choose_force_range(view, &panel.y);
-    if (scenario_has_clearance(report->scenario)) {
-        panel.title = "Force in the joint; dots: strongest contacts";
-    }
     plot_enter(&panel);
     plot_look_shade(view, &panel);
     plot_look_others(view, &panel, FORCE);
@@ -106,7 +127,8 @@ void plot_joints_forces(const PlotView *view, PlotPanel panel)
     const Trajectory *spiky = plot_look_spike_run(view);
     for (size_t joint = 0; spiky != NULL && joint < spiky->joint_count; joint++) {
         if (plot_look_shows(view, true, joint)) {
-            plot_look_marks(view, &panel, &spiky->force_spikes[joint], FORCE, joint, "N");
+            const char *unit = joint_units(&report->scenario->linkage.joints[joint])->force;
+            plot_look_marks(view, &panel, &spiky->force_spikes[joint], FORCE, joint, unit);
         }
     }
     plot_leave(&panel);

@@ -88,6 +88,12 @@ void plot_slides_offsets(const PlotView *view, PlotPanel panel);
 void plot_slides_tilts(const PlotView *view, PlotPanel panel);
 void plot_slides_stops(const PlotView *view, PlotPanel panel);
 
+// Of limited coordinates: where they are between their flanks or stops; and whether a linkage has
+// any that are angles, or lengths.
+void plot_limits_angles(const PlotView *view, PlotPanel panel);
+void plot_limits_lengths(const PlotView *view, PlotPanel panel);
+bool plot_limits_any(const Linkage *linkage, bool is_angle);
+
 // Of a mechanism of which something is left out: the largest value of every body and joint in each
 // run, over their numbers in the case.
 void plot_overview_bodies(const PlotView *view, PlotPanel panel);

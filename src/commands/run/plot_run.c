@@ -279,7 +279,7 @@ static void draw_motions(const PlotView *view, Sheet sheet)
 // What is drawn from the second panel of the second row on.
 typedef void (*DrawPanel)(const PlotView *view, PlotPanel panel);
 
-enum { PANEL_MAX = 12 };
+enum { PANEL_MAX = 14 };
 
 static bool has_joint(const RunReport *report, JointKind kind)
 {
@@ -317,6 +317,12 @@ static size_t choose_panels(const PlotView *view, DrawPanel panels[PANEL_MAX])
     }
     if (has_joint(report, JOINT_STOP)) {
         panels[count++] = plot_slides_stops;
+    }
+    if (plot_limits_any(&report->scenario->linkage, true)) {
+        panels[count++] = plot_limits_angles;
+    }
+    if (plot_limits_any(&report->scenario->linkage, false)) {
+        panels[count++] = plot_limits_lengths;
     }
     if (view->bodies.left_out > 0) {
         panels[count++] = plot_overview_bodies;

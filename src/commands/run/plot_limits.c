@@ -1,0 +1,156 @@
+// Where were coordinates between their flanks or stops?
+//
+// Of a backlash the coordinate is shown from the middle of the gap, of stops as it is.
+#include "commands/run/plot_look.h"
+#include "model/coordinate.h"
+#include "write/units.h"
+
+#include <math.h>
+
+static const PlotStyle LIMIT = {"#222222", 1.4, 1.0, "6 4"};
+
+static const Joint *joint_of(const RunReport *report, size_t joint)
+{
+    return &report->scenario->linkage.joints[joint];
+}
+
+// What the coordinate is shown from.
+static double origin_of(const Joint *joint)
+{
+    return joint->limits.kind == LIMIT_BACKLASH ? joint->limits.middle : 0.0;
+}
+
+static double angle_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
+{
+    const double angle = trajectory_state(run, sample, joint)->tilt;
+    return (angle - origin_of(joint_of(report, joint))) * UNITS_DEG;
+}
+
+static double length_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
+{
+    const double length = trajectory_state(run, sample, joint)->eccentricity.x;
+    const Joint *of = joint_of(report, joint);
+    // that of gears is from the middle already
+    return (length - (of->kind == JOINT_GEAR ? 0.0 : origin_of(of))) * UNITS_MM;
+}
+
+// A panel of all limited coordinates that are angles, or that are lengths.
+typedef struct LimitPanel {
+    const char *title;
+    const char *axis;
+    bool is_angle;
+    double unit;
+    PlotQuantity quantity;
+} LimitPanel;
+
+static bool shows(const LimitPanel *limits, const PlotView *view, size_t run, size_t joint)
+{
+    const Joint *of = joint_of(view->report, joint);
+    return of->limits.kind != LIMIT_NONE && linkage_is_torsional(of) == limits->is_angle &&
+           !view->joints.is_left_out[joint] && trajectory_feels_play(view->report->runs[run], of);
+}
+
+// One that a joint does not have is infinite.
+static double limit_of(const LimitPanel *limits, const Joint *joint, int side)
+{
+    const double limit = side == 0 ? coordinate_low(joint) : coordinate_high(joint);
+    return (limit - origin_of(joint)) * limits->unit;
+}
+
+static void take(Axis *axis, double value)
+{
+    axis->low = isfinite(value) ? fmin(axis->low, value) : axis->low;
+    axis->high = isfinite(value) ? fmax(axis->high, value) : axis->high;
+}
+
+static void widen(const LimitPanel *limits, const PlotView *view, Axis *axis)
+{
+    const RunReport *report = view->report;
+    axis->low = INFINITY;
+    axis->high = -INFINITY;
+    for (size_t run = 0; run < report->run_count; run++) {
+        const Trajectory *trajectory = report->runs[run];
+        for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
+            if (!shows(limits, view, run, joint)) {
+                continue;
+            }
+            take(axis, limit_of(limits, joint_of(report, joint), 0));
+            take(axis, limit_of(limits, joint_of(report, joint), 1));
+            for (size_t i = 0; i < trajectory->sample_count; i++) {
+                take(axis, limits->quantity.at(report, trajectory, i, joint));
+            }
+        }
+    }
+    if (!(axis->low < axis->high)) {
+        axis->low = -1.0;
+        axis->high = 1.0;
+    }
+    const double margin = 0.05 * (axis->high - axis->low);
+    axis->low -= margin;
+    axis->high += margin;
+    axis_round(&axis->low, &axis->high);
+}
+
+static void draw_joint(const LimitPanel *limits, const PlotView *view, const PlotPanel *panel,
+                       size_t run, size_t joint)
+{
+    for (int side = 0; side < 2; side++) {
+        const double limit = limit_of(limits, joint_of(view->report, joint), side);
+        if (isfinite(limit)) {
+            plot_line(panel, 2, (const double[]){panel->x.low, panel->x.high},
+                      (const double[]){limit, limit}, LIMIT);
+        }
+    }
+    plot_look_draw(view, panel, run, limits->quantity, joint);
+}
+
+static void draw(const LimitPanel *limits, const PlotView *view, PlotPanel panel)
+{
+    panel.title = limits->title;
+    panel.y.title = limits->axis;
+    widen(limits, view, &panel.y);
+    plot_enter(&panel);
+    plot_look_shade(view, &panel);
+    for (size_t run = 0; run < view->report->run_count; run++) {
+        for (size_t joint = 0; joint < view->report->scenario->linkage.joint_count; joint++) {
+            if (shows(limits, view, run, joint)) {
+                draw_joint(limits, view, &panel, run, joint);
+            }
+        }
+    }
+    plot_leave(&panel);
+}
+
+void plot_limits_angles(const PlotView *view, PlotPanel panel)
+{
+    const LimitPanel angles = {
+        .title = "Angle of the joint; dashed: flanks and stops",
+        .axis = "angle, deg",
+        .is_angle = true,
+        .unit = UNITS_DEG,
+        .quantity = {"angle, deg", true, -1, angle_of},
+    };
+    draw(&angles, view, panel);
+}
+
+void plot_limits_lengths(const PlotView *view, PlotPanel panel)
+{
+    const LimitPanel lengths = {
+        .title = "Way of slider or teeth; dashed: flanks and stops",
+        .axis = "way, mm",
+        .unit = UNITS_MM,
+        .quantity = {"way, mm", true, -1, length_of},
+    };
+    draw(&lengths, view, panel);
+}
+
+bool plot_limits_any(const Linkage *linkage, bool is_angle)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint->limits.kind != LIMIT_NONE && linkage_is_torsional(joint) == is_angle) {
+            return true;
+        }
+    }
+    return false;
+}
