@@ -101,7 +101,7 @@ static void set_pins(Hinged *hinged)
     for (size_t i = 0; i < hinged->pin_count; i++) {
         const int pair = dynamics->places[i].pair;
         HingedPin *pin = &hinged->pins[i];
-        *pin = (HingedPin){&dynamics->system.contacts[i], &tree->base_gaps[pair], {{NULL}}};
+        *pin = (HingedPin){.contact = &dynamics->system.contacts[i], .gap = &tree->base_gaps[pair]};
         for (int side = 0; side < 2; side++) {
             const int end = 2 * pair + side;
             pin->ends[side] = (HingedEnd){
