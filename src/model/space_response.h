@@ -6,7 +6,7 @@
 #include "model/space_rows.h"
 
 enum {
-    SPACE_RESPONSE_PLAY_MAX = RESPONSE_ROW_MAX,
+    SPACE_RESPONSE_PLAY_MAX = 1024, // 56 pins with friction, and 256 without
     SPACE_RESPONSE_ROW_MAX = SPACE_COLUMN_MAX + SPACE_RESPONSE_PLAY_MAX,
 };
 

@@ -1,8 +1,8 @@
 // Which rows hold a joint in space, and which of them are independent?
 #include "model/space_rows.h"
 
-#include <assert.h>
-#include <stdlib.h>
+#include "base/zeroed.h"
+
 #include <string.h>
 
 // What is left of a row, of itself, once everything that others hold is taken out: rounding leaves
@@ -92,7 +92,7 @@ double space_row_speed(const SpaceRow *row, const SpaceMotion *motions)
 // The row over the columns of all bodies that can move, turns measured by a length.
 static void spread(const Linkage *linkage, const SpaceRow *row, double length, double *columns)
 {
-    memset(columns, 0, SPACE_COLUMN_MAX * sizeof *columns);
+    memset(columns, 0, SPACE_FREEDOMS * linkage->body_count * sizeof *columns);
     for (int side = 0; side < 2; side++) {
         const int body = row->body[side];
         if (body == LINKAGE_GROUND || body == linkage_driven_body(linkage)) {
@@ -107,10 +107,10 @@ static void spread(const Linkage *linkage, const SpaceRow *row, double length, d
     }
 }
 
-static double product(const double *a, const double *b)
+static double product(size_t width, const double *a, const double *b)
 {
     double sum = 0.0;
-    for (size_t i = 0; i < SPACE_COLUMN_MAX; i++) {
+    for (size_t i = 0; i < width; i++) {
         sum += a[i] * b[i];
     }
     return sum;
@@ -118,18 +118,19 @@ static double product(const double *a, const double *b)
 
 // Takes out of a row what the directions kept so far have of it, twice for rounding. Returns what
 // is left of its length, as a share.
-static double reduce(double (*kept)[SPACE_COLUMN_MAX], size_t count, double *row)
+static double reduce(const double *kept, size_t count, size_t width, double *row)
 {
-    const double before = sqrt(product(row, row));
+    const double before = sqrt(product(width, row, row));
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < count; i++) {
-            const double share = product(kept[i], row);
-            for (size_t k = 0; k < SPACE_COLUMN_MAX; k++) {
-                row[k] -= share * kept[i][k];
+            const double *direction = kept + i * width;
+            const double share = product(width, direction, row);
+            for (size_t k = 0; k < width && share != 0.0; k++) {
+                row[k] -= share * direction[k];
             }
         }
     }
-    return before > 0.0 ? sqrt(product(row, row)) / before : 0.0;
+    return before > 0.0 ? sqrt(product(width, row, row)) / before : 0.0;
 }
 
 static double mean_reach(const Linkage *linkage)
@@ -143,35 +144,39 @@ static double mean_reach(const Linkage *linkage)
 
 // Directions that the rows chosen so far hold, at right angles to each other.
 typedef struct Basis {
-    double (*kept)[SPACE_COLUMN_MAX];
+    size_t width; // columns of all bodies
+    double *kept;
     size_t count;
     double length; // m, by which turns are measured
 } Basis;
 
 static Basis open_basis(const Linkage *linkage)
 {
-    Basis basis = {.kept = malloc((SPACE_COLUMN_MAX + 1) * sizeof *basis.kept)};
-    assert(basis.kept != NULL);
-    basis.length = mean_reach(linkage);
-    return basis;
+    const size_t width = SPACE_FREEDOMS * linkage->body_count;
+    return (Basis){
+        .width = width,
+        .kept = zeroed((width + 1) * width, sizeof(double)),
+        .length = mean_reach(linkage),
+    };
 }
 
 // What is left of a row, as a share of it, and where the next direction would stand.
 static double share_left(const Linkage *linkage, Basis *basis, const SpaceRow *row)
 {
-    spread(linkage, row, basis->length, basis->kept[basis->count]);
-    return reduce(basis->kept, basis->count, basis->kept[basis->count]);
+    double *next = basis->kept + basis->count * basis->width;
+    spread(linkage, row, basis->length, next);
+    return reduce(basis->kept, basis->count, basis->width, next);
 }
 
 // Takes a row into the basis if it is independent. Returns whether it is.
 static bool add_row(const Linkage *linkage, Basis *basis, const SpaceRow *row)
 {
-    if (basis->count == SPACE_COLUMN_MAX || !(share_left(linkage, basis, row) > INDEPENDENT)) {
+    if (basis->count == basis->width || !(share_left(linkage, basis, row) > INDEPENDENT)) {
         return false;
     }
-    double *added = basis->kept[basis->count++];
-    const double size = sqrt(product(added, added));
-    for (size_t k = 0; k < SPACE_COLUMN_MAX; k++) {
+    double *added = basis->kept + basis->count++ * basis->width;
+    const double size = sqrt(product(basis->width, added, added));
+    for (size_t k = 0; k < basis->width; k++) {
         added[k] /= size;
     }
     return true;
@@ -218,8 +223,8 @@ size_t space_rows_choose_points(const Linkage *linkage, const SpaceMotion *motio
         space_rows_of_joint(linkage, motions, joint, rows);
         // of two that hold the same, the one that holds more of it
         int order[2] = {SPACE_POINT_ROWS, SPACE_POINT_ROWS + 1};
-        if (basis.count < SPACE_COLUMN_MAX && share_left(linkage, &basis, &rows[order[1]]) >
-                                                  share_left(linkage, &basis, &rows[order[0]])) {
+        if (basis.count < basis.width && share_left(linkage, &basis, &rows[order[1]]) >
+                                             share_left(linkage, &basis, &rows[order[0]])) {
             order[0] = SPACE_POINT_ROWS + 1;
             order[1] = SPACE_POINT_ROWS;
         }

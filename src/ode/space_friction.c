@@ -14,6 +14,8 @@
 // The ideal joints hold as in ODE, J v' = -(ERP / h) opening, which is part of a.
 #include "ode/space_friction.h"
 
+#include "base/zeroed.h"
+
 #include <math.h>
 
 enum { SWEEPS_MAX = 50, ROOT_STEPS_MAX = 60, PARTS = 3 };
@@ -35,9 +37,9 @@ typedef struct System {
     const ContactOptions *contact;
     const SpaceFrictionRow *rows;
     size_t count;
-    Share shares[PLACE_MAX];
-    double change[UNKNOWN_MAX * UNKNOWN_MAX]; // s/kg: h W
-    double forces[UNKNOWN_MAX];               // N
+    Share *shares;  // by place; owned, as the next two
+    double *change; // s/kg: h W
+    double *forces; // N
 } System;
 
 static Vec3 direction(const SpaceFrictionRow *row, int part)
@@ -248,27 +250,40 @@ static void make_rows(const System *system, size_t place, double alone, SpaceFri
     row->surface[1] = -before[1] / share->theta;
 }
 
+// Solves without friction and with it, and fills in the rows.
+static void find_rows(System *system, double *alone, SpaceFrictionRow *rows)
+{
+    solve_forces(system, false);
+    for (size_t i = 0; i < system->count; i++) {
+        alone[i] = system->forces[PARTS * i];
+    }
+    solve_forces(system, true);
+    for (size_t i = 0; i < system->count; i++) {
+        make_rows(system, i, alone[i], &rows[i]);
+    }
+}
+
 bool space_friction_find(const ContactOptions *contact, SpaceResponse *response,
                          const SpaceFrictionStep *step, SpaceFrictionRow *rows, size_t count)
 {
-    System system; // large, and filled in as far as it is used
     double alone[PLACE_MAX];
     if (count > PLACE_MAX) {
         return false;
     }
-    system.contact = contact;
-    system.rows = rows;
-    system.count = count;
-    if (!start_system(&system, response, step)) {
-        return false;
+    System system = {
+        .contact = contact,
+        .rows = rows,
+        .count = count,
+        .shares = zeroed(count, sizeof *system.shares),
+        .change = zeroed(PARTS * count * PARTS * count, sizeof *system.change),
+        .forces = zeroed(PARTS * count, sizeof *system.forces),
+    };
+    const bool is_started = start_system(&system, response, step);
+    if (is_started) {
+        find_rows(&system, alone, rows);
     }
-    solve_forces(&system, false);
-    for (size_t i = 0; i < count; i++) {
-        alone[i] = system.forces[PARTS * i];
-    }
-    solve_forces(&system, true);
-    for (size_t i = 0; i < count; i++) {
-        make_rows(&system, i, alone[i], &rows[i]);
-    }
-    return true;
+    free(system.shares);
+    free(system.change);
+    free(system.forces);
+    return is_started;
 }

@@ -45,7 +45,7 @@ static void find_motions(const SpaceImpulseStep *step, double since_s, const Enc
 // Takes the response where the bodies are, with the rows along the directions of mid-step.
 static bool place_there(const SpaceImpulseStep *step, const SpaceMotion *motions)
 {
-    SpaceRow rows[RESPONSE_ROW_MAX];
+    SpaceRow rows[SPACE_RESPONSE_PLAY_MAX];
     for (size_t i = 0; i < step->place_count; i++) {
         PinSpaceRows moved = step->rows[i];
         pin_space_rows_move(&step->places[i], motions, &moved);
@@ -122,10 +122,10 @@ static void find_forces(const SpaceImpulseStep *step, const EncounterSums *sums,
                         const SpaceMotion *motions, SpaceJoints *joints)
 {
     const Linkage *linkage = &step->scenario->linkage;
-    double beyond[RESPONSE_ROW_MAX];
+    double beyond[SPACE_RESPONSE_PLAY_MAX];
     double reactions[SPACE_COLUMN_MAX];
     Vec3 forces[SPACE_JOINT_MAX];
-    memcpy(forces, step->mean, sizeof forces);
+    memcpy(forces, step->mean, linkage->joint_count * sizeof *forces);
     for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
         beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
     }

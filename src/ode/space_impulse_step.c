@@ -134,8 +134,8 @@ static void find_middle(const SpaceImpulseStep *step, SpaceMotion *middle)
 static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
 {
     Encounter *encounter = &step->encounter;
-    SpaceRow rows[RESPONSE_ROW_MAX];
-    double play_drift[RESPONSE_ROW_MAX];
+    SpaceRow rows[SPACE_RESPONSE_PLAY_MAX];
+    double play_drift[SPACE_RESPONSE_PLAY_MAX];
     double ideal_drift[SPACE_COLUMN_MAX];
     SpaceMotion loose[SPACE_BODY_MAX];
     const bool has_friction = step->scenario->contact.friction > 0.0;
@@ -238,7 +238,7 @@ static void find_end(SpaceImpulseStep *step, const SpaceMotion *middle)
     SpaceChange positions[SPACE_BODY_MAX];
     SpaceChange speeds[SPACE_BODY_MAX];
     // when in the step the impulse came
-    double late[RESPONSE_ROW_MAX];
+    double late[SPACE_RESPONSE_PLAY_MAX];
     for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
         late[i] = step->total.moment[i] - half_s * step->total.impulse[i];
     }

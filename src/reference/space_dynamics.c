@@ -201,7 +201,7 @@ static void load_loops(const SpaceDynamics *dynamics, const double *lambda, Spac
                        SpaceLoads *loads)
 {
     const SpaceTree *tree = &dynamics->tree;
-    memset(state->reactions, 0, sizeof state->reactions);
+    memset(state->reactions, 0, tree->linkage->joint_count * sizeof *state->reactions);
     for (size_t row = 0; row < dynamics->loops.row_count; row++) {
         const SpaceLoopRow *which = &dynamics->loops.rows[row];
         const int end = 2 * which->joint;

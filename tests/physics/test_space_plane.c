@@ -4,7 +4,13 @@
 // plane. Each end of a hole has half of the joint's law: together they press as the planar pin
 // does, whose run by the planar reference is the truth. The controls have a reason to leave it.
 #include "complete_run.h"
+#include "kept.h"
 #include "load_case.h"
+
+#include "base/lcg.h"
+#include "model/space.h"
+
+#include <stdio.h>
 
 static Scenario four_bar(const char *space, const char *friction, const char *other)
 {
@@ -106,12 +112,92 @@ static void strong_damping_takes_the_steps_of_the_plane(void **state)
     trajectory_destroy(plane);
 }
 
+// Forty links in a row, level at the start, each with a little speed of its own; every third pin
+// has play.
+static Scenario make_chain(void)
+{
+    enum { LINKS = 40 };
+    static const double LENGTH = 0.1;
+    Scenario scenario = kept_default();
+    Linkage *linkage = &scenario.linkage;
+    uint64_t seed = lcg_stirred(1);
+    for (size_t i = 0; i < LINKS; i++) {
+        Body *body = &linkage->bodies[linkage->body_count++];
+        snprintf(body->name, sizeof body->name, "link-%zu", i);
+        body->mass = 0.1;
+        body->inertia = body->mass * LENGTH * LENGTH / 12.0;
+        body->start.position.x = LENGTH * ((double)i + 0.5);
+        // about the pins before: all points of the chain on one line stay there
+        body->start.velocity.y = 0.02 * lcg_draw(&seed);
+        Joint *joint = &linkage->joints[linkage->joint_count++];
+        snprintf(joint->name, sizeof joint->name, "pin-%zu", i);
+        joint->kind = i % 3 == 0 ? JOINT_CLEARANCE : JOINT_REVOLUTE;
+        joint->body_a = (int)i - 1;
+        joint->body_b = (int)i;
+        joint->anchor_a.x = i > 0 ? 0.5 * LENGTH : 0.0;
+        joint->anchor_b.x = -0.5 * LENGTH;
+        joint->space.axis = (Vec3){0.0, 0.0, 1.0};
+        if (i % 3 == 0) {
+            joint->clearance =
+                (Clearance){.hole_radius = 5.01e-3, .pin_radius = 5e-3, .width = 0.02};
+        } else {
+            const Body *before = &linkage->bodies[i - 1];
+            // the joint holds: the ends move alike
+            const double end = before->start.velocity.y + 0.5 * LENGTH * before->start.omega;
+            body->start.omega = (body->start.velocity.y - end) / (0.5 * LENGTH);
+        }
+    }
+    space_complete(linkage);
+    scenario.contact.stiffness = 6.6e9;
+    scenario.contact.exponent = 1.5;
+    scenario.run.duration = 2e-3;
+    scenario.run.samples = 40;
+    scenario.run.step = 2e-5;
+    scenario.reference.tolerance = 1e-11;
+    return scenario;
+}
+
+static void forty_links_in_space_move_as_in_the_plane(void **state)
+{
+    (void)state;
+    Scenario scenario = make_chain();
+    const BackendKind backends[3] = {BACKEND_REFERENCE, BACKEND_ODE, BACKEND_ODE};
+    for (int i = 0; i < 3; i++) {
+        scenario.ode.stepping = ODE_STAGGERED;
+        scenario.ode.map = i == 1 ? ODE_MAP_MIDPOINT : ODE_MAP_IMPULSE;
+        scenario.linkage.is_spatial = false;
+        Trajectory *plane = complete_run(&scenario, backends[i]);
+        scenario.linkage.is_spatial = true;
+        Trajectory *space = complete_run(&scenario, backends[i]);
+        size_t impacts = 0;
+        for (size_t k = 0; k < plane->joint_count; k++) {
+            impacts += plane->joints[k].impacts;
+            assert_true(space->joints[k].impacts == plane->joints[k].impacts);
+        }
+        const double error = apart(space, plane, plane->duration_s);
+        assert_true(impacts > 14);
+        // contacts within the step have its errors
+        assert_true(error < (i == 2 ? 2e-4 : 1e-6));
+        // control: one body whose mass is off the plane
+        if (i == 1) {
+            scenario.linkage.bodies[20].space.height = 1e-3;
+            Trajectory *other = complete_run(&scenario, backends[i]);
+            scenario.linkage.bodies[20].space.height = 0.0;
+            assert_true(apart(other, plane, plane->duration_s) > 0.1);
+            trajectory_destroy(other);
+        }
+        trajectory_destroy(space);
+        trajectory_destroy(plane);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lifted_mechanism_moves_as_in_the_plane),
         cmocka_unit_test(a_coupler_with_play_at_both_ends_stays_in_the_plane),
         cmocka_unit_test(strong_damping_takes_the_steps_of_the_plane),
+        cmocka_unit_test(forty_links_in_space_move_as_in_the_plane),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
