@@ -354,6 +354,7 @@ typedef struct JpPinState {
     double tilt;            /* rad, of the pin's axis against the hole's */
     double force[3];        /* N, in the world, on the pin, mean of the last step */
     double gap;             /* m, of the end that is nearest to the wall; below 0 inside */
+    double slid;            /* J, lost in friction since the pin was made */
     bool is_touching;       /* anywhere */
     size_t end_count;       /* 1, or 2 of a hole with a width */
     JpSide ends[2];         /* along the line to the hole's centre; at -width/2 first */

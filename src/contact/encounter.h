@@ -34,6 +34,8 @@ typedef struct EncounterJoint {
     int siblings[2];         // the first and the last place that can touch together with this one,
                              // counted from here; 0 and 0 where there is none
     bool has_friction;
+    double friction;       // 1, Coulomb's coefficient; the encounter's, where nobody changes it
+    double friction_speed; // m/s, likewise
     size_t first_row;
     size_t row_count;
     bool is_touching;

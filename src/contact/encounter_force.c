@@ -194,8 +194,7 @@ static double add_friction(const Encounter *encounter, size_t joint, const doubl
     const EncounterJoint *of = &encounter->joints[joint];
     const size_t row = of->first_row;
     if (of->shape == TOUCH_LINE) {
-        const double taken =
-            encounter->friction * normal * tanh(speed[1] / encounter->friction_speed);
+        const double taken = of->friction * normal * tanh(speed[1] / of->friction_speed);
         force[row + 1] -= taken;
         return taken * speed[1];
     }
@@ -203,12 +202,12 @@ static double add_friction(const Encounter *encounter, size_t joint, const doubl
     const double pin_arm = hole_arm - pose->eccentricity_size;
     const Vec2 tangent = vec2_perp(pose->normal);
     const double sliding = sliding_round(speed, tangent, hole_arm, pin_arm);
-    double held = encounter->friction * normal * tanh(sliding / encounter->friction_speed);
+    double held = of->friction * normal * tanh(sliding / of->friction_speed);
     double power = held * sliding;
     if (of->row_count == ENCOUNTER_ROWS_MOST) {
         const double axial = sliding_along(speed, tangent, hole_arm, pin_arm);
         const double size = hypot(sliding, axial);
-        const double all = encounter->friction * normal * tanh(size / encounter->friction_speed);
+        const double all = of->friction * normal * tanh(size / of->friction_speed);
         const double share = size > 0.0 ? all / size : 0.0;
         const double along = share * axial;
         held = share * sliding;
@@ -339,6 +338,6 @@ double encounter_force_friction_time(const Encounter *encounter, size_t joint, c
         const bool is_turn = k >= ENCOUNTER_ROWS_PLAIN && k != ENCOUNTER_ROW_AXIAL;
         mobility += is_turn ? arm * arm * diagonal : diagonal;
     }
-    const double held = encounter->friction * hypot(force[row], force[row + 1]);
-    return held > 0.0 ? encounter->friction_speed / (held * mobility) : INFINITY;
+    const double held = encounter->joints[joint].friction * hypot(force[row], force[row + 1]);
+    return held > 0.0 ? encounter->joints[joint].friction_speed / (held * mobility) : INFINITY;
 }

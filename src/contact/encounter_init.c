@@ -55,6 +55,8 @@ void encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t row
     added->row_count = rows;
     added->has_friction =
         encounter->friction > 0.0 && (rows > ENCOUNTER_ROWS_PLAIN || added->shape == TOUCH_LINE);
+    added->friction = encounter->friction;
+    added->friction_speed = encounter->friction_speed;
     for (size_t i = 0; i < rows; i++) {
         encounter->joint_of[encounter->row_count++] = (int)encounter->joint_count;
     }

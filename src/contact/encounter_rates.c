@@ -69,11 +69,10 @@ static Rated rows_along(const Moving *moving, const Rated direction[2], size_t r
 }
 
 // Friction of a pin in space, round its axis and along it; returns the power it takes.
-static Rated rate_space_friction(const Encounter *encounter, Moving *moving, Rated round,
-                                 Rated *held)
+static Rated rate_space_friction(Moving *moving, Rated round, Rated *held)
 {
     const double hole_arm = moving->joint->hole_radius;
-    const double speed = encounter->friction_speed;
+    const double speed = moving->joint->friction_speed;
     const Rated by_hole =
         rated_scale(-hole_arm, rows_along(moving, moving->tangent, ENCOUNTER_ROW_HOLE));
     const Rated by_pin =
@@ -90,7 +89,7 @@ static Rated rate_space_friction(const Encounter *encounter, Moving *moving, Rat
         is_slow ? -2.0 / 3.0 * size * growth / (speed * speed * speed)
                 : (hold.rate - hold.value / size * growth) / size,
     };
-    const Rated grip = rated_times(rated_scale(encounter->friction, moving->pressing), share);
+    const Rated grip = rated_times(rated_scale(moving->joint->friction, moving->pressing), share);
     const Rated along_axis = rated_times(grip, axial);
     *held = rated_times(grip, round);
     push_row(moving, ENCOUNTER_ROW_AXIAL, rated_scale(-1.0, along_axis));
@@ -104,13 +103,12 @@ static Rated rate_space_friction(const Encounter *encounter, Moving *moving, Rat
 }
 
 // Adds friction to the rows; returns the power it takes.
-static Rated rate_friction(const Encounter *encounter, Moving *moving)
+static Rated rate_friction(Moving *moving)
 {
     const EncounterJoint *joint = moving->joint;
-    const Rated grip = rated_scale(encounter->friction, moving->pressing);
+    const Rated grip = rated_scale(joint->friction, moving->pressing);
     if (joint->shape == TOUCH_LINE) {
-        const Rated held =
-            rated_times(grip, rated_tanh(moving->speed[1], encounter->friction_speed));
+        const Rated held = rated_times(grip, rated_tanh(moving->speed[1], joint->friction_speed));
         push_row(moving, 1, rated_scale(-1.0, held));
         return rated_times(held, moving->speed[1]);
     }
@@ -122,9 +120,9 @@ static Rated rate_friction(const Encounter *encounter, Moving *moving)
     Rated held;
     Rated power;
     if (joint->row_count == ENCOUNTER_ROWS_MOST) {
-        power = rate_space_friction(encounter, moving, sliding, &held);
+        power = rate_space_friction(moving, sliding, &held);
     } else {
-        held = rated_times(grip, rated_tanh(sliding, encounter->friction_speed));
+        held = rated_times(grip, rated_tanh(sliding, joint->friction_speed));
         power = rated_times(held, sliding);
     }
     for (size_t i = 0; i < 2; i++) {
@@ -180,8 +178,7 @@ static Rated find_pressing(Moving *moving, const EncounterTouch *touch)
 }
 
 // Adds what a joint that touches presses and rubs with to its rows, which are empty.
-static void rate_joint(const Encounter *encounter, Moving *moving, const EncounterTouch *touch,
-                       EncounterPoint *point)
+static void rate_joint(Moving *moving, const EncounterTouch *touch, EncounterPoint *point)
 {
     const Rated damped = find_pressing(moving, touch);
     point->powers[0] += damped.value;
@@ -193,7 +190,7 @@ static void rate_joint(const Encounter *encounter, Moving *moving, const Encount
         push_row(moving, 1, rated_times(moving->pressing, moving->normal[1]));
     }
     if (moving->joint->has_friction) {
-        const Rated rubbed = rate_friction(encounter, moving);
+        const Rated rubbed = rate_friction(moving);
         point->powers[1] += rubbed.value;
         point->power_rates[1] += rubbed.rate;
     }
@@ -235,7 +232,7 @@ void encounter_rates_find(Encounter *encounter, EncounterPoint *point)
                 .rate = point->rate + joint->first_row,
             };
             find_moving(encounter, forces, &touching[i], &moving);
-            rate_joint(encounter, &moving, &touching[i], point);
+            rate_joint(&moving, &touching[i], point);
         }
     }
 }

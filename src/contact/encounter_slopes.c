@@ -100,11 +100,11 @@ static double find_axial(const EncounterJoint *joint, const PinHole *pose, const
 }
 
 // Friction against a sliding that has two directions.
-static void find_both(const Encounter *encounter, double round, const Gradient *by_round,
+static void find_both(const EncounterJoint *joint, double round, const Gradient *by_round,
                       double axial, const Gradient *by_axial, double normal,
                       const Gradient *by_normal, Held *held)
 {
-    const double speed = encounter->friction_speed;
+    const double speed = joint->friction_speed;
     const double size = hypot(round, axial);
     const double hold = tanh(size / speed);
     const bool is_slow = size < 1e-4 * speed;
@@ -116,12 +116,12 @@ static void find_both(const Encounter *encounter, double round, const Gradient *
         const double along_round = share * by_round->of[k] + growth * round;
         const double along_axis = share * by_axial->of[k] + growth * axial;
         held->by_round.of[k] =
-            encounter->friction * (share * round * by_normal->of[k] + normal * along_round);
+            joint->friction * (share * round * by_normal->of[k] + normal * along_round);
         held->by_axial.of[k] =
-            encounter->friction * (share * axial * by_normal->of[k] + normal * along_axis);
+            joint->friction * (share * axial * by_normal->of[k] + normal * along_axis);
     }
-    held->round = encounter->friction * normal * share * round;
-    held->axial = encounter->friction * normal * share * axial;
+    held->round = joint->friction * normal * share * round;
+    held->axial = joint->friction * normal * share * axial;
 }
 
 // How fast the pin slides round its hole, or a circle along its line, and how that changes.
@@ -144,25 +144,24 @@ static double find_round(const EncounterJoint *joint, const PinHole *pose, const
     return vec2_dot(tangent, velocity) + hole_arm * speeds[2] - pin_arm * speeds[3];
 }
 
-static void find_friction(const Encounter *encounter, const EncounterJoint *joint,
-                          const PinHole *pose, const double *speeds, double normal,
-                          const Gradient *by_normal, Held *held)
+static void find_friction(const EncounterJoint *joint, const PinHole *pose, const double *speeds,
+                          double normal, const Gradient *by_normal, Held *held)
 {
     Gradient by_sliding;
     const double sliding = find_round(joint, pose, speeds, &by_sliding);
     if (joint->row_count == ENCOUNTER_ROWS_MOST) {
         Gradient by_axial;
         const double axial = find_axial(joint, pose, speeds, &by_axial);
-        find_both(encounter, sliding, &by_sliding, axial, &by_axial, normal, by_normal, held);
+        find_both(joint, sliding, &by_sliding, axial, &by_axial, normal, by_normal, held);
         return;
     }
-    const double share = tanh(sliding / encounter->friction_speed);
-    const double slope = (1.0 - share * share) / encounter->friction_speed;
+    const double share = tanh(sliding / joint->friction_speed);
+    const double slope = (1.0 - share * share) / joint->friction_speed;
     for (size_t k = 0; k < PARTS; k++) {
         held->by_round.of[k] =
-            encounter->friction * (share * by_normal->of[k] + normal * slope * by_sliding.of[k]);
+            joint->friction * (share * by_normal->of[k] + normal * slope * by_sliding.of[k]);
     }
-    held->round = encounter->friction * normal * share;
+    held->round = joint->friction * normal * share;
 }
 
 // The rows of the bodies' turns about the pin's axis.
@@ -235,7 +234,7 @@ void encounter_slopes_find(const Encounter *encounter, size_t number, double tim
     Held held = {.round = 0.0};
     // a wall that pulls rubs on nothing
     if (joint->has_friction && normal > 0.0) {
-        find_friction(encounter, joint, &pose, speeds, normal, &by_normal, &held);
+        find_friction(joint, &pose, speeds, normal, &by_normal, &held);
     }
     for (size_t i = 0; i < 2; i++) {
         const Gradient normal_turns = along(vec2_scale(-t[i], round), still);

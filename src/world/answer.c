@@ -10,6 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+// of what turns an impact round: less of a push is lost in rounding
+static const double NEAR = 1e-3;
+
 enum { BODY_NUMBERS = 6, INSIDE_ROWS = 4 /* of the encounter, at most, to one here */ };
 
 static void count(const JpWorld *world, Answer *answer)
@@ -110,19 +113,44 @@ JpStatus answer_step(const Answer *answer, double step, double *rates, JpError *
     return JP_OK;
 }
 
-// The impulse of a trial in a row: as hard as the contact will be, and away from where it presses.
+// How hard a place may press in the step: as its law does where its pin or its coordinate may get,
+// and no harder than what turns an impact round with free bodies.
+static double hardest(const Answer *answer, const AnswerPlace *of, double speed, double mobility)
+{
+    const Place *place = of->place;
+    const Side *side = &place->sides[0];
+    double depth = fabs(speed) * answer->step;
+    for (size_t i = 0; i < place_side_count(place); i++) {
+        depth += place->sides[i].is_touching ? place->sides[i].inside : 0.0;
+    }
+    const double damped = force_law_damping(&side->law, depth, speed) * fabs(speed);
+    const double pressed = answer->step * (force_law_elastic(&side->law, depth) + damped);
+    const double turned = speed / mobility;
+    return pressed < turned ? pressed : turned;
+}
+
+// The impulse of a trial in a row, away from where the place presses. Friction is what acts beyond
+// the first rows of a hole.
 static double push_of(const Answer *answer, const AnswerPlace *of, size_t own, double mobility)
 {
     const Place *place = of->place;
     const size_t row = of->first_row + own;
-    const double speed = fabs(place->start_rate[own]) +
-                         fabs(answer->base[row] - answer->frozen[row]) +
-                         place->sides[0].law.impact_speed_floor;
-    const bool is_up = place->shape == PLACE_LINE
-                           ? side_gap(&place->sides[0], place->start[0]) <
-                                 side_gap(&place->sides[1], place->start[0])
-                           : own < PLACE_ROWS_PLANE && place->start[own] < 0.0;
-    return (is_up ? speed : -speed) / (mobility + answer->rotors[row]);
+    const double floor = place->sides[0].law.impact_speed_floor;
+    if (own >= PLACE_ROWS_PLANE) {
+        const double rim = answer->rows[row]->is_turn ? place->hole_radius : 1.0;
+        const double speed = fmax(floor, hypot(place->start_rate[0], place->start_rate[1]));
+        const double plain = direction_mobility(answer->rows[of->first_row]);
+        return fmax(place->friction * rim * hardest(answer, of, speed, plain),
+                    NEAR * floor / (rim * mobility));
+    }
+    const double all = mobility + answer->rotors[row];
+    const double speed =
+        fabs(place->start_rate[own]) + fabs(answer->base[row] - answer->frozen[row]) + floor;
+    const bool is_up = place->shape == PLACE_LINE ? side_gap(&place->sides[0], place->start[0]) <
+                                                        side_gap(&place->sides[1], place->start[0])
+                                                  : place->start[own] < 0.0;
+    const double push = fmax(hardest(answer, of, speed, all), NEAR * speed / all);
+    return is_up ? push : -push;
 }
 
 // The answer to a push in a row of a place, beside the step that the base is of.

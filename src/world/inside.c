@@ -8,6 +8,8 @@
 // Works and tops are found from the poses between the nodes, by Lobatto's rule on four points.
 #include "world/inside.h"
 
+#include "contact/encounter_force.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -66,6 +68,17 @@ static bool count_side(Answer *answer, const AnswerPlace *of, size_t side, size_
     return true;
 }
 
+// Of all active places.
+static double most_friction(const Answer *answer)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < answer->place_count; i++) {
+        const AnswerPlace *of = &answer->places[i];
+        most = of->is_active ? fmax(most, of->place->friction) : most;
+    }
+    return most;
+}
+
 // The world's encounter with a joint for each active side. What it keeps is laid out by its rows.
 static Encounter *make_encounter(Answer *answer)
 {
@@ -84,6 +97,7 @@ static Encounter *make_encounter(Answer *answer)
         visit_sides(answer, lay_out);
         encounter_make_room(encounter, encounter->row_count);
     }
+    encounter->friction = most_friction(answer);
     return encounter;
 }
 
@@ -124,7 +138,9 @@ static bool fill_side(Answer *answer, const AnswerPlace *of, size_t side, size_t
     joint->shape = place->shape == PLACE_LINE ? TOUCH_LINE : TOUCH_HOLE;
     joint->radial_clearance = place->clearance;
     joint->hole_radius = place->hole_radius;
-    joint->has_friction = laid_out.has_friction;
+    joint->has_friction = place->friction > 0.0;
+    joint->friction = place->friction;
+    joint->friction_speed = place->friction > 0.0 ? place->friction_speed : 1.0;
     joint->first_row = laid_out.first_row;
     joint->row_count = laid_out.row_count;
     joint->is_touching = from->is_touching;
@@ -198,15 +214,30 @@ typedef struct Reading {
     EncounterSums *sums;
     size_t number; // of its joint there
     Side *side;
-    double force; // at the point read last
-    double power; // W, done by the contact there
+    double force;   // at the point read last
+    double power;   // W, done by the contact there along its normal
+    double slipped; // W, lost in friction there
     double impulse;
+    double slid; // J
 } Reading;
 
 static PinHole pose_at(Reading *reading, size_t node, double time)
 {
     encounter_at(reading->encounter, node, time, reading->sums);
     return encounter_pose(reading->encounter, reading->number, node, time, reading->sums).pose;
+}
+
+// What friction takes: what all rows take less what the normal does.
+static double slipping_power(const Reading *reading, double time)
+{
+    const EncounterJoint *joint = &reading->encounter->joints[reading->number];
+    double power = 0.0;
+    for (size_t i = 0; joint->has_friction && i < joint->row_count; i++) {
+        const size_t row = joint->first_row + i;
+        power += reading->sums->force[row] *
+                 encounter_force_row_speed(reading->encounter, row, time, reading->sums->impulse);
+    }
+    return joint->has_friction ? reading->power - power : 0.0;
 }
 
 // How the side is at a time behind a node; a damper presses from the first touch on, at no depth
@@ -219,6 +250,7 @@ static void read_at(Reading *reading, size_t node, double time)
     reading->force = force_law_force(&side->law, fmax(side->inside, DBL_MIN), pose.approach_speed,
                                      side->impact_speed);
     reading->power = -reading->force * pose.approach_speed;
+    reading->slipped = slipping_power(reading, time);
 }
 
 // Adds what a side did between a node and the next.
@@ -232,13 +264,16 @@ static void read_interval(Reading *reading, size_t node)
     read_at(reading, node, start);
     double impulse = reading->force / 12.0;
     double work = reading->power / 12.0;
+    double slid = reading->slipped / 12.0;
     for (int i = 0; i < 3; i++) {
         read_at(reading, node, start + SHARES[i] * width);
         side_note_tops(side, reading->force, (SHARES[i] - (i > 0 ? SHARES[i - 1] : 0.0)) * width);
         impulse += WEIGHTS[i] * reading->force;
         work += WEIGHTS[i] * reading->power;
+        slid += WEIGHTS[i] * reading->slipped;
     }
     reading->impulse += width * impulse;
+    reading->slid += width * slid;
     side->work += width * work;
 }
 
@@ -266,7 +301,7 @@ static bool book_side(Answer *answer, const AnswerPlace *of, size_t number, size
     const Encounter *encounter = answer->world->encounter;
     Side *side = &of->place->sides[number];
     EncounterSums sums = encounter_sums(encounter->row_count);
-    Reading reading = {encounter, &sums, joint, side, 0.0, 0.0, 0.0};
+    Reading reading = {.encounter = encounter, .sums = &sums, .number = joint, .side = side};
     of->place->inside[number] = encounter->joints[joint];
     read_side(&reading);
     if (of->place->shape == PLACE_LINE) {
@@ -276,6 +311,7 @@ static bool book_side(Answer *answer, const AnswerPlace *of, size_t number, size
         reading.impulse = sums.impulse[encounter->joints[joint].first_row];
     }
     encounter_sums_free(&sums);
+    of->place->slid += reading.slid;
     side->impulse += reading.impulse;
     side->force = reading.impulse / answer->step;
     side->share = 1.0;

@@ -127,6 +127,42 @@ void pin_start(JpJoint *joint)
     }
 }
 
+// A row in which one of the bodies turns.
+static void add_turn(const JpJoint *joint, int body, Vec3 axis, Place *place)
+{
+    const dBodyID bodies[2] = {joint->bodies[body], NULL};
+    const Direction row = direction_about(bodies, (dVector3){axis.x, axis.y, axis.z});
+    place->start_rate[place->row_count] = direction_rate(&row);
+    place->rows[place->row_count++] = row;
+}
+
+// The rows in which friction acts besides, in the order of contact/encounter_force.h.
+static void find_friction_rows(const JpJoint *joint, const End *end, const Vec3 across[2],
+                               Place *place)
+{
+    add_turn(joint, HOLE, end->axis, place);
+    add_turn(joint, PIN, end->axis, place);
+    if (!place->slides_along) {
+        return;
+    }
+    place->start_rate[place->row_count] = vec3_dot(end->axis, place->sliding);
+    place->rows[place->row_count++] = along(joint, end->axis, end->at_pin, end->at_hole);
+    for (int i = 0; i < 2; i++) {
+        add_turn(joint, HOLE, across[i], place);
+    }
+    for (int i = 0; i < 2; i++) {
+        add_turn(joint, PIN, across[i], place);
+    }
+}
+
+// The directions in which the pin slides at the wall.
+static void find_slide(const JpJoint *joint, const End *end, Vec3 normal, Place *place)
+{
+    const Vec3 round = vec3_cross(end->axis, normal);
+    place->slide[0] = along(joint, round, place->point, place->point);
+    place->slide[1] = along(joint, end->axis, place->point, place->point);
+}
+
 // The rows across the pin's axis, and where the pin was and how fast it went in them.
 static void find_rows(const JpJoint *joint, const End *end, Place *place)
 {
@@ -137,6 +173,9 @@ static void find_rows(const JpJoint *joint, const End *end, Place *place)
         place->rows[i] = along(joint, across[i], end->at_pin, end->at_hole);
         place->start[i] = vec3_dot(across[i], place->offset);
         place->start_rate[i] = vec3_dot(across[i], place->velocity);
+    }
+    if (place->friction > 0.0) {
+        find_friction_rows(joint, end, across, place);
     }
 }
 
@@ -162,6 +201,9 @@ void pin_find(JpJoint *joint, bool has_rows)
         place->position = place->clearance - vec3_length(end.offset);
         place->along = along(joint, normal, end.at_pin, end.at_hole);
         place->point = vec3_sub(end.at_hole, vec3_scale(place->hole_radius, normal));
+        if (place->friction > 0.0) {
+            find_slide(joint, &end, normal, place);
+        }
         if (has_rows) {
             find_rows(joint, &end, place);
         }
@@ -197,9 +239,6 @@ static JpStatus check_sizes(const JpPinInHole *pin, JpError *error)
     }
     REFUSAL_TRY(refusal_of_negative(pin->friction, "the pin's friction", error));
     REFUSAL_TRY(refusal_of_positive(pin->friction_speed, "the friction speed", error));
-    if (pin->friction > 0.0) {
-        return refusal(error, JP_ERROR_ARGUMENT, "pins have no friction yet; set it to 0");
-    }
     return pin->axial_play == INFINITY
                ? JP_OK
                : refusal_of_negative(pin->axial_play, "the axial play", error);
@@ -253,6 +292,9 @@ static void make_places(JpJoint *joint, const JpPinInHole *given, const ForceLaw
             .shape = PLACE_HOLE,
             .clearance = given->hole_radius - given->pin_radius,
             .hole_radius = given->hole_radius,
+            .friction = given->friction,
+            .friction_speed = given->friction_speed,
+            .slides_along = given->width > 0.0,
             .sides = {{.law = holes > 1 ? share : *law, .sign = 1.0}},
         };
     }
@@ -322,6 +364,7 @@ JpStatus jp_pin_state(const JpJoint *joint, JpPinState *state, JpError *error)
     for (size_t i = 0; i < joint->place_count; i++) {
         const Place *place = &joint->places[i];
         if (place->shape == PLACE_HOLE) {
+            found.slid += place->slid;
             const End end = end_of(joint, joint->pin.holes[i]);
             const double gap = place->clearance - vec3_length(end.offset);
             found.ends[i] = play_side(&place->sides[0], gap);

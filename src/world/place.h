@@ -15,6 +15,7 @@ enum {
     SIDE_COUNT = 2,       // the low one first
     PLACE_ROWS_MOST = 9,  // with friction in space
     PLACE_ROWS_PLANE = 2, // of a hole without friction
+    PLACE_ROWS_ROUND = 4, // with friction round the pin alone
 };
 
 // What a row of ODE's is made and read by.
@@ -30,6 +31,9 @@ typedef struct Place {
     PlaceShape shape;
     double clearance;                  // m, of a hole
     double hole_radius;                // m, of a hole
+    double friction;                   // 1, likewise: mu N tanh(v / v_s) against the sliding
+    double friction_speed;             // m/s, v_s
+    double slid;                       // J, lost in that
     Side sides[SIDE_COUNT];            // the position of a hole's is the gap
     EncounterJoint inside[SIDE_COUNT]; // as steps with contacts inside them left it
     PlaceRow row;
@@ -43,7 +47,10 @@ typedef struct Place {
     Vec3 sliding;    // m/s, of the pin's point against the hole's there
     double line_before; // of a line at the step's start
     double rate_before;
-    // where contacts are integrated within the step: the first two across a pin's axis
+    Direction slide[2];       // at the wall, of a hole with friction: round it, and along the axis
+    double sliding_before[2]; // m/s, before a step with a row
+    bool slides_along;        // whether friction acts along the axis, too
+    // where contacts are integrated within the step, as contact/encounter.h has them
     size_t row_count;
     Direction rows[PLACE_ROWS_MOST];
     double start[PLACE_ROWS_PLANE];     // where these are at the step's start, m or rad

@@ -29,12 +29,10 @@ enum {
 // A pin in its hole. Places are the middle of the hole, or its two ends, and the collars.
 typedef struct Pin {
     size_t hole_count;
-    Vec3 holes[PIN_ENDS];  // m, in the frame of the hole's body: middle, or ends
-    Vec3 middle;           // m, likewise, of the hole
-    Vec3 pin;              // m, in the frame of the pin's body: its middle
-    Vec3 axes[2];          // unit, in the frames of the pin's body and of the hole's
-    double friction;       // 1, Coulomb's coefficient
-    double friction_speed; // m/s, of its law mu N tanh(v / v_s)
+    Vec3 holes[PIN_ENDS]; // m, in the frame of the hole's body: middle, or ends
+    Vec3 middle;          // m, likewise, of the hole
+    Vec3 pin;             // m, in the frame of the pin's body: its middle
+    Vec3 axes[2];         // unit, in the frames of the pin's body and of the hole's
 } Pin;
 
 struct JpJoint {

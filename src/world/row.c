@@ -5,6 +5,8 @@
 // A way: a contact at a depth of 0 whose dContactMotionN is the row's speed. A world may limit that
 // speed (dWorldSetContactMaxCorrectingVel). Then F - F0 is the row's force, F0 = (speed - limit) /
 // CFM what is put on from outside: the same row, for F of at least F0.
+// Friction is the contact's own, within a pyramid of mu times the row's force; ODE's slip leads it
+// to the law mu N tanh(v / v_s) at slow sliding, N that of the step before.
 #include "world/row.h"
 
 #include <math.h>
@@ -20,6 +22,23 @@ static void make_angle_row(PlaceRow *row, double cfm, double erp)
     dJointSetAMotorAngle(row->motor, 0, -1.0);
     dJointSetAMotorParam(row->motor, dParamStopERP, erp);
     dJointSetAMotorParam(row->motor, dParamStopCFM, cfm);
+}
+
+// Friction of a pin at its wall, in the contact's two directions.
+static void add_friction(Place *place, const Side *side, dContact *contact)
+{
+    dSurfaceParameters *surface = &contact->surface;
+    surface->mode |= dContactFDir1 | dContactMu2 | dContactApprox1 | dContactSlip1 | dContactSlip2;
+    surface->mu = place->friction;
+    surface->mu2 = place->slides_along ? place->friction : 0.0;
+    const double most = place->friction * side->force;
+    surface->slip1 = surface->slip2 = most > 0.0 ? place->friction_speed / most : 0.0;
+    for (int i = 0; i < 2; i++) {
+        place->sliding_before[i] = direction_rate(&place->slide[i]);
+    }
+    for (int i = 0; i < 3; i++) {
+        contact->fdir1[i] = place->slide[0].axis[i];
+    }
 }
 
 static void make_contact(JpJoint *joint, Place *place, const Side *side, double cfm, double speed)
@@ -39,6 +58,9 @@ static void make_contact(JpJoint *joint, Place *place, const Side *side, double 
     contact.geom.pos[0] = place->point.x;
     contact.geom.pos[1] = place->point.y;
     contact.geom.pos[2] = place->point.z;
+    if (place->friction > 0.0) {
+        add_friction(place, side, &contact);
+    }
     // ODE turns the normal where the first body is the world, and so does its feedback
     const double first = joint->bodies[0] != NULL ? 1.0 : -1.0;
     for (int i = 0; i < 3; i++) {
@@ -63,6 +85,28 @@ void row_make(JpJoint *joint, Place *place, const Side *side, double cfm, double
     } else {
         make_contact(joint, place, side, cfm, speed);
     }
+}
+
+Vec3 row_force(const JpJoint *joint, const Place *place)
+{
+    const double first = joint->bodies[0] != NULL ? 1.0 : -1.0;
+    const dReal *found = place->row.feedback.f1;
+    const dReal *axis = place->row.axis;
+    const double pushed = place->row.pushed;
+    return (Vec3){first * (found[0] + pushed * axis[0]), first * (found[1] + pushed * axis[1]),
+                  first * (found[2] + pushed * axis[2])};
+}
+
+double row_slid(const Place *place, Vec3 force, double step)
+{
+    double taken = 0.0;
+    for (int i = 0; place->friction > 0.0 && i < 2; i++) {
+        const Direction *slide = &place->slide[i];
+        const double mean = 0.5 * (place->sliding_before[i] + direction_rate(slide));
+        taken -= step * mean *
+                 (force.x * slide->axis[0] + force.y * slide->axis[1] + force.z * slide->axis[2]);
+    }
+    return taken;
 }
 
 double row_take(Place *place)

@@ -179,9 +179,11 @@ static void book(JpJoint *joint, double step)
         for (size_t k = 0; k < place_side_count(place); k++) {
             side_book(&place->sides[k], forces[k], place->rate, rate, step);
         }
-        const dReal *axis = place->along.axis;
-        joint->force = vec3_add(
-            joint->force, vec3_scale(forces[0] - forces[1], (Vec3){axis[0], axis[1], axis[2]}));
+        if (forces[0] + forces[1] > 0.0 && place->row.motor == NULL) {
+            const Vec3 force = row_force(joint, place);
+            place->slid += row_slid(place, force, step);
+            joint->force = vec3_add(joint->force, force);
+        }
     }
     joint->rotor.position += (is_staggered(joint->world) ? 0.5 : 1.0) * step * joint->rotor.speed;
 }

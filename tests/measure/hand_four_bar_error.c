@@ -1,7 +1,8 @@
 // How far is the paper's four-bar off that somebody makes by hand of ODE's hinges and a pin of the
 // library, beside the program's own world of the same case, at equal steps?
 //
-// hand_four_bar_error [TURNS]
+// hand_four_bar_error [TURNS [FRICTION [ERP]]]
+// FRICTION is the pin's coefficient, ERP that of the hinges (1.5).
 // For plain, staggered and impulse stepping: the largest difference of omega of coupler or follower
 // from the reference at any sample, relative to the body's largest, of the program and of the
 // library; steps of ODE's world, fallbacks, and processor time a step of either.
@@ -43,15 +44,24 @@ typedef struct Outcome {
     double step_us; // processor time
 } Outcome;
 
-static bool load(const Way *way, double turns, double step_s, Scenario *scenario)
+// What may be asked for.
+typedef struct Asked {
+    double turns;
+    double friction;
+    double erp;
+} Asked;
+
+static bool load(const Way *way, const Asked *asked, double step_s, Scenario *scenario)
 {
-    char words[3][64];
-    snprintf(words[0], sizeof words[0], "run.revolutions=%.17g", turns);
+    char words[4][64];
+    snprintf(words[0], sizeof words[0], "run.revolutions=%.17g", asked->turns);
+    snprintf(words[3], sizeof words[3], "contact.friction=%.17g", asked->friction);
     snprintf(words[1], sizeof words[1], "run.samples=%.0f", TURN_S / SAMPLE_S);
     snprintf(words[2], sizeof words[2], "run.step=%.17g s", step_s);
-    const char *const all[] = {words[0], words[1], words[2], way->overrides[0], way->overrides[1]};
+    const char *const all[] = {words[0], words[1],          words[2],
+                               words[3], way->overrides[0], way->overrides[1]};
     Err err = {ERR_NONE, ""};
-    if (!casefile_load("cases/paper/impact-k66.yaml", all, 5, scenario, &err)) {
+    if (!casefile_load("cases/paper/impact-k66.yaml", all, 6, scenario, &err)) {
         fprintf(stderr, "%s\n", err.text);
         return false;
     }
@@ -106,15 +116,17 @@ static HandMotion start_of(const Motion *motion)
     };
 }
 
-static Outcome run_library(const Scenario *scenario, const Way *way, const Trajectory *truth)
+static Outcome run_library(const Scenario *scenario, const Way *way, double erp,
+                           const Trajectory *truth)
 {
     const double step_s = scenario->run.step;
     const HandOptions options = {
         .stepping = way->stepping,
+        .hole_radius = scenario->linkage.joints[1].clearance.hole_radius,
         .friction = scenario->contact.friction,
         .friction_speed = scenario->contact.friction_speed,
         .speed_floor = scenario->contact.impact_speed_floor,
-        .erp = 1.0,
+        .erp = erp,
     };
     HandMotion start[HAND_BODIES];
     for (size_t i = 0; i < HAND_BODIES; i++) {
@@ -152,17 +164,17 @@ static Outcome run_library(const Scenario *scenario, const Way *way, const Traje
     return outcome;
 }
 
-static void compare(const Way *way, double turns)
+static void compare(const Way *way, const Asked *asked)
 {
     for (size_t i = 0; i < STEP_COUNT; i++) {
         Scenario scenario;
-        if (!load(way, turns, STEPS_S[i], &scenario)) {
+        if (!load(way, asked, STEPS_S[i], &scenario)) {
             return;
         }
         Trajectory *truth =
             run_scenario(&scenario, registry_solver(BACKEND_REFERENCE), (RunWatch){NULL, NULL});
         const Outcome program = run_program(&scenario, truth);
-        const Outcome library = run_library(&scenario, way, truth);
+        const Outcome library = run_library(&scenario, way, asked->erp, truth);
         printf("| %s | %.3g | %.2e | %.2e | %.2f | %zu | %zu | %zu | %.1f | %.1f |\n", way->name,
                1e6 * STEPS_S[i], program.error, library.error, library.error / program.error,
                program.world_steps, library.world_steps, library.fallbacks, program.step_us,
@@ -174,13 +186,17 @@ static void compare(const Way *way, double turns)
 
 int main(int count, char **words)
 {
-    const double turns = count > 1 ? strtod(words[1], NULL) : 1.0;
+    const Asked asked = {
+        .turns = count > 1 ? strtod(words[1], NULL) : 1.0,
+        .friction = count > 2 ? strtod(words[2], NULL) : 0.0,
+        .erp = count > 3 ? strtod(words[3], NULL) : 1.5,
+    };
     dInitODE2(0);
     printf("| stepping | step, us | error, program | library | ratio | world steps, program | "
            "library | fallbacks | time a step, us, program | library |\n");
     printf("|---|---|---|---|---|---|---|---|---|---|\n");
     for (size_t i = 0; i < STEPPING_COUNT; i++) {
-        compare(&WAYS[i], turns);
+        compare(&WAYS[i], &asked);
     }
     dCloseODE();
     return 0;

@@ -40,7 +40,7 @@ static void make_hinge(dWorldID world, dBodyID first, dBodyID second, const dRea
 static JpPinInHole pin_of(const HandOptions *options)
 {
     JpPinInHole pin = jp_pin_default();
-    pin.hole_radius = 0.01;
+    pin.hole_radius = options->hole_radius;
     pin.pin_radius = pin.hole_radius - 14.5e-6;
     pin.hole[0] = LENGTHS[0];
     pin.pin[0] = -0.5 * LENGTHS[1];

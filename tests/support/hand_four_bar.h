@@ -24,6 +24,7 @@ typedef struct HandFourBar {
 // What of it may be chosen.
 typedef struct HandOptions {
     JpStepping stepping;
+    double hole_radius;    // m
     double friction;       // of the pin
     double friction_speed; // m/s
     double speed_floor;    // m/s, of the contact
