@@ -68,12 +68,31 @@ static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
         shake(&joint->stop.radius_a, seed);
         shake(&joint->stop.radius_b, seed);
     }
-    if (joint->contact.stiffness > 0.0 && has_own) {
+    if (joint->contact.stiffness > 0.0 && (has_own || linkage_is_torsional(joint))) {
         shake(&joint->contact.stiffness, seed);
     }
+    shake(&joint->contact.viscous, seed);
     if (joint->contact.has_restitution) {
         shake(&joint->contact.restitution, seed);
         joint->contact.restitution = fmin(joint->contact.restitution, 1.0);
+    }
+}
+
+// The ends of a limited coordinate, and what a pair of gears is made of. The teeth's ratio and the
+// distance of the pivots stay: they say where the pitch circles are.
+static void shake_limits(Joint *joint, uint64_t *seed)
+{
+    Limits *limits = &joint->limits;
+    if (limits->kind == LIMIT_BACKLASH) {
+        shake(&limits->backlash, seed);
+        shake(&limits->middle, seed);
+    } else if (limits->kind == LIMIT_STOPS) {
+        double *const ends[2] = {&limits->low, &limits->high};
+        for (int i = 0; i < 2; i++) {
+            if (isfinite(*ends[i])) {
+                shake(ends[i], seed);
+            }
+        }
     }
 }
 
@@ -86,6 +105,7 @@ static void shake_joint(Joint *joint, bool has_own, uint64_t *seed)
     shake(&joint->clearance.width, seed);
     shake_vector(&joint->clearance.start, seed);
     shake_sliding(joint, has_own, seed);
+    shake_limits(joint, seed);
 }
 
 static void shake_forces(Linkage *linkage, uint64_t *seed)

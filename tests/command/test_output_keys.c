@@ -222,6 +222,15 @@ static void every_key_of_run_is_listed(void **state)
                "run -q --json \"$cases\"/literature/four-bar-half-mm.yaml --step '4 us' "
                "--set run.revolutions=0.18",
                "deviation");
+    // torques and angles at the stops of a pivot
+    check_keys(state, "run",
+               "run -q --json --backend reference \"$cases\"/mechanisms/stop-rebound.yaml "
+               "--set 'run.duration=0.2 s'",
+               "coordinate_max_rad");
+    check_keys(state, "run",
+               "run -q --json --backend reference \"$cases\"/mechanisms/gear-pair.yaml "
+               "--set 'run.duration=5 ms'",
+               "coordinate_max_m");
     // a slider with ideal joints, and a block between guides
     check_keys(state, "run",
                "run -q --json \"$cases\"/mechanisms/slider-crank.yaml "

@@ -4,7 +4,7 @@
 #include "close.h"
 #include "contact/law.h"
 #include "kept.h"
-#include "model/joint_rows.h"
+#include "model/coordinate.h"
 #include "model/kinematics.h"
 
 #include <string.h>
@@ -188,6 +188,70 @@ static void settings_hold_what_the_case_says(void **state)
     assert_false(is_setting(&balls, "joints.discs.at", &setting));
 }
 
+// A planet on an arm with an internal gear round it, an arm's hinge with stops, the planet's output
+// with backlash.
+static const char GEARED[] =
+    "bodies:\n"
+    "  arm:    {mass: 1 kg, inertia: 1e-3 kg m^2, at: [20 mm, 0 mm], angle: 10 deg}\n"
+    "  planet: {mass: 0.1 kg, inertia: 1e-5 kg m^2, at: [40 mm, 0 mm], angle: 40 deg}\n"
+    "  ring:   {mass: 2 kg, inertia: 1e-2 kg m^2, at: [0 mm, 0 mm]}\n"
+    "  output: {mass: 0.1 kg, inertia: 1e-5 kg m^2, at: [40 mm, 0 mm], angle: 25 deg}\n"
+    "joints:\n"
+    "  turn: {between: [ground, arm], at: [0 mm, 0 mm], low: -30 deg, high: 90 deg,\n"
+    "         stiffness: 2 N m/deg, viscous-coefficient: 3 N mm s/rad}\n"
+    "  pin:  {between: [arm, planet], at: [40 mm, 0 mm]}\n"
+    "  case: {between: [ring, arm], at: [0 mm, 0 mm]}\n"
+    "  mesh: {gears: [pin, case], teeth: [20, -60], backlash: 0.1 deg, start: -10 um}\n"
+    "  coupling: {between: [planet, output], at: [40 mm, 0 mm], backlash: 0.5 deg,\n"
+    "             start: 0.1 deg, stiffness: 7 N m/rad^1.5}\n"
+    "contact: {stiffness: 1e7 N/m}\n"
+    "run: {duration: 10 ms, samples: 50}\n";
+
+static void limits_and_gears_are_what_the_case_gives(void **state)
+{
+    (void)state;
+    const double degree = M_PI / 180.0;
+    const Scenario scenario = load(GEARED);
+    const Joint *joints = scenario.linkage.joints;
+    assert_int_equal(joints[0].kind, JOINT_REVOLUTE);
+    assert_true(linkage_is_torsional(&joints[0]) && linkage_has_play(&joints[0]));
+    assert_near(coordinate_low(&joints[0]), -30.0 * degree, 1e-15);
+    assert_near(coordinate_high(&joints[0]), 90.0 * degree, 1e-15);
+    assert_near(joints[0].contact.stiffness, 2.0 / degree, 1e-12);
+    assert_near(joints[0].contact.viscous, 3e-3, 1e-18);
+    // an internal gear: both radii together are the distance, from the planet to the ring
+    const Gear *gear = &joints[3].gear;
+    assert_int_equal(joints[3].body_a, 1);
+    assert_int_equal(joints[3].body_b, 2);
+    assert_int_equal(gear->carrier, 0);
+    assert_near(gear->radius_a, -0.02, 1e-17);
+    assert_near(gear->radius_b, 0.06, 1e-17);
+    // the angle is one of the ring
+    assert_near(joints[3].limits.backlash, 0.1 * degree * 0.06, 1e-18);
+    assert_near(joints[3].limits.start, -1e-5, 1e-18);
+    Motion motions[KINEMATICS_BODY_MAX];
+    linkage_start(&scenario.linkage, motions);
+    assert_near(coordinate_position(&scenario.linkage, motions, 3) - joints[3].limits.middle, -1e-5,
+                1e-16);
+    assert_near(coordinate_position(&scenario.linkage, motions, 4), -15.0 * degree, 1e-15);
+    assert_near(joints[4].limits.middle, -15.1 * degree, 1e-15);
+    assert_near(coordinate_high(&joints[4]), -14.85 * degree, 1e-15);
+    assert_near(joints[4].contact.exponent, 1.5, 0.0);
+    ForceLaw law;
+    Err err = {0};
+    assert_true(law_of_joint(&scenario, &joints[0], &law, &err));
+    assert_near(law.viscous, 3e-3, 1e-18);
+    assert_true(law_of_joint(&scenario, &joints[3], &law, &err));
+    assert_near(law.stiffness, 1e7, 0.0);
+    // one stiffness for all joints is one of lengths
+    Scenario given = scenario;
+    scenario_set_stiffness(&given, 5e8, 1.0);
+    assert_true(law_of_joint(&given, &joints[3], &law, &err));
+    assert_near(law.stiffness, 5e8, 0.0);
+    assert_true(law_of_joint(&given, &joints[4], &law, &err));
+    assert_near(law.stiffness, 7.0, 0.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -197,6 +261,7 @@ int main(void)
         cmocka_unit_test(a_joints_own_stiffness_and_restitution_go_before_those_of_the_contact),
         cmocka_unit_test(one_stiffness_for_all_joints_goes_before_their_own),
         cmocka_unit_test(settings_hold_what_the_case_says),
+        cmocka_unit_test(limits_and_gears_are_what_the_case_gives),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
