@@ -5,13 +5,17 @@
 // reference_cost turns CASE N [TOLERANCE]: evaluations, steps, contacts and time a turn in each
 // tenth of N turns, without samples.
 // reference_cost one CASE TOLERANCE: one run, to count its instructions; with its hash.
+// reference_cost rates CASE: processor time of the equations of motion in the plane, by the short
+// way of hinges and pins and by the long one, while all pins are apart and while all press.
 #include "base/clock.h"
 #include "casefile/casefile.h"
 #include "measure/error.h"
+#include "reference/dynamics.h"
 #include "reference/stepper.h"
 #include "run/registry.h"
 #include "run/run.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,11 +98,64 @@ static int try_turns(Scenario *scenario, double turns, double tolerance)
     return is_well ? 0 : 1;
 }
 
+// Each evaluation needs what the one before gave, as in an integrator. ns.
+static double time_rates(Dynamics *dynamics, const double *y, size_t count)
+{
+    enum { ROUNDS = 20, EVALUATIONS = 20000 };
+    const double little = 1e-300;
+    double *at = calloc(2 * count, sizeof *at);
+    double *rates = calloc(system_size(&dynamics->system), sizeof *rates);
+    double best_s = INFINITY;
+    for (int round = 0; round < ROUNDS; round++) {
+        const double started_s = clock_processor_s();
+        for (int i = 0; i < EVALUATIONS; i++) {
+            for (size_t k = 0; k < 2 * count; k++) {
+                at[k] = y[k] + little * rates[k];
+            }
+            dynamics_rates(1e-5, at, rates, dynamics);
+        }
+        best_s = fmin(best_s, (clock_processor_s() - started_s) / EVALUATIONS);
+    }
+    free(at);
+    free(rates);
+    return 1e9 * best_s;
+}
+
+static int try_rates(const Scenario *scenario)
+{
+    Dynamics dynamics;
+    Err err = {ERR_NONE, ""};
+    if (scenario->linkage.is_spatial || !dynamics_init(scenario, &dynamics, &err)) {
+        printf("%s\n", err.text);
+        return 1;
+    }
+    const size_t n = dynamics.tree.coordinate_count;
+    double *y = calloc(2 * n, sizeof *y);
+    Motion *motions = dynamics.room.state->tree.motions;
+    linkage_start(&scenario->linkage, motions);
+    tree_start(&dynamics.tree, motions, y + n);
+    Hinged *hinged = dynamics.hinged;
+    for (int mode = CONTACT_APART; mode <= CONTACT_PRESSING; mode++) {
+        for (size_t i = 0; i < dynamics.system.contact_count; i++) {
+            dynamics.system.contacts[i].mode = (ContactMode)mode;
+        }
+        dynamics.hinged = hinged;
+        const double quick_ns = hinged != NULL ? time_rates(&dynamics, y, n) : NAN;
+        dynamics.hinged = NULL;
+        printf("%-8s short way %6.1f ns, long way %6.1f ns\n",
+               mode == CONTACT_APART ? "apart" : "pressing", quick_ns, time_rates(&dynamics, y, n));
+    }
+    dynamics.hinged = hinged;
+    dynamics_finish(&dynamics);
+    free(y);
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
     if (argc < 3) {
         fprintf(stderr, "usage: reference_cost errors CASE | turns CASE N [TOLERANCE] | one CASE "
-                        "TOLERANCE\n");
+                        "TOLERANCE | rates CASE\n");
         return 2;
     }
     Scenario *scenario = calloc(1, sizeof *scenario);
@@ -113,6 +170,8 @@ int main(int argc, char **argv)
     } else if (strcmp(argv[1], "turns") == 0 && argc > 3) {
         status = try_turns(scenario, atof(argv[3]),
                            argc > 4 ? atof(argv[4]) : scenario->reference.tolerance);
+    } else if (strcmp(argv[1], "rates") == 0) {
+        status = try_rates(scenario);
     } else if (strcmp(argv[1], "one") == 0 && argc > 3) {
         double spent_s;
         Trajectory *run = run_at(scenario, atof(argv[3]), &spent_s);
