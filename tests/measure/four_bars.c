@@ -217,6 +217,9 @@ static void tabulate_steps(void)
     printf("\n");
 }
 
+// The largest N of which the cheapest way is looked for among hundreds of runs.
+static const size_t EQUAL_MOST = 256;
+
 // Solves only where a way may be cheaper than the best one so far: by what a step took before.
 static void improve(const Way *way, size_t count, double target, double *step_us, Way *best,
                     Point *at)

@@ -63,6 +63,9 @@ static int tear_down(void **state)
     Bench *bench = *state;
     unlink(bench->path);
     baseline_finish(&bench->made);
+    check_measure_finish(&bench->run);
+    check_measure_finish(&bench->members[0]);
+    check_measure_finish(&bench->members[1]);
     free(bench->rows);
     free(bench);
     return 0;
@@ -357,7 +360,7 @@ static void a_start_beside_makes_a_band_and_a_wide_one_a_sample(void **state)
     Bench *bench = *state;
     Baseline made = {.settings = NULL};
     Err err = {0};
-    const size_t place = baseline_find(&bench->run, "ode/hole/impulse_N_s");
+    const size_t place = baseline_find(&bench->run, "ode/hole/impulse_N_s", 0);
     assert_in_range(place, 0, bench->run.count - 1);
     bench->members[0].metrics[place].value = bench->run.metrics[place].value * (1.0 + 1e-6);
     assert_true(baseline_set_metrics(&made, &bench->run, bench->members, 2, &err));
@@ -368,11 +371,11 @@ static void a_start_beside_makes_a_band_and_a_wide_one_a_sample(void **state)
     assert_int_equal(made.metrics[place].band_kind, BAND_STATISTICAL);
     assert_true(check_test_count(&made) > 0);
     // no other number of that run can be predicted then, and those of another run can
-    const size_t other = baseline_find(&bench->run, "ode/energy/residual_J");
+    const size_t other = baseline_find(&bench->run, "ode/energy/residual_J", 0);
     assert_int_equal(made.metrics[other].band_kind, BAND_STATISTICAL);
-    const size_t exact = baseline_find(&bench->run, "ode/cost/steps");
+    const size_t exact = baseline_find(&bench->run, "ode/cost/steps", 0);
     assert_int_equal(made.metrics[exact].band_kind, BAND_EXACT);
-    const size_t reference = baseline_find(&bench->run, "reference/energy/residual_J");
+    const size_t reference = baseline_find(&bench->run, "reference/energy/residual_J", 0);
     assert_int_equal(made.metrics[reference].band_kind, BAND_ROUNDING);
     // an ensemble that measures something else makes no baseline
     snprintf(bench->members[1].metrics[place].name, CHECK_NAME_SIZE, "other");
@@ -386,7 +389,8 @@ static void fill_narrow_sample(CheckMeasure *members, const CheckMeasure *run, s
                                double width, double shift, uint64_t seed)
 {
     for (int i = 0; i < BASELINE_SAMPLE_SIZE; i++) {
-        members[i] = *run;
+        check_measure_finish(&members[i]);
+        members[i] = check_measure_copy(run);
         members[i].metrics[place].value = 100.0 + width * lcg_draw(&seed) + shift;
     }
 }
@@ -424,7 +428,7 @@ static void what_cannot_be_predicted_is_judged_by_its_distribution(void **state)
     Err err = {0};
     CheckMeasure *members = calloc(BASELINE_SAMPLE_SIZE, sizeof *members);
     assert_non_null(members);
-    const size_t place = baseline_find(&bench->run, "ode/hole/impulse_N_s");
+    const size_t place = baseline_find(&bench->run, "ode/hole/impulse_N_s", 0);
     bench->members[0].metrics[place].value *= 1.01;
     assert_true(baseline_set_metrics(&bench->made, &bench->run, bench->members, 2, &err));
     fill_sample(members, &bench->run, place, 0.0, 1);
@@ -469,6 +473,9 @@ static void what_cannot_be_predicted_is_judged_by_its_distribution(void **state)
         assert_false(check_row_is_out(&bench->rows[i]));
     }
     baseline_finish(&read);
+    for (int i = 0; i < BASELINE_SAMPLE_SIZE; i++) {
+        check_measure_finish(&members[i]);
+    }
     free(members);
 }
 
@@ -488,17 +495,18 @@ static void a_motion_is_measured_up_to_its_horizon_and_at_finer_steps(void **sta
     check_measure(&scenario, &plan, measure);
     assert_true(measure->is_complete);
     // the whole run has no error, the part of it no contact: it falls 4.5 ms
-    assert_int_equal(baseline_find(measure, "ode/error/omega_max_1"), measure->count);
-    const size_t impacts = baseline_find(measure, "ode-to-horizon/hole/impacts");
+    assert_int_equal(baseline_find(measure, "ode/error/omega_max_1", 0), measure->count);
+    const size_t impacts = baseline_find(measure, "ode-to-horizon/hole/impacts", 0);
     assert_in_range(impacts, 0, measure->count - 1);
     assert_near(measure->metrics[impacts].value, 0.0, 0.0);
-    const size_t all = baseline_find(measure, "ode/hole/impacts");
+    const size_t all = baseline_find(measure, "ode/hole/impacts", 0);
     assert_true(measure->metrics[all].value >= 1.0);
     // the control: a horizon of no sample leaves the whole run alone
     CheckPlan empty = plan;
     empty.horizon_s = 1e-9;
     check_measure(&scenario, &empty, measure);
-    assert_int_equal(baseline_find(measure, "ode-to-horizon/hole/impacts"), measure->count);
+    assert_int_equal(baseline_find(measure, "ode-to-horizon/hole/impacts", 0), measure->count);
+    check_measure_finish(measure);
     free(measure);
 }
 
@@ -511,7 +519,7 @@ static void the_order_of_a_scheme_is_measured(void **state)
     const CheckPlan plan = {.has_truth = true, .uncertainty = 1e-12, .is_full = true};
     const Scenario scenario = load("cases/paper/ideal-nominal.yaml", overrides, 2);
     check_measure(&scenario, &plan, measure);
-    const size_t plain = baseline_find(measure, "ode/error/order_at_half_step_1");
+    const size_t plain = baseline_find(measure, "ode/error/order_at_half_step_1", 0);
     assert_in_range(plain, 0, measure->count - 1);
     // plain stepping is of first order, staggered stepping of second
     assert_near(measure->metrics[plain].value, 1.0, 0.1);
@@ -519,9 +527,64 @@ static void the_order_of_a_scheme_is_measured(void **state)
     const char *const better[] = {"run.step=100 us", "run.samples=180", "ode.stepping=staggered"};
     const Scenario second = load("cases/paper/ideal-nominal.yaml", better, 3);
     check_measure(&second, &plan, measure);
-    const size_t staggered = baseline_find(measure, "ode/error/order_at_half_step_1");
+    const size_t staggered = baseline_find(measure, "ode/error/order_at_half_step_1", 0);
     assert_near(measure->metrics[staggered].value, 2.0, 0.1);
+    check_measure_finish(measure);
     free(measure);
+}
+
+// Pendulums side by side.
+static Scenario many_pendulums(size_t count)
+{
+    Scenario scenario = scenario_default();
+    scenario.linkage = linkage_create((LinkageRoom){count, count, 0, 0});
+    Linkage *linkage = &scenario.linkage;
+    for (size_t i = 0; i < count; i++) {
+        Body *body = &linkage->bodies[linkage->body_count++];
+        Joint *joint = &linkage->joints[linkage->joint_count++];
+        *body = (Body){.mass = 1.0, .inertia = 0.1};
+        body->start.position = (Vec2){(double)i + 0.5, 0.0};
+        snprintf(body->name, sizeof body->name, "bar-%zu", i);
+        *joint = (Joint){.body_a = LINKAGE_GROUND, .body_b = (int)i, .anchor_b = {-0.5, 0.0}};
+        joint->anchor_a.x = (double)i;
+        snprintf(joint->name, sizeof joint->name, "pin-%zu", i);
+    }
+    scenario.gravity = 9.81;
+    scenario.run.duration = 2e-3;
+    scenario.run.samples = 4;
+    scenario.run.step = 1e-3;
+    scenario.run.backends[0] = BACKEND_REFERENCE;
+    scenario.run.backends[1] = BACKEND_ODE;
+    scenario.run.backend_count = 2;
+    return scenario;
+}
+
+static void a_mechanism_of_many_bodies_is_measured_and_handed_on_whole(void **state)
+{
+    (void)state;
+    enum { COUNT = 300, OF_EACH = 5 };
+    Scenario scenario = many_pendulums(COUNT);
+    const CheckPlan plan = {.has_truth = true, .uncertainty = 1e-12};
+    CheckMeasure measure = {.is_complete = false};
+    check_measure(&scenario, &plan, &measure);
+    assert_true(measure.is_complete);
+    assert_true(measure.count > 2 * COUNT * OF_EACH);
+    const size_t size = check_measure_packed_size(&scenario);
+    void *packed = malloc(size);
+    assert_non_null(packed);
+    check_measure_pack(&measure, packed, size);
+    CheckMeasure unpacked = check_measure_unpack(packed);
+    free(packed);
+    assert_int_equal(unpacked.count, measure.count);
+    assert_memory_equal(unpacked.metrics, measure.metrics, measure.count * sizeof *measure.metrics);
+    // where a number is does not depend on where it is looked for first
+    const size_t last = baseline_find(&measure, "ode/pin-299/force_max_N", 0);
+    assert_in_range(last, 1, measure.count - 1);
+    assert_int_equal(baseline_find(&unpacked, "ode/pin-299/force_max_N", last), last);
+    assert_int_equal(baseline_find(&unpacked, "ode/pin-300/force_max_N", last), measure.count);
+    check_measure_finish(&unpacked);
+    check_measure_finish(&measure);
+    scenario_free(&scenario);
 }
 
 #define BASELINE_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
@@ -530,6 +593,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         BASELINE_TEST(what_is_written_reads_back_the_same),
+        cmocka_unit_test(a_mechanism_of_many_bodies_is_measured_and_handed_on_whole),
         BASELINE_TEST(every_number_edited_by_more_than_its_band_is_named),
         BASELINE_TEST(an_edited_hash_is_named_where_the_build_is_the_same),
         BASELINE_TEST(a_setting_with_signs_in_front_of_its_number_is_judged),

@@ -97,9 +97,9 @@ static void numbers_are_those_of_the_run(void **state)
     check_measure(&scenario, &plan, measure);
     assert_true(measure->is_complete);
     assert_int_equal(check_limits_judge(&scenario, measure, limits), 4);
-    const size_t force = baseline_find(measure, "ode/hole/force_max_N");
-    const size_t impacts = baseline_find(measure, "ode/hole/impacts");
-    const size_t residual = baseline_find(measure, "ode/energy/residual_J");
+    const size_t force = baseline_find(measure, "ode/hole/force_max_N", 0);
+    const size_t impacts = baseline_find(measure, "ode/hole/impacts", 0);
+    const size_t residual = baseline_find(measure, "ode/energy/residual_J", 0);
     assert_true(limits[0].value == measure->metrics[force].value);
     assert_true(limits[1].value == measure->metrics[impacts].value);
     assert_true(limits[2].value == measure->metrics[residual].value);
@@ -107,6 +107,7 @@ static void numbers_are_those_of_the_run(void **state)
     assert_int_equal(limits[3].verdict, CHECK_GONE);
     assert_string_equal(limits[3].name, "ode.error.omega_max");
     free(limits);
+    check_measure_finish(measure);
     free(measure);
 }
 

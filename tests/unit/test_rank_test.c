@@ -6,17 +6,34 @@
 
 #include <string.h>
 
+static double p_of(const double *first, size_t first_count, const double *second,
+                   size_t second_count)
+{
+    RankTest test = {.count = 0};
+    const double p = rank_test_p(&test, first, first_count, second, second_count);
+    rank_test_finish(&test);
+    return p;
+}
+
+static double shift_of(const double *sorted, size_t count, double rate)
+{
+    RankTest test = {.count = 0};
+    const double shift = rank_test_shift(&test, sorted, count, rate);
+    rank_test_finish(&test);
+    return shift;
+}
+
 static void samples_apart_have_the_chance_of_one_choice_in_all(void **state)
 {
     (void)state;
     const double low[] = {1, 2, 3, 4};
     const double high[] = {5, 6, 7, 8};
     // two of the C(8, 4) = 70 choices are as extreme
-    assert_near(rank_test_p(low, 4, high, 4), 2.0 / 70.0, 1e-15);
-    assert_near(rank_test_p(high, 4, low, 4), 2.0 / 70.0, 1e-15);
+    assert_near(p_of(low, 4, high, 4), 2.0 / 70.0, 1e-15);
+    assert_near(p_of(high, 4, low, 4), 2.0 / 70.0, 1e-15);
     const double three[] = {1, 2, 3};
     // C(7, 3) = 35
-    assert_near(rank_test_p(three, 3, high, 4), 2.0 / 35.0, 1e-15);
+    assert_near(p_of(three, 3, high, 4), 2.0 / 35.0, 1e-15);
 }
 
 static void the_chance_of_a_table_is_found(void **state)
@@ -26,7 +43,7 @@ static void the_chance_of_a_table_is_found(void **state)
     // 252
     const double first[] = {1, 2, 3, 4, 6};
     const double second[] = {5, 7, 8, 9, 10};
-    assert_near(rank_test_p(first, 5, second, 5), 4.0 / 252.0, 1e-15);
+    assert_near(p_of(first, 5, second, 5), 4.0 / 252.0, 1e-15);
 }
 
 // The same chance by going through every choice of 4 of 8.
@@ -66,7 +83,7 @@ static void ties_are_counted_as_every_choice_would(void **state)
             // five values for eight places: there are ties always
             all[i] = floor(2.5 * (1.0 + lcg_draw(&seed)));
         }
-        assert_near(rank_test_p(all, 4, all + 4, 4), by_enumeration(all), 1e-14);
+        assert_near(p_of(all, 4, all + 4, 4), by_enumeration(all), 1e-14);
     }
 }
 
@@ -77,8 +94,8 @@ static void equal_samples_are_never_told_apart(void **state)
     for (int i = 0; i < RANK_TEST_MAX; i++) {
         values[i] = 3.0;
     }
-    assert_near(rank_test_p(values, RANK_TEST_MAX, values, RANK_TEST_MAX), 1.0, 1e-12);
-    assert_true(rank_test_shift(values, 32, 1e-3) == INFINITY);
+    assert_near(p_of(values, RANK_TEST_MAX, values, RANK_TEST_MAX), 1.0, 1e-12);
+    assert_true(shift_of(values, 32, 1e-3) == INFINITY);
 }
 
 static size_t count_alarms(double shift, double rate, size_t trials)
@@ -92,7 +109,7 @@ static size_t count_alarms(double shift, double rate, size_t trials)
             first[i] = lcg_draw(&seed);
             second[i] = lcg_draw(&seed) + shift;
         }
-        alarms += rank_test_p(first, 16, second, 16) <= rate ? 1 : 0;
+        alarms += p_of(first, 16, second, 16) <= rate ? 1 : 0;
     }
     return alarms;
 }
@@ -116,16 +133,36 @@ static void the_shift_that_is_told_is_told(void **state)
         sample[i] = lcg_draw(&seed);
     }
     sorted_make(sample, 32);
-    const double shift = rank_test_shift(sample, 32, 1e-4);
+    const double shift = shift_of(sample, 32, 1e-4);
     double moved[32];
     for (int i = 0; i < 32; i++) {
         moved[i] = sample[i] + shift;
     }
-    assert_true(rank_test_p(sample, 32, moved, 32) <= 1e-4);
+    assert_true(p_of(sample, 32, moved, 32) <= 1e-4);
     for (int i = 0; i < 32; i++) {
         moved[i] = sample[i] + 0.9 * shift;
     }
-    assert_true(rank_test_p(sample, 32, moved, 32) > 1e-4);
+    assert_true(p_of(sample, 32, moved, 32) > 1e-4);
+}
+
+// What is kept of one pair of samples is used for the next where it holds, and not where it does
+// not.
+static void what_is_kept_holds_for_the_same_ties_alone(void **state)
+{
+    (void)state;
+    const double plain[3][8] = {
+        {1, 2, 3, 4, 5, 6, 7, 8}, {8, 1, 7, 2, 6, 3, 5, 4}, {1, 3, 2, 4, 8, 6, 7, 5}};
+    const double tied[8] = {1, 1, 2, 3, 3, 3, 4, 5};
+    RankTest test = {.count = 0};
+    for (int i = 0; i < 3; i++) {
+        assert_near(rank_test_p(&test, plain[i], 4, plain[i] + 4, 4), by_enumeration(plain[i]),
+                    1e-14);
+    }
+    assert_near(rank_test_p(&test, tied, 4, tied + 4, 4), by_enumeration(tied), 1e-14);
+    assert_near(rank_test_p(&test, plain[0], 4, plain[0] + 4, 4), by_enumeration(plain[0]), 1e-14);
+    // other sizes of the same values: C(8, 3) = 56
+    assert_near(rank_test_p(&test, plain[0], 3, plain[0] + 3, 5), 2.0 / 56.0, 1e-14);
+    rank_test_finish(&test);
 }
 
 int main(void)
@@ -133,6 +170,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(samples_apart_have_the_chance_of_one_choice_in_all),
         cmocka_unit_test(the_chance_of_a_table_is_found),
+        cmocka_unit_test(what_is_kept_holds_for_the_same_ties_alone),
         cmocka_unit_test(ties_are_counted_as_every_choice_would),
         cmocka_unit_test(equal_samples_are_never_told_apart),
         cmocka_unit_test(false_alarms_come_no_more_often_than_asked_for),

@@ -102,8 +102,11 @@ void baseline_set_head(Baseline *baseline, const Scenario *scenario, const Check
     set_settings(baseline, scenario);
 }
 
-size_t baseline_find(const CheckMeasure *measure, const char *name)
+size_t baseline_find(const CheckMeasure *measure, const char *name, size_t near)
 {
+    if (near < measure->count && strcmp(measure->metrics[near].name, name) == 0) {
+        return near;
+    }
     size_t i = 0;
     while (i < measure->count && strcmp(measure->metrics[i].name, name) != 0) {
         i++;
@@ -178,10 +181,17 @@ static bool are_of_one_run(const char *name, const char *other)
 // exact.
 static void spread_doubt(BaselineMetric *metrics, size_t count)
 {
-    for (size_t i = 0; i < count; i++) {
-        for (size_t k = 0; metrics[i].band_kind == BAND_ROUNDING && k < count; k++) {
-            if (metrics[k].band_kind == BAND_STATISTICAL &&
-                are_of_one_run(metrics[k].name, metrics[i].name)) {
+    // the metrics of a run stand together
+    size_t behind;
+    for (size_t first = 0; first < count; first = behind) {
+        bool is_doubtful = false;
+        for (behind = first;
+             behind < count && are_of_one_run(metrics[first].name, metrics[behind].name);
+             behind++) {
+            is_doubtful = is_doubtful || metrics[behind].band_kind == BAND_STATISTICAL;
+        }
+        for (size_t i = first; is_doubtful && i < behind; i++) {
+            if (metrics[i].band_kind == BAND_ROUNDING) {
                 metrics[i].band_kind = BAND_STATISTICAL;
             }
         }
@@ -238,13 +248,13 @@ static void round_sample(double *sample, size_t count)
 }
 
 // The numbers of a sample, in ascending order, and their mean.
-static bool fill_sample(BaselineMetric *metric, const CheckMeasure *members, size_t member_count,
-                        Err *err)
+static bool fill_sample(BaselineMetric *metric, size_t number, const CheckMeasure *members,
+                        size_t member_count, Err *err)
 {
     metric->sample_count = member_count;
     metric->mean = 0.0;
     for (size_t k = 0; k < member_count; k++) {
-        const size_t index = baseline_find(&members[k], metric->name);
+        const size_t index = baseline_find(&members[k], metric->name, number);
         if (index == members[k].count) {
             return err_set(err, ERR_SOLVER, "a perturbed start does not measure %s", metric->name);
         }
@@ -258,19 +268,18 @@ static bool fill_sample(BaselineMetric *metric, const CheckMeasure *members, siz
     return true;
 }
 
-bool baseline_set_sample(Baseline *baseline, const CheckMeasure *members, size_t member_count,
-                         double rate, Err *err)
+static bool set_samples(Baseline *baseline, const CheckMeasure *members, size_t member_count,
+                        double rate, RankTest *test, Err *err)
 {
-    assert(member_count > 0 && member_count <= BASELINE_SAMPLE_SIZE);
     for (size_t i = 0; i < baseline->count; i++) {
         BaselineMetric *metric = &baseline->metrics[i];
         if (metric->band_kind != BAND_STATISTICAL) {
             continue;
         }
-        if (!fill_sample(metric, members, member_count, err)) {
+        if (!fill_sample(metric, i, members, member_count, err)) {
             return false;
         }
-        const double shift = rank_test_shift(metric->sample, member_count, rate);
+        const double shift = rank_test_shift(test, metric->sample, member_count, rate);
         if (!isfinite(shift) && metric->band > 0.0) {
             // it is doubted for the run's other numbers alone, and did not move: its band holds
             metric->band_kind = BAND_ROUNDING;
@@ -287,4 +296,14 @@ bool baseline_set_sample(Baseline *baseline, const CheckMeasure *members, size_t
                  member_count);
     }
     return true;
+}
+
+bool baseline_set_sample(Baseline *baseline, const CheckMeasure *members, size_t member_count,
+                         double rate, Err *err)
+{
+    assert(member_count > 0 && member_count <= BASELINE_SAMPLE_SIZE);
+    RankTest test = {.count = 0};
+    const bool is_set = set_samples(baseline, members, member_count, rate, &test, err);
+    rank_test_finish(&test);
+    return is_set;
 }

@@ -87,5 +87,6 @@ bool baseline_set_metrics(Baseline *baseline, const CheckMeasure *run, const Che
 bool baseline_set_sample(Baseline *baseline, const CheckMeasure *members, size_t member_count,
                          double rate, Err *err);
 
-// The number of a metric in a measure, or its count.
-size_t baseline_find(const CheckMeasure *measure, const char *name);
+// The number of a metric in a measure, or its count. It is looked for at a number first, where it
+// is as long as nothing was added or left out.
+size_t baseline_find(const CheckMeasure *measure, const char *name, size_t near);

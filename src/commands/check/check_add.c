@@ -9,7 +9,8 @@
 // difference of two speeds over a step, to no better than 16 eps omega / h.
 #include "commands/check/check_add.h"
 
-#include <assert.h>
+#include "base/room.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +23,6 @@ static void add(CheckAdd *work, const Trajectory *run, const char *part, const c
                 CheckMetric metric)
 {
     CheckMeasure *measure = work->measure;
-    assert(measure->count < CHECK_METRIC_MAX);
     snprintf(metric.name, sizeof metric.name, "%s%s/%s%s%s", run->backend, work->group, part,
              part[0] != '\0' ? "/" : "", name);
     if (!isfinite(metric.value)) {
@@ -30,6 +30,8 @@ static void add(CheckAdd *work, const Trajectory *run, const char *part, const c
         snprintf(measure->message, sizeof measure->message, "%s is not finite", metric.name);
         return;
     }
+    measure->metrics =
+        room_grow(measure->metrics, &measure->room, measure->count + 1, sizeof metric);
     measure->metrics[measure->count++] = metric;
 }
 

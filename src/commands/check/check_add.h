@@ -5,7 +5,7 @@
 #include "measure/error.h"
 #include "model/scale.h"
 
-enum { CHECK_NAME_SIZE = 112, CHECK_METRIC_MAX = 2048, CHECK_MESSAGE_SIZE = 512 };
+enum { CHECK_NAME_SIZE = 112, CHECK_MESSAGE_SIZE = 512 };
 
 typedef enum CheckKind {
     CHECK_REAL,
@@ -30,7 +30,8 @@ typedef struct CheckMeasure {
     bool is_complete; // false: the message says which run failed and why
     char message[CHECK_MESSAGE_SIZE];
     size_t count;
-    CheckMetric metrics[CHECK_METRIC_MAX];
+    size_t room;          // of the metrics there is room for
+    CheckMetric *metrics; // owned: check_measure_finish
     // SI, by expectation of the scenario and by backend; NAN where it was not measured
     double expected[EXPECTATION_MAX][BACKEND_COUNT];
 } CheckMeasure;

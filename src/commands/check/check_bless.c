@@ -145,7 +145,7 @@ static bool make_baseline(Making *making, Baseline *made, CheckMeasure *run, siz
         !measure(making, baseline_rounding_start, 0, 1 + BASELINE_MEMBERS, measures, err)) {
         return false;
     }
-    *run = measures[0];
+    *run = check_measure_copy(&measures[0]);
     baseline_set_head(made, making->item->scenario, &making->plan);
     text_copy(made->case_path, sizeof made->case_path, making->item->relative);
     if (!baseline_set_metrics(made, run, &measures[1], BASELINE_MEMBERS, err)) {
@@ -205,18 +205,21 @@ static bool make_item(Making *making, CheckCase *result)
 {
     Baseline made = {.settings = NULL};
     size_t sample_count;
-    CheckMeasure *run = malloc(sizeof *run);
+    CheckMeasure run = {.is_complete = false};
     making->measures =
         calloc(1 + BASELINE_MEMBERS + BASELINE_SAMPLE_SIZE, sizeof *making->measures);
-    assert(making->measures != NULL && run != NULL);
-    const bool is_made = make_baseline(making, &made, run, &sample_count, &result->err) &&
+    assert(making->measures != NULL);
+    const bool is_made = make_baseline(making, &made, &run, &sample_count, &result->err) &&
                          baseline_json_write(making->item->baseline_path, &made, &result->err);
     if (is_made) {
-        hold_against_old(making, &made, run, sample_count, result);
+        hold_against_old(making, &made, &run, sample_count, result);
     }
     baseline_finish(&made);
+    for (size_t i = 0; i < 1 + BASELINE_MEMBERS + BASELINE_SAMPLE_SIZE; i++) {
+        check_measure_finish(&making->measures[i]);
+    }
     free(making->measures);
-    free(run);
+    check_measure_finish(&run);
     return is_made;
 }
 

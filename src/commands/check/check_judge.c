@@ -171,13 +171,14 @@ static void judge_number(const BaselineMetric *metric, double now, CheckRow *row
     row->severity = size == 0.0 ? 0.0 : metric->band > 0.0 ? size / metric->band : INFINITY;
 }
 
-static void judge_sample(const BaselineMetric *metric, const CheckEvidence *evidence, CheckRow *row)
+static void judge_sample(const BaselineMetric *metric, size_t number, const CheckEvidence *evidence,
+                         RankTest *test, CheckRow *row)
 {
     double values[RANK_TEST_MAX];
     const size_t count = evidence->sample_count;
     assert(count > 0 && count <= RANK_TEST_MAX);
     for (size_t i = 0; i < count; i++) {
-        const size_t index = baseline_find(&evidence->sample[i], metric->name);
+        const size_t index = baseline_find(&evidence->sample[i], metric->name, number);
         if (index == evidence->sample[i].count) {
             row->verdict = CHECK_GONE;
             row->severity = INFINITY;
@@ -188,14 +189,15 @@ static void judge_sample(const BaselineMetric *metric, const CheckEvidence *evid
     sorted_make(values, count);
     row->now = sorted_median(values, count);
     row->deviation = row->now - metric->value;
-    row->p = rank_test_p(metric->sample, metric->sample_count, values, count);
+    row->p = rank_test_p(test, metric->sample, metric->sample_count, values, count);
     row->verdict = row->p > evidence->rate ? CHECK_WITHIN : CHECK_OUT;
     row->severity = row->p > 0.0 ? log(row->p) / log(evidence->rate) : INFINITY;
 }
 
-static void judge_metric(const Baseline *baseline, const BaselineMetric *metric,
-                         const CheckEvidence *evidence, CheckRow *row)
+static void judge_metric(const Baseline *baseline, size_t number, const CheckEvidence *evidence,
+                         RankTest *test, CheckRow *row)
 {
+    const BaselineMetric *metric = &baseline->metrics[number];
     *row = (CheckRow){.kind = metric->kind,
                       .band_kind = metric->band_kind,
                       .was = metric->value,
@@ -210,7 +212,7 @@ static void judge_metric(const Baseline *baseline, const BaselineMetric *metric,
         leave_out(row, is_statistical ? "statistical: for a full check" : "for a full check");
         return;
     }
-    const size_t index = baseline_find(evidence->run, metric->name);
+    const size_t index = baseline_find(evidence->run, metric->name, number);
     if (index == evidence->run->count) {
         row->verdict = CHECK_GONE;
         row->severity = INFINITY;
@@ -221,7 +223,7 @@ static void judge_metric(const Baseline *baseline, const BaselineMetric *metric,
     } else if (metric->kind == CHECK_HASH) {
         judge_hash(baseline, metric, evidence, evidence->run->metrics[index].hash, row);
     } else if (is_statistical) {
-        judge_sample(metric, evidence, row);
+        judge_sample(metric, number, evidence, test, row);
     } else {
         judge_number(metric, evidence->run->metrics[index].value, row);
     }
@@ -233,7 +235,7 @@ static void judge_new(const Baseline *baseline, const CheckMeasure *run, CheckRo
 {
     for (size_t i = 0; i < run->count; i++) {
         const CheckMetric *metric = &run->metrics[i];
-        bool is_known = false;
+        bool is_known = i < baseline->count && strcmp(baseline->metrics[i].name, metric->name) == 0;
         for (size_t k = 0; k < baseline->count && !is_known; k++) {
             is_known = strcmp(baseline->metrics[k].name, metric->name) == 0;
         }
@@ -280,10 +282,12 @@ static int compare_rows(const void *a, const void *b)
 size_t check_judge(const Baseline *baseline, const CheckEvidence *evidence, CheckRow *rows)
 {
     size_t count = 0;
+    RankTest test = {.count = 0};
     judge_settings(baseline, evidence->now, rows, &count);
     for (size_t i = 0; i < baseline->count; i++) {
-        judge_metric(baseline, &baseline->metrics[i], evidence, &rows[count++]);
+        judge_metric(baseline, i, evidence, &test, &rows[count++]);
     }
+    rank_test_finish(&test);
     judge_new(baseline, evidence->run, rows, &count);
     qsort(rows, count, sizeof *rows, compare_rows);
     return count;

@@ -5,6 +5,7 @@
 #include "commands/check/check_measure.h"
 
 #include "base/printable.h"
+#include "base/room.h"
 #include "base/text.h"
 #include "base/zeroed.h"
 #include "commands/check/expect_value.h"
@@ -214,4 +215,46 @@ void check_measure(const Scenario *scenario, const CheckPlan *plan, CheckMeasure
     if (!measure->is_complete) {
         measure->count = 0;
     }
+}
+
+void check_measure_finish(CheckMeasure *measure)
+{
+    free(measure->metrics);
+    *measure = (CheckMeasure){.is_complete = false};
+}
+
+CheckMeasure check_measure_copy(const CheckMeasure *measure)
+{
+    CheckMeasure copy = *measure;
+    copy.room = copy.count;
+    copy.metrics = room_copy(measure->metrics, copy.count, sizeof *copy.metrics);
+    return copy;
+}
+
+size_t check_measure_packed_size(const Scenario *scenario)
+{
+    // as check_add.c has them: extremes and spikes; forces, contacts and spikes; energy, cost,
+    // errors and orders
+    enum { OF_BODY = 6, OF_JOINT = 7, OF_RUN = 16, GROUPS = 2 };
+    const Linkage *linkage = &scenario->linkage;
+    const size_t count = OF_BODY * linkage->body_count + OF_JOINT * linkage->joint_count + OF_RUN;
+    return sizeof(CheckMeasure) +
+           GROUPS * scenario->run.backend_count * count * sizeof(CheckMetric);
+}
+
+void check_measure_pack(const CheckMeasure *measure, void *packed, size_t size)
+{
+    CheckMeasure *head = packed;
+    assert(sizeof *head + measure->count * sizeof *measure->metrics <= size);
+    *head = *measure;
+    if (measure->count > 0) {
+        memcpy(head + 1, measure->metrics, measure->count * sizeof *measure->metrics);
+    }
+}
+
+CheckMeasure check_measure_unpack(const void *packed)
+{
+    CheckMeasure head = *(const CheckMeasure *)packed;
+    head.metrics = (CheckMetric *)((const CheckMeasure *)packed + 1);
+    return check_measure_copy(&head);
 }

@@ -28,4 +28,15 @@ CheckPlan check_plan(const Truth *truth);
 void check_measure_start(Scenario *scenario, CheckStart start);
 
 // Runs the scenario on its backends and measures them. A run that fails leaves nothing measured.
+// What the measure held before is lost but for its room.
 void check_measure(const Scenario *scenario, const CheckPlan *plan, CheckMeasure *measure);
+
+// Gives back what a measure holds, zeroed ones included; and one with the contents of another.
+void check_measure_finish(CheckMeasure *measure);
+CheckMeasure check_measure_copy(const CheckMeasure *measure);
+
+// The same in one piece of memory, as a child process hands it to its parent: how many bytes that
+// takes at most; what is written there; and what is read from it.
+size_t check_measure_packed_size(const Scenario *scenario);
+void check_measure_pack(const CheckMeasure *measure, void *packed, size_t size);
+CheckMeasure check_measure_unpack(const void *packed);

@@ -268,6 +268,7 @@ bool check_run_execute(const CheckOptions *options, CheckItem *items, size_t cou
         finish_item(options, &items[i], works, shares[i], &run->report, &run->cases[i]);
     }
     for (size_t i = 0; i < total; i++) {
+        check_measure_finish(works[i].measure);
         free(works[i].measure);
     }
     free(shares);

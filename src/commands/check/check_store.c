@@ -4,6 +4,7 @@
 // setting that it makes use of.
 #include "commands/check/check_store.h"
 
+#include "base/room.h"
 #include "base/text.h"
 #include "write/fields.h"
 #include "write/json_value.h"
@@ -82,13 +83,16 @@ static bool take_start(const json_t *line, CheckStart start, CheckMeasure *measu
     const bool is_it = json_equal(json_object_get(line, "start"), wanted) != 0;
     json_decref(wanted);
     const size_t count = json_array_size(metrics);
-    if (!is_it || count == 0 || count > CHECK_METRIC_MAX) {
+    if (!is_it || count == 0) {
         return false;
     }
-    *measure = (CheckMeasure){.is_complete = true, .count = count};
+    check_measure_finish(measure);
+    measure->metrics = room_grow(measure->metrics, &measure->room, count, sizeof *measure->metrics);
+    measure->is_complete = true;
+    measure->count = count;
     for (size_t i = 0; i < count; i++) {
         if (!take_metric(json_array_get(metrics, i), &measure->metrics[i])) {
-            *measure = (CheckMeasure){.is_complete = false};
+            check_measure_finish(measure);
             return false;
         }
     }

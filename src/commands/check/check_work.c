@@ -22,7 +22,10 @@ static void measure(const void *context, void *result)
     const CheckWork *work = context;
     Scenario scenario = scenario_copy(work->scenario);
     check_measure_start(&scenario, work->start);
-    check_measure(&scenario, &work->plan, result);
+    CheckMeasure made = {.is_complete = false};
+    check_measure(&scenario, &work->plan, &made);
+    check_measure_pack(&made, result, check_measure_packed_size(work->scenario));
+    check_measure_finish(&made);
     scenario_free(&scenario);
 }
 
@@ -40,7 +43,8 @@ static bool take(void *owner, size_t number, const void *result, const Child *ch
         snprintf(work->measure->message, sizeof work->measure->message, "its process %s", words);
         return true;
     }
-    *work->measure = *(const CheckMeasure *)result;
+    check_measure_finish(work->measure);
+    *work->measure = check_measure_unpack(result);
     const CheckWorkers *workers = doing->workers;
     return workers->keep == NULL || !work->measure->is_complete ||
            workers->keep(work, workers->context, err);
@@ -103,6 +107,16 @@ static bool next(void *owner, size_t *number, const void **context)
     return false;
 }
 
+static size_t largest_result(const CheckWork *works, size_t count)
+{
+    size_t largest = sizeof(CheckMeasure);
+    for (size_t i = 0; i < count; i++) {
+        const size_t size = works[i].is_over ? 0 : check_measure_packed_size(works[i].scenario);
+        largest = size > largest ? size : largest;
+    }
+    return largest;
+}
+
 bool check_work_do(const CheckWorkers *workers, CheckWork *works, size_t count, Err *err)
 {
     Doing doing = {workers, works, count, calloc(count + 1, sizeof *doing.is_begun)};
@@ -110,7 +124,7 @@ bool check_work_do(const CheckWorkers *workers, CheckWork *works, size_t count, 
     const Pool pool = {
         .jobs = workers->jobs,
         .work = measure,
-        .result_size = sizeof(CheckMeasure),
+        .result_size = largest_result(works, count),
         .limits = {.time_s = workers->time_limit_s, .memory_bytes = TASK_MEMORY_LIMIT},
         .next = next,
         .take = take,
