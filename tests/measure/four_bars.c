@@ -179,11 +179,10 @@ static Point solve(const Way *way, size_t count)
     return point;
 }
 
-// The power of N with which a time grows between the third and the last N.
-static double exponent(const double *times)
+// The power of N with which a time grows between the third N and the last one that there is.
+static double exponent(const double *times, size_t count)
 {
-    return log(times[COUNT_COUNT - 1] / times[2]) /
-           log((double)COUNTS[COUNT_COUNT - 1] / (double)COUNTS[2]);
+    return log(times[count - 1] / times[2]) / log((double)COUNTS[count - 1] / (double)COUNTS[2]);
 }
 
 static void tabulate_steps(void)
@@ -212,7 +211,7 @@ static void tabulate_steps(void)
     }
     printf("time ~N^");
     for (size_t k = 0; k < WAY_COUNT; k++) {
-        printf("%*.2f", k == 0 ? 15 : 18, exponent(times[k]));
+        printf("%*.2f", k == 0 ? 15 : 18, exponent(times[k], COUNT_COUNT));
     }
     printf("\n");
 }
@@ -272,7 +271,9 @@ static void tabulate_equal(void)
                "error of the tips of %g m at %g s\n"
                "    N  %-20s %9s  %-20s %9s  iterations  quick/direct\n",
                TARGETS[t], DURATION, "direct", "", "quick", "");
-        for (size_t i = 0; i < COUNT_COUNT; i++) {
+        size_t count = 0;
+        for (size_t i = 0; COUNTS[i] <= EQUAL_MOST; i++) {
+            count++;
             printf("%5zu", COUNTS[i]);
             for (int k = 0; k < 2; k++) {
                 Way way = {0};
@@ -286,7 +287,7 @@ static void tabulate_equal(void)
             }
             printf("  %12.2f\n", times[1][i] / times[0][i]);
         }
-        printf("time ~N^ %28.2f %31.2f\n", exponent(times[0]), exponent(times[1]));
+        printf("time ~N^ %28.2f %31.2f\n", exponent(times[0], count), exponent(times[1], count));
     }
 }
 
