@@ -210,7 +210,8 @@ typedef enum JpStepping {
     JP_STEPPING_STAGGERED, /* forces at mid-step: order 2 at the same cost; rows of JP_MAP_MIDPOINT
                             */
     JP_STEPPING_IMPULSE,   /* the same with the contacts of our joints integrated within the step,
-                              however short they are: n + 2 steps of ODE where n joints touch */
+                              however short they are: n + 3 steps of ODE where joints touch in
+                              n rows: one of a hinge or slider, two to nine of an end of a pin */
 } JpStepping;
 
 typedef struct JpWorldOptions {
@@ -222,9 +223,14 @@ typedef struct JpWorldOptions {
      * too, and are half a step old then. */
     void (*collide)(dWorldID world, void *data);
     void *collide_data;
+    /* Contacts of all pairs of geoms in a space are made for you there, and taken away after the
+     * step, but for bodies that a joint links; the bodies that geoms are on are found. NULL: none.
+     */
+    dSpaceID space;
+    dSurfaceParameters surface; /* of all of these */
 } JpWorldOptions;
 
-/* Staggered, by dWorldStep, without a function for contacts. */
+/* Staggered, by dWorldStep, without contacts; a surface with ODE's friction of .5. */
 JP_API JpWorldOptions jp_world_options_default(void);
 
 /* Options may be NULL for the default. Destroying a world destroys the joints made in it. */
@@ -277,6 +283,11 @@ JP_API JpStatus jp_backlash_create(JpWorld *world, dJointID joint, const JpBackl
 /* The torque or force on the rotor from now on. A rotor that was led is free again. Fails without a
  * rotor. */
 JP_API JpStatus jp_backlash_drive(JpJoint *joint, double force, JpError *error);
+
+/* A servo: drives the rotor in the next step towards a position, rad or m, with a stiffness, N
+ * m/rad or N/m, and a damper, N m s/rad or N s/m, from where it is now. */
+JP_API JpStatus jp_backlash_hold(JpJoint *joint, double position, double stiffness, double damper,
+                                 JpError *error);
 
 /* Leads the rotor, or what the gap stands on where there is none: where it is now, and the speed
  * with which it goes on from there. */

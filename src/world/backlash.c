@@ -141,6 +141,18 @@ JpStatus jp_backlash_drive(JpJoint *joint, double force, JpError *error)
     return refusal_none(error);
 }
 
+JpStatus jp_backlash_hold(JpJoint *joint, double position, double stiffness, double damper,
+                          JpError *error)
+{
+    REFUSAL_TRY(check_backlash(joint, error));
+    REFUSAL_TRY(refusal_of_finite(position, "the position to be held", error));
+    REFUSAL_TRY(refusal_of_negative(stiffness, "the servo's stiffness", error));
+    REFUSAL_TRY(refusal_of_negative(damper, "the servo's damper", error));
+    const Rotor *rotor = &joint->rotor;
+    return jp_backlash_drive(
+        joint, stiffness * (position - rotor->position) - damper * rotor->speed, error);
+}
+
 JpStatus jp_backlash_lead(JpJoint *joint, double position, double speed, JpError *error)
 {
     REFUSAL_TRY(check_backlash(joint, error));

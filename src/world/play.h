@@ -54,8 +54,9 @@ struct JpWorld {
     JpWorldOptions options;
     Bodies bodies;
     JpJoint *joints;
-    dJointGroupID rows;   // contacts of the step under way
-    Encounter *encounter; // owned, NULL before the first
+    dJointGroupID rows;     // contacts of the step under way
+    dJointGroupID contacts; // of the geoms of the caller's space, likewise
+    Encounter *encounter;   // owned, NULL before the first
     JpWorldStats stats;
     double last_step;          // s, of the step before; 0: there was none
     size_t known_when_counted; // bodies, when it was last made sure that all are known

@@ -11,6 +11,7 @@
 // (h/J) (D - s F). The map's row is of the rate of q - p:
 //     s (q' - p') + CFM F = (ERP/h) d    is    s q' + (CFM + h/J) F = (ERP/h) d + s (p + (h/J) D)
 // a row of ODE's bodies alone.
+#include "world/geoms.h"
 #include "world/gyration.h"
 #include "world/impulse.h"
 #include "world/joints.h"
@@ -33,14 +34,14 @@ static const Map *map_of(const JpWorld *world)
 
 static JpStatus gather(JpWorld *world, JpError *error)
 {
-    size_t count = 0;
+    size_t count = geoms_list(world, NULL);
     for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
         count += 2;
     }
     dBodyID *seeds = malloc((count + 1) * sizeof *seeds);
     bool is_done = seeds != NULL;
     if (is_done) {
-        size_t filled = 0;
+        size_t filled = geoms_list(world, seeds);
         for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
             seeds[filled++] = joint->bodies[0];
             seeds[filled++] = joint->bodies[1];
@@ -107,6 +108,7 @@ static void go_there(JpWorld *world, double step)
     if (is_staggered(world)) {
         bodies_drift(&world->bodies, 0.5 * step);
     }
+    geoms_touch(world);
     if (world->options.collide != NULL) {
         world->options.collide(world->id, world->options.collide_data);
     }
@@ -284,6 +286,7 @@ JpStatus jp_world_step(JpWorld *world, double step, JpError *error)
     go_there(world, step);
     const JpStatus status = step_bodies(world, step, error);
     dJointGroupEmpty(world->rows);
+    dJointGroupEmpty(world->contacts);
     if (status != JP_OK) {
         return status;
     }

@@ -6,7 +6,10 @@
 
 JpWorldOptions jp_world_options_default(void)
 {
-    return (JpWorldOptions){.stepping = JP_STEPPING_STAGGERED};
+    return (JpWorldOptions){
+        .stepping = JP_STEPPING_STAGGERED,
+        .surface = {.mode = dContactApprox1, .mu = 0.5},
+    };
 }
 
 JpStatus jp_world_create(dWorldID id, const JpWorldOptions *options, JpWorld **created,
@@ -32,6 +35,7 @@ JpStatus jp_world_create(dWorldID id, const JpWorldOptions *options, JpWorld **c
     world->id = id;
     world->options = chosen;
     world->rows = dJointGroupCreate(0);
+    world->contacts = dJointGroupCreate(0);
     *created = world;
     return refusal_none(error);
 }
@@ -45,6 +49,7 @@ void jp_world_destroy(JpWorld *world)
         jp_joint_destroy(world->joints);
     }
     dJointGroupDestroy(world->rows);
+    dJointGroupDestroy(world->contacts);
     bodies_finish(&world->bodies);
     if (world->encounter != NULL) {
         encounter_finish(world->encounter);

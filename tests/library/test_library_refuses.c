@@ -236,6 +236,10 @@ static void a_drive_that_is_none_is_refused(void **state)
     assert_refused(jp_backlash_drive(stopped, 1.0, &error));
     assert_refused(jp_backlash_drive(NULL, 1.0, &error));
     assert_refused(jp_backlash_lead(bare, NAN, 0.0, &error));
+    assert_refused(jp_backlash_hold(bare, 0.0, 1.0, 1.0, &error));
+    assert_refused(jp_backlash_hold(NULL, 0.0, 1.0, 1.0, &error));
+    assert_refused(jp_backlash_hold(bare, 0.0, -1.0, 1.0, &error));
+    assert_refused(jp_backlash_hold(bare, NAN, 1.0, 1.0, &error));
     assert_refused(jp_backlash_lead(stopped, 0.0, 0.0, &error));
     assert_refused(jp_joint_state(NULL, &now, &error));
     assert_refused(jp_joint_state(bare, NULL, &error));
