@@ -45,8 +45,21 @@ static int renumber(const int *own, int body)
     return body == LINKAGE_GROUND ? LINKAGE_GROUND : own[body];
 }
 
+// Gives a member's gears the numbers that their carriers and pivots have there.
+static void renumber_gears(const int *own_body, const int *own_joint, Linkage *linkage)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        Gear *gear = &linkage->joints[i].gear;
+        if (linkage->joints[i].kind == JOINT_GEAR) {
+            gear->carrier = renumber(own_body, gear->carrier);
+            gear->pivots[0] = own_joint[gear->pivots[0]];
+            gear->pivots[1] = own_joint[gear->pivots[1]];
+        }
+    }
+}
+
 // What the linkage has more than bodies: by member, then with their numbers there.
-static void share_out(const Linkage *whole, const size_t *member_of, Member *members)
+static void share_out(const Linkage *whole, const size_t *member_of, Member *members, size_t count)
 {
     int *own_body = zeroed(whole->body_count, sizeof *own_body);
     int *own_joint = zeroed(whole->joint_count, sizeof *own_joint);
@@ -90,6 +103,9 @@ static void share_out(const Linkage *whole, const size_t *member_of, Member *mem
         Linkage *linkage = &members[number].scenario->linkage;
         torsion.joint = own_joint[torsion.joint];
         linkage->torsions[linkage->torsion_count++] = torsion;
+    }
+    for (size_t i = 0; i < count; i++) {
+        renumber_gears(own_body, own_joint, &members[i].scenario->linkage);
     }
     free(own_body);
     free(own_joint);
@@ -142,7 +158,7 @@ Member *impulse_members_make(const Scenario *scenario, size_t *count)
         member->bodies = zeroed(rooms[i].bodies, sizeof *member->bodies);
         member->joints = zeroed(rooms[i].joints, sizeof *member->joints);
     }
-    share_out(whole, member_of, members);
+    share_out(whole, member_of, members, *count);
     for (size_t i = 0; i < *count; i++) {
         members[i].sample = sample_create(&members[i].scenario->linkage);
     }

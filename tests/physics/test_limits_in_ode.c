@@ -223,6 +223,92 @@ static void records_are_those_of_the_reference(void **state)
     check_records(&stops, 0);
 }
 
+static Body disc(const char *name, double x, double spin)
+{
+    Body body = {.mass = 0.2, .inertia = 1e-4, .start = {.position.x = x, .omega = spin}};
+    snprintf(body.name, sizeof body.name, "%s", name);
+    return body;
+}
+
+static Joint pivot(const char *name, int a, int b, double x)
+{
+    Joint joint = {.kind = JOINT_REVOLUTE, .body_a = a, .body_b = b, .anchor_a.x = x};
+    snprintf(joint.name, sizeof joint.name, "%s", name);
+    return joint;
+}
+
+// Two gears on an arm that swings about the ground, behind so many other rotors of their own.
+static Scenario carried_gears(size_t others)
+{
+    Scenario scenario = kept_default();
+    Linkage *linkage = &scenario.linkage;
+    const int arm = (int)others;
+    const int first = (int)others;
+    for (size_t i = 0; i < others; i++) {
+        char name[] = "rotor-0";
+        name[6] = (char)('0' + i);
+        linkage->bodies[linkage->body_count++] = disc(name, 0.5 + (double)i, 3.0);
+        linkage->joints[linkage->joint_count++] =
+            pivot(name, LINKAGE_GROUND, (int)i, 0.5 + (double)i);
+    }
+    linkage->bodies[linkage->body_count++] = disc("arm", 0.0, 2.0);
+    linkage->bodies[linkage->body_count++] = disc("sun", 0.0, 30.0);
+    linkage->bodies[linkage->body_count++] = disc("planet", 0.06, 0.0);
+    linkage->bodies[arm + 2].start.velocity.y = 0.06 * 2.0;
+    linkage->joints[linkage->joint_count++] = pivot("arm", LINKAGE_GROUND, arm, 0.0);
+    linkage->joints[linkage->joint_count++] = pivot("sun", arm, arm + 1, 0.0);
+    linkage->joints[linkage->joint_count++] = pivot("planet", arm, arm + 2, 0.06);
+    linkage->joints[linkage->joint_count++] = (Joint){
+        .name = "teeth",
+        .kind = JOINT_GEAR,
+        .body_a = arm + 1,
+        .body_b = arm + 2,
+        .gear = {.pivots = {first + 1, first + 2},
+                 .carrier = arm,
+                 .radius_a = 0.02,
+                 .radius_b = 0.04},
+        .limits = {.kind = LIMIT_BACKLASH, .backlash = 1e-4},
+        .contact = {.stiffness = 1e7, .exponent = 1.0},
+    };
+    scenario.contact.damping = DAMPING_EXACT;
+    scenario.contact.restitution = 0.6;
+    scenario.ode.stepping = ODE_STAGGERED;
+    scenario.ode.map = ODE_MAP_IMPULSE;
+    scenario.run.step = 2e-5;
+    scenario.gravity = 9.80665;
+    scenario.run.duration = 0.01;
+    scenario.run.samples = 300;
+    return scenario;
+}
+
+// What the teeth push the arm counts, too.
+static void gears_on_an_arm_follow_the_reference(void **state)
+{
+    (void)state;
+    const Scenario alone = carried_gears(0);
+    const OdeClimb climb = ode_climb(&alone, BACKEND_REFERENCE, 2e-5, 4.0, 2);
+    assert_near(climb.errors[0].omega_max, 0.0, 1e-5);
+    assert_true(climb.errors[1].omega_max < 0.3 * climb.errors[0].omega_max);
+    Scenario rows = kept_copy(&alone);
+    rows.ode.map = ODE_MAP_MIDPOINT;
+    const OdeClimb by_rows = ode_climb(&rows, BACKEND_REFERENCE, 4e-6, 4.0, 2);
+    assert_true(ode_climb_order(&by_rows, 0, 1) > 1.75);
+    // beside others the same to the last bit
+    const Scenario beside = carried_gears(2);
+    Trajectory *run = complete_run(&alone, BACKEND_ODE);
+    Trajectory *other = complete_run(&beside, BACKEND_ODE);
+    assert_true(run->joints[3].impacts > 3);
+    assert_int_equal(run->joints[3].impacts, other->joints[5].impacts);
+    for (size_t k = 0; k < run->sample_count; k++) {
+        for (size_t i = 0; i < 3; i++) {
+            assert_true(trajectory_motion(run, k, i)->omega ==
+                        trajectory_motion(other, k, i + 2)->omega);
+        }
+    }
+    trajectory_destroy(run);
+    trajectory_destroy(other);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -233,6 +319,7 @@ int main(void)
         cmocka_unit_test(flanks_are_met_after_many_turns),
         cmocka_unit_test(a_gear_pair_that_rattles_follows_the_reference),
         cmocka_unit_test(records_are_those_of_the_reference),
+        cmocka_unit_test(gears_on_an_arm_follow_the_reference),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
