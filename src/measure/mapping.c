@@ -76,8 +76,11 @@ static bool add_joint(Mapping *mapping, const MappingJoint *joint, Err *err)
     if (!(speed > 0.0)) {
         return err_set(err, ERR_USAGE,
                        "%s: no contact of the case's run begins with a closing speed; give one, "
-                       "such as --speed '0.1 m/s'",
-                       mapping->scenario->linkage.joints[joint->joint].name);
+                       "such as --speed '0.1 %s'",
+                       mapping->scenario->linkage.joints[joint->joint].name,
+                       linkage_is_torsional(&mapping->scenario->linkage.joints[joint->joint])
+                           ? "rad/s"
+                           : "m/s");
     }
     const bool is_poisson_case = mapping->scenario->contact.model == CONTACT_POISSON;
     const size_t count = settings->law_count == 0 || is_poisson_case ? 1 : settings->law_count;

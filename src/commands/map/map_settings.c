@@ -101,6 +101,18 @@ static bool read_steps(const MapOptions *options, const Scenario *scenario,
     return true;
 }
 
+// Whether all that touches in a case turns: masses are then inertias, and speeds angular.
+static bool is_torsional(const Linkage *linkage)
+{
+    size_t turning = 0;
+    size_t loose = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        turning += linkage_is_torsional(&linkage->joints[i]) ? 1 : 0;
+        loose += linkage_has_play(&linkage->joints[i]) ? 1 : 0;
+    }
+    return loose > 0 && turning == loose;
+}
+
 bool map_options_settings(const MapOptions *options, const Scenario *scenario,
                           MappingSettings *settings, Err *err)
 {
@@ -135,9 +147,11 @@ bool map_options_settings(const MapOptions *options, const Scenario *scenario,
             settings->laws[i] = (LawKind)words[i];
         }
     }
+    const bool is_turning = is_torsional(&scenario->linkage);
     return read_steps(options, scenario, settings, err) &&
-           read_source("mass", options->mass, DIMENSION_MASS, &settings->mass_source,
-                       &settings->mass, err) &&
-           read_source("speed", options->speed, DIMENSION_SPEED, &settings->speed_source,
-                       &settings->speed, err);
+           read_source("mass", options->mass, is_turning ? DIMENSION_INERTIA : DIMENSION_MASS,
+                       &settings->mass_source, &settings->mass, err) &&
+           read_source("speed", options->speed,
+                       is_turning ? DIMENSION_ANGULAR_SPEED : DIMENSION_SPEED,
+                       &settings->speed_source, &settings->speed, err);
 }

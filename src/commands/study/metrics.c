@@ -171,6 +171,24 @@ static void name_column(const Layout *layout, Column *column, const char *first,
     }
 }
 
+// The name of a result, whose unit is one of torques and angles at limits of a pivot.
+static const char *metric_name(const Metric *metric, const Linkage *linkage, size_t member)
+{
+    static const char *const TURNING[][2] = {
+        {"force_max_N", "force_max_N_m"},
+        {"impulse_N_s", "impulse_N_m_s"},
+        {"penetration_max_m", "penetration_max_rad"},
+    };
+    const bool is_turning =
+        metric->owner == OF_JOINT && linkage_is_torsional(&linkage->joints[member]);
+    for (size_t i = 0; is_turning && i < sizeof TURNING / sizeof *TURNING; i++) {
+        if (strcmp(metric->name, TURNING[i][0]) == 0) {
+            return TURNING[i][1];
+        }
+    }
+    return metric->name;
+}
+
 static void add_settings(const Spec *spec, Layout *layout)
 {
     for (size_t i = 0; i < spec->variable_count; i++) {
@@ -234,7 +252,8 @@ void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
         if (metric->owner < OF_ERROR || spec->has_truth) {
             Column *column = &layout->results[layout->result_count++];
             column->kind = metric->kind;
-            name_column(layout, column, results[i].of, metric->name);
+            name_column(layout, column, results[i].of,
+                        metric_name(metric, &scenario->linkage, results[i].member));
         }
     }
 }
