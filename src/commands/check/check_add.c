@@ -133,20 +133,24 @@ static void add_joints(CheckAdd *work, const Trajectory *run, BackendKind backen
     for (size_t i = 0; i < run->joint_count; i++) {
         const Joint *joint = &work->scenario->linkage.joints[i];
         const JointExtremes *extremes = &run->joints[i];
+        const bool is_turning = linkage_is_torsional(joint);
         // the reference looks for the peak of a contact between its steps
         if (is_by_samples(backend) && !linkage_has_play(joint)) {
             add_real(work, run, joint->name, "force_max_at_samples_N", force_at_samples(run, i),
                      0.0);
         } else {
-            add_real(work, run, joint->name, "force_max_N", extremes->force_max.value, 0.0);
+            add_real(work, run, joint->name, is_turning ? "force_max_N_m" : "force_max_N",
+                     extremes->force_max.value, 0.0);
         }
         // the closed form takes every joint as ideal
         if (!linkage_has_play(joint) || backend == BACKEND_ANALYTIC) {
             continue;
         }
         add_count(work, run, joint->name, "impacts", extremes->impacts);
-        add_real(work, run, joint->name, "impulse_N_s", extremes->impulse, 0.0);
-        add_real(work, run, joint->name, "penetration_max_m", extremes->penetration_max.value, 0.0);
+        add_real(work, run, joint->name, is_turning ? "impulse_N_m_s" : "impulse_N_s",
+                 extremes->impulse, 0.0);
+        add_real(work, run, joint->name, is_turning ? "penetration_max_rad" : "penetration_max_m",
+                 extremes->penetration_max.value, 0.0);
         add_real(work, run, joint->name, "contact_fraction_1", trajectory_contact_share(run, i),
                  0.0);
     }
@@ -180,7 +184,9 @@ static void add_spikes(CheckAdd *work, const Trajectory *run, BackendKind backen
         }
     }
     for (size_t i = 0; !is_by_samples(backend) && i < run->joint_count; i++) {
-        add_signal(work, run, linkage->joints[i].name, "force_spikes", "force_spikes_mean_N",
+        const Joint *joint = &linkage->joints[i];
+        add_signal(work, run, joint->name, "force_spikes",
+                   linkage_is_torsional(joint) ? "force_spikes_mean_N_m" : "force_spikes_mean_N",
                    &run->force_spikes[i]);
     }
 }
