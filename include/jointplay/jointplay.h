@@ -206,7 +206,7 @@ typedef struct JpWorld JpWorld;
 typedef struct JpJoint JpJoint;
 
 typedef enum JpStepping {
-    JP_STEPPING_PLAIN,     /* as ODE steps: order 1; rows of JP_MAP_CORRECTED */
+    JP_STEPPING_PLAIN,     /* as ODE steps: order 1; rows of JP_MAP_MIDPOINT */
     JP_STEPPING_STAGGERED, /* forces at mid-step: order 2 at the same cost; rows of JP_MAP_MIDPOINT
                             */
     JP_STEPPING_IMPULSE,   /* the same with the contacts of our joints integrated within the step,

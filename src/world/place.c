@@ -19,22 +19,23 @@ SideMotion place_motion(const Place *place, size_t number, double earlier, doubl
     if (place->shape == PLACE_LINE) {
         return (SideMotion){
             .gap = gap,
-            .gaps = {gap + closing * earlier, gap + closing * (earlier - step)},
+            .gaps = {gap + closing * 0.5 * step, gap - closing * 0.5 * step},
             .closing = closing,
             .start_closing = -side->sign * place->rate_before,
-            .earlier = earlier,
+            .earlier = 0.5 * step,
         };
     }
     const Vec3 start = place->offset;
     const double size = vec3_length(start);
-    const Vec3 end = vec3_add(start, vec3_scale(step, place->velocity));
+    const Vec3 first = vec3_add(start, vec3_scale(earlier - 0.5 * step, place->velocity));
+    const Vec3 end = vec3_add(start, vec3_scale(earlier + 0.5 * step, place->velocity));
     return (SideMotion){
         .gap = gap,
-        .gaps = {place->clearance - size, place->clearance - vec3_length(end)},
+        .gaps = {place->clearance - vec3_length(first), place->clearance - vec3_length(end)},
         .closing = closing,
         .start_closing =
             size > 0.0 ? vec3_dot(start, place->velocity) / size : vec3_length(place->velocity),
-        .earlier = earlier,
+        .earlier = 0.5 * step,
     };
 }
 

@@ -1,10 +1,11 @@
 // How is a world stepped in which coordinates have play?
 //
-// Plain, from t = n h: a side that overlaps has a row of map corrected, and ODE steps.
-// Staggered: bodies move by h/2 along their velocities; there, at mid-step, sides that overlap get
-// a row of map midpoint and ODE steps the velocities from t to t + h; from mid-step on bodies move
-// by h/2 along the new ones. Positions at mid-step are those of a leapfrog; before and after the
-// step positions and velocities belong to one time.
+// Plain, from t = n h: sides that overlap get a row of map midpoint, and ODE steps; that is right
+// as far as the velocities are those half a step before the positions. Staggered: bodies move by
+// h/2 along their velocities; there, at mid-step, sides that overlap get the same row and ODE steps
+// the velocities from t to t + h; from mid-step on bodies move by h/2 along the new ones. Positions
+// at mid-step are those of a leapfrog; before and after the step positions and velocities belong to
+// one time.
 //
 // The row. The force F >= 0 on a side of sign s pushes the coordinate q by s F and a rotor of
 // inertia J under a drive D the other way, so that the rotor's speed after the step is p' = p +
@@ -27,9 +28,15 @@ static bool is_staggered(const JpWorld *world)
     return world->options.stepping != JP_STEPPING_PLAIN;
 }
 
-static const Map *map_of(const JpWorld *world)
+// Time constants of a damper in a step, above which it acts on the speed after the step: on the
+// mean of both it would throw back what it stops.
+static const double STOPPED = 2.0;
+
+static const Map *map_for(const MapContact *contact, double mobility, bool falls_back)
 {
-    return map_get(is_staggered(world) ? ODE_MAP_MIDPOINT : ODE_MAP_CORRECTED);
+    return map_get(falls_back                                              ? ODE_MAP_TEXTBOOK
+                   : contact->damping * mobility * contact->step > STOPPED ? ODE_MAP_CORRECTED
+                                                                           : ODE_MAP_MIDPOINT);
 }
 
 static JpStatus gather(JpWorld *world, JpError *error)
@@ -57,7 +64,7 @@ static JpStatus gather(JpWorld *world, JpError *error)
 // enough, or, once in a contact, found by trial.
 static JpStatus find_mobility(JpJoint *joint, Place *place, Side *side, double step, JpError *error)
 {
-    const double limit = map_of(joint->world)->stability_limit;
+    const double limit = map_get(ODE_MAP_MIDPOINT)->stability_limit;
     if (side->mobility > 0.0 || side_is_stable(side, limit, play_mobility(joint, place), step)) {
         return JP_OK;
     }
@@ -70,11 +77,11 @@ static JpStatus find_mobility(JpJoint *joint, Place *place, Side *side, double s
 static JpStatus make_row(JpJoint *joint, Place *place, Side *side, double step, JpError *error)
 {
     JpWorld *world = joint->world;
-    const Map *map = map_of(world);
     const double mobility = side->mobility > 0.0 ? side->mobility : play_mobility(joint, place);
     const MapContact contact = side_contact(side, step);
-    const bool falls_back = !side_is_stable(side, map->stability_limit, mobility, step);
-    const ErpCfm row = (falls_back ? map_get(ODE_MAP_TEXTBOOK) : map)->convert(&contact);
+    const double limit = map_get(ODE_MAP_MIDPOINT)->stability_limit;
+    const bool falls_back = !side_is_stable(side, limit, mobility, step);
+    const ErpCfm row = map_for(&contact, mobility, falls_back)->convert(&contact);
     const Rotor *rotor = &joint->rotor;
     const double yield = isfinite(rotor->inertia) ? step / rotor->inertia : 0.0;
     const double speed =

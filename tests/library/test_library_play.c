@@ -151,7 +151,7 @@ static void stops_rebound_as_asked_down_to_ten_steps_a_contact(void **state)
     }
 }
 
-static void plain_rows_keep_the_restitution(void **state)
+static void plain_rows_rebound_as_asked_too(void **state)
 {
     (void)state;
     uint64_t random = lcg_stirred(7);
@@ -159,6 +159,33 @@ static void plain_rows_keep_the_restitution(void **state)
         const Impact impact = random_impact(&random, 10.0);
         const Off off = rebound(&impact, i % 2 == 0, JP_STEPPING_PLAIN, dInfinity);
         assert_near(off.restitution, 0.0, 0.01);
+        assert_near(off.peak, 0.0, 0.01);
+    }
+}
+
+// A disc on a stop whose damper stops it within a hundredth of a step.
+static void a_heavy_damper_throws_nothing_back(void **state)
+{
+    (void)state;
+    for (int stepping = JP_STEPPING_PLAIN; stepping <= JP_STEPPING_IMPULSE; stepping++) {
+        Bench bench = bench_make(true, 1.0, (JpStepping)stepping);
+        JpStops stops = jp_stops_default();
+        stops.high = 0.0123;
+        stops.contact.stiffness = 1e4;
+        stops.contact.damping = JP_DAMPING_VISCOUS;
+        stops.contact.damper = 1e5;
+        JpJoint *joint = NULL;
+        must(jp_stops_create(bench.play, bench.joint, &stops, &joint, NULL));
+        set_speed(&bench, true, 1.0);
+        JpJointState now;
+        for (int i = 0; i < 100; i++) {
+            must(jp_world_step(bench.play, 1e-3, NULL));
+            must(jp_joint_state(joint, &now, NULL));
+            assert_true(now.speed > -1e-2);
+        }
+        // the control: it did get there
+        assert_true(now.high.impacts > 0);
+        bench_finish(&bench);
     }
 }
 
@@ -462,7 +489,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stops_rebound_as_asked_down_to_ten_steps_a_contact),
-        cmocka_unit_test(plain_rows_keep_the_restitution),
+        cmocka_unit_test(plain_rows_rebound_as_asked_too),
+        cmocka_unit_test(a_heavy_damper_throws_nothing_back),
         cmocka_unit_test(impulses_rebound_as_asked_at_any_step),
         cmocka_unit_test(a_stop_of_ode_does_not),
         cmocka_unit_test(a_limit_of_contacts_speeds_changes_nothing),
