@@ -11,6 +11,8 @@
 // and friction is mu N tanh(s / v_s) against the direction of (v_t, v_z), s its size.
 #include "contact/encounter_force.h"
 
+#include "contact/encounter_friction.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -194,7 +196,8 @@ static double add_friction(const Encounter *encounter, size_t joint, const doubl
     const EncounterJoint *of = &encounter->joints[joint];
     const size_t row = of->first_row;
     if (of->shape == TOUCH_LINE) {
-        const double taken = of->friction * normal * tanh(speed[1] / of->friction_speed);
+        const double taken =
+            of->friction * normal * encounter_friction_hold(speed[1], of->friction_speed).held;
         force[row + 1] -= taken;
         return taken * speed[1];
     }
@@ -202,16 +205,19 @@ static double add_friction(const Encounter *encounter, size_t joint, const doubl
     const double pin_arm = hole_arm - pose->eccentricity_size;
     const Vec2 tangent = vec2_perp(pose->normal);
     const double sliding = sliding_round(speed, tangent, hole_arm, pin_arm);
-    double held = of->friction * normal * tanh(sliding / of->friction_speed);
-    double power = held * sliding;
-    if (of->row_count == ENCOUNTER_ROWS_MOST) {
+    double held;
+    double power;
+    if (of->row_count < ENCOUNTER_ROWS_MOST) {
+        held = of->friction * normal * encounter_friction_hold(sliding, of->friction_speed).held;
+        power = held * sliding;
+    } else {
         const double axial = sliding_along(speed, tangent, hole_arm, pin_arm);
         const double size = hypot(sliding, axial);
-        const double all = of->friction * normal * tanh(size / of->friction_speed);
-        const double share = size > 0.0 ? all / size : 0.0;
-        const double along = share * axial;
-        held = share * sliding;
-        power = all * size;
+        const double grip =
+            of->friction * normal * encounter_friction_grip(size, of->friction_speed).share;
+        const double along = grip * axial;
+        held = grip * sliding;
+        power = grip * size * size;
         force[row + ENCOUNTER_ROW_AXIAL] = -along;
         force[row + ENCOUNTER_ROW_HOLE] = hole_arm * along * tangent.x;
         force[row + ENCOUNTER_ROW_HOLE + 1] = hole_arm * along * tangent.y;

@@ -9,6 +9,8 @@
 // of the friction of a pin in space H_t and H_z likewise, with their share phi of the sliding.
 #include "contact/encounter_rates.h"
 
+#include "contact/encounter_friction.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -33,10 +35,11 @@ static inline Rated rated_scale(double factor, Rated a)
     return (Rated){factor * a.value, factor * a.rate};
 }
 
-static inline Rated rated_tanh(Rated a, double scale)
+// The share of mu N that is held against a sliding.
+static inline Rated rated_hold(Rated sliding, double speed)
 {
-    const double share = tanh(a.value / scale);
-    return (Rated){share, (1.0 - share * share) / scale * a.rate};
+    const EncounterHold hold = encounter_friction_hold(sliding.value, speed);
+    return (Rated){hold.held, hold.slope * sliding.rate};
 }
 
 // What is known of a joint that touches: rows' speeds and accelerations, directions, and what
@@ -72,23 +75,15 @@ static Rated rows_along(const Moving *moving, const Rated direction[2], size_t r
 static Rated rate_space_friction(Moving *moving, Rated round, Rated *held)
 {
     const double hole_arm = moving->joint->hole_radius;
-    const double speed = moving->joint->friction_speed;
     const Rated by_hole =
         rated_scale(-hole_arm, rows_along(moving, moving->tangent, ENCOUNTER_ROW_HOLE));
     const Rated by_pin =
         rated_times(moving->pin_arm, rows_along(moving, moving->tangent, ENCOUNTER_ROW_PIN));
     const Rated axial = rated_plus(moving->speed[ENCOUNTER_ROW_AXIAL], rated_plus(by_hole, by_pin));
-    const double size = hypot(round.value, axial.value);
-    const double growth =
-        size > 0.0 ? (round.value * round.rate + axial.value * axial.rate) / size : 0.0;
-    const Rated hold = rated_tanh((Rated){size, growth}, speed);
-    // the share of the sliding that is held, near rest by its series
-    const bool is_slow = size < 1e-4 * speed;
-    const Rated share = {
-        is_slow ? 1.0 / speed : hold.value / size,
-        is_slow ? -2.0 / 3.0 * size * growth / (speed * speed * speed)
-                : (hold.rate - hold.value / size * growth) / size,
-    };
+    const EncounterGrip found =
+        encounter_friction_grip(hypot(round.value, axial.value), moving->joint->friction_speed);
+    const Rated share = {found.share,
+                         found.bend * (round.value * round.rate + axial.value * axial.rate)};
     const Rated grip = rated_times(rated_scale(moving->joint->friction, moving->pressing), share);
     const Rated along_axis = rated_times(grip, axial);
     *held = rated_times(grip, round);
@@ -108,7 +103,7 @@ static Rated rate_friction(Moving *moving)
     const EncounterJoint *joint = moving->joint;
     const Rated grip = rated_scale(joint->friction, moving->pressing);
     if (joint->shape == TOUCH_LINE) {
-        const Rated held = rated_times(grip, rated_tanh(moving->speed[1], joint->friction_speed));
+        const Rated held = rated_times(grip, rated_hold(moving->speed[1], joint->friction_speed));
         push_row(moving, 1, rated_scale(-1.0, held));
         return rated_times(held, moving->speed[1]);
     }
@@ -122,7 +117,7 @@ static Rated rate_friction(Moving *moving)
     if (joint->row_count == ENCOUNTER_ROWS_MOST) {
         power = rate_space_friction(moving, sliding, &held);
     } else {
-        held = rated_times(grip, rated_tanh(sliding, joint->friction_speed));
+        held = rated_times(grip, rated_hold(sliding, joint->friction_speed));
         power = rated_times(held, sliding);
     }
     for (size_t i = 0; i < 2; i++) {

@@ -14,6 +14,8 @@
 //            + ((R - |e|) n . w_b - R n . w_a) (t . de) / |e| - t . w_b o . de
 #include "contact/encounter_slopes.h"
 
+#include "contact/encounter_friction.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -104,15 +106,10 @@ static void find_both(const EncounterJoint *joint, double round, const Gradient 
                       double axial, const Gradient *by_axial, double normal,
                       const Gradient *by_normal, Held *held)
 {
-    const double speed = joint->friction_speed;
-    const double size = hypot(round, axial);
-    const double hold = tanh(size / speed);
-    const bool is_slow = size < 1e-4 * speed;
-    const double share = is_slow ? 1.0 / speed : hold / size;
-    const double bend = is_slow ? -2.0 / (3.0 * speed * speed * speed)
-                                : ((1.0 - hold * hold) / speed - share) / (size * size);
+    const EncounterGrip grip = encounter_friction_grip(hypot(round, axial), joint->friction_speed);
+    const double share = grip.share;
     for (size_t k = 0; k < PARTS; k++) {
-        const double growth = bend * (round * by_round->of[k] + axial * by_axial->of[k]);
+        const double growth = grip.bend * (round * by_round->of[k] + axial * by_axial->of[k]);
         const double along_round = share * by_round->of[k] + growth * round;
         const double along_axis = share * by_axial->of[k] + growth * axial;
         held->by_round.of[k] =
@@ -155,13 +152,12 @@ static void find_friction(const EncounterJoint *joint, const PinHole *pose, cons
         find_both(joint, sliding, &by_sliding, axial, &by_axial, normal, by_normal, held);
         return;
     }
-    const double share = tanh(sliding / joint->friction_speed);
-    const double slope = (1.0 - share * share) / joint->friction_speed;
+    const EncounterHold hold = encounter_friction_hold(sliding, joint->friction_speed);
     for (size_t k = 0; k < PARTS; k++) {
-        held->by_round.of[k] =
-            joint->friction * (share * by_normal->of[k] + normal * slope * by_sliding.of[k]);
+        held->by_round.of[k] = joint->friction * (hold.held * by_normal->of[k] +
+                                                  normal * hold.slope * by_sliding.of[k]);
     }
-    held->round = joint->friction * normal * share;
+    held->round = joint->friction * normal * hold.held;
 }
 
 // The rows of the bodies' turns about the pin's axis.

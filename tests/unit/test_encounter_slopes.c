@@ -2,6 +2,7 @@
 #include "close.h"
 #include "pressed_pin.h"
 
+#include "contact/encounter_friction.h"
 #include "contact/encounter_slopes.h"
 
 enum { ROWS = ENCOUNTER_ROWS_MOST };
@@ -142,10 +143,36 @@ static void a_smooth_force_goes_on_below_a_depth(void **state)
     encounter_finish(&pin);
 }
 
+// By central differences, from far below the border of the series to far above it.
+static void friction_bends_as_it_says(void **state)
+{
+    (void)state;
+    const double speed = 5e-3;
+    for (double size = 1e-6 * speed; size < 10.0 * speed; size *= 1.9) {
+        const double nudge = 1e-3 * fmax(size, 1e-2 * speed);
+        const EncounterHold hold = encounter_friction_hold(size, speed);
+        const double rise = encounter_friction_hold(size + nudge, speed).held -
+                            encounter_friction_hold(size - nudge, speed).held;
+        assert_near(hold.slope, rise / (2.0 * nudge), 1e-5 / speed);
+        const EncounterGrip grip = encounter_friction_grip(size, speed);
+        assert_close(grip.share * size, hold.held, 1e-8);
+        const double own_nudge = 1e-3 * size;
+        const double bent = encounter_friction_grip(size + own_nudge, speed).share -
+                            encounter_friction_grip(size - own_nudge, speed).share;
+        // where the closed form's difference is more than rounding
+        if (size > 0.1 * speed) {
+            assert_close(grip.bend * size, bent / (2.0 * own_nudge), 1e-4);
+        }
+        const double cube = speed * speed * speed;
+        assert_true(size > 1e-2 * speed || fabs(grip.bend + 2.0 / (3.0 * cube)) < 1e-3 / cube);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slopes_are_those_of_the_force),
+        cmocka_unit_test(friction_bends_as_it_says),
         cmocka_unit_test(slopes_at_lines_and_discs_are_those_of_the_force),
         cmocka_unit_test(a_force_that_would_pull_is_none_unless_it_is_smooth),
         cmocka_unit_test(a_smooth_force_goes_on_below_a_depth),
