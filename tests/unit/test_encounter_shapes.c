@@ -255,7 +255,7 @@ static void many_damped_balls_keep_the_balance_of_energy(void **state)
         Encounter balls =
             balls_in_a_row(law, -1e-9, i == 0 ? ENCOUNTER_ROWS_PLAIN : 2 * BALL_PLACES);
         size_t touching = 0;
-        assert_true(encounter_run(&balls, 1e-4));
+        assert_true(encounter_run(&balls, 3e-5));
         assert_non_null(balls.stages);
         const double energy = energy_of_balls(&balls, &touching);
         assert_near(energy, 1.0, 1e-4);
