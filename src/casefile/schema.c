@@ -143,22 +143,12 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         text_append(text, "%s%s%s", row->zero_word != NULL ? row->zero_word : "",
                     row->zero_word != NULL ? ", or " : "", WORDS[row->type][with_example ? 1 : 0]);
         break;
-    case SCHEMA_TEXT:
-    case SCHEMA_DIRECTION:
-    case SCHEMA_START:
-    case SCHEMA_COORDINATE:
-    case SCHEMA_PIVOTS:
-    case SCHEMA_TEETH:
-    case SCHEMA_DISCS:
-    case SCHEMA_BETWEEN:
-    case SCHEMA_BODY_NAME:
-    case SCHEMA_JOINT_NAME:
-    case SCHEMA_SPEED:
-    case SCHEMA_EXPECT:
-        text_append(text, "%s", WORDS[row->type][with_example]);
-        break;
     default:
-        describe_quantity(row, with_example, text);
+        if (WORDS[row->type][0] != NULL) {
+            text_append(text, "%s", WORDS[row->type][with_example]);
+        } else {
+            describe_quantity(row, with_example, text);
+        }
     }
 }
 

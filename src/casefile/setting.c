@@ -236,12 +236,56 @@ static void set_pivots(CasefileSetting *setting, const Scenario *scenario, const
     set_words(setting, first->name, second->name);
 }
 
+// What only joints have, and what names one.
+static void set_of_joint(CasefileSetting *setting, const SchemaRow *row, const Scenario *scenario,
+                         size_t index)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const void *field = schema_field_const(row, scenario, index);
+    const Joint *joint = schema_member(scenario, SCHEMA_JOINT, index);
+    int number;
+    switch (row->type) {
+    case SCHEMA_START:
+        set_start(setting, joint);
+        break;
+    case SCHEMA_COORDINATE:
+        set_number(setting, *(const double *)field);
+        set_turning(setting, joint, DIMENSION_ANGLE);
+        break;
+    case SCHEMA_DAMPER:
+        set_number(setting, *(const double *)field);
+        set_turning(setting, joint, DIMENSION_TORSION_DAMPING);
+        break;
+    case SCHEMA_PIVOTS:
+        set_pivots(setting, scenario, &joint->gear);
+        break;
+    case SCHEMA_TEETH:
+        set_vector(setting, (Vec2){joint->gear.teeth[0], joint->gear.teeth[1]});
+        break;
+    case SCHEMA_DISCS:
+        set_vector(setting, (Vec2){2.0 * joint->stop.radius_a, 2.0 * joint->stop.radius_b});
+        break;
+    case SCHEMA_HEADING:
+        set_number(setting, heading(linkage, joint));
+        break;
+    case SCHEMA_RADIAL_CLEARANCE:
+        set_number(setting, linkage_radial_clearance(joint));
+        break;
+    case SCHEMA_JOINT_NAME:
+        memcpy(&number, field, sizeof number);
+        joint = schema_member(scenario, SCHEMA_JOINT, (size_t)number);
+        set_words(setting, joint->name, NULL);
+        break;
+    default: // an expectation is no setting
+        break;
+    }
+}
+
 static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scenario *scenario,
                       size_t index)
 {
     const Linkage *linkage = &scenario->linkage;
     const void *field = schema_field_const(row, scenario, index);
-    const Joint *joint = schema_member(scenario, SCHEMA_JOINT, index);
     int number;
     switch (row->type) {
     case SCHEMA_QUANTITY:
@@ -280,29 +324,6 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
     case SCHEMA_DIRECTION:
         set_direction(setting, *(const Vec3 *)field);
         break;
-    case SCHEMA_START:
-        set_start(setting, joint);
-        break;
-    case SCHEMA_COORDINATE:
-        set_number(setting, *(const double *)field);
-        set_turning(setting, joint, DIMENSION_ANGLE);
-        break;
-    case SCHEMA_DAMPER:
-        set_number(setting, *(const double *)field);
-        set_turning(setting, joint, DIMENSION_TORSION_DAMPING);
-        break;
-    case SCHEMA_PIVOTS:
-        set_pivots(setting, scenario, field);
-        break;
-    case SCHEMA_TEETH:
-        set_vector(setting, (Vec2){joint->gear.teeth[0], joint->gear.teeth[1]});
-        break;
-    case SCHEMA_DISCS:
-        set_vector(setting, (Vec2){2.0 * joint->stop.radius_a, 2.0 * joint->stop.radius_b});
-        break;
-    case SCHEMA_HEADING:
-        set_number(setting, heading(linkage, joint));
-        break;
     case SCHEMA_ANCHOR:
         set_vector(setting, anchor_place(row, scenario, index));
         break;
@@ -312,25 +333,17 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
     case SCHEMA_BODY_NAME:
         set_words(setting, body_name(linkage, *(const int *)field), NULL);
         break;
-    case SCHEMA_JOINT_NAME:
-        memcpy(&number, field, sizeof number);
-        joint = schema_member(scenario, SCHEMA_JOINT, (size_t)number);
-        set_words(setting, joint->name, NULL);
-        break;
     case SCHEMA_TORQUE:
         set_over_time(setting, row, field);
         break;
     case SCHEMA_SPEED:
         set_speed(setting, row, field);
         break;
-    case SCHEMA_RADIAL_CLEARANCE:
-        set_number(setting, linkage_radial_clearance(joint));
-        break;
     case SCHEMA_ALONG:
         set_number(setting, point_along(scenario, index));
         break;
-    case SCHEMA_EXPECT: // no setting
-        break;
+    default:
+        set_of_joint(setting, row, scenario, index);
     }
 }
 
