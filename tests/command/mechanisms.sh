@@ -8,9 +8,10 @@ folder=cases/mechanisms
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 . tests/command/held_cases.sh
-echo "1..15"
+echo "1..16"
 cases_hold slider-crank slider-crank-pin slider-crank-guide slider-crank-both woodpecker \
-    bouncing-ball newtons-cradle gear-pair servo-backlash stop-rebound
+    bouncing-ball newtons-cradle gear-pair planetary-gear \
+    servo-backlash stop-rebound
 # a floor that takes more, spheres that lose some of their speed, a longer rod, teeth that keep to one
 # flank, gears that give way by more
 cases_do_not_hold "bouncing-ball contact.restitution=0.7" \
