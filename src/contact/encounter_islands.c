@@ -165,10 +165,28 @@ static void start_island(const EncounterIslands *islands, EncounterIsland *islan
     encounter_fill(encounter, &islands->coupling, island->places);
 }
 
+// The places of a joint are active together: what it does is the sum of what they do, and how stiff
+// one is depends on the others.
+static void activate_joints(EncounterIslands *islands)
+{
+    const EncounterJoint *joints = islands->all->joints;
+    const size_t count = islands->all->joint_count;
+    for (size_t first = 0, end; first < count; first = end) {
+        bool is_any = false;
+        for (end = first; end < count && joints[end].joint == joints[first].joint; end++) {
+            is_any = is_any || islands->is_active[end];
+        }
+        for (size_t i = first; i < end; i++) {
+            islands->is_active[i] = is_any;
+        }
+    }
+}
+
 // Makes the islands of the places that are active now; those that are as they were stay.
 static void make_islands(EncounterIslands *islands)
 {
     const size_t count = islands->all->joint_count;
+    activate_joints(islands);
     join_partners(islands);
     size_t *sizes = number_active(islands);
     size_t **places = zeroed(islands->count, sizeof *places);

@@ -65,7 +65,7 @@ static void find_contact_rates(const ImpulseStep *step, const ImpulseScope *scop
                                bool is_peak, const EncounterSums *sums, const Motion *motions,
                                double *rates)
 {
-    if (!scope->is_whole || step->islands != NULL) {
+    if (!scope->is_whole) {
         apply(step, scope, sums->force, rates);
         return;
     }
