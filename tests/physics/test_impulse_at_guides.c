@@ -4,6 +4,7 @@
 // The slider-crank of Flores, Leine and Glocker, Multibody Syst. Dyn. 23 (2010) 165; the numbers of
 // its flight and of a rigid impact come from 50-digit arithmetic (test_play_in_guides.c has them of
 // the reference). And a block on a lever that turns, whose guides turn with it.
+#include "kept.h"
 #include "ode_error.h"
 
 #include "slider.h"
@@ -235,6 +236,54 @@ static void forces_and_couples_balance_the_accelerations(void **state)
     assert_true(left[0] < 2.0 && left[1] < 0.3 * left[0]);
 }
 
+// Copies of a mechanism, each tied to the next by a spring too weak to be seen: one mechanism, with
+// so many places that its contacts are integrated by islands.
+static Scenario copies_of(const Scenario *scenario, int copies)
+{
+    Scenario all = kept_copy(scenario);
+    Linkage *linkage = &all.linkage;
+    const int bodies = (int)linkage->body_count;
+    const size_t joints = linkage->joint_count;
+    for (int copy = 1; copy < copies; copy++) {
+        for (int i = 0; i < bodies; i++) {
+            linkage->bodies[linkage->body_count++] = linkage->bodies[i];
+        }
+        for (size_t i = 0; i < joints; i++) {
+            Joint joint = linkage->joints[i];
+            joint.body_a += joint.body_a != LINKAGE_GROUND ? copy * bodies : 0;
+            joint.body_b += joint.body_b != LINKAGE_GROUND ? copy * bodies : 0;
+            linkage->joints[linkage->joint_count++] = joint;
+        }
+        linkage->springs[linkage->spring_count++] =
+            (Spring){.body_a = copy * bodies, .body_b = (copy - 1) * bodies, .stiffness = 1e-12};
+    }
+    return all;
+}
+
+static void many_blocks_move_as_one_does(void **state)
+{
+    (void)state;
+    enum { COPIES = 5 };
+    Scenario scenario = flores(1e7, 1e-5);
+    assert_false(scenario.linkage.driver.is_present);
+    const Scenario all = copies_of(&scenario, COPIES);
+    Trajectory *one = complete_run(&scenario, BACKEND_ODE);
+    Trajectory *many = complete_run(&all, BACKEND_ODE);
+    const size_t joints = scenario.linkage.joint_count;
+    for (size_t k = 0; k < COPIES; k++) {
+        const JointExtremes *guide = &many->joints[k * joints + SLIDER_GUIDE];
+        assert_int_equal(guide->impacts, one->joints[SLIDER_GUIDE].impacts);
+        assert_close(guide->impulse, one->joints[SLIDER_GUIDE].impulse, 1e-5);
+        assert_close(guide->force_max.value, one->joints[SLIDER_GUIDE].force_max.value, 1e-5);
+        assert_close(many->bodies[k * one->body_count].omega_max.value,
+                     one->bodies[0].omega_max.value, 1e-7);
+    }
+    assert_true(one->joints[SLIDER_GUIDE].impacts > 0);
+    assert_close(many->energy.dissipated, COPIES * one->energy.dissipated, 1e-5);
+    trajectory_destroy(many);
+    trajectory_destroy(one);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -242,6 +291,7 @@ int main(void)
         cmocka_unit_test(a_stiff_contact_does_what_a_rigid_impact_does),
         cmocka_unit_test(blocks_level_tilted_and_rubbing_follow_the_reference),
         cmocka_unit_test(guides_that_turn_with_their_body_follow_the_reference),
+        cmocka_unit_test(many_blocks_move_as_one_does),
         cmocka_unit_test(forces_and_couples_balance_the_accelerations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
