@@ -271,6 +271,40 @@ static void what_is_no_store_is_left_alone(void **state)
     expect_left_alone(content_size);
 }
 
+// What a program leaves that is stopped between emptying a store and making its tables.
+static void stop_half_way(void)
+{
+    sqlite3 *base;
+    assert_int_equal(sqlite3_open(path, &base), SQLITE_OK);
+    assert_int_equal(sqlite3_db_config(base, SQLITE_DBCONFIG_RESET_DATABASE, 1, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(base, "VACUUM", NULL, NULL, NULL), SQLITE_OK);
+    sqlite3_close(base);
+}
+
+static void a_store_that_was_half_way_made_anew_is_made(void **state)
+{
+    (void)state;
+    const Layout layout = study_layout();
+    for (int is_fresh = 0; is_fresh < 2; is_fresh++) {
+        make_store(FEW);
+        stop_half_way();
+        Err err;
+        Store *store = open_study(&layout, is_fresh == 1, &err);
+        assert_non_null(store);
+        add_runs(store, &layout, 0, 1);
+        assert_true(store_close(store, &err));
+        unlink(path);
+    }
+    // the control: a table of someone else's
+    sqlite3 *base;
+    assert_int_equal(sqlite3_open(path, &base), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(base, "CREATE TABLE other (x)", NULL, NULL, NULL), SQLITE_OK);
+    sqlite3_close(base);
+    Err err;
+    assert_null(open_study(&layout, true, &err));
+    assert_non_null(strstr(err.text, "is not the store of a study"));
+}
+
 static void a_store_of_another_version_is_refused_and_made_anew(void **state)
 {
     (void)state;
@@ -488,6 +522,7 @@ int main(void)
         STORE_TEST(a_file_cut_short_is_told),
         STORE_TEST(a_damaged_store_is_made_anew),
         STORE_TEST(what_is_no_store_is_left_alone),
+        STORE_TEST(a_store_that_was_half_way_made_anew_is_made),
         STORE_TEST(a_store_of_another_version_is_refused_and_made_anew),
         STORE_TEST(a_place_that_is_no_file_is_told),
         STORE_TEST(what_was_committed_outlives_a_full_disk),

@@ -23,9 +23,12 @@
 #include <unistd.h>
 
 enum {
-    HEADER_SIZE = 100, // of an SQLite file
+    HEADER_SIZE = 100, // of an SQLite file, which the root of its schema follows
+    ROOT_SIZE = 8,
+    ROOT_CELLS = 3,    // behind its start: how many entries it has, on its own page
     HEADER_WRITE = 18, // 1: rollback journal; 2: write-ahead log
     HEADER_READ = 19,
+    HEADER_PAGES = 28,
     HEADER_VERSION = 60,
     HEADER_APPLICATION = 68,
     WORK_BYTE = 0x40001000, // SQLite's own locks lie on 0x40000000 to 0x400001ff
@@ -105,17 +108,28 @@ static uint32_t read_big_endian(const unsigned char *bytes)
     return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
+// Whether an SQLite file holds nothing: no application's number, and one page without a table. Such
+// a file remains of a store that was to be made anew and was stopped half-way.
+static bool is_blank(const unsigned char *header)
+{
+    const unsigned char *root = header + HEADER_SIZE;
+    return memcmp(header, MAGIC, sizeof MAGIC) == 0 &&
+           read_big_endian(header + HEADER_APPLICATION) == 0 &&
+           read_big_endian(header + HEADER_PAGES) == 1 && root[ROOT_CELLS] == 0 &&
+           root[ROOT_CELLS + 1] == 0;
+}
+
 // A file that is neither empty nor a store is left alone, before SQLite sees it. The header may be
 // of the moment in mid-commit; what is asked of it never changes.
 static bool check_header(const Store *store, int file, bool is_empty_right, bool is_any_version,
                          Err *err)
 {
-    unsigned char header[HEADER_SIZE];
+    unsigned char header[HEADER_SIZE + ROOT_SIZE];
     const ssize_t count = pread(file, header, sizeof header, 0);
     if (count < 0) {
         return fail_system(store, "read", errno, err);
     }
-    if (count == 0 && is_empty_right) {
+    if (is_empty_right && (count == 0 || (count == (ssize_t)sizeof header && is_blank(header)))) {
         return true;
     }
     if (count < HEADER_SIZE || memcmp(header, MAGIC, sizeof MAGIC) != 0 ||
