@@ -19,7 +19,7 @@ typedef struct Parts {
     size_t count;
     Member *members;
     size_t ahead_count; // members whose next part does not end with the step
-    size_t *ahead;      // owned, as are the arrays below
+    size_t *ahead;      // a heap, the next part first; owned, as are the arrays below
     size_t delivered;   // the member whose part was handed on last; all of them: count
     double *omega;      // by body and by joint of the whole
     double *alpha;
@@ -124,6 +124,33 @@ static void forget_impulses(Parts *parts, const Member *member)
     }
 }
 
+// Of two members, which has the part that is handed on first.
+static bool is_before(const Parts *parts, size_t a, size_t b)
+{
+    const double end_a = parts->members[a].next.end_s;
+    const double end_b = parts->members[b].next.end_s;
+    return end_a < end_b || (end_a == end_b && a < b);
+}
+
+// Restores the order of `ahead`, a heap with the first on top, below a place whose part has become
+// a later one.
+static void sink(Parts *parts, size_t at)
+{
+    size_t *ahead = parts->ahead;
+    for (size_t child = 2 * at + 1; child < parts->ahead_count; child = 2 * at + 1) {
+        if (child + 1 < parts->ahead_count && is_before(parts, ahead[child + 1], ahead[child])) {
+            child++;
+        }
+        if (!is_before(parts, ahead[child], ahead[at])) {
+            return;
+        }
+        const size_t moved = ahead[at];
+        ahead[at] = ahead[child];
+        ahead[child] = moved;
+        at = child;
+    }
+}
+
 // Begins a step of all members.
 static bool begin(Parts *parts, Err *err)
 {
@@ -136,18 +163,10 @@ static bool begin(Parts *parts, Err *err)
             parts->ahead[parts->ahead_count++] = i;
         }
     }
-    return true;
-}
-
-// The place in `ahead` of the member whose next part ends first.
-static size_t find_first(const Parts *parts)
-{
-    size_t first = 0;
-    for (size_t i = 1; i < parts->ahead_count; i++) {
-        const double end_s = parts->members[parts->ahead[i]].next.end_s;
-        first = end_s < parts->members[parts->ahead[first]].next.end_s ? i : first;
+    for (size_t i = parts->ahead_count / 2; i-- > 0;) {
+        sink(parts, i);
     }
-    return first;
+    return true;
 }
 
 // Goes on behind the part that was handed on last: with the same member's next one, or with all.
@@ -161,7 +180,15 @@ static bool go_on(Parts *parts, Err *err)
         return begin(parts, err);
     }
     forget_impulses(parts, &parts->members[last]);
-    return fetch(parts, last, err);
+    if (!fetch(parts, last, err)) {
+        return false;
+    }
+    // it is on top; one whose part has been taken up to the step's end waits for the others
+    if (impulse_is_at_end(parts->members[last].state)) {
+        parts->ahead[0] = parts->ahead[--parts->ahead_count];
+    }
+    sink(parts, 0);
+    return true;
 }
 
 static bool parts_step(void *state, double stop_s, Err *err)
@@ -174,14 +201,8 @@ static bool parts_step(void *state, double stop_s, Err *err)
         return false;
     }
     parts->record = (StepRecord){.start_s = start_s, .elastic = elastic};
-    // a member whose part has been taken up to the step's end waits for the others
-    for (size_t i = parts->ahead_count; i-- > 0;) {
-        if (impulse_is_at_end(parts->members[parts->ahead[i]].state)) {
-            parts->ahead[i] = parts->ahead[--parts->ahead_count];
-        }
-    }
     if (parts->ahead_count > 0) {
-        parts->delivered = parts->ahead[find_first(parts)];
+        parts->delivered = parts->ahead[0];
         deliver(parts, &parts->members[parts->delivered]);
     } else {
         parts->delivered = parts->count;
