@@ -26,7 +26,7 @@ typedef struct StepRecord {
     const JointState *joints; // force and gap as the force arose
     const SpaceJointState *space_joints; // likewise, of a linkage in space; else NULL
     const JointTop *tops;                // of each joint, which the steps up to this one show to
-                                         // lie between them; NULL: `joints` has the largest
+                                         // lie between them, beside those of `joints`; or NULL
     const double *impulse;               // N s, of each joint in the step
     const double *approach;              // m/s, closing speed at which each joint's contact began
     double drive_work;                   // J, done by the drive in the step

@@ -64,6 +64,6 @@ ContactEnergy contact_rows_energy(const ContactRows *rows);
 // contacts, books the energies, and removes the rows.
 void contact_rows_clear(ContactRows *rows, double step_s, JointState *states);
 
-// Once the rows are cleared: the largest force and depth of each joint; at the ends of coordinates,
+// Once the rows are cleared: the largest force and depth at the ends of coordinates, 0 elsewhere;
 // where positions stand at mid-step, since the last step but one.
-void contact_rows_tops(const ContactRows *rows, const JointState *states, JointTop *tops);
+void contact_rows_tops(const ContactRows *rows, JointTop *tops);

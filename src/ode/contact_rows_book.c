@@ -148,11 +148,10 @@ ContactEnergy contact_rows_energy(const ContactRows *rows)
     return sum;
 }
 
-void contact_rows_tops(const ContactRows *rows, const JointState *states, JointTop *tops)
+void contact_rows_tops(const ContactRows *rows, JointTop *tops)
 {
     for (size_t i = 0; i < rows->scenario->linkage.joint_count; i++) {
-        const JointState *state = &states[i];
-        tops[i] = (JointTop){state->force, state->is_touching ? fmax(0.0, -state->gap) : 0.0};
+        tops[i] = (JointTop){0.0, 0.0};
     }
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         const ContactRow *row = &rows->rows[i];

@@ -250,7 +250,7 @@ static bool advance(Staggered *staggered, Stride *stride, Err *err)
     }
     world_joint_forces(world, stride->joints);
     contact_rows_clear(&staggered->contacts, step_s, stride->joints);
-    contact_rows_tops(&staggered->contacts, stride->joints, stride->tops);
+    contact_rows_tops(&staggered->contacts, stride->tops);
     read_speeds(staggered, stride);
     book(staggered, &middle, stride);
     staggered->index++;

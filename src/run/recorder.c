@@ -166,12 +166,12 @@ static double depth_of(const JointState *state)
     return state->is_touching ? fmax(0.0, -state->gap) : 0.0;
 }
 
-// The largest force and depth of a joint at a step, as far as it knows.
+// The largest force and depth of a joint in a step, as far as it knows.
 static JointTop top_of(const StepRecord *step, size_t number)
 {
     const JointState *state = &step->joints[number];
-    return step->tops != NULL ? step->tops[number]
-                              : (JointTop){.force = state->force, .depth = depth_of(state)};
+    const JointTop between = step->tops != NULL ? step->tops[number] : (JointTop){0.0, 0.0};
+    return (JointTop){fmax(state->force, between.force), fmax(depth_of(state), between.depth)};
 }
 
 static void add_contact(Recorder *recorder, size_t number, const StepRecord *step)
