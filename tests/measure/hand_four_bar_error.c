@@ -68,21 +68,6 @@ static bool load(const Way *way, const Asked *asked, double step_s, Scenario *sc
     return true;
 }
 
-// Of coupler and follower.
-static double largest_error(const Trajectory *truth, size_t sample, const double omega[HAND_BODIES])
-{
-    double largest = 0.0;
-    for (size_t i = 1; i < HAND_BODIES; i++) {
-        double scale = 0.0;
-        for (size_t k = 0; k < truth->sample_count; k++) {
-            scale = fmax(scale, fabs(trajectory_motion(truth, k, i)->omega));
-        }
-        largest =
-            fmax(largest, fabs(omega[i] - trajectory_motion(truth, sample, i)->omega) / scale);
-    }
-    return largest;
-}
-
 static double seconds(void)
 {
     return (double)clock() / CLOCKS_PER_SEC;
@@ -93,45 +78,22 @@ static Outcome run_program(const Scenario *scenario, const Trajectory *truth)
     const double start = seconds();
     Trajectory *run = run_scenario(scenario, registry_solver(BACKEND_ODE), (RunWatch){NULL, NULL});
     const double taken = seconds() - start;
-    Outcome outcome = {.error = run->is_complete ? 0.0 : NAN, .world_steps = run->steps};
-    for (size_t k = 0; run->is_complete && k < truth->sample_count; k++) {
-        double omega[HAND_BODIES];
-        for (size_t i = 0; i < HAND_BODIES; i++) {
-            omega[i] = trajectory_motion(run, k, i)->omega;
-        }
-        outcome.error = fmax(outcome.error, largest_error(truth, k, omega));
-    }
+    Outcome outcome = {
+        .error = run->is_complete ? hand_four_bar_run_error(run, truth) : NAN,
+        .world_steps = run->steps,
+    };
     outcome.step_us = 1e6 * taken / (double)run->steps;
     trajectory_destroy(run);
     return outcome;
-}
-
-static HandMotion start_of(const Motion *motion)
-{
-    return (HandMotion){
-        .position = {motion->position.x, motion->position.y},
-        .angle = motion->angle,
-        .velocity = {motion->velocity.x, motion->velocity.y},
-        .omega = motion->omega,
-    };
 }
 
 static Outcome run_library(const Scenario *scenario, const Way *way, double erp,
                            const Trajectory *truth)
 {
     const double step_s = scenario->run.step;
-    const HandOptions options = {
-        .stepping = way->stepping,
-        .hole_radius = scenario->linkage.joints[1].clearance.hole_radius,
-        .friction = scenario->contact.friction,
-        .friction_speed = scenario->contact.friction_speed,
-        .speed_floor = scenario->contact.impact_speed_floor,
-        .erp = erp,
-    };
+    const HandOptions options = hand_four_bar_options(scenario, way->stepping, erp);
     HandMotion start[HAND_BODIES];
-    for (size_t i = 0; i < HAND_BODIES; i++) {
-        start[i] = start_of(trajectory_motion(truth, 0, i));
-    }
+    hand_four_bar_start(truth, start);
     HandFourBar bar;
     JpError error;
     Outcome outcome = {.error = NAN};
@@ -151,11 +113,7 @@ static Outcome run_library(const Scenario *scenario, const Way *way, double erp,
             }
         }
         taken += seconds() - before;
-        double omega[HAND_BODIES];
-        for (size_t i = 0; i < HAND_BODIES; i++) {
-            omega[i] = dBodyGetAngularVel(bar.bodies[i])[2];
-        }
-        outcome.error = fmax(outcome.error, largest_error(truth, k, omega));
+        outcome.error = fmax(outcome.error, hand_four_bar_error(&bar, truth, k));
     }
     JpWorldStats stats;
     jp_world_stats(bar.play, &stats, NULL);

@@ -134,54 +134,19 @@ static Scenario paper(const Way *way, double step_s)
     return load("cases/paper/impact-k66.yaml", overrides, 5);
 }
 
-// The largest difference of omega of coupler and follower from the truth, relative to their
-// largest, at one sample.
-static double off_at(const Trajectory *truth, size_t sample, const double omega[HAND_BODIES])
-{
-    double off = 0.0;
-    for (size_t i = 1; i < HAND_BODIES; i++) {
-        double scale = 0.0;
-        for (size_t k = 0; k < truth->sample_count; k++) {
-            scale = fmax(scale, fabs(trajectory_motion(truth, k, i)->omega));
-        }
-        off = fmax(off, fabs(omega[i] - trajectory_motion(truth, sample, i)->omega) / scale);
-    }
-    return off;
-}
-
 static double program_error(const Scenario *scenario, const Trajectory *truth)
 {
     Trajectory *run = complete_run(scenario, BACKEND_ODE);
-    double error = 0.0;
-    for (size_t k = 0; k < truth->sample_count; k++) {
-        double omega[HAND_BODIES];
-        for (size_t i = 0; i < HAND_BODIES; i++) {
-            omega[i] = trajectory_motion(run, k, i)->omega;
-        }
-        error = fmax(error, off_at(truth, k, omega));
-    }
+    const double error = hand_four_bar_run_error(run, truth);
     trajectory_destroy(run);
     return error;
 }
 
 static double library_error(const Scenario *scenario, const Way *way, const Trajectory *truth)
 {
-    const HandOptions options = {
-        .stepping = way->library,
-        .hole_radius = scenario->linkage.joints[1].clearance.hole_radius,
-        .friction = scenario->contact.friction,
-        .friction_speed = scenario->contact.friction_speed,
-        .speed_floor = scenario->contact.impact_speed_floor,
-        .erp = 1.5,
-    };
+    const HandOptions options = hand_four_bar_options(scenario, way->library, 1.5);
     HandMotion start[HAND_BODIES];
-    for (size_t i = 0; i < HAND_BODIES; i++) {
-        const Motion *motion = trajectory_motion(truth, 0, i);
-        start[i] = (HandMotion){{motion->position.x, motion->position.y},
-                                motion->angle,
-                                {motion->velocity.x, motion->velocity.y},
-                                motion->omega};
-    }
+    hand_four_bar_start(truth, start);
     HandFourBar bar;
     assert_true(hand_four_bar_make(&options, start, &bar, NULL));
     double error = 0.0;
@@ -189,11 +154,7 @@ static double library_error(const Scenario *scenario, const Way *way, const Traj
         for (long i = lround(SAMPLE_S / scenario->run.step); i > 0; i--) {
             must(jp_world_step(bar.play, scenario->run.step, NULL));
         }
-        double omega[HAND_BODIES];
-        for (size_t i = 0; i < HAND_BODIES; i++) {
-            omega[i] = dBodyGetAngularVel(bar.bodies[i])[2];
-        }
-        error = fmax(error, off_at(truth, k, omega));
+        error = fmax(error, hand_four_bar_error(&bar, truth, k));
     }
     JpWorldStats stats;
     must(jp_world_stats(bar.play, &stats, NULL));

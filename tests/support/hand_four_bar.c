@@ -80,3 +80,64 @@ void hand_four_bar_destroy(HandFourBar *made)
     jp_world_destroy(made->play);
     dWorldDestroy(made->world);
 }
+
+HandOptions hand_four_bar_options(const Scenario *scenario, JpStepping stepping, double erp)
+{
+    return (HandOptions){
+        .stepping = stepping,
+        .hole_radius = scenario->linkage.joints[1].clearance.hole_radius,
+        .friction = scenario->contact.friction,
+        .friction_speed = scenario->contact.friction_speed,
+        .speed_floor = scenario->contact.impact_speed_floor,
+        .erp = erp,
+    };
+}
+
+void hand_four_bar_start(const Trajectory *truth, HandMotion start[HAND_BODIES])
+{
+    for (size_t i = 0; i < HAND_BODIES; i++) {
+        const Motion *motion = trajectory_motion(truth, 0, i);
+        start[i] = (HandMotion){
+            .position = {motion->position.x, motion->position.y},
+            .angle = motion->angle,
+            .velocity = {motion->velocity.x, motion->velocity.y},
+            .omega = motion->omega,
+        };
+    }
+}
+
+static double error_of(const Trajectory *truth, size_t sample, const double omega[HAND_BODIES])
+{
+    double largest = 0.0;
+    for (size_t i = 1; i < HAND_BODIES; i++) {
+        double scale = 0.0;
+        for (size_t k = 0; k < truth->sample_count; k++) {
+            scale = fmax(scale, fabs(trajectory_motion(truth, k, i)->omega));
+        }
+        largest =
+            fmax(largest, fabs(omega[i] - trajectory_motion(truth, sample, i)->omega) / scale);
+    }
+    return largest;
+}
+
+double hand_four_bar_error(const HandFourBar *bar, const Trajectory *truth, size_t sample)
+{
+    double omega[HAND_BODIES];
+    for (size_t i = 0; i < HAND_BODIES; i++) {
+        omega[i] = dBodyGetAngularVel(bar->bodies[i])[2];
+    }
+    return error_of(truth, sample, omega);
+}
+
+double hand_four_bar_run_error(const Trajectory *run, const Trajectory *truth)
+{
+    double largest = 0.0;
+    for (size_t k = 0; k < truth->sample_count; k++) {
+        double omega[HAND_BODIES];
+        for (size_t i = 0; i < HAND_BODIES; i++) {
+            omega[i] = trajectory_motion(run, k, i)->omega;
+        }
+        largest = fmax(largest, error_of(truth, k, omega));
+    }
+    return largest;
+}

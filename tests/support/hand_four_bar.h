@@ -2,6 +2,9 @@
 // its hole from the library between crank and coupler.
 #pragma once
 
+#include "model/scenario.h"
+#include "model/trajectory.h"
+
 #include <jointplay/jointplay.h>
 
 enum { HAND_BODIES = 3 }; // crank, coupler, follower
@@ -31,7 +34,18 @@ typedef struct HandOptions {
     double erp;            // of the hinges
 } HandOptions;
 
+// What a case of that four-bar says of it.
+HandOptions hand_four_bar_options(const Scenario *scenario, JpStepping stepping, double erp);
+
+// The state in which a run of the case begins.
+void hand_four_bar_start(const Trajectory *truth, HandMotion start[HAND_BODIES]);
+
 // Makes it in a state; false with an error where the library refuses it.
 bool hand_four_bar_make(const HandOptions *options, const HandMotion start[HAND_BODIES],
                         HandFourBar *made, JpError *error);
 void hand_four_bar_destroy(HandFourBar *made);
+
+// The largest difference of omega of coupler and follower from the truth, relative to their
+// largest: at one sample, and of a run of the program at all of them.
+double hand_four_bar_error(const HandFourBar *bar, const Trajectory *truth, size_t sample);
+double hand_four_bar_run_error(const Trajectory *run, const Trajectory *truth);
