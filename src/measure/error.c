@@ -19,13 +19,14 @@ static bool can_compare(const Trajectory *trajectory, const Trajectory *referenc
            trajectory->body_count == reference->body_count;
 }
 
-bool error_series(const Trajectory *trajectory, const Trajectory *reference, double *omega)
+bool error_series(const Trajectory *trajectory, const Trajectory *reference,
+                  const Trajectory *sized_by, double *omega)
 {
     if (!can_compare(trajectory, reference)) {
         return false;
     }
     DistanceScale *scales = zeroed(reference->body_count, sizeof *scales);
-    distance_scales(reference, scales);
+    distance_scales(sized_by, scales);
     for (size_t k = 0; k < reference->sample_count; k++) {
         omega[k] = distance_at(trajectory, reference, k, scales);
     }

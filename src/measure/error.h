@@ -26,7 +26,9 @@ typedef struct TrajectoryError {
 TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *reference,
                               double horizon_s);
 
-// The same measure sample by sample: writes the largest relative difference in omega over the
-// bodies at each sample into an array of the trajectories' length. Returns false, the array
-// untouched, where the two cannot be compared.
-bool error_series(const Trajectory *trajectory, const Trajectory *reference, double *omega);
+// The same measure sample by sample: writes the largest difference in omega over the bodies at each
+// sample, relative to each body's largest omega at the samples of a third trajectory, into an array
+// of the first two's length. The third is mostly the reference; it may have other samples. Returns
+// false, the array untouched, where the first two cannot be compared.
+bool error_series(const Trajectory *trajectory, const Trajectory *reference,
+                  const Trajectory *sized_by, double *omega);

@@ -11,15 +11,18 @@
 // has grown 1e5 times, two solutions that are right to 1e-10 have only five digits in common, and
 // an engine's none. The same holds where the second or third run is that far away. All are watched
 // on a grid of at least a thousand samples, for the case's own samples may be few.
+// Sizes: errors are relative to the largest omega of a body at the case's own samples. Where these
+// miss a spike that is less than on the grid, and the uncertainty, which stands beside errors, is
+// therefore taken in it; the horizon, which samples must not move, in that of the grid.
 #include "measure/truth.h"
 
+#include "base/zeroed.h"
 #include "measure/error.h"
 #include "measure/truth_runs.h"
 #include "model/distance.h"
 #include "run/registry.h"
 #include "run/tracer.h"
 
-#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -31,39 +34,73 @@ static Trajectory *run(const Scenario *scenario, BackendKind backend, RunWatch w
     return run_scenario(scenario, registry_solver(backend), watch);
 }
 
-// How far two runs are apart at each sample.
+// How far two runs are apart at each sample of the grid.
 typedef struct Apart {
     size_t count; // 0 where they cannot be compared
     const double *times;
-    double *distance; // owned
+    double *distance; // relative to sizes on the grid; owned, like the next
+    double *stated;   // as errors are stated: relative to sizes at the case's own samples
 } Apart;
 
-static Apart apart_of(const Trajectory *trajectory, const Trajectory *other)
+static Apart apart_of(const Trajectory *trajectory, const Trajectory *other, const Trajectory *own)
 {
     Apart apart = {.times = trajectory->times};
-    apart.distance = calloc(trajectory->sample_count + 1, sizeof *apart.distance);
-    assert(apart.distance != NULL);
-    const bool is_known = error_series(other, trajectory, apart.distance);
+    apart.distance = zeroed(trajectory->sample_count + 1, sizeof *apart.distance);
+    apart.stated = zeroed(trajectory->sample_count + 1, sizeof *apart.stated);
+    const bool is_known = error_series(other, trajectory, trajectory, apart.distance) &&
+                          error_series(other, trajectory, own, apart.stated);
     apart.count = is_known ? trajectory->sample_count : 0;
     return apart;
 }
 
-// Shortens the horizon to where two runs are further apart than the limit, and returns the largest
-// distance up to there. Runs that cannot be compared leave no horizon.
-static double shorten_horizon(const Apart *apart, Truth *truth)
+static void apart_finish(Apart *apart)
+{
+    free(apart->distance);
+    free(apart->stated);
+}
+
+// Shortens the horizon to where two runs are further apart than the limit. Runs that cannot be
+// compared leave none.
+static void shorten_horizon(const Apart *apart, Truth *truth)
 {
     const size_t count = apart->count;
-    double largest = 0.0;
     double reached = 0.0;
     size_t k = 0;
     while (k < count && apart->distance[k] <= DISTANCE_GROWTH * DISTANCE_PERTURBATION &&
            apart->times[k] <= truth->horizon_s) {
-        largest = fmax(largest, apart->distance[k]);
         reached = apart->times[k++];
     }
     truth->is_limited =
         truth->is_limited || count == 0 || (k < count && apart->times[k] <= truth->horizon_s);
     truth->horizon_s = fmin(truth->horizon_s, reached);
+}
+
+// The largest distance up to the horizon, as errors are stated.
+static double largest_stated(const Apart *apart, const Truth *truth)
+{
+    double largest = 0.0;
+    for (size_t k = 0; k < apart->count && apart->times[k] <= truth->horizon_s; k++) {
+        // a number that is not finite is no small one
+        largest = !(apart->stated[k] <= largest) ? apart->stated[k] : largest;
+    }
+    return largest;
+}
+
+// How many times a distance may be larger by sizes at the case's own samples than by the grid's.
+static double ratio_of_sizes(const Trajectory *fine, const Trajectory *own)
+{
+    double largest = 1.0;
+    DistanceScale *on_grid = zeroed(fine->body_count, sizeof *on_grid);
+    DistanceScale *at_own = zeroed(fine->body_count, sizeof *at_own);
+    distance_scales(fine, on_grid);
+    distance_scales(own, at_own);
+    for (size_t i = 0; i < fine->body_count; i++) {
+        if (at_own[i].omega > 0.0) {
+            largest = fmax(largest, on_grid[i].omega / at_own[i].omega);
+        }
+    }
+    free(on_grid);
+    free(at_own);
     return largest;
 }
 
@@ -113,27 +150,32 @@ static void certify(TruthRuns *runs, Truth *truth)
     note_failure(third, truth);
     truth->is_limited = false;
     truth->horizon_s = truth_runs_duration(runs);
-    const Apart from_second = apart_of(second, first);
-    const Apart from_third = apart_of(first, third);
-    const Apart between_both = apart_of(second, third);
-    shorten_horizon(&from_second, truth);
-    shorten_horizon(&between_both, truth);
+    const Trajectory *own = truth_runs_first(runs);
+    Apart aparts[] = {
+        apart_of(second, first, own), apart_of(first, third, own),
+        apart_of(second, third, own), // of the other two
+    };
+    shorten_horizon(&aparts[0], truth);
+    shorten_horizon(&aparts[2], truth);
     if (truth->message[0] == '\0') {
         take_growth(runs, truth);
     }
     // now that the horizon is known
-    const double to_second = shorten_horizon(&from_second, truth);
-    const double to_third = shorten_horizon(&from_third, truth);
-    const double between = shorten_horizon(&between_both, truth);
-    truth->uncertainty = fmax(fmax(to_second, to_third) + between, ROUNDING * truth->growth);
+    for (int i = 0; i < 3; i++) {
+        shorten_horizon(&aparts[i], truth);
+    }
+    const double to_others =
+        fmax(largest_stated(&aparts[0], truth), largest_stated(&aparts[1], truth));
+    truth->uncertainty = fmax(to_others + largest_stated(&aparts[2], truth),
+                              ROUNDING * truth->growth * ratio_of_sizes(first, own));
     if (truth->message[0] != '\0') {
         truth->is_limited = true;
         truth->horizon_s = 0.0;
         truth->uncertainty = INFINITY;
     }
-    free(from_second.distance);
-    free(from_third.distance);
-    free(between_both.distance);
+    for (int i = 0; i < 3; i++) {
+        apart_finish(&aparts[i]);
+    }
 }
 
 BackendKind truth_backend(const Scenario *scenario)

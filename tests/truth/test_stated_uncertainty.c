@@ -3,8 +3,12 @@
 // The paper's four-bar with K = 6.6e10 N/m^1.5 at slow speeds: the play is crossed slowly, impacts
 // magnify what went before a thousand times, and rounding of positions shows. The error is that
 // against 128-bit integration, over the first contacts.
+//
+// A pin dropped in its hole, looked at before it falls and just short of the top of its rebound:
+// errors are relative to the speed that it has there, a small share of the speed of its impact.
 #include "close.h"
 
+#include "mechanism.h"
 #include "problems.h"
 #include "truth_trajectory.h"
 
@@ -86,11 +90,50 @@ static void at_the_default_tolerance_it_is_as_well(void **state)
     check(100.0, 0.05, reference_options_default().tolerance, true);
 }
 
+// With so many samples after the start, the last of them near the top of the rebound.
+static Scenario dropped_pin(size_t samples)
+{
+    Scenario scenario = mechanism_pin(0.1, 1e-4);
+    scenario.gravity = 9.80665;
+    scenario.contact.stiffness = 6.6e10;
+    scenario.contact.damping = DAMPING_LANKARANI_NIKRAVESH;
+    scenario.contact.restitution = 0.9;
+    scenario.run.duration = 8.5e-3;
+    scenario.run.samples = samples;
+    return scenario;
+}
+
+static void samples_that_miss_the_speed_state_their_error_as_well(void **state)
+{
+    (void)state;
+    const Scenario few = dropped_pin(1);
+    Truth truth = truth_make(&few, NOBODY);
+    assert_string_equal(truth.message, "");
+    const QuadProblem problem = quad_problem(&few);
+    const TruthOptions options = truth_options_default();
+    TruthFigures figures;
+    Trajectory *exact = truth_trajectory(&few, &problem, &options, truth.horizon_s, &figures);
+    const double error = error_against(truth.trajectory, exact, truth.horizon_s).omega_max;
+    // the control: relative to the speed of the impact, which other samples see
+    const Scenario many = dropped_pin(1000);
+    Truth at_impact = truth_make(&many, NOBODY);
+    print_message("# one sample: uncertainty %.3g, error %.3g; a thousand: uncertainty %.3g\n",
+                  truth.uncertainty, error, at_impact.uncertainty);
+    assert_int_equal(figures.ends, 1);
+    assert_true(error <= COVERED * truth.uncertainty);
+    assert_true(truth.uncertainty <= TOO_CAUTIOUS * error);
+    assert_true(error > COVERED * at_impact.uncertainty);
+    trajectory_destroy(exact);
+    truth_finish(&truth);
+    truth_finish(&at_impact);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_slow_mechanism_is_as_right_as_it_says),
         cmocka_unit_test(at_the_default_tolerance_it_is_as_well),
+        cmocka_unit_test(samples_that_miss_the_speed_state_their_error_as_well),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
