@@ -57,6 +57,17 @@ static void add_contact(Mapping *mapping, const Scenario *scenario, const Mappin
     contact->speed_source = speed_source;
 }
 
+// Whether laws are asked for in place of the case's own.
+static bool has_laws(const Mapping *mapping)
+{
+    return mapping->settings.law_count > 0 && mapping->scenario->contact.model != CONTACT_POISSON;
+}
+
+static size_t law_count(const Mapping *mapping)
+{
+    return has_laws(mapping) ? mapping->settings.law_count : 1;
+}
+
 // The contacts of one joint, a law each.
 static bool add_joint(Mapping *mapping, const MappingJoint *joint, Err *err)
 {
@@ -82,17 +93,11 @@ static bool add_joint(Mapping *mapping, const MappingJoint *joint, Err *err)
                            ? "rad/s"
                            : "m/s");
     }
-    const bool is_poisson_case = mapping->scenario->contact.model == CONTACT_POISSON;
-    const size_t count = settings->law_count == 0 || is_poisson_case ? 1 : settings->law_count;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < law_count(mapping); i++) {
         Scenario scenario = *mapping->scenario;
-        if (settings->law_count > 0 && !is_poisson_case) {
+        if (has_laws(mapping)) {
             scenario_set_stiffness(&scenario, 0.0, scenario.contact.exponent);
             scenario.contact.law = settings->laws[i];
-        }
-        if (mapping->contact_count == MAPPING_CONTACT_MAX) {
-            return err_set(err, ERR_USAGE, "more than %d joints and laws; choose some with --laws",
-                           MAPPING_CONTACT_MAX);
         }
         add_contact(mapping, &scenario, joint, mass, speed, speed_source);
     }
@@ -105,41 +110,45 @@ static bool needs_run(const MappingSettings *settings)
            (settings->speed_source != MAPPING_GIVEN && settings->speed_source != MAPPING_USUAL);
 }
 
-static bool make_contacts(Mapping *mapping, MappingWatch watch, Err *err)
+// The joints with play, measured in a run where masses or speeds come from there; the caller frees
+// them.
+static bool find_joints(const Mapping *mapping, MappingWatch watch, MappingJoint **joints,
+                        size_t *count, Err *err)
 {
-    const MappingSettings *settings = &mapping->settings;
-    const Linkage *linkage = &mapping->scenario->linkage;
-    MappingJoint joints[MAPPING_JOINT_MAX] = {0};
-    size_t count = 0;
-    if (!mapping_joint_check(mapping->scenario, err)) {
+    if (!needs_run(&mapping->settings)) {
+        *joints = mapping_joint_list(mapping->scenario, count);
+        return true;
+    }
+    if (!mapping_joint_measure(mapping->scenario, watch.run, joints, count, err)) {
+        err_prefix(err, "the run that masses and speeds are taken from (--mass and --speed "
+                        "given together need none)");
         return false;
     }
-    if (needs_run(settings)) {
-        if (!mapping_joint_measure(mapping->scenario, watch.run, joints, &count, err)) {
-            err_prefix(err, "the run that masses and speeds are taken from (--mass and --speed "
-                            "given together need none)");
-            return false;
-        }
-    } else {
-        for (size_t i = 0; i < linkage->joint_count; i++) {
-            if (linkage_has_play(&linkage->joints[i])) {
-                joints[count++].joint = (int)i;
-            }
-        }
+    return true;
+}
+
+static bool make_contacts(Mapping *mapping, MappingWatch watch, Err *err)
+{
+    MappingJoint *joints = NULL;
+    size_t count = 0;
+    if (!find_joints(mapping, watch, &joints, &count, err)) {
+        return false;
     }
-    mapping->contacts = calloc(MAPPING_CONTACT_MAX, sizeof *mapping->contacts);
+    const size_t room = count * law_count(mapping);
+    mapping->contacts = calloc(room + 1, sizeof *mapping->contacts);
     assert(mapping->contacts != NULL);
-    for (size_t i = 0; i < count; i++) {
-        if (!add_joint(mapping, &joints[i], err)) {
-            return false;
-        }
+    bool is_right = true;
+    for (size_t i = 0; is_right && i < count; i++) {
+        is_right = add_joint(mapping, &joints[i], err);
     }
-    for (size_t i = 0; i < mapping->contact_count; i++) {
+    free(joints);
+    for (size_t i = 0; is_right && i < mapping->contact_count; i++) {
         if (mapping->contacts[i].lack[0] == '\0') {
             return true;
         }
     }
-    return err_set(err, mapping->contacts[0].lack_kind, "%s", mapping->contacts[0].lack);
+    return is_right &&
+           err_set(err, mapping->contacts[0].lack_kind, "%s", mapping->contacts[0].lack);
 }
 
 static void fill_soft(const MappingContact *contact, MappingRow *row)

@@ -7,7 +7,6 @@
 enum {
     MAPPING_STEP_MAX = 32,
     MAPPING_LAW_MAX = LAW_COUNT + 1, // all of the family and the stiffness that a case gives
-    MAPPING_CONTACT_MAX = 64,        // joints times laws
 };
 
 typedef struct MappingSettings {

@@ -21,30 +21,36 @@
 
 enum { INSTANT_COUNT = 120, DIRECTION_COUNT = 24, MASS_COUNT = INSTANT_COUNT * DIRECTION_COUNT };
 
+// What is known of one joint with play.
+typedef struct Gathered {
+    int joint; // its number
+    bool was_touching;
+    size_t mass_count;
+    double *masses; // owned, MASS_COUNT of them
+    size_t speed_count;
+    size_t speed_room;
+    double *speeds; // owned
+    double penetration;
+    double force;
+} Gathered;
+
 typedef struct Gathering {
     const Scenario *scenario;
     Response response;
     size_t place_count;
     Touch *places; // owned
     size_t play_count;
-    int play[MAPPING_JOINT_MAX]; // numbers of the joints with play
-    bool was_touching[MAPPING_JOINT_MAX];
-    double *masses[MAPPING_JOINT_MAX]; // owned, as the next
-    size_t mass_counts[MAPPING_JOINT_MAX];
-    double *speeds[MAPPING_JOINT_MAX];
-    size_t speed_counts[MAPPING_JOINT_MAX];
-    size_t speed_rooms[MAPPING_JOINT_MAX];
-    double penetrations[MAPPING_JOINT_MAX];
-    double forces[MAPPING_JOINT_MAX];
+    Gathered *play; // owned
 } Gathering;
 
 static void gathering_finish(Gathering *gathering)
 {
     for (size_t i = 0; i < gathering->play_count; i++) {
-        free(gathering->masses[i]);
-        free(gathering->speeds[i]);
+        free(gathering->play[i].masses);
+        free(gathering->play[i].speeds);
     }
     response_finish(&gathering->response);
+    free(gathering->play);
     free(gathering->places);
     free(gathering);
 }
@@ -54,12 +60,14 @@ static Gathering *gathering_start(const Scenario *scenario)
     Gathering *gathering = calloc(1, sizeof *gathering);
     assert(gathering != NULL);
     gathering->scenario = scenario;
+    gathering->play = calloc(scenario->linkage.joint_count + 1, sizeof *gathering->play);
+    assert(gathering->play != NULL);
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        if (linkage_has_play(&scenario->linkage.joints[i]) &&
-            gathering->play_count < MAPPING_JOINT_MAX) {
-            gathering->masses[gathering->play_count] = calloc(MASS_COUNT, sizeof(double));
-            assert(gathering->masses[gathering->play_count] != NULL);
-            gathering->play[gathering->play_count++] = (int)i;
+        if (linkage_has_play(&scenario->linkage.joints[i])) {
+            Gathered *gathered = &gathering->play[gathering->play_count++];
+            gathered->joint = (int)i;
+            gathered->masses = calloc(MASS_COUNT, sizeof *gathered->masses);
+            assert(gathered->masses != NULL);
         }
     }
     return gathering;
@@ -68,8 +76,8 @@ static Gathering *gathering_start(const Scenario *scenario)
 static void add_mass(Gathering *gathering, size_t play, size_t place, Vec2 along)
 {
     const size_t row = response_first_row(&gathering->response, place);
-    gathering->masses[play][gathering->mass_counts[play]++] =
-        response_mass(&gathering->response, row, along);
+    Gathered *gathered = &gathering->play[play];
+    gathered->masses[gathered->mass_count++] = response_mass(&gathering->response, row, along);
 }
 
 // The masses at one place, as the bodies stand.
@@ -98,36 +106,36 @@ static void add_masses(Gathering *gathering, const Motion *motions)
     }
     size_t play = 0;
     for (size_t place = 0; place < gathering->place_count; place++) {
-        play += gathering->places[place].joint != gathering->play[play] ? 1 : 0;
+        play += gathering->places[place].joint != gathering->play[play].joint ? 1 : 0;
         add_place(gathering, play, place, motions);
     }
 }
 
-static void add_speed(Gathering *gathering, size_t play, double speed)
+static void add_speed(Gathered *gathered, double speed)
 {
-    if (gathering->speed_counts[play] == gathering->speed_rooms[play]) {
-        const size_t room = 2 * gathering->speed_rooms[play] + 64;
-        double *grown = realloc(gathering->speeds[play], room * sizeof *grown);
+    if (gathered->speed_count == gathered->speed_room) {
+        gathered->speed_room = 2 * gathered->speed_room + 64;
+        double *grown = realloc(gathered->speeds, gathered->speed_room * sizeof *grown);
         assert(grown != NULL);
-        gathering->speeds[play] = grown;
-        gathering->speed_rooms[play] = room;
+        gathered->speeds = grown;
     }
-    gathering->speeds[play][gathering->speed_counts[play]++] = speed;
+    gathered->speeds[gathered->speed_count++] = speed;
 }
 
 static void add_record(Gathering *gathering, const StepRecord *record)
 {
     for (size_t i = 0; i < gathering->play_count; i++) {
-        const int joint = gathering->play[i];
-        const JointState *state = &record->joints[joint];
-        if (state->is_touching && !gathering->was_touching[i] && record->approach[joint] > 0.0) {
-            add_speed(gathering, i, record->approach[joint]);
+        Gathered *gathered = &gathering->play[i];
+        const double approach = record->approach[gathered->joint];
+        const JointState *state = &record->joints[gathered->joint];
+        if (state->is_touching && !gathered->was_touching && approach > 0.0) {
+            add_speed(gathered, approach);
         }
         if (state->is_touching) {
-            gathering->penetrations[i] = fmax(gathering->penetrations[i], -state->gap);
-            gathering->forces[i] = fmax(gathering->forces[i], state->force);
+            gathered->penetration = fmax(gathered->penetration, -state->gap);
+            gathered->force = fmax(gathered->force, state->force);
         }
-        gathering->was_touching[i] = state->is_touching;
+        gathered->was_touching = state->is_touching;
     }
 }
 
@@ -177,52 +185,47 @@ static bool gather(Gathering *gathering, RunWatch watch, Err *err)
     return is_right;
 }
 
-static void conclude(Gathering *gathering, MappingJoint *joints)
+static MappingJoint conclude(Gathered *gathered)
 {
-    for (size_t i = 0; i < gathering->play_count; i++) {
-        double *masses = gathering->masses[i];
-        double *speeds = gathering->speeds[i];
-        const size_t mass_count = gathering->mass_counts[i];
-        const size_t speed_count = gathering->speed_counts[i];
-        sorted_make(masses, mass_count);
-        joints[i] = (MappingJoint){
-            .joint = gathering->play[i],
-            .mass_least = masses[0],
-            .mass_median = sorted_median(masses, mass_count),
-            .mass_most = masses[mass_count - 1],
-            .onsets = speed_count,
-            .penetration_max = gathering->penetrations[i],
-            .force_max = gathering->forces[i],
-        };
-        if (speed_count > 0) {
-            sorted_make(speeds, speed_count);
-            joints[i].speed_median = sorted_median(speeds, speed_count);
-            joints[i].speed_most = speeds[speed_count - 1];
+    sorted_make(gathered->masses, gathered->mass_count);
+    MappingJoint joint = {
+        .joint = gathered->joint,
+        .mass_least = gathered->masses[0],
+        .mass_median = sorted_median(gathered->masses, gathered->mass_count),
+        .mass_most = gathered->masses[gathered->mass_count - 1],
+        .onsets = gathered->speed_count,
+        .penetration_max = gathered->penetration,
+        .force_max = gathered->force,
+    };
+    if (gathered->speed_count > 0) {
+        sorted_make(gathered->speeds, gathered->speed_count);
+        joint.speed_median = sorted_median(gathered->speeds, gathered->speed_count);
+        joint.speed_most = gathered->speeds[gathered->speed_count - 1];
+    }
+    return joint;
+}
+
+MappingJoint *mapping_joint_list(const Scenario *scenario, size_t *count)
+{
+    const Linkage *linkage = &scenario->linkage;
+    MappingJoint *joints = calloc(linkage->joint_count + 1, sizeof *joints);
+    assert(joints != NULL);
+    *count = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage_has_play(&linkage->joints[i])) {
+            joints[(*count)++].joint = (int)i;
         }
     }
+    return joints;
 }
 
-bool mapping_joint_check(const Scenario *scenario, Err *err)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        count += linkage_has_play(&scenario->linkage.joints[i]) ? 1 : 0;
-    }
-    return count <= MAPPING_JOINT_MAX ||
-           err_set(err, ERR_SOLVER, "%zu joints have play; a mapping takes at most %d", count,
-                   MAPPING_JOINT_MAX);
-}
-
-bool mapping_joint_measure(const Scenario *scenario, RunWatch watch,
-                           MappingJoint joints[MAPPING_JOINT_MAX], size_t *count, Err *err)
+bool mapping_joint_measure(const Scenario *scenario, RunWatch watch, MappingJoint **joints,
+                           size_t *count, Err *err)
 {
     if (!space_has_plane(&scenario->linkage)) {
         return err_set(err, ERR_SOLVER,
                        "the mapping takes masses from the plane, and not all axes of this case are "
                        "along z; run and compare show what each map makes of it");
-    }
-    if (!mapping_joint_check(scenario, err)) {
-        return false;
     }
     Gathering *gathering = gathering_start(scenario);
     bool is_right = touch_list(scenario, &gathering->places, &gathering->place_count, err);
@@ -231,12 +234,14 @@ bool mapping_joint_measure(const Scenario *scenario, RunWatch watch,
                        &gathering->response);
         is_right = gather(gathering, watch, err);
     }
-    if (is_right && gathering->mass_counts[0] == 0) {
+    if (is_right && gathering->play[0].mass_count == 0) {
         is_right = err_set(err, ERR_SOLVER, "the ideal joints are redundant throughout the run");
     }
     if (is_right) {
-        conclude(gathering, joints);
-        *count = gathering->play_count;
+        *joints = mapping_joint_list(scenario, count);
+        for (size_t i = 0; i < *count; i++) {
+            (*joints)[i] = conclude(&gathering->play[i]);
+        }
     }
     gathering_finish(gathering);
     return is_right;

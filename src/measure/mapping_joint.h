@@ -5,9 +5,6 @@
 #include "model/scenario.h"
 #include "run/run.h"
 
-// Joints with play that one mapping takes.
-enum { MAPPING_JOINT_MAX = 24 };
-
 typedef struct MappingJoint {
     int joint;              // number in the linkage
     double mass_least;      // kg, effective along the normal, over the run and all directions
@@ -20,12 +17,10 @@ typedef struct MappingJoint {
     double force_max;       // N, likewise
 } MappingJoint;
 
-// Whether a mapping takes all joints with play of a scenario; fails with ERR_SOLVER where there are
-// too many.
-bool mapping_joint_check(const Scenario *scenario, Err *err);
+// The joints with play of a scenario, in their order, and their count, from a run of the reference,
+// which the watch follows. The caller frees them. Fails with ERR_SOLVER where the reference does.
+bool mapping_joint_measure(const Scenario *scenario, RunWatch watch, MappingJoint **joints,
+                           size_t *count, Err *err);
 
-// Fills in the joints with play of a scenario, in their order, and their count, from a run of the
-// reference, which the watch follows. Fails with ERR_SOLVER where the reference does, or where
-// there are more than MAPPING_JOINT_MAX.
-bool mapping_joint_measure(const Scenario *scenario, RunWatch watch,
-                           MappingJoint joints[MAPPING_JOINT_MAX], size_t *count, Err *err);
+// The same joints, of which nothing is known but their numbers.
+MappingJoint *mapping_joint_list(const Scenario *scenario, size_t *count);

@@ -242,6 +242,39 @@ static void files_are_written_where_they_are_wanted(void **state)
     assert_int_equal(commas, 26);
 }
 
+// A pendulum each: joints are not limited in number, and the mass of each is that of its bob.
+static void every_one_of_many_joints_is_mapped(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "many.yaml", path);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "title: many\nbodies:\n");
+    enum { COUNT = 40 };
+    for (int i = 0; i < COUNT; i++) {
+        fprintf(file, "  bob-%d: {mass: %d g, inertia: 1e-4 kg m^2, at: [0 m, 0 m]}\n", i, 100 + i);
+    }
+    fprintf(file, "joints:\n");
+    for (int i = 0; i < COUNT; i++) {
+        fprintf(file,
+                "  pin-%d: {between: [ground, bob-%d], at: [0 m, 0 m], hole: 11 mm, pin: 10 mm}\n",
+                i, i);
+    }
+    fprintf(file, "gravity: 9.81 m/s^2\ncontact: {stiffness: 1e8 N/m^1.5, restitution: 0.6}\n"
+                  "run: {duration: 15 ms, samples: 10, step: 100 us}\n");
+    fclose(file);
+    program_run(program, "map many.yaml --json -q --steps '100 us' --maps midpoint");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    const json_t *contacts = json_object_get(root, "contacts");
+    assert_int_equal(json_array_size(contacts), COUNT);
+    for (size_t i = 0; i < COUNT; i++) {
+        assert_near(number(json_array_get(contacts, i), "mass_kg"), 0.1 + 1e-3 * (double)i, 1e-9);
+    }
+    json_decref(root);
+}
+
 static void the_velocity_level_model_has_rows_of_its_own(void **state)
 {
     Program *program = *state;
@@ -381,6 +414,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(json_holds_every_setting, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(mass_speed_and_law_can_be_given, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(every_one_of_many_joints_is_mapped, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(an_unstable_setting_says_where, program_set_up,
                                         program_tear_down),

@@ -142,15 +142,16 @@ static bool add_masses(const MapOptions *options, const Scenario *scenario, Inve
                        "one, such as --mass '0.1 kg'",
                        scenario->path);
     }
-    MappingJoint joints[MAPPING_JOINT_MAX];
+    MappingJoint *joints = NULL;
     size_t count = 0;
-    if (!mapping_joint_measure(scenario, (RunWatch){0}, joints, &count, err)) {
+    if (!mapping_joint_measure(scenario, (RunWatch){0}, &joints, &count, err)) {
         return false;
     }
     for (size_t i = 0; i < count; i++) {
         inverse_add_mass(inverse, scenario->linkage.joints[joints[i].joint].name,
                          joints[i].mass_median);
     }
+    free(joints);
     return true;
 }
 
@@ -165,6 +166,7 @@ static bool read_row(const MapOptions *options, const Scenario *scenario, Err *e
     if (is_read) {
         results_print(&INVERSE_RESULTS, &options->common, inverse);
     }
+    inverse_finish(inverse);
     free(inverse);
     return is_read;
 }

@@ -127,9 +127,16 @@ static Scenario pin_of(const Inverse *inverse)
     return scenario;
 }
 
+void inverse_finish(Inverse *inverse)
+{
+    free(inverse->masses);
+}
+
 void inverse_add_mass(Inverse *inverse, const char *joint, double mass)
 {
-    assert(inverse->mass_count < INVERSE_MASS_MAX);
+    InverseMass *grown = realloc(inverse->masses, (inverse->mass_count + 1) * sizeof *grown);
+    assert(grown != NULL);
+    inverse->masses = grown;
     InverseMass *added = &inverse->masses[inverse->mass_count++];
     *added = (InverseMass){.joint = joint, .mass = mass};
     for (int i = 0; i < INVERSE_READING_COUNT; i++) {

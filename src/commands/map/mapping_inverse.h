@@ -8,7 +8,7 @@
 
 #include <jansson.h>
 
-enum { INVERSE_READING_COUNT = 3, INVERSE_MASS_MAX = MAPPING_JOINT_MAX };
+enum { INVERSE_READING_COUNT = 3 };
 
 // The maps by which a row can be read that stays the same through a contact.
 extern const OdeMap INVERSE_READINGS[INVERSE_READING_COUNT];
@@ -41,13 +41,15 @@ typedef struct Inverse {
     double step_s; //
     ErpCfm row;
     size_t mass_count;
-    InverseMass masses[INVERSE_MASS_MAX];
+    InverseMass *masses; // owned
 } Inverse;
 
 // An inverse from a pair as Gazebo has it, or from a row; no masses yet. Fails with ERR_USAGE where
 // there is no row or none that stands for a spring and damper.
 bool inverse_of_pair(double kp, double kd, double step_s, Inverse *inverse, Err *err);
 bool inverse_of_row(double erp, double cfm, double step_s, Inverse *inverse, Err *err);
+
+void inverse_finish(Inverse *inverse);
 
 // Adds a mass, kg, of a joint; 0 kg for none known: then only readings that need none are there.
 // The name must outlive the inverse.

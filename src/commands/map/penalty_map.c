@@ -107,24 +107,26 @@ static bool run_penalty(const Scenario *turned, const MappingJoint *joint, const
 static bool fill_row(const Scenario *scenario, const PenaltyMap *map, PenaltyMapRow *row, Err *err)
 {
     row->turned = at_speed(scenario, row->rpm);
-    MappingJoint joints[MAPPING_JOINT_MAX];
+    MappingJoint *joints = NULL;
     size_t count = 0;
-    if (!mapping_joint_measure(&row->turned, (RunWatch){0}, joints, &count, err)) {
+    if (!mapping_joint_measure(&row->turned, (RunWatch){0}, &joints, &count, err)) {
         return false;
     }
     const int wanted = linkage_find_joint(&row->turned.linkage, PRINTED_PIN_NAMES[map->pin]);
-    const MappingJoint *joint = &joints[0];
-    while (joint->joint != wanted) {
-        joint++;
+    size_t found = 0;
+    while (joints[found].joint != wanted) {
+        found++;
     }
-    row->mass = joint->mass_median;
-    row->speed = joint->speed_median;
+    const MappingJoint joint = joints[found];
+    free(joints);
+    row->mass = joint.mass_median;
+    row->speed = joint.speed_median;
     if (!(row->speed > 0.0)) {
         return err_set(err, ERR_SOLVER, "no contact of %s begins with a closing speed",
                        PRINTED_PIN_NAMES[map->pin]);
     }
-    return run_spring(&row->turned, joint, map, row, err) &&
-           run_penalty(&row->turned, joint, map, row, err);
+    return run_spring(&row->turned, &joint, map, row, err) &&
+           run_penalty(&row->turned, &joint, map, row, err);
 }
 
 bool penalty_map_make(const Scenario *scenario, double step_s, RunWatch watch, PenaltyMap **map,

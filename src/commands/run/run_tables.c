@@ -1,5 +1,6 @@
 // What did the bodies do, what did the joints feel, how far off is it, and at what cost?
 #include "commands/run/run_report.h"
+#include "write/alike.h"
 #include "write/joint_units.h"
 #include "write/units.h"
 
@@ -59,41 +60,51 @@ static double farthest_pin(const Trajectory *run, size_t joint)
     return distance;
 }
 
-// How far a pin came in its play.
+// That a joint was not touched, and how far a pin came in its play.
 static void write_still(const RunReport *report, const Trajectory *run, size_t joint, Text *text)
 {
     const Joint *of = &report->scenario->linkage.joints[joint];
+    text_append(text, "no contact in the whole run.");
+    if (of->kind != JOINT_CLEARANCE) {
+        return;
+    }
     const double clearance = linkage_radial_clearance(of) * UNITS_UM;
     const double share = farthest_pin(run, joint) * UNITS_UM / clearance;
-    text_append(
-        text,
-        share < UNTOUCHED_STILL
-            ? " The pin stays at %.2g of its %.4g um of play: nothing pushes it, or the run "
-              "of %.4g ms is too short."
-            : " The pin comes no farther than %.2g of its %.4g um of play: the run of "
-              "%.4g ms is too short, or the play too large for it.",
-        share, clearance, run->duration_s * UNITS_MS);
+    if (share < UNTOUCHED_STILL) {
+        text_append(text,
+                    " The pin moves by less than %.2g of its %.4g um of play: nothing pushes it, "
+                    "or the run of %.4g ms is too short.",
+                    UNTOUCHED_STILL, clearance, run->duration_s * UNITS_MS);
+    } else {
+        text_append(text,
+                    " The pin comes no farther than %.2g of its %.4g um of play: the run of "
+                    "%.4g ms is too short, or the play too large for it.",
+                    share, clearance, run->duration_s * UNITS_MS);
+    }
 }
 
 // A run without a single contact has no spikes, and is hardly what was wanted.
-static void write_untouched(const RunReport *report, bool is_torsional, Text *text)
+static void write_untouched(const RunReport *report, bool is_torsional, size_t width, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
-    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-        for (size_t i = 0; i < report->run_count; i++) {
-            const Trajectory *run = report->runs[i];
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        char between[64];
+        snprintf(between, sizeof between, ", %s: ", run->backend);
+        Alike *alike = alike_start();
+        for (size_t joint = 0; joint < linkage->joint_count; joint++) {
             if (!trajectory_feels_play(run, &linkage->joints[joint]) ||
                 linkage_is_torsional(&linkage->joints[joint]) != is_torsional ||
                 run->joints[joint].contact_time > 0.0) {
                 continue;
             }
-            text_append(text, "  %s, %s: no contact in the whole run.", linkage->joints[joint].name,
-                        run->backend);
-            if (linkage->joints[joint].kind == JOINT_CLEARANCE) {
-                write_still(report, run, joint, text);
-            }
-            text_append(text, "\n");
+            Text said;
+            text_init(&said);
+            write_still(report, run, joint, &said);
+            alike_add(alike, linkage->joints[joint].name, said.data);
+            text_finish(&said);
         }
+        alike_end(alike, "  ", between, width, text);
     }
 }
 
@@ -139,7 +150,7 @@ static void write_contacts(const RunReport *report, bool is_torsional, const Sty
     }
     if (table != NULL) {
         section_end(table, text);
-        write_untouched(report, is_torsional, text);
+        write_untouched(report, is_torsional, style->width, text);
     }
 }
 

@@ -5,10 +5,12 @@
 #include "contact/penalty.h"
 #include "model/kinematics.h"
 #include "model/space_rows.h"
+#include "write/alike.h"
 #include "write/units.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static size_t mobility(const Linkage *linkage, bool ideal_only)
 {
@@ -40,20 +42,19 @@ static void write_room(const Joint *joint, Text *text)
 {
     const double limit =
         asin(fmin(1.0, 2.0 * linkage_radial_clearance(joint) / joint->clearance.width));
-    text_append(text, "              width %.7g mm: tilts up to %.4g mrad, ",
+    text_append(text, "\n              width %.7g mm: tilts up to %.4g mrad, ",
                 joint->clearance.width * UNITS_MM, limit * UNITS_MRAD);
     if (joint->space.axial_clearance > 0.0) {
-        text_append(text, "slides up to %.4g um each way\n",
-                    joint->space.axial_clearance * UNITS_UM);
+        text_append(text, "slides up to %.4g um each way", joint->space.axial_clearance * UNITS_UM);
     } else {
-        text_append(text, "slides freely\n");
+        text_append(text, "slides freely");
     }
 }
 
 static void write_pin(const Joint *joint, bool is_spatial, Text *text)
 {
-    text_append(text, "  play        %s: hole %.7g mm, pin %.7g mm, radial clearance %.4g um\n",
-                joint->name, 2.0 * joint->clearance.hole_radius * UNITS_MM,
+    text_append(text, "hole %.7g mm, pin %.7g mm, radial clearance %.4g um",
+                2.0 * joint->clearance.hole_radius * UNITS_MM,
                 2.0 * joint->clearance.pin_radius * UNITS_MM,
                 linkage_radial_clearance(joint) * UNITS_UM);
     if (is_spatial) {
@@ -65,26 +66,25 @@ static void write_guide(const Joint *joint, Text *text)
 {
     const Guide *guide = &joint->guide;
     const bool is_sleeve = guide->height > guide->opening;
-    text_append(text, "  play        %s: %s %.7g mm, length %.7g mm, %s %.7g mm:\n", joint->name,
-                is_sleeve ? "sleeve" : "block", guide->height * UNITS_MM, guide->length * UNITS_MM,
-                is_sleeve ? "rod" : "guide", guide->opening * UNITS_MM);
-    text_append(text, "              %.4g um either way, tilts up to %.4g mrad\n",
+    text_append(text, "%s %.7g mm, length %.7g mm, %s %.7g mm:\n", is_sleeve ? "sleeve" : "block",
+                guide->height * UNITS_MM, guide->length * UNITS_MM, is_sleeve ? "rod" : "guide",
+                guide->opening * UNITS_MM);
+    text_append(text, "              %.4g um either way, tilts up to %.4g mrad",
                 linkage_radial_clearance(joint) * UNITS_UM, linkage_guide_tilt(guide) * UNITS_MRAD);
 }
 
 static void write_stop(const Joint *joint, Text *text)
 {
     const Stop *stop = &joint->stop;
-    text_append(text, "  stop        %s: ", joint->name);
     if (stop->radius_b > 0.0) {
         text_append(text, "disc of %.7g mm", 2.0 * stop->radius_b * UNITS_MM);
     } else {
         text_append(text, "point");
     }
     if (stop->is_disc) {
-        text_append(text, " against a disc of %.7g mm\n", 2.0 * stop->radius_a * UNITS_MM);
+        text_append(text, " against a disc of %.7g mm", 2.0 * stop->radius_a * UNITS_MM);
     } else {
-        text_append(text, " against a line\n");
+        text_append(text, " against a line");
     }
 }
 
@@ -96,51 +96,70 @@ static void write_limits(const Joint *joint, Text *text)
     const double scale = is_turning ? UNITS_DEG : UNITS_MM;
     const char *unit = is_turning ? "deg" : "mm";
     if (joint->kind == JOINT_GEAR) {
-        text_append(text, "  gears       %s: %.6g and %.6g teeth, pitch radii %.6g and %.6g mm,\n",
-                    joint->name, joint->gear.teeth[0], joint->gear.teeth[1],
-                    joint->gear.radius_a * UNITS_MM, joint->gear.radius_b * UNITS_MM);
-        text_append(text, "              backlash %.4g um, %.4g deg of the second\n",
+        text_append(text, "%.6g and %.6g teeth, pitch radii %.6g and %.6g mm,\n",
+                    joint->gear.teeth[0], joint->gear.teeth[1], joint->gear.radius_a * UNITS_MM,
+                    joint->gear.radius_b * UNITS_MM);
+        text_append(text, "              backlash %.4g um, %.4g deg of the second",
                     limits->backlash * UNITS_UM,
                     limits->backlash / fabs(joint->gear.radius_b) * UNITS_DEG);
     } else if (limits->kind == LIMIT_BACKLASH) {
-        text_append(text, "  backlash    %s: %.6g %s\n", joint->name, limits->backlash * scale,
-                    unit);
+        text_append(text, "%.6g %s", limits->backlash * scale, unit);
     } else {
-        text_append(text, "  stops       %s:", joint->name);
         if (isfinite(limits->low)) {
-            text_append(text, " low %.6g %s%s", limits->low * scale, unit,
-                        isfinite(limits->high) ? "," : "");
+            text_append(text, "low %.6g %s%s", limits->low * scale, unit,
+                        isfinite(limits->high) ? ", " : "");
         }
         if (isfinite(limits->high)) {
-            text_append(text, " high %.6g %s", limits->high * scale, unit);
+            text_append(text, "high %.6g %s", limits->high * scale, unit);
         }
-        text_append(text, "\n");
     }
 }
 
-static void write_joint(const Joint *joint, bool is_spatial, Text *text)
+// What play a joint has, or nothing, and the word for it.
+static const char *write_joint(const Joint *joint, bool is_spatial, Text *text)
 {
     if (joint->limits.kind != LIMIT_NONE) {
         write_limits(joint, text);
-        return;
+        return joint->kind == JOINT_GEAR              ? "gears"
+               : joint->limits.kind == LIMIT_BACKLASH ? "backlash"
+                                                      : "stops";
     }
     switch (joint->kind) {
     case JOINT_CLEARANCE:
         write_pin(joint, is_spatial, text);
-        break;
+        return "play";
     case JOINT_GUIDE:
         write_guide(joint, text);
-        break;
+        return "play";
     case JOINT_STOP:
         write_stop(joint, text);
-        break;
+        return "stop";
     default:
-        break;
+        return NULL;
     }
 }
 
-static void write_mechanism(const RunReport *report, Text *text)
+// The play of all joints for which there is the same word.
+static void write_play(const Linkage *linkage, const char *word, size_t width, Text *text)
 {
+    char lead[32];
+    snprintf(lead, sizeof lead, "  %-12s", word);
+    Alike *alike = alike_start();
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        Text said;
+        text_init(&said);
+        const char *own = write_joint(&linkage->joints[i], linkage->is_spatial, &said);
+        if (own != NULL && strcmp(own, word) == 0) {
+            alike_add(alike, linkage->joints[i].name, said.data);
+        }
+        text_finish(&said);
+    }
+    alike_end(alike, lead, ": ", width, text);
+}
+
+static void write_mechanism(const RunReport *report, size_t width, Text *text)
+{
+    static const char *const WORDS[] = {"play", "gears", "backlash", "stops", "stop"};
     const Scenario *scenario = report->scenario;
     write_freedoms(&scenario->linkage, scenario_has_clearance(scenario), text);
     if (scenario->has_fourbar) {
@@ -155,8 +174,8 @@ static void write_mechanism(const RunReport *report, Text *text)
                     report->summary->transmission_high * UNITS_DEG);
     }
     text_append(text, "\n");
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        write_joint(&scenario->linkage.joints[i], scenario->linkage.is_spatial, text);
+    for (size_t i = 0; i < sizeof WORDS / sizeof *WORDS; i++) {
+        write_play(&scenario->linkage, WORDS[i], width, text);
     }
 }
 
@@ -212,8 +231,7 @@ static void write_impact_law(const Scenario *scenario, const Joint *joint, Text 
     const bool is_turning = linkage_is_torsional(joint);
     ForceLaw law;
     Err err = {0};
-    text_append(text, "  contact     %s: %s", joint->name,
-                own.stiffness > 0.0 ? "given stiffness" : OPTIONS_LAWS[own.law]);
+    text_append(text, "%s", own.stiffness > 0.0 ? "given stiffness" : OPTIONS_LAWS[own.law]);
     if (!law_build(&own, &scenario->material, &joint->clearance, scenario->linkage.driver.speed,
                    &law, &err)) {
         text_append(text, " (%s)", err.text);
@@ -225,28 +243,36 @@ static void write_impact_law(const Scenario *scenario, const Joint *joint, Text 
                     law.offset);
     }
     write_damping(&own, is_turning, text);
-    text_append(text, "\n");
 }
 
-static void write_contact(const Scenario *scenario, Text *text)
+static void write_penalty(const Scenario *scenario, const Joint *joint, Text *text)
 {
-    const ContactOptions *contact = &scenario->contact;
+    const bool is_given = scenario->contact.penalty > 0.0;
+    text_append(text, "poisson, p = %.4g N s/m (%s), restitution %.4g",
+                is_given ? scenario->contact.penalty
+                         : penalty_estimate(scenario->linkage.driver.speed, &scenario->material),
+                is_given ? "given" : "the paper's estimate", scenario_restitution(scenario, joint));
+}
+
+static void write_contact(const Scenario *scenario, size_t width, Text *text)
+{
+    Alike *alike = alike_start();
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
         if (!linkage_has_play(joint)) {
             continue;
         }
-        if (contact->model == CONTACT_IMPACT) {
-            write_impact_law(scenario, joint, text);
-            continue;
+        Text said;
+        text_init(&said);
+        if (scenario->contact.model == CONTACT_IMPACT) {
+            write_impact_law(scenario, joint, &said);
+        } else {
+            write_penalty(scenario, joint, &said);
         }
-        const bool is_given = contact->penalty > 0.0;
-        text_append(
-            text, "  contact     %s: poisson, p = %.4g N s/m (%s), restitution %.4g\n", joint->name,
-            is_given ? contact->penalty
-                     : penalty_estimate(scenario->linkage.driver.speed, &scenario->material),
-            is_given ? "given" : "the paper's estimate", scenario_restitution(scenario, joint));
+        alike_add(alike, joint->name, said.data);
+        text_finish(&said);
     }
+    alike_end(alike, "  contact     ", ": ", width, text);
 }
 
 static void write_models(const RunReport *report, const Style *style, Text *text)
@@ -276,9 +302,9 @@ void run_text_write(const void *of, const Style *style, Text *text)
     const RunReport *report = of;
     const Scenario *scenario = report->scenario;
     section_title(scenario->title, scenario->path, style, text);
-    write_mechanism(report, text);
+    write_mechanism(report, style->width, text);
     write_drive(scenario, text);
-    write_contact(scenario, text);
+    write_contact(scenario, style->width, text);
     write_models(report, style, text);
     // what was asked comes first, how far it can be believed beside it, and theory last
     run_truth_errors(report, style, text);

@@ -79,10 +79,10 @@ static void add_impact(const TuneSearch *search, const MappingJoint *joint, doub
 bool tune_held_constants(const TuneSearch *search, Err *err)
 {
     const TuneContact *contact = &search->tune->contact;
-    MappingJoint joints[MAPPING_JOINT_MAX];
+    MappingJoint *joints = NULL;
     size_t count = 0;
     const RunWatch watch = {watch_run, (void *)search};
-    if (!mapping_joint_measure(search->scenario, watch, joints, &count, err)) {
+    if (!mapping_joint_measure(search->scenario, watch, &joints, &count, err)) {
         return false;
     }
     for (size_t i = 0; i < count; i++) {
@@ -92,5 +92,6 @@ bool tune_held_constants(const TuneSearch *search, Err *err)
             add_impact(search, joint, contact->mass, contact->speed, TUNE_LINEAR_HARDEST);
         }
     }
+    free(joints);
     return true;
 }
