@@ -22,7 +22,7 @@ static void check_code(Program *program, const char *options)
 {
     char line[3 * PROGRAM_PATH_SIZE];
     char with_code[PROGRAM_PATH_SIZE];
-    snprintf(with_code, sizeof with_code, "tune %s --code setting.c --json --quiet", options);
+    snprintf(with_code, sizeof with_code, "tune %s --one-file setting.c --json --quiet", options);
     program_run(program, with_code);
     if (program->status != 0) {
         fail_msg("%s: status %d: %s", with_code, program->status, program->errors);

@@ -306,7 +306,7 @@ static void expect_code_compiles(Program *program)
 {
     char line[2 * PROGRAM_PATH_SIZE];
     snprintf(line, sizeof line,
-             "cd '%s/out' && $JOINTPLAY_CC -fsyntax-only -Wall -Werror impact-k66-tune.c",
+             "cd '%s/out' && $JOINTPLAY_CC -fsyntax-only -Wall -Werror impact-k66-tune-one-file.c",
              program->folder);
     assert_int_equal(system(line), 0);
 }
@@ -326,10 +326,10 @@ static void files_hold_what_was_asked_for(void **state)
     program_path(program, "c.xml", path);
     program_read(path, program->output);
     assert_says(program->output, "solref=\"-");
-    static const char *const ENDINGS[] = {"txt", "json", "c", "sdf", "xml"};
-    for (int i = 0; i < 5; i++) {
+    static const char *const ENDINGS[] = {".txt", ".json", ".c", "-one-file.c", ".sdf", ".xml"};
+    for (int i = 0; i < 6; i++) {
         char name[64];
-        snprintf(name, sizeof name, "out/impact-k66-tune.%s", ENDINGS[i]);
+        snprintf(name, sizeof name, "out/impact-k66-tune%s", ENDINGS[i]);
         program_path(program, name, path);
         assert_int_equal(access(path, R_OK), 0);
     }

@@ -48,6 +48,18 @@ builds_and_runs() {
     diff "${file%.*}.txt" "$work/printed" >"$log"
 }
 
+# what the program writes of a case with a setting, as its own first lines say
+"$build/src/cli/jointplay" tune "$root/cases/paper/impact-k66.yaml" --at-step '20 us' --quiet \
+    --schemes direct/staggered/impulse --set run.revolutions=0.1 --code "$work/case.c" >"$log" 2>&1
+report "tune writes a case as a program" $?
+for compiler in gcc clang; do
+    command -v $compiler >"$log" || continue
+    $compiler -std=c17 $warnings "$work/case.c" -o "$work/case" $flags -lm >"$log" 2>&1 &&
+        "$work/case" >"$work/series.csv" 2>"$log" && [ "$(wc -l <"$work/series.csv")" -eq 302 ]
+    report "$compiler builds it, and it runs" $?
+done
+rm -f "$work/case.c"
+
 examples=0
 for file in "$work"/*.c "$work"/*.cpp; do
     name=$(basename "$file")

@@ -43,9 +43,9 @@ static bool has_contact(const TuneReport *report, bool is_found, const char *rea
     return is_found;
 }
 
-static bool write_code(const void *target, Text *text, const char **nothing, Err *err)
+static bool write_form(const TuneReport *report, TuneForm form, Text *text, const char **nothing,
+                       Err *err)
 {
-    const TuneReport *report = target;
     const TuneTrial *trial = tune_export_trial(report);
     if (report->scenario->linkage.is_spatial) {
         *nothing = "programs are written for cases in the plane alone";
@@ -54,12 +54,27 @@ static bool write_code(const void *target, Text *text, const char **nothing, Err
     if (!has_contact(report, trial != NULL, "no run has a meaningful error", nothing)) {
         return false;
     }
+    const char *lacks = form == TUNE_WITH_LIBRARY ? tune_export_lacks(report) : NULL;
+    if (lacks != NULL) {
+        *nothing = lacks;
+        return false;
+    }
     if (!scheme_has_step(&report->tune->schemes[trial->scheme].scheme)) {
         // its step is chosen once more, against a truth of its own
         long_work_warn("choosing the step for the code",
                        report->tune->truth.wall_s + trial->run.wall_s, true);
     }
-    return tune_export_code(report, text, err);
+    return tune_export_code(report, form, text, err);
+}
+
+static bool write_code(const void *report, Text *text, const char **nothing, Err *err)
+{
+    return write_form(report, TUNE_WITH_LIBRARY, text, nothing, err);
+}
+
+static bool write_one_file(const void *report, Text *text, const char **nothing, Err *err)
+{
+    return write_form(report, TUNE_ONE_FILE, text, nothing, err);
 }
 
 static const char NO_CONSTANTS[] = "no contact with constants that was tried is stable";
@@ -80,6 +95,8 @@ static bool write_mjcf(const void *report, Text *text, const char **nothing, Err
 
 static const ResultFile FILES[] = {
     {"--code", offsetof(TuneOptions, code), ".c", FILE_CODE, .may = write_code},
+    {"--one-file", offsetof(TuneOptions, one_file), "-one-file.c", FILE_CODE,
+     .may = write_one_file},
     {"--sdf", offsetof(TuneOptions, sdf), ".sdf", FILE_SDF, .may = write_sdf},
     {"--mjcf", offsetof(TuneOptions, mjcf), ".xml", FILE_MJCF, .may = write_mjcf},
     {.ending = ".txt", .kind = FILE_REPORT},

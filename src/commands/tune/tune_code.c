@@ -5,12 +5,11 @@
 // is needed. Numbers are written so that they read back to the last bit.
 #include "commands/tune/tune_code.h"
 
-#include "base/shell.h"
 #include "commands/tune/tune_code_forces.h"
+#include "commands/tune/tune_code_text.h"
 #include "commands/tune/tune_sources.h"
 #include "contact/law.h"
 #include "contact/penalty.h"
-#include "version.h"
 #include "write/number.h"
 
 #include <assert.h>
@@ -53,23 +52,6 @@ static bool asks_libccd(const Scenario *scenario)
            scenario->ode.collider == ODE_COLLIDER_STAVES_GJK;
 }
 
-// A string constant; what is not plain ASCII is written by its octal number.
-static void write_string(const char *string, Text *text)
-{
-    text_append(text, "\"");
-    for (; *string != '\0'; string++) {
-        const unsigned char letter = (unsigned char)*string;
-        if (letter == '"' || letter == '\\' || letter == '?') {
-            text_append(text, "\\%c", letter);
-        } else if (letter < 0x20 || letter > 0x7e) {
-            text_append(text, "\\%03o", letter);
-        } else {
-            text_append(text, "%c", letter);
-        }
-    }
-    text_append(text, "\"");
-}
-
 static void write_vec2(const char *name, Vec2 value, Text *text)
 {
     text_append(text, "%s{%s, %s}", name, number_shortest(value.x).text,
@@ -79,7 +61,7 @@ static void write_vec2(const char *name, Vec2 value, Text *text)
 static void write_body(const Body *body, Text *text)
 {
     text_append(text, "        {.name = ");
-    write_string(body->name, text);
+    tune_code_string(body->name, text);
     text_append(text, ",\n         .mass = %s, // kg\n         .inertia = %s, // kg m^2\n",
                 number_shortest(body->mass).text, number_shortest(body->inertia).text);
     write_vec2("         .start = {.position = ", body->start.position, text);
@@ -122,7 +104,7 @@ static void write_joint(const Joint *joint, Text *text)
     };
     const Clearance *clearance = &joint->clearance;
     text_append(text, "        {.name = ");
-    write_string(joint->name, text);
+    tune_code_string(joint->name, text);
     text_append(text, ",\n         .kind = %s,\n         .body_a = %d,\n         .body_b = %d,\n",
                 KINDS[joint->kind], joint->body_a, joint->body_b);
     write_vec2("         .anchor_a = ", joint->anchor_a, text);
@@ -181,7 +163,7 @@ static void write_points(const Scenario *scenario, Text *text)
     for (size_t i = 0; i < scenario->point_count; i++) {
         const TracedPoint *point = &scenario->points[i];
         text_append(text, "    .points[%zu] = {.name = ", i);
-        write_string(point->name, text);
+        tune_code_string(point->name, text);
         text_append(text, ", .body = %d, ", point->body);
         write_vec2(".local = ", point->local, text);
         text_append(text, "},\n");
@@ -258,7 +240,7 @@ static void write_scenario(const Scenario *scenario, Text *text)
 {
     text_append(text, "\n// ---- the scenario: SI and radians ----\n\n"
                       "static const Scenario SCENARIO = {\n    .title = ");
-    write_string(scenario->title, text);
+    tune_code_string(scenario->title, text);
     text_append(text, ",\n");
     write_linkage(&scenario->linkage, text);
     tune_code_forces(&scenario->linkage, text);
@@ -311,19 +293,7 @@ static bool write_laws(const Scenario *scenario, Text *text, Err *err)
 
 static void write_head(const TuneCode *code, Text *text)
 {
-    text_append(text,
-                "// A mechanism with play in its joints in the Open Dynamics Engine, with the "
-                "setting that\n// `jointplay tune` found. Written by jointplay %s (ODE %s).\n//\n//"
-                "   cc THIS_FILE.c -o run -lode%s -lm && ./run > series.csv\n//\n// case     ",
-                JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION,
-                asks_libccd(code->scenario) ? " -lccd" : "");
-    // as in the command below: a name never ends the comment, nor joins the next line to it
-    shell_append_word(text, code->scenario->path);
-    text_append(text, "\n// setting  %s\n// error    %.3g measured", code->words, code->error);
-    if (isfinite(code->target)) {
-        text_append(text, ", %.3g asked for", code->target);
-    }
-    text_append(text, "\n// same as  %s\n", code->command);
+    tune_code_head(code, "", asks_libccd(code->scenario) ? "-lode -lccd -lm" : "-lode -lm", text);
     text_append(
         text, "//\n// The numbers of this mechanism stand at the end: the scenario, its contact "
               "laws, main.\n// What comes before them is jointplay's own way of stepping, joined "

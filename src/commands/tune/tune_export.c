@@ -4,6 +4,7 @@
 #include "commands/tune/tune_code.h"
 #include "commands/tune/tune_report.h"
 #include "commands/tune/tune_setting.h"
+#include "commands/tune/tune_world.h"
 #include "measure/chosen_run.h"
 #include "write/section.h"
 #include "write/units.h"
@@ -41,7 +42,7 @@ static bool choose_step(Scenario *scenario, Err *err)
     return is_chosen;
 }
 
-bool tune_export_code(const TuneReport *report, Text *text, Err *err)
+bool tune_export_code(const TuneReport *report, TuneForm form, Text *text, Err *err)
 {
     const TuneTrial *trial = tune_export_trial(report);
     assert(trial != NULL);
@@ -60,11 +61,25 @@ bool tune_export_code(const TuneReport *report, Text *text, Err *err)
     tune_setting_words(report, trial, &words);
     tune_setting_command(report, trial, " ", &command);
     const TuneCode code = {scenario, words.data, command.data, trial->error, report->tune->target};
-    const bool is_written = tune_code_write(&code, text, err);
+    const bool is_written = form == TUNE_ONE_FILE ? tune_code_write(&code, text, err)
+                                                  : tune_world_write(&code, text, err);
     text_finish(&words);
     text_finish(&command);
     free(scenario);
     return is_written;
+}
+
+const char *tune_export_lacks(const TuneReport *report)
+{
+    const TuneTrial *trial = tune_export_trial(report);
+    assert(trial != NULL);
+    Scenario scenario = *report->scenario;
+    tune_apply(&report->tune->schemes[trial->scheme], trial->value, &scenario);
+    if (scenario.run.step == 0.0) {
+        // the way of stepping that a step chosen for a tolerance is for
+        scenario = scenario_with_step(&scenario, scenario.run.step);
+    }
+    return tune_world_lacks(&scenario);
 }
 
 // Text, each line moved in by four spaces.
@@ -84,8 +99,14 @@ static void write_code(const TuneReport *report, const Style *style, Text *text)
         text_append(text, "  There is no setting to write.\n");
         return;
     }
-    text_append(text, "  --code FILE.c writes the setting as one C file that needs ODE alone and "
-                      "gives the same run, bit for bit: cc FILE.c -o run -lode -lm\n");
+    const char *lacks = tune_export_lacks(report);
+    if (lacks == NULL) {
+        text_append(text, "  --code FILE.c writes the setting as a short program against "
+                          "libjointplay, for worlds of your own: cc FILE.c -o run $(pkg-config "
+                          "--cflags --libs jointplay) -lm\n");
+    }
+    text_append(text, "  --one-file FILE.c writes it as one C file that needs ODE alone and gives "
+                      "the same run, bit for bit: cc FILE.c -o run -lode -lm\n");
 }
 
 const TuneTrial *tune_export_plain(const Tune *tune)

@@ -1,0 +1,273 @@
+// Does the program against libjointplay that `jointplay tune` writes make the same run?
+//
+// It knows the world through ODE alone, and its numbers are not those of the program's own world to
+// the last bit. Both are held against the reference: the largest difference of omega at any sample,
+// relative to the body's largest. That of the library may be twice that of the program, or what was
+// asked for.
+#include "program.h"
+
+#include <math.h>
+
+enum { COLUMNS_MOST = 256, ROWS_MOST = 4096, LINE_SIZE = 1 << 14 };
+
+// A series as CSV: heads, and one row a sample.
+typedef struct Series {
+    size_t column_count;
+    size_t row_count;
+    char *heads[COLUMNS_MOST];
+    double *rows[ROWS_MOST];
+} Series;
+
+static Series *read_series(const Program *program, const char *name)
+{
+    char path[PROGRAM_PATH_SIZE];
+    char line[LINE_SIZE];
+    program_path(program, name, path);
+    FILE *stream = fopen(path, "r");
+    assert_non_null(stream);
+    Series *series = calloc(1, sizeof *series);
+    assert_non_null(fgets(line, sizeof line, stream));
+    for (char *head = strtok(line, ",\n"); head != NULL; head = strtok(NULL, ",\n")) {
+        assert_true(series->column_count < COLUMNS_MOST);
+        series->heads[series->column_count++] = strdup(head);
+    }
+    while (fgets(line, sizeof line, stream) != NULL) {
+        assert_true(series->row_count < ROWS_MOST);
+        double *row = calloc(series->column_count, sizeof *row);
+        char *cell = line;
+        for (size_t i = 0; i < series->column_count; i++) {
+            row[i] = strtod(cell, NULL);
+            cell += strcspn(cell, ",\n") + 1;
+        }
+        series->rows[series->row_count++] = row;
+    }
+    fclose(stream);
+    return series;
+}
+
+static void free_series(Series *series)
+{
+    for (size_t i = 0; i < series->column_count; i++) {
+        free(series->heads[i]);
+    }
+    for (size_t i = 0; i < series->row_count; i++) {
+        free(series->rows[i]);
+    }
+    free(series);
+}
+
+static size_t column_of(const Series *series, const char *head)
+{
+    size_t column = 0;
+    while (column < series->column_count && strcmp(series->heads[column], head) != 0) {
+        column++;
+    }
+    assert_true(column < series->column_count);
+    return column;
+}
+
+// The largest difference of omega from the truth, of all bodies.
+static double error_of(const Series *run, const Series *truth)
+{
+    double error = 0.0;
+    assert_int_equal(run->row_count, truth->row_count);
+    for (size_t i = 0; i < run->column_count; i++) {
+        const char *ending = strstr(run->heads[i], "_omega_rad_s");
+        if (ending == NULL || strcmp(ending, "_omega_rad_s") != 0) {
+            continue;
+        }
+        const size_t column = column_of(truth, run->heads[i]);
+        double scale = 0.0;
+        double largest = 0.0;
+        for (size_t k = 0; k < run->row_count; k++) {
+            assert_true(fabs(run->rows[k][0] - truth->rows[k][0]) < 1e-9);
+            scale = fmax(scale, fabs(truth->rows[k][column]));
+            largest = fmax(largest, fabs(run->rows[k][i] - truth->rows[k][column]));
+        }
+        error = scale > 0.0 ? fmax(error, largest / scale) : error;
+    }
+    return error;
+}
+
+static double error_in(const Program *program, const char *name, const Series *truth)
+{
+    Series *series = read_series(program, name);
+    const double error = error_of(series, truth);
+    free_series(series);
+    return error;
+}
+
+// Builds a program with ODE and the library alone and not a warning, and runs it.
+static void run_world(const Program *program, const char *name)
+{
+    char line[3 * PROGRAM_PATH_SIZE];
+    snprintf(line, sizeof line,
+             "cd '%s' && $JOINTPLAY_CC -Wall -Wextra -Wshadow -Werror -o world %s.c "
+             "-I\"$JOINTPLAY_HEADERS\" $(pkg-config --cflags --libs ode) "
+             "-L\"$JOINTPLAY_LIBRARY\" -ljointplay -lm && "
+             "LD_LIBRARY_PATH=\"$JOINTPLAY_LIBRARY\" ./world >%s.csv 2>words",
+             program->folder, name, name);
+    assert_int_equal(system(line), 0);
+}
+
+// The series of the setting by one of the program's own solvers.
+static void run_own(Program *program, const char *command, const char *backend)
+{
+    char line[3 * PROGRAM_PATH_SIZE];
+    snprintf(line, sizeof line, "%s --set 'run.backends=[%s]' --series %s.csv --quiet",
+             strchr(command, ' ') + 1, backend, backend);
+    program_run(program, line);
+    assert_int_equal(program->status, 0);
+}
+
+// What is asked for, and the setting.
+typedef struct Wanted {
+    const char *options;
+    double error;
+    const char *changed; // for the control: what sed does to the program, so that it is wrong
+} Wanted;
+
+static void check_world(Program *program, const Wanted *wanted)
+{
+    char line[3 * PROGRAM_PATH_SIZE];
+    snprintf(line, sizeof line, "tune %s --error %g --code world.c --json --quiet", wanted->options,
+             wanted->error);
+    program_run(program, line);
+    if (program->status != 0) {
+        fail_msg("%s: status %d: %s", line, program->status, program->errors);
+    }
+    json_t *root = program_json(program);
+    const char *command =
+        json_string_value(json_object_get(json_object_get(root, "best_at_step"), "command"));
+    assert_non_null(command);
+    run_own(program, command, "ode");
+    run_own(program, command, "reference");
+    json_decref(root);
+    run_world(program, "world");
+    Series *truth = read_series(program, "reference.csv");
+    const double own = error_in(program, "ode.csv", truth);
+    const double error = error_in(program, "world.csv", truth);
+    print_message("# %.2e, of the program %.2e: %s\n", error, own, wanted->options);
+    assert_true(error <= fmax(2.0 * own, wanted->error));
+    snprintf(line, sizeof line, "cd '%s' && sed '%s' world.c >wrong.c && ! cmp -s world.c wrong.c",
+             program->folder, wanted->changed);
+    assert_int_equal(system(line), 0);
+    run_world(program, "wrong");
+    assert_false(error_in(program, "wrong.csv", truth) <= 2.0 * fmax(2.0 * own, wanted->error));
+    free_series(truth);
+}
+
+static void check_worlds(void **state, const Wanted *wanted, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        check_world(*state, &wanted[i]);
+    }
+}
+
+#define K66 "$cases/paper/impact-k66.yaml --schemes direct/staggered"
+
+static void pins_in_holes_make_the_same_run(void **state)
+{
+    static const Wanted RUNS[] = {
+        // twice the program's error, as tests/measure/hand_four_bar_error has it by hand
+        {K66 "/impulse --at-step '20 us' --set run.revolutions=0.1 --set run.samples=3000", 3e-5,
+         "s/restitution = 0.9/restitution = 0.8/"},
+        {K66 "/midpoint --at-step '5 us' --set run.revolutions=0.1 --set run.samples=3000 "
+             "--set contact.friction=0.1",
+         1e-3, "s/friction = 0.1/friction = 0/"},
+        {"$cases/mechanisms/slider-crank-pin.yaml --schemes direct/staggered/impulse "
+         "--at-step '2 us' --set run.revolutions=0.05 --set run.samples=3000",
+         1e-4, "s/stiffness = 6.6e+10/stiffness = 6.6e+9/"},
+    };
+    check_worlds(state, RUNS, sizeof RUNS / sizeof *RUNS);
+}
+
+static void stops_and_backlash_make_the_same_run(void **state)
+{
+    static const Wanted RUNS[] = {
+        {"$cases/mechanisms/stop-rebound.yaml --schemes direct/staggered/impulse "
+         "--at-step '0.5 ms' --set run.samples=300",
+         1e-4, "s/high = /high = 0.01 + /"},
+        {"$cases/mechanisms/servo-backlash.yaml --schemes direct/staggered/midpoint "
+         "--at-step '0.1 ms' --set run.duration='1.5 s' --set run.samples=15",
+         1e-3, "s/gap = /gap = 0.9 * /"},
+    };
+    check_worlds(state, RUNS, sizeof RUNS / sizeof *RUNS);
+}
+
+static void what_drives_and_pushes_makes_the_same_run(void **state)
+{
+    static const Wanted RUNS[] = {
+        {"$cases/mechanisms/start-and-stop.yaml --schemes direct/staggered/impulse "
+         "--at-step '10 us' --set run.duration='12 ms' --set run.samples=1200",
+         1e-5, "s/(i + 1) \\* STEP))/i * STEP))/"},
+        {"$cases/mechanisms/run-up.yaml --schemes direct/staggered/impulse --at-step '10 us' "
+         "--set run.duration='10 ms' --set run.samples=1000",
+         2e-4, "s/middle = (i + 0.5)/middle = 1.01 * (i + 0.5)/"},
+        {"$cases/mechanisms/andrews.yaml --schemes direct/staggered --at-step '10 us' "
+         "--set run.duration='10 ms' --set run.samples=100",
+         1e-4, "s/4.53e+03/4e+03/"},
+    };
+    check_worlds(state, RUNS, sizeof RUNS / sizeof *RUNS);
+}
+
+static void expect_refused(Program *program, const char *options, const char *reason)
+{
+    char line[2 * PROGRAM_PATH_SIZE];
+    char path[PROGRAM_PATH_SIZE];
+    snprintf(line, sizeof line, "tune %s --code none.c", options);
+    program_run(program, line);
+    assert_int_equal(program->status, 0);
+    assert_says(program->errors, "not written: none.c (");
+    assert_says(program->errors, reason);
+    program_path(program, "none.c", path);
+    assert_int_not_equal(access(path, F_OK), 0);
+}
+
+static void what_the_library_cannot_do_is_said(void **state)
+{
+    expect_refused(*state,
+                   "$cases/mechanisms/gear-pair.yaml --error 1e-1 --schemes "
+                   "direct/staggered/impulse",
+                   "libjointplay has no pair of gears; --one-file FILE.c writes one");
+    expect_refused(*state,
+                   "$cases/paper/ideal-nominal.yaml --error 1e-2 --schemes extrapolated "
+                   "--set run.revolutions=0.1",
+                   "libjointplay does not extrapolate from several worlds");
+    expect_refused(*state,
+                   "$cases/paper/impact-k66.yaml --error 3e-2 --set run.revolutions=0.1 "
+                   "--set ode.facets=64 --schemes direct/plain/textbook/staves",
+                   "libjointplay has round holes and no polygons");
+}
+
+static void the_program_is_short(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_run(program, "tune $cases/paper/impact-k66.yaml --at-step '20 us' --schemes "
+                         "direct/staggered/impulse --set run.revolutions=0.1 --code short.c");
+    assert_int_equal(program->status, 0);
+    program_path(program, "short.c", path);
+    program_read(path, program->output);
+    size_t lines = 0;
+    for (const char *at = program->output; *at != '\0'; at++) {
+        lines += *at == '\n' ? 1 : 0;
+    }
+    assert_in_range(lines, 80, 150);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(pins_in_holes_make_the_same_run, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(stops_and_backlash_make_the_same_run, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(what_drives_and_pushes_makes_the_same_run, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(what_the_library_cannot_do_is_said, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(the_program_is_short, program_set_up, program_tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
