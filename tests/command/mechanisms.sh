@@ -8,12 +8,13 @@ folder=cases/mechanisms
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 . tests/command/held_cases.sh
-echo "1..16"
+echo "1..23"
 cases_hold slider-crank slider-crank-pin slider-crank-guide slider-crank-both woodpecker \
     bouncing-ball newtons-cradle gear-pair planetary-gear \
-    servo-backlash stop-rebound
+    servo-backlash stop-rebound pendulum andrews start-and-stop four-bars-2
 # a floor that takes more, spheres that lose some of their speed, a longer rod, teeth that keep to one
-# flank, gears that give way by more
+# flank, gears that give way by more, another gravity, a stronger torque
 cases_do_not_hold "bouncing-ball contact.restitution=0.7" \
     "newtons-cradle contact.damping=lankarani-nikravesh" "slider-crank slider-crank.rod.length=121mm" \
-    "gear-pair torsion-springs.bearing.damping=6N*mm*s/rad" "servo-backlash joints.output.stiffness=160N*m/rad"
+    "gear-pair torsion-springs.bearing.damping=6N*mm*s/rad" "servo-backlash joints.output.stiffness=160N*m/rad" \
+    "pendulum gravity=9.82m/s^2" "four-bars-2 gravity=9.82m/s^2" "andrews drive.torque=0.034N*m"
