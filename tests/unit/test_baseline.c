@@ -479,6 +479,52 @@ static void what_cannot_be_predicted_is_judged_by_its_distribution(void **state)
     free(members);
 }
 
+// All starts but a few give the same number.
+static void fill_shared_sample(CheckMeasure *members, const CheckMeasure *run, size_t place,
+                               double shared)
+{
+    fill_sample(members, run, place, 0.0, 1);
+    for (int i = 2; i < BASELINE_SAMPLE_SIZE; i++) {
+        members[i].metrics[place].value = shared;
+    }
+}
+
+// What nearly all starts share has more digits than a baseline keeps. Control: a shared number that
+// is another one is out.
+static void rounding_of_a_baseline_moves_no_number_that_starts_share(void **state)
+{
+    Bench *bench = *state;
+    Err err = {0};
+    CheckMeasure *members = calloc(BASELINE_SAMPLE_SIZE, sizeof *members);
+    assert_non_null(members);
+    const size_t place = baseline_find(&bench->run, "ode/hole/impulse_N_s", 0);
+    bench->members[0].metrics[place].value *= 1.01;
+    assert_true(baseline_set_metrics(&bench->made, &bench->run, bench->members, 2, &err));
+    fill_shared_sample(members, &bench->run, place, 200.0 / 3.0);
+    assert_true(baseline_set_sample(&bench->made, members, BASELINE_SAMPLE_SIZE, 1e-3, &err));
+    assert_true(bench->made.metrics[place].sample[0] != 200.0 / 3.0);
+    static const double SHARED[] = {200.0 / 3.0, 200.0 / 3.0 * (1.0 + 1e-7)};
+    for (size_t k = 0; k < 2; k++) {
+        fill_shared_sample(members, &bench->run, place, SHARED[k]);
+        const CheckEvidence evidence = {.run = &bench->run,
+                                        .sample = members,
+                                        .sample_count = BASELINE_SAMPLE_SIZE,
+                                        .now = &bench->made,
+                                        .is_full = true,
+                                        .rate = 1e-3};
+        const size_t count = check_judge(&bench->made, &evidence, bench->rows);
+        size_t out = 0;
+        for (size_t i = 0; i < count; i++) {
+            out += check_row_is_out(&bench->rows[i]) ? 1 : 0;
+        }
+        assert_int_equal(out, k);
+    }
+    for (int i = 0; i < BASELINE_SAMPLE_SIZE; i++) {
+        check_measure_finish(&members[i]);
+    }
+    free(members);
+}
+
 static void a_motion_is_measured_up_to_its_horizon_and_at_finer_steps(void **state)
 {
     (void)state;
@@ -603,6 +649,16 @@ int main(void)
         BASELINE_TEST(everything_wrong_in_a_baseline_is_found),
         BASELINE_TEST(a_start_beside_makes_a_band_and_a_wide_one_a_sample),
         BASELINE_TEST(what_cannot_be_predicted_is_judged_by_its_distribution),
+        cmocka_unit_test(a_mechanism_of_many_bodies_is_measured_and_handed_on_whole),
+        BASELINE_TEST(every_number_edited_by_more_than_its_band_is_named),
+        BASELINE_TEST(an_edited_hash_is_named_where_the_build_is_the_same),
+        BASELINE_TEST(a_setting_with_signs_in_front_of_its_number_is_judged),
+        BASELINE_TEST(a_changed_setting_is_named_with_both_values),
+        BASELINE_TEST(a_number_that_came_or_went_is_a_difference),
+        BASELINE_TEST(a_sample_that_is_not_that_of_its_median_and_mean_is_damaged),
+        BASELINE_TEST(everything_wrong_in_a_baseline_is_found),
+        BASELINE_TEST(a_start_beside_makes_a_band_and_a_wide_one_a_sample),
+        BASELINE_TEST(rounding_of_a_baseline_moves_no_number_that_starts_share),
         cmocka_unit_test(a_motion_is_measured_up_to_its_horizon_and_at_finer_steps),
         cmocka_unit_test(the_order_of_a_scheme_is_measured),
     };

@@ -227,10 +227,9 @@ bool baseline_set_metrics(Baseline *baseline, const CheckMeasure *run, const Che
     return true;
 }
 
-// Rounds a sorted sample to nine digits, or as many as tell apart a thousandth of its range: a
-// check compares these with numbers that are not rounded, and a coarser sample would lie beside
-// them.
-static void round_sample(double *sample, size_t count)
+// The digits that a sorted sample is kept with: nine, or as many as tell apart a thousandth of its
+// range.
+static int sample_digits(const double *sample, size_t count)
 {
     enum { LEAST_DIGITS = 9, MOST_DIGITS = 17 };
     static const double SHARE = 1e-3;
@@ -240,10 +239,33 @@ static void round_sample(double *sample, size_t count)
     while (range > 0.0 && digits < MOST_DIGITS && pow(10.0, 1 - digits) * size > SHARE * range) {
         digits++;
     }
+    return digits;
+}
+
+static void round_sample(double *sample, size_t count)
+{
+    const int digits = sample_digits(sample, count);
     for (size_t k = 0; k < count; k++) {
         char words[32];
         snprintf(words, sizeof words, "%.*g", digits, sample[k]);
         sample[k] = strtod(words, NULL);
+    }
+}
+
+void baseline_snap(const BaselineMetric *metric, double *values, size_t count)
+{
+    // the rounded sample may ask for a digit more than the one that it was rounded from
+    const int digits = sample_digits(metric->sample, metric->sample_count) - 1;
+    const double rounding = 0.5 * pow(10.0, 1 - digits);
+    for (size_t i = 0; i < count; i++) {
+        double nearest = metric->sample[0];
+        for (size_t k = 1; k < metric->sample_count; k++) {
+            const double other = metric->sample[k];
+            nearest = fabs(other - values[i]) < fabs(nearest - values[i]) ? other : nearest;
+        }
+        if (fabs(nearest - values[i]) <= rounding * fabs(nearest)) {
+            values[i] = nearest;
+        }
     }
 }
 

@@ -186,6 +186,7 @@ static void judge_sample(const BaselineMetric *metric, size_t number, const Chec
         }
         values[i] = evidence->sample[i].metrics[index].value;
     }
+    baseline_snap(metric, values, count);
     sorted_make(values, count);
     row->now = sorted_median(values, count);
     row->deviation = row->now - metric->value;
