@@ -53,8 +53,8 @@ static const char EXPECT_EXAMPLE[] = "expect:\n"
                                      "  ode.error.omega_max: below 1e-3\n";
 
 static const char *const RULES[] = {
-    "A case is one YAML document of at most 1 MiB. Every quantity has its unit; the decimal "
-    "separator is a point.",
+    "A case is one YAML document of at most 16 MiB. Every quantity but 0 has its unit; the "
+    "decimal separator is a point.",
     "A case has either four-bar or slider-crank, for a mechanism of that kind, or bodies, for "
     "any planar linkage.",
     "Unknown and doubled keys are errors, as are anchors, aliases and tags.",

@@ -194,10 +194,12 @@ bool quantity_parse_unit(const char *text, Dimension dimension, double *si, cons
     if (!take_number(&rest, dimension, &value, complaint)) {
         return false;
     }
-    if (*rest == '\0') {
+    if (*rest == '\0' && value != 0.0) {
         return complain_of(complaint, dimension, "'%.*s' has no unit", SHOWN_MAX, text);
     }
-    const Unit *read = read_unit(rest, dimension, complaint);
+    // 0 is the same in every unit
+    const Unit *read = *rest == '\0' ? units_find(dimension, units_si(dimension))
+                                     : read_unit(rest, dimension, complaint);
     if (read == NULL) {
         return false;
     }

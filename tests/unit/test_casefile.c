@@ -306,7 +306,7 @@ static void what_is_no_readable_file_says_so(void **state)
            "no/such/case.yaml: cannot be read: No such file or directory");
     refuse("tests/bad", NULL, ERR_CASE, "tests/bad: is a directory\nallowed: a case file");
     refuse("/dev/zero", NULL, ERR_CASE,
-           "/dev/zero: too large for a case file\nallowed: at most 1048576 bytes");
+           "/dev/zero: too large for a case file\nallowed: at most 16777216 bytes");
     refuse("/dev/null", NULL, ERR_CASE, "/dev/null: the file is empty\nallowed: a case in YAML");
 }
 

@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 static const double MASS = 0.2;       // kg
 static const double INERTIA = 1.5e-4; // kg m^2
@@ -53,14 +54,16 @@ static Scenario falling_disc(bool on_disc, double speed)
 
 static MappingJoint measure(const Scenario *scenario)
 {
-    MappingJoint joints[KINEMATICS_JOINT_MAX];
+    MappingJoint *joints = NULL;
     size_t count = 0;
     Err err = {ERR_NONE, ""};
-    if (!mapping_joint_measure(scenario, (RunWatch){0}, joints, &count, &err)) {
+    if (!mapping_joint_measure(scenario, (RunWatch){0}, &joints, &count, &err)) {
         fail_msg("%s", err.text);
     }
     assert_int_equal(count, 1);
-    return joints[0];
+    const MappingJoint joint = joints[0];
+    free(joints);
+    return joint;
 }
 
 static void a_corner_presses_with_the_mass_at_its_lever(void **state)

@@ -59,6 +59,17 @@ static void quantities_need_a_unit_of_their_dimension(void **state)
     assert_true(value == 1e-6);
     assert_true(quantity_parse("0.9", DIMENSION_NONE, &value, &complaint));
 
+    // 0 is the same in every unit; every dimension has one that it is read in
+    for (Dimension dimension = DIMENSION_LENGTH; dimension < DIMENSION_STIFFNESS; dimension++) {
+        double zero = 1.0;
+        const Unit *unit = NULL;
+        assert_true(quantity_parse_unit("0", dimension, &zero, &unit, &complaint));
+        assert_true(zero == 0.0);
+        assert_int_equal(unit->dimension, dimension);
+    }
+    assert_true(quantity_parse("-0.0", DIMENSION_LENGTH, &value, &complaint));
+    value = 0.9;
+    assert_false(quantity_parse("1e-300", DIMENSION_LENGTH, &value, &complaint));
     assert_false(quantity_parse("254", DIMENSION_LENGTH, &value, &complaint));
     assert_string_equal(complaint.text, "'254' has no unit");
     assert_false(quantity_parse("254 kg", DIMENSION_LENGTH, &value, &complaint));
