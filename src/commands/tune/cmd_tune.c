@@ -6,6 +6,8 @@
 #include "cli/warnings.h"
 #include "commands/commands.h"
 #include "commands/tune/tune_export.h"
+#include "commands/tune/tune_limit.h"
+#include "commands/tune/tune_linear.h"
 #include "commands/tune/tune_options.h"
 #include "commands/tune/tune_report.h"
 #include "commands/tune/tune_search.h"
@@ -77,20 +79,27 @@ static bool write_one_file(const void *report, Text *text, const char **nothing,
     return write_form(report, TUNE_ONE_FILE, text, nothing, err);
 }
 
-static const char NO_CONSTANTS[] = "no contact with constants that was tried is stable";
-
-static bool write_sdf(const void *report, Text *text, const char **nothing, Err *err)
+static bool write_sdf(const void *target, Text *text, const char **nothing, Err *err)
 {
     (void)err;
+    const TuneReport *report = target;
     tune_gazebo_write(report, text);
-    return has_contact(report, text->length > 0, NO_CONSTANTS, nothing);
+    return has_contact(report, text->length > 0, tune_linear_lacks(report->scenario, report->tune),
+                       nothing);
 }
 
-static bool write_mjcf(const void *report, Text *text, const char **nothing, Err *err)
+static bool write_mjcf(const void *target, Text *text, const char **nothing, Err *err)
 {
     (void)err;
+    const TuneReport *report = target;
     tune_mujoco_write(report, text);
-    return has_contact(report, text->length > 0, NO_CONSTANTS, nothing);
+    const TuneContact *contact = &report->tune->contact;
+    const char *lacks = contact->is_limit && report->tune->linear != TUNE_NONE
+                            ? tune_limit_lacks_range(report->scenario, contact->joint)
+                            : NULL;
+    return has_contact(report, text->length > 0,
+                       lacks != NULL ? lacks : tune_linear_lacks(report->scenario, report->tune),
+                       nothing);
 }
 
 static const ResultFile FILES[] = {

@@ -89,8 +89,10 @@ typedef struct TuneLinear {
 } TuneLinear;
 
 // The joint on which a linear contact is modelled, at its deepest in the true motion.
+// Of the limits of a pivot torques and angles are meant.
 typedef struct TuneContact {
     bool is_known; // false: no joint with play ever touches
+    bool is_limit; // whether they are stops or backlash of one pivot or slider, and not a pin
     size_t joint;
     double depth;       // m, the deepest
     double speed;       // m/s, of the hardest impact there

@@ -2,10 +2,13 @@
 #include "commands/tune/tune_export.h"
 
 #include "commands/tune/tune_code.h"
+#include "commands/tune/tune_limit.h"
+#include "commands/tune/tune_linear.h"
 #include "commands/tune/tune_report.h"
 #include "commands/tune/tune_setting.h"
 #include "commands/tune/tune_world.h"
 #include "measure/chosen_run.h"
+#include "write/joint_units.h"
 #include "write/section.h"
 #include "write/units.h"
 
@@ -161,17 +164,19 @@ static void write_loop(const TuneReport *report, const Style *style, Text *text)
     text_finish(&lines);
 }
 
-static void write_linears(const Tune *tune, const Style *style, Text *text)
+static void write_linears(const TuneReport *report, const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"spring at", "um", TABLE_RIGHT},   {"spring", "N/m", TABLE_RIGHT},
-        {"damper", "N s/m", TABLE_RIGHT},   {"step", "us", TABLE_RIGHT},
-        {"error", "of omega", TABLE_RIGHT}, {"", "", TABLE_WRAP},
+    const Tune *tune = report->tune;
+    const JointUnits *units = joint_units(&report->scenario->linkage.joints[tune->contact.joint]);
+    const SectionHead heads[] = {
+        {"spring at", units->length, TABLE_RIGHT}, {"spring", units->stiffness, TABLE_RIGHT},
+        {"damper", units->damping, TABLE_RIGHT},   {"step", "us", TABLE_RIGHT},
+        {"error", "of omega", TABLE_RIGHT},        {"", "", TABLE_WRAP},
     };
-    Table *table = section_begin("A contact with constants", 6, HEADS, style, text);
+    Table *table = section_begin("A contact with constants", 6, heads, style, text);
     for (size_t i = 0; i < tune->linear_count; i++) {
         const TuneLinear *linear = &tune->linears[i];
-        table_cell(table, "%.3g", linear->depth * UNITS_UM);
+        table_cell(table, "%.3g", linear->depth * units_per_si(units->length));
         table_cell(table, "%.4g", linear->stiffness);
         table_cell(table, "%.4g", linear->damping);
         table_cell(table, "%.4g", linear->step_s * UNITS_US);
@@ -188,18 +193,24 @@ static void write_gazebo(const TuneReport *report, const Style *style, Text *tex
 {
     const Tune *tune = report->tune;
     if (tune->linear_count == 0) {
+        if (scenario_has_clearance(report->scenario)) {
+            text_append(text, "\n%sAs Gazebo SDF and MuJoCo MJCF%s\n\n  There is none: %s.\n",
+                        style->heading, style->end, tune_linear_lacks(report->scenario, tune));
+        }
         return;
     }
+    const JointUnits *units = joint_units(&report->scenario->linkage.joints[tune->contact.joint]);
     if (tune->held_s > 0.0) {
-        tune_held_text_constants(tune, style, text);
+        tune_held_text_constants(report, style, text);
     } else {
-        write_linears(tune, style, text);
+        write_linears(report, style, text);
     }
     text_append(text,
                 "  Gazebo and MuJoCo have a constant spring and damper a contact, and plain steps. "
                 "These were run in ODE with the textbook map, against the law itself; the damper "
-                "%sgives an impact on %.4g kg the law's own restitution.\n",
-                tune->held_s > 0.0 ? "beside the law's spring " : "", tune->contact.mass);
+                "%sgives an impact on %.4g %s the law's own restitution.\n",
+                tune->held_s > 0.0 ? "beside the law's spring " : "", tune->contact.mass,
+                units->mass);
     if (tune->held_s > 0.0) {
         text_append(text, "  Those for an impact are the best for a lone one at this step, as by "
                           "`map --at-step`; a row without kp and kd has no such pair.\n");

@@ -4,10 +4,12 @@
 //     kp = 1 / (1/kp1 + 1/kp2),  kd = kd1 + kd2
 //     soft_erp = h kp / (h kp + kd),  soft_cfm = 1 / (h kp + kd)          (the textbook map)
 // so that each of two equal surfaces has 2 kp and kd / 2. The soft_erp and soft_cfm of a surface
-// are read and not used. max_vel bounds the speed at which a contact pushes apart, 0.01 m/s unless
-// said otherwise; min_depth is the overlap that is left alone.
+// are read and not used. The stop of a joint is one row by itself (tune_limit.c). max_vel bounds
+// the speed at which a contact pushes apart, 0.01 m/s unless said otherwise; min_depth is the
+// overlap that is left alone.
 #include "commands/tune/tune_export.h"
 
+#include "commands/tune/tune_limit.h"
 #include "commands/tune/tune_report.h"
 #include "contact/map.h"
 #include "write/number.h"
@@ -23,10 +25,11 @@ bool tune_gazebo_find(const Tune *tune, TuneGazebo *gazebo)
         return false;
     }
     const TuneLinear *linear = &tune->linears[tune->linear];
+    const bool is_limit = tune->contact.is_limit;
     const double sum = linear->step_s * linear->stiffness + linear->damping;
     *gazebo = (TuneGazebo){
-        .kp = 2.0 * linear->stiffness,
-        .kd = 0.5 * linear->damping,
+        .kp = is_limit ? linear->stiffness : 2.0 * linear->stiffness,
+        .kd = is_limit ? linear->damping : 0.5 * linear->damping,
         .soft_erp = linear->step_s * linear->stiffness / sum,
         .soft_cfm = 1.0 / sum,
         .max_vel = MAX_VEL,
@@ -34,6 +37,32 @@ bool tune_gazebo_find(const Tune *tune, TuneGazebo *gazebo)
         .error = linear->error,
     };
     return true;
+}
+
+static void write_surface(const TuneReport *report, const TuneGazebo *gazebo,
+                          const TuneLinear *linear, Text *text)
+{
+    text_append(text,
+                "<!-- in the collision of the pin, and the same in that of the hole -->\n"
+                "<surface>\n"
+                "  <contact>\n"
+                "    <ode>\n"
+                "      <soft_erp>%s</soft_erp> <!-- not used -->\n"
+                "      <soft_cfm>%s</soft_cfm>\n"
+                "      <kp>%s</kp> <!-- two in a row make %.4g N/m -->\n"
+                "      <kd>%s</kd> <!-- two together make %.4g N s/m -->\n"
+                "      <min_depth>%s</min_depth>\n"
+                "      <max_vel>%s</max_vel>\n"
+                "    </ode>\n"
+                "  </contact>\n"
+                "  <friction><ode><mu>%s</mu><mu2>%s</mu2></ode></friction>\n"
+                "</surface>\n",
+                number_shortest(gazebo->soft_erp).text, number_shortest(gazebo->soft_cfm).text,
+                number_shortest(gazebo->kp).text, linear->stiffness,
+                number_shortest(gazebo->kd).text, linear->damping,
+                number_shortest(gazebo->min_depth).text, number_shortest(gazebo->max_vel).text,
+                number_shortest(report->scenario->contact.friction).text,
+                number_shortest(report->scenario->contact.friction).text);
 }
 
 void tune_gazebo_write(const TuneReport *report, Text *text)
@@ -45,7 +74,7 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
     const TuneLinear *linear = &report->tune->linears[report->tune->linear];
     Text source;
     text_init(&source);
-    tune_held_text_source(linear, &source);
+    tune_held_text_source(report, linear, &source);
     text_append(text,
                 "<!-- error of omega with these constants, measured: %.2g;\n"
                 "     best for: %s -->\n",
@@ -67,25 +96,9 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
                 number_shortest(gazebo.step_s).text,
                 number_shortest(report->scenario->ode.erp).text,
                 number_shortest(gazebo.max_vel).text);
-    text_append(text,
-                "<!-- in the collision of the pin, and the same in that of the hole -->\n"
-                "<surface>\n"
-                "  <contact>\n"
-                "    <ode>\n"
-                "      <soft_erp>%s</soft_erp> <!-- not used -->\n"
-                "      <soft_cfm>%s</soft_cfm>\n"
-                "      <kp>%s</kp> <!-- two in a row make %.4g N/m -->\n"
-                "      <kd>%s</kd> <!-- two together make %.4g N s/m -->\n"
-                "      <min_depth>%s</min_depth>\n"
-                "      <max_vel>%s</max_vel>\n"
-                "    </ode>\n"
-                "  </contact>\n"
-                "  <friction><ode><mu>%s</mu><mu2>%s</mu2></ode></friction>\n"
-                "</surface>\n",
-                number_shortest(gazebo.soft_erp).text, number_shortest(gazebo.soft_cfm).text,
-                number_shortest(gazebo.kp).text, linear->stiffness, number_shortest(gazebo.kd).text,
-                linear->damping, number_shortest(gazebo.min_depth).text,
-                number_shortest(gazebo.max_vel).text,
-                number_shortest(report->scenario->contact.friction).text,
-                number_shortest(report->scenario->contact.friction).text);
+    if (report->tune->contact.is_limit) {
+        tune_limit_sdf(report, (ErpCfm){.erp = gazebo.soft_erp, .cfm = gazebo.soft_cfm}, text);
+    } else {
+        write_surface(report, &gazebo, linear, text);
+    }
 }

@@ -2,6 +2,7 @@
 #include "commands/tune/tune_report.h"
 
 #include "commands/tune/tune_setting.h"
+#include "write/joint_units.h"
 #include "write/number.h"
 #include "write/section.h"
 #include "write/units.h"
@@ -132,11 +133,14 @@ void tune_held_text_answer(const TuneReport *report, const Style *style, Text *t
     write_schemes(tune, style, text);
 }
 
-void tune_held_text_source(const TuneLinear *linear, Text *text)
+void tune_held_text_source(const TuneReport *report, const TuneLinear *linear, Text *text)
 {
+    const JointUnits *units =
+        joint_units(&report->scenario->linkage.joints[report->tune->contact.joint]);
     switch (linear->source) {
     case TUNE_LINEAR_SECANT:
-        text_append(text, "law at %.3g um", linear->depth * UNITS_UM);
+        text_append(text, "law at %.3g %s", linear->depth * units_per_si(units->length),
+                    units->length);
         break;
     case TUNE_LINEAR_MEDIAN:
         text_append(text, "median impact");
@@ -147,12 +151,13 @@ void tune_held_text_source(const TuneLinear *linear, Text *text)
     }
 }
 
-static void constants_row(const Tune *tune, int number, Table *table)
+static void constants_row(const TuneReport *report, int number, Table *table)
 {
+    const Tune *tune = report->tune;
     const TuneLinear *linear = &tune->linears[number];
     Text source;
     text_init(&source);
-    tune_held_text_source(linear, &source);
+    tune_held_text_source(report, linear, &source);
     table_cell(table, "%s", source.data);
     text_finish(&source);
     section_finite(table, "%.4g", linear->is_row ? NAN : linear->stiffness);
@@ -167,8 +172,9 @@ static void constants_row(const Tune *tune, int number, Table *table)
 }
 
 // Why those that failed did, each reason once.
-static void write_failures(const Tune *tune, Text *text)
+static void write_failures(const TuneReport *report, Text *text)
 {
+    const Tune *tune = report->tune;
     for (size_t i = 0; i < tune->linear_count; i++) {
         const char *reason = tune->linears[i].reason;
         bool is_said = reason[0] == '\0';
@@ -177,31 +183,33 @@ static void write_failures(const Tune *tune, Text *text)
         }
         if (!is_said) {
             text_append(text, "  ");
-            tune_held_text_source(&tune->linears[i], text);
+            tune_held_text_source(report, &tune->linears[i], text);
             text_append(text, "%s: %s\n", tune->linears[i].is_row ? ", ERP and CFM" : "", reason);
         }
     }
 }
 
-void tune_held_text_constants(const Tune *tune, const Style *style, Text *text)
+void tune_held_text_constants(const TuneReport *report, const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
+    const Tune *tune = report->tune;
+    const JointUnits *units = joint_units(&report->scenario->linkage.joints[tune->contact.joint]);
+    const SectionHead heads[] = {
         {"best for", "", TABLE_LEFT},
-        {"kp", "N/m", TABLE_RIGHT},
-        {"kd", "N s/m", TABLE_RIGHT},
+        {"kp", units->stiffness, TABLE_RIGHT},
+        {"kd", units->damping, TABLE_RIGHT},
         {"ERP", "1", TABLE_RIGHT},
-        {"CFM", "1/(N s/m)", TABLE_RIGHT},
+        {"CFM", units->cfm, TABLE_RIGHT},
         {"error", "of omega", TABLE_RIGHT},
         {"", "", TABLE_LEFT},
     };
     char heading[HEADING_SIZE];
     Table *table =
-        section_begin(heading_at(tune, "Contacts with constants", heading), 7, HEADS, style, text);
+        section_begin(heading_at(tune, "Contacts with constants", heading), 7, heads, style, text);
     for (int i = 0; i < (int)tune->linear_count; i++) {
-        constants_row(tune, i, table);
+        constants_row(report, i, table);
     }
     section_end(table, text);
-    write_failures(tune, text);
+    write_failures(report, text);
 }
 
 void tune_held_text_row(const Tune *tune, Text *text)

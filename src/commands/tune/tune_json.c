@@ -135,6 +135,7 @@ static json_t *gazebo_object(const TuneReport *report)
         return json_null();
     }
     json_t *object = json_object();
+    json_object_set_new(object, "is_limit", json_boolean(report->tune->contact.is_limit));
     json_value_set(object, "kp", gazebo.kp);
     json_value_set(object, "kd", gazebo.kd);
     json_value_set(object, "soft_erp", gazebo.soft_erp);
@@ -154,6 +155,7 @@ static json_t *mujoco_object(const TuneReport *report)
         return json_null();
     }
     json_t *object = json_object();
+    json_object_set_new(object, "is_limit", json_boolean(report->tune->contact.is_limit));
     json_object_set_new(object, "solref", json_pack("[f, f]", mujoco.solref[0], mujoco.solref[1]));
     json_object_set_new(
         object, "solimp",

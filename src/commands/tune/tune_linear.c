@@ -9,6 +9,7 @@
 #include "commands/tune/tune_linear.h"
 
 #include "commands/tune/tune_held.h"
+#include "commands/tune/tune_limit.h"
 #include "contact/damping.h"
 #include "contact/law.h"
 #include "model/response.h"
@@ -90,10 +91,10 @@ static double find_mass(const Linkage *linkage, const Trajectory *trajectory, si
     return mass;
 }
 
-static void find_contact(const Scenario *scenario, const Trajectory *truth, TuneContact *contact)
+// The pin that goes deepest.
+static void find_pin(const Scenario *scenario, const Trajectory *truth, TuneContact *contact)
 {
     const Linkage *linkage = &scenario->linkage;
-    *contact = (TuneContact){.is_known = false};
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const JointExtremes *joint = &truth->joints[i];
         if (linkage->joints[i].kind != JOINT_CLEARANCE ||
@@ -108,7 +109,54 @@ static void find_contact(const Scenario *scenario, const Trajectory *truth, Tune
             .mass = find_mass(linkage, truth, i, joint->penetration_max.time_s),
         };
     }
+}
+
+// The one joint with stops or backlash.
+static void find_limit(const Scenario *scenario, const Trajectory *truth, TuneContact *contact)
+{
+    size_t number;
+    if (!tune_limit_alone(&scenario->linkage, &number) ||
+        tune_limit_lacks(scenario, number) != NULL) {
+        return;
+    }
+    const JointExtremes *joint = &truth->joints[number];
+    const size_t sample = sample_near(truth, joint->penetration_max.time_s);
+    *contact = (TuneContact){
+        .is_known = joint->penetration_max.value > 0.0,
+        .is_limit = true,
+        .joint = number,
+        .depth = joint->penetration_max.value,
+        .speed = joint->spike_count > 0 ? joint->spikes[0].approach_speed : 0.0,
+        .mass = tune_limit_mass(scenario, trajectory_motion(truth, sample, 0)),
+    };
+}
+
+static void find_contact(const Scenario *scenario, const Trajectory *truth, TuneContact *contact)
+{
+    *contact = (TuneContact){.is_known = false};
+    find_pin(scenario, truth, contact);
+    if (!contact->is_known) {
+        find_limit(scenario, truth, contact);
+    }
     contact->is_known = contact->is_known && isfinite(contact->mass);
+}
+
+const char *tune_linear_lacks(const Scenario *scenario, const Tune *tune)
+{
+    size_t number = 0;
+    bool has_pin = false;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        has_pin = has_pin || scenario->linkage.joints[i].kind == JOINT_CLEARANCE;
+    }
+    const bool is_alone = tune_limit_alone(&scenario->linkage, &number);
+    if (!has_pin && !is_alone) {
+        return "Gazebo and MuJoCo get constants of pins in holes, or of the stops or backlash of "
+               "one pivot or slider that alone has play";
+    }
+    const char *lacks = is_alone ? tune_limit_lacks(scenario, number) : NULL;
+    return lacks != NULL            ? lacks
+           : tune->contact.is_known ? "no contact with constants that was tried is stable"
+                                    : "nothing touches in a joint with play";
 }
 
 static void add_linear(Tune *tune, double depth, double stiffness, double damping, double step_s)
@@ -128,7 +176,8 @@ static void list_linears(const TuneSearch *search, const ForceLaw *law, Tune *tu
 {
     const Scenario *scenario = search->scenario;
     TuneContact *contact = &tune->contact;
-    const bool is_viscous = scenario->contact.damping == DAMPING_VISCOUS;
+    const Joint *joint = &scenario->linkage.joints[contact->joint];
+    const bool is_viscous = law_options(&scenario->contact, joint).damping == DAMPING_VISCOUS;
     const bool is_linear = law->family == FORCE_LAW_POWER && law->exponent == 1.0;
     contact->restitution = is_viscous ? NAN : damping_delivered(law->hysteresis);
     for (size_t i = 0; i < (is_linear ? 1 : SHARE_COUNT); i++) {
@@ -210,7 +259,7 @@ bool tune_linear_run(const TuneSearch *search, Err *err)
     }
     const bool is_held = tune->held_s > 0.0;
     list_linears(search, &law, tune);
-    if (is_held && !tune_held_constants(search, err)) {
+    if (is_held && !tune->contact.is_limit && !tune_held_constants(search, err)) {
         return false;
     }
     const TuneRuns runs = {"running a linear contact", tune->linear_count, apply_linear,

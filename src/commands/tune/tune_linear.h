@@ -12,6 +12,9 @@ double tune_linear_damping(double stiffness, double mass, double restitution);
 // stepping, direct solver.
 Scenario tune_linear_scenario(const Scenario *scenario, const TuneLinear *linear);
 
+// Why there are no constants after a search, as a sentence without a full stop.
+const char *tune_linear_lacks(const Scenario *scenario, const Tune *tune);
+
 // Looks up the deepest contact in the truth, runs constants taken from it at several depths and
 // steps against the truth, and chooses among them. Does nothing where no joint has play.
 bool tune_linear_run(const TuneSearch *search, Err *err);

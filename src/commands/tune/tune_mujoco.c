@@ -16,6 +16,8 @@
 // tenth.
 #include "commands/tune/tune_export.h"
 
+#include "commands/tune/tune_limit.h"
+#include "write/joint_units.h"
 #include "write/number.h"
 
 #include <float.h>
@@ -40,14 +42,17 @@ static double inverse_mass(const Linkage *linkage, int body)
 bool tune_mujoco_find(const TuneReport *report, TuneMujoco *mujoco)
 {
     const Tune *tune = report->tune;
-    if (tune->linear == TUNE_NONE) {
+    if (tune->linear == TUNE_NONE ||
+        (tune->contact.is_limit &&
+         tune_limit_lacks_range(report->scenario, tune->contact.joint) != NULL)) {
         return false;
     }
     const Linkage *linkage = &report->scenario->linkage;
     const Joint *joint = &linkage->joints[tune->contact.joint];
     const TuneLinear *linear = &tune->linears[tune->linear];
-    const double weight =
-        inverse_mass(linkage, joint->body_a) + inverse_mass(linkage, joint->body_b);
+    const double weight = tune->contact.is_limit ? 1.0 / tune->contact.mass
+                                                 : inverse_mass(linkage, joint->body_a) +
+                                                       inverse_mass(linkage, joint->body_b);
     *mujoco = (TuneMujoco){
         .weight = weight,
         .impedance = LEAST_IMPEDANCE,
@@ -66,12 +71,8 @@ bool tune_mujoco_is_finer(const TuneReport *report, const TuneMujoco *mujoco)
     return mujoco->step_s < report->tune->held_s;
 }
 
-void tune_mujoco_write(const TuneReport *report, Text *text)
+static void write_pair(const TuneReport *report, const TuneMujoco *mujoco, Text *text)
 {
-    TuneMujoco mujoco;
-    if (!tune_mujoco_find(report, &mujoco)) {
-        return;
-    }
     const double friction = report->scenario->contact.friction;
     char slides[FRICTION_SIZE] = "";
     if (friction > 0.0) {
@@ -84,13 +85,42 @@ void tune_mujoco_write(const TuneReport *report, Text *text)
                 "<!-- spring %.4g N/m, damper %.4g N s/m, not run here; for bodies\n"
                 "     with free joints, held by connect equalities: A = %.6g 1/kg. In any\n"
                 "     other model multiply solref by (invweight0 of both bodies) / A. -->\n",
-                mujoco.stiffness, mujoco.damping, mujoco.weight);
+                mujoco->stiffness, mujoco->damping, mujoco->weight);
     text_append(text,
                 "<option timestep=\"%s\"\n        integrator=\"Euler\" cone=\"elliptic\"/>\n"
                 "<pair geom1=\"pin\" geom2=\"hole\" condim=\"%d\" margin=\"0\" gap=\"0\"%s\n"
                 "      solref=\"%s %s\"\n"
                 "      solimp=\"%s %s 1 0.5 1\"/>\n",
-                number_shortest(mujoco.step_s).text, friction > 0.0 ? 3 : 1, slides,
-                number_shortest(mujoco.solref[0]).text, number_shortest(mujoco.solref[1]).text,
-                number_shortest(mujoco.impedance).text, number_shortest(mujoco.impedance).text);
+                number_shortest(mujoco->step_s).text, friction > 0.0 ? 3 : 1, slides,
+                number_shortest(mujoco->solref[0]).text, number_shortest(mujoco->solref[1]).text,
+                number_shortest(mujoco->impedance).text, number_shortest(mujoco->impedance).text);
+}
+
+// The limit of a joint, in radians or metres.
+static void write_limit(const TuneReport *report, const TuneMujoco *mujoco, Text *text)
+{
+    const Joint *joint = &report->scenario->linkage.joints[report->tune->contact.joint];
+    const JointUnits *units = joint_units(joint);
+    text_append(text,
+                "<!-- spring %.4g %s, damper %.4g %s, not run here; for bodies\n"
+                "     in a tree of joints: A = %.6g 1/(%s). In any other model multiply\n"
+                "     solreflimit by the joint's dof_invweight0 / A. -->\n"
+                "<compiler angle=\"radian\"/>\n"
+                "<option timestep=\"%s\" integrator=\"Euler\"/>\n",
+                mujoco->stiffness, units->stiffness, mujoco->damping, units->damping,
+                mujoco->weight, units->mass, number_shortest(mujoco->step_s).text);
+    tune_limit_mjcf(report, mujoco->solref, mujoco->impedance, text);
+}
+
+void tune_mujoco_write(const TuneReport *report, Text *text)
+{
+    TuneMujoco mujoco;
+    if (!tune_mujoco_find(report, &mujoco)) {
+        return;
+    }
+    if (report->tune->contact.is_limit) {
+        write_limit(report, &mujoco, text);
+    } else {
+        write_pair(report, &mujoco, text);
+    }
 }

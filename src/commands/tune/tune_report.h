@@ -44,7 +44,7 @@ void tune_text_write(const void *report, const Style *style, Text *text);
 void tune_held_text_answer(const TuneReport *report, const Style *style, Text *text);
 
 // Appends the constants that were run in the whole mechanism, each with its error.
-void tune_held_text_constants(const Tune *tune, const Style *style, Text *text);
+void tune_held_text_constants(const TuneReport *report, const Style *style, Text *text);
 
 // Appends what one ERP and one CFM for all depths come to.
 void tune_held_text_row(const Tune *tune, Text *text);
@@ -54,4 +54,4 @@ void tune_held_text_row(const Tune *tune, Text *text);
 bool tune_held_text_unmet(const TuneReport *report, Err *err);
 
 // Where constants come from, such as "law at 1.2 um".
-void tune_held_text_source(const TuneLinear *linear, Text *text);
+void tune_held_text_source(const TuneReport *report, const TuneLinear *linear, Text *text);
