@@ -53,8 +53,22 @@ typedef struct CasefileSetting {
     bool applies;                       // the scenario makes use of it
 } CasefileSetting;
 
-// The number of settings, and each of them in the schema's order: those of every body, joint and
-// spring of the scenario and, with a star for the name, of one that it does not have.
-// casefile_setting returns false for an index beyond the last.
+// Goes through the settings in the schema's order: those of every body, joint and spring of the
+// scenario and, with a star for the name, of one that it does not have.
+//
+//     CasefileWalk walk = casefile_walk(scenario);
+//     while (casefile_next(&walk, &setting)) {
+typedef struct CasefileWalk {
+    const Scenario *scenario;
+    size_t row;    // of the schema
+    size_t member; // of the row's family, the next
+    unsigned met;  // of what rows ask of the scenario as a whole
+} CasefileWalk;
+
+CasefileWalk casefile_walk(const Scenario *scenario);
+
+// The next setting; false behind the last.
+bool casefile_next(CasefileWalk *walk, CasefileSetting *setting);
+
+// How many settings there are.
 size_t casefile_setting_count(const Scenario *scenario);
-bool casefile_setting(const Scenario *scenario, size_t index, CasefileSetting *setting);

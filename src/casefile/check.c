@@ -88,7 +88,9 @@ bool check_required(const Entries *entries, Err *err)
         const SchemaRow *row = &SCHEMA_ROWS[i];
         const size_t members = row->is_required ? entries_family_size(entries, row) : 0;
         for (size_t index = 0; index < members; index++) {
-            if (is_wanted(entries, row, index) && entries_find(entries, row->path, index) == NULL &&
+            // most keys that are required are given
+            if (entries_at(entries, row, index) == NULL && is_wanted(entries, row, index) &&
+                entries_find(entries, row->path, index) == NULL &&
                 !has_rival(entries, row, index)) {
                 return refuse_missing(entries, row, index, err);
             }

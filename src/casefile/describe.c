@@ -120,7 +120,8 @@ static void describe_default(size_t row_number, Text *text)
     char path[SCHEMA_PATH_SIZE];
     schema_path(row, "*", path);
     CasefileSetting setting;
-    for (size_t i = 0; casefile_setting(&defaults, i, &setting); i++) {
+    CasefileWalk walk = casefile_walk(&defaults);
+    while (casefile_next(&walk, &setting)) {
         if (strcmp(setting.key, path) == 0) {
             break;
         }

@@ -31,17 +31,6 @@ size_t entries_family_size(const Entries *entries, const SchemaRow *row)
     return row->family == SCHEMA_SINGLE ? 1 : entries->names[row->family].count;
 }
 
-int entries_number(const Entries *entries, SchemaFamily family, const char *name)
-{
-    const EntryNames *names = &entries->names[family];
-    for (size_t i = 0; i < names->count; i++) {
-        if (strcmp(names->names[i], name) == 0) {
-            return (int)i;
-        }
-    }
-    return -1;
-}
-
 // The entry of a path of so many bytes.
 static const Entry *find_entry(const Entries *entries, const char *path, size_t length,
                                size_t index)
@@ -105,17 +94,6 @@ const Entry *entries_speed(const Entries *entries, size_t body_count)
                               i);
     }
     return found;
-}
-
-const EntryGroup *entries_group(const Entries *entries, const char *path, size_t index)
-{
-    for (size_t i = 0; i < entries->group_count; i++) {
-        const EntryGroup *group = &entries->groups[i];
-        if (group->index == index && strcmp(group->path, path) == 0) {
-            return group;
-        }
-    }
-    return NULL;
 }
 
 bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFamily family,

@@ -2,6 +2,7 @@
 // its source, the overrides of the command line already in their places.
 #pragma once
 
+#include "base/lookup.h"
 #include "casefile/document.h"
 #include "casefile/schema.h"
 
@@ -18,6 +19,7 @@ typedef struct EntryNames {
     size_t count;
     size_t room;
     char (*names)[LINKAGE_NAME_SIZE]; // owned
+    Lookup numbers;                   // by name
 } EntryNames;
 
 // Where the entries of one row stand: by member, their number and one more; 0 where there is none.
@@ -44,6 +46,7 @@ typedef struct Entries {
     size_t group_count;
     size_t group_room;
     EntryGroup *groups;
+    Lookup group_numbers;                  // by path and index
     EntryNames names[SCHEMA_FAMILY_COUNT]; // a four-bar's from the start
 } Entries;
 

@@ -2,6 +2,7 @@
 //
 // Entries stand in one list, in the order in which the case gives them. For each row of the schema
 // a list by member says at which place the member's entry is.
+#include "base/hash.h"
 #include "base/room.h"
 #include "casefile/entries.h"
 
@@ -53,18 +54,61 @@ void entries_take_away(Entries *entries, size_t slot)
     entries->count--;
 }
 
+// What is looked for among groups or names.
+typedef struct Sought {
+    const Entries *entries;
+    const EntryNames *names;
+    const char *text;
+    size_t index;
+} Sought;
+
+static uint64_t group_hash(const char *path, size_t index)
+{
+    return hash_word(lookup_hash(path), index);
+}
+
+static bool is_group(size_t number, const void *of)
+{
+    const Sought *sought = of;
+    const EntryGroup *group = &sought->entries->groups[number];
+    return group->index == sought->index && strcmp(group->path, sought->text) == 0;
+}
+
+static bool is_name(size_t number, const void *of)
+{
+    const Sought *sought = of;
+    return strcmp(sought->names->names[number], sought->text) == 0;
+}
+
 void entries_add_group(Entries *entries, const EntryGroup *group)
 {
     entries->groups = room_grow(entries->groups, &entries->group_room, entries->group_count + 1,
                                 sizeof *entries->groups);
+    lookup_add(&entries->group_numbers, group_hash(group->path, group->index),
+               entries->group_count);
     entries->groups[entries->group_count++] = *group;
+}
+
+const EntryGroup *entries_group(const Entries *entries, const char *path, size_t index)
+{
+    const Sought sought = {.entries = entries, .text = path, .index = index};
+    const int found =
+        lookup_find(&entries->group_numbers, group_hash(path, index), is_group, &sought);
+    return found == LOOKUP_NONE ? NULL : &entries->groups[found];
 }
 
 size_t entries_add_name(EntryNames *names, const char *name)
 {
     names->names = room_grow(names->names, &names->room, names->count + 1, sizeof *names->names);
     text_copy(names->names[names->count], LINKAGE_NAME_SIZE, name);
+    lookup_add(&names->numbers, lookup_hash(names->names[names->count]), names->count);
     return names->count++;
+}
+
+int entries_number(const Entries *entries, SchemaFamily family, const char *name)
+{
+    const Sought sought = {.names = &entries->names[family], .text = name};
+    return lookup_find(&entries->names[family].numbers, lookup_hash(name), is_name, &sought);
 }
 
 Entries entries_copy(const Entries *entries)
@@ -74,10 +118,12 @@ Entries entries_copy(const Entries *entries)
     copy.entries = room_copy(entries->entries, copy.count, sizeof *copy.entries);
     copy.group_room = copy.group_count;
     copy.groups = room_copy(entries->groups, copy.group_count, sizeof *copy.groups);
+    copy.group_numbers = lookup_copy(&entries->group_numbers);
     for (size_t i = 0; i < SCHEMA_FAMILY_COUNT; i++) {
         EntryNames *names = &copy.names[i];
         names->room = names->count;
         names->names = room_copy(names->names, names->count, sizeof *names->names);
+        names->numbers = lookup_copy(&names->numbers);
     }
     copy.slots = NULL;
     for (size_t i = 0; i < copy.count; i++) {
@@ -93,9 +139,11 @@ void entries_finish(Entries *entries)
     }
     for (size_t i = 0; i < SCHEMA_FAMILY_COUNT; i++) {
         free(entries->names[i].names);
+        lookup_finish(&entries->names[i].numbers);
     }
     free(entries->slots);
     free(entries->entries);
     free(entries->groups);
+    lookup_finish(&entries->group_numbers);
     *entries = (Entries){.count = 0};
 }

@@ -3,6 +3,7 @@
 
 #include "casefile/limits.h"
 
+#include <stdint.h>
 #include <string.h>
 
 enum { SLIDER_GUIDE = 3 }; // number of the slider-crank's joint that slides
@@ -79,15 +80,22 @@ static bool refuse_key(const Entries *entries, const Entry *entry, JointKind kin
 
 bool joint_kind_check(const Entries *entries, Err *err)
 {
+    // the keys of a joint stand together, so that its kind is found once
+    size_t joint = SIZE_MAX;
+    JointKind kind = JOINT_REVOLUTE;
+    bool is_firm = false;
     for (size_t i = 0; i < entries->count; i++) {
         const Entry *entry = &entries->entries[i];
-        if (entry->row->family == SCHEMA_JOINT) {
-            const JointKind kind = joint_kind_find(entries, entry->index);
-            const bool is_firm =
-                linkage_kind_is_ideal(kind) && !limits_are_given(entries, entry->index);
-            if (!schema_is_of_kind(entry->row, kind) || (is_firm && is_of_play(entry->row))) {
-                return refuse_key(entries, entry, kind, err);
-            }
+        if (entry->row->family != SCHEMA_JOINT) {
+            continue;
+        }
+        if (entry->index != joint) {
+            joint = entry->index;
+            kind = joint_kind_find(entries, joint);
+            is_firm = linkage_kind_is_ideal(kind) && !limits_are_given(entries, joint);
+        }
+        if (!schema_is_of_kind(entry->row, kind) || (is_firm && is_of_play(entry->row))) {
+            return refuse_key(entries, entry, kind, err);
         }
     }
     return true;

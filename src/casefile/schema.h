@@ -153,8 +153,11 @@ bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other);
 // Whether a row is of joints of that kind; of all other rows that is true as well.
 bool schema_is_of_kind(const SchemaRow *row, JointKind kind);
 
-// Whether a scenario makes use of a row, of that member of its family.
-bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index);
+// What rows may ask of a scenario as a whole that it has: bits of schema_needs.h.
+unsigned schema_met(const Scenario *scenario);
+
+// Whether a scenario, which has met those bits, makes use of a row, of that member of its family.
+bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index, unsigned met);
 
 // Whether a row's value is one that a run depends on or is named by: all but expectations.
 bool schema_is_setting(const SchemaRow *row);

@@ -35,50 +35,79 @@ static bool limits_apply(const SchemaRow *row, const Joint *joint, const void *f
            joint->kind == JOINT_GUIDE;
 }
 
-bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index)
+// The form in which a case of the scenario is written.
+static SchemaForm form_of(const Scenario *scenario)
+{
+    return scenario->has_fourbar       ? SCHEMA_FOUR_BAR
+           : scenario->has_slidercrank ? SCHEMA_SLIDER_CRANK
+                                       : SCHEMA_LONG;
+}
+
+static unsigned drive_bits(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
+    const Joint *pushed = schema_member(scenario, SCHEMA_JOINT, (size_t)linkage->torque.joint);
+    const bool is_force = pushed->kind == JOINT_PRISMATIC;
+    const bool is_torque = linkage->torque.table.count > 0;
+    const bool is_steady = drive_is_steady(&linkage->driver);
+    return bit(DRIVE, linkage->driver.is_present) | bit(TORQUE, is_torque && !is_force) |
+           bit(FORCE, is_torque && is_force) |
+           bit(DRIVEN, linkage->driver.is_present || is_torque) | bit(TURNING, is_steady) |
+           bit(TIMED, !is_steady);
+}
+
+static unsigned contact_bits(const Scenario *scenario)
+{
     const ContactOptions *contact = &scenario->contact;
-    const bool is_member = index < schema_member_count(scenario, row->family);
-    const bool is_joint = row->family == SCHEMA_JOINT && is_member;
     const bool has_play = scenario_has_clearance(scenario);
     const bool is_impact = has_play && contact->model == CONTACT_IMPACT;
     const bool is_poisson = has_play && contact->model == CONTACT_POISSON;
     const bool has_law = is_impact && law_is_asked(scenario);
-    const Joint *joint = is_joint ? &linkage->joints[index] : NULL;
-    const Joint *pushed = schema_member(scenario, SCHEMA_JOINT, (size_t)linkage->torque.joint);
-    const bool is_force = pushed->kind == JOINT_PRISMATIC;
-    const bool is_own = is_joint && joint->contact.stiffness > 0.0 &&
-                        (!contact->is_for_all || linkage_is_torsional(joint));
-    unsigned met = bit(MEMBER, is_member) | bit(OWN_STIFFNESS, is_own) |
-                   bit(OWN_RESTITUTION, is_joint && joint->contact.has_restitution) |
-                   bit(OWN_VISCOUS, is_joint && joint->contact.viscous > 0.0) |
-                   bit(FREE, !build_is_determined(linkage)) |
-                   bit(DRIVE, linkage->driver.is_present) |
-                   bit(TORQUE, linkage->torque.table.count > 0 && !is_force) |
-                   bit(FORCE, linkage->torque.table.count > 0 && is_force) |
-                   bit(DRIVEN, linkage->driver.is_present || linkage->torque.table.count > 0) |
-                   bit(TURNING, drive_is_steady(&linkage->driver)) |
-                   bit(TIMED, !drive_is_steady(&linkage->driver)) | bit(PLAY, has_play) |
-                   bit(IDEAL, !has_play) | bit(IMPACT, is_impact) | bit(POISSON, is_poisson) |
-                   bit(LAW, has_law) | bit(STIFFNESS, is_impact && contact->stiffness > 0.0) |
-                   bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
-                   bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
-                   bit(FRICTION, has_play && contact->friction > 0.0) |
+    return bit(PLAY, has_play) | bit(IDEAL, !has_play) | bit(IMPACT, is_impact) |
+           bit(POISSON, is_poisson) | bit(LAW, has_law) |
+           bit(STIFFNESS, is_impact && contact->stiffness > 0.0) |
+           bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
+           bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
+           bit(FRICTION, has_play && contact->friction > 0.0) | step_bits(scenario, is_impact);
+}
+
+unsigned schema_met(const Scenario *scenario)
+{
+    unsigned met = drive_bits(scenario) | contact_bits(scenario) |
+                   bit(FREE, !build_is_determined(&scenario->linkage)) |
                    bit(QUICK, scenario->ode.solver == ODE_QUICK) |
                    bit(FACETED, scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) |
-                   bit(SPATIAL, linkage->is_spatial) | bit(LATER, scenario->run.report_from > 0.0) |
-                   step_bits(scenario, is_impact);
+                   bit(SPATIAL, scenario->linkage.is_spatial) |
+                   bit(LATER, scenario->run.report_from > 0.0);
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
         met |= bit(REFERENCE, scenario->run.backends[i] == BACKEND_REFERENCE);
         met |= bit(ODE, scenario->run.backends[i] == BACKEND_ODE);
     }
-    const SchemaForm form = scenario->has_fourbar       ? SCHEMA_FOUR_BAR
-                            : scenario->has_slidercrank ? SCHEMA_SLIDER_CRANK
-                                                        : SCHEMA_LONG;
-    if (is_joint && !limits_apply(row, joint, schema_field_const(row, scenario, index))) {
+    return met;
+}
+
+static unsigned joint_bits(const Scenario *scenario, const Joint *joint)
+{
+    const bool is_own = joint->contact.stiffness > 0.0 &&
+                        (!scenario->contact.is_for_all || linkage_is_torsional(joint));
+    return bit(OWN_STIFFNESS, is_own) | bit(OWN_RESTITUTION, joint->contact.has_restitution) |
+           bit(OWN_VISCOUS, joint->contact.viscous > 0.0);
+}
+
+bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index, unsigned met)
+{
+    if (!schema_is_of_form(row, form_of(scenario))) {
         return false;
     }
-    return (row->needs & ~met) == 0 && (!is_joint || schema_is_of_kind(row, joint->kind)) &&
-           schema_is_of_form(row, form);
+    const bool is_member = index < schema_member_count(scenario, row->family);
+    met |= bit(MEMBER, is_member);
+    if (row->family == SCHEMA_JOINT && is_member) {
+        const Joint *joint = &scenario->linkage.joints[index];
+        met |= joint_bits(scenario, joint);
+        if (!limits_apply(row, joint, schema_field_const(row, scenario, index)) ||
+            !schema_is_of_kind(row, joint->kind)) {
+            return false;
+        }
+    }
+    return (row->needs & ~met) == 0;
 }

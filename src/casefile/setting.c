@@ -14,20 +14,6 @@ static size_t member_count(const Scenario *scenario, const SchemaRow *row)
     return !schema_is_setting(row) ? 0 : row->family == SCHEMA_SINGLE ? members : members + 1;
 }
 
-// The row of a setting and the number of its family's member; NULL beyond the last.
-static const SchemaRow *find_row(const Scenario *scenario, size_t setting, size_t *index)
-{
-    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-        const size_t members = member_count(scenario, &SCHEMA_ROWS[i]);
-        if (setting < members) {
-            *index = setting;
-            return &SCHEMA_ROWS[i];
-        }
-        setting -= members;
-    }
-    return NULL;
-}
-
 size_t casefile_setting_count(const Scenario *scenario)
 {
     size_t count = 0;
@@ -368,17 +354,28 @@ static const char *member_name(const Scenario *scenario, SchemaFamily family, si
     }
 }
 
-bool casefile_setting(const Scenario *scenario, size_t index, CasefileSetting *setting)
+CasefileWalk casefile_walk(const Scenario *scenario)
 {
-    size_t member = 0;
-    const SchemaRow *row = find_row(scenario, index, &member);
-    if (row == NULL) {
+    return (CasefileWalk){.scenario = scenario, .met = schema_met(scenario)};
+}
+
+bool casefile_next(CasefileWalk *walk, CasefileSetting *setting)
+{
+    const Scenario *scenario = walk->scenario;
+    while (walk->row < SCHEMA_ROW_COUNT &&
+           walk->member >= member_count(scenario, &SCHEMA_ROWS[walk->row])) {
+        walk->row++;
+        walk->member = 0;
+    }
+    if (walk->row == SCHEMA_ROW_COUNT) {
         return false;
     }
+    const SchemaRow *row = &SCHEMA_ROWS[walk->row];
+    const size_t member = walk->member++;
     *setting = (CasefileSetting){0};
     schema_path(row, member_name(scenario, row->family, member), setting->key);
     text_copy(setting->unit, sizeof setting->unit, schema_unit(row));
     set_value(setting, row, scenario, member);
-    setting->applies = schema_applies(row, scenario, member);
+    setting->applies = schema_applies(row, scenario, member, walk->met);
     return true;
 }

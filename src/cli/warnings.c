@@ -46,7 +46,8 @@ static void say_doubts(const Scenario *scenario)
 static bool is_idle(const Scenario *scenario, const char *key)
 {
     CasefileSetting setting;
-    for (size_t i = 0; casefile_setting(scenario, i, &setting); i++) {
+    CasefileWalk walk = casefile_walk(scenario);
+    while (casefile_next(&walk, &setting)) {
         if (strcmp(setting.key, key) == 0) {
             return !setting.applies;
         }

@@ -1,7 +1,10 @@
 // Is what a linkage is made of a linkage at all?
 #include "model/coordinate.h"
 
+#include <assert.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 static bool check_bodies(const Linkage *linkage, Err *err)
 {
@@ -14,9 +17,6 @@ static bool check_bodies(const Linkage *linkage, Err *err)
         if (!(body->inertia > 0.0) || !isfinite(body->inertia)) {
             return err_set(err, ERR_CASE, "body '%s': inertia %g kg m^2, allowed: above 0",
                            body->name, body->inertia);
-        }
-        if (linkage_find_body(linkage, body->name) != (int)i) {
-            return err_set(err, ERR_CASE, "two bodies are named '%s'", body->name);
         }
     }
     return true;
@@ -125,9 +125,6 @@ static bool check_joint(const Linkage *linkage, size_t number, Err *err)
 {
     const Joint *joint = &linkage->joints[number];
     const int count = (int)linkage->body_count;
-    if (linkage_find_joint(linkage, joint->name) != (int)number) {
-        return err_set(err, ERR_CASE, "two joints are named '%s'", joint->name);
-    }
     if (joint->body_a < LINKAGE_GROUND || joint->body_a >= count ||
         joint->body_b < LINKAGE_GROUND || joint->body_b >= count ||
         joint->body_a == joint->body_b) {
@@ -225,6 +222,28 @@ static bool check_torque(const Linkage *linkage, Err *err)
            err_set(err, ERR_CASE, "the times of a torque must increase");
 }
 
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+// Whether every name, of so many that stand so many bytes apart, is another one.
+static bool check_names(const char *first, size_t count, size_t apart, const char *what, Err *err)
+{
+    const char **names = malloc((count + 1) * sizeof *names);
+    assert(names != NULL);
+    for (size_t i = 0; i < count; i++) {
+        names[i] = first + i * apart;
+    }
+    qsort(names, count, sizeof *names, compare_names);
+    const char *doubled = NULL;
+    for (size_t i = 1; i < count && doubled == NULL; i++) {
+        doubled = strcmp(names[i - 1], names[i]) == 0 ? names[i] : NULL;
+    }
+    free(names);
+    return doubled == NULL || err_set(err, ERR_CASE, "two %s are named '%s'", what, doubled);
+}
+
 bool linkage_check(const Linkage *linkage, Err *err)
 {
     if (linkage->body_count == 0) {
@@ -237,7 +256,11 @@ bool linkage_check(const Linkage *linkage, Err *err)
                        "plane there may be any number",
                        linkage->body_count, linkage->joint_count, SPACE_BODY_MAX, SPACE_JOINT_MAX);
     }
-    if (!check_bodies(linkage, err)) {
+    if (!check_bodies(linkage, err) ||
+        !check_names(linkage->bodies[0].name, linkage->body_count, sizeof *linkage->bodies,
+                     "bodies", err) ||
+        (linkage->joint_count > 0 && !check_names(linkage->joints[0].name, linkage->joint_count,
+                                                  sizeof *linkage->joints, "joints", err))) {
         return false;
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {

@@ -68,7 +68,8 @@ static void set_settings(json_t *object, const Scenario *scenario)
     json_t *settings = json_object();
     json_t *units = json_object();
     CasefileSetting setting;
-    for (size_t i = 0; casefile_setting(scenario, i, &setting); i++) {
+    CasefileWalk walk = casefile_walk(scenario);
+    while (casefile_next(&walk, &setting)) {
         if (setting.applies) {
             json_object_set_new(settings, setting.key, setting_value(&setting));
         }
@@ -92,7 +93,8 @@ json_t *settings_json_all(const Scenario *scenario)
 {
     json_t *settings = json_object();
     CasefileSetting setting;
-    for (size_t i = 0; casefile_setting(scenario, i, &setting); i++) {
+    CasefileWalk walk = casefile_walk(scenario);
+    while (casefile_next(&walk, &setting)) {
         json_object_set_new(settings, setting.key, setting_value(&setting));
     }
     return settings;

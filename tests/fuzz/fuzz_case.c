@@ -29,7 +29,8 @@ static size_t split(char *text, const char *overrides[OVERRIDE_MAX])
 static void check_settings(const Scenario *scenario)
 {
     CasefileSetting setting;
-    for (size_t i = 0; casefile_setting(scenario, i, &setting); i++) {
+    CasefileWalk walk = casefile_walk(scenario);
+    while (casefile_next(&walk, &setting)) {
         for (size_t k = 0; setting.applies && k < setting.number_count; k++) {
             fuzz_check(!isnan(setting.numbers[k]), "a setting is a number");
         }

@@ -48,10 +48,10 @@ static inline void assert_same_scenario(const Scenario *one, const Scenario *oth
     assert_int_equal(a->driver.is_present, b->driver.is_present);
     assert_int_equal(a->driver.joint, b->driver.joint);
     assert_true(a->driver.speed == b->driver.speed && a->driver.start == b->driver.start);
-    for (size_t i = 0; i < casefile_setting_count(one); i++) {
-        CasefileSetting settings[2];
-        assert_int_equal(casefile_setting(one, i, &settings[0]),
-                         casefile_setting(other, i, &settings[1]));
+    CasefileWalk walks[2] = {casefile_walk(one), casefile_walk(other)};
+    CasefileSetting settings[2];
+    while (casefile_next(&walks[0], &settings[0])) {
+        assert_true(casefile_next(&walks[1], &settings[1]));
         if (!same_setting(&settings[0], &settings[1])) {
             fail_msg("%s differs", settings[0].key);
         }

@@ -40,7 +40,8 @@ static void both_descriptions_name_every_key(void **state)
     casefile_describe(&words);
     const Scenario scenario = kept_default();
     CasefileSetting setting;
-    for (size_t i = 0; casefile_setting(&scenario, i, &setting); i++) {
+    CasefileWalk walk = casefile_walk(&scenario);
+    while (casefile_next(&walk, &setting)) {
         // the last part of the key: names of joints and points are placeholders there
         const char *dot = strrchr(setting.key, '.');
         const char *last = dot != NULL ? dot + 1 : setting.key;

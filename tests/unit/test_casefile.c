@@ -139,7 +139,8 @@ static void traced_points_are_placed_on_their_links(void **state)
 
 static bool find_setting(const Scenario *scenario, const char *key, CasefileSetting *setting)
 {
-    for (size_t i = 0; casefile_setting(scenario, i, setting); i++) {
+    CasefileWalk walk = casefile_walk(scenario);
+    while (casefile_next(&walk, setting)) {
         if (strcmp(setting->key, key) == 0) {
             return true;
         }
@@ -154,8 +155,13 @@ static void settings_tell_what_the_case_said(void **state)
                                      "joints.crank-coupler.start=[5 um, -3 um]"};
     const Scenario scenario = load(IMPACT, overrides, 2);
     CasefileSetting setting;
-    assert_false(casefile_setting(&scenario, casefile_setting_count(&scenario), &setting));
-    assert_true(casefile_setting(&scenario, casefile_setting_count(&scenario) - 1, &setting));
+    CasefileWalk walk = casefile_walk(&scenario);
+    size_t count = 0;
+    while (casefile_next(&walk, &setting)) {
+        count++;
+    }
+    assert_int_equal(count, casefile_setting_count(&scenario));
+    assert_false(casefile_next(&walk, &setting));
 
     assert_true(find_setting(&scenario, "four-bar.crank.length", &setting));
     assert_int_equal(setting.number_count, 3);

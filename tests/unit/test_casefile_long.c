@@ -288,7 +288,8 @@ static void points_stand_on_any_body(void **state)
 
 static bool find_setting(const Scenario *scenario, const char *key, CasefileSetting *setting)
 {
-    for (size_t i = 0; casefile_setting(scenario, i, setting); i++) {
+    CasefileWalk walk = casefile_walk(scenario);
+    while (casefile_next(&walk, setting)) {
         if (strcmp(setting->key, key) == 0) {
             return setting->applies;
         }

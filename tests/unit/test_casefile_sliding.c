@@ -151,7 +151,8 @@ static void one_stiffness_for_all_joints_goes_before_their_own(void **state)
 
 static bool is_setting(const Scenario *scenario, const char *key, CasefileSetting *setting)
 {
-    for (size_t i = 0; casefile_setting(scenario, i, setting); i++) {
+    CasefileWalk walk = casefile_walk(scenario);
+    while (casefile_next(&walk, setting)) {
         if (strcmp(setting->key, key) == 0) {
             return setting->applies;
         }

@@ -79,7 +79,8 @@ static void set_settings(Baseline *baseline, const Scenario *scenario)
     baseline->settings = calloc(casefile_setting_count(scenario), sizeof *baseline->settings);
     assert(baseline->settings != NULL);
     CasefileSetting setting;
-    for (size_t i = 0; casefile_setting(scenario, i, &setting); i++) {
+    CasefileWalk walk = casefile_walk(scenario);
+    while (casefile_next(&walk, &setting)) {
         if (setting.applies && strcmp(setting.key, "title") != 0) {
             set_setting(&baseline->settings[baseline->setting_count++], &setting);
         }

@@ -19,7 +19,8 @@ static uint64_t add_text(uint64_t print, const char *text)
 static uint64_t add_case(uint64_t print, const Scenario *base)
 {
     CasefileSetting setting;
-    for (size_t i = 0; casefile_setting(base, i, &setting); i++) {
+    CasefileWalk walk = casefile_walk(base);
+    while (casefile_next(&walk, &setting)) {
         if (strcmp(setting.key, "title") == 0) {
             continue;
         }
