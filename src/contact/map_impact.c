@@ -16,6 +16,7 @@
 #include "contact/map_impact.h"
 
 #include "base/root.h"
+#include "contact/law_row.h"
 
 #include <assert.h>
 #include <float.h>
@@ -73,19 +74,17 @@ static Row poisson_row(const MapImpactCase *impact, double depth, double closing
 
 static Row map_row_of(const MapImpactCase *impact, double depth, double closing)
 {
-    const MapContact contact = {
-        .stiffness = force_law_secant(&impact->law, depth),
-        .damping = force_law_damping(&impact->law, depth, impact->speed),
-        .step = impact->step,
-        .mass = impact->mass,
-        .depth = depth,
-        .closing = closing,
-    };
+    const LawRow at = {.depth = depth,
+                       .closing = closing,
+                       .impact_speed = impact->speed,
+                       .share = 1.0,
+                       .mass = impact->mass};
+    const MapContact contact = law_row_contact(&impact->law, &at, impact->step);
     const double omega_h =
         sqrt(force_law_tangent(&impact->law, depth) / impact->mass) * impact->step;
     const Map *map = impact->rows.map;
     const bool falls_back = !(omega_h < map->stability_limit);
-    const ErpCfm soft = (falls_back ? map_get(ODE_MAP_TEXTBOOK) : map)->convert(&contact);
+    const ErpCfm soft = law_row_soft(map, falls_back, &contact);
     return (Row){soft.erp / impact->step * depth, soft.cfm, omega_h, falls_back};
 }
 

@@ -2,6 +2,7 @@
 #include "contact/pin_space.h"
 
 #include "contact/law.h"
+#include "contact/pin_axis.h"
 
 // One place of a joint, whose law has a share of the joint's stiffness and damping.
 static bool make_place(const Scenario *scenario, int joint, int place, PinSpace *made, Err *err)
@@ -92,11 +93,10 @@ PinSpacePose pin_space_pose(const PinSpace *place, const SpaceMotion *motions)
 {
     const Vec3 hole = space_point(motions, place->hole.body, place->hole.anchor);
     const Vec3 pin = space_point(motions, place->pin.body, place->pin.anchor);
-    const Vec3 between = vec3_sub(pin, hole);
     if (place->place == PIN_SPACE_COLLAR) {
         const Vec3 axis = space_direction(motions, place->hole.body, place->hole.axis);
-        PinSpacePose pose =
-            pose_at(place, motions, pin, pin, vec3_scale(vec3_dot(axis, between), axis));
+        PinSpacePose pose = pose_at(place, motions, pin, pin,
+                                    vec3_scale(vec3_dot(axis, vec3_sub(pin, hole)), axis));
         if (!pose.has_normal) {
             const Vec3 relative = vec3_sub(space_velocity_at(motions, place->pin.body, pin),
                                            space_velocity_at(motions, place->hole.body, pin));
@@ -105,6 +105,6 @@ PinSpacePose pin_space_pose(const PinSpace *place, const SpaceMotion *motions)
         return pose;
     }
     const Vec3 axis = space_direction(motions, place->pin.body, place->pin.axis);
-    const Vec3 offset = vec3_across(between, axis);
+    const Vec3 offset = pin_axis_offset(hole, pin, axis);
     return pose_at(place, motions, hole, vec3_add(hole, offset), offset);
 }

@@ -10,6 +10,8 @@
 //     (u . B)'' = u . (acc_M - acc_C) + 2 u' . B' + u'' . B,   u' = omega_a x u
 #include "contact/pin_space_rows.h"
 
+#include "contact/pin_axis.h"
+
 #include <string.h>
 
 // the rows of an end with friction, in order
@@ -74,8 +76,7 @@ void pin_space_rows_place(const PinSpace *place, const SpaceMotion *motions, boo
         rows->axis = vec3_cross(rows->across[0], rows->across[1]);
     } else {
         rows->axis = space_direction(motions, place->pin.body, place->pin.axis);
-        rows->across[0] = vec3_normal_to(rows->axis);
-        rows->across[1] = vec3_cross(rows->axis, rows->across[0]);
+        pin_axis_across(rows->axis, rows->across);
     }
     pin_space_rows_move(place, motions, rows);
 }

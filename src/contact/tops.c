@@ -51,9 +51,13 @@ void tops_note(Tops *tops, double force, double depth, double ahead)
     tops->depths[1] = depth;
 }
 
-void tops_note_part(Tops *tops, double force, double depth, double step_s)
+void tops_note_step(Tops *tops, double force, double depth, double share, double step_s)
 {
-    tops->force = force;
-    tops->depth = depth;
-    tops->since += step_s;
+    if (share < 1.0) {
+        tops->force = force;
+        tops->depth = depth;
+        tops->since += step_s;
+    } else {
+        tops_note(tops, force, depth, tops->has_series ? step_s : 0.0);
+    }
 }

@@ -19,5 +19,5 @@ void tops_begin(Tops *tops, double force, double since);
 // Notes force and depth of a step that is ahead of the last one, s; of the first it is 0.
 void tops_note(Tops *tops, double force, double depth, double ahead);
 
-// Notes those of a step of a length, s, in only a part of which the contact overlaps.
-void tops_note_part(Tops *tops, double force, double depth, double step_s);
+// Notes those of a step of a length, s, in a share of which the contact overlaps.
+void tops_note_step(Tops *tops, double force, double depth, double share, double step_s);

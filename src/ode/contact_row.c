@@ -40,32 +40,6 @@ static bool find_collision(const World *world, const WorldPair *pair, const Touc
     return true;
 }
 
-// The speed at which bodies that overlap for the first time came to it, m/s: as found now,
-// or, where the steps before show it, its mean over the last step, taken on to the crossing by its
-// change from step to step.
-static double onset_speed(const ContactRow *row, bool is_staggered, double gap, double depth,
-                          double step_s)
-{
-    if (!is_staggered || row->gaps_known == 0) {
-        return row->closing;
-    }
-    const double mean = (row->gaps[0] - gap) / step_s;
-    if (row->gaps_known == 1 || !(mean > 0.0)) {
-        return mean;
-    }
-    const double change = mean - (row->gaps[1] - row->gaps[0]) / step_s;
-    // the mean stands in the middle of the last step
-    return mean + change * (0.5 - depth / (mean * step_s));
-}
-
-// Keeps the gaps that there were while nothing acted.
-static void note_gap(ContactRow *row, double gap)
-{
-    row->gaps_known = row->is_touching ? 0 : row->gaps_known + (row->gaps_known < 2 ? 1 : 0);
-    row->gaps[1] = row->gaps[0];
-    row->gaps[0] = gap;
-}
-
 // What an end does in the step. Other places do what they do at mid-step: their forces grow gently.
 static Overlap end_overlap(const ContactRow *row, const WorldPair *pair, const TouchPose *pose,
                            bool is_staggered, double step_s)
@@ -79,7 +53,9 @@ static Overlap end_overlap(const ContactRow *row, const WorldPair *pair, const T
 static void begin(ContactRow *row, bool is_staggered, const TouchPose *pose, double onset_s,
                   double step_s)
 {
-    row->impact_speed = onset_speed(row, is_staggered, pose->gap, row->inside, step_s);
+    row->impact_speed = is_staggered
+                            ? onset_speed(&row->onset, row->closing, pose->gap, row->inside, step_s)
+                            : row->closing;
     tops_begin(&row->tops, row->law.viscous * row->impact_speed, 0.5 * step_s - onset_s);
 }
 
@@ -109,5 +85,5 @@ void contact_row_find(ContactRow *row, const World *world, const WorldPair *pair
             begin(row, is_staggered, &pose, overlap.onset, step_s);
         }
     }
-    note_gap(row, pose.gap);
+    onset_note(&row->onset, row->is_touching, pose.gap);
 }

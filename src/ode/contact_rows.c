@@ -10,7 +10,9 @@
 
 #include "base/zeroed.h"
 #include "contact/law.h"
+#include "contact/law_row.h"
 #include "contact/penalty.h"
+#include "world/pressing_row.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -82,19 +84,16 @@ static dSurfaceParameters surface_of(const ContactRows *rows, size_t number, Con
         surface.soft_cfm = map_poisson_cfm(rows->penalty);
         return surface;
     }
-    const double stiffness = force_law_secant(&row->law, row->depth);
-    row->damping = force_law_damping(&row->law, row->depth, row->impact_speed) -
-                   row->law.viscous * (1.0 - row->share);
-    const MapContact contact = {
-        .stiffness = stiffness,
-        .damping = row->damping,
-        .step = step_s,
-        .mass = row->mass,
+    const LawRow at = {
         .depth = row->depth,
         .closing = row->closing,
+        .impact_speed = row->impact_speed,
+        .share = row->share,
+        .mass = row->mass,
     };
-    const Map *map = row->falls_back ? map_get(ODE_MAP_TEXTBOOK) : rows->map;
-    const ErpCfm soft = map->convert(&contact);
+    const MapContact contact = law_row_contact(&row->law, &at, step_s);
+    const ErpCfm soft = law_row_soft(rows->map, row->falls_back, &contact);
+    row->damping = contact.damping;
     surface.soft_erp = soft.erp;
     surface.soft_cfm = soft.cfm;
     return surface;
@@ -170,13 +169,12 @@ static void make_row(ContactRows *rows, size_t number, double step_s)
     const dJointID own = rows->world->pairs[number].row;
     if (own != NULL) {
         const dSurfaceParameters *surface = &row->contact.surface;
-        ends_press(own, surface->soft_cfm, surface->soft_erp / step_s * row->depth, step_s);
+        const double speed = surface->soft_erp / step_s * row->depth;
+        pressing_row_press(own, surface->soft_cfm, speed, step_s);
         return;
     }
-    const dJointID joint = dJointCreateContact(rows->world->id, rows->group, &row->contact);
-    const WorldPair *pair = &rows->world->pairs[number];
-    dJointAttach(joint, pair->bodies[0], pair->bodies[1]);
-    dJointSetFeedback(joint, &row->feedback);
+    pressing_row_of_way(rows->world->id, rows->group, &row->contact,
+                        rows->world->pairs[number].bodies, &row->feedback);
 }
 
 // Makes the rows of all places that touch.
@@ -214,8 +212,8 @@ static void check_stability(ContactRows *rows, size_t number, double step_s)
         return;
     }
     contact_mass_find(&rows->mass, rows->rows, number, rows->map->needs_mass);
-    const double frequency = sqrt(force_law_tangent(&row->law, row->depth) / row->stiff_mass);
-    row->falls_back = !(frequency * step_s < rows->map->stability_limit);
+    const double slope = force_law_tangent(&row->law, row->depth);
+    row->falls_back = !law_row_is_stable(rows->map, slope / row->stiff_mass, step_s);
     rows->fallback_count += row->falls_back ? 1 : 0;
 }
 

@@ -1,6 +1,8 @@
 // Which forces came of the rows of contacts in a step, and which energies?
 #include "ode/contact_rows.h"
 
+#include "world/pressing_row.h"
+
 #include <string.h>
 
 // Work lost to friction in the step: the force on the pin along the wall, against how far the pin
@@ -58,9 +60,8 @@ static Vec2 row_force(const ContactRows *rows, size_t number)
     if (!row->is_touching || pair->row != NULL) {
         return (Vec2){0.0, 0.0};
     }
-    // ODE gives the force on the first body attached: a, if it is no ground
-    const double sign = pair->bodies[0] != NULL ? -1.0 : 1.0;
-    return (Vec2){sign * row->feedback.f1[0], sign * row->feedback.f1[1]};
+    const Vec3 on_a = pressing_row_force(&row->feedback, pair->bodies);
+    return (Vec2){-on_a.x, -on_a.y};
 }
 
 // Adds what a corner or an end does to what its joint does.
@@ -75,15 +76,11 @@ static void add_corner(const ContactRow *row, const WorldPair *pair, Vec2 force,
     }
 }
 
-// What the row pressed with, for the largest force of its contact.
-static void note_pressing(ContactRow *row, double step_s)
+// The torque of a row of an angle, which does nothing from then on.
+static double take_torque(const ContactRow *row, const WorldPair *pair)
 {
-    const double depth = fmax(row->inside, 0.0);
-    if (row->share < 1.0) {
-        tops_note_part(&row->tops, row->pressing, depth, step_s);
-    } else {
-        tops_note(&row->tops, row->pressing, depth, row->tops.has_series ? step_s : 0.0);
-    }
+    pressing_row_rest(pair->row);
+    return pair->touch.sign * row->feedback.t1[2];
 }
 
 // Reads what a row of the step did.
@@ -92,15 +89,14 @@ static void read_row(ContactRows *rows, size_t number, double step_s, JointState
     ContactRow *row = &rows->rows[number];
     const WorldPair *pair = &rows->world->pairs[number];
     const Vec2 force = row_force(rows, number);
-    row->pressing =
-        pair->row != NULL ? ends_pressing(pair->row, pair->touch.sign) : vec2_length(force);
+    row->pressing = pair->row != NULL ? take_torque(row, pair) : vec2_length(force);
     if (pair->is_corner) {
         add_corner(row, pair, force, state);
     } else {
         state->force_on_b = force;
         state->force = row->pressing;
     }
-    note_pressing(row, step_s);
+    tops_note_step(&row->tops, row->pressing, fmax(row->inside, 0.0), row->share, step_s);
 }
 
 void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)

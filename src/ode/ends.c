@@ -1,11 +1,9 @@
-// How does ODE get a row that presses against an angle, and never pulls?
+// Where do limited angles and teeth stand?
 //
-// An angular motor of one axis at its low stop: its angle is set to -1, so that the row's speed is
-// dParamStopERP / h. The first body of the motor is body b of the joint, or a where b is the
-// ground: then its rate is that of the coordinate (model/coordinate.h). Teeth and the ends of a
-// slider are contacts (ode/contact_rows.c).
-//
-// ODE knows angles in one turn; turns are counted from step to step.
+// ODE knows angles in one turn; turns are counted from step to step. The row by which an end of an
+// angle presses is world/pressing_row.c's, with body b of the joint first: then its rate is that of
+// the coordinate (model/coordinate.h). Teeth and the ends of a slider are contacts
+// (ode/contact_rows.c).
 #include "ode/ends.h"
 
 #include "base/zeroed.h"
@@ -89,30 +87,4 @@ const Motion *ends_look(WorldEnds *ends, int joint)
         look_at(ends, of->gear.carrier);
     }
     return ends->motions;
-}
-
-dJointID ends_make_row(dWorldID world, const dBodyID bodies[2], double sign)
-{
-    const int first = bodies[1] != NULL ? 1 : 0;
-    const dJointID row = dJointCreateAMotor(world, 0);
-    dJointAttach(row, bodies[first], bodies[1 - first]);
-    dJointSetAMotorMode(row, dAMotorUser);
-    dJointSetAMotorNumAxes(row, 1);
-    dJointSetAMotorAxis(row, 0, 0, 0.0, 0.0, sign);
-    dJointSetAMotorParam(row, dParamLoStop, 0.0);
-    dJointSetAMotorAngle(row, 0, 1.0);
-    return row;
-}
-
-void ends_press(dJointID row, double cfm, double speed, double step_s)
-{
-    dJointSetAMotorAngle(row, 0, -1.0);
-    dJointSetAMotorParam(row, dParamStopERP, speed * step_s);
-    dJointSetAMotorParam(row, dParamStopCFM, cfm);
-}
-
-double ends_pressing(dJointID row, double sign)
-{
-    dJointSetAMotorAngle(row, 0, 1.0);
-    return sign * dJointGetFeedback(row)->t1[2];
 }

@@ -1,5 +1,4 @@
-// The ends of limited coordinates in ODE's world: where angles and teeth stand, and the row by
-// which an end of an angle presses.
+// The ends of limited coordinates in ODE's world: where angles and teeth stand.
 #pragma once
 
 #include "contact/touch.h"
@@ -25,14 +24,3 @@ const Motion *ends_look(WorldEnds *ends, int joint);
 // An angle of a body that is known in one turn, with the turns it has made; without ends, or of
 // other bodies, the angle as it is.
 double ends_count_turns(const WorldEnds *ends, size_t body, double angle);
-
-// The row of an end of an angle, which does nothing until it presses. ODE writes what it presses
-// with where ends_pressing reads it.
-dJointID ends_make_row(dWorldID world, const dBodyID bodies[2], double sign);
-
-// In the next step: sign * rate_after + CFM M = speed, M >= 0, of the coordinate's rate and a
-// torque, N m, that pushes it by sign * M.
-void ends_press(dJointID row, double cfm, double speed, double step_s);
-
-// After it: the torque; the row does nothing again.
-double ends_pressing(dJointID row, double sign);

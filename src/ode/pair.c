@@ -4,6 +4,7 @@
 #include "contact/pin_hole.h"
 #include "ode/hole_geom.h"
 #include "ode/snapshot.h"
+#include "world/pressing_row.h"
 
 static void attach_geom(dGeomID geom, dBodyID body, Vec2 anchor)
 {
@@ -77,7 +78,8 @@ void pair_make_end(const Scenario *scenario, const Touch *touch, const dBodyID b
     };
     place_line_of(&scenario->linkage.joints[touch->joint], pair);
     if (touch->shape == TOUCH_TURN) {
-        pair->row = ends_make_row(world, bodies, touch->sign);
+        pair->row = pressing_row_of_angle(world, (dBodyID[]){bodies[1], bodies[0]}, NULL);
+        pressing_row_set_axis(pair->row, 0.0, 0.0, touch->sign);
     }
 }
 

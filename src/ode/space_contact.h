@@ -2,7 +2,8 @@
 // ode/space_contacts.c and its parts share.
 #pragma once
 
-#include "contact/map.h"
+#include "contact/law_row.h"
+#include "contact/onset.h"
 #include "contact/pin_space.h"
 #include "model/space_response.h"
 #include "ode/world.h"
@@ -15,10 +16,9 @@ typedef struct SpaceContact {
     Vec3 point;          // m, where the force acts
     Vec3 hole_axis;      // unit, of a collar
     double impact_speed; // m/s, closing speed when the present contact began
-    double gaps[2];      // m, of the last step and of the one before it
-    size_t gaps_known;   // how many of them the pin was free in
-    double mass;         // kg, effective along the normal that it was worked out for
-    double stiff_mass;   // kg, with which the stiffest motion of the joint's places meets it
+    Onset onset;
+    double mass;       // kg, effective along the normal that it was worked out for
+    double stiff_mass; // kg, with which the stiffest motion of the joint's places meets it
     Vec3 mass_normal;
     unsigned mass_places; // the joint's places that touched then, one bit each
     bool falls_back;      // the map is not stable at this step: the row is the textbook's

@@ -14,6 +14,7 @@
 #include "contact/penalty.h"
 #include "ode/space_friction_rows.h"
 #include "ode/space_world.h"
+#include "world/pressing_row.h"
 
 #include <string.h>
 
@@ -47,21 +48,6 @@ void space_contacts_finish(SpaceContacts *contacts)
     contacts->group = NULL;
 }
 
-// The speed at which a pin that overlaps its wall for the first time came to it; as in
-// ode/contact_row.c.
-static double onset_speed(const SpaceContact *contact, bool is_staggered, double step_s)
-{
-    if (!is_staggered || contact->gaps_known == 0) {
-        return contact->pose.approach_speed;
-    }
-    const double mean = (contact->gaps[0] - contact->pose.gap) / step_s;
-    if (contact->gaps_known == 1 || !(mean > 0.0)) {
-        return mean;
-    }
-    const double change = mean - (contact->gaps[1] - contact->gaps[0]) / step_s;
-    return mean + change * (0.5 - contact->depth / (mean * step_s));
-}
-
 static void find_contact(SpaceContacts *contacts, size_t number, const SpaceMotion *motions,
                          double step_s)
 {
@@ -74,12 +60,13 @@ static void find_contact(SpaceContacts *contacts, size_t number, const SpaceMoti
     if (!contact->is_touching) {
         contact->impact_speed = contact->pose.approach_speed;
     } else if (!was_touching) {
-        contact->impact_speed = onset_speed(contact, contacts->is_staggered, step_s);
+        const PinSpacePose *pose = &contact->pose;
+        contact->impact_speed = contacts->is_staggered
+                                    ? onset_speed(&contact->onset, pose->approach_speed, pose->gap,
+                                                  contact->depth, step_s)
+                                    : pose->approach_speed;
     }
-    contact->gaps_known =
-        contact->is_touching ? 0 : contact->gaps_known + (contact->gaps_known < 2 ? 1 : 0);
-    contact->gaps[1] = contact->gaps[0];
-    contact->gaps[0] = contact->pose.gap;
+    onset_note(&contact->onset, contact->is_touching, contact->pose.gap);
     const Clearance *clearance = &contacts->scenario->linkage.joints[place->joint].clearance;
     contact->point = contact->pose.at_a;
     if (place->place == PIN_SPACE_COLLAR) {
@@ -168,9 +155,8 @@ static void check_stability(SpaceContacts *contacts, size_t number, const SpaceM
         return;
     }
     update_mass(contacts, number, motions);
-    const double frequency = sqrt(force_law_tangent(&contacts->places[number].law, contact->depth) /
-                                  contact->stiff_mass);
-    contact->falls_back = !(frequency * step_s < contacts->map->stability_limit);
+    const double slope = force_law_tangent(&contacts->places[number].law, contact->depth);
+    contact->falls_back = !law_row_is_stable(contacts->map, slope / contact->stiff_mass, step_s);
     contacts->fallback_count += contact->falls_back ? 1 : 0;
 }
 
@@ -191,17 +177,16 @@ static dSurfaceParameters surface_of(SpaceContacts *contacts, size_t number, dou
             map_poisson_cfm(contacts->penalty / (is_end ? (double)PIN_SPACE_ENDS : 1.0));
         return surface;
     }
-    contact->damping = force_law_damping(&place->law, contact->depth, contact->impact_speed);
-    const MapContact row = {
-        .stiffness = force_law_secant(&place->law, contact->depth),
-        .damping = contact->damping,
-        .step = step_s,
-        .mass = contact->mass,
+    const LawRow at = {
         .depth = contact->depth,
         .closing = contact->pose.approach_speed,
+        .impact_speed = contact->impact_speed,
+        .share = 1.0,
+        .mass = contact->mass,
     };
-    const Map *map = contact->falls_back ? map_get(ODE_MAP_TEXTBOOK) : contacts->map;
-    const ErpCfm soft = map->convert(&row);
+    const MapContact row = law_row_contact(&place->law, &at, step_s);
+    const ErpCfm soft = law_row_soft(contacts->map, contact->falls_back, &row);
+    contact->damping = row.damping;
     surface.soft_erp = soft.erp;
     surface.soft_cfm = soft.cfm;
     return surface;
@@ -233,11 +218,10 @@ static size_t make_joints(SpaceContacts *contacts)
         SpaceContact *contact = &contacts->contacts[i];
         const PinSpace *place = &contacts->places[i];
         if (contact->is_touching) {
-            const dJointID joint =
-                dJointCreateContact(contacts->world->id, contacts->group, &contact->contact);
-            dJointAttach(joint, body_of(contacts->world, place->hole.body),
-                         body_of(contacts->world, place->pin.body));
-            dJointSetFeedback(joint, &contact->feedback);
+            const dBodyID bodies[2] = {body_of(contacts->world, place->hole.body),
+                                       body_of(contacts->world, place->pin.body)};
+            pressing_row_of_way(contacts->world->id, contacts->group, &contact->contact, bodies,
+                                &contact->feedback);
             rows += (contact->contact.surface.mode & dContactFDir1) != 0 ? 3 : 1;
         }
     }
@@ -322,10 +306,9 @@ void space_contacts_clear(SpaceContacts *contacts, double step_s, SpaceJoints *j
         SpaceContact *contact = &contacts->contacts[i];
         contact->force = (Vec3){0.0, 0.0, 0.0};
         if (contact->is_touching) {
-            // ODE gives the force on the first body attached: the hole's, if it is no ground
-            const double sign = place->hole.body != LINKAGE_GROUND ? -1.0 : 1.0;
-            const dReal *force = contact->feedback.f1;
-            contact->force = vec3_scale(sign, (Vec3){force[0], force[1], force[2]});
+            const dBodyID bodies[2] = {body_of(contacts->world, place->hole.body),
+                                       body_of(contacts->world, place->pin.body)};
+            contact->force = vec3_scale(-1.0, pressing_row_force(&contact->feedback, bodies));
             space_joints_press(joints, place, contact->force, contact->hole_axis);
         }
         book_energy(contacts, i, motions, step_s);

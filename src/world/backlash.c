@@ -1,6 +1,7 @@
 // Backlash and stops on the coordinate of a hinge or slider: how are they made, driven and read?
 #include "world/contact.h"
 #include "world/play.h"
+#include "world/pressing_row.h"
 
 #include <math.h>
 
@@ -36,24 +37,12 @@ static JpStatus check_joint(const JpWorld *world, dJointID joint, JpError *error
     return JP_OK;
 }
 
-// The row of an angle: an axis of an angular motor at its low stop.
+// The row of an angle.
 static bool make_motor(JpJoint *joint)
 {
-    const dJointID motor = dJointCreateAMotor(joint->world->id, 0);
-    if (motor == NULL) {
-        return false;
-    }
     PlaceRow *row = &joint->places[0].row;
-    // the first body of ODE's joint is never the world
-    const int first = joint->bodies[0] != NULL ? 0 : 1;
-    dJointAttach(motor, joint->bodies[first], joint->bodies[1 - first]);
-    dJointSetAMotorMode(motor, dAMotorUser);
-    dJointSetAMotorNumAxes(motor, 1);
-    dJointSetAMotorParam(motor, dParamLoStop, 0.0);
-    dJointSetAMotorAngle(motor, 0, 1.0);
-    dJointSetFeedback(motor, &row->feedback);
-    row->motor = motor;
-    return true;
+    row->motor = pressing_row_of_angle(joint->world->id, joint->bodies, &row->feedback);
+    return row->motor != NULL;
 }
 
 static JpStatus make_joint(JpWorld *world, PlayKind kind, dJointID on, const ForceLaw *law,

@@ -1,6 +1,7 @@
 // Which ERP and CFM are a contact at an instant, and which spring and damper are an ERP and a CFM?
 #include "world/mapping.h"
 
+#include "contact/law_row.h"
 #include "world/contact.h"
 
 #include <math.h>
@@ -57,21 +58,19 @@ JpStatus jp_row(JpMap kind, const JpContact *contact, const JpInstant *instant, 
     REFUSAL_TRY(check_instant(kind, map, instant, error));
     REFUSAL_TRY(refusal_of_positive(instant->depth, "the depth", error));
     REFUSAL_TRY(refusal_of_negative(instant->impact_speed, "the impact speed", error));
-    const double stiffness = force_law_secant(&law, instant->depth);
-    const double damping = force_law_damping(&law, instant->depth, instant->impact_speed);
-    if (!(stiffness > 0.0 && isfinite(stiffness) && isfinite(damping))) {
+    const LawRow at = {.depth = instant->depth,
+                       .closing = instant->closing,
+                       .impact_speed = instant->impact_speed,
+                       .share = 1.0,
+                       .mass = instant->mass};
+    const MapContact contact_now = law_row_contact(&law, &at, instant->step);
+    if (!(contact_now.stiffness > 0.0 && isfinite(contact_now.stiffness) &&
+          isfinite(contact_now.damping))) {
         return refusal(error, JP_ERROR_NONE,
                        "the contact's law has no stiffness at a depth of %g; it holds to %g",
                        instant->depth, force_law_depth_limit(&law));
     }
-    const ErpCfm made = map->convert(&(MapContact){
-        .stiffness = stiffness,
-        .damping = damping,
-        .step = instant->step,
-        .mass = instant->mass,
-        .depth = instant->depth,
-        .closing = instant->closing,
-    });
+    const ErpCfm made = map->convert(&contact_now);
     const JpRow found = {made.erp, made.cfm, made.rest};
     REFUSAL_TRY(check_row(found, error));
     *row = found;

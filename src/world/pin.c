@@ -8,6 +8,7 @@
 // is at u . (M - C) between its collars, at a rate of u . (v_pin(M) - v_hole(M)).
 #include "world/pin.h"
 
+#include "contact/pin_axis.h"
 #include "world/contact.h"
 
 #include <math.h>
@@ -85,7 +86,7 @@ static End end_of(const JpJoint *joint, Vec3 hole)
     const Vec3 axis = axis_of(joint->bodies[PIN], joint->pin.axes[PIN]);
     const Vec3 at_hole = point_of(joint->bodies[HOLE], hole);
     const Vec3 middle = point_of(joint->bodies[PIN], joint->pin.pin);
-    const Vec3 offset = vec3_across(vec3_sub(middle, at_hole), axis);
+    const Vec3 offset = pin_axis_offset(at_hole, middle, axis);
     const Vec3 at_pin = vec3_add(at_hole, offset);
     const Vec3 sliding = vec3_sub(velocity_at(joint->bodies[PIN], at_pin),
                                   velocity_at(joint->bodies[HOLE], at_hole));
@@ -166,8 +167,8 @@ static void find_slide(const JpJoint *joint, const End *end, Vec3 normal, Place 
 // The rows across the pin's axis, and where the pin was and how fast it went in them.
 static void find_rows(const JpJoint *joint, const End *end, Place *place)
 {
-    const Vec3 first = vec3_normal_to(end->axis);
-    const Vec3 across[PLACE_ROWS_PLANE] = {first, vec3_cross(end->axis, first)};
+    Vec3 across[PLACE_ROWS_PLANE];
+    pin_axis_across(end->axis, across);
     place->row_count = PLACE_ROWS_PLANE;
     for (size_t i = 0; i < PLACE_ROWS_PLANE; i++) {
         place->rows[i] = along(joint, across[i], end->at_pin, end->at_hole);

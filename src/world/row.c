@@ -1,7 +1,6 @@
-// How does ODE get a row that presses and never pulls, for an angle and for a way?
+// What is the row of a side, for an angle and for a way?
 //
-// An angle: an angular motor of one axis at its low stop. Its angle is set to -1, so that the row's
-// speed is dParamStopERP / h.
+// An angle has a row of its own (world/pressing_row.c).
 // A way: a contact at a depth of 0 whose dContactMotionN is the row's speed. A world may limit that
 // speed (dWorldSetContactMaxCorrectingVel). Then F - F0 is the row's force, F0 = (speed - limit) /
 // CFM what is put on from outside: the same row, for F of at least F0.
@@ -9,20 +8,13 @@
 // to the law mu N tanh(v / v_s) at slow sliding, N that of the step before.
 #include "world/row.h"
 
+#include "world/pressing_row.h"
+
 #include <math.h>
 #include <string.h>
 
 // so that rounding does not reach the limit
 static const double LIMIT_SHARE = 0.999;
-
-static void make_angle_row(PlaceRow *row, double cfm, double erp)
-{
-    const dReal *axis = row->axis;
-    dJointSetAMotorAxis(row->motor, 0, 0, axis[0], axis[1], axis[2]);
-    dJointSetAMotorAngle(row->motor, 0, -1.0);
-    dJointSetAMotorParam(row->motor, dParamStopERP, erp);
-    dJointSetAMotorParam(row->motor, dParamStopCFM, cfm);
-}
 
 // Friction of a pin at its wall, in the contact's two directions.
 static void add_friction(Place *place, const Side *side, dContact *contact)
@@ -66,9 +58,8 @@ static void make_contact(JpJoint *joint, Place *place, const Side *side, double 
     for (int i = 0; i < 3; i++) {
         contact.geom.normal[i] = first * row->axis[i];
     }
-    row->contact = dJointCreateContact(world, joint->world->rows, &contact);
-    dJointAttach(row->contact, joint->bodies[0], joint->bodies[1]);
-    dJointSetFeedback(row->contact, &row->feedback);
+    row->contact =
+        pressing_row_of_way(world, joint->world->rows, &contact, joint->bodies, &row->feedback);
 }
 
 void row_make(JpJoint *joint, Place *place, const Side *side, double cfm, double speed, double step)
@@ -81,7 +72,8 @@ void row_make(JpJoint *joint, Place *place, const Side *side, double cfm, double
         row->axis[i] = sign * place->along.axis[i];
     }
     if (row->motor != NULL) {
-        make_angle_row(row, cfm, speed * step);
+        pressing_row_set_axis(row->motor, row->axis[0], row->axis[1], row->axis[2]);
+        pressing_row_press(row->motor, cfm, speed, step);
     } else {
         make_contact(joint, place, side, cfm, speed);
     }
@@ -90,11 +82,9 @@ void row_make(JpJoint *joint, Place *place, const Side *side, double cfm, double
 Vec3 row_force(const JpJoint *joint, const Place *place)
 {
     const double first = joint->bodies[0] != NULL ? 1.0 : -1.0;
-    const dReal *found = place->row.feedback.f1;
     const dReal *axis = place->row.axis;
-    const double pushed = place->row.pushed;
-    return (Vec3){first * (found[0] + pushed * axis[0]), first * (found[1] + pushed * axis[1]),
-                  first * (found[2] + pushed * axis[2])};
+    const Vec3 pushed = vec3_scale(first * place->row.pushed, (Vec3){axis[0], axis[1], axis[2]});
+    return vec3_add(pressing_row_force(&place->row.feedback, joint->bodies), pushed);
 }
 
 double row_slid(const Place *place, Vec3 force, double step)
@@ -114,7 +104,7 @@ double row_take(Place *place)
     PlaceRow *row = &place->row;
     const dReal *found = row->motor != NULL ? row->feedback.t1 : row->feedback.f1;
     if (row->motor != NULL) {
-        dJointSetAMotorAngle(row->motor, 0, 1.0);
+        pressing_row_rest(row->motor);
     }
     row->contact = NULL;
     return dCalcVectorDot3(row->axis, found) + row->pushed;

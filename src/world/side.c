@@ -48,19 +48,18 @@ void side_find(Side *side, const SideMotion *motion, double step)
 
 MapContact side_contact(const Side *side, double step)
 {
-    const double damping = force_law_damping(&side->law, side->depth, side->impact_speed);
-    return (MapContact){
-        .stiffness = force_law_secant(&side->law, side->depth),
-        .damping = damping - side->law.viscous * (1.0 - side->share),
-        .step = step,
+    const LawRow row = {
         .depth = side->depth,
         .closing = side->closing,
+        .impact_speed = side->impact_speed,
+        .share = side->share,
     };
+    return law_row_contact(&side->law, &row, step);
 }
 
-bool side_is_stable(const Side *side, double limit, double mobility, double step)
+bool side_is_stable(const Side *side, const Map *map, double mobility, double step)
 {
-    return sqrt(force_law_tangent(&side->law, side->depth) * mobility) * step < limit;
+    return law_row_is_stable(map, force_law_tangent(&side->law, side->depth) * mobility, step);
 }
 
 // Notes what is the largest now.
@@ -78,11 +77,9 @@ void side_note_tops(Side *side, double force, double ahead)
 
 void side_book(Side *side, double force, double rate_before, double rate_after, double step)
 {
-    if (side->is_touching && side->share < 1.0) {
-        tops_note_part(&side->tops, force, side->inside, step);
+    if (side->is_touching) {
+        tops_note_step(&side->tops, force, side->inside, side->share, step);
         keep_largest(side);
-    } else if (side->is_touching) {
-        side_note_tops(side, force, side->tops.has_series ? step : 0.0);
     }
     side->force = force;
     side->impulse += force * step;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "contact/force_law.h"
-#include "contact/map.h"
+#include "contact/law_row.h"
 #include "contact/overlap.h"
 #include "contact/tops.h"
 
@@ -53,8 +53,8 @@ void side_find(Side *side, const SideMotion *motion, double step);
 // The contact as a map looks at it, of a side that touches.
 MapContact side_contact(const Side *side, double step);
 
-// Whether a map of this limit is stable for the contact, with a mobility of the coordinate.
-bool side_is_stable(const Side *side, double limit, double mobility, double step);
+// Whether a map is stable for the contact, with a mobility of the coordinate.
+bool side_is_stable(const Side *side, const Map *map, double mobility, double step);
 
 // A contact begins, with a closing speed.
 void side_begin(Side *side, double closing);

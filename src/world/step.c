@@ -32,11 +32,10 @@ static bool is_staggered(const JpWorld *world)
 // mean of both it would throw back what it stops.
 static const double STOPPED = 2.0;
 
-static const Map *map_for(const MapContact *contact, double mobility, bool falls_back)
+static const Map *map_for(const MapContact *contact, double mobility)
 {
-    return map_get(falls_back                                              ? ODE_MAP_TEXTBOOK
-                   : contact->damping * mobility * contact->step > STOPPED ? ODE_MAP_CORRECTED
-                                                                           : ODE_MAP_MIDPOINT);
+    return map_get(contact->damping * mobility * contact->step > STOPPED ? ODE_MAP_CORRECTED
+                                                                         : ODE_MAP_MIDPOINT);
 }
 
 static JpStatus gather(JpWorld *world, JpError *error)
@@ -64,8 +63,8 @@ static JpStatus gather(JpWorld *world, JpError *error)
 // enough, or, once in a contact, found by trial.
 static JpStatus find_mobility(JpJoint *joint, Place *place, Side *side, double step, JpError *error)
 {
-    const double limit = map_get(ODE_MAP_MIDPOINT)->stability_limit;
-    if (side->mobility > 0.0 || side_is_stable(side, limit, play_mobility(joint, place), step)) {
+    const Map *map = map_get(ODE_MAP_MIDPOINT);
+    if (side->mobility > 0.0 || side_is_stable(side, map, play_mobility(joint, place), step)) {
         return JP_OK;
     }
     const double force = side->sign * force_law_elastic(&side->law, side->depth);
@@ -79,9 +78,8 @@ static JpStatus make_row(JpJoint *joint, Place *place, Side *side, double step, 
     JpWorld *world = joint->world;
     const double mobility = side->mobility > 0.0 ? side->mobility : play_mobility(joint, place);
     const MapContact contact = side_contact(side, step);
-    const double limit = map_get(ODE_MAP_MIDPOINT)->stability_limit;
-    const bool falls_back = !side_is_stable(side, limit, mobility, step);
-    const ErpCfm row = map_for(&contact, mobility, falls_back)->convert(&contact);
+    const bool falls_back = !side_is_stable(side, map_get(ODE_MAP_MIDPOINT), mobility, step);
+    const ErpCfm row = law_row_soft(map_for(&contact, mobility), falls_back, &contact);
     const Rotor *rotor = &joint->rotor;
     const double yield = isfinite(rotor->inertia) ? step / rotor->inertia : 0.0;
     const double speed =
