@@ -1,6 +1,7 @@
 // Does `jointplay run` print, write and end as it should?
 #include "program.h"
 
+#include <math.h>
 #include <sys/stat.h>
 
 static void a_bad_case_ends_with_status_3_before_anything_runs(void **state)
@@ -201,6 +202,70 @@ static void json_of_a_failed_run_holds_no_number(void **state)
     json_decref(root);
 }
 
+// The heights in a picture, pixels, at which a line of points passes one that stands at an x.
+static size_t heights_at(const char *path, double x, double *heights, size_t room)
+{
+    size_t count = 0;
+    for (const char *at = path; *at == 'M' || *at == 'L';) {
+        char *end;
+        const double here = strtod(at + 1, &end);
+        const double height = strtod(end, &end);
+        if (fabs(here - x) < 0.5 && count < room) {
+            heights[count++] = height;
+        }
+        at = end;
+    }
+    return count;
+}
+
+// The next line of a panel, from what it begins with.
+static const char *next_line(const char *from)
+{
+    static const char LINE[] = "<path class=\"line\" d=\"";
+    const char *found = strstr(from, LINE);
+    assert_non_null(found);
+    return found + sizeof LINE - 1;
+}
+
+static void backlash_under_a_torque_that_turns_back_is_a_loop(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_run(program, "run $cases/mechanisms/servo-backlash.yaml --set run.backends=[reference] "
+                         "--plot servo.svg --quiet");
+    assert_int_equal(program->status, 0);
+    program_path(program, "servo.svg", path);
+    program_read(path, program->output);
+    const char *panel = strstr(program->output, "Angle over torque");
+    assert_non_null(panel);
+    const char *low = next_line(panel);
+    const char *high = next_line(low);
+    const char *loop = next_line(high);
+    double flanks[2];
+    double loads[64];
+    double ends[2];
+    char *end;
+    const double left = strtod(low + 1, &end);
+    flanks[0] = strtod(end, &end);
+    const double right = strtod(end + 1, &end);
+    flanks[1] = strtod(strchr(high, ' '), NULL);
+    // without torque it starts in the middle of the gap, and comes back at one flank, and at the
+    // other; 1 N m is a whole gap and 0.34/0.31 of half of it beyond that
+    assert_int_equal(heights_at(loop, 0.5 * (left + right), loads, 64), 3);
+    assert_true(fabs(loads[0] - 0.5 * (flanks[0] + flanks[1])) < 0.2);
+    assert_true(fabs(loads[1] - flanks[1]) < 1.0);
+    assert_true(fabs(loads[2] - flanks[0]) < 1.0);
+    assert_int_equal(heights_at(loop, left + (right - left) / 12.0, ends, 2), 1);
+    const double beyond = 0.34 / 0.62 * (flanks[0] - flanks[1]);
+    assert_true(fabs(ends[0] - flanks[0] - beyond) < 1.5);
+    // the control: nothing drives this one
+    program_run(program, "run $cases/mechanisms/stop-rebound.yaml --set run.backends=[reference] "
+                         "--plot stop.svg --quiet");
+    program_path(program, "stop.svg", path);
+    program_read(path, program->output);
+    assert_null(strstr(program->output, "over torque"));
+}
+
 static void a_full_disk_ends_with_status_5(void **state)
 {
     Program *program = *state;
@@ -326,6 +391,7 @@ int main(void)
         COMMAND_TEST(two_cases_of_one_name_do_not_share_a_folder),
         COMMAND_TEST(a_failed_solver_ends_with_status_4_after_the_others_are_told),
         COMMAND_TEST(json_of_a_failed_run_holds_no_number),
+        COMMAND_TEST(backlash_under_a_torque_that_turns_back_is_a_loop),
         COMMAND_TEST(a_full_disk_ends_with_status_5),
         COMMAND_TEST(nothing_half_written_stays_behind),
         COMMAND_TEST(settings_without_effect_are_said_in_a_line),

@@ -1,6 +1,7 @@
 // Where were coordinates between their flanks or stops?
 //
-// Of a backlash the coordinate is shown from the middle of the gap, of stops as it is.
+// Of a backlash the coordinate is shown from the middle of the gap, of stops as it is. Over a
+// torque that changes and drives it, it is the loop that a test of a servo or a gear shows.
 #include "commands/run/plot_look.h"
 #include "model/coordinate.h"
 #include "write/units.h"
@@ -91,8 +92,8 @@ static void widen(const LimitPanel *limits, const PlotView *view, Axis *axis)
     axis_round(&axis->low, &axis->high);
 }
 
-static void draw_joint(const LimitPanel *limits, const PlotView *view, const PlotPanel *panel,
-                       size_t run, size_t joint)
+static void draw_limits(const LimitPanel *limits, const PlotView *view, const PlotPanel *panel,
+                        size_t joint)
 {
     for (int side = 0; side < 2; side++) {
         const double limit = limit_of(limits, joint_of(view->report, joint), side);
@@ -101,7 +102,6 @@ static void draw_joint(const LimitPanel *limits, const PlotView *view, const Plo
                       (const double[]){limit, limit}, LIMIT);
         }
     }
-    plot_look_draw(view, panel, run, limits->quantity, joint);
 }
 
 static void draw(const LimitPanel *limits, const PlotView *view, PlotPanel panel)
@@ -114,7 +114,8 @@ static void draw(const LimitPanel *limits, const PlotView *view, PlotPanel panel
     for (size_t run = 0; run < view->report->run_count; run++) {
         for (size_t joint = 0; joint < view->report->scenario->linkage.joint_count; joint++) {
             if (shows(limits, view, run, joint)) {
-                draw_joint(limits, view, &panel, run, joint);
+                draw_limits(limits, view, &panel, joint);
+                plot_look_draw(view, &panel, run, limits->quantity, joint);
             }
         }
     }
@@ -142,6 +143,67 @@ void plot_limits_lengths(const PlotView *view, PlotPanel panel)
         .quantity = {"way, mm", true, -1, length_of},
     };
     draw(&lengths, view, panel);
+}
+
+// The coordinate over what drives it at the same time.
+static Vec2 loop_at(const RunReport *report, const Trajectory *run, size_t sample,
+                    const PlotPath *path)
+{
+    const Torque *torque = &report->scenario->linkage.torque;
+    const bool is_angle = linkage_is_torsional(joint_of(report, path->joint));
+    return (Vec2){
+        time_table_at(&torque->table, run->times[sample]),
+        (is_angle ? angle_of : length_of)(report, run, sample, path->joint),
+    };
+}
+
+static Axis torque_axis(const RunReport *report, bool is_angle)
+{
+    const TimeTable *table = &report->scenario->linkage.torque.table;
+    Axis axis = {.title = is_angle ? "torque of the drive, N m" : "force of the drive, N",
+                 .low = INFINITY,
+                 .high = -INFINITY};
+    for (size_t i = 0; i < table->count; i++) {
+        take(&axis, table->values[i]);
+    }
+    axis_round(&axis.low, &axis.high);
+    return axis;
+}
+
+void plot_limits_loop(const PlotView *view, PlotPanel panel)
+{
+    const RunReport *report = view->report;
+    const size_t joint = (size_t)report->scenario->linkage.torque.joint;
+    const bool is_angle = linkage_is_torsional(joint_of(report, joint));
+    const LimitPanel limits = {
+        .is_angle = is_angle,
+        .unit = is_angle ? UNITS_DEG : UNITS_MM,
+        .quantity = {"", true, -1, is_angle ? angle_of : length_of},
+    };
+    const PlotPath path = {.joint = joint, .at = loop_at};
+    panel.title = is_angle ? "Angle over torque; dashed: flanks and stops"
+                           : "Way over force; dashed: flanks and stops";
+    panel.x = torque_axis(report, is_angle);
+    panel.y.title = is_angle ? "angle, deg" : "way, mm";
+    widen(&limits, view, &panel.y);
+    plot_enter(&panel);
+    for (size_t run = 0; run < report->run_count; run++) {
+        if (shows(&limits, view, run, joint)) {
+            draw_limits(&limits, view, &panel, joint);
+            plot_look_path(view, &panel, run, &path);
+        }
+    }
+    plot_leave(&panel);
+}
+
+bool plot_limits_has_loop(const Linkage *linkage)
+{
+    const TimeTable *table = &linkage->torque.table;
+    bool is_changing = false;
+    for (size_t i = 1; i < table->count; i++) {
+        is_changing = is_changing || table->values[i] != table->values[0];
+    }
+    return is_changing && linkage->joints[linkage->torque.joint].limits.kind != LIMIT_NONE;
 }
 
 bool plot_limits_any(const Linkage *linkage, bool is_angle)

@@ -94,6 +94,11 @@ void plot_limits_angles(const PlotView *view, PlotPanel panel);
 void plot_limits_lengths(const PlotView *view, PlotPanel panel);
 bool plot_limits_any(const Linkage *linkage, bool is_angle);
 
+// Of the one that a torque drives that changes over time: where it is over that torque; and whether
+// a linkage has that.
+void plot_limits_loop(const PlotView *view, PlotPanel panel);
+bool plot_limits_has_loop(const Linkage *linkage);
+
 // Of a mechanism of which something is left out: the largest value of every body and joint in each
 // run, over their numbers in the case.
 void plot_overview_bodies(const PlotView *view, PlotPanel panel);

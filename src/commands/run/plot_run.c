@@ -279,7 +279,7 @@ static void draw_motions(const PlotView *view, Sheet sheet)
 // What is drawn from the second panel of the second row on.
 typedef void (*DrawPanel)(const PlotView *view, PlotPanel panel);
 
-enum { PANEL_MAX = 14 };
+enum { PANEL_MAX = 15 };
 
 static bool has_joint(const RunReport *report, JointKind kind)
 {
@@ -323,6 +323,9 @@ static size_t choose_panels(const PlotView *view, DrawPanel panels[PANEL_MAX])
     }
     if (plot_limits_any(&report->scenario->linkage, false)) {
         panels[count++] = plot_limits_lengths;
+    }
+    if (plot_limits_has_loop(&report->scenario->linkage)) {
+        panels[count++] = plot_limits_loop;
     }
     if (view->bodies.left_out > 0) {
         panels[count++] = plot_overview_bodies;
