@@ -191,6 +191,25 @@ double answer_to(const Answer *answer, const double *impulses, size_t row)
     return sum;
 }
 
+void answer_take(const Answer *answer)
+{
+    const size_t numbers = BODY_NUMBERS * answer->world->bodies.count;
+    for (size_t b = 0; b < answer->world->bodies.count; b++) {
+        const dBodyID id = answer->world->bodies.records[b].id;
+        double speeds[BODY_NUMBERS];
+        memcpy(speeds, &answer->speeds[BODY_NUMBERS * b], sizeof speeds);
+        for (size_t i = 0; i < answer->row_count; i++) {
+            for (size_t k = 0; k < BODY_NUMBERS && answer->net[i] != 0.0; k++) {
+                speeds[k] += answer->net[i] * answer->bodies[i * numbers + BODY_NUMBERS * b + k];
+            }
+        }
+        dBodySetLinearVel(id, speeds[0], speeds[1], speeds[2]);
+        dBodySetAngularVel(id, speeds[3], speeds[4], speeds[5]);
+        dBodySetForce(id, 0, 0, 0);
+        dBodySetTorque(id, 0, 0, 0);
+    }
+}
+
 // Answers of all active places about the base, but for those that have been found.
 JpStatus answer_find_columns(Answer *answer, double step, JpError *error)
 {

@@ -16,7 +16,8 @@ typedef struct AnswerPlace {
 // by row where nothing else is said.
 typedef struct Answer {
     JpWorld *world;
-    double step; // s
+    double step;    // s
+    bool is_linear; // whether no bound can be passed (world/closing.h)
     size_t place_count;
     size_t side_count; // of the active places
     size_t row_count;
@@ -50,6 +51,10 @@ void answer_read_bodies(const JpWorld *world, double *speeds);
 // Steps the world under the mean forces of the impulses of the base; writes the rates of all rows
 // after that.
 JpStatus answer_step(const Answer *answer, double step, double *rates, JpError *error);
+
+// Gives the bodies the velocities that the answer has for the impulses of the contacts, as a step
+// would: nothing pushes them any more.
+void answer_take(const Answer *answer);
 
 // Finds the answers to pushes in the rows of all active places beside the base, but for those that
 // are known.

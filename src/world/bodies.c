@@ -166,13 +166,21 @@ bool bodies_are_finite(const Bodies *bodies)
     return true;
 }
 
-void bodies_keep(Bodies *bodies)
+void bodies_keep_positions(Bodies *bodies)
 {
     for (size_t i = 0; i < bodies->count; i++) {
         BodyRecord *record = &bodies->records[i];
+        memcpy(record->position, dBodyGetPosition(record->id), sizeof record->position);
+        memcpy(record->turn, dBodyGetQuaternion(record->id), sizeof record->turn);
+    }
+}
+
+void bodies_keep(Bodies *bodies)
+{
+    bodies_keep_positions(bodies);
+    for (size_t i = 0; i < bodies->count; i++) {
+        BodyRecord *record = &bodies->records[i];
         const dBodyID id = record->id;
-        memcpy(record->position, dBodyGetPosition(id), sizeof record->position);
-        memcpy(record->turn, dBodyGetQuaternion(id), sizeof record->turn);
         memcpy(record->velocity, dBodyGetLinearVel(id), sizeof record->velocity);
         memcpy(record->omega, dBodyGetAngularVel(id), sizeof record->omega);
         memcpy(record->force, dBodyGetForce(id), sizeof record->force);

@@ -55,7 +55,8 @@ bool bodies_are_finite(const Bodies *bodies);
 void bodies_keep(Bodies *bodies);
 void bodies_put_back(const Bodies *bodies);
 
-// Puts bodies back to where they were kept, but leaves their velocities.
+// Positions alone: notes them; puts bodies back to where they were kept, and leaves velocities.
+void bodies_keep_positions(Bodies *bodies);
 void bodies_put_back_positions(const Bodies *bodies);
 
 // Moves all bodies on by a time, s, along their velocities.

@@ -226,19 +226,26 @@ static JpStatus step_with_impulses(JpWorld *world, double step, Answer *answer, 
     return step_with_rows(world, step, error);
 }
 
+static void book_joints(JpWorld *world, double step)
+{
+    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        book(joint, step);
+    }
+}
+
 static void move_on(JpWorld *world, double step, Answer *answer, bool is_impulse)
 {
     if (is_staggered(world)) {
-        gyration_finish(&world->bodies, step);
         bodies_put_back_positions(&world->bodies);
         bodies_drift(&world->bodies, 0.5 * step);
     }
     if (is_impulse) {
         impulse_finish(world, step, answer);
-        return;
+    } else {
+        book_joints(world, step);
     }
-    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-        book(joint, step);
+    if (is_staggered(world)) {
+        gyration_finish(&world->bodies, step);
     }
 }
 

@@ -156,12 +156,73 @@ static void contacts_within_a_step_have_order_two(void **state)
     const double coarse = bouncing_error(JP_STEPPING_IMPULSE, 500, &stats);
     // one step of ODE where nothing touches, four where something does
     assert_true(stats.world_steps <= 500 + 3 * stats.rows && stats.fallbacks == 0);
-    // over a factor of 8 in the step: what is left are 4.4e-4 and 8.4e-6
+    // over a factor of 8 in the step: what is left are 5.0e-4 and 4.3e-6
     const double coarser = bouncing_error(JP_STEPPING_IMPULSE, 250, &stats);
     const double fine = bouncing_error(JP_STEPPING_IMPULSE, 2000, &stats);
     assert_near(log2(coarser / fine) / 3.0, 2.0, 0.3);
     // 2.1e-4; rows see a contact of a millisecond in no step of two
     assert_true(bouncing_error(JP_STEPPING_STAGGERED, 500, &stats) > 20.0 * coarse);
+}
+
+// The rod's hinge where somebody reads its force, and where nobody does: after a step in which the
+// stop pressed.
+typedef struct Held {
+    double angle;
+    double rate;
+    double gained[2]; // N s in x and y, of the rod in the step
+    double held[2];   // N s likewise, of the hinge as it is read
+} Held;
+
+static Held pressed_arm(bool is_read)
+{
+    const double step = 1e-4;
+    const dWorldID world = dWorldCreate();
+    const dJointID hinge = hang_arm(world);
+    const dBodyID rod = dJointGetBody(hinge, 0);
+    JpWorld *play = make_world(world, JP_STEPPING_IMPULSE);
+    JpJoint *joint = NULL;
+    JpStops stops = jp_stops_default();
+    stops.low = STOP;
+    stops.contact.stiffness = STIFFNESS;
+    must(jp_stops_create(play, hinge, &stops, &joint, NULL));
+    dJointFeedback feedback = {{0.0}, {0.0}, {0.0}, {0.0}};
+    dJointSetFeedback(hinge, is_read ? &feedback : NULL);
+    JpJointState now = {0};
+    Held held = {0};
+    for (int i = 0; i < 4000 && now.low.force < 1000.0; i++) {
+        const dReal *velocity = dBodyGetLinearVel(rod);
+        const double before[2] = {velocity[0], velocity[1]};
+        must(jp_world_step(play, step, NULL));
+        must(jp_joint_state(joint, &now, NULL));
+        velocity = dBodyGetLinearVel(rod);
+        for (int k = 0; k < 2; k++) {
+            held.gained[k] = velocity[k] - before[k]; // of 1 kg
+            held.held[k] = step * feedback.f1[k];
+        }
+    }
+    assert_true(now.low.force >= 1000.0);
+    held.gained[1] += step * 9.81;
+    held.angle = now.position;
+    held.rate = now.speed;
+    jp_world_destroy(play);
+    dWorldDestroy(world);
+    return held;
+}
+
+static void a_joint_that_is_read_moves_alike_and_shows_its_force(void **state)
+{
+    (void)state;
+    const Held alone = pressed_arm(false);
+    const Held read = pressed_arm(true);
+    assert_near(read.angle, alone.angle, 1e-12);
+    assert_near(read.rate, alone.rate, 1e-9);
+    // a step that closes velocities holds a thousandth of that
+    const double size = hypot(read.gained[0], read.gained[1]);
+    assert_true(size > 0.1);
+    assert_near(read.held[0], read.gained[0], 0.01 * size);
+    assert_near(read.held[1], read.gained[1], 0.01 * size);
+    // the control
+    assert_near(hypot(alone.held[0], alone.held[1]), 0.0, 0.0);
 }
 
 // A disc that a motor at its limit brakes like dry friction, .5 N m on .01 kg m^2, hits a stop and
@@ -332,6 +393,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pendulum_has_order_two_staggered_and_one_plain),
         cmocka_unit_test(contacts_within_a_step_have_order_two),
+        cmocka_unit_test(a_joint_that_is_read_moves_alike_and_shows_its_force),
         cmocka_unit_test(a_motor_at_its_limit_is_met_again_or_counted),
         cmocka_unit_test(a_tumbling_body_has_order_two),
         cmocka_unit_test(bodies_that_are_not_known_are_asked_for),
