@@ -57,11 +57,11 @@ static inline Vec3 vec3_across(Vec3 a, Vec3 unit)
     return vec3_sub(a, vec3_scale(vec3_dot(a, unit), unit));
 }
 
-// A unit vector at right angles to a unit vector: of the world's axes x and y the one that is
-// further from it, turned into its normal plane. Of z itself that is x.
+// A unit vector at right angles to a unit vector: the world's axis x, or y where x is near to it,
+// turned into its normal plane. Of z and all around it that is x.
 static inline Vec3 vec3_normal_to(Vec3 unit)
 {
-    const Vec3 axis = fabs(unit.x) <= fabs(unit.y) ? (Vec3){1.0, 0.0, 0.0} : (Vec3){0.0, 1.0, 0.0};
+    const Vec3 axis = fabs(unit.x) < 0.75 ? (Vec3){1.0, 0.0, 0.0} : (Vec3){0.0, 1.0, 0.0};
     const Vec3 across = vec3_across(axis, unit);
     return vec3_scale(1.0 / vec3_length(across), across);
 }

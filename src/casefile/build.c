@@ -366,9 +366,6 @@ static bool refuse_spatial_speeds(const Entry *entry, const Linkage *linkage, in
 bool build_spatial(const Entries *entries, Scenario *scenario, Err *err)
 {
     Linkage *linkage = &scenario->linkage;
-    Motion motions[SPACE_BODY_MAX];
-    SpaceMotion space[SPACE_BODY_MAX];
-    linkage_start(linkage, motions);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Entry *start = entries_find(entries, "joints.*.start", i);
         if (start != NULL && vec2_length(linkage->joints[i].clearance.start) > 0.0) {
@@ -377,17 +374,21 @@ bool build_spatial(const Entries *entries, Scenario *scenario, Err *err)
                                   "of its hole\nallowed: centred");
         }
     }
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
+    linkage_start(linkage, motions);
     set_anchors(linkage, motions);
+    free(motions);
+    SpaceMotion *space = zeroed(linkage->body_count, sizeof *space);
     space_start(linkage, space);
     const Entry *given = entries_speed(entries, linkage->body_count);
     int joint = -1;
+    const bool is_good = given == NULL || space_nearest_check(linkage, space, &joint);
     if (given == NULL) {
         space_nearest_speeds(linkage, linkage->driver.is_present, space);
-    } else if (!space_nearest_check(linkage, space, &joint)) {
-        return refuse_spatial_speeds(given, linkage, joint, err);
     }
-    for (size_t i = 0; i < linkage->body_count; i++) {
+    for (size_t i = 0; is_good && i < linkage->body_count; i++) {
         space_set_start(&space[i], &linkage->bodies[i]);
     }
-    return true;
+    free(space);
+    return is_good || refuse_spatial_speeds(given, linkage, joint, err);
 }

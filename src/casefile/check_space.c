@@ -5,26 +5,9 @@
 
 #include <stdio.h>
 
-// In the plane there may be any number of bodies and joints.
-static bool check_count(const Entries *entries, const Linkage *linkage, Err *err)
-{
-    const bool has_bodies = linkage->body_count > SPACE_BODY_MAX;
-    if (!linkage->is_spatial || (!has_bodies && linkage->joint_count <= SPACE_JOINT_MAX)) {
-        return true;
-    }
-    return entries_refuse_group(entries_group(entries, has_bodies ? "bodies" : "joints", 0), err,
-                                "%zu %s in space\nallowed: at most %d, or space: planar",
-                                has_bodies ? linkage->body_count : linkage->joint_count,
-                                has_bodies ? "bodies" : "joints",
-                                has_bodies ? SPACE_BODY_MAX : SPACE_JOINT_MAX);
-}
-
 bool check_space(const Entries *entries, const Scenario *scenario, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
-    if (!check_count(entries, linkage, err)) {
-        return false;
-    }
     if (linkage->is_spatial && entries->form == SCHEMA_SLIDER_CRANK) {
         return entries_refuse(entries_find(entries, "space", 0), err,
                               "a slider-crank moves in the plane only\nallowed: space: planar");

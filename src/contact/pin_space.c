@@ -1,6 +1,7 @@
 // Which places does a pin in space press on, with which law, and where is it there?
 #include "contact/pin_space.h"
 
+#include "base/zeroed.h"
 #include "contact/law.h"
 #include "contact/pin_axis.h"
 
@@ -28,10 +29,11 @@ static bool make_place(const Scenario *scenario, int joint, int place, PinSpace 
     return true;
 }
 
-size_t pin_space_list(const Scenario *scenario, PinSpace places[PIN_SPACE_MAX], Err *err)
+PinSpace *pin_space_list(const Scenario *scenario, size_t *count, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
-    size_t count = 0;
+    PinSpace *places = zeroed(PIN_SPACE_PLACES * linkage->joint_count, sizeof *places);
+    *count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         if (joint->kind != JOINT_CLEARANCE) {
@@ -39,12 +41,13 @@ size_t pin_space_list(const Scenario *scenario, PinSpace places[PIN_SPACE_MAX], 
         }
         const int last = joint->space.axial_clearance > 0.0 ? PIN_SPACE_PLACES : PIN_SPACE_ENDS;
         for (int place = 0; place < last; place++) {
-            if (!make_place(scenario, (int)i, place, &places[count++], err)) {
-                return 0;
+            if (!make_place(scenario, (int)i, place, &places[(*count)++], err)) {
+                free(places);
+                return NULL;
             }
         }
     }
-    return count;
+    return places;
 }
 
 double pin_space_stored(const Scenario *scenario, size_t joint, const SpaceJointState *state)

@@ -20,7 +20,6 @@ enum {
     PIN_SPACE_ENDS = 2,   // places 0 and 1, at -w/2 and +w/2 along the hole's axis
     PIN_SPACE_COLLAR = 2, // place 2
     PIN_SPACE_PLACES = 3, // at most, of one joint
-    PIN_SPACE_MAX = PIN_SPACE_PLACES * SPACE_JOINT_MAX,
 };
 
 // One place of a joint with play.
@@ -43,9 +42,9 @@ typedef struct PinSpacePose {
     double approach_speed; // m/s, rate of the penetration; without a normal the relative speed
 } PinSpacePose;
 
-// Writes the places of all joints with play, joint by joint. Returns how many there are, or 0 with
-// ERR_CASE where a law does not fit a joint.
-size_t pin_space_list(const Scenario *scenario, PinSpace places[PIN_SPACE_MAX], Err *err);
+// Writes the places of all joints with play, joint by joint, and how many there are. Returns them
+// for the caller to free, or NULL with ERR_CASE where a law does not fit a joint.
+PinSpace *pin_space_list(const Scenario *scenario, size_t *count, Err *err);
 
 // The elastic energy, J, that a joint's places hold in a state; 0 in the velocity-level model.
 double pin_space_stored(const Scenario *scenario, size_t joint, const SpaceJointState *state);

@@ -16,9 +16,6 @@
 enum {
     LINKAGE_GROUND = -1,
     LINKAGE_NAME_SIZE = 48,
-    // in space; in the plane there may be any number
-    SPACE_BODY_MAX = 64,
-    SPACE_JOINT_MAX = 96,
 };
 
 // Of a clearance: how much deeper than its wall something may start that is to touch it, for the

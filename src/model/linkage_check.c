@@ -249,13 +249,6 @@ bool linkage_check(const Linkage *linkage, Err *err)
     if (linkage->body_count == 0) {
         return err_set(err, ERR_CASE, "no bodies, allowed: 1 or more");
     }
-    if (linkage->is_spatial &&
-        (linkage->body_count > SPACE_BODY_MAX || linkage->joint_count > SPACE_JOINT_MAX)) {
-        return err_set(err, ERR_CASE,
-                       "%zu bodies and %zu joints in space, allowed: 1 to %d and 0 to %d; in the "
-                       "plane there may be any number",
-                       linkage->body_count, linkage->joint_count, SPACE_BODY_MAX, SPACE_JOINT_MAX);
-    }
     if (!check_bodies(linkage, err) ||
         !check_names(linkage->bodies[0].name, linkage->body_count, sizeof *linkage->bodies,
                      "bodies", err) ||

@@ -1,11 +1,7 @@
-// Which blocks of a linkage's D = J M^-1 J' are not zero?
-//
-// A node of D is an ideal joint or a place at which a joint with play touches, with its rows. Two
-// nodes have a block where their joints share a body that can give way.
+// What is the response of a linkage worked out from?
 #include "model/response.h"
 
 #include "base/zeroed.h"
-#include "model/joint_nodes.h"
 
 #include <stdlib.h>
 
@@ -30,105 +26,6 @@ static void add_rows(Response *response, int joint, int place, size_t count)
         response->joint_of[response->row_count] = joint;
         response->place_of[response->row_count++] = place;
     }
-}
-
-static void add_block(Response *response, size_t a, size_t b)
-{
-    const Sparse *matrix = &response->matrix;
-    const bool is_later = matrix->order[a] >= matrix->order[b];
-    const size_t row = is_later ? a : b;
-    const size_t column = is_later ? b : a;
-    bool is_transposed;
-    response->blocks[response->block_count++] = (ResponseBlock){
-        .rows = matrix->first_row[row],
-        .columns = matrix->first_row[column],
-        .row_count = matrix->first_row[row + 1] - matrix->first_row[row],
-        .column_count = matrix->first_row[column + 1] - matrix->first_row[column],
-        .values = sparse_block(matrix, row, column, &is_transposed),
-    };
-}
-
-static int compare_links(const void *a, const void *b)
-{
-    const SparseLink *first = a;
-    const SparseLink *second = b;
-    return first->a != second->a ? (first->a < second->a ? -1 : 1)
-                                 : (first->b > second->b) - (first->b < second->b);
-}
-
-// Prepares D: its nodes, and which of their blocks are not zero.
-static void init_matrix(Response *response, const int *joints, const size_t *sizes, size_t count)
-{
-    SparseLink *links;
-    const size_t link_count = joint_nodes_link(response->linkage, joints, count, &links);
-    sparse_init(count, sizes, response->ideal_rows / 2, link_count, links, &response->matrix);
-    response->blocks = zeroed(count + link_count, sizeof *response->blocks);
-    for (size_t i = 0; i < count; i++) {
-        add_block(response, i, i);
-    }
-    // two joints may share both of their bodies
-    qsort(links, link_count, sizeof *links, compare_links);
-    for (size_t i = 0; i < link_count; i++) {
-        if (i == 0 || compare_links(&links[i - 1], &links[i]) != 0) {
-            add_block(response, links[i].a, links[i].b);
-        }
-    }
-    free(links);
-}
-
-// The most rows of ideal joints that are connected: a column of the factor and the first one below
-// belong together.
-static size_t find_largest_group(const Sparse *matrix)
-{
-    size_t largest = 0;
-    size_t *rows = zeroed(matrix->eliminated, sizeof *rows);
-    for (size_t p = 0; p < matrix->eliminated; p++) {
-        const size_t node = matrix->node_at[p];
-        const size_t first = matrix->first_block[p];
-        rows[p] += matrix->first_row[node + 1] - matrix->first_row[node];
-        largest = rows[p] > largest ? rows[p] : largest;
-        if (first + 1 < matrix->first_block[p + 1] &&
-            matrix->block_node[first + 1] < matrix->eliminated) {
-            rows[matrix->block_node[first + 1]] += rows[p];
-        }
-    }
-    free(rows);
-    return largest;
-}
-
-// Lists which places move each other: those whose mobility is not zero.
-static void list_partners(Response *response)
-{
-    const Sparse *matrix = &response->matrix;
-    const size_t first = matrix->eliminated;
-    const size_t count = response->place_count;
-    size_t *next = zeroed(count + 2, sizeof *next);
-    size_t blocks = 0;
-    for (size_t p = first; p < matrix->count; p++) {
-        for (size_t b = matrix->first_block[p]; b < matrix->first_block[p + 1]; b++) {
-            const size_t other = matrix->block_node[b];
-            next[p - first + 1]++;
-            next[other - first + 1] += other != p ? 1 : 0;
-            blocks += other != p ? 2 : 1;
-        }
-    }
-    response->first_partner = zeroed(count + 1, sizeof *response->first_partner);
-    response->partners = zeroed(blocks, sizeof *response->partners);
-    for (size_t i = 0; i < count; i++) {
-        next[i + 1] += next[i];
-        response->first_partner[i + 1] = next[i + 1];
-    }
-    // column by column: the earlier partners of a place come before itself and the later ones
-    for (size_t p = first; p < matrix->count; p++) {
-        for (size_t b = matrix->first_block[p]; b < matrix->first_block[p + 1]; b++) {
-            const size_t other = matrix->block_node[b];
-            response->partners[next[p - first]++] = other - first;
-            if (other != p) {
-                response->partners[next[other - first]++] = p - first;
-            }
-        }
-    }
-    free(next);
 }
 
 void response_init_places(const Linkage *linkage, const ResponsePlace *places, size_t count,
@@ -161,9 +58,10 @@ void response_init_places(const Linkage *linkage, const ResponsePlace *places, s
     }
     response->rows = zeroed(response->row_count, sizeof *response->rows);
     response->work = zeroed(response->row_count, sizeof *response->work);
-    init_matrix(response, joints, sizes, nodes);
-    response->largest_group = find_largest_group(&response->matrix);
-    list_partners(response);
+    response->blocks = response_matrix_init(linkage, joints, sizes, nodes, response->ideal_rows / 2,
+                                            &response->matrix, &response->block_count);
+    response->largest_group = response_matrix_largest(&response->matrix);
+    response_matrix_partners(&response->matrix, &response->first_partner, &response->partners);
     free(sizes);
     free(joints);
 }

@@ -1,8 +1,8 @@
 // The rows of a linkage's response (model/response.h), and where they stand.
 #pragma once
 
-#include "base/sparse.h"
 #include "model/forces.h"
+#include "model/response_matrix.h"
 
 enum {
     RESPONSE_ROWS_A_JOINT = 4, // x and y of the pin against the hole, turns of the two bodies
@@ -34,15 +34,6 @@ typedef struct ResponseRow {
     double y[2];
     double turn[2]; // m, or 1 for a row that is a turn: of its angular velocity
 } ResponseRow;
-
-// A block of D: the rows of two joints or places that share a body, the second eliminated first.
-typedef struct ResponseBlock {
-    size_t rows;    // its first row, and how many
-    size_t columns; // likewise
-    size_t row_count;
-    size_t column_count;
-    double *values; // in the sparse matrix, row by row
-} ResponseBlock;
 
 typedef struct Response {
     const Linkage *linkage;

@@ -4,11 +4,8 @@
 // and r = J v the rates at which the joints open: v' = v - M^-1 J' D^-1 r, D = J M^-1 J'.
 #include "model/space_nearest.h"
 
-#include "base/dense.h"
-
-#include <assert.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/zeroed.h"
+#include "model/space_response.h"
 
 // of the largest speed: what rounding and a case's digits leave
 static const double ALLOWED = 1e-9;
@@ -16,106 +13,52 @@ static const double ALLOWED = 1e-9;
 // what rounding has left after the first is gone after the second
 enum { PASSES = 2 };
 
-typedef struct Solution {
-    size_t count;
-    SpaceRow rows[SPACE_COLUMN_MAX];
-    Mat3 inverse[SPACE_BODY_MAX]; // of the inertias in the world
-    double matrix[SPACE_COLUMN_MAX * SPACE_COLUMN_MAX];
-    double right[SPACE_COLUMN_MAX];
-} Solution;
-
 static bool gives_way(const Linkage *linkage, int body)
 {
     return body != LINKAGE_GROUND && body != linkage_driven_body(linkage);
 }
 
-// J M^-1 J' of two rows.
-static double coupling(const Linkage *linkage, const Solution *solution, const SpaceRow *a,
-                       const SpaceRow *b)
+static bool choose(const Linkage *linkage, const SpaceMotion *motions, const bool *is_asked,
+                   unsigned *chosen)
 {
-    double sum = 0.0;
-    for (int i = 0; i < 2; i++) {
-        for (int k = 0; k < 2; k++) {
-            const int body = a->body[i];
-            if (body == b->body[k] && gives_way(linkage, body)) {
-                sum += vec3_dot(a->linear[i], b->linear[k]) / linkage->bodies[body].mass +
-                       vec3_dot(a->angular[i], mat3_apply(&solution->inverse[body], b->angular[k]));
-            }
-        }
-    }
-    return sum;
-}
-
-static void find_rows(const Linkage *linkage, const SpaceMotion *motions, bool with_play,
-                      Solution *solution)
-{
-    bool is_asked[SPACE_JOINT_MAX];
-    unsigned chosen[SPACE_JOINT_MAX];
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const bool has_play = linkage->joints[i].kind == JOINT_CLEARANCE;
-        is_asked[i] = has_play ? with_play : linkage_is_ideal(linkage, i);
-    }
     space_rows_choose(linkage, motions, is_asked, chosen);
-    solution->count = 0;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        SpaceRow rows[SPACE_JOINT_ROWS];
-        if (chosen[i] != 0) {
-            space_rows_of_joint(linkage, motions, i, rows);
-        }
-        for (int k = 0; k < SPACE_JOINT_ROWS; k++) {
-            if ((chosen[i] >> k & 1U) != 0) {
-                solution->rows[solution->count++] = rows[k];
-            }
-        }
-    }
+    return true;
 }
 
 // Takes out what opens the rows.
-static void correct(const Linkage *linkage, Solution *solution, SpaceMotion *motions)
+static void correct(SpaceResponse *response, SpaceMotion *motions)
 {
-    const size_t n = solution->count;
-    for (size_t i = 0; i < n; i++) {
-        solution->right[i] = space_row_speed(&solution->rows[i], motions);
-        for (size_t k = 0; k < n; k++) {
-            solution->matrix[i * n + k] =
-                coupling(linkage, solution, &solution->rows[i], &solution->rows[k]);
-        }
+    const Linkage *linkage = response->linkage;
+    double *speeds = zeroed(response->ideal_rows, sizeof *speeds);
+    double *impulses = zeroed(response->ideal_rows, sizeof *impulses);
+    SpaceChange *changes = zeroed(linkage->body_count, sizeof *changes);
+    for (size_t i = 0; i < response->ideal_rows; i++) {
+        speeds[i] = space_row_speed(&response->rows[i].row, motions);
     }
-    if (!dense_solve(n, solution->matrix, solution->right)) {
-        return;
+    space_response_close(response, speeds, impulses, changes);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        space_change(&motions[i], NULL, &changes[i]);
     }
-    for (size_t i = 0; i < n; i++) {
-        const SpaceRow *row = &solution->rows[i];
-        for (int side = 0; side < 2; side++) {
-            const int body = row->body[side];
-            if (gives_way(linkage, body)) {
-                SpaceMotion *motion = &motions[body];
-                const double push = -solution->right[i];
-                motion->velocity =
-                    vec3_add(motion->velocity,
-                             vec3_scale(push / linkage->bodies[body].mass, row->linear[side]));
-                motion->omega = vec3_add(
-                    motion->omega,
-                    vec3_scale(push, mat3_apply(&solution->inverse[body], row->angular[side])));
-            }
-        }
-    }
+    free(changes);
+    free(impulses);
+    free(speeds);
 }
 
 // The driven body keeps its speeds.
 static void keep_joints(const Linkage *linkage, bool with_play, SpaceMotion *motions)
 {
-    Solution *solution = malloc(sizeof *solution);
-    assert(solution != NULL);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        const Mat3 inertia = space_world_inertia(&linkage->bodies[i], motions[i].turn);
-        solution->inverse[i] = mat3_inverse(&inertia);
+    bool *is_asked = zeroed(linkage->joint_count, sizeof *is_asked);
+    SpaceResponse response = {.linkage = NULL};
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const bool has_play = linkage->joints[i].kind == JOINT_CLEARANCE;
+        is_asked[i] = has_play ? with_play : linkage_is_ideal(linkage, i);
     }
-    find_rows(linkage, motions, with_play, solution);
-    for (int pass = 0; pass < PASSES; pass++) {
-        correct(linkage, solution, motions);
+    space_response_init_joints(linkage, motions, is_asked, choose, &response);
+    for (int pass = 0; pass < PASSES && space_response_place(&response, motions, NULL); pass++) {
+        correct(&response, motions);
     }
-    free(solution);
+    space_response_finish(&response);
+    free(is_asked);
 }
 
 void space_nearest_speeds(const Linkage *linkage, bool with_play, SpaceMotion *motions)
@@ -131,7 +74,7 @@ void space_nearest_speeds(const Linkage *linkage, bool with_play, SpaceMotion *m
 
 void space_nearest_change(const Linkage *linkage, SpeedChange *changes)
 {
-    SpaceMotion motions[SPACE_BODY_MAX];
+    SpaceMotion *motions = zeroed(linkage->body_count, sizeof *motions);
     space_start(linkage, motions);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const SpeedChange *change = &changes[i];
@@ -147,6 +90,7 @@ void space_nearest_change(const Linkage *linkage, SpeedChange *changes)
         const Vec3 omega = motions[i].omega;
         changes[i] = (SpeedChange){{velocity.x, velocity.y}, omega.z, velocity.z, omega.x, omega.y};
     }
+    free(motions);
 }
 
 bool space_nearest_check(const Linkage *linkage, const SpaceMotion *motions, int *joint)

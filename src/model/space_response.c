@@ -14,56 +14,9 @@ enum { NO_MOVER = -1 };
 
 static const Vec3 AXES[SPACE_POINT_ROWS] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
 
-static size_t triangle(size_t row)
-{
-    return row * (row + 1) / 2;
-}
-
 static bool gives_way(const SpaceResponse *response, int body)
 {
     return body != LINKAGE_GROUND && body != linkage_driven_body(response->linkage);
-}
-
-// Lists the independent rows of the ideal joints. Returns whether all points are among them.
-static bool choose_rows(SpaceResponse *response, const SpaceMotion *motions)
-{
-    const Linkage *linkage = response->linkage;
-    bool is_asked[SPACE_JOINT_MAX];
-    unsigned chosen[SPACE_JOINT_MAX];
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        is_asked[i] = linkage_is_ideal(linkage, i);
-    }
-    space_rows_choose_points(linkage, motions, is_asked, chosen);
-    response->ideal_rows = 0;
-    bool has_points = true;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        has_points = has_points && (!is_asked[i] || (chosen[i] & 7U) == 7U);
-        for (int part = 0; part < SPACE_JOINT_ROWS; part++) {
-            if ((chosen[i] >> part & 1U) != 0) {
-                response->joint_of[response->ideal_rows] = (int)i;
-                response->part_of[response->ideal_rows++] = part;
-            }
-        }
-    }
-    return has_points;
-}
-
-bool space_response_init(const Linkage *linkage, const SpaceMotion *motions,
-                         SpaceResponse *response, Err *err)
-{
-    response->linkage = linkage;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        response->own_inertia[i] = space_inertia(&linkage->bodies[i]);
-        response->own_inverse[i] = mat3_inverse(&response->own_inertia[i]);
-    }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        response->ends[i][0] = space_end(linkage, i, 0);
-        response->ends[i][1] = space_end(linkage, i, 1);
-    }
-    return choose_rows(response, motions) ||
-           err_set(err, ERR_SOLVER,
-                   "the points of the ideal joints depend on each other, which ODE cannot solve: "
-                   "give one joint of the loop some play");
 }
 
 // R A R' of a symmetric matrix.
@@ -153,63 +106,77 @@ static double coupling(const SpaceResponseRow *a, const SpaceResponseRow *b)
 static bool factor_rows(SpaceResponse *response)
 {
     for (size_t i = 0; i < response->row_count; i++) {
-        double *const row = response->matrix + triangle(i);
         find_answers(response, &response->rows[i]);
-        double diagonal = 0.0;
-        for (size_t k = 0; k <= i; k++) {
-            const double *other = response->matrix + triangle(k);
-            const size_t known = k < response->ideal_rows ? k : response->ideal_rows;
-            double sum = coupling(&response->rows[i], &response->rows[k]);
-            diagonal = sum;
-            for (size_t m = 0; m < known; m++) {
-                sum -= row[m] * other[m];
+    }
+    sparse_clear(&response->matrix);
+    for (size_t n = 0; n < response->block_count; n++) {
+        const ResponseBlock *block = &response->blocks[n];
+        const bool is_own = block->rows == block->columns;
+        for (size_t i = 0; i < block->row_count; i++) {
+            double *row = block->values + i * block->column_count;
+            for (size_t k = 0; k < (is_own ? i + 1 : block->column_count); k++) {
+                row[k] =
+                    coupling(&response->rows[block->rows + i], &response->rows[block->columns + k]);
+                if (is_own) {
+                    block->values[k * block->column_count + i] = row[k];
+                }
             }
-            row[k] = k < i && k < response->ideal_rows ? sum * other[k] : sum;
-        }
-        if (i < response->ideal_rows) {
-            if (!(row[i] > INDEPENDENT * diagonal)) {
-                return false;
-            }
-            row[i] = 1.0 / sqrt(row[i]);
         }
     }
-    return true;
+    return sparse_factor(&response->matrix, INDEPENDENT);
 }
 
-static void place_rows(SpaceResponse *response, const SpaceRow *play_rows, size_t play_count)
+static void place_rows(SpaceResponse *response, const SpaceRow *play_rows)
 {
     for (size_t i = 0; i < response->ideal_rows; i++) {
         place_ideal_row(response, i);
     }
-    for (size_t i = 0; i < play_count; i++) {
-        response->rows[response->ideal_rows + i].row = play_rows[i];
+    for (size_t i = response->ideal_rows; i < response->row_count; i++) {
+        response->rows[i].row = play_rows != NULL
+                                    ? play_rows[i - response->ideal_rows]
+                                    : (SpaceRow){.body = {LINKAGE_GROUND, LINKAGE_GROUND}};
     }
-    response->row_count = response->ideal_rows + play_count;
 }
 
 bool space_response_place(SpaceResponse *response, const SpaceMotion *motions,
-                          const SpaceRow *play_rows, size_t play_count)
+                          const SpaceRow *play_rows)
 {
     place_bodies(response, motions);
-    place_rows(response, play_rows, play_count);
+    place_rows(response, play_rows);
     if (factor_rows(response)) {
         return true;
     }
-    if (!choose_rows(response, motions)) {
+    if (!space_response_choose(response, motions)) {
         return false;
     }
-    place_rows(response, play_rows, play_count);
+    place_rows(response, play_rows);
     return factor_rows(response);
+}
+
+const double *space_response_block(const SpaceResponse *response, size_t place, size_t other)
+{
+    const size_t first = response->ideal_count;
+    bool is_transposed;
+    return sparse_block(&response->matrix, first + place, first + other, &is_transposed);
 }
 
 void space_response_mobility(const SpaceResponse *response, double *mobility)
 {
-    const size_t first = response->ideal_rows;
-    const size_t width = response->row_count - first;
-    for (size_t i = 0; i < width; i++) {
-        for (size_t k = 0; k <= i; k++) {
-            mobility[i * width + k] = mobility[k * width + i] =
-                response->matrix[triangle(first + i) + first + k];
+    const size_t width = space_response_play_rows(response);
+    memset(mobility, 0, width * width * sizeof *mobility);
+    for (size_t a = 0; a < response->place_count; a++) {
+        const size_t row = response->first_row[a];
+        const size_t rows = response->places[a].rows;
+        for (size_t b = 0; b <= a; b++) {
+            const double *block = space_response_block(response, a, b);
+            const size_t column = response->first_row[b];
+            const size_t columns = response->places[b].rows;
+            for (size_t i = 0; block != NULL && i < rows; i++) {
+                for (size_t k = 0; k < columns; k++) {
+                    mobility[(row + i) * width + column + k] = block[i * columns + k];
+                    mobility[(column + k) * width + row + i] = block[i * columns + k];
+                }
+            }
         }
     }
 }
@@ -217,32 +184,12 @@ void space_response_mobility(const SpaceResponse *response, double *mobility)
 void space_response_free(const SpaceResponse *response, const double *ideal_drift,
                          const double *play_drift, double *rates)
 {
-    const size_t ideal = response->ideal_rows;
-    double solved[SPACE_COLUMN_MAX];
-    for (size_t i = 0; i < response->row_count; i++) {
-        const double *row = response->matrix + triangle(i);
-        double sum = i < ideal ? ideal_drift[i] : play_drift[i - ideal];
-        for (size_t k = 0; k < i && k < ideal; k++) {
-            sum -= row[k] * solved[k];
-        }
-        if (i < ideal) {
-            solved[i] = sum * row[i];
-        } else {
-            rates[i - ideal] = sum;
-        }
-    }
-}
-
-// Back through the transposed factor.
-static void solve_back(const SpaceResponse *response, double *rows)
-{
-    for (size_t i = response->ideal_rows; i-- > 0;) {
-        const double *row = response->matrix + triangle(i);
-        rows[i] *= row[i];
-        for (size_t k = 0; k < i; k++) {
-            rows[k] -= row[k] * rows[i];
-        }
-    }
+    double *gamma = response->work;
+    const size_t play = space_response_play_rows(response);
+    memcpy(gamma, ideal_drift, response->ideal_rows * sizeof *gamma);
+    memcpy(gamma + response->ideal_rows, play_drift, play * sizeof *gamma);
+    sparse_forward(&response->matrix, gamma);
+    memcpy(rates, gamma + response->ideal_rows, play * sizeof *rates);
 }
 
 // Adds what an impulse in a row does to its bodies by itself.
@@ -258,42 +205,22 @@ static void add_answer(const SpaceResponseRow *row, double impulse, SpaceChange 
     }
 }
 
-void space_response_link(SpaceResponse *response)
+// All impulses that impulses in the rows of play bring with them, by row.
+static const double *answer_all(const SpaceResponse *response, const double *impulses)
 {
-    const size_t ideal = response->ideal_rows;
-    for (size_t k = ideal; k < response->row_count; k++) {
-        double *const reactions = response->reactions[k - ideal];
-        SpaceChange *const moved = response->moved[k - ideal];
-        const double *row = response->matrix + triangle(k);
-        for (size_t i = 0; i < ideal; i++) {
-            reactions[i] = -row[i];
-        }
-        solve_back(response, reactions);
-        memset(moved, 0, response->linkage->body_count * sizeof *moved);
-        for (size_t i = 0; i < ideal; i++) {
-            add_answer(&response->rows[i], reactions[i], moved);
-        }
-        add_answer(&response->rows[k], 1.0, moved);
-    }
-}
-
-static size_t play_rows(const SpaceResponse *response)
-{
-    return response->row_count - response->ideal_rows;
+    double *all = response->work;
+    memset(all, 0, response->ideal_rows * sizeof *all);
+    memcpy(all + response->ideal_rows, impulses, space_response_play_rows(response) * sizeof *all);
+    sparse_back(&response->matrix, all);
+    return all;
 }
 
 void space_response_react(const SpaceResponse *response, const double *impulses, double *reactions)
 {
-    memset(reactions, 0, response->ideal_rows * sizeof *reactions);
-    for (size_t k = 0; k < play_rows(response); k++) {
-        for (size_t i = 0; i < response->ideal_rows; i++) {
-            reactions[i] += response->reactions[k][i] * impulses[k];
-        }
-    }
+    memcpy(reactions, answer_all(response, impulses), response->ideal_rows * sizeof *reactions);
 }
 
-void space_response_add_forces(const SpaceResponse *response, const double *reactions,
-                               Vec3 forces[SPACE_JOINT_MAX])
+void space_response_add_forces(const SpaceResponse *response, const double *reactions, Vec3 *forces)
 {
     for (size_t i = 0; i < response->ideal_rows; i++) {
         if (response->part_of[i] < SPACE_POINT_ROWS) {
@@ -336,28 +263,16 @@ void space_response_add_reactions(const SpaceResponse *response, const double *r
 void space_response_apply(const SpaceResponse *response, const double *impulses,
                           SpaceChange *changes)
 {
-    const size_t bodies = response->linkage->body_count;
-    memset(changes, 0, bodies * sizeof *changes);
-    for (size_t k = 0; k < play_rows(response); k++) {
-        const double impulse = impulses[k];
-        for (size_t i = 0; i < bodies && impulse != 0.0; i++) {
-            const SpaceChange *moved = &response->moved[k][i];
-            changes[i].move = vec3_add(changes[i].move, vec3_scale(impulse, moved->move));
-            changes[i].turn = vec3_add(changes[i].turn, vec3_scale(impulse, moved->turn));
-        }
+    const double *all = answer_all(response, impulses);
+    memset(changes, 0, response->linkage->body_count * sizeof *changes);
+    for (size_t i = 0; i < response->row_count; i++) {
+        add_answer(&response->rows[i], all[i], changes);
     }
 }
 
 void space_response_solve(const SpaceResponse *response, double *rows)
 {
-    for (size_t i = 0; i < response->ideal_rows; i++) {
-        const double *row = response->matrix + triangle(i);
-        for (size_t k = 0; k < i; k++) {
-            rows[i] -= row[k] * rows[k];
-        }
-        rows[i] *= row[i];
-    }
-    solve_back(response, rows);
+    sparse_solve(&response->matrix, rows);
 }
 
 void space_response_close(const SpaceResponse *response, const double *openings, double *impulses,

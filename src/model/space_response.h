@@ -2,13 +2,8 @@
 // holding and its driven body on its path: model/response.h in space.
 #pragma once
 
-#include "model/response.h"
+#include "model/response_matrix.h"
 #include "model/space_rows.h"
-
-enum {
-    SPACE_RESPONSE_PLAY_MAX = 1024, // 56 pins with friction, and 256 without
-    SPACE_RESPONSE_ROW_MAX = SPACE_COLUMN_MAX + SPACE_RESPONSE_PLAY_MAX,
-};
 
 // What changes of a body: position and turn, velocity and angular velocity, or what acts on it,
 // force and moment about its centre of mass.
@@ -24,46 +19,86 @@ typedef struct SpaceResponseRow {
     SpaceChange answer[2]; // of movers
 } SpaceResponseRow;
 
+// A place at which a joint with play can touch: a number of rows between the joint's bodies.
+typedef struct SpaceResponsePlace {
+    int joint;
+    size_t rows;
+} SpaceResponsePlace;
+
+// Which rows of the joints hold them: bit k of chosen[joint] stands for its row k. Returns whether
+// those asked for can be held so (model/space_rows.h).
+typedef bool (*SpaceResponseChoice)(const Linkage *linkage, const SpaceMotion *motions,
+                                    const bool *is_asked, unsigned *chosen);
+
 typedef struct SpaceResponse {
     const Linkage *linkage;
-    SpaceEnd ends[SPACE_JOINT_MAX][2];
-    Mat3 own_inertia[SPACE_BODY_MAX]; // kg m^2, in the body's frame
-    Mat3 own_inverse[SPACE_BODY_MAX];
+    SpaceResponseChoice choose;
+    bool *is_asked;      // by joint: whether it is held; owned, like all below
+    SpaceEnd (*ends)[2]; // by joint
+    Mat3 *own_inertia;   // kg m^2, by body, in its frame
+    Mat3 *own_inverse;
     // where it was placed
-    Mat3 turns[SPACE_BODY_MAX];   // from the body's frame to the world's
-    Mat3 inverse[SPACE_BODY_MAX]; // of the inertia, in the world's frame
-    size_t ideal_rows;            // independent ones; they come first
+    Mat3 *turns;       // by body, from its frame to the world's
+    Mat3 *inverse;     // of the inertia, in the world's frame
+    size_t ideal_rows; // independent ones; they come first
     size_t row_count;
-    int joint_of[SPACE_COLUMN_MAX]; // of an ideal row
-    int part_of[SPACE_COLUMN_MAX];  // which of the joint's five
-    Vec3 direction_of[SPACE_COLUMN_MAX];
-    SpaceResponseRow rows[SPACE_RESPONSE_ROW_MAX];
-    // what an impulse of 1 in a row of play changes of all bodies, the ideal joints holding; and
-    // with which impulses these hold: space_response_link
-    SpaceChange moved[SPACE_RESPONSE_PLAY_MAX][SPACE_BODY_MAX];
-    double reactions[SPACE_RESPONSE_PLAY_MAX][SPACE_COLUMN_MAX];
-    // lower triangle, row after row: Cholesky's factor in the ideal columns, with the inverse of
-    // its diagonal, then the mobility
-    double matrix[SPACE_RESPONSE_ROW_MAX * (SPACE_RESPONSE_ROW_MAX + 1) / 2];
+    int *joint_of; // of an ideal row
+    int *part_of;  // which of the joint's five
+    Vec3 *direction_of;
+    size_t node_count;
+    int *joint_at;              // of a node of D: an ideal joint, or behind them a place's
+    size_t ideal_count;         // nodes that are ideal joints
+    size_t *first_ideal;        // by joint: its first ideal row; behind the last their number
+    size_t place_count;         //
+    SpaceResponsePlace *places; //
+    size_t *first_row;          // by place, among the rows of play; behind the last their number
+    size_t *first_partner;      // by place, and behind the last: which places an impulse in it
+    size_t *partners;           // moves, itself among them, in order
+    SpaceResponseRow *rows;     //
+    Sparse matrix;              // D. Once placed, Cholesky's factor in the ideal columns, then
+                                // the mobility
+    size_t block_count;         //
+    ResponseBlock *blocks;      // of D that are not zero
+    double *work;               // by row
 } SpaceResponse;
 
 // Prepares the response of a linkage whose ideal joints have the rows that are independent at the
-// motions given: the points of all joints, and as many of the directions of their axes. Fails with
-// ERR_SOLVER where the points alone depend on each other. The response is large: not for the stack.
+// motions given: the points of all joints, and as many of the directions of their axes; with places
+// at which its joints touch. Fails with ERR_SOLVER where the points alone depend on each other. A
+// zeroed response is to be finished after a failure too; it must not be copied.
 bool space_response_init(const Linkage *linkage, const SpaceMotion *motions,
-                         SpaceResponse *response, Err *err);
+                         const SpaceResponsePlace *places, size_t count, SpaceResponse *response,
+                         Err *err);
 
-// Takes the response at the positions of the motions given, with rows of play. Where the rows of
-// the ideal joints have ceased to be independent, others are chosen. Returns false where none are.
+// The same without places, for joints that are asked for (by joint), by the rows of a choice.
+// Returns whether that holds them.
+bool space_response_init_joints(const Linkage *linkage, const SpaceMotion *motions,
+                                const bool *is_asked, SpaceResponseChoice choose,
+                                SpaceResponse *response);
+void space_response_finish(SpaceResponse *response);
+
+// Lists the rows that hold the joints where motions are, and prepares D for them: a part of
+// space_response_init and space_response_place. Returns whether they do.
+bool space_response_choose(SpaceResponse *response, const SpaceMotion *motions);
+
+// The number of rows of play.
+static inline size_t space_response_play_rows(const SpaceResponse *response)
+{
+    return response->first_row[response->place_count];
+}
+
+// Takes the response at the positions of the motions given, with rows of play, place by place
+// (NULL: zeros; a row of zeros has no part). Where the rows of the ideal joints have ceased to be
+// independent, others are chosen. Returns false where none are.
 bool space_response_place(SpaceResponse *response, const SpaceMotion *motions,
-                          const SpaceRow *play_rows, size_t play_count);
+                          const SpaceRow *play_rows);
 
-// Works out what impulses in the rows of play do to all bodies, which space_response_react and
-// space_response_apply need.
-void space_response_link(SpaceResponse *response);
+// The mobility between two places as it is stored, row by row: of the later one's rows, from the
+// other's. The rates of rows change by the mobility times the impulses that act there. NULL where
+// it is always zero.
+const double *space_response_block(const SpaceResponse *response, size_t place, size_t other);
 
-// Writes the mobility W of the rows of play, row by row: their rates change by W times the impulses
-// that act there.
+// Writes the mobility of all rows of play, row by row.
 void space_response_mobility(const SpaceResponse *response, double *mobility);
 
 // Fills in the accelerations that the bodies would have if no joint held them: gravity's, along -y,
@@ -81,9 +116,10 @@ void space_response_free(const SpaceResponse *response, const double *ideal_drif
 // Writes the impulses with which the ideal rows answer impulses in the rows of play.
 void space_response_react(const SpaceResponse *response, const double *impulses, double *reactions);
 
-// Adds to the forces of the ideal joints on their bodies b what impulses in the ideal rows are.
+// Adds to the forces of the ideal joints, by joint, on their bodies b what impulses in the ideal
+// rows are.
 void space_response_add_forces(const SpaceResponse *response, const double *reactions,
-                               Vec3 forces[SPACE_JOINT_MAX]);
+                               Vec3 *forces);
 
 // Adds what impulses in the ideal rows are on one body.
 void space_response_add_reactions(const SpaceResponse *response, const double *reactions, int body,

@@ -63,8 +63,7 @@ typedef struct Opening {
     Vec3 spin;
 } Opening;
 
-static Opening opening_of(const SpaceResponse *response, const SpaceMotion *motions,
-                          const Mat3 *turns, int joint)
+static Opening opening_of(const SpaceResponse *response, const SpaceMotion *motions, int joint)
 {
     Vec3 points[2];
     Vec3 axes[2];
@@ -79,9 +78,10 @@ static Opening opening_of(const SpaceResponse *response, const SpaceMotion *moti
             continue;
         }
         const SpaceMotion *motion = &motions[end->body];
-        const Vec3 arm = mat3_apply(&turns[end->body], end->anchor);
+        const Mat3 turn = quat_matrix(motion->turn);
+        const Vec3 arm = mat3_apply(&turn, end->anchor);
         points[side] = vec3_add(motion->position, arm);
-        axes[side] = mat3_apply(&turns[end->body], end->axis);
+        axes[side] = mat3_apply(&turn, end->axis);
         speeds[side] = vec3_add(motion->velocity, vec3_cross(motion->omega, arm));
         omegas[side] = motion->omega;
     }
@@ -96,14 +96,10 @@ static Opening opening_of(const SpaceResponse *response, const SpaceMotion *moti
 void space_response_openings(const SpaceResponse *response, const SpaceMotion *motions,
                              double *openings, double *rates)
 {
-    Mat3 turns[SPACE_BODY_MAX];
-    for (size_t i = 0; i < response->linkage->body_count; i++) {
-        turns[i] = quat_matrix(motions[i].turn);
-    }
     Opening opening = {.point = {0.0, 0.0, 0.0}};
     for (size_t i = 0; i < response->ideal_rows; i++) {
         if (i == 0 || response->joint_of[i] != response->joint_of[i - 1]) {
-            opening = opening_of(response, motions, turns, response->joint_of[i]);
+            opening = opening_of(response, motions, response->joint_of[i]);
         }
         const bool is_point = response->part_of[i] < SPACE_POINT_ROWS;
         const Vec3 along = response->direction_of[i];

@@ -1,13 +1,18 @@
 // Which rows hold a joint in space, and which of them are independent?
 #include "model/space_rows.h"
 
+#include "base/sparse_rank.h"
 #include "base/zeroed.h"
+#include "model/joint_nodes.h"
 
 #include <string.h>
 
 // What is left of a row, of itself, once everything that others hold is taken out: rounding leaves
 // 1e-15
 static const double INDEPENDENT = 1e-9;
+
+// of what is left of two rows: a difference that is none
+static const double SAME = 1e-6;
 
 SpaceRow space_row_along(const SpaceMotion *motions, int body_a, Vec3 at_a, int body_b, Vec3 at_b,
                          Vec3 direction)
@@ -89,50 +94,6 @@ double space_row_speed(const SpaceRow *row, const SpaceMotion *motions)
     return sum;
 }
 
-// The row over the columns of all bodies that can move, turns measured by a length.
-static void spread(const Linkage *linkage, const SpaceRow *row, double length, double *columns)
-{
-    memset(columns, 0, SPACE_FREEDOMS * linkage->body_count * sizeof *columns);
-    for (int side = 0; side < 2; side++) {
-        const int body = row->body[side];
-        if (body == LINKAGE_GROUND || body == linkage_driven_body(linkage)) {
-            continue;
-        }
-        double *own = columns + SPACE_FREEDOMS * (size_t)body;
-        const Vec3 linear = row->linear[side];
-        const Vec3 angular = vec3_scale(1.0 / length, row->angular[side]);
-        const double entries[SPACE_FREEDOMS] = {linear.x,  linear.y,  linear.z,
-                                                angular.x, angular.y, angular.z};
-        memcpy(own, entries, sizeof entries);
-    }
-}
-
-static double product(size_t width, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < width; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
-// Takes out of a row what the directions kept so far have of it, twice for rounding. Returns what
-// is left of its length, as a share.
-static double reduce(const double *kept, size_t count, size_t width, double *row)
-{
-    const double before = sqrt(product(width, row, row));
-    for (int pass = 0; pass < 2; pass++) {
-        for (size_t i = 0; i < count; i++) {
-            const double *direction = kept + i * width;
-            const double share = product(width, direction, row);
-            for (size_t k = 0; k < width && share != 0.0; k++) {
-                row[k] -= share * direction[k];
-            }
-        }
-    }
-    return before > 0.0 ? sqrt(product(width, row, row)) / before : 0.0;
-}
-
 static double mean_reach(const Linkage *linkage)
 {
     double sum = 0.0;
@@ -142,50 +103,98 @@ static double mean_reach(const Linkage *linkage)
     return sum / (double)linkage->body_count;
 }
 
-// Directions that the rows chosen so far hold, at right angles to each other.
+// What the rows chosen so far hold of the freedoms of the bodies, which are the nodes.
 typedef struct Basis {
-    size_t width; // columns of all bodies
-    double *kept;
-    size_t count;
+    const Linkage *linkage;
+    int driven;
     double length; // m, by which turns are measured
+    Sparse sparse;
+    double *columns; // room: a row over the freedoms of all bodies
+    size_t count;
 } Basis;
 
-static Basis open_basis(const Linkage *linkage)
+static Basis open_basis(const Linkage *linkage, const bool *is_asked)
 {
-    const size_t width = SPACE_FREEDOMS * linkage->body_count;
-    return (Basis){
-        .width = width,
-        .kept = zeroed((width + 1) * width, sizeof(double)),
+    const size_t bodies = linkage->body_count;
+    Basis basis = {
+        .linkage = linkage,
+        .driven = linkage_driven_body(linkage),
         .length = mean_reach(linkage),
+        .columns = zeroed(SPACE_FREEDOMS * bodies, sizeof *basis.columns),
     };
+    size_t *sizes = zeroed(bodies, sizeof *sizes);
+    SparseLink *links = zeroed(linkage->joint_count, sizeof *links);
+    size_t link_count = 0;
+    for (size_t i = 0; i < bodies; i++) {
+        sizes[i] = SPACE_FREEDOMS;
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const int a = joint_nodes_mover(linkage, (int)i, 0);
+        const int b = joint_nodes_mover(linkage, (int)i, 1);
+        if (is_asked[i] && a != LINKAGE_GROUND && b != LINKAGE_GROUND) {
+            links[link_count++] = (SparseLink){(size_t)a, (size_t)b};
+        }
+    }
+    sparse_init(bodies, sizes, bodies, link_count, links, &basis.sparse);
+    sparse_clear(&basis.sparse);
+    free(links);
+    free(sizes);
+    return basis;
 }
 
-// What is left of a row, as a share of it, and where the next direction would stand.
-static double share_left(const Linkage *linkage, Basis *basis, const SpaceRow *row)
+static size_t close_basis(Basis *basis)
 {
-    double *next = basis->kept + basis->count * basis->width;
-    spread(linkage, row, basis->length, next);
-    return reduce(basis->kept, basis->count, basis->width, next);
+    sparse_finish(&basis->sparse);
+    free(basis->columns);
+    return basis->count;
+}
+
+// Writes a row over the columns of the bodies that can move, turns measured by a length. Returns
+// its size, and the first of the bodies in the order of elimination.
+static double spread(Basis *basis, const SpaceRow *row, size_t *first)
+{
+    double sum = 0.0;
+    *first = basis->sparse.count;
+    for (int side = 0; side < 2; side++) {
+        const int body = row->body[side];
+        if (body == LINKAGE_GROUND || body == basis->driven) {
+            continue;
+        }
+        const size_t order = basis->sparse.order[body];
+        const Vec3 linear = row->linear[side];
+        const Vec3 angular = vec3_scale(1.0 / basis->length, row->angular[side]);
+        const double entries[SPACE_FREEDOMS] = {linear.x,  linear.y,  linear.z,
+                                                angular.x, angular.y, angular.z};
+        memcpy(basis->columns + SPACE_FREEDOMS * (size_t)body, entries, sizeof entries);
+        sum += vec3_dot(linear, linear) + vec3_dot(angular, angular);
+        *first = order < *first ? order : *first;
+    }
+    return sqrt(sum);
+}
+
+// What is left of a row, as a share of it.
+static double share_left(Basis *basis, const SpaceRow *row)
+{
+    size_t first;
+    const double size = spread(basis, row, &first);
+    return size > 0.0 ? sparse_rank_left(&basis->sparse, first, size, basis->columns) : 0.0;
 }
 
 // Takes a row into the basis if it is independent. Returns whether it is.
-static bool add_row(const Linkage *linkage, Basis *basis, const SpaceRow *row)
+static bool add_row(Basis *basis, const SpaceRow *row)
 {
-    if (basis->count == basis->width || !(share_left(linkage, basis, row) > INDEPENDENT)) {
-        return false;
-    }
-    double *added = basis->kept + basis->count++ * basis->width;
-    const double size = sqrt(product(basis->width, added, added));
-    for (size_t k = 0; k < basis->width; k++) {
-        added[k] /= size;
-    }
-    return true;
+    size_t first;
+    const double size = spread(basis, row, &first);
+    const bool is_taken =
+        size > 0.0 && sparse_rank_take(&basis->sparse, first, size, INDEPENDENT, basis->columns);
+    basis->count += is_taken ? 1 : 0;
+    return is_taken;
 }
 
-size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions,
-                         const bool is_asked[SPACE_JOINT_MAX], unsigned chosen[SPACE_JOINT_MAX])
+size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions, const bool *is_asked,
+                         unsigned *chosen)
 {
-    Basis basis = open_basis(linkage);
+    Basis basis = open_basis(linkage, is_asked);
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         SpaceRow rows[SPACE_JOINT_ROWS];
         chosen[joint] = 0;
@@ -194,25 +203,23 @@ size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions,
         }
         space_rows_of_joint(linkage, motions, joint, rows);
         for (int i = 0; i < SPACE_JOINT_ROWS; i++) {
-            chosen[joint] |= add_row(linkage, &basis, &rows[i]) ? 1U << i : 0;
+            chosen[joint] |= add_row(&basis, &rows[i]) ? 1U << i : 0;
         }
     }
-    free(basis.kept);
-    return basis.count;
+    return close_basis(&basis);
 }
 
 size_t space_rows_choose_points(const Linkage *linkage, const SpaceMotion *motions,
-                                const bool is_asked[SPACE_JOINT_MAX],
-                                unsigned chosen[SPACE_JOINT_MAX])
+                                const bool *is_asked, unsigned *chosen)
 {
-    Basis basis = open_basis(linkage);
+    Basis basis = open_basis(linkage, is_asked);
     SpaceRow rows[SPACE_JOINT_ROWS];
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         chosen[joint] = 0;
         if (is_asked[joint]) {
             space_rows_of_joint(linkage, motions, joint, rows);
             for (int i = 0; i < SPACE_POINT_ROWS; i++) {
-                chosen[joint] |= add_row(linkage, &basis, &rows[i]) ? 1U << i : 0;
+                chosen[joint] |= add_row(&basis, &rows[i]) ? 1U << i : 0;
             }
         }
     }
@@ -223,28 +230,29 @@ size_t space_rows_choose_points(const Linkage *linkage, const SpaceMotion *motio
         space_rows_of_joint(linkage, motions, joint, rows);
         // of two that hold the same, the one that holds more of it
         int order[2] = {SPACE_POINT_ROWS, SPACE_POINT_ROWS + 1};
-        if (basis.count < basis.width && share_left(linkage, &basis, &rows[order[1]]) >
-                                             share_left(linkage, &basis, &rows[order[0]])) {
+        if (share_left(&basis, &rows[order[1]]) >
+            (1.0 + SAME) * share_left(&basis, &rows[order[0]])) {
             order[0] = SPACE_POINT_ROWS + 1;
             order[1] = SPACE_POINT_ROWS;
         }
         for (int i = 0; i < 2; i++) {
-            chosen[joint] |= add_row(linkage, &basis, &rows[order[i]]) ? 1U << order[i] : 0;
+            chosen[joint] |= add_row(&basis, &rows[order[i]]) ? 1U << order[i] : 0;
         }
     }
-    free(basis.kept);
-    return basis.count;
+    return close_basis(&basis);
 }
 
 size_t space_rows_mobility(const Linkage *linkage, const SpaceMotion *motions, bool ideal_only)
 {
     Linkage undriven = *linkage;
     undriven.driver.is_present = false;
-    bool is_asked[SPACE_JOINT_MAX];
-    unsigned chosen[SPACE_JOINT_MAX];
+    bool *is_asked = zeroed(linkage->joint_count, sizeof *is_asked);
+    unsigned *chosen = zeroed(linkage->joint_count, sizeof *chosen);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         is_asked[i] = !ideal_only || linkage->joints[i].kind == JOINT_REVOLUTE;
     }
-    return SPACE_FREEDOMS * linkage->body_count -
-           space_rows_choose(&undriven, motions, is_asked, chosen);
+    const size_t rows = space_rows_choose(&undriven, motions, is_asked, chosen);
+    free(chosen);
+    free(is_asked);
+    return SPACE_FREEDOMS * linkage->body_count - rows;
 }

@@ -11,8 +11,6 @@ enum {
     SPACE_JOINT_ROWS = 5,
     SPACE_POINT_ROWS = 3, // of those, the first
     SPACE_FREEDOMS = 6,   // of a body: its velocity, then its angular velocity, in the world
-    SPACE_ROW_MAX = SPACE_JOINT_ROWS * SPACE_JOINT_MAX,
-    SPACE_COLUMN_MAX = SPACE_FREEDOMS * SPACE_BODY_MAX,
 };
 
 // A relative velocity as a sum over two bodies: of each, linear . v + angular . omega. The ground
@@ -44,14 +42,13 @@ double space_row_speed(const SpaceRow *row, const SpaceMotion *motions);
 size_t space_rows_mobility(const Linkage *linkage, const SpaceMotion *motions, bool ideal_only);
 
 // Chooses rows that are independent, joint by joint in the order of the linkage, of the joints
-// whose flag is set: bit k of chosen[joint] stands for its row k. Bodies that a driver moves give
-// no freedom. Returns the number chosen. Joints that fit together leave the others redundant at
-// the motions given and nowhere else for certain.
-size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions,
-                         const bool is_asked[SPACE_JOINT_MAX], unsigned chosen[SPACE_JOINT_MAX]);
+// whose flag is set (by joint): bit k of chosen[joint] stands for its row k. Bodies that a driver
+// moves give no freedom. Returns the number chosen. Joints that fit together leave the others
+// redundant at the motions given and nowhere else for certain.
+size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions, const bool *is_asked,
+                         unsigned *chosen);
 
 // The same, but the points of all joints before the directions of their axes: what is left out is
 // of axes wherever the points alone are independent.
 size_t space_rows_choose_points(const Linkage *linkage, const SpaceMotion *motions,
-                                const bool is_asked[SPACE_JOINT_MAX],
-                                unsigned chosen[SPACE_JOINT_MAX]);
+                                const bool *is_asked, unsigned *chosen);

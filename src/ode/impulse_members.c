@@ -5,7 +5,6 @@
 
 #include "base/leaders.h"
 #include "base/zeroed.h"
-#include "ode/stepping.h"
 
 // The first body of those that a body is known to be connected with.
 static void connect(size_t *leaders, int a, int b)
@@ -167,11 +166,11 @@ Member *impulse_members_make(const Scenario *scenario, size_t *count)
     return members;
 }
 
-void impulse_members_free(Member *members, size_t count)
+void impulse_members_free(Member *members, size_t count, const Solver *solver)
 {
     for (size_t i = 0; i < count; i++) {
         if (members[i].state != NULL) {
-            STEPPING_IMPULSE.close(members[i].state);
+            solver->close(members[i].state);
         }
         scenario_destroy(members[i].scenario);
         sample_free(&members[i].sample);

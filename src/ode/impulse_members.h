@@ -1,4 +1,4 @@
-// The mechanisms of a planar linkage that share nothing but the ground, each as a scenario of its
+// The mechanisms of a linkage that share nothing but the ground, each as a scenario of its
 // own.
 #pragma once
 
@@ -10,7 +10,7 @@ typedef struct Member {
     int *bodies;        // their numbers in the whole
     int *joints;
     Sample sample;
-    void *state; // of STEPPING_IMPULSE; closed with the member
+    void *state; // of the solver; closed with the member
     StepRecord next;
     double elastic; // J, at the end of its last part
 } Member;
@@ -20,4 +20,4 @@ size_t impulse_members_count(const Linkage *linkage);
 // Makes the members of a scenario, in the order of their first bodies. They share its tables and
 // must not outlive it.
 Member *impulse_members_make(const Scenario *scenario, size_t *count);
-void impulse_members_free(Member *members, size_t count);
+void impulse_members_free(Member *members, size_t count, const Solver *solver);

@@ -16,6 +16,7 @@
 
 typedef struct Parts {
     const Scenario *scenario;
+    const ImpulsePartsOf *of;
     size_t count;
     Member *members;
     size_t ahead_count; // members whose next part does not end with the step
@@ -24,6 +25,7 @@ typedef struct Parts {
     double *omega;      // by body and by joint of the whole
     double *alpha;
     JointState *joints;
+    SpaceJointState *space_joints; // NULL in the plane
     double *impulse;
     double *approach;
     StepRecord record;
@@ -43,38 +45,43 @@ size_t impulse_parts_count(const Scenario *scenario)
     return impulse_members_count(&scenario->linkage);
 }
 
-static void parts_close(void *state)
+void impulse_parts_close(void *state)
 {
     Parts *parts = state;
     if (parts != NULL) {
-        impulse_members_free(parts->members, parts->count);
+        impulse_members_free(parts->members, parts->count, parts->of->solver);
         free(parts->ahead);
         free(parts->omega);
         free(parts->alpha);
         free(parts->joints);
+        free(parts->space_joints);
         free(parts->impulse);
         free(parts->approach);
         free(parts);
     }
 }
 
-static bool parts_open(const Scenario *scenario, void **state, Err *err)
+bool impulse_parts_open(const Scenario *scenario, const ImpulsePartsOf *of, void **state, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
     Parts *parts = zeroed(1, sizeof *parts);
     parts->scenario = scenario;
+    parts->of = of;
     parts->members = impulse_members_make(scenario, &parts->count);
     parts->delivered = parts->count;
     parts->ahead = zeroed(parts->count, sizeof *parts->ahead);
     parts->omega = zeroed(linkage->body_count, sizeof *parts->omega);
     parts->alpha = zeroed(linkage->body_count, sizeof *parts->alpha);
     parts->joints = zeroed(linkage->joint_count, sizeof *parts->joints);
+    if (linkage->is_spatial) {
+        parts->space_joints = zeroed(linkage->joint_count, sizeof *parts->space_joints);
+    }
     parts->impulse = zeroed(linkage->joint_count, sizeof *parts->impulse);
     parts->approach = zeroed(linkage->joint_count, sizeof *parts->approach);
     for (size_t i = 0; i < parts->count; i++) {
         Member *member = &parts->members[i];
-        if (!STEPPING_IMPULSE.open(member->scenario, &member->state, err)) {
-            parts_close(parts);
+        if (!of->solver->open(member->scenario, &member->state, err)) {
+            impulse_parts_close(parts);
             return false;
         }
     }
@@ -86,10 +93,10 @@ static bool parts_open(const Scenario *scenario, void **state, Err *err)
 static bool fetch(Parts *parts, size_t number, Err *err)
 {
     Member *member = &parts->members[number];
-    if (!STEPPING_IMPULSE.step(member->state, 0.0, err)) {
+    if (!parts->of->solver->step(member->state, 0.0, err)) {
         return false;
     }
-    member->next = STEPPING_IMPULSE.record(member->state);
+    member->next = parts->of->solver->record(member->state);
     for (size_t i = 0; i < member->scenario->linkage.joint_count; i++) {
         const int joint = member->joints[i];
         parts->joints[joint].is_touching = member->next.joints[i].is_touching;
@@ -108,6 +115,9 @@ static void deliver(Parts *parts, Member *member)
     }
     for (size_t i = 0; i < member->scenario->linkage.joint_count; i++) {
         parts->joints[member->joints[i]] = next->joints[i];
+        if (parts->space_joints != NULL) {
+            parts->space_joints[member->joints[i]] = next->space_joints[i];
+        }
         parts->impulse[member->joints[i]] = next->impulse[i];
     }
     parts->record.drive_work += next->drive_work;
@@ -159,7 +169,7 @@ static bool begin(Parts *parts, Err *err)
         if (!fetch(parts, i, err)) {
             return false;
         }
-        if (!impulse_is_at_end(parts->members[i].state)) {
+        if (!parts->of->is_at_end(parts->members[i].state)) {
             parts->ahead[parts->ahead_count++] = i;
         }
     }
@@ -184,14 +194,14 @@ static bool go_on(Parts *parts, Err *err)
         return false;
     }
     // it is on top; one whose part has been taken up to the step's end waits for the others
-    if (impulse_is_at_end(parts->members[last].state)) {
+    if (parts->of->is_at_end(parts->members[last].state)) {
         parts->ahead[0] = parts->ahead[--parts->ahead_count];
     }
     sink(parts, 0);
     return true;
 }
 
-static bool parts_step(void *state, double stop_s, Err *err)
+bool impulse_parts_step(void *state, double stop_s, Err *err)
 {
     (void)stop_s; // samples are looked up inside the step
     Parts *parts = state;
@@ -216,18 +226,19 @@ static bool parts_step(void *state, double stop_s, Err *err)
     record->omega = parts->omega;
     record->alpha = parts->alpha;
     record->joints = parts->joints;
+    record->space_joints = parts->space_joints;
     record->impulse = parts->impulse;
     record->approach = parts->approach;
     return true;
 }
 
-static StepRecord parts_record(const void *state)
+StepRecord impulse_parts_record(const void *state)
 {
     const Parts *parts = state;
     return parts->record;
 }
 
-static void parts_observe(const void *state, double time_s, Sample *sample)
+void impulse_parts_observe(const void *state, double time_s, Sample *sample)
 {
     const Parts *parts = state;
     sample->time_s = time_s;
@@ -235,23 +246,29 @@ static void parts_observe(const void *state, double time_s, Sample *sample)
     for (size_t i = 0; i < parts->count; i++) {
         Member *member = &parts->members[i];
         const Linkage *linkage = &member->scenario->linkage;
-        STEPPING_IMPULSE.observe(member->state, time_s, &member->sample);
+        parts->of->solver->observe(member->state, time_s, &member->sample);
         for (size_t k = 0; k < linkage->body_count; k++) {
             sample->bodies[member->bodies[k]] = member->sample.bodies[k];
+            if (linkage->is_spatial) {
+                sample->space_bodies[member->bodies[k]] = member->sample.space_bodies[k];
+            }
         }
         for (size_t k = 0; k < linkage->joint_count; k++) {
             sample->joints[member->joints[k]] = member->sample.joints[k];
+            if (linkage->is_spatial) {
+                sample->space_joints[member->joints[k]] = member->sample.space_joints[k];
+            }
         }
     }
 }
 
 // Rows, steps and evaluations are those of all members.
-static SolverModel parts_model(const void *state)
+SolverModel impulse_parts_model(const void *state)
 {
     const Parts *parts = state;
-    SolverModel model = STEPPING_IMPULSE.model(parts->members[0].state);
+    SolverModel model = parts->of->solver->model(parts->members[0].state);
     for (size_t i = 1; i < parts->count; i++) {
-        const SolverModel of = STEPPING_IMPULSE.model(parts->members[i].state);
+        const SolverModel of = parts->of->solver->model(parts->members[i].state);
         model.constraint_rows += of.constraint_rows;
         model.contact_rows += of.contact_rows;
         model.evaluations += of.evaluations;
@@ -260,12 +277,18 @@ static SolverModel parts_model(const void *state)
     return model;
 }
 
+static bool open_plane(const Scenario *scenario, void **state, Err *err)
+{
+    static const ImpulsePartsOf PLANE = {&STEPPING_IMPULSE, impulse_is_at_end};
+    return impulse_parts_open(scenario, &PLANE, state, err);
+}
+
 const Solver STEPPING_IMPULSE_PARTS = {
     .name = "impulse",
-    .open = parts_open,
-    .step = parts_step,
-    .record = parts_record,
-    .observe = parts_observe,
-    .model = parts_model,
-    .close = parts_close,
+    .open = open_plane,
+    .step = impulse_parts_step,
+    .record = impulse_parts_record,
+    .observe = impulse_parts_observe,
+    .model = impulse_parts_model,
+    .close = impulse_parts_close,
 };

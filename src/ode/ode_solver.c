@@ -27,9 +27,9 @@ static const Solver *choose(const Scenario *scenario)
     };
     const bool is_spatial = scenario->linkage.is_spatial;
     if (scenario_integrates_contacts(scenario)) {
-        return is_spatial                          ? &SPACE_IMPULSE
-               : impulse_parts_count(scenario) > 1 ? &STEPPING_IMPULSE_PARTS
-                                                   : &STEPPING_IMPULSE;
+        const bool has_parts = impulse_parts_count(scenario) > 1;
+        return is_spatial ? (has_parts ? &SPACE_IMPULSE_PARTS : &SPACE_IMPULSE)
+                          : (has_parts ? &STEPPING_IMPULSE_PARTS : &STEPPING_IMPULSE);
     }
     return is_spatial ? IN_SPACE[scenario->ode.stepping] : STEPPINGS[scenario->ode.stepping];
 }

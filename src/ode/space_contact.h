@@ -32,6 +32,9 @@ typedef struct SpaceContact {
     dJointFeedback feedback;
 } SpaceContact;
 
+// Rows of a place in the response of the linkage: along its normal, and two along its wall.
+enum { SPACE_CONTACT_ROWS = 3 };
+
 typedef struct SpaceContacts {
     const Scenario *scenario;
     World *world;
@@ -40,8 +43,10 @@ typedef struct SpaceContacts {
     double penalty; // N s/m, of CONTACT_POISSON, of a whole joint
     dJointGroupID group;
     size_t count;
-    PinSpace places[PIN_SPACE_MAX];
-    SpaceContact contacts[PIN_SPACE_MAX];
+    PinSpace *places;       // owned, as are all arrays here
+    SpaceContact *contacts; // by place
+    SpaceRow *rows;         // room: SPACE_CONTACT_ROWS of each, for the response
+    SpaceMotion *motions;   // room: by body
     size_t most_rows;
     size_t fallback_count;
     bool is_staggered; // positions stand half a step behind the speeds

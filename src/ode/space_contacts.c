@@ -1,28 +1,35 @@
 // What does a pin that touches its hole in space become inside ODE, and which force came of it?
 //
 // Each place (contact/pin_space.h) that touches is one contact of ODE, with the place's own part of
-// the joint's law, by the map chosen, as in ode/contact_rows.c. Two ends of one hole that press
-// together share the mass m of the linkage: an end i that presses with F_i has
-//     1 / m_i = W_ii + sum_j max(0, W_ij) min(1, F_j / F_i)
-// with W_ij the mobility between the normals of places i and j, so that both ends of a pin that is
-// not tilted oscillate as one contact of the whole law on m. For a map's limit of
-// stability it is the stiffest motion of the two that counts, at most 1 / m_i = sum_j |W_ij| k_j /
-// k_i.
+// the joint's law, by the map chosen, as in ode/contact_rows.c.
 #include "ode/space_contacts.h"
 
+#include "base/zeroed.h"
 #include "contact/law.h"
 #include "contact/penalty.h"
+#include "ode/space_contact_mass.h"
 #include "ode/space_friction_rows.h"
 #include "ode/space_world.h"
 #include "world/pressing_row.h"
 
 #include <string.h>
 
-bool space_contacts_init(SpaceContacts *contacts, const Scenario *scenario, World *world,
-                         SpaceResponse *response, bool is_staggered, Err *err)
+bool space_contacts_list(SpaceContacts *contacts, const Scenario *scenario, Err *err)
 {
+    const size_t bodies = scenario->linkage.body_count;
     memset(contacts, 0, sizeof *contacts);
     contacts->scenario = scenario;
+    contacts->places = pin_space_list(scenario, &contacts->count, err);
+    contacts->contacts = zeroed(contacts->count, sizeof *contacts->contacts);
+    contacts->rows = zeroed(SPACE_CONTACT_ROWS * contacts->count, sizeof *contacts->rows);
+    contacts->motions = zeroed(bodies, sizeof *contacts->motions);
+    return contacts->places != NULL;
+}
+
+void space_contacts_init(SpaceContacts *contacts, World *world, SpaceResponse *response,
+                         bool is_staggered)
+{
+    const Scenario *scenario = contacts->scenario;
     contacts->world = world;
     contacts->response = response;
     contacts->is_staggered = is_staggered;
@@ -30,14 +37,18 @@ bool space_contacts_init(SpaceContacts *contacts, const Scenario *scenario, Worl
     contacts->penalty = scenario->contact.penalty > 0.0
                             ? scenario->contact.penalty
                             : penalty_estimate(scenario->linkage.driver.speed, &scenario->material);
-    if (!scenario_has_clearance(scenario)) {
-        return true;
-    }
-    if (scenario->contact.model == CONTACT_IMPACT) {
+    if (contacts->count > 0 && scenario->contact.model == CONTACT_IMPACT) {
         contacts->map = map_get(scenario->ode.map);
     }
-    contacts->count = pin_space_list(scenario, contacts->places, err);
-    return contacts->count > 0;
+}
+
+SpaceResponsePlace *space_contacts_response_places(const SpaceContacts *contacts)
+{
+    SpaceResponsePlace *places = zeroed(contacts->count, sizeof *places);
+    for (size_t i = 0; i < contacts->count; i++) {
+        places[i] = (SpaceResponsePlace){contacts->places[i].joint, SPACE_CONTACT_ROWS};
+    }
+    return places;
 }
 
 void space_contacts_finish(SpaceContacts *contacts)
@@ -46,6 +57,10 @@ void space_contacts_finish(SpaceContacts *contacts)
         dJointGroupDestroy(contacts->group);
     }
     contacts->group = NULL;
+    free(contacts->places);
+    free(contacts->contacts);
+    free(contacts->rows);
+    free(contacts->motions);
 }
 
 static void find_contact(SpaceContacts *contacts, size_t number, const SpaceMotion *motions,
@@ -77,84 +92,20 @@ static void find_contact(SpaceContacts *contacts, size_t number, const SpaceMoti
     }
 }
 
-// The joint's places that touch, one bit each.
-static unsigned touching_places(const SpaceContacts *contacts, int joint)
+// Whether a map's limit of stability is to be watched.
+static bool has_limit(const SpaceContacts *contacts)
 {
-    unsigned places = 0;
-    for (size_t i = 0; i < contacts->count; i++) {
-        if (contacts->places[i].joint == joint && contacts->contacts[i].is_touching) {
-            places |= 1U << contacts->places[i].place;
-        }
-    }
-    return places;
-}
-
-// The masses that all places of a joint that touch meet along their normals.
-static void find_masses(SpaceContacts *contacts, const SpaceMotion *motions, int joint,
-                        unsigned places)
-{
-    SpaceRow rows[PIN_SPACE_PLACES] = {0};
-    SpaceContact *found[PIN_SPACE_PLACES];
-    double forces[PIN_SPACE_PLACES];
-    double stiffness[PIN_SPACE_PLACES];
-    double mobility[PIN_SPACE_PLACES * PIN_SPACE_PLACES];
-    size_t count = 0;
-    for (size_t i = 0; i < contacts->count; i++) {
-        const PinSpace *place = &contacts->places[i];
-        if (place->joint == joint && contacts->contacts[i].is_touching) {
-            SpaceContact *contact = &contacts->contacts[i];
-            rows[count] =
-                space_row_along(motions, place->hole.body, contact->pose.at_a, place->pin.body,
-                                contact->pose.at_b, contact->pose.normal);
-            forces[count] = force_law_elastic(&place->law, contact->depth);
-            stiffness[count] = force_law_tangent(&place->law, contact->depth);
-            found[count++] = contact;
-        }
-    }
-    if (!space_response_place(contacts->response, motions, rows, count)) {
-        return;
-    }
-    space_response_mobility(contacts->response, mobility);
-    for (size_t i = 0; i < count; i++) {
-        double together = mobility[i * count + i];
-        double stiffest = 0.0;
-        for (size_t k = 0; k < count; k++) {
-            const double between = mobility[i * count + k];
-            together += k == i ? 0.0 : fmax(0.0, between) * fmin(1.0, forces[k] / forces[i]);
-            stiffest += fabs(between) * stiffness[k] / stiffness[i];
-        }
-        found[i]->mass = 1.0 / together;
-        found[i]->stiff_mass = 1.0 / stiffest;
-        found[i]->mass_normal = found[i]->pose.normal;
-        found[i]->mass_places = places;
-    }
-}
-
-// Brings the masses of a place up to date: they change as slowly as the linkage turns, or when
-// another place of the joint comes to touch.
-static void update_mass(SpaceContacts *contacts, size_t number, const SpaceMotion *motions)
-{
-    static const double SAME_NORMAL = 0.995; // the cosine of 6 degrees
-    const SpaceContact *contact = &contacts->contacts[number];
-    const int joint = contacts->places[number].joint;
-    const unsigned places = touching_places(contacts, joint);
-    const bool is_known = contact->mass_places == places &&
-                          vec3_dot(contact->mass_normal, contact->pose.normal) > SAME_NORMAL;
-    if (!is_known || contacts->map->needs_mass) {
-        find_masses(contacts, motions, joint, places);
-    }
+    return contacts->map != NULL && !isinf(contacts->map->stability_limit);
 }
 
 // Whether the row would not be stable under the map at this step.
-static void check_stability(SpaceContacts *contacts, size_t number, const SpaceMotion *motions,
-                            double step_s)
+static void check_stability(SpaceContacts *contacts, size_t number, double step_s)
 {
     SpaceContact *contact = &contacts->contacts[number];
     contact->falls_back = false;
-    if (contacts->map == NULL || isinf(contacts->map->stability_limit)) {
+    if (!has_limit(contacts)) {
         return;
     }
-    update_mass(contacts, number, motions);
     const double slope = force_law_tangent(&contacts->places[number].law, contact->depth);
     contact->falls_back = !law_row_is_stable(contacts->map, slope / contact->stiff_mass, step_s);
     contacts->fallback_count += contact->falls_back ? 1 : 0;
@@ -235,6 +186,9 @@ bool space_contacts_make(SpaceContacts *contacts, const SpaceMotion *motions,
     for (size_t i = 0; i < contacts->count; i++) {
         find_contact(contacts, i, motions, step_s);
     }
+    if (has_limit(contacts)) {
+        space_contact_mass_find(contacts, motions);
+    }
     for (size_t i = 0; i < contacts->count; i++) {
         SpaceContact *contact = &contacts->contacts[i];
         const PinSpace *place = &contacts->places[i];
@@ -248,7 +202,7 @@ bool space_contacts_make(SpaceContacts *contacts, const SpaceMotion *motions,
                              err)) {
             return false;
         }
-        check_stability(contacts, i, motions, step_s);
+        check_stability(contacts, i, step_s);
         fill_contact(contacts, i, step_s);
     }
     if (contacts->scenario->contact.friction > 0.0) {
@@ -293,7 +247,7 @@ static void book_energy(SpaceContacts *contacts, size_t number, const SpaceMotio
 
 void space_contacts_clear(SpaceContacts *contacts, double step_s, SpaceJoints *joints)
 {
-    SpaceMotion motions[SPACE_BODY_MAX];
+    SpaceMotion *motions = contacts->motions;
     bool any = false;
     for (size_t i = 0; i < contacts->count; i++) {
         any = any || contacts->contacts[i].is_touching;

@@ -6,10 +6,17 @@
 #include "ode/space_contact.h"
 #include "ode/space_joints.h"
 
-// Prepares the places of all joints with play. Fails with ERR_CASE where a law does not fit. Must
-// not be copied: ODE writes into it.
-bool space_contacts_init(SpaceContacts *contacts, const Scenario *scenario, World *world,
-                         SpaceResponse *response, bool is_staggered, Err *err);
+// Lists the places of all joints with play, into zeroed memory. Fails with ERR_CASE where a law
+// does not fit. It is to be finished after a failure too.
+bool space_contacts_list(SpaceContacts *contacts, const Scenario *scenario, Err *err);
+
+// Prepares them, in the world and the response of the linkage that were built with these places
+// (space_contacts_response_places). Must not be copied: ODE writes into it.
+void space_contacts_init(SpaceContacts *contacts, World *world, SpaceResponse *response,
+                         bool is_staggered);
+
+// The places as the response takes them, SPACE_CONTACT_ROWS each, which free() gives back.
+SpaceResponsePlace *space_contacts_response_places(const SpaceContacts *contacts);
 void space_contacts_finish(SpaceContacts *contacts);
 
 // Looks for contacts at the motions given and makes a row for each. `seen` are the motions as the

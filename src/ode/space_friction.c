@@ -23,8 +23,6 @@ enum { SWEEPS_MAX = 50, ROOT_STEPS_MAX = 60, PARTS = 3 };
 static const double CONVERGED = 1e-7; // of the largest force: the step's own error is larger
 static const double FLAT = 1e-9;      // slope of tanh, below which the row is at its bound
 
-enum { PLACE_MAX = SPACE_RESPONSE_PLAY_MAX / PARTS, UNKNOWN_MAX = PARTS * PLACE_MAX };
-
 typedef struct Share {
     double free[PARTS];   // m/s: speeds after the step if nothing pressed: normal, side, other
     double before[PARTS]; // m/s: of the two along the wall, before it
@@ -37,8 +35,11 @@ typedef struct System {
     const ContactOptions *contact;
     const SpaceFrictionRow *rows;
     size_t count;
-    Share *shares;  // by place; owned, as the next two
-    double *change; // s/kg: h W
+    const SpaceResponse *response; // placed: W
+    const size_t *places;          // of each its number there
+    size_t *index_of;              // by number there: which of these it is, or `count`; owned
+    double step_s;
+    Share *shares;  // by place; owned, as the next one
     double *forces; // N
 } System;
 
@@ -47,22 +48,34 @@ static Vec3 direction(const SpaceFrictionRow *row, int part)
     return part == 0 ? row->normal : part == 1 ? row->side : vec3_cross(row->normal, row->side);
 }
 
+// h W between two places, a row of the first from one of the second.
 static double at(const System *system, size_t row, size_t column)
 {
-    return system->change[row * PARTS * system->count + column];
+    const size_t to = system->places[row / PARTS];
+    const size_t from = system->places[column / PARTS];
+    const size_t i = row % PARTS;
+    const size_t k = column % PARTS;
+    const double *block = to > from ? space_response_block(system->response, to, from)
+                                    : space_response_block(system->response, from, to);
+    const double between = block == NULL ? 0.0
+                           : to > from   ? block[i * PARTS + k]
+                                         : block[k * PARTS + i];
+    return system->step_s * between;
 }
 
 // How the speeds of all rows would be after the step if nothing pressed.
 static void find_free(System *system, SpaceResponse *response, const SpaceFrictionStep *step,
                       const SpaceRow *play_rows)
 {
-    double openings[SPACE_COLUMN_MAX];
-    double rates[SPACE_COLUMN_MAX];
-    double ideal_drift[SPACE_COLUMN_MAX];
-    double play_drift[UNKNOWN_MAX];
-    double free[UNKNOWN_MAX];
-    SpaceMotion pushed[SPACE_BODY_MAX];
-    for (size_t i = 0; i < response->linkage->body_count; i++) {
+    const size_t bodies = response->linkage->body_count;
+    const size_t play = space_response_play_rows(response);
+    double *ideal = zeroed(3 * response->ideal_rows, sizeof *ideal);
+    double *openings = ideal + response->ideal_rows;
+    double *rates = openings + response->ideal_rows;
+    double *play_drift = zeroed(2 * play, sizeof *play_drift);
+    double *free_rates = play_drift + play;
+    SpaceMotion *pushed = zeroed(bodies, sizeof *pushed);
+    for (size_t i = 0; i < bodies; i++) {
         pushed[i] = step->motions[i];
         pushed[i].velocity = step->motions[i].acceleration;
         pushed[i].omega = step->motions[i].alpha;
@@ -72,38 +85,42 @@ static void find_free(System *system, SpaceResponse *response, const SpaceFricti
         const SpaceRow *row = &response->rows[i].row;
         const double late =
             space_row_speed(row, step->motions) + step->erp / step->step_s * openings[i];
-        ideal_drift[i] = space_row_speed(row, pushed) + late / step->step_s;
+        ideal[i] = space_row_speed(row, pushed) + late / step->step_s;
     }
-    for (size_t i = 0; i < PARTS * system->count; i++) {
+    for (size_t i = 0; i < play; i++) {
         play_drift[i] = space_row_speed(&play_rows[i], pushed);
     }
-    space_response_free(response, ideal_drift, play_drift, free);
+    space_response_free(response, ideal, play_drift, free_rates);
     for (size_t i = 0; i < PARTS * system->count; i++) {
+        const size_t row = PARTS * system->places[i / PARTS] + i % PARTS;
         system->shares[i / PARTS].free[i % PARTS] =
-            space_row_speed(&play_rows[i], step->motions) + step->step_s * free[i];
+            space_row_speed(&play_rows[row], step->motions) + step->step_s * free_rates[row];
     }
+    free(pushed);
+    free(play_drift);
+    free(ideal);
 }
 
 static bool start_system(System *system, SpaceResponse *response, const SpaceFrictionStep *step)
 {
-    SpaceRow play_rows[UNKNOWN_MAX];
+    const size_t play = space_response_play_rows(response);
+    SpaceRow *play_rows = zeroed(play, sizeof *play_rows);
+    for (size_t i = 0; i < play; i++) {
+        play_rows[i].body[0] = play_rows[i].body[1] = LINKAGE_GROUND;
+    }
     for (size_t i = 0; i < PARTS * system->count; i++) {
         const SpaceFrictionRow *row = &system->rows[i / PARTS];
         const Vec3 along = direction(row, (int)(i % PARTS));
-        play_rows[i] = space_row_along(step->motions, row->body[0], row->point, row->body[1],
-                                       row->point, along);
+        play_rows[PARTS * system->places[i / PARTS] + i % PARTS] = space_row_along(
+            step->motions, row->body[0], row->point, row->body[1], row->point, along);
         system->shares[i / PARTS].before[i % PARTS] = vec3_dot(row->sliding, along);
-        system->forces[i] = 0.0;
     }
-    if (!space_response_place(response, step->motions, play_rows, PARTS * system->count)) {
-        return false;
+    const bool is_placed = space_response_place(response, step->motions, play_rows);
+    if (is_placed) {
+        find_free(system, response, step, play_rows);
     }
-    space_response_mobility(response, system->change);
-    for (size_t i = 0; i < PARTS * system->count * PARTS * system->count; i++) {
-        system->change[i] *= step->step_s;
-    }
-    find_free(system, response, step, play_rows);
-    return true;
+    free(play_rows);
+    return is_placed;
 }
 
 // The speed along a row after the step from all forces but those of some rows of its own place.
@@ -111,9 +128,14 @@ static double speed_by_others(const System *system, size_t unknown, size_t from,
 {
     const size_t place = unknown / PARTS;
     double sum = system->shares[place].free[unknown % PARTS];
-    for (size_t k = 0; k < PARTS * system->count; k++) {
-        if (k < from || k >= to) {
-            sum += at(system, unknown, k) * system->forces[k];
+    const SpaceResponse *response = system->response;
+    const size_t own = system->places[place];
+    for (size_t n = response->first_partner[own]; n < response->first_partner[own + 1]; n++) {
+        const size_t other = system->index_of[response->partners[n]];
+        for (size_t k = PARTS * other; other < system->count && k < PARTS * (other + 1); k++) {
+            if (k < from || k >= to) {
+                sum += at(system, unknown, k) * system->forces[k];
+            }
         }
     }
     return sum;
@@ -264,26 +286,34 @@ static void find_rows(System *system, double *alone, SpaceFrictionRow *rows)
 }
 
 bool space_friction_find(const ContactOptions *contact, SpaceResponse *response,
-                         const SpaceFrictionStep *step, SpaceFrictionRow *rows, size_t count)
+                         const SpaceFrictionStep *step, const size_t *places,
+                         SpaceFrictionRow *rows, size_t count)
 {
-    double alone[PLACE_MAX];
-    if (count > PLACE_MAX) {
-        return false;
-    }
     System system = {
         .contact = contact,
         .rows = rows,
         .count = count,
+        .response = response,
+        .places = places,
+        .index_of = zeroed(response->place_count, sizeof *system.index_of),
+        .step_s = step->step_s,
         .shares = zeroed(count, sizeof *system.shares),
-        .change = zeroed(PARTS * count * PARTS * count, sizeof *system.change),
         .forces = zeroed(PARTS * count, sizeof *system.forces),
     };
+    double *alone = zeroed(count, sizeof *alone);
+    for (size_t i = 0; i < response->place_count; i++) {
+        system.index_of[i] = count;
+    }
+    for (size_t i = 0; i < count; i++) {
+        system.index_of[places[i]] = i;
+    }
     const bool is_started = start_system(&system, response, step);
     if (is_started) {
         find_rows(&system, alone, rows);
     }
+    free(alone);
+    free(system.index_of);
     free(system.shares);
-    free(system.change);
     free(system.forces);
     return is_started;
 }

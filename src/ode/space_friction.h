@@ -29,7 +29,9 @@ typedef struct SpaceFrictionStep {
     double erp; // of the ideal joints
 } SpaceFrictionStep;
 
-// Finds the friction of all pins that touch, for a step of ODE's direct solver. Returns false, the
-// rows untouched, where the response cannot be placed or has no room for them.
+// Finds the friction of all pins that touch, for a step of ODE's direct solver. `places`: of each
+// row its number in the response, in order, whose places have three rows each. Returns false, the
+// rows untouched, where the response cannot be placed.
 bool space_friction_find(const ContactOptions *contact, SpaceResponse *response,
-                         const SpaceFrictionStep *step, SpaceFrictionRow *rows, size_t count);
+                         const SpaceFrictionStep *step, const size_t *places,
+                         SpaceFrictionRow *rows, size_t count);

@@ -5,6 +5,7 @@
 // the first direction is that in which the pin slides, and both have ODE's own bound.
 #include "ode/space_friction_rows.h"
 
+#include "base/zeroed.h"
 #include "ode/space_friction.h"
 
 Vec3 space_friction_rows_sliding(const PinSpace *place, const SpaceMotion *motions, Vec3 point,
@@ -72,8 +73,8 @@ void space_friction_rows_add(SpaceContacts *contacts, const SpaceMotion *motions
                              const SpaceMotion *seen, double step_s)
 {
     const Scenario *scenario = contacts->scenario;
-    SpaceFrictionRow found[PIN_SPACE_MAX];
-    size_t numbers[PIN_SPACE_MAX];
+    SpaceFrictionRow *found = zeroed(contacts->count, sizeof *found);
+    size_t *numbers = zeroed(contacts->count, sizeof *numbers);
     size_t count = 0;
     for (size_t i = 0; i < contacts->count; i++) {
         if (contacts->contacts[i].is_touching) {
@@ -84,11 +85,13 @@ void space_friction_rows_add(SpaceContacts *contacts, const SpaceMotion *motions
     if (scenario->contact.model == CONTACT_IMPACT && scenario->ode.solver == ODE_DIRECT &&
         count > 0) {
         const SpaceFrictionStep step = {seen, step_s, dWorldGetERP(contacts->world->id)};
-        space_friction_find(&scenario->contact, contacts->response, &step, found, count);
+        space_friction_find(&scenario->contact, contacts->response, &step, numbers, found, count);
     }
     for (size_t i = 0; i < count; i++) {
         if (found[i].has_friction) {
             add_friction(&contacts->contacts[numbers[i]], &found[i]);
         }
     }
+    free(numbers);
+    free(found);
 }

@@ -2,23 +2,25 @@
 // steps themselves: ode/space_impulse_step.c.)
 //
 // A step is handed on in parts (ode/impulse_part.c).
+#include "base/zeroed.h"
 #include "contact/law.h"
 #include "ode/impulse_part.h"
+#include "ode/impulse_parts.h"
 #include "ode/space_impulse_means.h"
 #include "ode/space_stepping.h"
 #include "ode/stepping.h"
 
-#include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct SpaceImpulse {
     SpaceImpulseStep step;
     ImpulsePart part; // of it, the one that is handed on
     SpaceJoints joints;
-    double depths[PIN_SPACE_MAX]; // m, by place
-    bool are_ends[PIN_SPACE_MAX]; // whether a place is one, and no collar
-    EncounterSums sums;           // at the time that is asked for
+    SpaceJoints seen;     // at the time that is asked for
+    SpaceMotion *motions; // owned, like the next two
+    double *depths;       // m, by place
+    bool *are_ends;       // whether a place is one, and no collar
+    EncounterSums sums;   // at the time that is asked for
 } SpaceImpulse;
 
 static void space_impulse_close(void *state)
@@ -28,18 +30,27 @@ static void space_impulse_close(void *state)
         impulse_part_finish(&impulse->part);
         space_impulse_step_finish(&impulse->step);
         encounter_sums_free(&impulse->sums);
+        space_joints_free(&impulse->joints);
+        space_joints_free(&impulse->seen);
+        free(impulse->motions);
+        free(impulse->depths);
+        free(impulse->are_ends);
         free(impulse);
     }
 }
 
 static bool space_impulse_open(const Scenario *scenario, void **state, Err *err)
 {
-    SpaceImpulse *impulse = calloc(1, sizeof *impulse);
-    assert(impulse != NULL);
+    SpaceImpulse *impulse = zeroed(1, sizeof *impulse);
     if (space_impulse_step_init(scenario, &impulse->step, err)) {
         const size_t rows = encounter_rows(&impulse->step.encounter);
         impulse_part_init(&impulse->part, &scenario->linkage, rows);
         impulse->sums = encounter_sums(rows);
+        impulse->joints = space_joints_create(&scenario->linkage);
+        impulse->seen = space_joints_create(&scenario->linkage);
+        impulse->motions = zeroed(scenario->linkage.body_count, sizeof *impulse->motions);
+        impulse->depths = zeroed(impulse->step.place_count, sizeof *impulse->depths);
+        impulse->are_ends = zeroed(impulse->step.place_count, sizeof *impulse->are_ends);
         *state = impulse;
         return true;
     }
@@ -74,7 +85,7 @@ static void take_part(SpaceImpulse *impulse)
     const SpaceImpulseStep *step = &impulse->step;
     const Linkage *linkage = &step->scenario->linkage;
     ImpulsePart *part = &impulse->part;
-    SpaceMotion motions[SPACE_BODY_MAX];
+    SpaceMotion *motions = impulse->motions;
     const Mark *mark = impulse_part_next(part, &step->encounter, step->start_s, step->end_s);
     space_impulse_step_inside(step, mark->node, mark->time_s, !part->is_last, &part->sums, motions,
                               &impulse->joints);
@@ -123,7 +134,7 @@ static void space_impulse_observe(const void *state, double time_s, Sample *samp
     const double since_s = fmin(fmax(time_s - step->start_s, 0.0), step->width_s);
     const size_t node = encounter_node(&step->encounter, since_s);
     EncounterSums sums = impulse->sums; // which owns the arrays
-    SpaceJoints joints;
+    SpaceJoints joints = impulse->seen; // likewise
     encounter_at(&step->encounter, node, since_s, &sums);
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
@@ -148,6 +159,28 @@ static SolverModel space_impulse_model(const void *state)
     stepping_label(impulse->step.scenario, "staggered", "impulse", model.label);
     return model;
 }
+
+static bool space_impulse_is_at_end(const void *state)
+{
+    const SpaceImpulse *impulse = state;
+    return impulse->part.is_last;
+}
+
+static bool open_parts(const Scenario *scenario, void **state, Err *err)
+{
+    static const ImpulsePartsOf SPACE = {&SPACE_IMPULSE, space_impulse_is_at_end};
+    return impulse_parts_open(scenario, &SPACE, state, err);
+}
+
+const Solver SPACE_IMPULSE_PARTS = {
+    .name = "impulse",
+    .open = open_parts,
+    .step = impulse_parts_step,
+    .record = impulse_parts_record,
+    .observe = impulse_parts_observe,
+    .model = impulse_parts_model,
+    .close = impulse_parts_close,
+};
 
 const Solver SPACE_IMPULSE = {
     .name = "impulse",

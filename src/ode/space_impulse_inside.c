@@ -20,8 +20,8 @@ static void find_motions(const SpaceImpulseStep *step, double since_s, const Enc
 {
     const Linkage *linkage = &step->scenario->linkage;
     const double share = since_s / step->width_s;
-    SpaceChange speeds[SPACE_BODY_MAX];
-    SpaceChange places[SPACE_BODY_MAX];
+    SpaceChange *speeds = step->changes[0];
+    SpaceChange *places = step->changes[1];
     space_response_apply(step->response, sums->impulse, speeds);
     space_response_apply(step->response, sums->moment, places);
     for (size_t i = 0; i < linkage->body_count; i++) {
@@ -45,24 +45,20 @@ static void find_motions(const SpaceImpulseStep *step, double since_s, const Enc
 // Takes the response where the bodies are, with the rows along the directions of mid-step.
 static bool place_there(const SpaceImpulseStep *step, const SpaceMotion *motions)
 {
-    SpaceRow rows[SPACE_RESPONSE_PLAY_MAX];
+    SpaceRow *rows = step->play_rows;
     for (size_t i = 0; i < step->place_count; i++) {
         PinSpaceRows moved = step->rows[i];
         pin_space_rows_move(&step->places[i], motions, &moved);
         memcpy(rows + step->encounter.joints[i].first_row, moved.rows, moved.count * sizeof *rows);
     }
-    if (!space_response_place(step->there, motions, rows, encounter_rows(&step->encounter))) {
-        return false;
-    }
-    space_response_link(step->there);
-    return true;
+    return space_response_place(step->there, motions, rows);
 }
 
 // Fills in the accelerations: those beside the contacts', linear in time, and the contacts'.
 static void find_accelerations(const SpaceImpulseStep *step, const SpaceResponse *response,
                                double since_s, const EncounterSums *sums, SpaceMotion *motions)
 {
-    SpaceChange rates[SPACE_BODY_MAX];
+    SpaceChange *rates = step->changes[0];
     const double off_middle_s = since_s - 0.5 * step->width_s;
     space_response_apply(response, sums->force, rates);
     for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
@@ -122,9 +118,9 @@ static void find_forces(const SpaceImpulseStep *step, const EncounterSums *sums,
                         const SpaceMotion *motions, SpaceJoints *joints)
 {
     const Linkage *linkage = &step->scenario->linkage;
-    double beyond[SPACE_RESPONSE_PLAY_MAX];
-    double reactions[SPACE_COLUMN_MAX];
-    Vec3 forces[SPACE_JOINT_MAX];
+    double *beyond = step->play[0];
+    double *reactions = step->ideal[0];
+    Vec3 *forces = step->forces;
     memcpy(forces, step->mean, linkage->joint_count * sizeof *forces);
     for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
         beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
@@ -137,7 +133,7 @@ static void find_forces(const SpaceImpulseStep *step, const EncounterSums *sums,
         }
     }
     if (step->driven >= 0) {
-        SpaceChange loads[SPACE_BODY_MAX];
+        SpaceChange *loads = step->changes[0];
         space_response_load(step->response, sums->force, loads);
         SpaceChange *others = &loads[step->driven];
         others->move = vec3_add(others->move, step->on_driven.move);

@@ -26,7 +26,7 @@ static void find_means(SpaceImpulseStep *step)
             sum->turn = vec3_add(sum->turn, load.turn);
         }
     }
-    double closing[SPACE_COLUMN_MAX];
+    double *closing = step->ideal[0];
     for (size_t i = 0; i < step->response->ideal_rows; i++) {
         closing[i] = step->closing[i] / step->width_s;
     }
@@ -65,7 +65,7 @@ static void find_drive_work(SpaceImpulseStep *step)
         return;
     }
     const double rate = 1.0 / step->width_s;
-    SpaceChange loads[SPACE_BODY_MAX];
+    SpaceChange *loads = step->changes[0];
     space_response_load(step->response, step->total.impulse, loads);
     const SpaceChange *own = &loads[step->driven];
     const SpaceChange others = {

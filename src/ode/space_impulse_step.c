@@ -7,11 +7,11 @@
 // as the contacts have been integrated by then and what is beside them changes slowly.
 #include "ode/space_impulse_step.h"
 
+#include "base/zeroed.h"
+#include "contact/encounter_coupling.h"
 #include "ode/engine.h"
 #include "ode/stepping.h"
 
-#include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 
 // as in ode/impulse_step.c
@@ -23,65 +23,20 @@ static size_t body_count(const SpaceImpulseStep *step)
     return step->scenario->linkage.body_count;
 }
 
-void space_impulse_step_finish(SpaceImpulseStep *step)
+static const double *block_of(const void *context, size_t place, size_t other)
 {
-    encounter_finish(&step->encounter);
-    free(step->response);
-    free(step->there);
-    encounter_sums_free(&step->total);
-    world_finish(&step->world);
+    return space_response_block(context, place, other);
 }
 
-static bool init_encounter(SpaceImpulseStep *step, Err *err)
+// How the places of a response move each other.
+static EncounterCoupling coupling_of(const SpaceResponse *response)
 {
-    const Scenario *scenario = step->scenario;
-    const ContactOptions *contact = &scenario->contact;
-    step->encounter =
-        encounter_start(contact->friction, contact->friction_speed, scenario->ode.contact_phase);
-    step->place_count = pin_space_list(scenario, step->places, err);
-    if (step->place_count == 0) {
-        return false;
-    }
-    for (size_t i = 0; i < step->place_count; i++) {
-        const PinSpace *place = &step->places[i];
-        const size_t rows = pin_space_row_count(place, contact->friction > 0.0);
-        const Joint *joint = &scenario->linkage.joints[place->joint];
-        const EncounterJoint added = {
-            .law = place->law,
-            .radial_clearance = place->clearance,
-            .hole_radius = joint->clearance.hole_radius,
-            .joint = place->joint,
-            .siblings = {place->place == 1 ? -1 : 0, place->place == 0 ? 1 : 0},
-        };
-        encounter_add(&step->encounter, &added, rows);
-    }
-    const size_t rows = encounter_rows(&step->encounter);
-    if (rows > SPACE_RESPONSE_PLAY_MAX) {
-        return err_set(err, ERR_SOLVER,
-                       "the joints have more rows of contact than the %d that map impulse can "
-                       "integrate in space; use map midpoint",
-                       SPACE_RESPONSE_PLAY_MAX);
-    }
-    encounter_make_room(&step->encounter, rows);
-    step->total = encounter_sums(rows);
-    return true;
-}
-
-bool space_impulse_step_init(const Scenario *scenario, SpaceImpulseStep *step, Err *err)
-{
-    step->scenario = scenario;
-    step->driven = linkage_driven_body(&scenario->linkage);
-    step->tick_s = scenario->run.step / (double)scenario->ode.gear;
-    step->response = calloc(1, sizeof *step->response);
-    step->there = calloc(1, sizeof *step->there);
-    assert(step->response != NULL && step->there != NULL);
-    space_start(&scenario->linkage, step->after);
-    if (!init_encounter(step, err) ||
-        !space_world_build(scenario, step->after, &step->world, step->response, err)) {
-        return false;
-    }
-    *step->there = *step->response;
-    return true;
+    return (EncounterCoupling){
+        .first_partner = response->first_partner,
+        .partners = response->partners,
+        .block = block_of,
+        .context = response,
+    };
 }
 
 // Where the rows of play are at the start of the step, and how fast they go.
@@ -134,20 +89,19 @@ static void find_middle(const SpaceImpulseStep *step, SpaceMotion *middle)
 static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
 {
     Encounter *encounter = &step->encounter;
-    SpaceRow rows[SPACE_RESPONSE_PLAY_MAX];
-    double play_drift[SPACE_RESPONSE_PLAY_MAX];
-    double ideal_drift[SPACE_COLUMN_MAX];
-    SpaceMotion loose[SPACE_BODY_MAX];
+    double *play_drift = step->play[0];
+    double *ideal_drift = step->ideal[0];
+    SpaceMotion *loose = step->motions;
     const bool has_friction = step->scenario->contact.friction > 0.0;
     for (size_t i = 0; i < step->place_count; i++) {
         const EncounterJoint *joint = &encounter->joints[i];
         pin_space_rows_place(&step->places[i], middle, has_friction, &step->rows[i]);
-        memcpy(rows + joint->first_row, step->rows[i].rows, joint->row_count * sizeof *rows);
+        memcpy(step->play_rows + joint->first_row, step->rows[i].rows,
+               joint->row_count * sizeof *step->play_rows);
     }
-    if (!space_response_place(step->response, middle, rows, encounter_rows(encounter))) {
+    if (!space_response_place(step->response, middle, step->play_rows)) {
         return false;
     }
-    space_response_link(step->response);
     memcpy(loose, middle, body_count(step) * sizeof *loose);
     space_response_loosen(step->response, step->scenario->gravity, loose);
     for (size_t i = 0; i < step->place_count; i++) {
@@ -155,7 +109,8 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
                              play_drift + encounter->joints[i].first_row);
     }
     space_response_drift(step->response, loose, ideal_drift);
-    space_response_mobility(step->response, encounter->mobility);
+    const EncounterCoupling coupling = coupling_of(step->response);
+    encounter_fill(encounter, &coupling, NULL);
     space_response_free(step->response, ideal_drift, play_drift, encounter->free);
     return true;
 }
@@ -184,7 +139,7 @@ static bool step_world(SpaceImpulseStep *step, const SpaceMotion *middle, const 
                        Err *err)
 {
     const double rate = 1.0 / step->width_s;
-    SpaceChange loads[SPACE_BODY_MAX];
+    SpaceChange *loads = step->changes[1];
     space_response_load(step->response, step->total.impulse, loads);
     for (size_t i = 0; i < body_count(step); i++) {
         SpaceMotion placed = middle[i];
@@ -204,6 +159,9 @@ static bool step_world(SpaceImpulseStep *step, const SpaceMotion *middle, const 
             placed.omega = step->after[i].omega;
         }
         space_world_place(&step->world, i, &placed);
+    }
+    if (step->hold != NULL) {
+        space_hold_push(step->hold, step->response, middle, step->width_s, &step->world);
     }
     const bool is_quick = step->scenario->ode.solver == ODE_QUICK;
     return engine_step(step->world.id, step->width_s, is_quick, err) &&
@@ -235,21 +193,21 @@ static void find_end(SpaceImpulseStep *step, const SpaceMotion *middle)
             coast(after, now.velocity, now.omega, half_s);
         }
     }
-    SpaceChange positions[SPACE_BODY_MAX];
-    SpaceChange speeds[SPACE_BODY_MAX];
+    SpaceChange *positions = step->changes[1];
+    SpaceChange *speeds = step->changes[2];
     // when in the step the impulse came
-    double late[SPACE_RESPONSE_PLAY_MAX];
+    double *late = step->play[0];
     for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
         late[i] = step->total.moment[i] - half_s * step->total.impulse[i];
     }
     space_response_apply(step->response, late, positions);
     change_motions(step, positions, NULL);
     // back onto the ideal joints
-    double openings[SPACE_COLUMN_MAX];
-    double rates[SPACE_COLUMN_MAX];
+    double *openings = step->ideal[0];
+    double *rates = step->ideal[1];
     space_response_openings(step->response, step->after, openings, rates);
-    double unused[SPACE_COLUMN_MAX];
-    space_response_close(step->response, openings, unused, positions);
+    // the impulses that close the positions are of no interest
+    space_response_close(step->response, openings, step->closing, positions);
     space_response_close(step->response, rates, step->closing, speeds);
     change_motions(step, positions, speeds);
 }
@@ -280,7 +238,7 @@ static Vec3 rest_of(double width_s, Vec3 moved, Vec3 speed, Vec3 mean, Vec3 push
 static void prepare_inside(SpaceImpulseStep *step, const SpaceChange *pushed, double width_before_s)
 {
     const double width_s = step->width_s;
-    SpaceChange moved[SPACE_BODY_MAX];
+    SpaceChange *moved = step->changes[1];
     space_response_apply(step->response, step->total.moment, moved);
     for (size_t i = 0; i < body_count(step); i++) {
         const SpaceMotion *first = &step->before[i];
@@ -326,7 +284,7 @@ bool space_impulse_step_take(SpaceImpulseStep *step, Err *err)
 {
     const double width_before_s = step->width_s;
     SpaceMotion *const middle = step->middle;
-    SpaceChange pushed[SPACE_BODY_MAX]; // what the contacts change of the speeds
+    SpaceChange *pushed = step->changes[0]; // what the contacts change of the speeds
     begin_step(step);
     find_middle(step, middle);
     if (!run_encounter(step, middle, pushed, err) || !step_world(step, middle, pushed, err)) {

@@ -7,6 +7,8 @@
 #include "ode/space_joints.h"
 #include "ode/space_world.h"
 
+enum { SPACE_IMPULSE_ROOMS = 3 };
+
 typedef struct SpaceImpulseStep {
     const Scenario *scenario;
     World world;
@@ -14,27 +16,35 @@ typedef struct SpaceImpulseStep {
     SpaceResponse *there;    // at whatever time is looked at; owned
     Encounter encounter;     // a joint of it is a place
     size_t place_count;
-    PinSpace places[PIN_SPACE_MAX];
-    PinSpaceRows rows[PIN_SPACE_MAX]; // at mid-step
-    int driven;                       // body, or LINKAGE_GROUND
-    double tick_s;                    // the finest step
-    size_t tick;                      // at the end of the last step
-    double end_s;                     // likewise
+    PinSpace *places;   // owned, as are all arrays here
+    PinSpaceRows *rows; // by place, at mid-step
+    int driven;         // body, or LINKAGE_GROUND
+    double tick_s;      // the finest step
+    size_t tick;        // at the end of the last step
+    double end_s;       // likewise
     size_t count;
     double start_s; // of the last step
     double width_s;
-    SpaceMotion before[SPACE_BODY_MAX];    // at its start
-    SpaceMotion after[SPACE_BODY_MAX];     // at its end
-    SpaceChange free[SPACE_BODY_MAX];      // mean acceleration beside the contacts'
-    SpaceChange free_rate[SPACE_BODY_MAX]; // its rate of change
-    SpaceChange rest[SPACE_BODY_MAX];      // of the end's positions, beyond the formula for inside
-    Vec3 gyration[SPACE_BODY_MAX];         // rad/s^2, of turning inertias, in the step
-    SpaceMotion middle[SPACE_BODY_MAX];    // at mid-step, with the speeds of the start
-    double drive_work;                     // J, in the whole step
-    EncounterSums total;                   // of the contacts, in the whole step
-    double closing[SPACE_COLUMN_MAX];      // N s, of the ideal rows, beside the step of the world
-    Vec3 mean[SPACE_JOINT_MAX];            // N, mean forces of the ideal joints on bodies b
-    SpaceChange on_driven;                 // N, N m: mean of what they do to the driven body
+    SpaceMotion *before;    // by body, at its start
+    SpaceMotion *after;     // at its end
+    SpaceChange *free;      // mean acceleration beside the contacts'
+    SpaceChange *free_rate; // its rate of change
+    SpaceChange *rest;      // of the end's positions, beyond the formula for inside
+    Vec3 *gyration;         // rad/s^2, of turning inertias, in the step
+    SpaceMotion *middle;    // at mid-step, with the speeds of the start
+    double drive_work;      // J, in the whole step
+    SpaceHold *hold;        // owned; NULL where the ideal joints are rows of ODE
+    EncounterSums total;    // of the contacts, in the whole step
+    double *closing;        // N s, of the ideal rows, beside the step of the world
+    Vec3 *mean;             // N, by joint: mean forces of the ideal ones on bodies b
+    SpaceChange on_driven;  // N, N m: mean of what they do to the driven body
+    // room to work in
+    SpaceMotion *motions;
+    SpaceChange *changes[SPACE_IMPULSE_ROOMS]; // by body
+    SpaceRow *play_rows;                       // by row of play
+    double *play[2];                           // likewise
+    double *ideal[2];                          // by ideal row, of as many as there can be
+    Vec3 *forces;                              // by joint
 } SpaceImpulseStep;
 
 // Whether a body moves by the forces on it, and not by the drive.

@@ -6,8 +6,24 @@
 // body that turns steadily about a fixed axis takes no power.
 #include "ode/space_joints.h"
 
+#include "base/zeroed.h"
+
 #include <math.h>
 #include <string.h>
+
+SpaceJoints space_joints_create(const Linkage *linkage)
+{
+    return (SpaceJoints){
+        .plane = zeroed(linkage->joint_count, sizeof(JointState)),
+        .space = zeroed(linkage->joint_count, sizeof(SpaceJointState)),
+    };
+}
+
+void space_joints_free(SpaceJoints *joints)
+{
+    free(joints->plane);
+    free(joints->space);
+}
 
 // Of one joint: everything but the forces.
 static void place_joint(const SpaceResponse *response, const SpaceMotion *motions, size_t number,

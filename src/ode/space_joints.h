@@ -7,9 +7,12 @@
 
 // The joints of a linkage, both as the plane sees them and in space.
 typedef struct SpaceJoints {
-    JointState plane[SPACE_JOINT_MAX];
-    SpaceJointState space[SPACE_JOINT_MAX];
+    JointState *plane; // by joint; owned, like the next one
+    SpaceJointState *space;
 } SpaceJoints;
+
+SpaceJoints space_joints_create(const Linkage *linkage);
+void space_joints_free(SpaceJoints *joints);
 
 // Fills in where the pins are at the motions given: everything but the forces.
 void space_joints_place(const SpaceResponse *response, const SpaceMotion *motions,

@@ -4,46 +4,33 @@
 // turn by finite rotations: staggered, by h omega from mid-step to mid-step. Turning inertias are
 // ODE's own affair in plain stepping; in staggered stepping a torque of second order stands for
 // them (ode/space_world.c), with the angular acceleration of the step before for what else acts.
+#include "base/zeroed.h"
 #include "ode/engine.h"
 #include "ode/space_between.h"
-#include "ode/space_contacts.h"
 #include "ode/space_stepping.h"
+#include "ode/space_stride.h"
 #include "ode/space_world.h"
 #include "ode/stepping.h"
 
-#include <assert.h>
-#include <stdlib.h>
 #include <string.h>
-
-// One step, as it is handed on.
-typedef struct Stride {
-    double start_s;
-    SpaceMotion first[SPACE_BODY_MAX]; // speeds at the step's start, and positions there (plain)
-                                       // or at mid-step (staggered)
-    SpaceMotion last[SPACE_BODY_MAX];  // as ODE leaves them; accelerations are means of the step
-    double omega[SPACE_BODY_MAX];      // rad/s, about z, at its end
-    double alpha[SPACE_BODY_MAX];      // rad/s^2, about z, mean
-    SpaceJoints joints;
-    double impulse[SPACE_JOINT_MAX];
-    double approach[SPACE_JOINT_MAX];
-    double drive_work; // J
-    ContactEnergy energy;
-} Stride;
 
 typedef struct SpaceRows {
     const Scenario *scenario;
     bool is_staggered;
     World world;
     SpaceResponse response;
+    SpaceHold *hold; // owned
     SpaceContacts contacts;
     double step_s;
     long index; // of the next step: it starts at that many times step_s
     int driven;
-    Vec3 rest[SPACE_BODY_MAX]; // rad/s^2, of the last step, beside the turning inertias'
-    Stride strides[3];         // before the one handed on, that one, and the one ahead of it
-    Stride *before;
-    Stride *now;
-    Stride *ahead; // of plain stepping the one handed on
+    Vec3 *rest;             // rad/s^2, by body: of the last step, beside the turning inertias'
+    Vec3 *gyration;         // rad/s^2, room: by those
+    SpaceMotion *seen;      // room
+    SpaceStride strides[3]; // before the one handed on, that one, and the one ahead of it
+    SpaceStride *before;
+    SpaceStride *now;
+    SpaceStride *ahead; // of plain stepping the one handed on
 } SpaceRows;
 
 static void space_rows_close(void *state)
@@ -52,6 +39,14 @@ static void space_rows_close(void *state)
     if (rows != NULL) {
         space_contacts_finish(&rows->contacts);
         world_finish(&rows->world);
+        space_response_finish(&rows->response);
+        space_hold_free(rows->hold);
+        for (size_t i = 0; i < sizeof rows->strides / sizeof *rows->strides; i++) {
+            space_stride_free(&rows->strides[i]);
+        }
+        free(rows->rest);
+        free(rows->gyration);
+        free(rows->seen);
         free(rows);
     }
 }
@@ -72,18 +67,19 @@ static bool move_on(SpaceRows *rows, SpaceMotion *motions, Err *err)
         motions[rows->driven] = space_driven(linkage, half_s);
         motions[rows->driven].acceleration = (Vec3){0.0, 0.0, 0.0};
     }
-    if (!space_response_place(&rows->response, motions, NULL, 0)) {
+    if (!space_response_place(&rows->response, motions, NULL)) {
         return err_set(err, ERR_SOLVER,
                        "the ideal joints are redundant at the start: give one joint of the "
                        "loop some play");
     }
-    double openings[SPACE_COLUMN_MAX];
-    double rates[SPACE_COLUMN_MAX];
-    double drift[SPACE_COLUMN_MAX];
-    SpaceChange changes[SPACE_BODY_MAX];
+    const size_t ideal = rows->response.ideal_rows;
+    double *openings = zeroed(3 * ideal, sizeof *openings);
+    double *rates = openings + ideal;
+    double *drift = rates + ideal;
+    SpaceChange *changes = zeroed(linkage->body_count, sizeof *changes);
     space_response_openings(&rows->response, motions, openings, rates);
     space_response_drift(&rows->response, motions, drift);
-    for (size_t i = 0; i < rows->response.ideal_rows; i++) {
+    for (size_t i = 0; i < ideal; i++) {
         openings[i] -= 2.0 * half_s * half_s * drift[i];
     }
     space_response_close(&rows->response, openings, rates, changes);
@@ -93,13 +89,36 @@ static bool move_on(SpaceRows *rows, SpaceMotion *motions, Err *err)
         }
         space_world_place(&rows->world, i, &motions[i]);
     }
+    free(changes);
+    free(openings);
     return true;
+}
+
+// Builds the world closed, so that every joint gets its anchors where they belong, and moves it
+// then.
+static bool build(SpaceRows *rows, Err *err)
+{
+    const Scenario *scenario = rows->scenario;
+    if (!space_contacts_list(&rows->contacts, scenario, err)) {
+        return false;
+    }
+    SpaceMotion *motions = rows->seen;
+    space_start(&scenario->linkage, motions);
+    SpaceResponsePlace *places = space_contacts_response_places(&rows->contacts);
+    const bool is_built = space_world_build(scenario, motions, places, rows->contacts.count,
+                                            &rows->world, &rows->response, &rows->hold, err);
+    free(places);
+    if (!is_built) {
+        return false;
+    }
+    space_contacts_init(&rows->contacts, &rows->world, &rows->response, rows->is_staggered);
+    return !rows->is_staggered || move_on(rows, motions, err);
 }
 
 static bool open_rows(const Scenario *scenario, bool is_staggered, void **state, Err *err)
 {
-    SpaceRows *rows = calloc(1, sizeof *rows);
-    assert(rows != NULL);
+    const Linkage *linkage = &scenario->linkage;
+    SpaceRows *rows = zeroed(1, sizeof *rows);
     rows->scenario = scenario;
     rows->is_staggered = is_staggered;
     rows->step_s = scenario->run.step;
@@ -107,13 +126,13 @@ static bool open_rows(const Scenario *scenario, bool is_staggered, void **state,
     rows->before = &rows->strides[0];
     rows->now = &rows->strides[1];
     rows->ahead = &rows->strides[2];
-    SpaceMotion motions[SPACE_BODY_MAX];
-    space_start(&scenario->linkage, motions);
-    // built closed, so that every joint gets its anchors where they belong, and moved then
-    if (space_world_build(scenario, motions, &rows->world, &rows->response, err) &&
-        space_contacts_init(&rows->contacts, scenario, &rows->world, &rows->response, is_staggered,
-                            err) &&
-        (!is_staggered || move_on(rows, motions, err))) {
+    rows->rest = zeroed(linkage->body_count, sizeof *rows->rest);
+    rows->gyration = zeroed(linkage->body_count, sizeof *rows->gyration);
+    rows->seen = zeroed(linkage->body_count, sizeof *rows->seen);
+    for (size_t i = 0; i < sizeof rows->strides / sizeof *rows->strides; i++) {
+        space_stride_create(linkage, &rows->strides[i]);
+    }
+    if (build(rows, err)) {
         *state = rows;
         return true;
     }
@@ -165,7 +184,7 @@ static void place_driven(SpaceRows *rows, const Driven *driven, const SpaceMotio
 }
 
 // Lets the turning of inertias act; writes the angular accelerations it makes.
-static void gyrate(SpaceRows *rows, const Stride *stride, Vec3 *alpha)
+static void gyrate(SpaceRows *rows, const SpaceStride *stride, Vec3 *alpha)
 {
     for (size_t i = 0; i < rows->scenario->linkage.body_count; i++) {
         alpha[i] = (Vec3){0.0, 0.0, 0.0};
@@ -179,7 +198,7 @@ static void gyrate(SpaceRows *rows, const Stride *stride, Vec3 *alpha)
 
 // The motions as the rows of the step see them: the bodies accelerated by gravity and by their
 // turning inertias.
-static void look_ahead(const SpaceRows *rows, const Stride *stride, const Vec3 *gyration,
+static void look_ahead(const SpaceRows *rows, const SpaceStride *stride, const Vec3 *gyration,
                        const Driven *driven, SpaceMotion *seen)
 {
     const Linkage *linkage = &rows->scenario->linkage;
@@ -196,7 +215,7 @@ static void look_ahead(const SpaceRows *rows, const Stride *stride, const Vec3 *
 }
 
 // Speeds and accelerations of a step that has been taken.
-static void read_motions(SpaceRows *rows, const Vec3 *gyration, Stride *stride)
+static void read_motions(SpaceRows *rows, const Vec3 *gyration, SpaceStride *stride)
 {
     for (size_t i = 0; i < rows->scenario->linkage.body_count; i++) {
         SpaceMotion *last = &stride->last[i];
@@ -217,40 +236,21 @@ static void read_motions(SpaceRows *rows, const Vec3 *gyration, Stride *stride)
     }
 }
 
-// Forces, energies, impulses and the drive's part of a step that has been taken.
-static void book(SpaceRows *rows, const SpaceMotion *driven, Stride *stride)
+// Holds the ideal joints where they are no rows of ODE.
+static bool hold(SpaceRows *rows, const SpaceStride *stride, Err *err)
 {
-    const Linkage *linkage = &rows->scenario->linkage;
-    SpaceChange others = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-    space_contacts_clear(&rows->contacts, rows->step_s, &stride->joints);
-    space_contacts_load(&rows->contacts, rows->driven, driven->position, &others);
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (!linkage_is_ideal(linkage, i)) {
-            continue;
-        }
-        space_joints_hold(&stride->joints, i, space_world_force(&rows->world, i));
-        if (rows->driven >= 0 && (joint->body_a == rows->driven || joint->body_b == rows->driven)) {
-            const SpaceChange load = space_world_load(&rows->world, i, rows->driven);
-            others.move = vec3_add(others.move, load.move);
-            others.turn = vec3_add(others.turn, load.turn);
-        }
+    if (rows->hold == NULL) {
+        return true;
     }
-    stride->drive_work = 0.0;
-    if (rows->driven >= 0) {
-        Vec3 force;
-        stride->drive_work =
-            rows->step_s * space_joints_drive(rows->scenario, driven, &others, &force);
-        space_joints_hold(&stride->joints, (size_t)linkage->driver.joint, force);
+    if (!space_response_place(&rows->response, stride->first, NULL)) {
+        return err_set(err, ERR_SOLVER,
+                       "the ideal joints are redundant here: give one joint of the loop some play");
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        stride->impulse[i] = stride->joints.plane[i].force * rows->step_s;
-    }
-    space_contacts_impulses(&rows->contacts, rows->step_s, stride->impulse);
-    stride->energy = space_contacts_energy(&rows->contacts);
+    space_hold_push(rows->hold, &rows->response, stride->first, rows->step_s, &rows->world);
+    return true;
 }
 
-static bool advance(SpaceRows *rows, Stride *stride, Err *err)
+static bool advance(SpaceRows *rows, SpaceStride *stride, Err *err)
 {
     const Linkage *linkage = &rows->scenario->linkage;
     const double step_s = rows->step_s;
@@ -263,21 +263,22 @@ static bool advance(SpaceRows *rows, Stride *stride, Err *err)
     }
     space_joints_clear(linkage, &stride->joints);
     space_joints_place(&rows->response, stride->first, stride->joints.plane, stride->joints.space);
-    Vec3 gyration[SPACE_BODY_MAX];
+    Vec3 *gyration = rows->gyration;
     gyrate(rows, stride, gyration);
     const bool is_quick = rows->scenario->ode.solver == ODE_QUICK;
-    SpaceMotion seen[SPACE_BODY_MAX];
+    SpaceMotion *seen = rows->seen;
     look_ahead(rows, stride, gyration, &driven, seen);
     bool is_good =
         space_contacts_make(&rows->contacts, stride->first, seen, step_s, stride->approach, err);
     place_driven(rows, &driven, &driven.seen);
+    is_good = is_good && hold(rows, stride, err);
     is_good =
         is_good && engine_step(world->id, step_s, is_quick, err) && space_world_check(world, err);
     if (!is_good) {
         return stepping_fail(rows->scenario, stride->start_s, (size_t)rows->index + 1, step_s, err);
     }
     read_motions(rows, gyration, stride);
-    book(rows, &driven.placed, stride);
+    space_stride_book(stride, &driven.placed, step_s, world, &rows->contacts);
     rows->index++;
     return true;
 }
@@ -291,7 +292,7 @@ static bool space_rows_step(void *state, double stop_s, Err *err)
     }
     // the first time also one ahead
     do {
-        Stride *const spare = rows->before;
+        SpaceStride *const spare = rows->before;
         rows->before = rows->now;
         rows->now = rows->ahead;
         rows->ahead = spare;
@@ -305,7 +306,7 @@ static bool space_rows_step(void *state, double stop_s, Err *err)
     return true;
 }
 
-static const Stride *handed_on(const SpaceRows *rows)
+static const SpaceStride *handed_on(const SpaceRows *rows)
 {
     return rows->is_staggered ? rows->now : rows->ahead;
 }
@@ -313,7 +314,7 @@ static const Stride *handed_on(const SpaceRows *rows)
 static StepRecord space_rows_record(const void *state)
 {
     const SpaceRows *rows = state;
-    const Stride *now = handed_on(rows);
+    const SpaceStride *now = handed_on(rows);
     const long number = rows->is_staggered ? rows->index - 1 : rows->index;
     return (StepRecord){
         .start_s = now->start_s,
@@ -337,12 +338,12 @@ static void space_rows_observe(const void *state, double time_s, Sample *sample)
 {
     const SpaceRows *rows = state;
     const Linkage *linkage = &rows->scenario->linkage;
-    const Stride *now = handed_on(rows);
+    const SpaceStride *now = handed_on(rows);
     const double since_s = time_s - now->start_s;
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
     for (size_t i = 0; i < linkage->body_count; i++) {
-        const Stride *other =
+        const SpaceStride *other =
             since_s < 0.5 * rows->step_s ? rows->before : rows->ahead; // of staggered stepping
         sample->space_bodies[i] =
             rows->is_staggered

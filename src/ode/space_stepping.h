@@ -7,3 +7,4 @@
 extern const Solver SPACE_PLAIN;
 extern const Solver SPACE_STAGGERED;
 extern const Solver SPACE_IMPULSE;
+extern const Solver SPACE_IMPULSE_PARTS; // of mechanisms that share nothing but the ground

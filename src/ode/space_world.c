@@ -53,8 +53,8 @@ static dBodyID body_of(const World *world, int body)
 static int held_directions(const SpaceResponse *response, int joint, Vec3 *direction)
 {
     int count = 0;
-    for (size_t i = 0; i < response->ideal_rows; i++) {
-        if (response->joint_of[i] == joint && response->part_of[i] >= SPACE_POINT_ROWS) {
+    for (size_t i = response->first_ideal[joint]; i < response->first_ideal[joint + 1]; i++) {
+        if (response->part_of[i] >= SPACE_POINT_ROWS) {
             *direction = response->direction_of[i];
             count++;
         }
@@ -105,15 +105,16 @@ static void make_ideal(const Scenario *scenario, const SpaceMotion *motions, siz
     dJointSetFeedback(made, &world->feedback[number]);
 }
 
-bool space_world_build(const Scenario *scenario, const SpaceMotion *motions, World *world,
-                       SpaceResponse *response, Err *err)
+bool space_world_build(const Scenario *scenario, const SpaceMotion *motions,
+                       const SpaceResponsePlace *places, size_t count, World *world,
+                       SpaceResponse *response, SpaceHold **hold, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
     memset(world, 0, sizeof *world);
-    if (!space_response_init(linkage, motions, response, err)) {
+    if (!space_response_init(linkage, motions, places, count, response, err)) {
         return false;
     }
-    if (!space_response_place(response, motions, NULL, 0)) {
+    if (!space_response_place(response, motions, NULL)) {
         return err_set(err, ERR_SOLVER,
                        "the ideal joints are redundant at the start: give one joint of the loop "
                        "some play");
@@ -127,8 +128,9 @@ bool space_world_build(const Scenario *scenario, const SpaceMotion *motions, Wor
     if (driven >= 0) {
         dBodySetKinematic(world->bodies[driven]);
     }
+    *hold = space_hold_make(scenario, response);
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage_is_ideal(linkage, i)) {
+        if (*hold == NULL && linkage_is_ideal(linkage, i)) {
             make_ideal(scenario, motions, i, response, world);
         }
     }

@@ -3,13 +3,16 @@
 #pragma once
 
 #include "model/space_response.h"
+#include "ode/space_hold.h"
 #include "ode/world.h"
 
 // Builds the world of a scenario with its bodies in the motions given, and the response of its
-// linkage. Fails with ERR_SOLVER where ODE's joints cannot hold it without redundant rows. The
-// world must not be copied, and is to be finished after a failure too.
-bool space_world_build(const Scenario *scenario, const SpaceMotion *motions, World *world,
-                       SpaceResponse *response, Err *err);
+// linkage with some places; and what holds its ideal joints, NULL where they are rows of ODE. Fails
+// with ERR_SOLVER where ODE's joints cannot hold it without redundant rows. Neither must be copied,
+// and both are to be finished after a failure too.
+bool space_world_build(const Scenario *scenario, const SpaceMotion *motions,
+                       const SpaceResponsePlace *places, size_t count, World *world,
+                       SpaceResponse *response, SpaceHold **hold, Err *err);
 
 // Puts one body where a motion says, with its velocities, and reads it back; accelerations are
 // zero.

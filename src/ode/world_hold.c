@@ -26,19 +26,13 @@ struct WorldHold {
     double *loads;    // of the impulses, three a body
 };
 
-// Rows of ideal joints that hold one another, from which on the sparse factor is faster than ODE's
-// dense one.
-static const size_t ROWS_OF_ODE = 32;
-
 double world_hold_erp(const OdeOptions *options)
 {
     // staggered worlds carry a joint's error of a step off in the next one: a linearised SHAKE
     return options->stepping == ODE_PLAIN ? options->erp : 1.0;
 }
 
-// Whether nothing else is a row of ODE, which would have to be solved together with the joints':
-// contacts, dampers, rows that the case makes soft.
-static bool is_alone(const Scenario *scenario)
+bool world_hold_is_alone(const Scenario *scenario)
 {
     const bool has_contacts =
         scenario_has_clearance(scenario) && !scenario_integrates_contacts(scenario);
@@ -49,7 +43,7 @@ static bool is_alone(const Scenario *scenario)
 WorldHold *world_hold_make(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
-    if (!is_alone(scenario)) {
+    if (!world_hold_is_alone(scenario)) {
         return NULL;
     }
     WorldHold *hold = zeroed(1, sizeof *hold);
@@ -62,7 +56,7 @@ WorldHold *world_hold_make(const Scenario *scenario)
     hold->openings = zeroed(hold->response.ideal_rows, sizeof *hold->openings);
     hold->impulses = zeroed(hold->response.ideal_rows, sizeof *hold->impulses);
     hold->loads = zeroed(3 * linkage->body_count, sizeof *hold->loads);
-    if (hold->response.largest_group <= ROWS_OF_ODE) {
+    if (hold->response.largest_group <= WORLD_HOLD_ROWS) {
         world_hold_free(hold);
         return NULL;
     }

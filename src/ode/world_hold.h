@@ -14,6 +14,14 @@ typedef struct WorldHold WorldHold;
 WorldHold *world_hold_make(const Scenario *scenario);
 void world_hold_free(WorldHold *hold);
 
+// Rows of ideal joints that hold one another, from which on the sparse factor is faster than ODE's
+// dense one.
+enum { WORLD_HOLD_ROWS = 32 };
+
+// Whether nothing else is a row of ODE, which would have to be solved together with the joints':
+// contacts, dampers, rows that the case makes soft.
+bool world_hold_is_alone(const Scenario *scenario);
+
 // The share of an ideal joint's opening that a step takes back.
 double world_hold_erp(const OdeOptions *options);
 

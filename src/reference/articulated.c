@@ -68,10 +68,29 @@ static void set_links(Articulated *articulated)
     }
 }
 
+static void make_plan(const Tree *tree, size_t loop_count, const int *loops, Plan *plan)
+{
+    int *parents = malloc((tree->node_count + 1) * sizeof *parents);
+    int(*ends)[2] = malloc((loop_count + 1) * sizeof *ends);
+    assert(parents != NULL && ends != NULL);
+    for (size_t i = 0; i < tree->node_count; i++) {
+        parents[i] = tree->nodes[i].parent_node;
+    }
+    for (size_t i = 0; i < loop_count; i++) {
+        const Joint *joint = &tree->linkage->joints[loops[i]];
+        ends[i][0] = tree_node_of(tree, joint->body_a);
+        ends[i][1] = tree_node_of(tree, joint->body_b);
+    }
+    const PlanShape shape = {tree->node_count, parents, loop_count, (const int(*)[2])ends, 2};
+    articulated_plan_make(&shape, plan);
+    free(parents);
+    free(ends);
+}
+
 Articulated *articulated_create(const Tree *tree, size_t loop_count, const int *loops)
 {
     Articulated made = {.tree = tree, .loop_count = loop_count};
-    articulated_plan_make(tree, loop_count, loops, &made.plan);
+    make_plan(tree, loop_count, loops, &made.plan);
     Layout layout = {NULL, 0};
     layout_take(&layout, 1, sizeof made);
     lay(&made, &layout);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "reference/articulated_plan.h"
+#include "reference/tree.h"
 
 typedef enum LinkKind {
     LINK_HINGE,    // hangs on a revolute joint

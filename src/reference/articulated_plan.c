@@ -11,10 +11,9 @@
 enum { GROUND = -1 };
 
 typedef struct Maker {
-    const Tree *tree;
+    const PlanShape *shape;
     Plan *plan;
-    size_t count;     // of loops
-    const int *loops; // their joints
+    size_t *depths;   // by node: how many nodes it hangs on, itself among them
     int (*within)[2]; // by loop: fronts that have it and have come into no other; -1: none
     int *row_of;      // by loop: its row in the front that is made; -1: it is not in it
     int *parent;      // by front: the front that it comes into, or -1
@@ -41,23 +40,22 @@ static void *widen(void *array, size_t *room, size_t needed, size_t size)
 
 static int node_at(const Maker *maker, int loop, int side)
 {
-    const Joint *joint = &maker->tree->linkage->joints[maker->loops[loop]];
-    return tree_node_of(maker->tree, side == 0 ? joint->body_a : joint->body_b);
+    return maker->shape->ends[loop][side];
 }
 
 static int find_meeting(const Maker *maker, int loop)
 {
-    const TreeNode *nodes = maker->tree->nodes;
+    const int *parents = maker->shape->parents;
     int a = node_at(maker, loop, 0);
     int b = node_at(maker, loop, 1);
     while (a != b) {
         if (a < 0 || b < 0) {
             return GROUND;
         }
-        if (nodes[a].depth >= nodes[b].depth) {
-            a = nodes[a].parent_node;
+        if (maker->depths[a] >= maker->depths[b]) {
+            a = parents[a];
         } else {
-            b = nodes[b].parent_node;
+            b = parents[b];
         }
     }
     return a;
@@ -100,7 +98,7 @@ static void add_loop(Maker *maker, int loop)
     if (maker->row_of[loop] >= 0) {
         return;
     }
-    maker->row_of[loop] = 2 * (int)front->loop_count;
+    maker->row_of[loop] = (int)(maker->shape->rows * front->loop_count);
     front->loop_count++;
     plan->loops = widen(plan->loops, &maker->rooms[2], plan->loop_count + 1, sizeof *plan->loops);
     plan->loops[plan->loop_count++] = loop;
@@ -236,7 +234,7 @@ static void add_body_front(Maker *maker, int node)
         return;
     }
     plan->front_of[node] = number;
-    close_front(maker, maker->tree->nodes[node].parent_node);
+    close_front(maker, maker->shape->parents[node]);
 }
 
 // Room for numbers, all -1.
@@ -252,7 +250,7 @@ static int *make_numbers(size_t count)
 
 static void list_loops(Maker *maker)
 {
-    for (int loop = (int)maker->count - 1; loop >= 0; loop--) {
+    for (int loop = (int)maker->shape->loop_count - 1; loop >= 0; loop--) {
         const int meeting = find_meeting(maker, loop);
         put_first(&maker->first_loop[meeting + 1], maker->next_loop, loop);
         for (int side = 0; side < 2; side++) {
@@ -264,9 +262,21 @@ static void list_loops(Maker *maker)
     }
 }
 
-void articulated_plan_make(const Tree *tree, size_t loop_count, const int *loops, Plan *plan)
+// Of each node how many it hangs on, itself among them.
+static size_t *find_depths(const PlanShape *shape)
 {
-    const size_t nodes = tree->node_count;
+    size_t *depths = calloc(shape->node_count + 1, sizeof *depths);
+    assert(depths != NULL);
+    for (size_t i = 0; i < shape->node_count; i++) {
+        depths[i] = shape->parents[i] >= 0 ? depths[shape->parents[i]] + 1 : 1;
+    }
+    return depths;
+}
+
+void articulated_plan_make(const PlanShape *shape, Plan *plan)
+{
+    const size_t nodes = shape->node_count;
+    const size_t loop_count = shape->loop_count;
     *plan = (Plan){.front_of = make_numbers(nodes)};
     plan->fronts_from = calloc(nodes + 1, sizeof *plan->fronts_from);
     int(*within)[2] = malloc((loop_count + 1) * sizeof *within);
@@ -275,10 +285,9 @@ void articulated_plan_make(const Tree *tree, size_t loop_count, const int *loops
         within[i][0] = within[i][1] = -1;
     }
     Maker maker = {
-        .tree = tree,
+        .shape = shape,
         .plan = plan,
-        .count = loop_count,
-        .loops = loops,
+        .depths = find_depths(shape),
         .within = within,
         .row_of = make_numbers(loop_count),
         .first_loop = make_numbers(nodes + 1),
@@ -296,6 +305,7 @@ void articulated_plan_make(const Tree *tree, size_t loop_count, const int *loops
     plan->fronts_from[0] = plan->front_count;
     add_loop_fronts(&maker, GROUND);
     free(within);
+    free(maker.depths);
     int *rooms[] = {maker.row_of,   maker.first_loop,  maker.next_loop,  maker.first_end,
                     maker.next_end, maker.first_front, maker.next_front, maker.parent};
     for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++) {

@@ -2,11 +2,21 @@
 // Found once, from the tree alone.
 //
 // A front is one step: the rows of some loops, and what is eliminated is a body's freedom or the
-// two multipliers of the first of the loops. What is left of it goes into one later front. Source:
+// multipliers of the first of the loops. What is left of it goes into one later front. Source:
 // Duff and Reid 1983, multifrontal elimination.
 #pragma once
 
-#include "reference/tree.h"
+#include <stdbool.h>
+#include <stddef.h>
+
+// The shape of a tree with loops, in the plane or in space.
+typedef struct PlanShape {
+    size_t node_count;
+    const int *parents; // by node: the one it hangs on, which stands before it; -1: none
+    size_t loop_count;
+    const int (*ends)[2]; // by loop: the nodes at its two ends; -1: what no coordinate moves
+    size_t rows;          // of each loop
+} PlanShape;
 
 // A front that comes into another, and where its loops are there.
 typedef struct PlanChild {
@@ -18,13 +28,13 @@ typedef struct PlanChild {
 typedef struct PlanEnd {
     int loop;
     int side;   // 0: of body a
-    size_t row; // first of the loop's two in this front
+    size_t row; // first of the loop's in this front
 } PlanEnd;
 
 typedef struct PlanFront {
     int node;           // whose motion its rows feel; -1: none
     bool is_body;       // whether that node's freedom is eliminated, else the first loop
-    size_t first_loop;  // into Plan.loops; each loop has two rows
+    size_t first_loop;  // into Plan.loops; each loop has PlanShape.rows
     size_t loop_count;  //
     size_t first_child; // into Plan.children
     size_t child_count; //
@@ -48,6 +58,5 @@ typedef struct Plan {
                          // those of the last node are the first, those of the ground the last
 } Plan;
 
-// For the loops of some joints.
-void articulated_plan_make(const Tree *tree, size_t loop_count, const int *loops, Plan *plan);
+void articulated_plan_make(const PlanShape *shape, Plan *plan);
 void articulated_plan_finish(Plan *plan);

@@ -8,17 +8,9 @@
 // that of what is missing from the equations of all that turns with it, along its axis.
 #include "reference/space_dynamics.h"
 
-#include "base/dense.h"
+#include "base/zeroed.h"
 
-#include <assert.h>
-#include <stdlib.h>
 #include <string.h>
-
-// Forces on the bodies, by body: at the centre, and the moment about it.
-typedef struct SpaceLoads {
-    Vec3 force[SPACE_TREE_BODY_MAX]; // by number + 1: what the ground is given, nobody asks for
-    Vec3 moment[SPACE_TREE_BODY_MAX];
-} SpaceLoads;
 
 // What the coordinates of the tree are.
 static void list_coordinates(SpaceDynamics *dynamics)
@@ -28,7 +20,7 @@ static void list_coordinates(SpaceDynamics *dynamics)
     for (size_t i = 0; i < tree->node_count; i++) {
         const SpaceNode *node = &tree->nodes[i];
         const Body *body = &tree->linkage->bodies[node->body];
-        const double reach = linkage_reach(tree->linkage, node->body);
+        const double reach = tree->reaches[node->body];
         SystemCoordinate *own = &dynamics->system.coordinates[node->first];
         if (node->joint >= 0) {
             const SpaceEnd *end = &tree->ends[node->own_end];
@@ -51,25 +43,11 @@ static void list_coordinates(SpaceDynamics *dynamics)
     }
 }
 
-bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err *err)
+static void set_contacts(SpaceDynamics *dynamics, const PinSpace *places)
 {
-    *dynamics = (SpaceDynamics){.system = {.scenario = scenario, .torn = -1}};
     System *system = &dynamics->system;
-    space_tree_build(&scenario->linkage, &dynamics->tree);
-    system->coordinates = calloc(dynamics->tree.coordinate_count + 1, sizeof *system->coordinates);
-    system->contacts = calloc(PIN_SPACE_MAX, sizeof *system->contacts);
-    assert(system->coordinates != NULL && system->contacts != NULL);
-    list_coordinates(dynamics);
-    PinSpace places[PIN_SPACE_MAX];
-    Err failed = {ERR_NONE, ""};
-    system->contact_count = pin_space_list(scenario, places, &failed);
-    if (failed.kind != ERR_NONE) {
-        *err = failed;
-        space_dynamics_finish(dynamics);
-        return false;
-    }
     for (size_t i = 0; i < system->contact_count; i++) {
-        const Joint *joint = &scenario->linkage.joints[places[i].joint];
+        const Joint *joint = &system->scenario->linkage.joints[places[i].joint];
         dynamics->contacts[i].place = places[i];
         system->contacts[i] = (Contact){
             .joint = places[i].joint,
@@ -81,158 +59,172 @@ bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err 
             .is_collar = places[i].place == PIN_SPACE_COLLAR,
         };
     }
-    const size_t most = 2 * SPACE_TREE_COORDINATE_MAX;
+}
+
+bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    size_t count;
+    PinSpace *places = pin_space_list(scenario, &count, err);
+    if (places == NULL) {
+        return false;
+    }
+    *dynamics = (SpaceDynamics){.system = {.scenario = scenario, .torn = -1}};
+    System *system = &dynamics->system;
+    SpaceTree *tree = &dynamics->tree;
+    space_tree_build(linkage, tree);
+    dynamics->loops = space_loops_create(tree, tree->loop_count, tree->loops);
+    system->coordinates = zeroed(tree->coordinate_count, sizeof *system->coordinates);
+    list_coordinates(dynamics);
+    system->contact_count = count;
+    system->contacts = zeroed(count, sizeof *system->contacts);
+    dynamics->contacts = zeroed(count, sizeof *dynamics->contacts);
+    set_contacts(dynamics, places);
+    free(places);
+    const size_t rows = SPACE_JOINT_ROWS * tree->loop_count;
     dynamics->scratch = space_dynamics_state_create(dynamics);
-    dynamics->matrix = malloc((most * most + most) * sizeof *dynamics->matrix);
-    assert(dynamics->scratch != NULL && dynamics->matrix != NULL);
-    dynamics->right = dynamics->matrix + most * most;
+    dynamics->loads = zeroed(linkage->body_count + 1, sizeof *dynamics->loads);
+    dynamics->pushes = zeroed(linkage->body_count, sizeof *dynamics->pushes);
+    dynamics->sides = zeroed(rows, sizeof *dynamics->sides);
+    dynamics->solved = zeroed(tree->coordinate_count + rows, sizeof *dynamics->solved);
     return true;
 }
 
 void space_dynamics_finish(SpaceDynamics *dynamics)
 {
+    space_tree_finish(&dynamics->tree);
+    space_loops_destroy(dynamics->loops);
     free(dynamics->system.coordinates);
     free(dynamics->system.contacts);
+    free(dynamics->contacts);
     free(dynamics->scratch);
-    free(dynamics->matrix);
+    free(dynamics->loads);
+    free(dynamics->pushes);
+    free(dynamics->sides);
+    free(dynamics->solved);
+}
+
+// All of a state, from a layout that counts or has the memory.
+static SpaceState *lay_state(const SpaceDynamics *dynamics, Layout *layout)
+{
+    const size_t contacts = dynamics->system.contact_count;
+    SpaceState *own = layout_take(layout, 1, sizeof *own);
+    SpaceState state = {.drive_power = 0.0};
+    state.shared.contacts = layout_take(layout, contacts, sizeof *state.shared.contacts);
+    space_tree_state_lay(&dynamics->tree, layout, &state.tree);
+    state.forces = layout_take(layout, contacts, sizeof *state.forces);
+    state.reactions =
+        layout_take(layout, dynamics->tree.linkage->joint_count, sizeof *state.reactions);
+    if (own != NULL) {
+        *own = state;
+    }
+    return own;
 }
 
 SpaceState *space_dynamics_state_create(const SpaceDynamics *dynamics)
 {
-    const size_t contacts = dynamics->system.contact_count;
-    SpaceState *state = calloc(1, sizeof *state + contacts * sizeof *state->shared.contacts);
-    assert(state != NULL);
-    state->shared.contacts = (Press *)(state + 1);
-    return state;
+    Layout layout = {NULL, 0};
+    lay_state(dynamics, &layout);
+    return lay_state(dynamics, &(Layout){zeroed(layout.used, 1), 0});
 }
 
-// A force on a body at a point on an arm from its centre.
-static void load_body(SpaceLoads *loads, int body, Vec3 arm, Vec3 force)
+// A force on a body at a point on an arm from its centre. What the ground is given, nobody asks
+// for.
+static void load_body(SpacePush *loads, int body, Vec3 arm, Vec3 force)
 {
-    loads->force[body + 1] = vec3_add(loads->force[body + 1], force);
-    loads->moment[body + 1] = vec3_add(loads->moment[body + 1], vec3_cross(arm, force));
+    loads[body + 1].force = vec3_add(loads[body + 1].force, force);
+    loads[body + 1].moment = vec3_add(loads[body + 1].moment, vec3_cross(arm, force));
+}
+
+static void load_moment(SpacePush *loads, int body, Vec3 moment)
+{
+    loads[body + 1].moment = vec3_add(loads[body + 1].moment, moment);
 }
 
 // Gravity, and nothing else yet.
-static void start_loads(const SpaceDynamics *dynamics, SpaceLoads *loads)
+static void start_loads(const SpaceDynamics *dynamics)
 {
     const Linkage *linkage = dynamics->tree.linkage;
     const Vec3 none = {0.0, 0.0, 0.0};
-    loads->force[0] = loads->moment[0] = none;
+    dynamics->loads[0] = (SpacePush){none, none};
     for (size_t i = 0; i < linkage->body_count; i++) {
         const double weight = linkage->bodies[i].mass * dynamics->system.scenario->gravity;
-        loads->force[i + 1] = (Vec3){0.0, -weight, 0.0};
-        loads->moment[i + 1] = none;
+        dynamics->loads[i + 1] = (SpacePush){{0.0, -weight, 0.0}, none};
     }
 }
 
-// What a body's own equations have without second rates: F - m a_bias, N - I al_bias - w x I w.
-typedef struct Push {
-    Vec3 force;
-    Vec3 moment;
-} Push;
-
-static Push push_of(const SpaceTree *tree, const SpaceTreeState *state, const SpaceLoads *loads,
-                    const Mat3 *inertia, int body)
-{
-    const SpaceBodyState *at = space_tree_body(state, body);
-    const Vec3 held = vec3_add(mat3_apply(inertia, at->spin_bias),
-                               vec3_cross(at->omega, mat3_apply(inertia, at->omega)));
-    const double mass = tree->linkage->bodies[body].mass;
-    return (Push){
-        .force = vec3_sub(loads->force[body + 1], vec3_scale(mass, at->bias)),
-        .moment = vec3_sub(loads->moment[body + 1], held),
-    };
-}
-
-// Mass matrix (n by n, in rows of `width`) and right-hand side of the coordinates; a body counts
-// for the coordinates of its chain.
-static void assemble(const SpaceTree *tree, const SpaceTreeState *state, const SpaceLoads *loads,
-                     size_t width, double *matrix, double *right)
-{
-    for (size_t i = 0; i < width * width; i++) {
-        matrix[i] = 0.0;
-    }
-    for (size_t i = 0; i < width; i++) {
-        right[i] = 0.0;
-    }
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const SpaceNode *node = &tree->nodes[i];
-        const SpaceColumn *columns = state->columns[i];
-        const Mat3 inertia = space_tree_inertia(tree, state, node->body);
-        const Push push = push_of(tree, state, loads, &inertia, node->body);
-        const double mass = tree->linkage->bodies[node->body].mass;
-        for (size_t j = 0; j < node->chain_count; j++) {
-            const size_t row = node->chain[j];
-            const Vec3 heavy = vec3_scale(mass, columns[j].linear);
-            const Vec3 spun = mat3_apply(&inertia, columns[j].angular);
-            right[row] +=
-                vec3_dot(columns[j].linear, push.force) + vec3_dot(columns[j].angular, push.moment);
-            for (size_t k = 0; k <= j; k++) {
-                const double product =
-                    vec3_dot(heavy, columns[k].linear) + vec3_dot(spun, columns[k].angular);
-                matrix[row * width + node->chain[k]] += product;
-                if (k < j) {
-                    matrix[node->chain[k] * width + row] += product;
-                }
-            }
-        }
-    }
-}
-
-static void append_loops(const SpaceDynamics *dynamics, const SpaceTreeState *state, size_t width,
-                         double *matrix, double *right)
+// What the bodies' own equations have without second rates: F - m a_bias, N - I al_bias - w x I w.
+static void find_pushes(const SpaceDynamics *dynamics, const SpaceTreeState *state)
 {
     const SpaceTree *tree = &dynamics->tree;
-    const size_t n = tree->coordinate_count;
-    for (size_t row = 0; row < dynamics->loops.row_count; row++) {
-        double *own = matrix + (n + row) * width;
-        space_loops_row(tree, state, &dynamics->loops, row, own);
-        for (size_t j = 0; j < n; j++) {
-            matrix[j * width + n + row] = own[j];
-        }
-        right[n + row] = -space_loops_bias(tree, state, &dynamics->loops, row);
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const int body = tree->nodes[i].body;
+        const SpaceBodyState *at = space_tree_body(state, body);
+        const Mat3 inertia = space_tree_inertia(tree, state, body);
+        const Vec3 held = vec3_add(mat3_apply(&inertia, at->spin_bias),
+                                   vec3_cross(at->omega, mat3_apply(&inertia, at->omega)));
+        const double mass = tree->linkage->bodies[body].mass;
+        const SpacePush *load = &dynamics->loads[body + 1];
+        dynamics->pushes[body] = (SpacePush){
+            .force = vec3_sub(load->force, vec3_scale(mass, at->bias)),
+            .moment = vec3_sub(load->moment, held),
+        };
+    }
+}
+
+// What the loops' rows ask of the second rates.
+static void find_sides(const SpaceDynamics *dynamics, const SpaceTreeState *state)
+{
+    const SpaceLoops *loops = dynamics->loops;
+    for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
+        dynamics->sides[i] =
+            loops->rows[i].is_held
+                ? -space_loops_bias(loops, state, i / SPACE_JOINT_ROWS, (int)(i % SPACE_JOINT_ROWS))
+                : 0.0;
     }
 }
 
 // Forces and moments of the loop joints on their bodies b: the multipliers' negatives. The other
 // joints have no reaction yet.
-static void load_loops(const SpaceDynamics *dynamics, const double *lambda, SpaceState *state,
-                       SpaceLoads *loads)
+static void load_loops(const SpaceDynamics *dynamics, SpaceState *state)
 {
     const SpaceTree *tree = &dynamics->tree;
+    const SpaceLoops *loops = dynamics->loops;
+    const double *lambda = dynamics->solved + tree->coordinate_count;
     memset(state->reactions, 0, tree->linkage->joint_count * sizeof *state->reactions);
-    for (size_t row = 0; row < dynamics->loops.row_count; row++) {
-        const SpaceLoopRow *which = &dynamics->loops.rows[row];
-        const int end = 2 * which->joint;
+    for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
+        if (!loops->rows[i].is_held) {
+            continue;
+        }
+        const int joint = loops->joints[i / SPACE_JOINT_ROWS];
+        const int end = 2 * joint;
         const int a = tree->ends[end].body;
         const int b = tree->ends[end + 1].body;
-        const Vec3 held = vec3_scale(
-            -lambda[row], space_loops_direction(tree, &state->tree, &dynamics->loops, row));
-        if (which->which < SPACE_POINT_ROWS) {
-            load_body(loads, b, state->tree.arms[end + 1], held);
-            load_body(loads, a, state->tree.arms[end], vec3_scale(-1.0, held));
-            Vec3 *reaction = &state->reactions[which->joint];
-            *reaction = vec3_add(*reaction, held);
+        const Vec3 held = vec3_scale(-lambda[i], loops->rows[i].direction);
+        if (i % SPACE_JOINT_ROWS < SPACE_POINT_ROWS) {
+            load_body(dynamics->loads, b, state->tree.arms[end + 1], held);
+            load_body(dynamics->loads, a, state->tree.arms[end], vec3_scale(-1.0, held));
+            state->reactions[joint] = vec3_add(state->reactions[joint], held);
         } else {
-            loads->moment[b + 1] = vec3_add(loads->moment[b + 1], held);
-            loads->moment[a + 1] = vec3_sub(loads->moment[a + 1], held);
+            load_moment(dynamics->loads, b, held);
+            load_moment(dynamics->loads, a, vec3_scale(-1.0, held));
         }
     }
 }
 
 // The force that a body's acceleration asks for beyond what is known to act on it.
 static Vec3 force_missing(const SpaceTree *tree, const SpaceTreeState *state,
-                          const SpaceLoads *loads, int body)
+                          const SpacePush *loads, int body)
 {
     const double mass = tree->linkage->bodies[body].mass;
     return vec3_sub(vec3_scale(mass, space_tree_body(state, body)->acceleration),
-                    loads->force[body + 1]);
+                    loads[body + 1].force);
 }
 
 // Power of the drive, from the equations of all bodies that turn with it.
-static void find_drive(const SpaceDynamics *dynamics, const SpaceLoads *loads, SpaceState *state)
+static void find_drive(const SpaceDynamics *dynamics, SpaceState *state)
 {
+    const SpacePush *loads = dynamics->loads;
     const SpaceTree *tree = &dynamics->tree;
     state->drive_power = 0.0;
     if (tree->driven < 0) {
@@ -256,13 +248,13 @@ static void find_drive(const SpaceDynamics *dynamics, const SpaceLoads *loads, S
         const Vec3 centre = vec3_add(long_vec3_round(tree->base_position[body + 1]), at->moved);
         const Vec3 turning = vec3_cross(axis, vec3_sub(centre, pivot));
         state->drive_power += vec3_dot(turning, force_missing(tree, &state->tree, loads, body)) +
-                              vec3_dot(axis, vec3_sub(spun, loads->moment[body + 1]));
+                              vec3_dot(axis, vec3_sub(spun, loads[body + 1].moment));
     }
     state->drive_power *= tree->linkage->driver.speed;
 }
 
 // Reactions of the tree's joints, children before parents, and of the driven one.
-static void find_reactions(const SpaceTree *tree, SpaceLoads *loads, SpaceState *state)
+static void find_reactions(const SpaceTree *tree, SpacePush *loads, SpaceState *state)
 {
     for (size_t i = tree->node_count; i-- > 0;) {
         const SpaceNode *node = &tree->nodes[i];
@@ -272,7 +264,7 @@ static void find_reactions(const SpaceTree *tree, SpaceLoads *loads, SpaceState 
         const Vec3 held = force_missing(tree, &state->tree, loads, node->body);
         const bool is_child_b = tree->linkage->joints[node->joint].body_b == node->body;
         state->reactions[node->joint] = vec3_scale(is_child_b ? 1.0 : -1.0, held);
-        loads->force[node->parent + 1] = vec3_sub(loads->force[node->parent + 1], held);
+        loads[node->parent + 1].force = vec3_sub(loads[node->parent + 1].force, held);
     }
     if (tree->driven >= 0) {
         state->reactions[tree->linkage->driver.joint] =
@@ -280,43 +272,48 @@ static void find_reactions(const SpaceTree *tree, SpaceLoads *loads, SpaceState 
     }
 }
 
-// The equations for the coordinates' second rates (and the loops' multipliers behind them).
+// Positions, velocities, the contacts' forces and all loads.
 static void set_up(const SpaceDynamics *dynamics, double since_s, const double *y,
-                   SpaceState *state, SpaceLoads *loads)
+                   SpaceState *state)
 {
     const SpaceTree *tree = &dynamics->tree;
     const System *system = &dynamics->system;
-    const size_t width = space_dynamics_equations(dynamics);
     space_tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state->tree);
-    start_loads(dynamics, loads);
+    start_loads(dynamics);
     for (size_t i = 0; i < system->contact_count; i++) {
         const SpaceContact *contact = &dynamics->contacts[i];
         SpaceForce *force = &state->forces[i];
         space_contact_find(contact, &system->contacts[i], &system->scenario->contact, &state->tree,
                            force);
         if (system->contacts[i].mode == CONTACT_PRESSING) {
-            load_body(loads, contact->place.pin.body, force->force_b, force->force);
-            load_body(loads, contact->place.hole.body, force->force_a,
+            load_body(dynamics->loads, contact->place.pin.body, force->force_b, force->force);
+            load_body(dynamics->loads, contact->place.hole.body, force->force_a,
                       vec3_scale(-1.0, force->force));
         }
     }
-    assemble(tree, &state->tree, loads, width, dynamics->matrix, dynamics->right);
-    append_loops(dynamics, &state->tree, width, dynamics->matrix, dynamics->right);
-}
-
-static bool find_rates(const SpaceDynamics *dynamics, double since_s, const double *y,
-                       SpaceState *state, SpaceLoads *loads)
-{
-    set_up(dynamics, since_s, y, state, loads);
-    return dense_solve(space_dynamics_equations(dynamics), dynamics->matrix, dynamics->right);
+    space_loops_turn(dynamics->loops, &state->tree);
 }
 
 bool space_dynamics_factor(const SpaceDynamics *dynamics, double since_s, const double *y,
-                           SpaceState *state, size_t *pivots)
+                           SpaceState *state)
 {
-    SpaceLoads unused;
-    set_up(dynamics, since_s, y, state, &unused);
-    return dense_factor(space_dynamics_equations(dynamics), dynamics->matrix, pivots);
+    set_up(dynamics, since_s, y, state);
+    return space_articulated_factor(dynamics->loops->articulated, &state->tree,
+                                    dynamics->loops->rows);
+}
+
+// The coordinates' second rates, and the loops' multipliers behind them.
+static bool find_rates(const SpaceDynamics *dynamics, double since_s, const double *y,
+                       SpaceState *state)
+{
+    if (!space_dynamics_factor(dynamics, since_s, y, state)) {
+        return false;
+    }
+    find_pushes(dynamics, &state->tree);
+    find_sides(dynamics, &state->tree);
+    space_articulated_solve(dynamics->loops->articulated, &state->tree, dynamics->pushes,
+                            dynamics->sides, dynamics->solved);
+    return true;
 }
 
 static void fill_sums(const SpaceDynamics *dynamics, const SpaceState *state, double *sums)
@@ -339,7 +336,7 @@ static void fill_rates(const SpaceDynamics *dynamics, const SpaceState *state, c
     const size_t n = dynamics->tree.coordinate_count;
     for (size_t i = 0; i < n; i++) {
         rates[i] = y[n + i];
-        rates[n + i] = dynamics->right[i];
+        rates[n + i] = dynamics->solved[i];
     }
     fill_sums(dynamics, state, rates + 2 * n);
 }
@@ -347,14 +344,13 @@ static void fill_rates(const SpaceDynamics *dynamics, const SpaceState *state, c
 bool space_dynamics_evaluate(const SpaceDynamics *dynamics, double since_s, const double *y,
                              SpaceState *state, double *rates)
 {
-    SpaceLoads loads;
-    if (!find_rates(dynamics, since_s, y, state, &loads)) {
+    if (!find_rates(dynamics, since_s, y, state)) {
         return false;
     }
-    space_tree_accelerate(&dynamics->tree, dynamics->right, &state->tree);
-    load_loops(dynamics, dynamics->right + dynamics->tree.coordinate_count, state, &loads);
-    find_drive(dynamics, &loads, state);
-    find_reactions(&dynamics->tree, &loads, state);
+    space_tree_accelerate(&dynamics->tree, dynamics->solved, &state->tree);
+    load_loops(dynamics, state);
+    find_drive(dynamics, state);
+    find_reactions(&dynamics->tree, dynamics->loads, state);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         state->shared.contacts[i] = state->forces[i].press;
     }
@@ -369,7 +365,9 @@ Press space_dynamics_press(const SpaceDynamics *dynamics, size_t contact, double
 {
     const size_t n = dynamics->tree.coordinate_count;
     SpaceState *state = dynamics->scratch;
-    space_tree_evaluate(&dynamics->tree, since_s, y, y + n, &state->tree);
+    const PinSpace *place = &dynamics->contacts[contact].place;
+    space_tree_evaluate_pair(&dynamics->tree, place->hole.body, place->pin.body, since_s, y, y + n,
+                             &state->tree);
     space_contact_find(&dynamics->contacts[contact], &dynamics->system.contacts[contact],
                        &dynamics->system.scenario->contact, &state->tree, &state->forces[contact]);
     return state->forces[contact].press;
@@ -378,10 +376,8 @@ Press space_dynamics_press(const SpaceDynamics *dynamics, size_t contact, double
 void space_dynamics_rates(double since_s, const double *y, double *rates, void *context)
 {
     const SpaceDynamics *dynamics = context;
-    const size_t n = dynamics->tree.coordinate_count;
     SpaceState *state = dynamics->scratch;
-    SpaceLoads loads;
-    if (!find_rates(dynamics, since_s, y, state, &loads)) {
+    if (!find_rates(dynamics, since_s, y, state)) {
         for (size_t i = 0; i < system_size(&dynamics->system); i++) {
             rates[i] = NAN;
         }
@@ -389,9 +385,9 @@ void space_dynamics_rates(double since_s, const double *y, double *rates, void *
     }
     // the drive's power needs the accelerations only where the driven body carries ideal joints
     if (dynamics->tree.is_driven_hung_on) {
-        space_tree_accelerate(&dynamics->tree, dynamics->right, &state->tree);
-        load_loops(dynamics, dynamics->right + n, state, &loads);
+        space_tree_accelerate(&dynamics->tree, dynamics->solved, &state->tree);
+        load_loops(dynamics, state);
     }
-    find_drive(dynamics, &loads, state);
+    find_drive(dynamics, state);
     fill_rates(dynamics, state, y, rates);
 }

@@ -8,22 +8,24 @@
 
 // Everything at one instant. Made of zeros.
 typedef struct SpaceState {
-    SystemState shared;               // the first
-    SpaceTreeState tree;              // accelerations filled in
-    SpaceForce forces[PIN_SPACE_MAX]; // by contact
-    Vec3 reactions[SPACE_JOINT_MAX];  // N, on body b, of ideal joints
-    double drive_power;               // W
+    SystemState shared;  // the first
+    SpaceTreeState tree; // accelerations filled in
+    SpaceForce *forces;  // by contact
+    Vec3 *reactions;     // N, on body b, of ideal joints
+    double drive_power;  // W
 } SpaceState;
 
 typedef struct SpaceDynamics {
     System system; // the first
     SpaceTree tree;
-    SpaceLoops loops;
-    SpaceContact contacts[PIN_SPACE_MAX];
-    // owned; room to work in
+    SpaceLoops *loops; // owned, like all below
+    SpaceContact *contacts;
+    // room to work in
     SpaceState *scratch;
-    double *matrix;
-    double *right;
+    SpacePush *loads;  // by number of body + 1: at the centre, and the moment about it
+    SpacePush *pushes; // by body: of these less what the bodies' bias takes of them
+    double *sides;     // by row of the loops
+    double *solved;    // by coordinate, and by row of the loops
 } SpaceDynamics;
 
 // Fails with ERR_CASE where a contact law does not fit a joint.
@@ -40,18 +42,11 @@ SpaceState *space_dynamics_state_create(const SpaceDynamics *dynamics);
 bool space_dynamics_evaluate(const SpaceDynamics *dynamics, double since_s, const double *y,
                              SpaceState *state, double *rates);
 
-// Unknowns of the equations for the accelerations: the coordinates' second rates, and a multiplier
-// for each row of the loops.
-static inline size_t space_dynamics_equations(const SpaceDynamics *dynamics)
-{
-    return dynamics->tree.coordinate_count + dynamics->loops.row_count;
-}
-
-// Fills in positions, velocities and the contacts' forces, and factors the matrix of these
-// equations into dynamics->matrix, for dense_substitute. Returns false where the accelerations are
-// not determined.
+// Fills in positions, velocities and the contacts' forces, and factors the matrix of the equations
+// for the accelerations into that of the loops. Returns false where the accelerations are not
+// determined.
 bool space_dynamics_factor(const SpaceDynamics *dynamics, double since_s, const double *y,
-                           SpaceState *state, size_t *pivots);
+                           SpaceState *state);
 
 // Rates of the integrator's vector; NaN where they are not determined. The context is a
 // SpaceDynamics.

@@ -7,11 +7,9 @@
 //     t_k' = (w_b x u_b) x s_k + u_b x (w_a x s_k)
 #include "reference/space_loops.h"
 
-#include "base/dense.h"
+#include "base/zeroed.h"
 
-#include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { PASSES = 2 };
@@ -22,75 +20,84 @@ static const double TORN = 1e-5;
 // m: a start is closed to some 1e-12; a pin farther from its own was meant to be elsewhere
 static const double ROUNDED = 1e-10;
 
-static Vec3 side_of(const SpaceTree *tree, const SpaceTreeState *state, const SpaceLoops *loops,
-                    const SpaceLoopRow *row)
+SpaceLoops *space_loops_create(const SpaceTree *tree, size_t count, const int *joints)
 {
-    const Vec3 base = loops->base_sides[row->joint][row->which - SPACE_POINT_ROWS];
-    return space_tree_direction(state, tree->ends[2 * row->joint].body, base);
-}
-
-static Vec3 point_axis(int which)
-{
-    static const Vec3 AXES[SPACE_POINT_ROWS] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
-    return AXES[which];
-}
-
-Vec3 space_loops_direction(const SpaceTree *tree, const SpaceTreeState *state,
-                           const SpaceLoops *loops, size_t number)
-{
-    const SpaceLoopRow *row = &loops->rows[number];
-    if (row->which < SPACE_POINT_ROWS) {
-        return point_axis(row->which);
+    const size_t rows = SPACE_JOINT_ROWS * count;
+    SpaceLoops *loops = zeroed(1, sizeof *loops);
+    *loops = (SpaceLoops){
+        .tree = tree,
+        .count = count,
+        .joints = zeroed(count, sizeof *loops->joints),
+        .base_sides = zeroed(count, sizeof *loops->base_sides),
+        .rows = zeroed(rows, sizeof *loops->rows),
+        .articulated = space_articulated_create(tree, count, joints),
+        .sides = zeroed(rows, sizeof *loops->sides),
+        .solved = zeroed(tree->coordinate_count + rows, sizeof *loops->solved),
+    };
+    for (size_t i = 0; i < count; i++) {
+        loops->joints[i] = joints[i];
     }
-    return vec3_cross(space_tree_axis(tree, state, 2 * row->joint + 1),
-                      side_of(tree, state, loops, row));
+    space_loop_groups_init(tree, count, joints, &loops->groups);
+    return loops;
 }
 
-// Adds what one end has of a row, with a sign.
-static void add_end(const SpaceTree *tree, const SpaceTreeState *state, int end, bool is_point,
-                    Vec3 direction, double *by_coordinate)
+void space_loops_destroy(SpaceLoops *loops)
 {
-    const int body = tree->ends[end].body;
-    if (body == LINKAGE_GROUND || body == tree->driven) {
+    if (loops == NULL) {
         return;
     }
-    const SpaceNode *node = &tree->nodes[tree->node_of[body]];
-    const SpaceColumn *columns = state->columns[tree->node_of[body]];
-    const Vec3 moment = is_point ? vec3_cross(state->arms[end], direction) : direction;
-    for (size_t i = 0; i < node->chain_count; i++) {
-        double by = vec3_dot(columns[i].angular, moment);
-        by += is_point ? vec3_dot(columns[i].linear, direction) : 0.0;
-        by_coordinate[node->chain[i]] += by;
+    space_loop_groups_finish(&loops->groups);
+    space_articulated_destroy(loops->articulated);
+    free(loops->joints);
+    free(loops->base_sides);
+    free(loops->rows);
+    free(loops->sides);
+    free(loops->solved);
+    free(loops);
+}
+
+static Vec3 side_of(const SpaceLoops *loops, const SpaceTreeState *state, size_t loop, int which)
+{
+    const int body = loops->tree->ends[2 * loops->joints[loop]].body;
+    return space_tree_direction(state, body, loops->base_sides[loop][which - SPACE_POINT_ROWS]);
+}
+
+Vec3 space_loops_direction(const SpaceLoops *loops, const SpaceTreeState *state, size_t loop,
+                           int which)
+{
+    static const Vec3 AXES[SPACE_POINT_ROWS] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    if (which < SPACE_POINT_ROWS) {
+        return AXES[which];
+    }
+    return vec3_cross(space_tree_axis(loops->tree, state, 2 * loops->joints[loop] + 1),
+                      side_of(loops, state, loop, which));
+}
+
+void space_loops_turn(SpaceLoops *loops, const SpaceTreeState *state)
+{
+    for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
+        if (loops->rows[i].is_held) {
+            loops->rows[i].direction = space_loops_direction(loops, state, i / SPACE_JOINT_ROWS,
+                                                             (int)(i % SPACE_JOINT_ROWS));
+        }
     }
 }
 
-void space_loops_row(const SpaceTree *tree, const SpaceTreeState *state, const SpaceLoops *loops,
-                     size_t number, double *by_coordinate)
+double space_loops_bias(const SpaceLoops *loops, const SpaceTreeState *state, size_t loop,
+                        int which)
 {
-    const SpaceLoopRow *row = &loops->rows[number];
-    const Vec3 direction = space_loops_direction(tree, state, loops, number);
-    const bool is_point = row->which < SPACE_POINT_ROWS;
-    memset(by_coordinate, 0, tree->coordinate_count * sizeof *by_coordinate);
-    const int end = 2 * row->joint;
-    add_end(tree, state, end, is_point, vec3_scale(-1.0, direction), by_coordinate);
-    add_end(tree, state, end + 1, is_point, direction, by_coordinate);
-}
-
-double space_loops_bias(const SpaceTree *tree, const SpaceTreeState *state, const SpaceLoops *loops,
-                        size_t number)
-{
-    const SpaceLoopRow *row = &loops->rows[number];
-    const int end = 2 * row->joint;
+    const SpaceTree *tree = loops->tree;
+    const int end = 2 * loops->joints[loop];
     const int a = tree->ends[end].body;
     const int b = tree->ends[end + 1].body;
-    const Vec3 direction = space_loops_direction(tree, state, loops, number);
-    if (row->which < SPACE_POINT_ROWS) {
+    const Vec3 direction = loops->rows[SPACE_JOINT_ROWS * loop + (size_t)which].direction;
+    if (which < SPACE_POINT_ROWS) {
         return vec3_dot(direction, vec3_sub(space_tree_bias(state, b, state->arms[end + 1]),
                                             space_tree_bias(state, a, state->arms[end])));
     }
     const SpaceBodyState *at_a = space_tree_body(state, a);
     const SpaceBodyState *at_b = space_tree_body(state, b);
-    const Vec3 side = side_of(tree, state, loops, row);
+    const Vec3 side = side_of(loops, state, loop, which);
     const Vec3 axis = space_tree_axis(tree, state, end + 1);
     const Vec3 turning = vec3_add(vec3_cross(vec3_cross(at_b->omega, axis), side),
                                   vec3_cross(axis, vec3_cross(at_a->omega, side)));
@@ -99,15 +106,16 @@ double space_loops_bias(const SpaceTree *tree, const SpaceTreeState *state, cons
 }
 
 // How far a row is open, m or rad, or how fast it opens.
-static double opening_of(const SpaceTree *tree, const SpaceTreeState *state,
-                         const SpaceLoops *loops, size_t number, bool is_rate)
+static double opening_of(const SpaceLoops *loops, const SpaceTreeState *state, size_t loop,
+                         int which, bool is_rate)
 {
-    const SpaceLoopRow *row = &loops->rows[number];
-    const int end = 2 * row->joint;
+    const SpaceTree *tree = loops->tree;
+    const int joint = loops->joints[loop];
+    const int end = 2 * joint;
     const int a = tree->ends[end].body;
     const int b = tree->ends[end + 1].body;
-    const Vec3 direction = space_loops_direction(tree, state, loops, number);
-    const bool is_point = row->which < SPACE_POINT_ROWS;
+    const Vec3 direction = space_loops_direction(loops, state, loop, which);
+    const bool is_point = which < SPACE_POINT_ROWS;
     if (is_rate && is_point) {
         return vec3_dot(direction, vec3_sub(space_tree_velocity(state, b, state->arms[end + 1]),
                                             space_tree_velocity(state, a, state->arms[end])));
@@ -116,79 +124,62 @@ static double opening_of(const SpaceTree *tree, const SpaceTreeState *state,
         return vec3_dot(direction, vec3_sub(space_tree_body(state, b)->omega,
                                             space_tree_body(state, a)->omega));
     }
-    return is_point
-               ? vec3_dot(direction, space_tree_gap(tree, state, row->joint))
-               : vec3_dot(space_tree_axis(tree, state, end + 1), side_of(tree, state, loops, row));
+    return is_point ? vec3_dot(direction, space_tree_gap(tree, state, joint))
+                    : vec3_dot(space_tree_axis(tree, state, end + 1),
+                               side_of(loops, state, loop, which));
 }
 
-static double product(size_t n, const double *a, const double *b)
+// Changes x by the least that takes the openings of all rows, or their rates, away.
+static void move_least(SpaceLoops *loops, const SpaceTreeState *state, bool is_rate, double *x)
 {
-    double sum = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        sum += a[i] * b[i];
+    space_loops_turn(loops, state);
+    for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
+        loops->sides[i] = loops->rows[i].is_held ? -opening_of(loops, state, i / SPACE_JOINT_ROWS,
+                                                               (int)(i % SPACE_JOINT_ROWS), is_rate)
+                                                 : 0.0;
     }
-    return sum;
+    if (!space_articulated_factor(loops->articulated, state, loops->rows)) {
+        return;
+    }
+    space_articulated_solve(loops->articulated, state, NULL, loops->sides, loops->solved);
+    for (size_t j = 0; j < loops->tree->coordinate_count; j++) {
+        x[j] += loops->solved[j];
+    }
 }
 
-// Changes x by J^T (J J^T)^-1 (-opening).
-static void move_least(const SpaceTree *tree, const SpaceTreeState *state, const SpaceLoops *loops,
-                       bool is_rate, double *x)
+double space_loops_project(SpaceLoops *loops, double since_s, double *q, double *u,
+                           SpaceTreeState *scratch)
 {
-    const size_t n = tree->coordinate_count;
-    const size_t rows = loops->row_count;
-    double *jacobian = malloc((rows * n + rows * rows + rows) * sizeof *jacobian);
-    assert(jacobian != NULL);
-    double *square = jacobian + rows * n;
-    double *right = square + rows * rows;
-    for (size_t i = 0; i < rows; i++) {
-        space_loops_row(tree, state, loops, i, jacobian + i * n);
-        right[i] = -opening_of(tree, state, loops, i, is_rate);
-    }
-    for (size_t i = 0; i < rows; i++) {
-        for (size_t k = 0; k < rows; k++) {
-            square[i * rows + k] = product(n, jacobian + i * n, jacobian + k * n);
-        }
-    }
-    if (dense_solve(rows, square, right)) {
-        for (size_t i = 0; i < rows; i++) {
-            for (size_t j = 0; j < n; j++) {
-                x[j] += right[i] * jacobian[i * n + j];
-            }
-        }
-    }
-    free(jacobian);
-}
-
-double space_loops_project(const SpaceTree *tree, const SpaceLoops *loops, double since_s,
-                           double *q, double *u, SpaceTreeState *scratch)
-{
+    const SpaceTree *tree = loops->tree;
     if (loops->row_count == 0) {
         return 0.0;
     }
     for (int pass = 0; pass < PASSES; pass++) {
         space_tree_evaluate(tree, since_s, q, u, scratch);
-        move_least(tree, scratch, loops, false, q);
+        move_least(loops, scratch, false, q);
     }
     space_tree_evaluate(tree, since_s, q, u, scratch);
-    move_least(tree, scratch, loops, true, u);
+    move_least(loops, scratch, true, u);
     double largest = 0.0;
-    for (size_t i = 0; i < loops->row_count; i++) {
-        largest = fmax(largest, fabs(opening_of(tree, scratch, loops, i, false)));
+    for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
+        if (loops->rows[i].is_held) {
+            largest = fmax(largest, fabs(opening_of(loops, scratch, i / SPACE_JOINT_ROWS,
+                                                    (int)(i % SPACE_JOINT_ROWS), false)));
+        }
     }
     return largest;
 }
 
-int space_loops_torn(const SpaceTree *tree, const SpaceTreeState *state, const SpaceLoops *loops)
+int space_loops_torn(const SpaceLoops *loops, const SpaceTreeState *state)
 {
-    SpaceLoops one = *loops;
-    for (size_t i = 0; i < tree->loop_count; i++) {
-        const int joint = tree->loops[i];
+    const SpaceTree *tree = loops->tree;
+    for (size_t i = 0; i < loops->count; i++) {
+        const int joint = loops->joints[i];
+        const int body = tree->ends[2 * joint + 1].body;
+        const double reach =
+            tree->reaches[body == LINKAGE_GROUND ? tree->ends[2 * joint].body : body];
         for (int which = 0; which < SPACE_JOINT_ROWS; which++) {
-            const int body = tree->ends[2 * joint + 1].body;
-            const double reach = linkage_reach(
-                tree->linkage, body == LINKAGE_GROUND ? tree->ends[2 * joint].body : body);
-            one.rows[0] = (SpaceLoopRow){joint, which};
-            const double opening = fabs(opening_of(tree, state, &one, 0, false));
+            const double opening = fabs(opening_of(loops, state, i, which, false));
             if (!(opening <= TORN * (which < SPACE_POINT_ROWS ? reach : 1.0))) {
                 return joint;
             }
@@ -197,38 +188,45 @@ int space_loops_torn(const SpaceTree *tree, const SpaceTreeState *state, const S
     return -1;
 }
 
-void space_loops_start(SpaceTree *tree, SpaceLoops *loops, double *q, double *u,
-                       SpaceTreeState *scratch)
+// Closes the loops with the pins of the joints with play at their starts, if only rounding is left
+// of the way there, with speeds that are not used.
+static void bring(SpaceTree *tree, double *q, SpaceTreeState *scratch)
 {
-    space_tree_evaluate(tree, 0.0, q, u, scratch);
-    space_loops_choose(tree, scratch, true, loops);
-    space_loops_project(tree, loops, 0.0, q, u, scratch);
-    space_tree_rebase(tree, 0.0, q, u);
     const Linkage *linkage = tree->linkage;
-    if (!linkage->driver.is_present) {
-        return;
-    }
-    // pins are brought to their starts as loops are closed, with speeds that are not used
-    SpaceTree *pinned = malloc(sizeof *pinned);
-    assert(pinned != NULL);
-    *pinned = *tree;
+    int *joints = zeroed(linkage->joint_count, sizeof *joints);
+    double *rates = zeroed(tree->coordinate_count, sizeof *rates);
+    size_t count = tree->loop_count;
+    memcpy(joints, tree->loops, count * sizeof *joints);
     bool are_near = true;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         if (linkage->joints[i].kind == JOINT_CLEARANCE) {
             const Vec2 start = linkage->joints[i].clearance.start;
-            pinned->loops[pinned->loop_count++] = i;
-            pinned->base_gaps[i] = vec3_sub(tree->base_gaps[i], (Vec3){start.x, start.y, 0.0});
-            are_near = are_near && vec3_length(pinned->base_gaps[i]) <= ROUNDED;
+            joints[count++] = i;
+            tree->base_gaps[i] = vec3_sub(tree->base_gaps[i], (Vec3){start.x, start.y, 0.0});
+            are_near = are_near && vec3_length(tree->base_gaps[i]) <= ROUNDED;
         }
     }
-    SpaceLoops pins = {.row_count = 0};
-    double rates[SPACE_TREE_COORDINATE_MAX] = {0.0};
     if (are_near) {
-        space_tree_evaluate(pinned, 0.0, q, rates, scratch);
-        space_loops_choose(pinned, scratch, true, &pins);
-        if (space_loops_project(pinned, &pins, 0.0, q, rates, scratch) <= ROUNDED) {
-            space_tree_rebase(tree, 0.0, q, u);
-        }
+        SpaceLoops *pinned = space_loops_create(tree, count, joints);
+        space_tree_evaluate(tree, 0.0, q, rates, scratch);
+        space_loops_choose(pinned, scratch, true);
+        space_loops_project(pinned, 0.0, q, rates, scratch);
+        space_loops_destroy(pinned);
     }
-    free(pinned);
+    free(rates);
+    free(joints);
+}
+
+void space_loops_start(SpaceTree *tree, SpaceLoops *loops, double *q, double *u,
+                       SpaceTreeState *scratch)
+{
+    space_tree_evaluate(tree, 0.0, q, u, scratch);
+    space_loops_choose(loops, scratch, true);
+    space_loops_project(loops, 0.0, q, u, scratch);
+    space_tree_rebase(tree, 0.0, q, u);
+    if (tree->linkage->driver.is_present) {
+        bring(tree, q, scratch);
+        // where they are not near, the gaps count from the base again
+        space_tree_rebase(tree, 0.0, q, u);
+    }
 }

@@ -3,11 +3,15 @@
 // They are chosen by Gram-Schmidt, the one that has most left over first. A choice stays until
 // another would leave twice as much of its last row: the reactions of joints that hold each
 // other up are not determined, and should not jump without need.
+//
+// A loop moves by the coordinates from its ends up to the body that both hang on. Loops that share
+// none choose by themselves; a row is kept over those of its group from the first to the last that
+// it has a part in.
 #include "reference/space_loops.h"
 
-#include <assert.h>
+#include "base/zeroed.h"
+
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 // What is left of a row, of itself, once everything that others hold is taken out
@@ -16,145 +20,270 @@ static const double INDEPENDENT = 1e-7;
 // A choice stays while its worst row has this share left of what the fittest choice has
 static const double FIT = 0.5;
 
-// A matrix of the rows of loops, one behind the other, in units of length.
-typedef struct Rows {
-    size_t width;
-    size_t count;
-    SpaceLoopRow which[SPACE_JOINT_ROWS * SPACE_TREE_LOOP_MAX];
+// A row over some of a group's coordinates, in units of length; zero in the others.
+typedef struct Row {
+    size_t loop;
+    int which;
+    bool is_out; // it is taken, or nothing that counts is left of it
+    size_t first;
+    size_t end;
     double *values;
-} Rows;
+    double size;
+} Row;
 
-static double product(size_t n, const double *a, const double *b)
+static double size_of(const Row *row)
 {
     double sum = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        sum += a[i] * b[i];
+    for (size_t i = 0; i < row->end - row->first; i++) {
+        sum += row->values[i] * row->values[i];
     }
-    return sum;
+    return sqrt(sum);
+}
+
+// Makes a row cover the coordinates of another too.
+static void widen(const Row *other, Row *row)
+{
+    const size_t first = other->first < row->first ? other->first : row->first;
+    const size_t end = other->end > row->end ? other->end : row->end;
+    if (first == row->first && end == row->end) {
+        return;
+    }
+    double *values = zeroed(end - first, sizeof *values);
+    memcpy(values + (row->first - first), row->values, (row->end - row->first) * sizeof *values);
+    free(row->values);
+    row->values = values;
+    row->first = first;
+    row->end = end;
 }
 
 // Takes out of a row what a unit row has of it, twice for rounding.
-static void take_out(size_t n, const double *unit, double *row)
+static void take_out(const Row *unit, Row *row)
 {
     for (int pass = 0; pass < 2; pass++) {
-        const double share = product(n, unit, row);
-        for (size_t i = 0; i < n; i++) {
-            row[i] -= share * unit[i];
+        const size_t first = unit->first > row->first ? unit->first : row->first;
+        const size_t end = unit->end < row->end ? unit->end : row->end;
+        double share = 0.0;
+        for (size_t i = first; i < end; i++) {
+            share += unit->values[i - unit->first] * row->values[i - row->first];
+        }
+        if (share == 0.0) {
+            return;
+        }
+        widen(unit, row);
+        for (size_t i = unit->first; i < unit->end; i++) {
+            row->values[i - row->first] -= share * unit->values[i - unit->first];
+        }
+    }
+    row->size = size_of(row);
+}
+
+// What the rows of a group are made at.
+typedef struct Chooser {
+    const SpaceLoops *loops;
+    const SpaceTreeState *state;
+    size_t group;
+    double length;   // m, by which turns of rows are measured: the furthest reach of any body
+    double *columns; // room: by coordinate of the group
+    size_t count;
+    Row *rows;
+} Chooser;
+
+// Adds what a node's coordinates have of a row, by the arm to its point.
+static void add_node(const Chooser *chooser, int number, Vec3 arm, bool is_point, Vec3 along)
+{
+    const SpaceTree *tree = chooser->loops->tree;
+    const SpaceNode *node = &tree->nodes[number];
+    const double unit = (is_point ? 1.0 : chooser->length) / tree->reaches[node->body];
+    double *own = chooser->columns + chooser->loops->groups.columns[number];
+    const Vec3 moment = is_point ? vec3_cross(arm, along) : along;
+    const Vec3 *turning = chooser->state->turning[number];
+    if (node->joint >= 0) {
+        own[0] += unit * vec3_dot(turning[0], moment);
+        return;
+    }
+    const double linear[3] = {along.x, along.y, along.z};
+    for (int k = 0; k < 3; k++) {
+        own[k] += is_point ? linear[k] : 0.0;
+        own[3 + k] += unit * vec3_dot(turning[k], moment);
+    }
+}
+
+// Adds what one end of a loop has of a row. Writes the coordinates in between.
+static void add_end(const Chooser *chooser, size_t loop, int side, bool is_point, Vec3 along,
+                    Row *row)
+{
+    const SpaceLoops *loops = chooser->loops;
+    const SpaceTree *tree = loops->tree;
+    const int joint = loops->joints[loop];
+    Vec3 arm = chooser->state->arms[2 * joint + side];
+    for (int at = space_loop_groups_end(tree, joint, side); at != loops->groups.meetings[loop];
+         at = tree->nodes[at].parent_node) {
+        const SpaceNode *node = &tree->nodes[at];
+        const size_t column = loops->groups.columns[at];
+        if (node->joint >= 0) {
+            arm = vec3_sub(arm, chooser->state->arms[node->own_end]);
+        }
+        add_node(chooser, at, arm, is_point, along);
+        row->first = column < row->first ? column : row->first;
+        row->end = column + space_loop_groups_freedoms(node) > row->end
+                       ? column + space_loop_groups_freedoms(node)
+                       : row->end;
+        if (node->joint >= 0) {
+            arm = vec3_add(arm, chooser->state->arms[node->parent_end]);
         }
     }
 }
 
-// Fills in all rows of all loops, turns measured by the reach of the body that turns.
-static void fill_rows(const SpaceTree *tree, const SpaceTreeState *state, const SpaceLoops *loops,
-                      Rows *rows)
+static Row make_row(const Chooser *chooser, size_t loop, int which)
 {
-    SpaceLoops one = *loops;
-    rows->width = tree->coordinate_count;
-    rows->count = 0;
-    double unit[SPACE_TREE_COORDINATE_MAX];
-    double length = 0.0;
-    for (size_t i = 0; i < tree->node_count; i++) {
-        const SpaceNode *node = &tree->nodes[i];
-        const double reach = linkage_reach(tree->linkage, node->body);
-        const size_t own = node->joint < 0 ? 6 : 1;
-        length = fmax(length, reach);
-        for (size_t k = 0; k < own; k++) {
-            unit[node->first + k] = own == 6 && k < 3 ? 1.0 : 1.0 / reach;
-        }
-    }
-    for (size_t i = 0; i < tree->loop_count; i++) {
+    const bool is_point = which < SPACE_POINT_ROWS;
+    const Vec3 along = space_loops_direction(chooser->loops, chooser->state, loop, which);
+    Row row = {
+        .loop = loop, .which = which, .first = chooser->loops->groups.widths[chooser->group]};
+    add_end(chooser, loop, 0, is_point, vec3_scale(-1.0, along), &row);
+    add_end(chooser, loop, 1, is_point, along, &row);
+    const size_t width = row.end - row.first;
+    row.values = zeroed(width, sizeof *row.values);
+    memcpy(row.values, chooser->columns + row.first, width * sizeof *row.values);
+    memset(chooser->columns + row.first, 0, width * sizeof *row.values);
+    row.size = size_of(&row);
+    return row;
+}
+
+// Makes all rows of the group, or those that are held.
+static void make_rows(Chooser *chooser, bool only_held)
+{
+    const SpaceLoops *loops = chooser->loops;
+    const SpaceLoopGroups *groups = &loops->groups;
+    chooser->count = 0;
+    for (size_t i = groups->first_loop[chooser->group]; i < groups->first_loop[chooser->group + 1];
+         i++) {
         for (int which = 0; which < SPACE_JOINT_ROWS; which++) {
-            double *row = rows->values + rows->count * rows->width;
-            one.rows[0] = (SpaceLoopRow){tree->loops[i], which};
-            space_loops_row(tree, state, &one, 0, row);
-            for (size_t k = 0; k < rows->width; k++) {
-                row[k] *= unit[k] * (which < SPACE_POINT_ROWS ? 1.0 : length);
+            const size_t row = SPACE_JOINT_ROWS * groups->loops[i] + (size_t)which;
+            if (!only_held || loops->rows[row].is_held) {
+                chooser->rows[chooser->count++] = make_row(chooser, groups->loops[i], which);
             }
-            rows->which[rows->count++] = one.rows[0];
         }
     }
 }
 
-static bool is_among(const SpaceLoopRow *row, size_t count, const SpaceLoopRow *rows)
+static void free_rows(Chooser *chooser)
 {
-    for (size_t i = 0; i < count; i++) {
-        if (rows[i].joint == row->joint && rows[i].which == row->which) {
-            return true;
-        }
+    for (size_t i = 0; i < chooser->count; i++) {
+        free(chooser->rows[i].values);
     }
-    return false;
 }
 
-// Chooses rows, of those listed where there is a list, the one with most left first. Returns their
-// number, and of each how much was left.
-static size_t choose(Rows *rows, size_t listed_count, const SpaceLoopRow *listed,
-                     SpaceLoopRow *chosen, double *left)
+// Chooses rows, the one with most left first: writes of each how it stands in the list. Returns
+// their number, and how much was left of the last.
+static size_t choose(Chooser *chooser, size_t *chosen, double *last)
 {
-    bool is_taken[SPACE_JOINT_ROWS * SPACE_TREE_LOOP_MAX] = {false};
-    const size_t n = rows->width;
+    const size_t width = chooser->loops->groups.widths[chooser->group];
     size_t count = 0;
-    while (count < n) {
-        size_t best = rows->count;
-        double most = INDEPENDENT * (count > 0 ? left[0] : 0.0);
-        for (size_t i = 0; i < rows->count; i++) {
-            const double *row = rows->values + i * n;
-            const double size = sqrt(product(n, row, row));
-            const bool may_be = listed == NULL || is_among(&rows->which[i], listed_count, listed);
-            if (!is_taken[i] && may_be && size > most) {
+    double least = 0.0;
+    while (count < width) {
+        size_t best = chooser->count;
+        double most = least;
+        for (size_t i = 0; i < chooser->count; i++) {
+            Row *row = &chooser->rows[i];
+            // what is left of it can only become less
+            row->is_out = row->is_out || !(row->size > least);
+            if (!row->is_out && row->size > most) {
                 best = i;
-                most = size;
+                most = row->size;
             }
         }
-        if (best == rows->count) {
+        if (best == chooser->count) {
             break;
         }
-        is_taken[best] = true;
-        double *unit = rows->values + best * n;
-        for (size_t k = 0; k < n; k++) {
-            unit[k] /= most;
+        Row *unit = &chooser->rows[best];
+        unit->is_out = true;
+        for (size_t k = 0; k < unit->end - unit->first; k++) {
+            unit->values[k] /= most;
         }
-        for (size_t i = 0; i < rows->count; i++) {
-            if (!is_taken[i]) {
-                take_out(n, unit, rows->values + i * n);
+        for (size_t i = 0; i < chooser->count; i++) {
+            if (!chooser->rows[i].is_out) {
+                take_out(unit, &chooser->rows[i]);
             }
         }
-        chosen[count] = rows->which[best];
-        left[count++] = most;
+        least = count == 0 ? INDEPENDENT * most : least;
+        chosen[count++] = best;
+        *last = most;
     }
     return count;
 }
 
-void space_loops_choose(const SpaceTree *tree, const SpaceTreeState *state, bool is_first,
-                        SpaceLoops *loops)
+// Whether the rows that are held still do.
+static bool is_fit(Chooser *chooser, size_t fittest_count, double fittest)
 {
-    const SpaceLoops before = *loops;
-    for (size_t i = 0; i < tree->loop_count; i++) {
-        const int joint = tree->loops[i];
-        const Vec3 axis = tree->base_axes[2 * joint];
-        loops->base_sides[joint][0] = vec3_normal_to(axis);
-        loops->base_sides[joint][1] = vec3_cross(axis, loops->base_sides[joint][0]);
+    size_t *chosen = zeroed(chooser->count, sizeof *chosen);
+    double last = 0.0;
+    make_rows(chooser, true);
+    const size_t held = chooser->count;
+    const size_t count = choose(chooser, chosen, &last);
+    free_rows(chooser);
+    free(chosen);
+    // at a dead point fewer are independent, for an instant
+    return (count == held && last > FIT * fittest) || fittest_count < held;
+}
+
+static void choose_group(SpaceLoops *loops, Chooser *chooser, bool is_first)
+{
+    const SpaceLoopGroups *groups = &loops->groups;
+    const size_t group = chooser->group;
+    const size_t most =
+        SPACE_JOINT_ROWS * (groups->first_loop[group + 1] - groups->first_loop[group]);
+    chooser->rows = zeroed(most, sizeof *chooser->rows);
+    chooser->columns = zeroed(groups->widths[group], sizeof *chooser->columns);
+    size_t *chosen = zeroed(most, sizeof *chosen);
+    double fittest = 0.0;
+    make_rows(chooser, false);
+    const size_t count = choose(chooser, chosen, &fittest);
+    for (size_t i = 0; i < count; i++) {
+        const Row *row = &chooser->rows[chosen[i]];
+        chosen[i] = SPACE_JOINT_ROWS * row->loop + (size_t)row->which;
     }
-    if (tree->loop_count == 0) {
-        return;
-    }
-    Rows rows;
-    double left[SPACE_LOOPS_ROW_MAX];
-    const size_t most = SPACE_JOINT_ROWS * tree->loop_count;
-    rows.values = malloc(most * tree->coordinate_count * sizeof *rows.values);
-    assert(rows.values != NULL);
-    fill_rows(tree, state, loops, &rows);
-    loops->row_count = choose(&rows, 0, NULL, loops->rows, left);
-    if (!is_first) {
-        const double fittest = loops->row_count > 0 ? left[loops->row_count - 1] : 0.0;
-        fill_rows(tree, state, loops, &rows);
-        SpaceLoopRow kept[SPACE_LOOPS_ROW_MAX];
-        const size_t count = choose(&rows, before.row_count, before.rows, kept, left);
-        const bool is_fit = count == before.row_count && left[count - 1] > FIT * fittest;
-        // at a dead point fewer are independent, for an instant
-        if (is_fit || loops->row_count < before.row_count) {
-            loops->row_count = before.row_count;
-            memcpy(loops->rows, before.rows, sizeof loops->rows);
+    free_rows(chooser);
+    if (is_first || !is_fit(chooser, count, fittest)) {
+        for (size_t i = groups->first_loop[group]; i < groups->first_loop[group + 1]; i++) {
+            for (size_t k = 0; k < SPACE_JOINT_ROWS; k++) {
+                loops->rows[SPACE_JOINT_ROWS * groups->loops[i] + k].is_held = false;
+            }
+        }
+        for (size_t i = 0; i < count; i++) {
+            loops->rows[chosen[i]].is_held = true;
         }
     }
-    free(rows.values);
+    free(chosen);
+    free(chooser->columns);
+    free(chooser->rows);
+}
+
+static void set_sides(SpaceLoops *loops)
+{
+    for (size_t i = 0; i < loops->count; i++) {
+        const Vec3 axis = loops->tree->base_axes[2 * loops->joints[i]];
+        loops->base_sides[i][0] = vec3_normal_to(axis);
+        loops->base_sides[i][1] = vec3_cross(axis, loops->base_sides[i][0]);
+    }
+}
+
+void space_loops_choose(SpaceLoops *loops, const SpaceTreeState *state, bool is_first)
+{
+    const SpaceTree *tree = loops->tree;
+    Chooser chooser = {.loops = loops, .state = state};
+    set_sides(loops);
+    if (loops->count == 0) {
+        return;
+    }
+    for (size_t i = 0; i < tree->node_count; i++) {
+        chooser.length = fmax(chooser.length, tree->reaches[tree->nodes[i].body]);
+    }
+    for (chooser.group = 0; chooser.group < loops->groups.count; chooser.group++) {
+        choose_group(loops, &chooser, is_first);
+    }
+    loops->row_count = 0;
+    for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
+        loops->row_count += loops->rows[i].is_held ? 1 : 0;
+    }
 }

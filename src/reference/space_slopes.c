@@ -10,40 +10,24 @@
 // and s stays across n.
 #include "reference/space_slopes.h"
 
-#include "base/dense.h"
+#include "base/zeroed.h"
 
-#include <assert.h>
 #include <math.h>
-#include <stdlib.h>
+#include <string.h>
 
 // A pressing place and what its force changes with.
 typedef struct Pressing {
     const Contact *contact;
     const ContactOptions *options;
     const SpaceForce *force;
-    double stiffness;                       // N/m, dN by depth
-    double damping;                         // N s/m, dN by closing speed
-    Vec3 sliding;                           // m/s, s
-    double share;                           // s/m, h
-    double share_slope;                     // s^2/m^2, dh by |s|
-    Vec3 centre[SPACE_TREE_COORDINATE_MAX]; // G_P
-    Vec3 wall[SPACE_TREE_COORDINATE_MAX];   // G_W
+    double stiffness;   // N/m, dN by depth
+    double damping;     // N s/m, dN by closing speed
+    Vec3 sliding;       // m/s, s
+    double share;       // s/m, h
+    double share_slope; // s^2/m^2, dh by |s|
+    Vec3 *centre;       // G_P, by coordinate
+    Vec3 *wall;         // G_W
 } Pressing;
-
-// Adds how a body's point on an arm moves by each coordinate, with a sign.
-static void add_point(const SpaceTree *tree, const SpaceTreeState *state, int body, Vec3 arm,
-                      double sign, Vec3 *row)
-{
-    if (body == LINKAGE_GROUND || body == tree->driven) {
-        return;
-    }
-    const SpaceNode *node = &tree->nodes[tree->node_of[body]];
-    const SpaceColumn *columns = state->columns[tree->node_of[body]];
-    for (size_t i = 0; i < node->chain_count; i++) {
-        const Vec3 moved = vec3_add(columns[i].linear, vec3_cross(columns[i].angular, arm));
-        row[node->chain[i]] = vec3_add(row[node->chain[i]], vec3_scale(sign, moved));
-    }
-}
 
 static void find_points(const SpaceTree *tree, const SpaceTreeState *state, const PinSpace *place,
                         Vec3 arm_a, Vec3 arm_b, Vec3 *row)
@@ -51,8 +35,8 @@ static void find_points(const SpaceTree *tree, const SpaceTreeState *state, cons
     for (size_t i = 0; i < tree->coordinate_count; i++) {
         row[i] = (Vec3){0.0, 0.0, 0.0};
     }
-    add_point(tree, state, place->hole.body, arm_a, -1.0, row);
-    add_point(tree, state, place->pin.body, arm_b, 1.0, row);
+    space_tree_point_row(tree, state, place->hole.body, arm_a, -1.0, row);
+    space_tree_point_row(tree, state, place->pin.body, arm_b, 1.0, row);
 }
 
 static void look_at(const SpaceDynamics *dynamics, const SpaceState *state, size_t number,
@@ -129,7 +113,6 @@ static Change change_force(const Pressing *pressing, Vec3 moved, Vec3 faster, Ve
 enum { PUSHES = 6 };
 
 typedef struct Pushed {
-    size_t width;
     size_t count; // 3 without friction
     double *by[PUSHES];
 } Pushed;
@@ -145,31 +128,38 @@ static void add_column(size_t n, const Pushed *pushed, Change change, double *co
     }
 }
 
-static void find_pushed(const SpaceDynamics *dynamics, const Pressing *pressing,
-                        const size_t *pivots, Pushed *pushed)
+static void set_push(const SpaceDynamics *dynamics, int body, Vec3 arm, Vec3 force)
 {
-    const size_t n = dynamics->tree.coordinate_count;
-    pushed->count = pressing->share > 0.0 ? PUSHES : 3;
-    for (size_t k = 0; k < pushed->count; k += 3) {
-        const Vec3 *points = k == 0 ? pressing->centre : pressing->wall;
-        for (size_t i = 0; i < pushed->width; i++) {
-            const Vec3 along = i < n ? points[i] : (Vec3){0.0, 0.0, 0.0};
-            pushed->by[k][i] = along.x;
-            pushed->by[k + 1][i] = along.y;
-            pushed->by[k + 2][i] = along.z;
-        }
-    }
-    for (size_t k = 0; k < pushed->count; k++) {
-        dense_substitute(pushed->width, dynamics->matrix, pivots, pushed->by[k]);
+    if (body != LINKAGE_GROUND) {
+        dynamics->pushes[body] = (SpacePush){force, vec3_cross(arm, force)};
     }
 }
 
+static void find_pushed(const SpaceDynamics *dynamics, const SpaceState *state, size_t number,
+                        const Pressing *pressing, Pushed *pushed)
+{
+    static const Vec3 AXES[3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    static const Vec3 NONE = {0.0, 0.0, 0.0};
+    const PinSpace *place = &dynamics->contacts[number].place;
+    const SpaceForce *force = pressing->force;
+    pushed->count = pressing->share > 0.0 ? PUSHES : 3;
+    for (size_t k = 0; k < pushed->count; k++) {
+        const Vec3 along = AXES[k % 3];
+        set_push(dynamics, place->pin.body, k < 3 ? force->from_b : force->force_b, along);
+        set_push(dynamics, place->hole.body, k < 3 ? force->from_a : force->force_a,
+                 vec3_scale(-1.0, along));
+        space_articulated_solve(dynamics->loops->articulated, &state->tree, dynamics->pushes, NULL,
+                                pushed->by[k]);
+    }
+    set_push(dynamics, place->pin.body, NONE, NONE);
+    set_push(dynamics, place->hole.body, NONE, NONE);
+}
+
 static void add_slopes(const SpaceDynamics *dynamics, const Pressing *pressing,
-                       const size_t *pivots, Pushed *pushed, double *by_position, double *by_rate)
+                       const Pushed *pushed, double *by_position, double *by_rate)
 {
     static const Vec3 NONE = {0.0, 0.0, 0.0};
     const size_t n = dynamics->tree.coordinate_count;
-    find_pushed(dynamics, pressing, pivots, pushed);
     for (size_t k = 0; k < n; k++) {
         const Vec3 centre = pressing->centre[k];
         const Vec3 wall = pressing->wall[k];
@@ -185,26 +175,27 @@ void space_slopes(double since_s, const double *y, double *by_position, double *
 {
     const SpaceDynamics *dynamics = context;
     const size_t n = dynamics->tree.coordinate_count;
-    const size_t width = space_dynamics_equations(dynamics);
+    const size_t width = n + SPACE_JOINT_ROWS * dynamics->loops->count;
     SpaceState *state = dynamics->scratch;
-    size_t pivots[2 * SPACE_TREE_COORDINATE_MAX];
-    Pushed pushed = {.width = width};
-    Pressing *pressing = malloc(sizeof *pressing);
-    double *room = malloc(PUSHES * width * sizeof *room);
-    assert(pressing != NULL && room != NULL);
+    Pushed pushed = {.count = 0};
+    double *room = zeroed(PUSHES * width, sizeof *room);
+    Vec3 *points = zeroed(2 * n, sizeof *points);
+    Pressing pressing = {.centre = points, .wall = points + n};
     for (size_t i = 0; i < PUSHES; i++) {
         pushed.by[i] = room + i * width;
     }
-    const double start = space_dynamics_factor(dynamics, since_s, y, state, pivots) ? 0.0 : NAN;
+    const double start = space_dynamics_factor(dynamics, since_s, y, state) ? 0.0 : NAN;
     for (size_t i = 0; i < n * n; i++) {
         by_position[i] = by_rate[i] = start;
     }
+    memset(dynamics->pushes, 0, dynamics->tree.linkage->body_count * sizeof *dynamics->pushes);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         if (dynamics->system.contacts[i].mode == CONTACT_PRESSING) {
-            look_at(dynamics, state, i, pressing);
-            add_slopes(dynamics, pressing, pivots, &pushed, by_position, by_rate);
+            look_at(dynamics, state, i, &pressing);
+            find_pushed(dynamics, state, i, &pressing, &pushed);
+            add_slopes(dynamics, &pressing, &pushed, by_position, by_rate);
         }
     }
+    free(points);
     free(room);
-    free(pressing);
 }

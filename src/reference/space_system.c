@@ -1,10 +1,8 @@
 // What do those who step through the equations of motion in space see of them?
 #include "reference/space_system.h"
 
+#include "base/zeroed.h"
 #include "reference/space_slopes.h"
-
-#include <assert.h>
-#include <stdlib.h>
 
 static SpaceDynamics *own_dynamics(System *system)
 {
@@ -32,10 +30,11 @@ static void space_begin(System *system, double *y)
 {
     SpaceDynamics *dynamics = own_dynamics(system);
     const size_t n = dynamics->tree.coordinate_count;
-    SpaceMotion motions[SPACE_BODY_MAX];
+    SpaceMotion *motions = zeroed(dynamics->tree.linkage->body_count, sizeof *motions);
     space_start(dynamics->tree.linkage, motions);
     space_tree_start(&dynamics->tree, motions, y + n);
-    space_loops_start(&dynamics->tree, &dynamics->loops, y, y + n, &dynamics->scratch->tree);
+    space_loops_start(&dynamics->tree, dynamics->loops, y, y + n, &dynamics->scratch->tree);
+    free(motions);
     rebase_contacts(dynamics);
 }
 
@@ -90,7 +89,7 @@ static double space_fastest(const System *system, const SystemState *state)
     for (size_t i = 0; i < tree->node_count; i++) {
         const int body = tree->nodes[i].body;
         const SpaceBodyState *at = space_tree_body(&state_of(state)->tree, body);
-        const double turning = vec3_length(at->omega) * linkage_reach(tree->linkage, body);
+        const double turning = vec3_length(at->omega) * tree->reaches[body];
         fastest = fmax(fastest, vec3_length(at->velocity) + turning);
     }
     return fastest;
@@ -105,10 +104,15 @@ static void space_peak(const System *system, const SystemState *state, size_t nu
     values[0] = rates[0] = 0.0;
     values[1] = at->forces[number].press.depth;
     rates[1] = at->forces[number].press.closing;
-    for (size_t i = 0; i < system->contact_count; i++) {
+    // the places of a joint stand together
+    size_t first = number;
+    while (first > 0 && system->contacts[first - 1].joint == contact->joint) {
+        first--;
+    }
+    for (size_t i = first; i < system->contact_count && system->contacts[i].joint == contact->joint;
+         i++) {
         const Contact *other = &system->contacts[i];
-        if (other->joint == contact->joint && other->is_collar == contact->is_collar &&
-            other->mode == CONTACT_PRESSING) {
+        if (other->is_collar == contact->is_collar && other->mode == CONTACT_PRESSING) {
             const double second =
                 space_contact_second(&dynamics_of(system)->contacts[i], &at->tree, &at->forces[i]);
             values[0] += at->forces[i].press.normal;
@@ -121,8 +125,7 @@ static void space_project(const System *system, double since_s, double *y)
 {
     const SpaceDynamics *dynamics = dynamics_of(system);
     const size_t n = dynamics->tree.coordinate_count;
-    space_loops_project(&dynamics->tree, &dynamics->loops, since_s, y, y + n,
-                        &dynamics->scratch->tree);
+    space_loops_project(dynamics->loops, since_s, y, y + n, &dynamics->scratch->tree);
 }
 
 static bool space_rebase(System *system, double since_s, double *y)
@@ -135,8 +138,8 @@ static bool space_rebase(System *system, double since_s, double *y)
     rebase_contacts(dynamics);
     if (tree->loop_count > 0) {
         space_tree_evaluate(tree, 0.0, y, y + n, &dynamics->scratch->tree);
-        space_loops_choose(tree, &dynamics->scratch->tree, false, &dynamics->loops);
-        system->torn = space_loops_torn(tree, &dynamics->scratch->tree, &dynamics->loops);
+        space_loops_choose(dynamics->loops, &dynamics->scratch->tree, false);
+        system->torn = space_loops_torn(dynamics->loops, &dynamics->scratch->tree);
     }
     // the turns of floating bodies have other rates from their new base on
     return tree->has_floating || tree->loop_count > 0;
@@ -235,7 +238,7 @@ static void space_bodies(const System *system, const SystemState *state, Sample 
 
 static size_t space_rows(const System *system)
 {
-    return dynamics_of(system)->loops.row_count;
+    return dynamics_of(system)->loops->row_count;
 }
 
 static SystemState *space_state_create(const System *system)
@@ -273,16 +276,7 @@ static const SystemKind SPACE = {
 
 System *space_system_create(const Scenario *scenario, Err *err)
 {
-    const Linkage *linkage = &scenario->linkage;
-    if (linkage->body_count > SPACE_BODY_MAX || linkage->joint_count > SPACE_JOINT_MAX) {
-        err_set(err, ERR_CASE,
-                "the reference holds at most %d bodies and %d joints in space; the case has "
-                "%zu and %zu",
-                SPACE_BODY_MAX, SPACE_JOINT_MAX, linkage->body_count, linkage->joint_count);
-        return NULL;
-    }
-    SpaceDynamics *dynamics = malloc(sizeof *dynamics);
-    assert(dynamics != NULL);
+    SpaceDynamics *dynamics = zeroed(1, sizeof *dynamics);
     if (!space_dynamics_init(scenario, dynamics, err)) {
         free(dynamics);
         return NULL;

@@ -11,105 +11,12 @@
 
 #include "reference/turn.h"
 
-#include <string.h>
-
-enum { HINGE_COORDINATES = 1, FLOATING_COORDINATES = 6 };
-
-static void add_node(SpaceTree *tree, int body, int joint, int parent)
-{
-    SpaceNode *node = &tree->nodes[tree->node_count++];
-    *node = (SpaceNode){
-        .body = body, .joint = joint, .parent = parent, .first = tree->coordinate_count};
-    tree->node_of[body] = (int)tree->node_count - 1;
-    if (joint >= 0) {
-        const bool is_own_b = tree->linkage->joints[joint].body_b == body;
-        node->own_end = 2 * joint + (is_own_b ? 1 : 0);
-        node->parent_end = 2 * joint + (is_own_b ? 0 : 1);
-        tree->is_carried[body] = parent != LINKAGE_GROUND && tree->is_carried[parent];
-        tree->is_driven_hung_on = tree->is_driven_hung_on || parent == tree->driven;
-        // what moves the parent moves the child
-        if (parent != LINKAGE_GROUND && parent != tree->driven) {
-            const SpaceNode *above = &tree->nodes[tree->node_of[parent]];
-            node->chain_count = above->chain_count;
-            memcpy(node->chain, above->chain, sizeof node->chain);
-        }
-    }
-    tree->has_floating = tree->has_floating || joint < 0;
-    const size_t count = joint >= 0 ? HINGE_COORDINATES : FLOATING_COORDINATES;
-    for (size_t i = 0; i < count; i++) {
-        node->chain[node->chain_count++] = tree->coordinate_count++;
-    }
-}
-
-// Hangs on every body that an unused ideal joint connects with a known one, until none is left.
-static void grow(SpaceTree *tree, bool *is_known, bool *is_used)
-{
-    const Linkage *linkage = tree->linkage;
-    bool has_grown = true;
-    while (has_grown) {
-        has_grown = false;
-        for (size_t i = 0; i < linkage->joint_count; i++) {
-            const Joint *joint = &linkage->joints[i];
-            // the ground is known: it stands one before the first body
-            const bool a_known = is_known[joint->body_a + 1];
-            const bool b_known = is_known[joint->body_b + 1];
-            if (joint->kind != JOINT_REVOLUTE || is_used[i] || a_known == b_known) {
-                continue;
-            }
-            const int child = a_known ? joint->body_b : joint->body_a;
-            add_node(tree, child, (int)i, a_known ? joint->body_a : joint->body_b);
-            is_known[child + 1] = true;
-            is_used[i] = true;
-            has_grown = true;
-        }
-    }
-}
-
-static void list_ends(SpaceTree *tree)
-{
-    for (int end = 0; end < 2 * (int)tree->linkage->joint_count; end++) {
-        tree->ends[end] = space_end(tree->linkage, (size_t)end / 2, end % 2);
-        const int body = tree->ends[end].body;
-        tree->ends_of[body + 1][tree->end_counts[body + 1]++] = end;
-    }
-}
-
-void space_tree_build(const Linkage *linkage, SpaceTree *tree)
-{
-    *tree = (SpaceTree){.linkage = linkage, .driven = linkage_driven_body(linkage)};
-    list_ends(tree);
-    bool is_known[SPACE_TREE_BODY_MAX] = {true};
-    bool is_used[SPACE_JOINT_MAX] = {false};
-    if (tree->driven >= 0) {
-        tree->node_of[tree->driven] = -1;
-        tree->is_carried[tree->driven] = true;
-        is_known[tree->driven + 1] = true;
-        is_used[linkage->driver.joint] = true;
-    }
-    grow(tree, is_known, is_used);
-    for (int body = 0; body < (int)linkage->body_count; body++) {
-        if (!is_known[body + 1]) {
-            add_node(tree, body, -1, LINKAGE_GROUND);
-            is_known[body + 1] = true;
-            grow(tree, is_known, is_used);
-        }
-    }
-    for (int i = 0; i < (int)linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (joint->kind == JOINT_REVOLUTE && !is_used[i]) {
-            tree->loops[tree->loop_count++] = i;
-            tree->is_driven_hung_on = tree->is_driven_hung_on || joint->body_a == tree->driven ||
-                                      joint->body_b == tree->driven;
-        }
-    }
-}
-
 // The arms of a body's ends, from its turn since the base.
 static void set_arms(const SpaceTree *tree, int body, SpaceTreeState *state)
 {
     const Mat3 *turned = &state->bodies[body + 1].turned;
-    for (size_t i = 0; i < tree->end_counts[body + 1]; i++) {
-        const int end = tree->ends_of[body + 1][i];
+    for (size_t i = tree->end_firsts[body + 1]; i < tree->end_firsts[body + 2]; i++) {
+        const int end = tree->ends_of[i];
         const Vec3 arm = tree->base_arms[end];
         state->arms[end] = vec3_add(arm, mat3_apply(turned, arm));
     }
@@ -141,7 +48,6 @@ static void set_floating(const SpaceTree *tree, size_t number, const double *q, 
 {
     const SpaceNode *node = &tree->nodes[number];
     SpaceBodyState *at = &state->bodies[node->body + 1];
-    SpaceColumn *columns = state->columns[number];
     Turn turn;
     turn_by_vector(vector_at(q + node->first + 3), vector_at(u + node->first + 3), &turn);
     at->turned = turn.moved;
@@ -150,12 +56,8 @@ static void set_floating(const SpaceTree *tree, size_t number, const double *q, 
     at->omega = turn.omega;
     at->bias = (Vec3){0.0, 0.0, 0.0};
     at->spin_bias = turn.bias;
-    const Vec3 none = {0.0, 0.0, 0.0};
-    columns[0] = (SpaceColumn){{1.0, 0.0, 0.0}, none};
-    columns[1] = (SpaceColumn){{0.0, 1.0, 0.0}, none};
-    columns[2] = (SpaceColumn){{0.0, 0.0, 1.0}, none};
     for (int i = 0; i < 3; i++) {
-        columns[3 + i] = (SpaceColumn){none, turn.rate[i]};
+        state->turning[number][i] = turn.rate[i];
     }
     set_arms(tree, node->body, state);
 }
@@ -192,36 +94,71 @@ static void set_hanging(const SpaceTree *tree, size_t number, const double *q, c
         vec3_sub(space_tree_velocity(state, node->parent, outer), vec3_cross(at->omega, inner));
     at->bias = vec3_sub(space_tree_bias(state, node->parent, outer),
                         vec3_add(vec3_cross(at->spin_bias, inner), space_tree_inwards(at, inner)));
-    // the parent's chain, then the own coordinate
-    SpaceColumn *columns = state->columns[number];
-    const size_t above_count = node->chain_count - 1;
-    if (above_count > 0) {
-        const SpaceColumn *above = state->columns[tree->node_of[node->parent]];
-        const Vec3 arm = vec3_sub(outer, inner);
-        for (size_t i = 0; i < above_count; i++) {
-            columns[i].angular = above[i].angular;
-            columns[i].linear = vec3_add(above[i].linear, vec3_cross(above[i].angular, arm));
-        }
+    state->turning[number][0] = axis;
+}
+
+static void set_node(const SpaceTree *tree, size_t number, const double *q, const double *u,
+                     SpaceTreeState *state)
+{
+    if (tree->nodes[number].joint < 0) {
+        set_floating(tree, number, q, u, state);
+    } else {
+        set_hanging(tree, number, q, u, state);
     }
-    columns[above_count] = (SpaceColumn){vec3_cross(inner, axis), axis};
 }
 
 void space_tree_evaluate(const SpaceTree *tree, double since_s, const double *q, const double *u,
                          SpaceTreeState *state)
 {
-    for (size_t i = 0; i < tree->end_counts[0]; i++) {
-        const int end = tree->ends_of[0][i];
-        state->arms[end] = tree->base_arms[end];
-    }
     if (tree->driven >= 0) {
         set_driven(tree, since_s, state);
     }
     for (size_t i = 0; i < tree->node_count; i++) {
-        if (tree->nodes[i].joint < 0) {
-            set_floating(tree, i, q, u, state);
-        } else {
-            set_hanging(tree, i, q, u, state);
-        }
+        set_node(tree, i, q, u, state);
+    }
+}
+
+// A body and all that it hangs on, the outermost last.
+static void evaluate_up_to(const SpaceTree *tree, int body, const double *q, const double *u,
+                           SpaceTreeState *state)
+{
+    int count = 0;
+    for (int at = space_tree_node_of(tree, body); at >= 0; at = tree->nodes[at].parent_node) {
+        state->path[count++] = at;
+    }
+    while (count > 0) {
+        set_node(tree, (size_t)state->path[--count], q, u, state);
+    }
+}
+
+static size_t depth_of(const SpaceTree *tree, int body)
+{
+    const int node = space_tree_node_of(tree, body);
+    return node >= 0 ? tree->nodes[node].depth : 0;
+}
+
+void space_tree_evaluate_pair(const SpaceTree *tree, int body_a, int body_b, double since_s,
+                              const double *q, const double *u, SpaceTreeState *state)
+{
+    if (depth_of(tree, body_a) + depth_of(tree, body_b) >= tree->node_count) {
+        space_tree_evaluate(tree, since_s, q, u, state);
+        return;
+    }
+    if (tree->driven >= 0) {
+        set_driven(tree, since_s, state);
+    }
+    evaluate_up_to(tree, body_a, q, u, state);
+    evaluate_up_to(tree, body_b, q, u, state);
+}
+
+static void accelerate_floating(const SpaceNode *node, const double *rates, const Vec3 *turning,
+                                SpaceBodyState *at)
+{
+    const double *own = rates + node->first;
+    at->acceleration = vec3_add(at->bias, vector_at(own));
+    at->alpha = at->spin_bias;
+    for (int i = 0; i < 3; i++) {
+        at->alpha = vec3_add(at->alpha, vec3_scale(own[3 + i], turning[i]));
     }
 }
 
@@ -230,14 +167,40 @@ void space_tree_accelerate(const SpaceTree *tree, const double *rates, SpaceTree
     for (size_t i = 0; i < tree->node_count; i++) {
         const SpaceNode *node = &tree->nodes[i];
         SpaceBodyState *at = &state->bodies[node->body + 1];
-        at->acceleration = at->bias;
-        at->alpha = at->spin_bias;
-        for (size_t j = 0; j < node->chain_count; j++) {
-            const SpaceColumn *column = &state->columns[i][j];
-            const double rate = rates[node->chain[j]];
-            at->acceleration = vec3_add(at->acceleration, vec3_scale(rate, column->linear));
-            at->alpha = vec3_add(at->alpha, vec3_scale(rate, column->angular));
+        if (node->joint < 0) {
+            accelerate_floating(node, rates, state->turning[i], at);
+            continue;
         }
+        const SpaceBodyState *parent = space_tree_body(state, node->parent);
+        const Vec3 axis = state->turning[i][0];
+        const Vec3 own = vec3_sub(at->spin_bias, parent->spin_bias);
+        at->alpha = vec3_add(vec3_add(parent->alpha, own), vec3_scale(rates[node->first], axis));
+        const Vec3 inner = state->arms[node->own_end];
+        at->acceleration =
+            vec3_sub(space_tree_acceleration(state, node->parent, state->arms[node->parent_end]),
+                     vec3_add(vec3_cross(at->alpha, inner), space_tree_inwards(at, inner)));
+    }
+}
+
+void space_tree_point_row(const SpaceTree *tree, const SpaceTreeState *state, int body, Vec3 arm,
+                          double sign, Vec3 *row)
+{
+    for (int at = space_tree_node_of(tree, body); at >= 0; at = tree->nodes[at].parent_node) {
+        const SpaceNode *node = &tree->nodes[at];
+        Vec3 *own = row + node->first;
+        if (node->joint < 0) {
+            own[0].x += sign;
+            own[1].y += sign;
+            own[2].z += sign;
+            for (int i = 0; i < 3; i++) {
+                own[3 + i] =
+                    vec3_add(own[3 + i], vec3_scale(sign, vec3_cross(state->turning[at][i], arm)));
+            }
+            continue;
+        }
+        arm = vec3_sub(arm, state->arms[node->own_end]);
+        own[0] = vec3_add(own[0], vec3_scale(sign, vec3_cross(state->turning[at][0], arm)));
+        arm = vec3_add(arm, state->arms[node->parent_end]);
     }
 }
 

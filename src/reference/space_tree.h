@@ -7,23 +7,19 @@
 // has moved in its hole since then carries all the digits of a double.
 #pragma once
 
+#include "base/layout.h"
 #include "model/space_rows.h"
 
-enum {
-    SPACE_TREE_COORDINATE_MAX = SPACE_COLUMN_MAX,
-    SPACE_TREE_LOOP_MAX = SPACE_JOINT_MAX,
-    SPACE_TREE_END_MAX = 2 * SPACE_JOINT_MAX, // end 2 j on joint j's body a, 2 j + 1 on body b
-};
-
+// A body that is free to move.
 typedef struct SpaceNode {
-    int body;           // number of a body that is free to move
-    int joint;          // ideal joint it hangs on, or -1 for a floating body
-    int parent;         // body at the other end of that joint, or LINKAGE_GROUND
-    int parent_end;     // of the joint, on the parent
-    int own_end;        // and on the body
-    size_t first;       // coordinate: the angle; of a floating body x, y, z and the turn's x, y, z
-    size_t chain_count; // coordinates that move it, its own last, and which
-    size_t chain[SPACE_TREE_COORDINATE_MAX];
+    int body;
+    int joint;       // ideal joint it hangs on, or -1 for a floating body
+    int parent;      // body at the other end of that joint, or LINKAGE_GROUND
+    int parent_node; // number of its node; -1: the ground or the driven body
+    int parent_end;  // of the joint, on the parent
+    int own_end;     // and on the body
+    size_t depth;    // how many nodes it hangs on, itself among them
+    size_t first;    // coordinate: the angle; of a floating body x, y, z and the turn's x, y, z
 } SpaceNode;
 
 // In the world, m, and a rotation.
@@ -40,34 +36,35 @@ typedef struct LongQuat {
     long double z;
 } LongQuat;
 
-// Bodies by number + 1: the ground stands before the first.
-enum { SPACE_TREE_BODY_MAX = SPACE_BODY_MAX + 1 };
-
+// Arrays by body begin with the ground where they say so: a body's number + 1. Ends by number: end
+// 2 j of joint j on its body a, 2 j + 1 on body b.
 typedef struct SpaceTree {
     const Linkage *linkage;
-    int driven;                             // number of the driven body or LINKAGE_GROUND
-    size_t node_count;                      // free bodies, parents before children
-    SpaceNode nodes[SPACE_BODY_MAX];        //
-    int node_of[SPACE_BODY_MAX];            // by body; -1 for the driven one
-    bool is_carried[SPACE_BODY_MAX];        // the driven body, and all that hang on it
-    bool has_floating;                      // whether a body hangs on nothing
-    bool is_driven_hung_on;                 // whether others do, or loops close there
-    SpaceEnd ends[SPACE_TREE_END_MAX];      // in the bodies' frames
-    size_t end_counts[SPACE_TREE_BODY_MAX]; // ends each body has (by number + 1), and which
-    int ends_of[SPACE_TREE_BODY_MAX][SPACE_TREE_END_MAX];
+    int driven;             // number of the driven body or LINKAGE_GROUND
+    void *memory;           // owned; where the arrays are
+    size_t node_count;      // free bodies, parents before children
+    SpaceNode *nodes;       //
+    int *node_of;           // by body; -1 for the driven one
+    double *reaches;        // m, by body: linkage_reach
+    bool *is_carried;       // by body: the driven body, and all that hang on it
+    bool has_floating;      // whether a body hangs on nothing
+    bool is_driven_hung_on; // whether others do, or loops close there
+    SpaceEnd *ends;         // in the bodies' frames
+    size_t *end_firsts;     // by body, the ground first, and one more: where its ends begin
+    int *ends_of;           // body by body
     size_t coordinate_count;
     size_t loop_count;
-    int loops[SPACE_TREE_LOOP_MAX]; // joints that close loops
+    int *loops; // joints that close loops
     // the base
     long double base_time_s;
-    long double base_angle[SPACE_BODY_MAX]; // rad, of each hanging body's joint since the start
-    LongQuat start_turn[SPACE_BODY_MAX];    // at the start: of a hanging body against its parent
-    LongQuat base_turn[SPACE_TREE_BODY_MAX];
-    LongVec3 base_position[SPACE_TREE_BODY_MAX]; // of the centres
-    Mat3 base_inertia[SPACE_BODY_MAX];           // kg m^2, in the world
-    Vec3 base_arms[SPACE_TREE_END_MAX];          // from the body's centre to each end, m
-    Vec3 base_axes[SPACE_TREE_END_MAX];          // of the joint, unit
-    Vec3 base_gaps[SPACE_JOINT_MAX];             // from the end on body a to that on body b, m
+    long double *base_angle; // rad, by body: of its joint since the start, if it hangs
+    LongQuat *start_turn;    // by body, at the start: of a hanging one against its parent
+    LongQuat *base_turn;     // by body, the ground first
+    LongVec3 *base_position; // likewise, of the centres
+    Mat3 *base_inertia;      // kg m^2, by body, in the world
+    Vec3 *base_arms;         // from the body's centre to each end, m
+    Vec3 *base_axes;         // of the joint, unit, by end
+    Vec3 *base_gaps;         // by joint, from the end on body a to that on body b, m
 } SpaceTree;
 
 // A body at one instant, in the world.
@@ -82,22 +79,29 @@ typedef struct SpaceBodyState {
     Vec3 alpha;
 } SpaceBodyState;
 
-// The velocity and angular velocity of a body by the rate of a coordinate.
-typedef struct SpaceColumn {
-    Vec3 linear;
-    Vec3 angular;
-} SpaceColumn;
-
 // Where the tree's bodies are and how their velocities depend on the coordinates' rates. Made of
 // zeros: the ground's are never written.
 typedef struct SpaceTreeState {
-    SpaceBodyState bodies[SPACE_TREE_BODY_MAX];
-    Vec3 arms[SPACE_TREE_END_MAX]; // from the body's centre to each end, m; of the ground from 0
-    SpaceColumn columns[SPACE_BODY_MAX][SPACE_TREE_COORDINATE_MAX]; // by node, along its chain
+    SpaceBodyState *bodies; // by number + 1
+    Vec3 *arms;             // from the body's centre to each end, m; not of the ground
+    Vec3 (*turning)[3];     // by node, the angular velocity by the rate of its angle, the first; of
+                            // a floating body by those of its turn
+    int *path;              // room for the nodes that a body hangs on
 } SpaceTreeState;
 
-// Finds the tree of the linkage's ideal joints.
+// Finds the tree of the linkage's ideal joints, which must outlive it
+// (reference/space_tree_build.c).
 void space_tree_build(const Linkage *linkage, SpaceTree *tree);
+void space_tree_finish(SpaceTree *tree);
+
+// Takes room for the arrays of a state of this tree; the memory must be zeros.
+void space_tree_state_lay(const SpaceTree *tree, Layout *layout, SpaceTreeState *state);
+
+// The node of a body; -1: the ground or the driven body.
+static inline int space_tree_node_of(const SpaceTree *tree, int body)
+{
+    return body == LINKAGE_GROUND ? -1 : tree->node_of[body];
+}
 
 // Puts the base at given motions at time zero, and writes the coordinates' rates there.
 void space_tree_start(SpaceTree *tree, const SpaceMotion *motions, double *u);
@@ -106,15 +110,24 @@ void space_tree_start(SpaceTree *tree, const SpaceMotion *motions, double *u);
 // and writes the rates as they count from there.
 void space_tree_rebase(SpaceTree *tree, double since_s, double *q, double *u);
 
-// Positions, velocities, columns and bias, from time and coordinates since the base and from rates.
+// Positions, velocities and bias, from time and coordinates since the base and from rates.
 void space_tree_evaluate(const SpaceTree *tree, double since_s, const double *q, const double *u,
                          SpaceTreeState *state);
+
+// The same of two bodies alone, and of those that they hang on.
+void space_tree_evaluate_pair(const SpaceTree *tree, int body_a, int body_b, double since_s,
+                              const double *q, const double *u, SpaceTreeState *state);
 
 // Fills in the accelerations from the coordinates' second rates.
 void space_tree_accelerate(const SpaceTree *tree, const double *rates, SpaceTreeState *state);
 
 // How all bodies move, for people.
 void space_tree_motions(const SpaceTree *tree, const SpaceTreeState *state, SpaceMotion *motions);
+
+// Adds to a row, a vector for each coordinate, how its rate moves a body's point on an arm from the
+// centre, m, with a sign.
+void space_tree_point_row(const SpaceTree *tree, const SpaceTreeState *state, int body, Vec3 arm,
+                          double sign, Vec3 *row);
 
 // A point of the base in the frame of a body at the base: its arm from the centre there, and the
 // joint's axis, both in the world with all the digits of a long double.

@@ -3,6 +3,7 @@
 // As in the plane (reference/tree_base.c) the base is held in long double. A floating body keeps
 // its place and turn, a hanging one the angle of its joint since the start: the ideal joints of the
 // tree hold at every base, however many there have been.
+#include "base/zeroed.h"
 #include "reference/space_tree.h"
 #include "reference/turn.h"
 
@@ -141,7 +142,8 @@ static void settle(SpaceTree *tree)
 void space_tree_start(SpaceTree *tree, const SpaceMotion *motions, double *u)
 {
     const Vec3 z = {0.0, 0.0, 1.0};
-    LongQuat turns[SPACE_TREE_BODY_MAX] = {{1.0L, 0.0L, 0.0L, 0.0L}};
+    LongQuat *turns = zeroed(tree->linkage->body_count + 1, sizeof *turns);
+    turns[0] = (LongQuat){1.0L, 0.0L, 0.0L, 0.0L};
     for (int i = 0; i < (int)tree->linkage->body_count; i++) {
         turns[i + 1] = about(z, tree->linkage->bodies[i].start.angle);
     }
@@ -171,6 +173,7 @@ void space_tree_start(SpaceTree *tree, const SpaceMotion *motions, double *u)
             rates[k] = values[k];
         }
     }
+    free(turns);
     settle(tree);
 }
 

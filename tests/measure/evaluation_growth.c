@@ -1,10 +1,12 @@
 // How does the cost of an evaluation of the reference's equations of motion grow with a mechanism?
 //
 // evaluation_growth: microseconds of processor time and bytes for N = 1, 2, 4 ... 1024 of each
-// kind, with the exponents between the first and the last four of N. evaluation_growth KIND N
-// COUNT: so many evaluations, to count their instructions.
+// kind, some in space, with the exponents between the first and the last four of N.
+// evaluation_growth KIND N COUNT: so many evaluations, to count their instructions.
 #include "base/clock.h"
+#include "lifted.h"
 #include "reference/plane_system.h"
+#include "reference/space_system.h"
 
 #include <assert.h>
 #include <malloc.h>
@@ -107,14 +109,26 @@ typedef struct Kind {
     const char *name;
     void (*fill)(Linkage *linkage, int count, double play);
     double play; // m
+    bool is_spatial;
 } Kind;
 
 static const Kind KINDS[] = {
-    {"chain", chain, 0.0},         {"chain-loose", chain, 1e-4},
-    {"pendula", pendula, 0.0},     {"pendula-loose", pendula, 1e-4},
-    {"four-bars", four_bars, 0.0}, {"four-bars-loose", four_bars, 1e-4},
-    {"row", in_a_row, 0.0},        {"row-loose", in_a_row, 1e-4},
-    {"scissor", scissor, 0.0},     {"scissor-loose", scissor, 1e-4},
+    {"chain", chain, 0.0, false},
+    {"chain-loose", chain, 1e-4, false},
+    {"pendula", pendula, 0.0, false},
+    {"pendula-loose", pendula, 1e-4, false},
+    {"four-bars", four_bars, 0.0, false},
+    {"four-bars-loose", four_bars, 1e-4, false},
+    {"row", in_a_row, 0.0, false},
+    {"row-loose", in_a_row, 1e-4, false},
+    {"scissor", scissor, 0.0, false},
+    {"scissor-loose", scissor, 1e-4, false},
+    {"space-chain", chain, 0.0, true},
+    {"space-chain-loose", chain, 1e-4, true},
+    {"space-four-bars", four_bars, 0.0, true},
+    {"space-four-bars-loose", four_bars, 1e-4, true},
+    {"space-row", in_a_row, 0.0, true},
+    {"space-row-loose", in_a_row, 1e-4, true},
 };
 enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 
@@ -135,9 +149,13 @@ static void make(const Kind *kind, int count, Made *made)
     made->scenario.contact.stiffness = 1e9;
     made->scenario.contact.exponent = 1.5;
     kind->fill(linkage, count, kind->play);
+    if (kind->is_spatial) {
+        lifted(linkage, kind->fill == chain);
+    }
     const size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
     Err err = {ERR_NONE, ""};
-    made->system = plane_system_create(&made->scenario, &err);
+    made->system = kind->is_spatial ? space_system_create(&made->scenario, &err)
+                                    : plane_system_create(&made->scenario, &err);
     assert(made->system != NULL);
     made->bytes = mallinfo2().uordblks + mallinfo2().hblkhd - before;
     for (size_t i = 0; i < made->system->contact_count; i++) {

@@ -6,13 +6,15 @@
 //           four-bars   N four-bars side by side
 //           row         N four-bars in a row that share their uprights
 //           scissor     N crossed pairs of bars
-//   PLAY    ideal, or loose: every joint a pin with 50 um of play in its hole
+//   PLAY    ideal, or loose: every joint a pin with 50 um of play in its hole; space and
+//           space-loose: likewise in space, every second axis of a chain tilted
 //   SOLVER  direct, quick: plain steps of ODE; staggered; impulse; reference
 // Prints bodies, joints, us and evaluations a step, and the memory that the solver takes, KiB; of
 // loose mechanisms under impulse once pins touch. A
 // step is one of 20 us of ODE's world, or one of the reference's own. Nobody looks at the states in
 // between. tests/measure/growth.sh makes tables of it.
 #include "base/zeroed.h"
+#include "lifted.h"
 #include "model/solver.h"
 
 #include <malloc.h>
@@ -251,8 +253,13 @@ int main(int argc, char **argv)
         return 2;
     }
     Build build = {.is_loose = strcmp(argv[2], "loose") == 0};
+    const bool is_spatial = strncmp(argv[2], "space", strlen("space")) == 0;
+    build.is_loose = build.is_loose || strcmp(argv[2], "space-loose") == 0;
     build.linkage = linkage_create((LinkageRoom){3 * count + 1, 4 * count + 1, 0, 0});
     kind->build(&build, count);
+    if (is_spatial) {
+        lifted(&build.linkage, kind->build == build_chain);
+    }
     scenario.linkage = build.linkage;
     scenario.contact.stiffness = 6.6e10;
     scenario.contact.exponent = 1.5;

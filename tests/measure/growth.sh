@@ -10,7 +10,7 @@ most=${2:-1024}
 
 for solver in "$@"; do
     for kind in chain pendula four-bars row scissor; do
-        for play in ideal loose; do
+        for play in ideal loose space space-loose; do
             echo "$solver, $kind, $play"
             echo "       N     us/step  evaluations      KiB   time^  memory^"
             count=1

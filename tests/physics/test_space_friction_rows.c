@@ -25,10 +25,10 @@ static SpaceFrictionRow pressed_pin(double speed, double friction_speed)
     memset(&motion, 0, sizeof motion);
     motion.turn.w = 1.0;
     motion.velocity = (Vec3){0.0, 0.6 * speed, 0.8 * speed};
-    SpaceResponse *response = calloc(1, sizeof *response);
+    SpaceResponse response;
     Err err = {ERR_NONE, ""};
-    assert_non_null(response);
-    assert_true(space_response_init(&scenario.linkage, &motion, response, &err));
+    const SpaceResponsePlace pin = {0, 3};
+    assert_true(space_response_init(&scenario.linkage, &motion, &pin, 1, &response, &err));
     const double pushed = STEP_S / MASS + PER_FORCE;
     SpaceFrictionRow row = {
         .body = {LINKAGE_GROUND, 0},
@@ -41,8 +41,9 @@ static SpaceFrictionRow pressed_pin(double speed, double friction_speed)
         .sliding = motion.velocity,
     };
     const SpaceFrictionStep step = {&motion, STEP_S, 0.2};
-    assert_true(space_friction_find(&scenario.contact, response, &step, &row, 1));
-    free(response);
+    const size_t place = 0;
+    assert_true(space_friction_find(&scenario.contact, &response, &step, &place, &row, 1));
+    space_response_finish(&response);
     return row;
 }
 

@@ -331,7 +331,19 @@ static size_t most_in_a_front(const Linkage *linkage)
     Tree tree;
     Plan plan;
     tree_build(linkage, &tree);
-    articulated_plan_make(&tree, tree.loop_count, tree.loops, &plan);
+    int *parents = test_calloc(tree.node_count + 1, sizeof *parents);
+    int(*ends)[2] = test_calloc(tree.loop_count + 1, sizeof *ends);
+    for (size_t i = 0; i < tree.node_count; i++) {
+        parents[i] = tree.nodes[i].parent_node;
+    }
+    for (size_t i = 0; i < tree.loop_count; i++) {
+        ends[i][0] = tree_node_of(&tree, linkage->joints[tree.loops[i]].body_a);
+        ends[i][1] = tree_node_of(&tree, linkage->joints[tree.loops[i]].body_b);
+    }
+    const PlanShape shape = {tree.node_count, parents, tree.loop_count, (const int(*)[2])ends, 2};
+    articulated_plan_make(&shape, &plan);
+    test_free(parents);
+    test_free(ends);
     size_t most = 0;
     for (size_t i = 0; i < plan.front_count; i++) {
         most = plan.fronts[i].loop_count > most ? plan.fronts[i].loop_count : most;

@@ -7,6 +7,8 @@
 #include <string.h>
 
 static const char PAPER[] = "cases/paper/impact-k66.yaml";
+enum { BODIES = 8 }; // more than any of them has
+
 static const char BENNETT[] = "cases/space/bennett.yaml";
 
 static double draw(uint64_t *seed)
@@ -105,7 +107,7 @@ static void the_kinetic_energy_is_that_of_the_points(void **state)
 static void loops_that_move_in_spite_of_the_count_are_found_to(void **state)
 {
     (void)state;
-    SpaceMotion motions[SPACE_BODY_MAX];
+    SpaceMotion motions[BODIES];
     const Scenario planar = load_with(PAPER, "space=spatial");
     space_start(&planar.linkage, motions);
     assert_int_equal(space_rows_mobility(&planar.linkage, motions, false), 1);
@@ -124,11 +126,11 @@ static void rows_are_the_rates_of_their_openings(void **state)
 {
     (void)state;
     const Scenario bennett = load(BENNETT, NULL, 0);
-    SpaceMotion motions[SPACE_BODY_MAX];
+    SpaceMotion motions[BODIES];
     space_start(&bennett.linkage, motions);
     uint64_t seed = lcg_stirred(4);
     const double step = 1e-6;
-    SpaceMotion moved[SPACE_BODY_MAX];
+    SpaceMotion moved[BODIES];
     for (size_t i = 0; i < bennett.linkage.body_count; i++) {
         SpaceMotion *motion = &motions[i];
         motion->velocity = (Vec3){draw(&seed), draw(&seed), draw(&seed)};
@@ -155,7 +157,7 @@ static void speeds_found_in_space_are_those_of_the_plane(void **state)
 {
     (void)state;
     const Scenario scenario = load_with(PAPER, "space=spatial");
-    SpaceMotion motions[SPACE_BODY_MAX];
+    SpaceMotion motions[BODIES];
     space_start(&scenario.linkage, motions);
     for (size_t i = 0; i < scenario.linkage.body_count; i++) {
         motions[i].velocity = (Vec3){0.0, 0.0, 0.0};
@@ -182,7 +184,7 @@ static void the_start_of_bennetts_linkage_is_its_closed_form(void **state)
     const double degree = M_PI / 180.0;
     const double theta = 30.0 * degree;
     const double phi = 2.0 * atan(sin(60.0 * degree) / sin(20.0 * degree) / tan(0.5 * theta));
-    SpaceMotion motions[SPACE_BODY_MAX];
+    SpaceMotion motions[BODIES];
     space_start(&scenario.linkage, motions);
     const Vec3 relative = vec3_sub(motions[1].omega, motions[0].omega);
     const double rate = -scenario.linkage.driver.speed * sin(phi) / sin(theta);

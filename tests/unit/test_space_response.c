@@ -12,7 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLUMNS = 18, SYSTEM = COLUMNS + SPACE_COLUMN_MAX };
+enum {
+    BODIES = 3,
+    COLUMNS = SPACE_FREEDOMS * BODIES,
+    IDEAL = COLUMNS, // at most
+    SYSTEM = COLUMNS + IDEAL,
+    PLAY = PIN_SPACE_PLACES * PIN_SPACE_ROWS,
+};
 
 static Vec3 drawn(uint64_t *seed, double size)
 {
@@ -23,12 +29,12 @@ static Vec3 drawn(uint64_t *seed, double size)
 
 typedef struct Case {
     Scenario scenario;
-    SpaceMotion motions[SPACE_BODY_MAX];
+    SpaceMotion motions[BODIES];
     size_t place_count;
-    PinSpace places[PIN_SPACE_MAX];
-    PinSpaceRows rows[PIN_SPACE_MAX];
+    PinSpace places[PIN_SPACE_PLACES];
+    PinSpaceRows rows[PIN_SPACE_PLACES];
     size_t play_count;
-    SpaceRow play_rows[SPACE_RESPONSE_PLAY_MAX];
+    SpaceRow play_rows[PLAY];
     SpaceResponse *response;
 } Case;
 
@@ -40,9 +46,18 @@ static Case make_case(unsigned number)
     const Linkage *linkage = &here.scenario.linkage;
     uint64_t seed = lcg_stirred(number);
     space_start(linkage, here.motions);
-    here.response = calloc(1, sizeof *here.response);
     Err err = {ERR_NONE, ""};
-    assert_true(space_response_init(linkage, here.motions, here.response, &err));
+    PinSpace *places = pin_space_list(&here.scenario, &here.place_count, &err);
+    assert_int_equal(here.place_count, PIN_SPACE_PLACES);
+    SpaceResponsePlace taken[PIN_SPACE_PLACES];
+    for (size_t i = 0; i < here.place_count; i++) {
+        here.places[i] = places[i];
+        taken[i] = (SpaceResponsePlace){places[i].joint, pin_space_row_count(&places[i], true)};
+    }
+    free(places);
+    here.response = test_calloc(1, sizeof *here.response);
+    assert_true(
+        space_response_init(linkage, here.motions, taken, here.place_count, here.response, &err));
     for (size_t i = 0; i < linkage->body_count; i++) {
         SpaceMotion *motion = &here.motions[i];
         const SpaceChange place = {drawn(&seed, 1e-5), drawn(&seed, 1e-4)};
@@ -51,8 +66,6 @@ static Case make_case(unsigned number)
         motion->acceleration = drawn(&seed, 10.0);
         motion->alpha = drawn(&seed, 100.0);
     }
-    here.place_count = pin_space_list(&here.scenario, here.places, &err);
-    assert_int_equal(here.place_count, 3);
     for (size_t i = 0; i < here.place_count; i++) {
         pin_space_rows_place(&here.places[i], here.motions, true, &here.rows[i]);
         memcpy(here.play_rows + here.play_count, here.rows[i].rows,
@@ -60,9 +73,14 @@ static Case make_case(unsigned number)
         here.play_count += here.rows[i].count;
     }
     assert_int_equal(here.play_count, 2 * PIN_SPACE_ROWS + PIN_SPACE_PLAIN_ROWS);
-    assert_true(space_response_place(here.response, here.motions, here.play_rows, here.play_count));
-    space_response_link(here.response);
+    assert_true(space_response_place(here.response, here.motions, here.play_rows));
     return here;
+}
+
+static void release(Case *here)
+{
+    space_response_finish(here->response);
+    test_free(here->response);
 }
 
 // A row over the six columns of each body.
@@ -132,16 +150,16 @@ static double largest_of(const double *numbers, size_t count)
 static void pushes_are_answered_as_the_whole_system_answers(void **state)
 {
     (void)state;
-    static double mobility[SPACE_RESPONSE_PLAY_MAX * SPACE_RESPONSE_PLAY_MAX];
+    static double mobility[PLAY * PLAY];
     for (unsigned number = 0; number < 5; number++) {
         Case here = make_case(number);
         assert_int_equal(here.response->ideal_rows, 10);
         space_response_mobility(here.response, mobility);
         for (size_t row = 0; row < here.play_count; row++) {
             double truth[SYSTEM];
-            double impulses[SPACE_RESPONSE_PLAY_MAX] = {0.0};
-            double reactions[SPACE_COLUMN_MAX];
-            SpaceChange changes[SPACE_BODY_MAX];
+            double impulses[PLAY] = {0.0};
+            double reactions[IDEAL];
+            SpaceChange changes[BODIES];
             impulses[row] = 1.0;
             solve_whole(&here, &here.play_rows[row], truth);
             space_response_apply(here.response, impulses, changes);
@@ -168,7 +186,7 @@ static void pushes_are_answered_as_the_whole_system_answers(void **state)
                 assert_near(mobility[row * here.play_count + other], rate, 1e-10 * moved);
             }
         }
-        free(here.response);
+        release(&here);
     }
 }
 
@@ -198,7 +216,7 @@ static void rates_of_rows_change_as_they_are_said_to(void **state)
         Case here = make_case(number);
         double least_off = INFINITY;
         for (size_t i = 0; i < here.place_count; i++) {
-            SpaceMotion motions[2][SPACE_BODY_MAX];
+            SpaceMotion motions[2][BODIES];
             double position[2][2];
             double speed[2][PIN_SPACE_ROWS];
             double drift[PIN_SPACE_ROWS];
@@ -209,7 +227,7 @@ static void rates_of_rows_change_as_they_are_said_to(void **state)
                                      speed[k]);
             }
             pin_space_rows_drift(&here.places[i], &here.rows[i], here.motions, drift);
-            SpaceMotion resting[SPACE_BODY_MAX];
+            SpaceMotion resting[BODIES];
             memcpy(resting, here.motions, sizeof resting);
             for (size_t k = 0; k < here.scenario.linkage.body_count; k++) {
                 resting[k].velocity = resting[k].omega = (Vec3){0.0, 0.0, 0.0};
@@ -222,7 +240,7 @@ static void rates_of_rows_change_as_they_are_said_to(void **state)
             least_off = fmin(least_off, fabs(still[0] - drift[0]));
         }
         assert_true(least_off > 0.1);
-        free(here.response);
+        release(&here);
     }
 }
 
@@ -230,20 +248,20 @@ static void rates_of_rows_change_as_they_are_said_to(void **state)
 static void rows_that_have_become_dependent_are_chosen_anew(void **state)
 {
     (void)state;
-    static double mobility[2][SPACE_RESPONSE_PLAY_MAX * SPACE_RESPONSE_PLAY_MAX];
+    static double mobility[2][PLAY * PLAY];
     Case here = make_case(1);
     SpaceResponse *response = here.response;
     space_response_mobility(response, mobility[0]);
     const int part = response->part_of[1];
     response->joint_of[1] = response->joint_of[0];
     response->part_of[1] = response->part_of[0];
-    assert_true(space_response_place(response, here.motions, here.play_rows, here.play_count));
+    assert_true(space_response_place(response, here.motions, here.play_rows));
     assert_int_equal(response->ideal_rows, 10);
     assert_int_equal(response->part_of[1], part);
     space_response_mobility(response, mobility[1]);
     assert_memory_equal(mobility[0], mobility[1],
                         here.play_count * here.play_count * sizeof(double));
-    free(response);
+    release(&here);
 }
 
 int main(void)

@@ -6,7 +6,11 @@
 #include "base/lcg.h"
 #include "reference/space_slopes.h"
 
-enum { SIZE = 2 * SPACE_TREE_COORDINATE_MAX + SYSTEM_IMPULSES + PIN_SPACE_MAX };
+enum {
+    BODIES = 3,
+    COORDINATES = 6 * BODIES,
+    SIZE = 2 * COORDINATES + SYSTEM_IMPULSES + 4 * PIN_SPACE_PLACES,
+};
 
 static const double DEPTH = 1e-6; // m
 static const double MOVED = 1e-5; // m or rad, that coordinates are away from the start
@@ -39,10 +43,10 @@ static Pressed *press(size_t joints)
     Err err = {ERR_NONE, ""};
     assert_true(space_dynamics_init(scenario, dynamics, &err));
     const size_t n = dynamics->tree.coordinate_count;
-    SpaceMotion motions[SPACE_BODY_MAX];
+    SpaceMotion motions[BODIES];
     space_start(&scenario->linkage, motions);
     space_tree_start(&dynamics->tree, motions, pressed->y + n);
-    space_loops_start(&dynamics->tree, &dynamics->loops, pressed->y, pressed->y + n,
+    space_loops_start(&dynamics->tree, dynamics->loops, pressed->y, pressed->y + n,
                       &dynamics->scratch->tree);
     uint64_t seed = 1;
     for (size_t k = 0; k < n; k++) {
@@ -86,13 +90,12 @@ static void differences(Pressed *pressed, size_t k, double nudge, double *column
 static double worst(Pressed *pressed, bool is_rate, double factor)
 {
     const size_t n = pressed->dynamics.tree.coordinate_count;
-    double(*slopes)[SPACE_TREE_COORDINATE_MAX * SPACE_TREE_COORDINATE_MAX] =
-        test_calloc(2, sizeof *slopes);
+    double(*slopes)[COORDINATES * COORDINATES] = test_calloc(2, sizeof *slopes);
     double worst = 0.0;
     space_slopes(0.0, pressed->y, slopes[0], slopes[1], &pressed->dynamics);
     pressed->scenario.contact.friction_speed *= factor;
     for (size_t k = is_rate ? n : 0; k < (is_rate ? 2 * n : n); k++) {
-        double column[SPACE_TREE_COORDINATE_MAX];
+        double column[COORDINATES];
         double error = 0.0;
         double largest = 0.0;
         differences(pressed, k, k < n ? 1e-4 * DEPTH : 1e-4 * RATE, column);

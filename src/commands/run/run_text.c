@@ -15,9 +15,11 @@
 static size_t mobility(const Linkage *linkage, bool ideal_only)
 {
     if (linkage->is_spatial) {
-        SpaceMotion motions[SPACE_BODY_MAX];
+        SpaceMotion *motions = zeroed(linkage->body_count, sizeof *motions);
         space_start(linkage, motions);
-        return space_rows_mobility(linkage, motions, ideal_only);
+        const size_t freedoms = space_rows_mobility(linkage, motions, ideal_only);
+        free(motions);
+        return freedoms;
     }
     Motion *motions = zeroed(linkage->body_count, sizeof *motions);
     linkage_start(linkage, motions);

@@ -1,0 +1,114 @@
+// What does a step in space with contacts integrated inside it need, and of which size?
+#include "base/zeroed.h"
+#include "ode/space_impulse_step.h"
+
+void space_impulse_step_finish(SpaceImpulseStep *step)
+{
+    encounter_finish(&step->encounter);
+    space_response_finish(step->response);
+    space_response_finish(step->there);
+    space_hold_free(step->hold);
+    free(step->response);
+    free(step->there);
+    encounter_sums_free(&step->total);
+    world_finish(&step->world);
+    void *const arrays[] = {step->places,     step->rows,       step->before,     step->after,
+                            step->free,       step->free_rate,  step->rest,       step->gyration,
+                            step->middle,     step->closing,    step->mean,       step->motions,
+                            step->changes[0], step->changes[1], step->changes[2], step->play_rows,
+                            step->play[0],    step->play[1],    step->ideal[0],   step->ideal[1],
+                            step->forces};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        free(arrays[i]);
+    }
+}
+
+static bool init_encounter(SpaceImpulseStep *step, Err *err)
+{
+    const Scenario *scenario = step->scenario;
+    const ContactOptions *contact = &scenario->contact;
+    step->encounter =
+        encounter_start(contact->friction, contact->friction_speed, scenario->ode.contact_phase);
+    step->places = pin_space_list(scenario, &step->place_count, err);
+    if (step->places == NULL) {
+        return false;
+    }
+    for (size_t i = 0; i < step->place_count; i++) {
+        const PinSpace *place = &step->places[i];
+        const size_t rows = pin_space_row_count(place, contact->friction > 0.0);
+        const Joint *joint = &scenario->linkage.joints[place->joint];
+        const EncounterJoint added = {
+            .law = place->law,
+            .radial_clearance = place->clearance,
+            .hole_radius = joint->clearance.hole_radius,
+            .joint = place->joint,
+            .siblings = {place->place == 1 ? -1 : 0, place->place == 0 ? 1 : 0},
+        };
+        encounter_add(&step->encounter, &added, rows);
+    }
+    const size_t rows = encounter_rows(&step->encounter);
+    encounter_make_room(&step->encounter, rows);
+    step->total = encounter_sums(rows);
+    return true;
+}
+
+static void make_arrays(SpaceImpulseStep *step)
+{
+    const size_t bodies = step->scenario->linkage.body_count;
+    const size_t joints = step->scenario->linkage.joint_count;
+    const size_t rows = encounter_rows(&step->encounter);
+    const size_t ideal = SPACE_JOINT_ROWS * joints;
+    step->response = zeroed(1, sizeof *step->response);
+    step->there = zeroed(1, sizeof *step->there);
+    step->rows = zeroed(step->place_count, sizeof *step->rows);
+    step->before = zeroed(bodies, sizeof *step->before);
+    step->after = zeroed(bodies, sizeof *step->after);
+    step->free = zeroed(bodies, sizeof *step->free);
+    step->free_rate = zeroed(bodies, sizeof *step->free_rate);
+    step->rest = zeroed(bodies, sizeof *step->rest);
+    step->gyration = zeroed(bodies, sizeof *step->gyration);
+    step->middle = zeroed(bodies, sizeof *step->middle);
+    step->closing = zeroed(ideal, sizeof *step->closing);
+    step->mean = zeroed(joints, sizeof *step->mean);
+    step->motions = zeroed(bodies, sizeof *step->motions);
+    for (size_t i = 0; i < SPACE_IMPULSE_ROOMS; i++) {
+        step->changes[i] = zeroed(bodies, sizeof *step->changes[i]);
+    }
+    step->play_rows = zeroed(rows, sizeof *step->play_rows);
+    for (size_t i = 0; i < 2; i++) {
+        step->play[i] = zeroed(rows, sizeof *step->play[i]);
+        step->ideal[i] = zeroed(ideal, sizeof *step->ideal[i]);
+    }
+    step->forces = zeroed(joints, sizeof *step->forces);
+}
+
+// Builds the world, and two responses of the linkage with all places.
+static bool build(SpaceImpulseStep *step, Err *err)
+{
+    const Scenario *scenario = step->scenario;
+    const size_t count = step->place_count;
+    SpaceResponsePlace *places = zeroed(count, sizeof *places);
+    for (size_t i = 0; i < count; i++) {
+        places[i] =
+            (SpaceResponsePlace){step->places[i].joint, step->encounter.joints[i].row_count};
+    }
+    const bool is_built =
+        space_world_build(scenario, step->after, places, count, &step->world, step->response,
+                          &step->hold, err) &&
+        space_response_init(&scenario->linkage, step->after, places, count, step->there, err);
+    free(places);
+    return is_built;
+}
+
+bool space_impulse_step_init(const Scenario *scenario, SpaceImpulseStep *step, Err *err)
+{
+    step->scenario = scenario;
+    step->driven = linkage_driven_body(&scenario->linkage);
+    step->tick_s = scenario->run.step / (double)scenario->ode.gear;
+    if (!init_encounter(step, err)) {
+        return false;
+    }
+    make_arrays(step);
+    space_start(&scenario->linkage, step->after);
+    return build(step, err);
+}
