@@ -255,6 +255,10 @@ static void every_key_of_map_is_listed(void **state)
     check_keys(state, "map", "map -q --json " FIRST_CONTACTS " --steps '1 us' --penalty",
                "penalty_cfm_m_N_s");
     check_keys(state, "map", "map -q --json " FIRST_CONTACTS " --at-step '1 ms'", "flight_m");
+    // torques and angles at the stops of a pivot
+    check_keys(state, "map",
+               "map -q --json \"$cases\"/mechanisms/stop-rebound.yaml --at-step '1 ms'",
+               "cfm_rad_N_m_s");
     check_keys(state, "map", "map -q --json --erp 0.5 --cfm 1e-3 --step '1 us' --mass '0.1 kg'",
                "damping_ratio");
 }

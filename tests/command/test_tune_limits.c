@@ -140,6 +140,9 @@ static void backlash_is_a_range_about_its_middle(void **state)
     const json_t *gazebo = json_object_get(root, "gazebo");
     assert_true(json_is_true(json_object_get(gazebo, "is_limit")));
     assert_true(fabs(json_number_value(json_object_get(gazebo, "kp")) - 168.516969) < 1e-9);
+    const json_t *constants = json_array_get(json_object_get(root, "constants"), 0);
+    const double stiffness = json_number_value(json_object_get(constants, "stiffness_N_m_rad"));
+    assert_true(fabs(stiffness - 168.516969) < 1e-9);
     json_decref(root);
     read_file(program, "gap.sdf");
     const double gap = 0.62 * M_PI / 180.0;

@@ -3,6 +3,7 @@
 #include "commands/map/mapping_report.h"
 #include "write/json_value.h"
 #include "write/settings_json.h"
+#include "write/turned_keys.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -302,7 +303,7 @@ static json_t *contact_json(const MappingReport *report, const MappingContact *c
     if (contact->held != NULL) {
         json_object_set_new(object, "best_constants", held_json(contact->held));
     }
-    return object;
+    return linkage_is_torsional(mapping_report_joint(contact)) ? turned_keys(object) : object;
 }
 
 json_t *mapping_json_build(const void *of)

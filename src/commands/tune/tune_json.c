@@ -5,6 +5,7 @@
 #include "commands/tune/tune_setting.h"
 #include "write/json_value.h"
 #include "write/settings_json.h"
+#include "write/turned_keys.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -109,7 +110,15 @@ static json_t *written_value(void (*write)(const TuneReport *report, Text *text)
     return value;
 }
 
-static json_t *linear_object(const TuneLinear *linear)
+// Of limits that turn a joint the constants are torques and angles.
+static json_t *of_contact(const TuneReport *report, json_t *object)
+{
+    const TuneContact *contact = &report->tune->contact;
+    const Joint *joint = &report->scenario->linkage.joints[contact->joint];
+    return contact->is_limit && linkage_is_torsional(joint) ? turned_keys(object) : object;
+}
+
+static json_t *linear_object(const TuneReport *report, const TuneLinear *linear)
 {
     static const char *const SOURCES[] = {[TUNE_LINEAR_SECANT] = "law",
                                           [TUNE_LINEAR_MEDIAN] = "median-impact",
@@ -125,7 +134,7 @@ static json_t *linear_object(const TuneLinear *linear)
     json_value_set(object, "step_s", linear->step_s);
     json_value_set(object, "error_omega", linear->error);
     json_object_set_new(object, "message", json_value_text(linear->reason));
-    return object;
+    return of_contact(report, object);
 }
 
 static json_t *gazebo_object(const TuneReport *report)
@@ -165,7 +174,7 @@ static json_t *mujoco_object(const TuneReport *report)
     json_value_set(object, "damping_N_s_m", mujoco.damping);
     json_value_set(object, "step_s", mujoco.step_s);
     json_object_set_new(object, "mjcf", written_value(tune_mujoco_write, report));
-    return object;
+    return of_contact(report, object);
 }
 
 static json_t *loop_object(const TuneReport *report)
@@ -227,11 +236,11 @@ json_t *tune_json_build(const void *target)
     json_object_set_new(object, "own_loop", loop_object(report));
     json_t *linears = json_array();
     for (size_t i = 0; i < tune->linear_count; i++) {
-        json_array_append_new(linears, linear_object(&tune->linears[i]));
+        json_array_append_new(linears, linear_object(report, &tune->linears[i]));
     }
     json_object_set_new(object, "constants", linears);
     json_object_set_new(object, "own_row",
-                        tune->row != TUNE_NONE ? linear_object(&tune->linears[tune->row])
+                        tune->row != TUNE_NONE ? linear_object(report, &tune->linears[tune->row])
                                                : json_null());
     json_object_set_new(object, "gazebo", gazebo_object(report));
     json_object_set_new(object, "mujoco", mujoco_object(report));
