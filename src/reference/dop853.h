@@ -72,6 +72,7 @@ struct Dop853 {
     double *stages[DOP853_STAGES];
     double *polynomial[DOP853_POLYNOMIAL];
     bool was_rejected; // the step before had to be shortened: the next must not grow
+    double last_error; // of the step before, over the error allowed
     size_t accepted;
     size_t rejected;
     size_t evaluations;
@@ -108,6 +109,10 @@ void dop853_fill(Dop853 *integrator);
 
 // The polynomial at a share of the step; beyond 1 as it goes on.
 void dop853_polynomial(const Dop853 *integrator, double share, double *y);
+
+// Moves the end of the tried step by a time so short that its cube counts for nothing; two
+// evaluations. Not where another method takes the steps.
+void dop853_shift(Dop853 *integrator, double by);
 
 // Takes the tried step: its end becomes the start of the next.
 void dop853_accept(Dop853 *integrator);

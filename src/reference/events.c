@@ -5,9 +5,9 @@
 //     pressing:  d, release    release: 1 + chi d'/v0, or the force itself with a viscous damper
 //     slack:     d, -release
 // A margin that is negative at one of a few points of a step has crossed zero before it. The
-// crossing is found on the step's polynomial; then the step is taken again up to there, and moved
-// by Newton's method until the penetration is zero to rounding: no step ever passes the corner of
-// d^n.
+// crossing is found on the step's polynomial; then the step is taken again up to there, and its end
+// moved by Newton's method until the penetration is zero to rounding: no step ever passes the
+// corner of d^n.
 //
 // Where an event has put a contact, its new margin is zero but for rounding, of either sign. A
 // margin counts as negative only beyond its rounding: so a pin that has just come to the wall is
@@ -25,6 +25,10 @@ enum { HALVINGS = 24, LANDINGS = 4, MARGINS = 2 };
 
 // a thousandth of the depth that rounding of positions of 0.3 m leaves uncertain
 static const double LANDED = 1e-19;
+
+// of a step: an end that is moved by less moves with its rates, whose square this leaves below
+// rounding; a longer way is a step of its own
+static const double NEAR = 1e-6;
 
 // roundings of a position or a speed that the sum of a handful of terms leaves uncertain
 static const double ROUNDINGS = 4.0 * DBL_EPSILON;
@@ -233,32 +237,45 @@ static bool is_at_wall(const System *system, const Event *event)
     return event->mode == CONTACT_APART || system->contacts[event->contact].mode == CONTACT_APART;
 }
 
+// The contact at the end of the tried step.
+static Press press_at_end(const System *system, const Dop853 *integrator, size_t contact)
+{
+    return system->kind->press(system, contact, integrator->time + integrator->tried,
+                               integrator->next);
+}
+
+static void move_end(Dop853 *integrator, double by)
+{
+    if (integrator->method == NULL && fabs(by) < NEAR * integrator->tried) {
+        dop853_shift(integrator, by);
+    } else {
+        dop853_try(integrator, integrator->tried + by);
+    }
+}
+
 void events_land(const System *system, Dop853 *integrator, Event *event)
 {
-    const bool is_depth = is_at_wall(system, event);
     // the event lies in the step that showed it
     const double longest = integrator->tried;
-    double step = fmax(0.0, event->time - integrator->time);
-    double best = step;
-    double best_depth = INFINITY;
-    for (int i = 0; i < LANDINGS && step >= 0.0 && step <= longest; i++) {
-        dop853_try(integrator, step);
-        const Press press =
-            system->kind->press(system, event->contact, integrator->time + step, integrator->next);
-        const double depth = fabs(press.depth);
-        if (!(depth < best_depth)) {
-            break;
-        }
-        best = step;
-        best_depth = depth;
+    dop853_try(integrator, fmax(0.0, event->time - integrator->time));
+    Press press = press_at_end(system, integrator, event->contact);
+    for (int i = 0; i < LANDINGS && is_at_wall(system, event); i++) {
+        const double by = -press.depth / press.closing;
+        const double moved = integrator->tried + by;
         // an event that the step began with lies at its start and moves nowhere
-        if (!is_depth || depth <= LANDED || step == 0.0) {
+        if (fabs(press.depth) <= LANDED || integrator->tried == 0.0 ||
+            !(moved >= 0.0 && moved <= longest)) {
             break;
         }
-        step -= press.depth / press.closing;
+        move_end(integrator, by);
+        const Press now = press_at_end(system, integrator, event->contact);
+        if (!(fabs(now.depth) < fabs(press.depth))) {
+            move_end(integrator, -by);
+            break;
+        }
+        press = now;
     }
-    dop853_try(integrator, best);
-    event->time = integrator->time + best;
+    event->time = integrator->time + integrator->tried;
 }
 
 void events_gather(const System *system, const Dop853 *integrator, const EventPoints *points,

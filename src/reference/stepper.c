@@ -145,6 +145,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     // the first step finds its own length: a thousandth of the run is long enough to be shortened
     integrator->step = 1e-3 * stepper->duration_s;
     stepper->onset_step = integrator->step;
+    stepper->ending = ending_start();
     dop853_start(integrator, 0.0, integrator->y);
     for (size_t i = 0; i < EVENTS_POINTS_MAX; i++) {
         stepper->points.states[i] = system_state_create(system);
@@ -182,6 +183,34 @@ static bool is_onset(const Stepper *stepper)
     return false;
 }
 
+static bool is_flight(const System *system)
+{
+    for (size_t i = 0; i < system->contact_count; i++) {
+        if (system->contacts[i].mode == CONTACT_PRESSING) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Changes what the contacts do at the end of the last step, and with it how long the next may be:
+// one of a flight as the last flight's, one of a contact as the first of the last contact.
+static void apply_events(Stepper *stepper)
+{
+    Dop853 *integrator = &stepper->integrator;
+    System *system = stepper->system;
+    const bool was_flight = is_flight(system);
+    events_apply(system, &stepper->events, integrator->time, integrator->y);
+    if (was_flight) {
+        stepper->flight_step = integrator->step;
+    } else if (is_flight(system)) {
+        integrator->step = fmax(integrator->step, stepper->flight_step);
+    }
+    if (is_onset(stepper)) {
+        integrator->step = fmin(integrator->step, stepper->onset_step);
+    }
+}
+
 // Makes the end of the last step the start of the next, with the events there.
 static void take_over(Stepper *stepper)
 {
@@ -196,10 +225,7 @@ static void take_over(Stepper *stepper)
     integrator->time = 0.0;
     integrator->shortest = SHORTEST * system->kind->time(system, 0.0);
     if (stepper->events.count > 0) {
-        events_apply(system, &stepper->events, integrator->time, integrator->y);
-        if (is_onset(stepper)) {
-            integrator->step = fmin(integrator->step, stepper->onset_step);
-        }
+        apply_events(stepper);
     }
     if (is_other || stepper->events.count > 0) {
         dop853_start(integrator, integrator->time, integrator->y);
@@ -259,12 +285,24 @@ static bool fail_to_step(const Stepper *stepper, Err *err)
                    stepper->scenario->reference.tolerance);
 }
 
+// Tries one step, as long as its error and what it may not pass allow.
+static bool attempt(Stepper *stepper)
+{
+    Dop853 *integrator = &stepper->integrator;
+    const size_t rejected = integrator->rejected;
+    const double limit_s =
+        ending_limit(&stepper->ending, stepper->system, state_at_end(stepper), integrator);
+    const bool is_taken = dop853_attempt(integrator, fmin(limit_s, flight_limit(stepper)));
+    ending_note(&stepper->ending, integrator->rejected > rejected);
+    return is_taken;
+}
+
 // Tries one step, shortened to the first event in it.
 static bool step_to_event(Stepper *stepper, Err *err)
 {
     const System *system = stepper->system;
     Dop853 *integrator = &stepper->integrator;
-    if (!dop853_attempt(integrator, flight_limit(stepper))) {
+    if (!attempt(stepper)) {
         return fail_to_step(stepper, err);
     }
     const double same_s = SAME * integrator->tried;

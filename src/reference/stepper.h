@@ -3,6 +3,7 @@
 
 #include "model/scale.h"
 #include "reference/dop853.h"
+#include "reference/ending.h"
 #include "reference/events.h"
 #include "reference/pace.h"
 #include "reference/stiffness.h"
@@ -22,6 +23,8 @@ typedef struct Stepper {
     SpeedScale scale;    // largest speeds so far
     bool is_after_onset; // whether a contact began where the present step does
     double onset_step;   // s, length that the first step of the last contact had
+    double flight_step;  // s, with which the last flight would have gone on
+    Ending ending;       // how near to the ends of contacts steps have come
 } Stepper;
 
 // Puts the stepper at the scenario's start. Fails with ERR_CASE where a law does not fit a joint
