@@ -17,6 +17,9 @@ static const double NARROW = 1e-5;
 // how much higher than both its ends a part of a step can rise: it is a seventh of a swing or so
 static const double OVERSHOOT = 1.5;
 
+// Which of the quantities of a contact.
+enum { PEAK_FORCE, PEAK_DEPTH, PEAK_COUNT };
+
 typedef struct Search {
     Stepper *stepper;
     SystemState *scratch;
@@ -26,7 +29,7 @@ typedef struct Search {
 
 Peaks peaks_create(const System *system, SystemState *scratch)
 {
-    Peaks peaks = {scratch, calloc(2 * system->contact_count + 1, sizeof *peaks.peaks)};
+    Peaks peaks = {scratch, calloc(PEAK_COUNT * system->contact_count + 1, sizeof *peaks.peaks)};
     assert(peaks.peaks != NULL);
     return peaks;
 }
@@ -40,9 +43,13 @@ static double peak_rate(double time, void *context)
 {
     const Search *search = context;
     const System *system = search->stepper->system;
-    double values[2];
-    double rates[2];
+    double values[PEAK_COUNT];
+    double rates[PEAK_COUNT];
     const double *y = dop853_dense(&search->stepper->integrator, time);
+    if (search->which == PEAK_DEPTH) {
+        // its rate needs no accelerations
+        return system->kind->press(system, search->contact, time, y).closing;
+    }
     if (!system->kind->evaluate(system, time, y, search->scratch, NULL)) {
         return NAN;
     }
@@ -72,12 +79,13 @@ static void leave(Peak *peak, bool is_pressing)
 }
 
 // What the quantities of a contact that presses are now.
-static void look_at(Peak pair[2], const System *system, const SystemState *state, size_t contact)
+static void look_at(Peak pair[PEAK_COUNT], const System *system, const SystemState *state,
+                    size_t contact)
 {
-    double values[2];
-    double rates[2];
+    double values[PEAK_COUNT];
+    double rates[PEAK_COUNT];
     system->kind->peak(system, state, contact, values, rates);
-    for (int which = 0; which < 2; which++) {
+    for (int which = PEAK_FORCE; which < PEAK_COUNT; which++) {
         pair[which].value = values[which];
         pair[which].rate = rates[which];
     }
@@ -90,12 +98,12 @@ double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
     double earliest = end_s;
     Peak *passed = NULL;
     for (size_t i = 0; i < system->contact_count; i++) {
-        Peak *pair = &peaks->peaks[2 * i];
+        Peak *pair = &peaks->peaks[PEAK_COUNT * i];
         if (system->contacts[i].mode != CONTACT_PRESSING) {
             continue;
         }
         look_at(pair, system, state, i);
-        for (int which = 0; which < 2; which++) {
+        for (int which = PEAK_FORCE; which < PEAK_COUNT; which++) {
             Search search = {stepper, peaks->scratch, i, which};
             double time = end_s;
             if (has_peak(&pair[which]) &&
@@ -110,8 +118,8 @@ double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
         passed->was_rising = false;
         return earliest;
     }
-    for (size_t i = 0; i < 2 * system->contact_count; i++) {
-        leave(&peaks->peaks[i], system->contacts[i / 2].mode == CONTACT_PRESSING);
+    for (size_t i = 0; i < PEAK_COUNT * system->contact_count; i++) {
+        leave(&peaks->peaks[i], system->contacts[i / PEAK_COUNT].mode == CONTACT_PRESSING);
     }
     return end_s;
 }
