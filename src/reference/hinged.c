@@ -7,33 +7,10 @@
 #include "reference/hinged.h"
 
 #include "contact/pin_hole.h"
-#include "reference/hinged_bodies.h"
+#include "reference/hinged_pair.h"
 
 #include <assert.h>
 #include <stdlib.h>
-
-// An end of a pair that touches.
-typedef struct HingedEnd {
-    HingedBody *body; // NULL: the ground
-    bool is_driven;   // whether that is the driven one
-    const Vec2 *base; // m, from the centre to the end, at the base
-    Vec2 arm;
-} HingedEnd;
-
-typedef struct HingedPin {
-    const Contact *contact;
-    const Vec2 *gap; // m, from the hole's centre to the pin's, at the base
-    HingedEnd ends[2];
-} HingedPin;
-
-struct Hinged {
-    const Dynamics *dynamics;
-    HingedBody *driven; // or NULL
-    HingedBody *bodies; // that are free, parents before children
-    size_t count;
-    size_t pin_count;
-    HingedPin *pins;
-};
 
 static bool is_hinged(const Dynamics *dynamics)
 {
@@ -138,6 +115,7 @@ Hinged *hinged_create(const Dynamics *dynamics)
     }
     set_bodies(hinged);
     set_pins(hinged);
+    hinged->is_pair = hinged_pair_is(hinged);
     return hinged;
 }
 
@@ -347,6 +325,9 @@ bool hinged_rates(Hinged *hinged, double since_s, const double *y, double *rates
     double *sums = rates + 2 * n;
     if (hinged->driven != NULL && tree->base_drive.alpha != 0.0) {
         return false;
+    }
+    if (hinged->is_pair) {
+        return hinged_pair_rates(hinged, since_s, y, rates);
     }
     move_bodies(hinged, since_s, y, u);
     DrivenLoad load = {.power = 0.0};

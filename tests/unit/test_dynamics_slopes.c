@@ -294,6 +294,19 @@ static void hinges_and_pins_have_the_same_rates_to_the_last_bit(void **state)
     }
 }
 
+static void a_hole_on_the_coupler_has_the_same_rates_to_the_last_bit(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_loose(1);
+    Joint *joint = &scenario.linkage.joints[linkage_find_joint(&scenario.linkage, "crank-coupler")];
+    const Joint before = *joint;
+    joint->body_a = before.body_b;
+    joint->anchor_a = before.anchor_b;
+    joint->body_b = before.body_a;
+    joint->anchor_b = before.anchor_a;
+    compare_rates(&scenario);
+}
+
 static void other_mechanisms_take_the_long_way(void **state)
 {
     (void)state;
@@ -319,6 +332,7 @@ int main(void)
         cmocka_unit_test(derivatives_are_those_of_angles_and_teeth),
         cmocka_unit_test(another_sliding_speed_has_other_derivatives),
         cmocka_unit_test(hinges_and_pins_have_the_same_rates_to_the_last_bit),
+        cmocka_unit_test(a_hole_on_the_coupler_has_the_same_rates_to_the_last_bit),
         cmocka_unit_test(other_mechanisms_take_the_long_way),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
