@@ -5,7 +5,7 @@
 // Stack-up rows   ODE on the case with play; peaks over every step. IMPACT with contacts that are
 //                 integrated within the step: at 10 us its peaks are right to 5e-5, where textbook
 //                 use of ODE is off by a tenth at 1 us. POISSON's forces are impulses over a step.
-//                 It runs in a process of its own while the others are made.
+//                 It takes longest, and runs in a process of its own while all else is made.
 //
 // The crank turns clockwise, which flips the signs of omega and leaves those of alpha. The paper
 // gives no step, damping, restitution, friction or sampling for its stack-up rows, and a peak of
@@ -19,8 +19,10 @@
 #include "run/registry.h"
 #include "run/tracer.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 enum { DEGREES = 360 };
 
@@ -110,51 +112,42 @@ static bool fill_impact(RunWatch watch, ExtremesRow *row, Err *err)
     return true;
 }
 
-// A row that a process of its own fills.
-typedef struct RowChild {
+// The row that a process of its own fills.
+struct ExtremesWork {
     Scenario scenario; // owned
-    ExtremesRow row;   // empty at first
+    ExtremesRow row;   // what stands in it from the start
+    ExtremesRow made;
     Child child;
-} RowChild;
+};
 
 static void fill_in_child(const void *context, void *result)
 {
-    const RowChild *own = context;
+    const ExtremesWork *own = context;
     ExtremesRow *row = result;
     *row = own->row;
     fill_by_run(&own->scenario, run_scenario(&own->scenario, registry_solver(BACKEND_ODE), NOBODY),
                 row);
 }
 
-static bool start_poisson(const ExtremesRow *empty, RowChild *own, Err *err)
+void extremes_abandon(ExtremesWork *work)
 {
-    own->row = *empty;
-    if (!embedded_load(EMBEDDED_STACKUP_POISSON, &own->scenario, err)) {
-        return false;
-    }
-    const ChildLimits none = {.time_s = 0.0};
-    if (!child_start(&own->child, fill_in_child, own, &own->row, sizeof own->row, none, err)) {
-        scenario_free(&own->scenario);
-        return false;
-    }
-    return true;
+    child_kill(&work->child);
+    scenario_free(&work->scenario);
+    free(work);
 }
 
-static void finish_poisson(RowChild *own, ExtremesRow *row)
+static void finish_poisson(ExtremesWork *work, ExtremesRow *row)
 {
-    const ExtremesRow empty = *row;
-    while (own->child.end == CHILD_RUNNING) {
-        child_wait(&own->child, 1, PAUSE_S);
+    while (work->child.end == CHILD_RUNNING) {
+        child_wait(&work->child, 1, PAUSE_S);
     }
-    *row = own->row;
-    if (own->child.end != CHILD_DONE) {
+    *row = work->made;
+    if (work->child.end != CHILD_DONE) {
         char words[CHILD_TEXT_SIZE];
-        child_describe(&own->child, words);
-        *row = empty;
+        child_describe(&work->child, words);
+        *row = work->row;
         snprintf(row->message, sizeof row->message, "the run's process %s", words);
     }
-    child_kill(&own->child);
-    scenario_free(&own->scenario);
 }
 
 // Largest and smallest of a curve sampled at whole degrees.
@@ -196,24 +189,52 @@ static bool fill_by_sampling(ExtremesRow *row, Err *err)
     return true;
 }
 
-bool extremes_compute(RunWatch watch, ExtremesRow rows[PRINTED_ROW_COUNT], Err *err)
+// A row with nothing of ours yet.
+static ExtremesRow empty_row(int number)
+{
+    ExtremesRow row = {
+        .name = PRINTED_EXTREMES[number].name,
+        .is_target = number != PRINTED_POISSON && number != PRINTED_IMPACT,
+    };
+    for (int j = 0; j < PRINTED_QUANTITY_COUNT; j++) {
+        row.printed[j] = PRINTED_EXTREMES[number].values[j];
+    }
+    return row;
+}
+
+ExtremesWork *extremes_begin(Err *err)
+{
+    ExtremesWork *work = calloc(1, sizeof *work);
+    assert(work != NULL);
+    work->row = empty_row(PRINTED_POISSON);
+    const ChildLimits none = {.time_s = 0.0};
+    if (!embedded_load(EMBEDDED_STACKUP_POISSON, &work->scenario, err)) {
+        free(work);
+        return NULL;
+    }
+    if (!child_start(&work->child, fill_in_child, work, &work->made, sizeof work->made, none,
+                     err)) {
+        scenario_free(&work->scenario);
+        free(work);
+        return NULL;
+    }
+    return work;
+}
+
+bool extremes_finish(ExtremesWork *work, RunWatch watch, ExtremesRow rows[PRINTED_ROW_COUNT],
+                     Err *err)
 {
     for (int i = 0; i < PRINTED_ROW_COUNT; i++) {
-        rows[i] = (ExtremesRow){.name = PRINTED_EXTREMES[i].name};
-        rows[i].is_target = i != PRINTED_POISSON && i != PRINTED_IMPACT;
-        for (int j = 0; j < PRINTED_QUANTITY_COUNT; j++) {
-            rows[i].printed[j] = PRINTED_EXTREMES[i].values[j];
-        }
-    }
-    RowChild poisson = {.child = {.end = CHILD_DONE}};
-    if (!start_poisson(&rows[PRINTED_POISSON], &poisson, err)) {
-        return false;
+        rows[i] = empty_row(i);
     }
     const bool is_made = fill_ideal(EMBEDDED_IDEAL_NOMINAL, &rows[PRINTED_IDEAL_NOMINAL], err) &&
                          fill_ideal(EMBEDDED_IDEAL_STACKUP, &rows[PRINTED_IDEAL_STACKUP], err) &&
                          fill_impact(watch, &rows[PRINTED_IMPACT], err) &&
                          fill_by_sampling(&rows[PRINTED_IDEAL_ANALYTICAL], err);
-    finish_poisson(&poisson, &rows[PRINTED_POISSON]);
+    if (is_made) {
+        finish_poisson(work, &rows[PRINTED_POISSON]);
+    }
+    extremes_abandon(work);
     return is_made;
 }
 

@@ -3,22 +3,35 @@
 
 #include "commands/paper/embedded.h"
 
+static bool compute_physical(Physical *physical, Err *err)
+{
+    Scenario nominal;
+    if (!embedded_load(EMBEDDED_IDEAL_NOMINAL, &nominal, err)) {
+        return false;
+    }
+    const bool is_computed = physical_compute(&nominal, physical, err);
+    scenario_free(&nominal);
+    return is_computed;
+}
+
 bool paper_compute(PaperResult *result, RunWatch watch, Err *err)
 {
+    // what takes longest goes first
+    ExtremesWork *work = extremes_begin(err);
+    if (work == NULL) {
+        return false;
+    }
     PaperResult made = {.inputs = estimate_inputs_printed()};
     estimate_compute(&made.inputs, made.tables);
     for (int i = 0; i < PRINTED_TABLE_COUNT; i++) {
         made.cell_count += made.tables[i].cell_count;
         made.as_printed += made.tables[i].as_printed;
     }
-    Scenario nominal;
-    if (!embedded_load(EMBEDDED_IDEAL_NOMINAL, &nominal, err)) {
+    if (!compute_physical(&made.physical, err)) {
+        extremes_abandon(work);
         return false;
     }
-    const bool is_computed = physical_compute(&nominal, &made.physical, err) &&
-                             extremes_compute(watch, made.extremes, err);
-    scenario_free(&nominal);
-    if (!is_computed) {
+    if (!extremes_finish(work, watch, made.extremes, err)) {
         return false;
     }
     made.ideal_difference_max = extremes_difference_max(made.extremes);

@@ -23,9 +23,20 @@ typedef struct ExtremesRow {
     double force_max; // N, largest in it
 } ExtremesRow;
 
-// Fills the five rows. A run that fails is a row that says so; the function fails only where a
-// case cannot be loaded.
-bool extremes_compute(RunWatch watch, ExtremesRow rows[PRINTED_ROW_COUNT], Err *err);
+// The rows while the longest of them is made in a process of its own.
+typedef struct ExtremesWork ExtremesWork;
+
+// Starts that process. NULL where an embedded case cannot be loaded, or no process started.
+ExtremesWork *extremes_begin(Err *err);
+
+// Makes the other rows, waits for the process, and frees the work. The watch follows the run with
+// play that is made here. Fails where an embedded case cannot be loaded; of a run that fails the
+// row says so.
+bool extremes_finish(ExtremesWork *work, RunWatch watch, ExtremesRow rows[PRINTED_ROW_COUNT],
+                     Err *err);
+
+// Frees the work of rows that nobody needs any more, and ends the process.
+void extremes_abandon(ExtremesWork *work);
 
 // Over the target rows: the largest relative difference, and how many of their cells are as
 // printed (and how many cells there are).
