@@ -41,6 +41,7 @@ static Impact first_impact(const Scenario *scenario)
     void *reference = NULL;
     assert_true(solver->open(scenario, &reference, &err));
     bool has_begun = false;
+    double ended_s = 0.0;
     while (impact.duration_s < 0.0) {
         if (!solver->step(reference, INFINITY, &err)) {
             fail_msg("%s", err.text);
@@ -58,10 +59,12 @@ static Impact first_impact(const Scenario *scenario)
             }
             sample_free(&sample);
         } else if (has_begun && !is_touching) {
-            impact.duration_s = record.end_s - impact.onset_s;
-            for (int i = 0; i < 3; i++) {
-                impact.after[i] = record.omega[i];
-            }
+            impact.duration_s = ended_s - impact.onset_s;
+        }
+        // the step behind the contact is as long as it likes: the contact ends where it begins
+        ended_s = record.end_s;
+        for (int i = 0; is_touching && i < 3; i++) {
+            impact.after[i] = record.omega[i];
         }
         has_begun = is_touching;
     }
