@@ -320,7 +320,8 @@ bool articulated_factor(Articulated *articulated, const TreeState *state)
     for (size_t i = 0; i < articulated->tree->node_count; i++) {
         start_link(articulated, i, state, &articulated->links[i]);
     }
-    return sweep_inwards(articulated, state, false, NULL);
+    articulated->is_factored = sweep_inwards(articulated, state, false, NULL);
+    return articulated->is_factored;
 }
 
 void articulated_solve(Articulated *articulated, const ArticulatedPush *pushes, const double *sides,
@@ -336,6 +337,15 @@ void articulated_solve(Articulated *articulated, const ArticulatedPush *pushes, 
     sweep_outwards(articulated, rates);
 }
 
+// The force on a body less what its bias takes of it.
+static inline void push_link(const TreeState *state, const ArticulatedPush *pushes,
+                             ArticulatedLink *link)
+{
+    const ArticulatedPush *push = &pushes[link->body];
+    link->force = vec2_sub(push->force, vec2_scale(link->mass, state->bias[link->body]));
+    link->moment = push->moment + vec2_dot(link->centre, link->force);
+}
+
 bool articulated_accelerate(Articulated *articulated, const TreeState *state,
                             const ArticulatedPush *pushes, const double *sides, double *rates)
 {
@@ -343,15 +353,27 @@ bool articulated_accelerate(Articulated *articulated, const TreeState *state,
         return articulated_tree_accelerate(articulated, state, pushes, rates);
     }
     for (size_t i = 0; i < articulated->tree->node_count; i++) {
-        ArticulatedLink *link = &articulated->links[i];
-        const ArticulatedPush *push = &pushes[link->body];
-        start_link(articulated, i, state, link);
-        link->force = vec2_sub(push->force, vec2_scale(link->mass, state->bias[link->body]));
-        link->moment = push->moment + vec2_dot(link->centre, link->force);
+        start_link(articulated, i, state, &articulated->links[i]);
+        push_link(state, pushes, &articulated->links[i]);
     }
-    if (!sweep_inwards(articulated, state, true, sides)) {
+    articulated->is_factored = sweep_inwards(articulated, state, true, sides);
+    if (!articulated->is_factored) {
         return false;
     }
+    sweep_outwards(articulated, rates);
+    return true;
+}
+
+bool articulated_accelerate_again(Articulated *articulated, const TreeState *state,
+                                  const ArticulatedPush *pushes, const double *sides, double *rates)
+{
+    if (!articulated->is_factored) {
+        return false;
+    }
+    for (size_t i = 0; i < articulated->tree->node_count; i++) {
+        push_link(state, pushes, &articulated->links[i]);
+    }
+    sweep_inwards(articulated, NULL, true, sides);
     sweep_outwards(articulated, rates);
     return true;
 }

@@ -30,3 +30,8 @@ void articulated_solve(Articulated *articulated, const ArticulatedPush *pushes, 
 // second rates.
 bool articulated_accelerate(Articulated *articulated, const TreeState *state,
                             const ArticulatedPush *pushes, const double *sides, double *rates);
+
+// The same where the last elimination was at these coordinates, whatever their rates are now.
+bool articulated_accelerate_again(Articulated *articulated, const TreeState *state,
+                                  const ArticulatedPush *pushes, const double *sides,
+                                  double *rates);

@@ -90,5 +90,6 @@ typedef struct Articulated {
     int *loops; // joints
     ArticulatedLink *links;
     FrontRows *fronts;
-    bool is_plain; // whether it is a tree of hinges and floating bodies without loops
+    bool is_plain;    // whether it is a tree of hinges and floating bodies without loops
+    bool is_factored; // whether the last elimination had a solution
 } Articulated;

@@ -211,8 +211,9 @@ static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState 
     state->damping_power = forces_damping_power(linkage, motions);
 }
 
-// Solves for the coordinates' second rates (and the loops' multipliers behind them), into the room.
-static bool find_rates(const Dynamics *dynamics, double since_s, const double *y,
+// Solves for the coordinates' second rates (and the loops' multipliers behind them), into the room;
+// where loops have just been closed at these coordinates, by the elimination that closed them.
+static bool find_rates(const Dynamics *dynamics, double since_s, const double *y, bool are_closed,
                        DynamicsState *state, Loads *loads)
 {
     const Tree *tree = &dynamics->tree;
@@ -231,8 +232,8 @@ static bool find_rates(const Dynamics *dynamics, double since_s, const double *y
         room->sides[2 * loop] = -bias.x;
         room->sides[2 * loop + 1] = -bias.y;
     }
-    return articulated_accelerate(dynamics->articulated, &state->tree, loads->pushes, room->sides,
-                                  room->solved);
+    return (are_closed ? articulated_accelerate_again : articulated_accelerate)(
+        dynamics->articulated, &state->tree, loads->pushes, room->sides, room->solved);
 }
 
 // Power of the drive and force of the driven joint, from the driven body's own equations.
@@ -282,7 +283,7 @@ bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y
                        DynamicsState *state, double *rates)
 {
     Loads loads = dynamics->room.loads;
-    if (!find_rates(dynamics, since_s, y, state, &loads)) {
+    if (!find_rates(dynamics, since_s, y, false, state, &loads)) {
         return false;
     }
     dynamics_reactions_find(dynamics, dynamics->room.solved, &loads, state);
@@ -329,7 +330,7 @@ static void find_all_rates(const Dynamics *dynamics, double since_s, const doubl
         loops_project(&room, since_s, closed, closed + n);
         y = closed;
     }
-    if (!find_rates(dynamics, since_s, y, state, &loads)) {
+    if (!find_rates(dynamics, since_s, y, dynamics->may_branch, state, &loads)) {
         for (size_t i = 0; i < system_size(&dynamics->system); i++) {
             rates[i] = NAN;
         }
