@@ -4,17 +4,21 @@
 //     Phi + J dq = 0   and   J (u + du) + drift = 0
 // with Phi the gaps and drift the anchors' relative velocity at rest coordinates: by
 //     M^-1 J^T (J M^-1 J^T)^-1 (-Phi)
-// which the equations of motion give, with no force but the gaps on the right side. Two Newton
-// steps take the gap of a good step, 1e-12 m, to rounding.
+// which the equations of motion give, with no force but the gaps on the right side. One Newton step
+// takes the gap of a good step, 1e-9 m, to rounding, and two that of a stage.
 #include "reference/loops.h"
 
 #include "reference/tree_line.h"
 
 #include <assert.h>
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { PASSES = 2 };
+
+// 1, of the arms that a gap is between
+static const double ROUNDINGS = 2.0 * DBL_EPSILON;
 
 // m, or rad: a start is closed to some 1e-12; a pin farther from its own was meant to be elsewhere
 static const double ROUNDED = 1e-10;
@@ -79,6 +83,22 @@ static void move_least(const LoopsRoom *room, bool is_rate, double *x)
     }
 }
 
+// Whether nothing but rounding is left of the gaps of all loops.
+static bool are_closed(const LoopsRoom *room)
+{
+    const Tree *tree = room->tree;
+    const Vec2 *arms = room->state->arms;
+    for (size_t loop = 0; loop < room->loop_count; loop++) {
+        const int joint = room->loops[loop];
+        const double reach = vec2_length(arms[2 * joint]) + vec2_length(arms[2 * joint + 1]);
+        const Vec2 gap = loop_gap(tree, room->state, joint, false);
+        if (!(vec2_length(gap) <= ROUNDINGS * reach)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 double loops_project(const LoopsRoom *room, double since_s, double *q, double *u)
 {
     if (room->loop_count == 0) {
@@ -86,11 +106,11 @@ double loops_project(const LoopsRoom *room, double since_s, double *q, double *u
     }
     const Tree *tree = room->tree;
     // near a change point the rows turn much in little: each move asks for them anew
-    for (int pass = 0; pass < PASSES; pass++) {
-        tree_evaluate(tree, since_s, q, u, room->state);
-        move_least(room, false, q);
-    }
     tree_evaluate(tree, since_s, q, u, room->state);
+    for (int pass = 0; pass < PASSES && (pass == 0 || !are_closed(room)); pass++) {
+        move_least(room, false, q);
+        tree_evaluate(tree, since_s, q, u, room->state);
+    }
     move_least(room, true, u);
     double largest = 0.0;
     for (size_t loop = 0; loop < room->loop_count; loop++) {
