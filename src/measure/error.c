@@ -5,8 +5,6 @@
 
 #include "base/zeroed.h"
 
-#include "model/distance.h"
-
 typedef struct Sums {
     double square; // of the relative errors of omega
     size_t count;
@@ -20,17 +18,14 @@ static bool can_compare(const Trajectory *trajectory, const Trajectory *referenc
 }
 
 bool error_series(const Trajectory *trajectory, const Trajectory *reference,
-                  const Trajectory *sized_by, double *omega)
+                  const DistanceScale *scales, double *omega)
 {
     if (!can_compare(trajectory, reference)) {
         return false;
     }
-    DistanceScale *scales = zeroed(reference->body_count, sizeof *scales);
-    distance_scales(sized_by, scales);
     for (size_t k = 0; k < reference->sample_count; k++) {
         omega[k] = distance_at(trajectory, reference, k, scales);
     }
-    free(scales);
     return true;
 }
 

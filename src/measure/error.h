@@ -4,6 +4,7 @@
 // bodies' centres instead.
 #pragma once
 
+#include "model/distance.h"
 #include "model/trajectory.h"
 
 // Errors below this multiple of the reference's uncertainty are dominated by it.
@@ -27,8 +28,8 @@ TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *re
                               double horizon_s);
 
 // The same measure sample by sample: writes the largest difference in omega over the bodies at each
-// sample, relative to each body's largest omega at the samples of a third trajectory, into an array
-// of the first two's length. The third is mostly the reference; it may have other samples. Returns
-// false, the array untouched, where the first two cannot be compared.
+// sample, relative to scales, by body, into an array of the trajectories' length. The scales are
+// mostly those of the reference. Returns false, the array untouched, where the two cannot be
+// compared.
 bool error_series(const Trajectory *trajectory, const Trajectory *reference,
-                  const Trajectory *sized_by, double *omega);
+                  const DistanceScale *scales, double *omega);

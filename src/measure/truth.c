@@ -42,13 +42,22 @@ typedef struct Apart {
     double *stated;   // as errors are stated: relative to sizes at the case's own samples
 } Apart;
 
-static Apart apart_of(const Trajectory *trajectory, const Trajectory *other, const Trajectory *own)
+static DistanceScale *scales_of(const Trajectory *trajectory)
+{
+    DistanceScale *scales = zeroed(trajectory->body_count, sizeof *scales);
+    distance_scales(trajectory, scales);
+    return scales;
+}
+
+// With sizes on the grid and at the case's own samples.
+static Apart apart_of(const Trajectory *trajectory, const Trajectory *other,
+                      const DistanceScale *on_grid, const DistanceScale *at_own)
 {
     Apart apart = {.times = trajectory->times};
     apart.distance = zeroed(trajectory->sample_count + 1, sizeof *apart.distance);
     apart.stated = zeroed(trajectory->sample_count + 1, sizeof *apart.stated);
-    const bool is_known = error_series(other, trajectory, trajectory, apart.distance) &&
-                          error_series(other, trajectory, own, apart.stated);
+    const bool is_known = error_series(other, trajectory, on_grid, apart.distance) &&
+                          error_series(other, trajectory, at_own, apart.stated);
     apart.count = is_known ? trajectory->sample_count : 0;
     return apart;
 }
@@ -87,20 +96,15 @@ static double largest_stated(const Apart *apart, const Truth *truth)
 }
 
 // How many times a distance may be larger by sizes at the case's own samples than by the grid's.
-static double ratio_of_sizes(const Trajectory *fine, const Trajectory *own)
+static double ratio_of_sizes(size_t body_count, const DistanceScale *on_grid,
+                             const DistanceScale *at_own)
 {
     double largest = 1.0;
-    DistanceScale *on_grid = zeroed(fine->body_count, sizeof *on_grid);
-    DistanceScale *at_own = zeroed(fine->body_count, sizeof *at_own);
-    distance_scales(fine, on_grid);
-    distance_scales(own, at_own);
-    for (size_t i = 0; i < fine->body_count; i++) {
+    for (size_t i = 0; i < body_count; i++) {
         if (at_own[i].omega > 0.0) {
             largest = fmax(largest, on_grid[i].omega / at_own[i].omega);
         }
     }
-    free(on_grid);
-    free(at_own);
     return largest;
 }
 
@@ -150,10 +154,12 @@ static void certify(TruthRuns *runs, Truth *truth)
     note_failure(third, truth);
     truth->is_limited = false;
     truth->horizon_s = truth_runs_duration(runs);
-    const Trajectory *own = truth_runs_first(runs);
+    DistanceScale *of_first = scales_of(first);
+    DistanceScale *of_second = scales_of(second);
+    DistanceScale *own = scales_of(truth_runs_first(runs));
     Apart aparts[] = {
-        apart_of(second, first, own), apart_of(first, third, own),
-        apart_of(second, third, own), // of the other two
+        apart_of(second, first, of_second, own), apart_of(first, third, of_first, own),
+        apart_of(second, third, of_second, own), // of the other two
     };
     shorten_horizon(&aparts[0], truth);
     shorten_horizon(&aparts[2], truth);
@@ -166,8 +172,9 @@ static void certify(TruthRuns *runs, Truth *truth)
     }
     const double to_others =
         fmax(largest_stated(&aparts[0], truth), largest_stated(&aparts[1], truth));
-    truth->uncertainty = fmax(to_others + largest_stated(&aparts[2], truth),
-                              ROUNDING * truth->growth * ratio_of_sizes(first, own));
+    truth->uncertainty =
+        fmax(to_others + largest_stated(&aparts[2], truth),
+             ROUNDING * truth->growth * ratio_of_sizes(first->body_count, of_first, own));
     if (truth->message[0] != '\0') {
         truth->is_limited = true;
         truth->horizon_s = 0.0;
@@ -176,6 +183,9 @@ static void certify(TruthRuns *runs, Truth *truth)
     for (int i = 0; i < 3; i++) {
         apart_finish(&aparts[i]);
     }
+    free(of_first);
+    free(of_second);
+    free(own);
 }
 
 BackendKind truth_backend(const Scenario *scenario)

@@ -61,7 +61,10 @@ static Turns first_and_last(const Scenario *scenario)
     Trajectory *ode = complete_run(scenario, BACKEND_ODE);
     Trajectory *exact = complete_run(scenario, BACKEND_ANALYTIC);
     double *errors = calloc(ode->sample_count, sizeof *errors);
-    assert_true(error_series(ode, exact, exact, errors));
+    DistanceScale *scales = calloc(exact->body_count, sizeof *scales);
+    distance_scales(exact, scales);
+    assert_true(error_series(ode, exact, scales, errors));
+    free(scales);
     Turns turns = {{0.0}, {0.0}};
     for (size_t k = 0; k <= scenario->run.samples; k++) {
         const size_t samples[2] = {k, ode->sample_count - 1 - k};
