@@ -2,7 +2,6 @@
 // between the last and the driven one: the commonest mechanism, a four-bar with play in one pin.
 #pragma once
 
-#include "reference/hinged.h"
 #include "reference/hinged_bodies.h"
 
 // An end of a pair that touches.
