@@ -288,8 +288,9 @@ static SolverModel reference_model(const void *state)
         .steps = integrator->accepted + integrator->rejected,
         .evaluations = integrator->evaluations,
     };
-    snprintf(model.label, sizeof model.label, "order 8, tolerance %.3g, %zu coordinates",
-             reference->stepper->scenario->reference.tolerance, system->coordinate_count);
+    snprintf(model.label, sizeof model.label, "order 8, tolerance %.3g, %zu coordinate%s",
+             reference->stepper->scenario->reference.tolerance, system->coordinate_count,
+             system->coordinate_count == 1 ? "" : "s");
     return model;
 }
 

@@ -238,8 +238,10 @@ static void write_impact_law(const Scenario *scenario, const Joint *joint, Text 
                    &law, &err)) {
         text_append(text, " (%s)", err.text);
     } else if (law.family == FORCE_LAW_POWER) {
-        text_append(text, ", K = %.4g %s^%.4g", law.stiffness, is_turning ? "N m/rad" : "N/m",
-                    law.exponent);
+        text_append(text, ", K = %.4g %s", law.stiffness, is_turning ? "N m/rad" : "N/m");
+        if (law.exponent != 1.0) {
+            text_append(text, "^%.4g", law.exponent);
+        }
     } else {
         text_append(text, ", d = A F (B - ln F) with A = %.4g m/N, B = %.4g", law.compliance,
                     law.offset);
