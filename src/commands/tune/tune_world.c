@@ -94,7 +94,7 @@ static void write_names(const Linkage *linkage, Text *text)
     text_append(text, ";\n");
     bool is_first = true;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
-        if (linkage_kind_is_ideal(linkage->joints[i].kind)) {
+        if (tune_world_is_ideal(linkage, i)) {
             text_append(text, "%s", is_first ? "static dJointID " : ", ");
             tune_world_joint(linkage, i, text);
             is_first = false;
@@ -103,10 +103,11 @@ static void write_names(const Linkage *linkage, Text *text)
     text_append(text, "%s", is_first ? "" : ";\n");
 }
 
-static bool has_kind(const Linkage *linkage, JointKind kind)
+// Whether the program makes a joint of ODE of a kind.
+static bool makes(const Linkage *linkage, JointKind kind)
 {
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == kind) {
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        if (linkage->joints[i].kind == kind && tune_world_is_ideal(linkage, i)) {
             return true;
         }
     }
@@ -163,8 +164,8 @@ static void write_functions(const Scenario *scenario, Text *text)
 {
     const Linkage *linkage = &scenario->linkage;
     text_append(text, "%s", MAKE_BODY);
-    text_append(text, "%s", has_kind(linkage, JOINT_REVOLUTE) ? MAKE_HINGE : "");
-    text_append(text, "%s", has_kind(linkage, JOINT_PRISMATIC) ? MAKE_SLIDER : "");
+    text_append(text, "%s", makes(linkage, JOINT_REVOLUTE) ? MAKE_HINGE : "");
+    text_append(text, "%s", makes(linkage, JOINT_PRISMATIC) ? MAKE_SLIDER : "");
     tune_world_push(linkage, text);
     text_append(text, "%s%s", CHECK, PRINT_ROW);
 }
@@ -172,9 +173,12 @@ static void write_functions(const Scenario *scenario, Text *text)
 static void write_body(const Linkage *linkage, int number, Text *text)
 {
     const Body *body = &linkage->bodies[number];
+    const bool is_led = tune_world_is_led(linkage, number);
     const Motion *start = &body->start;
-    const double numbers[] = {body->mass,   body->inertia,     start->position.x, start->position.y,
-                              start->angle, start->velocity.x, start->velocity.y, start->omega};
+    const Vec2 at = is_led ? linkage->joints[linkage->driver.joint].anchor_a : start->position;
+    const Vec2 speed = is_led ? (Vec2){0.0, 0.0} : start->velocity;
+    const double numbers[] = {body->mass,   body->inertia, at.x,    at.y,
+                              start->angle, speed.x,       speed.y, start->omega};
     text_append(text, "    ");
     tune_world_body(linkage, number, text);
     text_append(text, " = make_body(");

@@ -1,6 +1,7 @@
 // How do springs, dampers and drives act in a world of ODE that libjointplay steps?
 //
-// A drive at a speed is a hinge's motor without a bound, at the speed at the step's end. A damper
+// A body that is driven at constant speed has no dynamics in ODE. A drive at a speed over time is a
+// hinge's motor without a bound, at the speed at the step's end. A damper
 // acts on the mean of the speeds before and after the step, -c (r + r') / 2, as a row
 //     r' + (2/c) f = -r
 // of a hinge's motor or, along a line, of a distance joint, whose right-hand side is ERP/h (wanted
@@ -75,8 +76,9 @@ static const char SPRING[] =
 
 static void write_point(const Linkage *linkage, int body, Vec2 at, Text *text)
 {
+    const Vec2 local = tune_world_local(linkage, body, at);
     tune_world_body(linkage, body, text);
-    text_append(text, ", %s, %s, ", number_shortest(at.x).text, number_shortest(at.y).text);
+    text_append(text, ", %s, %s, ", number_shortest(local.x).text, number_shortest(local.y).text);
 }
 
 static void write_springs(const Linkage *linkage, Text *text)
@@ -202,12 +204,13 @@ static void write_damper(const Linkage *linkage, size_t number, Text *text)
 void tune_world_motors(const Linkage *linkage, Text *text)
 {
     const Driver *driver = &linkage->driver;
-    if (driver->is_present) {
+    const int driven = linkage_driven_body(linkage);
+    if (tune_world_is_led(linkage, driven)) {
+        text_append(text, "    dBodySetKinematic(");
+        tune_world_body(linkage, driven, text);
+        text_append(text, "); // at its pivot, and at constant speed\n");
+    } else if (driver->is_present) {
         write_param(linkage, driver->joint, "dParamFMax", "dInfinity", text);
-        if (driver->speeds.count == 0) {
-            write_param(linkage, driver->joint, "dParamVel", number_shortest(driver->speed).text,
-                        text);
-        }
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];

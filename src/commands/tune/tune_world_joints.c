@@ -86,6 +86,27 @@ size_t tune_world_number(const Linkage *linkage, int joint)
     return number;
 }
 
+bool tune_world_is_led(const Linkage *linkage, int body)
+{
+    return body != LINKAGE_GROUND && body == linkage_driven_body(linkage) &&
+           drive_is_steady(&linkage->driver);
+}
+
+Vec2 tune_world_local(const Linkage *linkage, int body, Vec2 local)
+{
+    const int joint = linkage->driver.joint;
+    return tune_world_is_led(linkage, body)
+               ? vec2_sub(local, linkage_end(&linkage->joints[joint], 1).anchor)
+               : local;
+}
+
+bool tune_world_is_ideal(const Linkage *linkage, int joint)
+{
+    const bool is_led = linkage->driver.is_present && drive_is_steady(&linkage->driver) &&
+                        linkage->driver.joint == joint;
+    return linkage_kind_is_ideal(linkage->joints[joint].kind) && !is_led;
+}
+
 // The positions at the start.
 static Motion *motions_of(const Linkage *linkage)
 {
@@ -108,7 +129,7 @@ static void write_call(const Linkage *linkage, const char *name, const int bodie
 void tune_world_ideal(const Linkage *linkage, int number, Text *text)
 {
     const Joint *joint = &linkage->joints[number];
-    if (!linkage_kind_is_ideal(joint->kind)) {
+    if (!tune_world_is_ideal(linkage, number)) {
         return;
     }
     int bodies[2];
@@ -238,8 +259,8 @@ static bool write_pin(const Scenario *scenario, int number, Text *text, Err *err
     const char *pin = made.options.data;
     write_field(pin, "hole_radius", joint->clearance.hole_radius, "m", text);
     write_field(pin, "pin_radius", joint->clearance.pin_radius, "m", text);
-    write_point(pin, "hole", joint->anchor_a, text);
-    write_point(pin, "pin", joint->anchor_b, text);
+    write_point(pin, "hole", tune_world_local(linkage, joint->body_a, joint->anchor_a), text);
+    write_point(pin, "pin", tune_world_local(linkage, joint->body_b, joint->anchor_b), text);
     const bool is_done = write_contact(scenario, joint, made.contact.data, text, err);
     if (contact->friction > 0.0) {
         write_field(pin, "friction", contact->friction, "", text);

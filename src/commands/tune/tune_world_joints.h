@@ -11,7 +11,17 @@ void tune_world_joint(const Linkage *linkage, int joint, Text *text);
 // The number of a joint with play among those that have some.
 size_t tune_world_number(const Linkage *linkage, int joint);
 
-// Appends what makes an ideal joint of ODE; nothing of a joint that is none.
+// Whether a joint is one of ODE's in the program.
+bool tune_world_is_ideal(const Linkage *linkage, int joint);
+
+// Whether a body is driven at constant speed: it is one of ODE's without dynamics, whose origin is
+// the pivot about which it turns, so that it stays exactly on its path. And a point of a body where
+// its origin is.
+bool tune_world_is_led(const Linkage *linkage, int body);
+Vec2 tune_world_local(const Linkage *linkage, int body, Vec2 local);
+
+// Appends what makes an ideal joint of ODE; nothing of a joint that is none, or that a body that is
+// led turns about.
 void tune_world_ideal(const Linkage *linkage, int joint, Text *text);
 
 // Appends what makes a joint of the library of one with play; nothing of others. Fails with
