@@ -211,7 +211,8 @@ typedef enum JpStepping {
                             */
     JP_STEPPING_IMPULSE,   /* the same with the contacts of our joints integrated within the step,
                               however short they are: n + 3 steps of ODE where joints touch in
-                              n rows: one of a hinge or slider, two to nine of an end of a pin */
+                              n rows, one of a hinge or slider, two to nine of an end of a pin;
+                              fewer where steps are short, more where bounds are passed */
 } JpStepping;
 
 typedef struct JpWorldOptions {

@@ -129,6 +129,18 @@ static double hardest(const Answer *answer, const AnswerPlace *of, double speed,
     return pressed < turned ? pressed : turned;
 }
 
+// The largest component of all bodies' velocities after the base, or of how fast they turn.
+static double fastest(const Answer *answer, bool is_turn)
+{
+    double most = 0.0;
+    for (size_t b = 0; b < answer->world->bodies.count; b++) {
+        for (size_t k = 0; k < 3; k++) {
+            most = fmax(most, fabs(answer->speeds[BODY_NUMBERS * b + (is_turn ? 3 : 0) + k]));
+        }
+    }
+    return most;
+}
+
 // The impulse of a trial in a row, away from where the place presses. Friction is what acts beyond
 // the first rows of a hole.
 static double push_of(const Answer *answer, const AnswerPlace *of, size_t own, double mobility)
@@ -136,6 +148,10 @@ static double push_of(const Answer *answer, const AnswerPlace *of, size_t own, d
     const Place *place = of->place;
     const size_t row = of->first_row + own;
     const double floor = place->sides[0].law.impact_speed_floor;
+    if (answer->is_linear) {
+        // no bound to pass: as hard as the bodies are fast, so that rounding takes little of it
+        return (fastest(answer, answer->rows[row]->is_turn) + floor) / mobility;
+    }
     if (own >= PLACE_ROWS_PLANE) {
         const double rim = answer->rows[row]->is_turn ? place->hole_radius : 1.0;
         const double speed = fmax(floor, hypot(place->start_rate[0], place->start_rate[1]));
@@ -199,8 +215,9 @@ void answer_take(const Answer *answer)
         double speeds[BODY_NUMBERS];
         memcpy(speeds, &answer->speeds[BODY_NUMBERS * b], sizeof speeds);
         for (size_t i = 0; i < answer->row_count; i++) {
-            for (size_t k = 0; k < BODY_NUMBERS && answer->net[i] != 0.0; k++) {
-                speeds[k] += answer->net[i] * answer->bodies[i * numbers + BODY_NUMBERS * b + k];
+            const double more = answer->net[i] - answer->pushed[i]; // than in the base
+            for (size_t k = 0; k < BODY_NUMBERS && more != 0.0; k++) {
+                speeds[k] += more * answer->bodies[i * numbers + BODY_NUMBERS * b + k];
             }
         }
         dBodySetLinearVel(id, speeds[0], speeds[1], speeds[2]);

@@ -16,8 +16,9 @@ typedef struct AnswerPlace {
 // by row where nothing else is said.
 typedef struct Answer {
     JpWorld *world;
-    double step;    // s
-    bool is_linear; // whether no bound can be passed (world/closing.h)
+    double step;      // s
+    bool is_linear;   // whether no bound can be passed (world/closing.h)
+    bool is_recalled; // whether the answers to pushes are those of steps before (world/recall.h)
     size_t place_count;
     size_t side_count; // of the active places
     size_t row_count;

@@ -19,12 +19,15 @@
 // unless somebody reads their forces (dJointSetFeedback). One more step closes the velocities
 // (world/closing.h).
 //
-// With n rows in which joints touch a step costs n + 3 steps of ODE, and 1 where none does.
+// With n rows in which joints touch a step costs n + 3 steps of ODE, and 1 where none does. W and A
+// may be those of the steps before (world/recall.h): then the step under the contacts' forces has
+// to be as promised, and n steps are saved.
 #include "world/impulse.h"
 
 #include "world/closing.h"
 #include "world/inside.h"
 #include "world/opening.h"
+#include "world/recall.h"
 #include "world/trial.h"
 
 #include <math.h>
@@ -115,16 +118,24 @@ static bool activate_near(Answer *answer, double step)
 
 // The contacts of the step by the world's answer about the base; joints that they bring near their
 // sides join in. `is_found` is false where that takes too many local steps.
-static JpStatus find_contacts(Answer *answer, double step, bool *is_found, JpError *error)
+static JpStatus find_contacts(Answer *answer, double step, bool can_recall, bool *is_found,
+                              JpError *error)
 {
     for (size_t i = 0; i < answer->place_count; i++) {
         answer->places[i].is_known = false;
+    }
+    answer->is_recalled = false;
+    if (can_recall) {
+        recall_columns(answer);
     }
     do {
         REFUSAL_TRY(answer_find_columns(answer, step, error));
         set_free(answer, step);
         *is_found = inside_run(answer, step);
     } while (*is_found && activate_near(answer, step));
+    if (!answer->is_recalled) {
+        recall_keep(answer);
+    }
     return JP_OK;
 }
 
@@ -134,11 +145,11 @@ static JpStatus make_rounds(Answer *answer, double step, bool *is_done, JpError 
     JpWorld *world = answer->world;
     const size_t size = answer->row_count * sizeof(double);
     for (int round = 1;; round++) {
-        REFUSAL_TRY(find_contacts(answer, step, is_done, error));
+        REFUSAL_TRY(find_contacts(answer, step, round == 1, is_done, error));
         if (!*is_done) {
             return JP_OK;
         }
-        if (answer->is_linear && !closing_is_read(world)) {
+        if (answer->is_linear && !answer->is_recalled && !closing_is_read(world)) {
             answer_take(answer);
             return JP_OK;
         }
@@ -147,6 +158,9 @@ static JpStatus make_rounds(Answer *answer, double step, bool *is_done, JpError 
         memcpy(answer->pushed, answer->net, size);
         REFUSAL_TRY(answer_step(answer, step, answer->found, error));
         const bool is_promised = is_as_promised(answer, before);
+        if (answer->is_recalled) {
+            recall_note(world, is_promised);
+        }
         if (is_promised || round == ROUNDS) {
             world->stats.fallbacks += is_promised ? 0 : 1;
             return JP_OK;

@@ -49,6 +49,12 @@ struct JpJoint {
     Place places[PLACES_MOST];
 };
 
+// Steps without recall, after one that was wrong (world/recall.h).
+typedef struct RecallPause {
+    size_t steps; // of the last pause; 0 after a recall that was right
+    size_t until; // number of the step
+} RecallPause;
+
 struct JpWorld {
     dWorldID id;
     JpWorldOptions options;
@@ -57,6 +63,8 @@ struct JpWorld {
     dJointGroupID rows;     // contacts of the step under way
     dJointGroupID contacts; // of the geoms of the caller's space, likewise
     Encounter *encounter;   // owned, NULL before the first
+    RecallPause pause;
+    struct Recall *recall;  // owned, NULL before the first (world/recall.h)
     JpWorldStats stats;
     double last_step;          // s, of the step before; 0: there was none
     size_t known_when_counted; // bodies, when it was last made sure that all are known

@@ -1,5 +1,5 @@
 // What does a caller's world hold besides ODE's?
-#include "world/play.h"
+#include "world/recall.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -51,6 +51,7 @@ void jp_world_destroy(JpWorld *world)
     dJointGroupDestroy(world->rows);
     dJointGroupDestroy(world->contacts);
     bodies_finish(&world->bodies);
+    recall_free(world->recall);
     if (world->encounter != NULL) {
         encounter_finish(world->encounter);
     }
