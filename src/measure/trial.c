@@ -116,7 +116,9 @@ TrialWindow trial_window(const Scenario *scenario, const Truth *truth, double mo
         return (TrialWindow){0.0, 0.0};
     }
     Scenario other = *scenario;
-    other.reference.tolerance *= OTHER;
+    // looser, or tighter where no run is as loose
+    const double own = options_reference_tolerance(&scenario->reference);
+    other.reference.tolerance = own < OPTIONS_REFERENCE_LOOSEST / OTHER ? OTHER * own : own / OTHER;
     Trajectory *run = run_scenario(&other, registry_solver(BACKEND_REFERENCE), watch);
     const TrialWindow window =
         run->is_complete ? shorten(truth->trajectory, run, whole, most) : (TrialWindow){0.0, 0.0};

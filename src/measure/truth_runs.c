@@ -55,7 +55,7 @@ static Scenario with_tolerance(const Scenario *scenario, double tolerance)
 // The tolerance of perturbed runs: theirs is the error of the distance to the second.
 static double perturbed_tolerance(const Scenario *scenario)
 {
-    const double first = scenario->reference.tolerance;
+    const double first = options_reference_tolerance(&scenario->reference);
     return fmin(first, fmax(SECOND * first, PERTURBED_SHARE * DISTANCE_PERTURBATION));
 }
 
@@ -152,7 +152,7 @@ TruthRuns *truth_runs_make(const Scenario *scenario, RunWatch watch, size_t thre
 {
     TruthRuns *runs = calloc(1, sizeof *runs);
     assert(runs != NULL);
-    const double tolerance = scenario->reference.tolerance;
+    const double tolerance = options_reference_tolerance(&scenario->reference);
     const Scenario fine = distance_grid(scenario);
     runs->watch = watch;
     runs->scenarios[RUN_FIRST] = *scenario;

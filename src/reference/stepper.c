@@ -47,7 +47,7 @@ static void set_tolerances(Stepper *stepper)
 {
     const System *system = stepper->system;
     const size_t n = system->coordinate_count;
-    const double tolerance = stepper->scenario->reference.tolerance;
+    const double tolerance = options_reference_tolerance(&stepper->scenario->reference);
     const SpeedScale *scale = &stepper->scale;
     const double moving = MOVING_SHARE * tolerance * scale->moving;
     Dop853 *integrator = &stepper->integrator;
@@ -282,7 +282,7 @@ static bool fail_to_step(const Stepper *stepper, Err *err)
     return err_set(err, ERR_SOLVER,
                    "the step fell below the rounding of time: the motion cannot be integrated at a "
                    "tolerance of %g; raise reference.tolerance",
-                   stepper->scenario->reference.tolerance);
+                   options_reference_tolerance(&stepper->scenario->reference));
 }
 
 // Tries one step, as long as its error and what it may not pass allow.
