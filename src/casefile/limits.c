@@ -6,7 +6,7 @@
 #include "casefile/limits.h"
 
 #include "base/zeroed.h"
-#include "model/coordinate.h"
+#include "model/space_coordinate.h"
 
 #include <math.h>
 #include <string.h>
@@ -214,7 +214,9 @@ void limits_settle(Linkage *linkage)
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Limits *limits = &linkage->joints[i].limits;
         if (limits->kind == LIMIT_BACKLASH) {
-            limits->middle = coordinate_position(linkage, motions, (int)i) - limits->start;
+            const double at = linkage->is_spatial ? space_coordinate_start(linkage, (int)i)
+                                                  : coordinate_position(linkage, motions, (int)i);
+            limits->middle = at - limits->start;
         }
     }
     free(motions);

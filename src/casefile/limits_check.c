@@ -2,7 +2,7 @@
 #include "casefile/limits.h"
 
 #include "base/zeroed.h"
-#include "model/coordinate.h"
+#include "model/space_coordinate.h"
 
 #include <math.h>
 
@@ -65,10 +65,10 @@ static bool check_contact(const Entries *entries, size_t index, const Scenario *
 bool limits_check(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
 {
     const Joint *joint = &scenario->linkage.joints[index];
-    if (scenario->linkage.is_spatial) {
+    if (scenario->linkage.is_spatial && joint->kind != JOINT_REVOLUTE) {
         return entries_refuse_group(entries_group(entries, "joints.*", index), err,
                                     "joint '%s' is %s, which is not available in space\nallowed: "
-                                    "space: planar, or pins in holes",
+                                    "space: planar, or pivots and pins in holes",
                                     joint->name, describe(joint));
     }
     if (joint->kind == JOINT_GEAR && joint->limits.kind == LIMIT_NONE) {
@@ -91,7 +91,8 @@ bool limits_check_starts(const Entries *entries, const Linkage *linkage, Err *er
         if (limits->kind != LIMIT_STOPS) {
             continue;
         }
-        const double at = coordinate_position(linkage, motions, (int)i);
+        const double at = linkage->is_spatial ? space_coordinate_start(linkage, (int)i)
+                                              : coordinate_position(linkage, motions, (int)i);
         const double rounding = LINKAGE_SEATED * fmin(limits->high - limits->low, 1.0);
         const bool is_turning = joint->kind == JOINT_REVOLUTE;
         is_right =

@@ -88,8 +88,9 @@ static bool check_limits(const Linkage *linkage, const Joint *joint, Err *err)
     if (limits->kind == LIMIT_NONE) {
         return true;
     }
-    if (linkage->is_spatial) {
-        return err_set(err, ERR_CASE, "joint '%s': backlash, stops and gears are for the plane",
+    if (linkage->is_spatial && joint->kind != JOINT_REVOLUTE) {
+        return err_set(err, ERR_CASE,
+                       "joint '%s': backlash and stops of sliders, and gears, are for the plane",
                        joint->name);
     }
     const double low = coordinate_low(joint);

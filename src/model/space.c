@@ -113,8 +113,7 @@ Mat3 space_world_inertia(const Body *body, Quat turn)
     return world;
 }
 
-// A direction of the start in the body's frame.
-static Vec3 own_axis(const Body *body, Vec3 axis)
+Vec3 space_own_direction(const Body *body, Vec3 axis)
 {
     const bool is_z = axis.x == 0.0 && axis.y == 0.0;
     return is_z ? axis : quat_rotate_back(turn_about_z(body->start.angle), axis);
@@ -131,7 +130,7 @@ SpaceEnd space_end(const Linkage *linkage, size_t joint, int side)
     return (SpaceEnd){
         .body = end.body,
         .anchor = lift(end.anchor, data->space.height - body->space.height),
-        .axis = own_axis(body, data->space.axis),
+        .axis = space_own_direction(body, data->space.axis),
     };
 }
 

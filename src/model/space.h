@@ -49,6 +49,9 @@ typedef struct SpaceEnd {
     Vec3 axis; // unit
 } SpaceEnd;
 
+// A direction of the world at time zero in a body's frame.
+Vec3 space_own_direction(const Body *body, Vec3 axis);
+
 SpaceEnd space_end(const Linkage *linkage, size_t joint, int side);
 
 // A point given in a body's frame (or the ground's) in the world's, its velocity, and a direction.

@@ -38,6 +38,15 @@ static bool ode_open(const Scenario *scenario, void **state, Err *err)
 {
     // measure/chosen_run.c finds one
     assert(scenario->run.step > 0.0);
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (scenario->linkage.is_spatial && joint->limits.kind != LIMIT_NONE) {
+            return err_set(err, ERR_CASE,
+                           "joint '%s': backlash and stops of pivots in space are known to the "
+                           "reference alone; use run.backends: [reference], or space: planar",
+                           joint->name);
+        }
+    }
     Ode *ode = calloc(1, sizeof *ode);
     assert(ode != NULL);
     ode->stepping = choose(scenario);

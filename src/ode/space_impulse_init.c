@@ -46,10 +46,21 @@ static bool init_encounter(SpaceImpulseStep *step, Err *err)
         };
         encounter_add(&step->encounter, &added, rows);
     }
-    const size_t rows = encounter_rows(&step->encounter);
-    encounter_make_room(&step->encounter, rows);
-    step->total = encounter_sums(rows);
+    step->total = encounter_sums(encounter_rows(&step->encounter));
     return true;
+}
+
+// Makes room for the mobilities that are not always zero.
+static void make_room(SpaceImpulseStep *step)
+{
+    size_t *places = zeroed(step->place_count, sizeof *places);
+    for (size_t i = 0; i < step->place_count; i++) {
+        places[i] = i;
+    }
+    const EncounterCoupling coupling = space_impulse_step_coupling(step->response);
+    encounter_make_room(&step->encounter,
+                        encounter_coupling_reach(&coupling, &step->encounter, places));
+    free(places);
 }
 
 static void make_arrays(SpaceImpulseStep *step)
@@ -110,5 +121,9 @@ bool space_impulse_step_init(const Scenario *scenario, SpaceImpulseStep *step, E
     }
     make_arrays(step);
     space_start(&scenario->linkage, step->after);
-    return build(step, err);
+    if (!build(step, err)) {
+        return false;
+    }
+    make_room(step);
+    return true;
 }

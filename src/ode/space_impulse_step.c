@@ -8,7 +8,6 @@
 #include "ode/space_impulse_step.h"
 
 #include "base/zeroed.h"
-#include "contact/encounter_coupling.h"
 #include "ode/engine.h"
 #include "ode/stepping.h"
 
@@ -28,8 +27,7 @@ static const double *block_of(const void *context, size_t place, size_t other)
     return space_response_block(context, place, other);
 }
 
-// How the places of a response move each other.
-static EncounterCoupling coupling_of(const SpaceResponse *response)
+EncounterCoupling space_impulse_step_coupling(const SpaceResponse *response)
 {
     return (EncounterCoupling){
         .first_partner = response->first_partner,
@@ -109,7 +107,7 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
                              play_drift + encounter->joints[i].first_row);
     }
     space_response_drift(step->response, loose, ideal_drift);
-    const EncounterCoupling coupling = coupling_of(step->response);
+    const EncounterCoupling coupling = space_impulse_step_coupling(step->response);
     encounter_fill(encounter, &coupling, NULL);
     space_response_free(step->response, ideal_drift, play_drift, encounter->free);
     return true;

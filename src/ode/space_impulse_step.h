@@ -2,7 +2,7 @@
 // it: ode/impulse_step.h in space.
 #pragma once
 
-#include "contact/encounter.h"
+#include "contact/encounter_coupling.h"
 #include "contact/pin_space_rows.h"
 #include "ode/space_joints.h"
 #include "ode/space_world.h"
@@ -57,6 +57,9 @@ static inline bool space_impulse_step_is_free(const SpaceImpulseStep *step, size
 // after a failure too.
 bool space_impulse_step_init(const Scenario *scenario, SpaceImpulseStep *step, Err *err);
 void space_impulse_step_finish(SpaceImpulseStep *step);
+
+// How the places of a response move each other.
+EncounterCoupling space_impulse_step_coupling(const SpaceResponse *response);
 
 // Takes the next step: all but its mean forces and the work of the drive, which
 // ode/space_impulse_means.h finds.

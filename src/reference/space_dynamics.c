@@ -43,10 +43,11 @@ static void list_coordinates(SpaceDynamics *dynamics)
     }
 }
 
-static void set_contacts(SpaceDynamics *dynamics, const PinSpace *places)
+static void set_pins(SpaceDynamics *dynamics, const PinSpace *places, size_t count)
 {
     System *system = &dynamics->system;
-    for (size_t i = 0; i < system->contact_count; i++) {
+    system->contact_count = count;
+    for (size_t i = 0; i < count; i++) {
         const Joint *joint = &system->scenario->linkage.joints[places[i].joint];
         dynamics->contacts[i].place = places[i];
         system->contacts[i] = (Contact){
@@ -59,6 +60,25 @@ static void set_contacts(SpaceDynamics *dynamics, const PinSpace *places)
             .is_collar = places[i].place == PIN_SPACE_COLLAR,
         };
     }
+}
+
+// The ends of limited angles, behind the pins.
+static bool add_turns(SpaceDynamics *dynamics, Err *err)
+{
+    const Scenario *scenario = dynamics->system.scenario;
+    for (int i = 0; i < (int)scenario->linkage.joint_count; i++) {
+        size_t *count = &dynamics->system.contact_count;
+        if (scenario->linkage.joints[i].limits.kind != LIMIT_NONE) {
+            const size_t added =
+                space_turn_list(scenario, &dynamics->tree, i, dynamics->contacts + *count,
+                                dynamics->system.contacts + *count, err);
+            if (added == 0) {
+                return false;
+            }
+            *count += added;
+        }
+    }
+    return true;
 }
 
 bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err *err)
@@ -76,11 +96,15 @@ bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err 
     dynamics->loops = space_loops_create(tree, tree->loop_count, tree->loops);
     system->coordinates = zeroed(tree->coordinate_count, sizeof *system->coordinates);
     list_coordinates(dynamics);
-    system->contact_count = count;
-    system->contacts = zeroed(count, sizeof *system->contacts);
-    dynamics->contacts = zeroed(count, sizeof *dynamics->contacts);
-    set_contacts(dynamics, places);
+    const size_t most = count + 2 * linkage->joint_count;
+    system->contacts = zeroed(most, sizeof *system->contacts);
+    dynamics->contacts = zeroed(most, sizeof *dynamics->contacts);
+    set_pins(dynamics, places, count);
     free(places);
+    if (!add_turns(dynamics, err)) {
+        space_dynamics_finish(dynamics);
+        return false;
+    }
     const size_t rows = SPACE_JOINT_ROWS * tree->loop_count;
     dynamics->scratch = space_dynamics_state_create(dynamics);
     dynamics->loads = zeroed(linkage->body_count + 1, sizeof *dynamics->loads);
@@ -272,6 +296,19 @@ static void find_reactions(const SpaceTree *tree, SpacePush *loads, SpaceState *
     }
 }
 
+// What one contact presses with.
+static void find_force(const SpaceDynamics *dynamics, size_t number, SpaceState *state)
+{
+    const SpaceContact *contact = &dynamics->contacts[number];
+    const Contact *law = &dynamics->system.contacts[number];
+    SpaceForce *force = &state->forces[number];
+    if (contact->is_turn) {
+        space_turn_find(contact, law, &dynamics->tree, &state->tree, force);
+    } else {
+        space_contact_find(contact, law, &dynamics->system.scenario->contact, &state->tree, force);
+    }
+}
+
 // Positions, velocities, the contacts' forces and all loads.
 static void set_up(const SpaceDynamics *dynamics, double since_s, const double *y,
                    SpaceState *state)
@@ -283,9 +320,11 @@ static void set_up(const SpaceDynamics *dynamics, double since_s, const double *
     for (size_t i = 0; i < system->contact_count; i++) {
         const SpaceContact *contact = &dynamics->contacts[i];
         SpaceForce *force = &state->forces[i];
-        space_contact_find(contact, &system->contacts[i], &system->scenario->contact, &state->tree,
-                           force);
-        if (system->contacts[i].mode == CONTACT_PRESSING) {
+        find_force(dynamics, i, state);
+        if (contact->is_turn) {
+            load_moment(dynamics->loads, contact->place.pin.body, force->couple);
+            load_moment(dynamics->loads, contact->place.hole.body, vec3_scale(-1.0, force->couple));
+        } else if (system->contacts[i].mode == CONTACT_PRESSING) {
             load_body(dynamics->loads, contact->place.pin.body, force->force_b, force->force);
             load_body(dynamics->loads, contact->place.hole.body, force->force_a,
                       vec3_scale(-1.0, force->force));
@@ -325,7 +364,7 @@ static void fill_sums(const SpaceDynamics *dynamics, const SpaceState *state, do
         const SpaceForce *force = &state->forces[i];
         sums[SYSTEM_DISSIPATED] += force->press.damping_power;
         sums[SYSTEM_FRICTION] += force->press.friction_power;
-        sums[SYSTEM_IMPULSES + i] = sqrt(vec3_dot(force->force, force->force));
+        sums[SYSTEM_IMPULSES + i] = vec3_length(force->force) + vec3_length(force->couple);
     }
 }
 
@@ -368,8 +407,7 @@ Press space_dynamics_press(const SpaceDynamics *dynamics, size_t contact, double
     const PinSpace *place = &dynamics->contacts[contact].place;
     space_tree_evaluate_pair(&dynamics->tree, place->hole.body, place->pin.body, since_s, y, y + n,
                              &state->tree);
-    space_contact_find(&dynamics->contacts[contact], &dynamics->system.contacts[contact],
-                       &dynamics->system.scenario->contact, &state->tree, &state->forces[contact]);
+    find_force(dynamics, contact, state);
     return state->forces[contact].press;
 }
 

@@ -170,6 +170,43 @@ static void add_slopes(const SpaceDynamics *dynamics, const Pressing *pressing,
     }
 }
 
+// The same of an end of a limited angle: its torque pushes along the row of the angle.
+static void add_turn_slopes(const SpaceDynamics *dynamics, const SpaceState *state, size_t number,
+                            double *row, double *pushed, double *by_position, double *by_rate)
+{
+    const SpaceTree *tree = &dynamics->tree;
+    const size_t n = tree->coordinate_count;
+    const SpaceContact *at = &dynamics->contacts[number];
+    const Contact *contact = &dynamics->system.contacts[number];
+    const Press *press = &state->forces[number].press;
+    const Vec3 axis = space_tree_axis(tree, &state->tree, 2 * at->place.joint);
+    const int bodies[2] = {at->place.hole.body, at->place.pin.body};
+    memset(row, 0, n * sizeof *row);
+    for (int side = 0; side < 2; side++) {
+        const Vec3 along = vec3_scale(side == 0 ? -1.0 : 1.0, axis);
+        space_tree_turn_row(tree, &state->tree, bodies[side], along, row);
+        if (bodies[side] != LINKAGE_GROUND) {
+            dynamics->pushes[bodies[side]].moment = along;
+        }
+    }
+    space_articulated_solve(dynamics->loops->articulated, &state->tree, dynamics->pushes, NULL,
+                            pushed);
+    const double stiffness = (1.0 + contact->damping_rate * press->closing) *
+                             force_law_tangent(&contact->law, fabs(press->depth));
+    const double damping = press_damping(contact, press);
+    for (size_t k = 0; k < n; k++) {
+        for (size_t i = 0; row[k] != 0.0 && i < n; i++) {
+            by_position[i * n + k] -= stiffness * row[k] * pushed[i];
+            by_rate[i * n + k] -= damping * row[k] * pushed[i];
+        }
+    }
+    for (int side = 0; side < 2; side++) {
+        if (bodies[side] != LINKAGE_GROUND) {
+            dynamics->pushes[bodies[side]].moment = (Vec3){0.0, 0.0, 0.0};
+        }
+    }
+}
+
 void space_slopes(double since_s, const double *y, double *by_position, double *by_rate,
                   void *context)
 {
@@ -190,7 +227,12 @@ void space_slopes(double since_s, const double *y, double *by_position, double *
     }
     memset(dynamics->pushes, 0, dynamics->tree.linkage->body_count * sizeof *dynamics->pushes);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
-        if (dynamics->system.contacts[i].mode == CONTACT_PRESSING) {
+        if (dynamics->system.contacts[i].mode != CONTACT_PRESSING) {
+            continue;
+        }
+        if (dynamics->contacts[i].is_turn) {
+            add_turn_slopes(dynamics, state, i, pushed.by[1], pushed.by[0], by_position, by_rate);
+        } else {
             look_at(dynamics, state, i, &pressing);
             find_pushed(dynamics, state, i, &pressing, &pushed);
             add_slopes(dynamics, &pressing, &pushed, by_position, by_rate);

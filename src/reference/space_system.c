@@ -2,6 +2,7 @@
 #include "reference/space_system.h"
 
 #include "base/zeroed.h"
+#include "model/coordinate.h"
 #include "reference/space_slopes.h"
 
 static SpaceDynamics *own_dynamics(System *system)
@@ -22,7 +23,9 @@ static const SpaceState *state_of(const SystemState *state)
 static void rebase_contacts(SpaceDynamics *dynamics)
 {
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
-        space_contact_rebase(&dynamics->tree, &dynamics->contacts[i]);
+        if (!dynamics->contacts[i].is_turn) {
+            space_contact_rebase(&dynamics->tree, &dynamics->contacts[i]);
+        }
     }
 }
 
@@ -54,6 +57,15 @@ static void space_sizes(const System *system, const SystemState *state, size_t c
 {
     const SpaceDynamics *dynamics = dynamics_of(system);
     const SpaceForce *force = &state_of(state)->forces[contact];
+    const SpaceContact *end = &dynamics->contacts[contact];
+    if (end->is_turn) {
+        const int joint = end->place.joint;
+        const SpaceTreeState *tree = &state_of(state)->tree;
+        *length += 2.0 * fabs(dynamics->tree.base_coordinates[joint]) + fabs(end->limit);
+        *speed += vec3_length(space_tree_body(tree, end->place.hole.body)->omega) +
+                  vec3_length(space_tree_body(tree, end->place.pin.body)->omega);
+        return;
+    }
     const int bodies[2] = {dynamics->contacts[contact].place.hole.body,
                            dynamics->contacts[contact].place.pin.body};
     const Vec3 arms[2] = {force->from_a, force->from_b};
@@ -71,6 +83,12 @@ static double space_crossing(const System *system, const SystemState *state, siz
     const SpaceContact *contact = &dynamics_of(system)->contacts[number];
     const SpaceTreeState *tree = &state_of(state)->tree;
     const SpaceForce *force = &state_of(state)->forces[number];
+    if (contact->is_turn) {
+        const SpaceTree *of = &dynamics_of(system)->tree;
+        const int joint = contact->place.joint;
+        return fabs(space_turn_rate(of, tree, joint)) +
+               sqrt(system->contacts[number].flight * fabs(space_turn_second(of, tree, joint)));
+    }
     const Vec3 w = force->relative;
     const Vec3 a = vec3_sub(space_tree_acceleration(tree, contact->place.pin.body, force->from_b),
                             space_tree_acceleration(tree, contact->place.hole.body, force->from_a));
@@ -104,6 +122,14 @@ static void space_peak(const System *system, const SystemState *state, size_t nu
     values[0] = rates[0] = 0.0;
     values[1] = at->forces[number].press.depth;
     rates[1] = at->forces[number].press.closing;
+    const SpaceContact *own = &dynamics_of(system)->contacts[number];
+    if (own->is_turn) {
+        const SpaceTree *tree = &dynamics_of(system)->tree;
+        const double second = -own->sign * space_turn_second(tree, &at->tree, own->place.joint);
+        values[0] = at->forces[number].press.normal;
+        rates[0] = press_rate(contact, &at->forces[number].press, second);
+        return;
+    }
     // the places of a joint stand together
     size_t first = number;
     while (first > 0 && system->contacts[first - 1].joint == contact->joint) {
@@ -209,6 +235,29 @@ static void show_pin(const System *system, const SpaceState *at, size_t first, J
     joint->force_on_b = (Vec2){space_joint->force_on_b.x, space_joint->force_on_b.y};
 }
 
+// A joint whose angle is limited: what it holds stays in the force on its body b; its size is that
+// of what presses.
+static void show_limited(const System *system, const SpaceState *at, int number, JointState *joint)
+{
+    joint->tilt = space_turn_angle(&dynamics_of(system)->tree, &at->tree, number);
+    joint->gap = INFINITY;
+    joint->force = 0.0;
+    joint->is_touching = false;
+}
+
+// Adds what one of its ends does.
+static void show_end(const System *system, const SpaceState *at, size_t number, JointState *joint)
+{
+    const SpaceContact *end = &dynamics_of(system)->contacts[number];
+    const Press *press = &at->forces[number].press;
+    const Joint *of = &system->scenario->linkage.joints[end->place.joint];
+    const double size = vec3_length(at->forces[number].couple);
+    joint->gap = fmin(joint->gap, -press->depth);
+    joint->moment_on_b += end->sign * coordinate_sense(of) * size;
+    joint->force += size;
+    joint->is_touching = joint->is_touching || system->contacts[number].mode != CONTACT_APART;
+}
+
 static void space_joints(const System *system, const SystemState *state, JointState *joints,
                          SpaceJointState *space_joints)
 {
@@ -219,10 +268,15 @@ static void space_joints(const System *system, const SystemState *state, JointSt
             const Vec3 gap = space_tree_gap(&dynamics_of(system)->tree, &at->tree, i);
             show_ideal(&at->reactions[i], gap, &joints[i], &space_joints[i]);
         }
+        if (linkage->joints[i].limits.kind != LIMIT_NONE) {
+            show_limited(system, at, i, &joints[i]);
+        }
     }
     for (size_t i = 0; i < system->contact_count; i++) {
         const int joint = system->contacts[i].joint;
-        if (i == 0 || system->contacts[i - 1].joint != joint) {
+        if (dynamics_of(system)->contacts[i].is_turn) {
+            show_end(system, at, i, &joints[joint]);
+        } else if (i == 0 || system->contacts[i - 1].joint != joint) {
             show_pin(system, at, i, &joints[joint], &space_joints[joint]);
         }
     }

@@ -204,6 +204,19 @@ void space_tree_point_row(const SpaceTree *tree, const SpaceTreeState *state, in
     }
 }
 
+void space_tree_turn_row(const SpaceTree *tree, const SpaceTreeState *state, int body,
+                         Vec3 direction, double *row)
+{
+    for (int at = space_tree_node_of(tree, body); at >= 0; at = tree->nodes[at].parent_node) {
+        const SpaceNode *node = &tree->nodes[at];
+        const size_t count = node->joint < 0 ? 3 : 1;
+        double *own = row + node->first + (node->joint < 0 ? 3 : 0);
+        for (size_t i = 0; i < count; i++) {
+            own[i] += vec3_dot(state->turning[at][i], direction);
+        }
+    }
+}
+
 Mat3 space_tree_inertia(const SpaceTree *tree, const SpaceTreeState *state, int body)
 {
     // R I R' with R = 1 + turned: rows of R I, then of that times R'

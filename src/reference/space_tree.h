@@ -57,14 +57,15 @@ typedef struct SpaceTree {
     int *loops; // joints that close loops
     // the base
     long double base_time_s;
-    long double *base_angle; // rad, by body: of its joint since the start, if it hangs
-    LongQuat *start_turn;    // by body, at the start: of a hanging one against its parent
-    LongQuat *base_turn;     // by body, the ground first
-    LongVec3 *base_position; // likewise, of the centres
-    Mat3 *base_inertia;      // kg m^2, by body, in the world
-    Vec3 *base_arms;         // from the body's centre to each end, m
-    Vec3 *base_axes;         // of the joint, unit, by end
-    Vec3 *base_gaps;         // by joint, from the end on body a to that on body b, m
+    long double *base_angle;  // rad, by body: of its joint since the start, if it hangs
+    LongQuat *start_turn;     // by body, at the start: of a hanging one against its parent
+    LongQuat *base_turn;      // by body, the ground first
+    LongVec3 *base_position;  // likewise, of the centres
+    Mat3 *base_inertia;       // kg m^2, by body, in the world
+    Vec3 *base_arms;          // from the body's centre to each end, m
+    Vec3 *base_axes;          // of the joint, unit, by end
+    double *base_coordinates; // rad, by joint: of a limited one its angle, beyond a turn too
+    Vec3 *base_gaps;          // by joint, from the end on body a to that on body b, m
 } SpaceTree;
 
 // A body at one instant, in the world.
@@ -128,6 +129,10 @@ void space_tree_motions(const SpaceTree *tree, const SpaceTreeState *state, Spac
 // centre, m, with a sign.
 void space_tree_point_row(const SpaceTree *tree, const SpaceTreeState *state, int body, Vec3 arm,
                           double sign, Vec3 *row);
+
+// Adds to a row, a number for each coordinate, how its rate turns a body about a direction.
+void space_tree_turn_row(const SpaceTree *tree, const SpaceTreeState *state, int body,
+                         Vec3 direction, double *row);
 
 // A point of the base in the frame of a body at the base: its arm from the centre there, and the
 // joint's axis, both in the world with all the digits of a long double.

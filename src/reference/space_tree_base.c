@@ -4,6 +4,7 @@
 // its place and turn, a hanging one the angle of its joint since the start: the ideal joints of the
 // tree hold at every base, however many there have been.
 #include "base/zeroed.h"
+#include "model/space_coordinate.h"
 #include "reference/space_tree.h"
 #include "reference/turn.h"
 
@@ -101,6 +102,29 @@ static void settle_body(SpaceTree *tree, int body, int parent_end, int own_end)
         space_world_inertia(&tree->linkage->bodies[body], rounded(tree->base_turn[body + 1]));
 }
 
+// The angle of a limited joint, of all that differ by turns the one nearest to the one before.
+static double settled_coordinate(const SpaceTree *tree, int joint)
+{
+    const Linkage *linkage = tree->linkage;
+    const Joint *of = &linkage->joints[joint];
+    const Vec3 z = {0.0, 0.0, 1.0};
+    LongQuat turns[2];
+    for (int side = 0; side < 2; side++) {
+        const int body = tree->ends[2 * joint + side].body;
+        const double start = body == LINKAGE_GROUND ? 0.0 : linkage->bodies[body].start.angle;
+        turns[side] = product(tree->base_turn[body + 1], back(about(z, start)));
+    }
+    // how body b has turned against body a since time zero, when the axis was that of the case
+    const LongQuat turned = product(back(turns[0]), turns[1]);
+    const LongVec3 along = {turned.x, turned.y, turned.z};
+    const long double angle =
+        2.0L * atan2l(long_vec3_dot(along, long_vec3(of->space.axis)), turned.w);
+    const long double now = space_coordinate_start(linkage, joint) + coordinate_sense(of) * angle;
+    const long double before = tree->base_coordinates[joint];
+    const long double circle = 4.0L * acosl(0.0L);
+    return (double)(before + remainderl(now - before, circle));
+}
+
 // Centres and turns of the bodies that are driven or hang, arms and gaps.
 static void settle(SpaceTree *tree)
 {
@@ -136,6 +160,9 @@ static void settle(SpaceTree *tree)
             tree->base_axes[end] = vec3_scale(1.0 / vec3_length(axis), axis);
         }
         tree->base_gaps[joint] = long_vec3_round(minus(points[1], points[0]));
+        if (tree->linkage->joints[joint].limits.kind != LIMIT_NONE) {
+            tree->base_coordinates[joint] = settled_coordinate(tree, joint);
+        }
     }
 }
 
@@ -148,6 +175,11 @@ void space_tree_start(SpaceTree *tree, const SpaceMotion *motions, double *u)
         turns[i + 1] = about(z, tree->linkage->bodies[i].start.angle);
     }
     tree->base_time_s = 0.0L;
+    for (int i = 0; i < (int)tree->linkage->joint_count; i++) {
+        if (tree->linkage->joints[i].limits.kind != LIMIT_NONE) {
+            tree->base_coordinates[i] = space_coordinate_start(tree->linkage, i);
+        }
+    }
     if (tree->driven >= 0) {
         tree->start_turn[tree->driven] = turns[tree->driven + 1];
     }

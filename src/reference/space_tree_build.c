@@ -76,6 +76,7 @@ static void lay(SpaceTree *tree, Layout *layout)
     tree->base_inertia = layout_take(layout, bodies, sizeof *tree->base_inertia);
     tree->base_arms = layout_take(layout, 2 * joints, sizeof *tree->base_arms);
     tree->base_axes = layout_take(layout, 2 * joints, sizeof *tree->base_axes);
+    tree->base_coordinates = layout_take(layout, joints, sizeof *tree->base_coordinates);
     tree->base_gaps = layout_take(layout, joints, sizeof *tree->base_gaps);
 }
 

@@ -101,8 +101,10 @@ static void write_limits(const Linkage *linkage, const Trajectory *trajectory, s
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (linkage->joints[i].limits.kind != LIMIT_NONE) {
-            const double at =
-                coordinate_position(linkage, trajectory_motion(trajectory, sample, 0), (int)i);
+            const double at = linkage->is_spatial
+                                  ? trajectory_state(trajectory, sample, i)->tilt
+                                  : coordinate_position(
+                                        linkage, trajectory_motion(trajectory, sample, 0), (int)i);
             write_cells(&at, 1, stream);
         }
     }

@@ -83,8 +83,8 @@ bool baseline_set_metrics(Baseline *baseline, const CheckMeasure *run, const Che
                           size_t member_count, Err *err);
 
 // Makes measured values equal to those of a metric's sample from which only the rounding of the
-// baseline tells them apart: of a number that nearly all starts share, the rounding would put all of
-// one sample on one side of the other's.
+// baseline tells them apart: of a number that nearly all starts share, the rounding would put all
+// of one sample on one side of the other's.
 void baseline_snap(const BaselineMetric *metric, double *values, size_t count);
 
 // Puts the sample's values into the metrics that are statistical. `rate` is the false-alarm rate of

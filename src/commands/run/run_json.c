@@ -68,7 +68,10 @@ static void set_limits(json_t *object, const Linkage *linkage, const Trajectory 
     double least = INFINITY;
     double most = -INFINITY;
     for (size_t i = 0; i < run->sample_count; i++) {
-        const double now = coordinate_position(linkage, trajectory_motion(run, i, 0), (int)number);
+        const double now =
+            linkage->is_spatial
+                ? trajectory_state(run, i, number)->tilt
+                : coordinate_position(linkage, trajectory_motion(run, i, 0), (int)number);
         least = fmin(least, now);
         most = fmax(most, now);
     }
