@@ -10,13 +10,13 @@ const SchemaGroup SCHEMA_GROUPS[] = {
                      "origin; the rod joins its end to the slider, which slides along a straight "
                      "line. The rod is longer than crank and offset together where the crank is "
                      "to turn fully. In the plane only."},
-    {"bodies", "Any linkage, instead of four-bar: any number of rigid bodies, in space up to 16, "
+    {"bodies", "Any linkage, instead of four-bar: any number of rigid bodies, "
                "with names of letters, digits, - and _."},
     {"joints", "With four-bar, the joints with play, by name: crank-coupler, coupler-follower, "
                "follower-ground; a joint that is not named is ideal, and the drive joint "
                "ground-crank always is. With slider-crank likewise: crank-rod and rod-slider, pins "
                "with play, and slider-guide, with guide, block and length; without them the slider "
-               "stays on its line. With bodies, every joint, in space up to 24, with any name. Its keys "
+               "stays on its line. With bodies, every joint, with any name. Its keys "
                "make its kind: without sizes it is an ideal pivot; with hole and pin, or "
                "radial-clearance, a pin with play; with along an ideal prismatic joint; with guide, "
                "block and length as well a block with play between guides, or a sleeve round a "

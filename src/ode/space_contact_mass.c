@@ -8,8 +8,6 @@
 // the stiffest motion of the two that counts, at most 1 / m_i = sum_j |W_ij| k_j / k_i.
 #include "ode/space_contact_mass.h"
 
-#include <string.h>
-
 // The places of a place's joint: [first, end).
 static size_t first_of_joint(const SpaceContacts *contacts, size_t number)
 {
@@ -52,7 +50,9 @@ static bool needs_mass(const SpaceContacts *contacts, size_t number)
 // Takes the response with the normals of all places that touch.
 static bool place_normals(SpaceContacts *contacts, const SpaceMotion *motions)
 {
-    memset(contacts->rows, 0, SPACE_CONTACT_ROWS * contacts->count * sizeof *contacts->rows);
+    for (size_t i = 0; i < space_response_play_rows(contacts->response); i++) {
+        contacts->rows[i] = (SpaceRow){.body = {LINKAGE_GROUND, LINKAGE_GROUND}};
+    }
     for (size_t i = 0; i < contacts->count; i++) {
         const PinSpace *place = &contacts->places[i];
         const SpaceContact *contact = &contacts->contacts[i];

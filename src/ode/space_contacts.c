@@ -21,7 +21,6 @@ bool space_contacts_list(SpaceContacts *contacts, const Scenario *scenario, Err 
     contacts->scenario = scenario;
     contacts->places = pin_space_list(scenario, &contacts->count, err);
     contacts->contacts = zeroed(contacts->count, sizeof *contacts->contacts);
-    contacts->rows = zeroed(SPACE_CONTACT_ROWS * contacts->count, sizeof *contacts->rows);
     contacts->motions = zeroed(bodies, sizeof *contacts->motions);
     return contacts->places != NULL;
 }
@@ -32,6 +31,7 @@ void space_contacts_init(SpaceContacts *contacts, World *world, SpaceResponse *r
     const Scenario *scenario = contacts->scenario;
     contacts->world = world;
     contacts->response = response;
+    contacts->rows = zeroed(space_response_play_rows(response), sizeof *contacts->rows);
     contacts->is_staggered = is_staggered;
     contacts->group = dJointGroupCreate(0);
     contacts->penalty = scenario->contact.penalty > 0.0
@@ -42,9 +42,9 @@ void space_contacts_init(SpaceContacts *contacts, World *world, SpaceResponse *r
     }
 }
 
-SpaceResponsePlace *space_contacts_response_places(const SpaceContacts *contacts)
+SpaceResponsePlace *space_contacts_response_places(const SpaceContacts *contacts, size_t room)
 {
-    SpaceResponsePlace *places = zeroed(contacts->count, sizeof *places);
+    SpaceResponsePlace *places = zeroed(room, sizeof *places);
     for (size_t i = 0; i < contacts->count; i++) {
         places[i] = (SpaceResponsePlace){contacts->places[i].joint, SPACE_CONTACT_ROWS};
     }

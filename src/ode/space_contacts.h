@@ -15,8 +15,9 @@ bool space_contacts_list(SpaceContacts *contacts, const Scenario *scenario, Err 
 void space_contacts_init(SpaceContacts *contacts, World *world, SpaceResponse *response,
                          bool is_staggered);
 
-// The places as the response takes them, SPACE_CONTACT_ROWS each, which free() gives back.
-SpaceResponsePlace *space_contacts_response_places(const SpaceContacts *contacts);
+// The places as the response takes them, SPACE_CONTACT_ROWS each, in an array with room for some
+// in all, which free() gives back.
+SpaceResponsePlace *space_contacts_response_places(const SpaceContacts *contacts, size_t room);
 void space_contacts_finish(SpaceContacts *contacts);
 
 // Looks for contacts at the motions given and makes a row for each. `seen` are the motions as the

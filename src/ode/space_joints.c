@@ -7,6 +7,7 @@
 #include "ode/space_joints.h"
 
 #include "base/zeroed.h"
+#include "model/space_coordinate.h"
 
 #include <math.h>
 #include <string.h>
@@ -36,10 +37,18 @@ static void place_joint(const SpaceResponse *response, const SpaceMotion *motion
     const Vec3 pin_axis = space_direction(motions, pin.body, pin.axis);
     const Vec3 offset = vec3_sub(space_point(motions, pin.body, pin.anchor), middle);
     plane->eccentricity = (Vec2){offset.x, offset.y};
-    plane->gap = 0.0;
-    plane->is_touching = true;
     space->offset = offset;
     const Joint *joint = &response->linkage->joints[number];
+    if (joint->limits.kind != LIMIT_NONE) {
+        // what it was at the last look says which turn it is in
+        const Linkage *linkage = response->linkage;
+        plane->tilt = space_coordinate_near(linkage, motions, (int)number, plane->tilt);
+        plane->gap =
+            fmin(plane->tilt - coordinate_low(joint), coordinate_high(joint) - plane->tilt);
+        return;
+    }
+    plane->gap = 0.0;
+    plane->is_touching = true;
     if (joint->kind != JOINT_CLEARANCE) {
         return;
     }

@@ -21,6 +21,7 @@ typedef struct SpaceRows {
     SpaceResponse response;
     SpaceHold *hold; // owned
     SpaceContacts contacts;
+    SpaceStops stops;
     double step_s;
     long index; // of the next step: it starts at that many times step_s
     int driven;
@@ -38,6 +39,7 @@ static void space_rows_close(void *state)
     SpaceRows *rows = state;
     if (rows != NULL) {
         space_contacts_finish(&rows->contacts);
+        space_stops_finish(&rows->stops);
         world_finish(&rows->world);
         space_response_finish(&rows->response);
         space_hold_free(rows->hold);
@@ -51,68 +53,33 @@ static void space_rows_close(void *state)
     }
 }
 
-// The bodies half a step on, each ideal joint as far open as it stays: h^2 / 2 of how fast the
-// rates of its rows change as the bodies turn.
-static bool move_on(SpaceRows *rows, SpaceMotion *motions, Err *err)
-{
-    const Linkage *linkage = &rows->scenario->linkage;
-    const double half_s = 0.5 * rows->step_s;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        const SpaceChange moved = {vec3_scale(half_s, motions[i].velocity),
-                                   vec3_scale(half_s, motions[i].omega)};
-        space_change(&motions[i], &moved, NULL);
-        motions[i].acceleration = motions[i].alpha = (Vec3){0.0, 0.0, 0.0};
-    }
-    if (rows->driven >= 0) {
-        motions[rows->driven] = space_driven(linkage, half_s);
-        motions[rows->driven].acceleration = (Vec3){0.0, 0.0, 0.0};
-    }
-    if (!space_response_place(&rows->response, motions, NULL)) {
-        return err_set(err, ERR_SOLVER,
-                       "the ideal joints are redundant at the start: give one joint of the "
-                       "loop some play");
-    }
-    const size_t ideal = rows->response.ideal_rows;
-    double *openings = zeroed(3 * ideal, sizeof *openings);
-    double *rates = openings + ideal;
-    double *drift = rates + ideal;
-    SpaceChange *changes = zeroed(linkage->body_count, sizeof *changes);
-    space_response_openings(&rows->response, motions, openings, rates);
-    space_response_drift(&rows->response, motions, drift);
-    for (size_t i = 0; i < ideal; i++) {
-        openings[i] -= 2.0 * half_s * half_s * drift[i];
-    }
-    space_response_close(&rows->response, openings, rates, changes);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        if ((int)i != rows->driven) {
-            space_change(&motions[i], &changes[i], NULL);
-        }
-        space_world_place(&rows->world, i, &motions[i]);
-    }
-    free(changes);
-    free(openings);
-    return true;
-}
-
 // Builds the world closed, so that every joint gets its anchors where they belong, and moves it
 // then.
 static bool build(SpaceRows *rows, Err *err)
 {
     const Scenario *scenario = rows->scenario;
-    if (!space_contacts_list(&rows->contacts, scenario, err)) {
+    if (!space_contacts_list(&rows->contacts, scenario, err) ||
+        !space_stops_list(&rows->stops, scenario, err)) {
         return false;
     }
     SpaceMotion *motions = rows->seen;
     space_start(&scenario->linkage, motions);
-    SpaceResponsePlace *places = space_contacts_response_places(&rows->contacts);
-    const bool is_built = space_world_build(scenario, motions, places, rows->contacts.count,
+    const size_t pins = rows->contacts.count;
+    SpaceResponsePlace *places =
+        space_contacts_response_places(&rows->contacts, pins + rows->stops.count);
+    for (size_t i = 0; i < rows->stops.count; i++) {
+        places[pins + i] = (SpaceResponsePlace){rows->stops.stops[i].joint, 1};
+    }
+    const bool is_built = space_world_build(scenario, motions, places, pins + rows->stops.count,
                                             &rows->world, &rows->response, &rows->hold, err);
     free(places);
     if (!is_built) {
         return false;
     }
     space_contacts_init(&rows->contacts, &rows->world, &rows->response, rows->is_staggered);
-    return !rows->is_staggered || move_on(rows, motions, err);
+    space_stops_init(&rows->stops, &rows->world, &rows->response, pins, rows->is_staggered);
+    return !rows->is_staggered ||
+           space_world_move_on(&rows->world, &rows->response, rows->step_s, motions, err);
 }
 
 static bool open_rows(const Scenario *scenario, bool is_staggered, void **state, Err *err)
@@ -270,6 +237,8 @@ static bool advance(SpaceRows *rows, SpaceStride *stride, Err *err)
     look_ahead(rows, stride, gyration, &driven, seen);
     bool is_good =
         space_contacts_make(&rows->contacts, stride->first, seen, step_s, stride->approach, err);
+    is_good = is_good && space_stops_make(&rows->stops, stride->first, step_s, &stride->joints,
+                                          stride->approach, err);
     place_driven(rows, &driven, &driven.seen);
     is_good = is_good && hold(rows, stride, err);
     is_good =
@@ -278,7 +247,7 @@ static bool advance(SpaceRows *rows, SpaceStride *stride, Err *err)
         return stepping_fail(rows->scenario, stride->start_s, (size_t)rows->index + 1, step_s, err);
     }
     read_motions(rows, gyration, stride);
-    space_stride_book(stride, &driven.placed, step_s, world, &rows->contacts);
+    space_stride_book(stride, &driven.placed, step_s, world, &rows->contacts, &rows->stops);
     rows->index++;
     return true;
 }
@@ -327,6 +296,7 @@ static StepRecord space_rows_record(const void *state)
         .space_joints = now->joints.space,
         .impulse = now->impulse,
         .approach = now->approach,
+        .tops = rows->is_staggered ? now->tops : NULL,
         .drive_work = now->drive_work,
         .dissipated = now->energy.dissipated,
         .friction = now->energy.friction,
@@ -368,7 +338,7 @@ static SolverModel space_rows_model(const void *state)
         .step_s = rows->step_s,
         .constraint_rows = rows->world.constraint_rows,
         .contact_rows = rows->contacts.most_rows,
-        .fallback_rows = rows->contacts.fallback_count,
+        .fallback_rows = rows->contacts.fallback_count + rows->stops.fallback_count,
         .steps = (size_t)rows->index,
     };
     stepping_label(rows->scenario, rows->is_staggered ? "staggered" : "plain",

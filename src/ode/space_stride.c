@@ -12,6 +12,7 @@ void space_stride_create(const Linkage *linkage, SpaceStride *stride)
     stride->alpha = zeroed(linkage->body_count, sizeof *stride->alpha);
     stride->joints = space_joints_create(linkage);
     stride->impulse = zeroed(linkage->joint_count, sizeof *stride->impulse);
+    stride->tops = zeroed(linkage->joint_count, sizeof *stride->tops);
     stride->approach = zeroed(linkage->joint_count, sizeof *stride->approach);
 }
 
@@ -24,10 +25,11 @@ void space_stride_free(SpaceStride *stride)
     space_joints_free(&stride->joints);
     free(stride->impulse);
     free(stride->approach);
+    free(stride->tops);
 }
 
 void space_stride_book(SpaceStride *stride, const SpaceMotion *driven, double step_s,
-                       const World *world, SpaceContacts *contacts)
+                       const World *world, SpaceContacts *contacts, SpaceStops *stops)
 {
     const Linkage *linkage = world->linkage;
     const int body = linkage_driven_body(linkage);
@@ -46,6 +48,8 @@ void space_stride_book(SpaceStride *stride, const SpaceMotion *driven, double st
             others.turn = vec3_add(others.turn, load.turn);
         }
     }
+    space_stops_clear(stops, step_s, &stride->joints);
+    space_stops_tops(stops, stride->tops);
     stride->drive_work = 0.0;
     if (body >= 0) {
         Vec3 force;
@@ -58,4 +62,7 @@ void space_stride_book(SpaceStride *stride, const SpaceMotion *driven, double st
     }
     space_contacts_impulses(contacts, step_s, stride->impulse);
     stride->energy = space_contacts_energy(contacts);
+    const ContactEnergy ends = space_stops_energy(stops);
+    stride->energy.dissipated += ends.dissipated;
+    stride->energy.elastic += ends.elastic;
 }

@@ -3,6 +3,7 @@
 
 #include "ode/space_contacts.h"
 #include "ode/space_joints.h"
+#include "ode/space_stops.h"
 
 typedef struct SpaceStride {
     double start_s;
@@ -14,6 +15,7 @@ typedef struct SpaceStride {
     SpaceJoints joints;
     double *impulse; // by joint
     double *approach;
+    JointTop *tops;
     double drive_work; // J
     ContactEnergy energy;
 } SpaceStride;
@@ -24,4 +26,4 @@ void space_stride_free(SpaceStride *stride);
 // Fills in forces, energies, impulses and the drive's part of a step that has been taken, and
 // removes its contacts. `driven` is the motion of the driven body in its rows.
 void space_stride_book(SpaceStride *stride, const SpaceMotion *driven, double step_s,
-                       const World *world, SpaceContacts *contacts);
+                       const World *world, SpaceContacts *contacts, SpaceStops *stops);

@@ -19,6 +19,7 @@
 // of first order: a top that is let go loses its energy with the step.
 #include "ode/space_world.h"
 
+#include "base/zeroed.h"
 #include "ode/engine.h"
 
 #include <string.h>
@@ -232,4 +233,47 @@ Vec3 space_world_gyration(const SpaceResponse *response, size_t body, const Spac
     }
     *alpha = mat3_apply(&turn, turning);
     return mat3_apply(&turn, torque);
+}
+
+bool space_world_move_on(World *world, SpaceResponse *response, double step_s, SpaceMotion *motions,
+                         Err *err)
+{
+    const Linkage *linkage = world->linkage;
+    const int driven = linkage_driven_body(linkage);
+    const double half_s = 0.5 * step_s;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const SpaceChange moved = {vec3_scale(half_s, motions[i].velocity),
+                                   vec3_scale(half_s, motions[i].omega)};
+        space_change(&motions[i], &moved, NULL);
+        motions[i].acceleration = motions[i].alpha = (Vec3){0.0, 0.0, 0.0};
+    }
+    if (driven >= 0) {
+        motions[driven] = space_driven(linkage, half_s);
+        motions[driven].acceleration = (Vec3){0.0, 0.0, 0.0};
+    }
+    if (!space_response_place(response, motions, NULL)) {
+        return err_set(err, ERR_SOLVER,
+                       "the ideal joints are redundant at the start: give one joint of the "
+                       "loop some play");
+    }
+    const size_t ideal = response->ideal_rows;
+    double *openings = zeroed(3 * ideal, sizeof *openings);
+    double *rates = openings + ideal;
+    double *drift = rates + ideal;
+    SpaceChange *changes = zeroed(linkage->body_count, sizeof *changes);
+    space_response_openings(response, motions, openings, rates);
+    space_response_drift(response, motions, drift);
+    for (size_t i = 0; i < ideal; i++) {
+        openings[i] -= 2.0 * half_s * half_s * drift[i];
+    }
+    space_response_close(response, openings, rates, changes);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if ((int)i != driven) {
+            space_change(&motions[i], &changes[i], NULL);
+        }
+        space_world_place(world, i, &motions[i]);
+    }
+    free(changes);
+    free(openings);
+    return true;
 }

@@ -14,6 +14,12 @@ bool space_world_build(const Scenario *scenario, const SpaceMotion *motions,
                        const SpaceResponsePlace *places, size_t count, World *world,
                        SpaceResponse *response, SpaceHold **hold, Err *err);
 
+// Moves the bodies of motions, and those of the world, half a step on, each ideal joint as far open
+// as it stays: h^2 / 2 of how fast the rates of its rows change as the bodies turn. Fails with
+// ERR_SOLVER where the ideal joints are redundant.
+bool space_world_move_on(World *world, SpaceResponse *response, double step_s, SpaceMotion *motions,
+                         Err *err);
+
 // Puts one body where a motion says, with its velocities, and reads it back; accelerations are
 // zero.
 void space_world_place(World *world, size_t body, const SpaceMotion *motion);
