@@ -261,6 +261,7 @@ static void a_row_gives_the_pair_it_was_made_from(void **state)
     assert_close(delivered, mass->readings[1].restitution, 1e-3);
     assert_close(delivered, mass->readings[2].restitution, 1e-3);
     assert_true(mass->readings[0].restitution > delivered + 5e-3);
+    inverse_finish(&inverse);
 }
 
 static void rows_that_are_no_spring_and_damper_are_told_apart(void **state)
@@ -274,11 +275,13 @@ static void rows_that_are_no_spring_and_damper_are_told_apart(void **state)
     assert_true(inverse.masses[0].readings[1].is_there);
     assert_false(inverse.masses[0].readings[2].is_there); // it needs a mass
     assert_false(inverse.masses[0].delivered.is_measured);
+    inverse_finish(&inverse);
     // no spring: the pin stays where it was stopped
     assert_true(inverse_of_row(0.0, 1e-5, 1e-3, &inverse, &err));
     inverse_add_mass(&inverse, "", 1.0);
     assert_near(inverse.masses[0].readings[0].stiffness, 0.0, 0.0);
     assert_false(inverse.masses[0].predicted.is_ended);
+    inverse_finish(&inverse);
     assert_false(inverse_of_row(0.2, 0.0, 1e-3, &inverse, &err));
     assert_int_equal(err.kind, ERR_USAGE);
     err = (Err){ERR_NONE, ""};
