@@ -64,7 +64,7 @@ struct JpWorld {
     dJointGroupID contacts; // of the geoms of the caller's space, likewise
     Encounter *encounter;   // owned, NULL before the first
     RecallPause pause;
-    struct Recall *recall;  // owned, NULL before the first (world/recall.h)
+    struct Recall *recall; // owned, NULL before the first (world/recall.h)
     JpWorldStats stats;
     double last_step;          // s, of the step before; 0: there was none
     size_t known_when_counted; // bodies, when it was last made sure that all are known
