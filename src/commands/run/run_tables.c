@@ -190,7 +190,8 @@ void run_tables_pins(const RunReport *report, const Style *style, Text *text)
     for (size_t joint = 0; linkage->is_spatial && joint < linkage->joint_count; joint++) {
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
-            if (!trajectory_feels_play(run, &linkage->joints[joint])) {
+            if (linkage->joints[joint].kind != JOINT_CLEARANCE ||
+                !trajectory_feels_play(run, &linkage->joints[joint])) {
                 continue;
             }
             if (table == NULL) {
