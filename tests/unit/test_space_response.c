@@ -40,41 +40,40 @@ typedef struct Case {
 
 // A Bennett linkage with play in one pin, its bodies a little beside where they belong and moving
 // at random; with the rows of friction.
-static Case make_case(unsigned number)
+static void make_case(unsigned number, Case *made)
 {
-    Case here = {.scenario = load_with("cases/space/bennett.yaml", "contact.friction=0.1")};
-    const Linkage *linkage = &here.scenario.linkage;
+    *made = (Case){.scenario = load_with("cases/space/bennett.yaml", "contact.friction=0.1")};
+    const Linkage *linkage = &made->scenario.linkage;
     uint64_t seed = lcg_stirred(number);
-    space_start(linkage, here.motions);
+    space_start(linkage, made->motions);
     Err err = {ERR_NONE, ""};
-    PinSpace *places = pin_space_list(&here.scenario, &here.place_count, &err);
-    assert_int_equal(here.place_count, PIN_SPACE_PLACES);
+    PinSpace *places = pin_space_list(&made->scenario, &made->place_count, &err);
+    assert_int_equal(made->place_count, PIN_SPACE_PLACES);
     SpaceResponsePlace taken[PIN_SPACE_PLACES];
-    for (size_t i = 0; i < here.place_count; i++) {
-        here.places[i] = places[i];
+    for (size_t i = 0; i < made->place_count; i++) {
+        made->places[i] = places[i];
         taken[i] = (SpaceResponsePlace){places[i].joint, pin_space_row_count(&places[i], true)};
     }
     free(places);
-    here.response = test_calloc(1, sizeof *here.response);
-    assert_true(
-        space_response_init(linkage, here.motions, taken, here.place_count, here.response, &err));
+    made->response = test_calloc(1, sizeof *made->response);
+    assert_true(space_response_init(linkage, made->motions, taken, made->place_count,
+                                    made->response, &err));
     for (size_t i = 0; i < linkage->body_count; i++) {
-        SpaceMotion *motion = &here.motions[i];
+        SpaceMotion *motion = &made->motions[i];
         const SpaceChange place = {drawn(&seed, 1e-5), drawn(&seed, 1e-4)};
         const SpaceChange speed = {drawn(&seed, 1.0), drawn(&seed, 20.0)};
         space_change(motion, &place, &speed);
         motion->acceleration = drawn(&seed, 10.0);
         motion->alpha = drawn(&seed, 100.0);
     }
-    for (size_t i = 0; i < here.place_count; i++) {
-        pin_space_rows_place(&here.places[i], here.motions, true, &here.rows[i]);
-        memcpy(here.play_rows + here.play_count, here.rows[i].rows,
-               here.rows[i].count * sizeof(SpaceRow));
-        here.play_count += here.rows[i].count;
+    for (size_t i = 0; i < made->place_count; i++) {
+        pin_space_rows_place(&made->places[i], made->motions, true, &made->rows[i]);
+        memcpy(made->play_rows + made->play_count, made->rows[i].rows,
+               made->rows[i].count * sizeof(SpaceRow));
+        made->play_count += made->rows[i].count;
     }
-    assert_int_equal(here.play_count, 2 * PIN_SPACE_ROWS + PIN_SPACE_PLAIN_ROWS);
-    assert_true(space_response_place(here.response, here.motions, here.play_rows));
-    return here;
+    assert_int_equal(made->play_count, 2 * PIN_SPACE_ROWS + PIN_SPACE_PLAIN_ROWS);
+    assert_true(space_response_place(made->response, made->motions, made->play_rows));
 }
 
 static void release(Case *here)
@@ -152,7 +151,8 @@ static void pushes_are_answered_as_the_whole_system_answers(void **state)
     (void)state;
     static double mobility[PLAY * PLAY];
     for (unsigned number = 0; number < 5; number++) {
-        Case here = make_case(number);
+        Case here;
+        make_case(number, &here);
         assert_int_equal(here.response->ideal_rows, 10);
         space_response_mobility(here.response, mobility);
         for (size_t row = 0; row < here.play_count; row++) {
@@ -213,7 +213,8 @@ static void rates_of_rows_change_as_they_are_said_to(void **state)
     (void)state;
     const double span_s = 1e-5;
     for (unsigned number = 0; number < 5; number++) {
-        Case here = make_case(number);
+        Case here;
+        make_case(number, &here);
         double least_off = INFINITY;
         for (size_t i = 0; i < here.place_count; i++) {
             SpaceMotion motions[2][BODIES];
@@ -249,7 +250,8 @@ static void rows_that_have_become_dependent_are_chosen_anew(void **state)
 {
     (void)state;
     static double mobility[2][PLAY * PLAY];
-    Case here = make_case(1);
+    Case here;
+    make_case(1, &here);
     SpaceResponse *response = here.response;
     space_response_mobility(response, mobility[0]);
     const int part = response->part_of[1];
