@@ -4,7 +4,7 @@
 // four_bars order          ODE's error over its step, N = 2 at 4 s, and the order observed
 // four_bars steps          error and time of a step over N at one step: ODE's direct solver, and
 //                          its quick one with more and more iterations
-// four_bars equal          the cheapest way of each solver to an error, over N
+// four_bars equal          what each solver takes to come to the same error, over N
 // four_bars own            the direct solver with ODE's own dense matrix, over N
 // four_bars branch         is the branch of parallelograms kept for 20 s, over N
 // Without a word: all of them, some minutes. The problem: tests/support/four_bars.h.
@@ -187,21 +187,21 @@ static double exponent(const double *times, size_t count)
 
 static void tabulate_steps(void)
 {
-    static const size_t ITERATIONS[] = {0, 5, 10, 20, 50, 100};
-    enum { WAY_COUNT = sizeof ITERATIONS / sizeof *ITERATIONS };
+    static const size_t SHOWN[] = {0, 5, 10, 20, 50, 100};
+    enum { WAY_COUNT = sizeof SHOWN / sizeof *SHOWN };
     double times[WAY_COUNT][COUNT_COUNT];
     printf("ODE, staggered, step 1 ms, %g s: error of the tips, m, and processor time of a step, "
            "us, with the direct solver and with the quick one's iterations\n"
            "    N            direct",
            DURATION);
     for (size_t k = 1; k < WAY_COUNT; k++) {
-        printf("  %16zu", ITERATIONS[k]);
+        printf("  %16zu", SHOWN[k]);
     }
     printf("\n");
     for (size_t i = 0; i < COUNT_COUNT; i++) {
         printf("%5zu", COUNTS[i]);
         for (size_t k = 0; k < WAY_COUNT; k++) {
-            const Way way = {ODE_STAGGERED, ITERATIONS[k], 1e-3, false};
+            const Way way = {ODE_STAGGERED, SHOWN[k], 1e-3, false};
             const Point point = solve(&way, COUNTS[i]);
             times[k][i] = point.step_us;
             printf("  %7.1e %8.1f", point.error, point.step_us);
@@ -216,78 +216,194 @@ static void tabulate_steps(void)
     printf("\n");
 }
 
-// The largest N of which the cheapest way is looked for among hundreds of runs.
-static const size_t EQUAL_MOST = 256;
+// The ways that may come to an error: every stepping, step and number of iterations of these. Ways
+// of the direct solver have no iterations.
+static const double STEPS[] = {8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4}; // s
+static const size_t ITERATIONS[] = {5, 7, 10, 15, 20, 30, 50, 100, 200};
+enum {
+    STEP_COUNT = sizeof STEPS / sizeof *STEPS,
+    ITERATION_COUNT = sizeof ITERATIONS / sizeof *ITERATIONS,
+    WAY_MOST = STEPPING_COUNT * STEP_COUNT * ITERATION_COUNT,
+};
 
-// Solves only where a way may be cheaper than the best one so far: by what a step took before.
-static void improve(const Way *way, size_t count, double target, double *step_us, Way *best,
-                    Point *at)
+// What a step takes beside its iterations, in iterations: measured at N = 256.
+static const double BESIDE = 4.0;
+
+// The ways of one solver at one N by rising work, and their errors as far as they are known.
+typedef struct Search {
+    size_t count; // N
+    size_t way_count;
+    Way ways[WAY_MOST];
+    double errors[WAY_MOST]; // m; below 0 where the way has not been run
+} Search;
+
+// In iterations a simulated second: the same on every machine, whatever else it does. Extrapolated
+// stepping takes as many steps of its worlds in all as the others.
+static double work_of(const Way *way)
 {
-    if (*step_us * 1e-3 / way->step_s > 1.2 * at->total_ms) {
-        return;
-    }
-    const Point point = solve(way, count);
-    *step_us = point.step_us;
-    if (point.error <= target && point.total_ms < at->total_ms) {
-        *best = *way;
-        *at = point;
-    }
+    return (BESIDE + (double)way->iterations) / way->step_s;
 }
 
-// The cheapest of many ways to an error, of the direct or of the quick solver.
-static Point find_cheapest(size_t count, double target, bool is_quick, Way *best)
+static int by_work(const void *first, const void *second)
 {
-    static const double STEPS[] = {8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4};
-    static const size_t ITERATIONS[] = {5, 7, 10, 15, 20, 30, 50, 100, 200};
-    Point at = {.error = NAN, .total_ms = INFINITY};
-    for (size_t k = 0; k < (is_quick ? sizeof ITERATIONS / sizeof *ITERATIONS : 1); k++) {
-        for (OdeStepping stepping = ODE_PLAIN; stepping <= ODE_EXTRAPOLATED; stepping++) {
-            double step_us = 0.0;
-            for (size_t i = 0; i < sizeof STEPS / sizeof *STEPS; i++) {
-                const Way way = {stepping, is_quick ? ITERATIONS[k] : 0, STEPS[i], false};
-                improve(&way, count, target, &step_us, best, &at);
-            }
+    const double a = work_of(first);
+    const double b = work_of(second);
+    return (a > b) - (a < b);
+}
+
+static void start_search(size_t count, bool is_quick, Search *search)
+{
+    *search = (Search){.count = count};
+    for (size_t i = 0; i < STEPPING_COUNT * STEP_COUNT; i++) {
+        for (size_t k = 0; k < (is_quick ? ITERATION_COUNT : 1); k++) {
+            search->errors[search->way_count] = -1.0;
+            search->ways[search->way_count++] = (Way){
+                .stepping = STEPPINGS[i / STEP_COUNT],
+                .iterations = is_quick ? ITERATIONS[k] : 0,
+                .step_s = STEPS[i % STEP_COUNT],
+            };
         }
     }
-    return at;
+    qsort(search->ways, search->way_count, sizeof *search->ways, by_work);
 }
 
-static void print_cheapest(const Way *way, const Point *point)
+// The error of a way, run where it is not known.
+static double error_at(Search *search, size_t i)
+{
+    if (search->errors[i] < 0.0) {
+        const double error = solve(&search->ways[i], search->count).error;
+        search->errors[i] = isfinite(error) ? error : INFINITY;
+    }
+    return search->errors[i];
+}
+
+// An error may by chance be so many times smaller than that of a better solution.
+static const double CHANCE = 3.0;
+
+// Whether the direct solver comes to an error by the stepping and step of a way: more iterations
+// bring the quick one towards that, no further, but by chance.
+static bool is_fine_enough(Search *direct, const Way *way, double target)
+{
+    for (size_t i = 0; i < direct->way_count; i++) {
+        const Way *other = &direct->ways[i];
+        if (other->stepping == way->stepping && other->step_s == way->step_s) {
+            return error_at(direct, i) <= CHANCE * target;
+        }
+    }
+    return false;
+}
+
+// The way with the least work that comes to an error; NULL where none does.
+static const Way *find_least(Search *search, Search *direct, double target)
+{
+    for (size_t i = 0; i < search->way_count; i++) {
+        const Way *way = &search->ways[i];
+        if (is_fine_enough(direct, way, target) && error_at(search, i) <= target) {
+            return way;
+        }
+    }
+    return NULL;
+}
+
+// Ways to one error at one N, each with the median of its processor time.
+enum { AT_DIRECT, AT_QUICK, AT_DENSE, AT_COUNT };
+
+typedef struct Equal {
+    Way ways[AT_COUNT];
+    bool is_there[AT_COUNT];
+    double total_ms[AT_COUNT]; // a simulated second; NAN where there is none
+} Equal;
+
+// ODE's own dense matrix takes seconds a second from here on.
+static const size_t DENSE_MOST = 64;
+
+// In turn, so that what else the machine does meets all of them.
+static void time_in_turn(size_t count, Equal *equal)
+{
+    enum { ROUNDS = 3 };
+    double times[AT_COUNT][ROUNDS];
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int k = 0; k < AT_COUNT; k++) {
+            times[k][round] = equal->is_there[k] ? solve(&equal->ways[k], count).total_ms : NAN;
+        }
+    }
+    for (int k = 0; k < AT_COUNT; k++) {
+        const double *t = times[k];
+        equal->total_ms[k] = fmax(fmin(t[0], t[1]), fmin(fmax(t[0], t[1]), t[2]));
+    }
+}
+
+static void find_equal(Search searches[2], double target, Equal *equal)
+{
+    *equal = (Equal){.is_there = {false}};
+    for (int k = AT_DIRECT; k <= AT_QUICK; k++) {
+        const Way *way = find_least(&searches[k], &searches[AT_DIRECT], target);
+        equal->is_there[k] = way != NULL;
+        equal->ways[k] = way != NULL ? *way : (Way){.step_s = 0.0};
+    }
+    equal->ways[AT_DENSE] = equal->ways[AT_DIRECT];
+    equal->ways[AT_DENSE].is_dense = true;
+    equal->is_there[AT_DENSE] = equal->is_there[AT_DIRECT] && searches[0].count <= DENSE_MOST;
+    time_in_turn(searches[0].count, equal);
+}
+
+static void print_way(const Equal *equal, int k)
 {
     char words[64] = "none";
-    if (isfinite(point->total_ms)) {
-        snprintf(words, sizeof words, "%s %g ms", OPTIONS_ODE_STEPPINGS[way->stepping],
-                 1e3 * way->step_s);
+    const Way *way = &equal->ways[k];
+    if (equal->is_there[k]) {
+        const int length = snprintf(words, sizeof words, "%s %g ms",
+                                    OPTIONS_ODE_STEPPINGS[way->stepping], 1e3 * way->step_s);
+        if (way->iterations > 0) {
+            snprintf(words + length, sizeof words - (size_t)length, ", %zu", way->iterations);
+        }
     }
-    printf("  %-20s %9.3g", words, point->total_ms);
+    printf("  %-22s %8.3g", words, equal->total_ms[k]);
+}
+
+static void print_equal(double target, const Equal equals[COUNT_COUNT])
+{
+    double times[2][COUNT_COUNT];
+    printf("Processor time a simulated second, ms, at an error of the tips of %g m at %g s: each "
+           "solver by the way with the least work that comes to it, quick with its iterations; "
+           "ODE's own dense matrix by the direct one's way\n"
+           "    N  %-31s  %-31s  quick/direct     dense  quick/dense\n",
+           target, DURATION, "direct", "quick");
+    for (size_t i = 0; i < COUNT_COUNT; i++) {
+        const double *ms = equals[i].total_ms;
+        printf("%5zu", COUNTS[i]);
+        print_way(&equals[i], AT_DIRECT);
+        print_way(&equals[i], AT_QUICK);
+        printf("  %12.2f", ms[AT_QUICK] / ms[AT_DIRECT]);
+        if (equals[i].is_there[AT_DENSE]) {
+            printf("  %8.3g  %11.2f\n", ms[AT_DENSE], ms[AT_QUICK] / ms[AT_DENSE]);
+        } else {
+            printf("  %8s  %11s\n", "-", "-");
+        }
+        times[0][i] = ms[AT_DIRECT];
+        times[1][i] = ms[AT_QUICK];
+    }
+    printf("time ~N^ %29.2f %32.2f\n", exponent(times[0], COUNT_COUNT),
+           exponent(times[1], COUNT_COUNT));
 }
 
 static void tabulate_equal(void)
 {
     static const double TARGETS[] = {1e-2, 1e-3, 1e-4};
-    for (size_t t = 0; t < sizeof TARGETS / sizeof *TARGETS; t++) {
-        double times[2][COUNT_COUNT];
-        printf("Processor time a simulated second, ms, of the cheapest way of each solver to an "
-               "error of the tips of %g m at %g s\n"
-               "    N  %-20s %9s  %-20s %9s  iterations  quick/direct\n",
-               TARGETS[t], DURATION, "direct", "", "quick", "");
-        size_t count = 0;
-        for (size_t i = 0; COUNTS[i] <= EQUAL_MOST; i++) {
-            count++;
-            printf("%5zu", COUNTS[i]);
-            for (int k = 0; k < 2; k++) {
-                Way way = {0};
-                const Point point = find_cheapest(COUNTS[i], TARGETS[t], k == 1, &way);
-                times[k][i] = point.total_ms;
-                print_cheapest(&way, &point);
-                if (k == 1) {
-                    printf("  %10zu", way.iterations);
-                }
-                fflush(stdout);
-            }
-            printf("  %12.2f\n", times[1][i] / times[0][i]);
+    enum { TARGET_COUNT = sizeof TARGETS / sizeof *TARGETS };
+    Equal equals[TARGET_COUNT][COUNT_COUNT];
+    Search searches[2];
+    for (size_t i = 0; i < COUNT_COUNT; i++) {
+        start_search(COUNTS[i], false, &searches[AT_DIRECT]);
+        start_search(COUNTS[i], true, &searches[AT_QUICK]);
+        for (size_t t = 0; t < TARGET_COUNT; t++) {
+            find_equal(searches, TARGETS[t], &equals[t][i]);
         }
-        printf("time ~N^ %28.2f %31.2f\n", exponent(times[0], count), exponent(times[1], count));
+    }
+    for (size_t t = 0; t < TARGET_COUNT; t++) {
+        print_equal(TARGETS[t], equals[t]);
+        printf(t + 1 < TARGET_COUNT ? "\n" : "");
+        fflush(stdout);
     }
 }
 
