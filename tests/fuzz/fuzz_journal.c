@@ -38,9 +38,11 @@ static void take(const json_t *entries)
     static const Scheme SCHEMES[2] = {{.name = "direct/plain/textbook", .backend = BACKEND_ODE},
                                       {.name = "reference", .backend = BACKEND_REFERENCE}};
     static const double STEPS[2] = {1e-5, 3e-6};
-    static Scenario scenario; // too large for the stack
-    scenario = mechanism_paper();
-    mechanism_loosen(&scenario, "crank-coupler");
+    static Scenario scenario; // its linkage is kept to the end, so that it is made once
+    if (scenario.linkage.body_count == 0) {
+        scenario = mechanism_paper();
+        mechanism_loosen(&scenario, "crank-coupler");
+    }
     Ladder *ladder = ladder_create(SCHEMES, 2, STEPS, 2, 5);
     size_t index;
     json_t *entry;
