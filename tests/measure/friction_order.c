@@ -31,9 +31,16 @@ static const Regime REGIMES[] = {
     {"knocked loose, stops give back .8", {20, 0.1, 0.0, 0.0, 0.8, 0.4}},
 };
 
-static double order(double coarse, double fine)
+enum { ORDER_SIZE = 16 };
+
+// The order from an error at twice the step; of the first step, which has none, a dash.
+static void print_order(double coarse, double fine, char *words)
 {
-    return log2(coarse / fine);
+    if (isfinite(coarse)) {
+        snprintf(words, ORDER_SIZE, "%.1f", log2(coarse / fine));
+    } else {
+        snprintf(words, ORDER_SIZE, "-");
+    }
 }
 
 // Root mean squares over the starts, and what they cost.
@@ -79,9 +86,11 @@ static void print_cart(const Regime *regime)
         const double step = LONGEST_S / (1 << i);
         const Errors now = cart_errors(regime->options, JP_STEPPING_IMPULSE, step);
         const Errors rows = cart_errors(regime->options, JP_STEPPING_STAGGERED, step);
-        printf("| %.4g | %.1e | %.1f | %.1e | %.1f | %.2f | %zu | %zu | %.1e |\n", 1e3 * step,
-               now.position, order(before.position, now.position), now.angle,
-               order(before.angle, now.angle),
+        char orders[2][ORDER_SIZE];
+        print_order(before.position, now.position, orders[0]);
+        print_order(before.angle, now.angle, orders[1]);
+        printf("| %.4g | %.1e | %s | %.1e | %s | %.2f | %zu | %zu | %.1e |\n", 1e3 * step,
+               now.position, orders[0], now.angle, orders[1],
                (double)now.stats.world_steps / (double)now.stats.steps, now.stats.fallbacks,
                now.stats.steps, rows.angle);
         before = now;
@@ -98,8 +107,10 @@ static void print_pushed(void)
     for (int i = 0; i <= HALVINGS; i++) {
         const double step = LONGEST_S / (1 << i);
         const double within = pushed_box_error(step, 0.02 + 0.75 * step);
-        printf("| %.4g | %.1e | %.1e | %.1f |\n", 1e3 * step, pushed_box_error(step, 0.02), within,
-               order(before, within));
+        char words[ORDER_SIZE];
+        print_order(before, within, words);
+        printf("| %.4g | %.1e | %.1e | %s |\n", 1e3 * step, pushed_box_error(step, 0.02), within,
+               words);
         before = within;
     }
 }
