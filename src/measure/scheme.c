@@ -40,23 +40,13 @@ static void name_scheme(Scheme *scheme, bool has_map)
              has_collider ? "/" : "", has_collider ? OPTIONS_ODE_COLLIDERS[scheme->collider] : "");
 }
 
-// Whether a pivot in space has stops or backlash, which map impulse does not know there.
-static bool has_limits_in_space(const Linkage *linkage)
-{
-    bool is_any = false;
-    for (size_t i = 0; linkage->is_spatial && i < linkage->joint_count; i++) {
-        is_any = is_any || linkage->joints[i].limits.kind != LIMIT_NONE;
-    }
-    return is_any;
-}
-
 // Whether two choices go together in a scenario.
 static bool go_together(const Scheme *scheme, const Scenario *scenario, bool has_map)
 {
     const bool is_impulse = has_map && scheme->map == ODE_MAP_IMPULSE;
     return (scheme->stepping != ODE_EXTRAPOLATED || scenario_is_extrapolable(scenario)) &&
            !(is_impulse && scheme->stepping != ODE_STAGGERED) &&
-           !(is_impulse && has_limits_in_space(&scenario->linkage)) &&
+           !(is_impulse && !scenario_can_integrate_contacts(scenario)) &&
            !(is_impulse && scheme->collider != ODE_COLLIDER_PIN_HOLE);
 }
 

@@ -96,12 +96,15 @@ bool scenario_has_closed_form(const Scenario *scenario);
 // the drive's speed without kinks.
 bool scenario_is_extrapolable(const Scenario *scenario);
 
+// Whether it could: map impulse does not know backlash and stops of pivots in space.
+bool scenario_can_integrate_contacts(const Scenario *scenario);
+
 // Whether ODE integrates the contacts within its steps, by the map that makes no rows.
 bool scenario_integrates_contacts(const Scenario *scenario);
 
 // The scenario with the step given and the way of stepping that a step chosen for a tolerance is
-// for: staggered with the contacts integrated in the step, or extrapolated where every joint is
-// ideal.
+// for: staggered with the contacts integrated in the step, or as rows of mid-step where they cannot
+// be; or extrapolated where every joint is ideal.
 Scenario scenario_with_step(const Scenario *scenario, double step_s);
 
 // Checks what no single key can show: the linkage, the options' ranges, the size of the run.

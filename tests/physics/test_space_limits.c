@@ -7,6 +7,7 @@
 #include "kept.h"
 #include "load_case.h"
 
+#include "measure/chosen_run.h"
 #include "model/space.h"
 
 #include <stdio.h>
@@ -173,12 +174,38 @@ static void backlash_on_a_body_that_turns_keeps_the_momentum(void **state)
     trajectory_destroy(run);
 }
 
+// A step chosen for an error takes the rows of mid-step, for map impulse does not know these
+// limits. The deepest point is where the energy is, to the error wanted.
+static void a_step_is_chosen_for_limits_in_space(void **state)
+{
+    (void)state;
+    Scenario scenario = make_pendulum(TILT);
+    scenario.run.step = 0.0;
+    scenario.run.tolerance = 1e-4;
+    scenario.ode.map = ODE_MAP_IMPULSE;
+    assert_int_equal(scenario_with_step(&scenario, 1e-5).ode.map, ODE_MAP_MIDPOINT);
+    Trajectory *run = chosen_run_make(&scenario, NULL, (ChosenWatch){.begin = NULL}, NULL);
+    if (!run->is_complete) {
+        fail_msg("%s", run->message);
+    }
+    assert_true(run->error_estimate <= 1e-4);
+    assert_close(run->joints[0].penetration_max.value, deepest(TILT), 1e-3);
+    trajectory_destroy(run);
+    // control: a step that is given keeps the case's own map, which is refused
+    scenario.run.step = 1e-5;
+    run = run_scenario(&scenario, registry_solver(BACKEND_ODE), (RunWatch){0});
+    assert_false(run->is_complete);
+    assert_non_null(strstr(run->message, "map impulse does not know"));
+    trajectory_destroy(run);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pendulum_on_a_tilted_axis_presses_its_stop_by_its_energy),
         cmocka_unit_test(an_upright_hinge_rebounds_as_in_the_plane),
         cmocka_unit_test(backlash_on_a_body_that_turns_keeps_the_momentum),
+        cmocka_unit_test(a_step_is_chosen_for_limits_in_space),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
