@@ -94,7 +94,7 @@ for group in 0 1 2 3; do
     sed -n 's/^{"name": "[^"]* \([a-z_0-9]*\)".*"duration": \([0-9.e-]*\),.*/\1 \2/p' \
         "$work/build/meson-logs/testlog.json" |
         awk -v group=$group '{ at = $2 < 0.2 ? 0 : $2 < 1 ? 1 : $2 < 5 ? 2 : 3 }
-            at == group && $1 !~ /^truth|against_truth|stated_uncertainty/ { print $1 }' >"$work/tests.$group"
+            at == group && $1 !~ /^truth|against_truth|stated_uncertainty/ && !named[$1]++ { print $1 }' >"$work/tests.$group"
 done
 echo "--suite truth" >"$work/tests.truth"
 
