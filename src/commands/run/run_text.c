@@ -117,27 +117,36 @@ static void write_limits(const Joint *joint, Text *text)
     }
 }
 
-// What play a joint has, or nothing, and the word for it.
-static const char *write_joint(const Joint *joint, bool is_spatial, Text *text)
+// The word for the play of a joint; NULL where it has none.
+static const char *play_word(const Joint *joint)
 {
     if (joint->limits.kind != LIMIT_NONE) {
-        write_limits(joint, text);
         return joint->kind == JOINT_GEAR              ? "gears"
                : joint->limits.kind == LIMIT_BACKLASH ? "backlash"
                                                       : "stops";
     }
     switch (joint->kind) {
     case JOINT_CLEARANCE:
-        write_pin(joint, is_spatial, text);
-        return "play";
     case JOINT_GUIDE:
-        write_guide(joint, text);
         return "play";
     case JOINT_STOP:
-        write_stop(joint, text);
         return "stop";
     default:
         return NULL;
+    }
+}
+
+// What play it is, of a joint that has some.
+static void write_joint(const Joint *joint, bool is_spatial, Text *text)
+{
+    if (joint->limits.kind != LIMIT_NONE) {
+        write_limits(joint, text);
+    } else if (joint->kind == JOINT_CLEARANCE) {
+        write_pin(joint, is_spatial, text);
+    } else if (joint->kind == JOINT_GUIDE) {
+        write_guide(joint, text);
+    } else {
+        write_stop(joint, text);
     }
 }
 
@@ -148,12 +157,14 @@ static void write_play(const Linkage *linkage, const char *word, size_t width, T
     snprintf(lead, sizeof lead, "  %-12s", word);
     Alike *alike = alike_start();
     for (size_t i = 0; i < linkage->joint_count; i++) {
+        const char *own = play_word(&linkage->joints[i]);
+        if (own == NULL || strcmp(own, word) != 0) {
+            continue;
+        }
         Text said;
         text_init(&said);
-        const char *own = write_joint(&linkage->joints[i], linkage->is_spatial, &said);
-        if (own != NULL && strcmp(own, word) == 0) {
-            alike_add(alike, linkage->joints[i].name, said.data);
-        }
+        write_joint(&linkage->joints[i], linkage->is_spatial, &said);
+        alike_add(alike, linkage->joints[i].name, said.data);
         text_finish(&said);
     }
     alike_end(alike, lead, ": ", width, text);
