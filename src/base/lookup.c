@@ -1,8 +1,7 @@
 #include "base/lookup.h"
 
-#include <assert.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/hash.h"
+#include "base/room.h"
 
 enum { ROOM_LEAST = 16 };
 
@@ -15,11 +14,7 @@ void lookup_finish(Lookup *lookup)
 Lookup lookup_copy(const Lookup *lookup)
 {
     Lookup copy = *lookup;
-    if (copy.room > 0) {
-        copy.slots = malloc(copy.room * sizeof *copy.slots);
-        assert(copy.slots != NULL);
-        memcpy(copy.slots, lookup->slots, copy.room * sizeof *copy.slots);
-    }
+    copy.slots = room_copy(lookup->slots, lookup->room, sizeof *copy.slots);
     return copy;
 }
 
@@ -74,10 +69,5 @@ int lookup_find(const Lookup *lookup, uint64_t hash,
 
 uint64_t lookup_hash(const char *text)
 {
-    // FNV-1a (Fowler, Noll and Vo)
-    uint64_t hash = 0xcbf29ce484222325u;
-    for (const char *at = text; *at != '\0'; at++) {
-        hash = (hash ^ (unsigned char)*at) * 0x100000001b3u;
-    }
-    return hash ^ (hash >> 32);
+    return hash_bytes(HASH_START, text, strlen(text));
 }

@@ -10,6 +10,7 @@
 #include "measure/mapping_joint.h"
 
 #include "base/clock.h"
+#include "base/room.h"
 #include "base/sorted.h"
 #include "contact/touch.h"
 #include "model/space.h"
@@ -113,12 +114,8 @@ static void add_masses(Gathering *gathering, const Motion *motions)
 
 static void add_speed(Gathered *gathered, double speed)
 {
-    if (gathered->speed_count == gathered->speed_room) {
-        gathered->speed_room = 2 * gathered->speed_room + 64;
-        double *grown = realloc(gathered->speeds, gathered->speed_room * sizeof *grown);
-        assert(grown != NULL);
-        gathered->speeds = grown;
-    }
+    gathered->speeds = room_grow(gathered->speeds, &gathered->speed_room, gathered->speed_count + 1,
+                                 sizeof *gathered->speeds);
     gathered->speeds[gathered->speed_count++] = speed;
 }
 

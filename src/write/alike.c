@@ -1,8 +1,6 @@
 #include "write/alike.h"
 
-#include <assert.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/room.h"
 
 enum {
     SENTENCES_MOST = 40, // more than these are not read one by one
@@ -42,11 +40,8 @@ static Sentence *find(Alike *alike, const char *said)
             return sentence;
         }
     }
-    if (alike->count == alike->room) {
-        alike->room = alike->room == 0 ? 8 : 2 * alike->room;
-        alike->sentences = realloc(alike->sentences, alike->room * sizeof *alike->sentences);
-        assert(alike->sentences != NULL);
-    }
+    alike->sentences =
+        room_grow(alike->sentences, &alike->room, alike->count + 1, sizeof *alike->sentences);
     Sentence *sentence = &alike->sentences[alike->count++];
     *sentence = (Sentence){.said = strdup(said), .length = length};
     assert(sentence->said != NULL);
@@ -56,11 +51,8 @@ static Sentence *find(Alike *alike, const char *said)
 void alike_add(Alike *alike, const char *name, const char *said)
 {
     Sentence *sentence = find(alike, said);
-    if (sentence->count == sentence->room) {
-        sentence->room = sentence->room == 0 ? 4 : 2 * sentence->room;
-        sentence->names = realloc(sentence->names, sentence->room * sizeof *sentence->names);
-        assert(sentence->names != NULL);
-    }
+    sentence->names =
+        room_grow(sentence->names, &sentence->room, sentence->count + 1, sizeof *sentence->names);
     sentence->names[sentence->count] = strdup(name);
     assert(sentence->names[sentence->count] != NULL);
     sentence->count++;
