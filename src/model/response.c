@@ -16,6 +16,7 @@
 // Sources: E. Delassus, Ann. sci. Ec. norm. sup. 34 (1917) 95, for D; B. Brogliato, Nonsmooth
 // Mechanics, 3rd ed., Springer 2016, ch. 5.
 #include "model/response.h"
+#include "model/response_matrix.h"
 
 #include "model/joint_rows.h"
 
@@ -69,30 +70,12 @@ bool response_place(Response *response, const Motion *motions)
 
 const double *response_block(const Response *response, size_t place, size_t other)
 {
-    const size_t first = response->ideal_rows / 2;
-    bool is_transposed;
-    return sparse_block(&response->matrix, first + place, first + other, &is_transposed);
+    return response_matrix_block(&response->matrix, place, other);
 }
 
 void response_mobility(const Response *response, double *mobility)
 {
-    const size_t width = response_play_rows(response);
-    memset(mobility, 0, width * width * sizeof *mobility);
-    for (size_t a = 0; a < response->place_count; a++) {
-        const size_t row = response->first_row[a];
-        const size_t rows = response_place_rows(&response->places[a]);
-        for (size_t b = 0; b <= a; b++) {
-            const double *block = response_block(response, a, b);
-            const size_t column = response->first_row[b];
-            const size_t columns = response_place_rows(&response->places[b]);
-            for (size_t i = 0; block != NULL && i < rows; i++) {
-                for (size_t k = 0; k < columns; k++) {
-                    mobility[(row + i) * width + column + k] = block[i * columns + k];
-                    mobility[(column + k) * width + row + i] = block[i * columns + k];
-                }
-            }
-        }
-    }
+    response_matrix_mobility(&response->matrix, mobility);
 }
 
 void response_free(const Response *response, const Motion *motions, double gravity,

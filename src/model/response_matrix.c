@@ -5,6 +5,7 @@
 #include "model/joint_nodes.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static ResponseBlock make_block(const Sparse *matrix, size_t a, size_t b)
 {
@@ -101,4 +102,35 @@ size_t response_matrix_largest(const Sparse *matrix)
     }
     free(rows);
     return largest;
+}
+
+const double *response_matrix_block(const Sparse *matrix, size_t place, size_t other)
+{
+    bool is_transposed;
+    return sparse_block(matrix, matrix->eliminated + place, matrix->eliminated + other,
+                        &is_transposed);
+}
+
+void response_matrix_mobility(const Sparse *matrix, double *mobility)
+{
+    // the rows of the places stand behind those of the ideal joints
+    const size_t *first = matrix->first_row + matrix->eliminated;
+    const size_t count = matrix->count - matrix->eliminated;
+    const size_t width = first[count] - first[0];
+    memset(mobility, 0, width * width * sizeof *mobility);
+    for (size_t a = 0; a < count; a++) {
+        const size_t row = first[a] - first[0];
+        const size_t rows = first[a + 1] - first[a];
+        for (size_t b = 0; b <= a; b++) {
+            const double *block = response_matrix_block(matrix, a, b);
+            const size_t column = first[b] - first[0];
+            const size_t columns = first[b + 1] - first[b];
+            for (size_t i = 0; block != NULL && i < rows; i++) {
+                for (size_t k = 0; k < columns; k++) {
+                    mobility[(row + i) * width + column + k] = block[i * columns + k];
+                    mobility[(column + k) * width + row + i] = block[i * columns + k];
+                }
+            }
+        }
+    }
 }

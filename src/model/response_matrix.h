@@ -21,6 +21,12 @@ ResponseBlock *response_matrix_init(const Linkage *linkage, const int *joints, c
                                     size_t count, size_t ideal, Sparse *matrix,
                                     size_t *block_count);
 
+// How pushes at one place move another, row by row; NULL where they do not. After elimination.
+const double *response_matrix_block(const Sparse *matrix, size_t place, size_t other);
+
+// The same of all places as one matrix, dense, of as many rows as they have together.
+void response_matrix_mobility(const Sparse *matrix, double *mobility);
+
 // Lists which places move each other, those whose mobility is not zero: of place i those from
 // (*first)[i] to (*first)[i + 1] of *partners, itself among them, in order. The caller frees both.
 void response_matrix_partners(const Sparse *matrix, size_t **first, size_t **partners);

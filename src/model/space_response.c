@@ -4,6 +4,7 @@
 // velocities in the world's frame (model/space_rows.h), and M holds masses and the inertias as they
 // are turned, R I R'.
 #include "model/space_response.h"
+#include "model/response_matrix.h"
 
 #include <string.h>
 
@@ -155,30 +156,12 @@ bool space_response_place(SpaceResponse *response, const SpaceMotion *motions,
 
 const double *space_response_block(const SpaceResponse *response, size_t place, size_t other)
 {
-    const size_t first = response->ideal_count;
-    bool is_transposed;
-    return sparse_block(&response->matrix, first + place, first + other, &is_transposed);
+    return response_matrix_block(&response->matrix, place, other);
 }
 
 void space_response_mobility(const SpaceResponse *response, double *mobility)
 {
-    const size_t width = space_response_play_rows(response);
-    memset(mobility, 0, width * width * sizeof *mobility);
-    for (size_t a = 0; a < response->place_count; a++) {
-        const size_t row = response->first_row[a];
-        const size_t rows = response->places[a].rows;
-        for (size_t b = 0; b <= a; b++) {
-            const double *block = space_response_block(response, a, b);
-            const size_t column = response->first_row[b];
-            const size_t columns = response->places[b].rows;
-            for (size_t i = 0; block != NULL && i < rows; i++) {
-                for (size_t k = 0; k < columns; k++) {
-                    mobility[(row + i) * width + column + k] = block[i * columns + k];
-                    mobility[(column + k) * width + row + i] = block[i * columns + k];
-                }
-            }
-        }
-    }
+    response_matrix_mobility(&response->matrix, mobility);
 }
 
 void space_response_free(const SpaceResponse *response, const double *ideal_drift,
