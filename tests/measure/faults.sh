@@ -7,7 +7,8 @@
 #   COUNT      faults (default 100)
 #   FIRST      the first seed (default 1)
 #   PROCESSES  tests at a time (default 2)
-# Prints each fault with its seed, place and what saw it, and at the end the share that was seen.
+# Prints each fault with its seed, place, what saw it and how (on a busy machine, repeat what only a
+# TIMEOUT saw), and at the end the share that was seen.
 # A fault that nothing sees either does not matter (say why) or needs a test. A minute a fault.
 set -u
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -78,7 +79,7 @@ find_witness() {
     for group in $groups; do
         # shellcheck disable=SC2046 # the names are words
         if ! run_tests $(cat "$work/tests.$group"); then
-            sed -n 's/^ *[0-9]*\/[0-9]* [^ ]* *[^ ]* *\/ *\([a-z_0-9]*\) *\(FAIL\|ERROR\|TIMEOUT\).*/\1/p' \
+            sed -n 's/^ *[0-9]*\/[0-9]* [^ ]* *[^ ]* *\/ *\([a-z_0-9]*\) *\(FAIL\|ERROR\|TIMEOUT\).*/\1 \2/p' \
                 "$work/log" | head -n 1
             return
         fi
