@@ -306,6 +306,15 @@ static void the_papers_penalty_stands_beside_its_approach(void **state)
     assert_near(number(row, "penalty_printed_N"), 973.33, 5e-3);
     assert_near(number(row, "approach_m"), 0.194e-6, 5e-11);
     assert_close(number(row, "penalty_cfm_m_N_s"), 1.0 / 973330.0, 1e-5);
+    // read as a stiffness it has a viscous damper, whatever damping the case has: the depth of a
+    // damped harmonic oscillator
+    const double mass = number(row, "mass_kg"), stiffness = number(row, "stiffness_N_m");
+    const double rate = sqrt(stiffness / mass);
+    const double share = number(row, "damping_N_s_m") / (2.0 * mass * rate);
+    const double turn = sqrt(1.0 - share * share);
+    const double deepest =
+        number(row, "speed_m_s") / rate * exp(-share / turn * atan2(turn, share));
+    assert_close(number(json_object_get(row, "asked"), "penetration_max_m"), deepest, 1e-8);
     // a stiffness of P is soft: the pin goes in a hundred times the approach
     const json_t *delivered = json_object_get(row, "delivered_as_stiffness");
     const double depth = number(json_object_get(delivered, "penetration_max_m"), "mean");
