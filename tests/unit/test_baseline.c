@@ -78,6 +78,19 @@ static json_t *read_json(const Bench *bench)
     return root;
 }
 
+// What a full check measured, with a sample of starts if there is one.
+static CheckEvidence full_evidence(const Bench *bench, const CheckMeasure *sample)
+{
+    return (CheckEvidence){
+        .run = &bench->run,
+        .sample = sample,
+        .sample_count = sample != NULL ? BASELINE_SAMPLE_SIZE : 0,
+        .now = &bench->made,
+        .is_full = true,
+        .rate = 1e-3,
+    };
+}
+
 // Judges the measures against the file as it stands; returns the rows that are out.
 static size_t judge(Bench *bench, size_t *out)
 {
@@ -86,8 +99,7 @@ static size_t judge(Bench *bench, size_t *out)
     if (!baseline_json_read(bench->path, &read, &err)) {
         fail_msg("%s", err.text);
     }
-    const CheckEvidence evidence = {
-        .run = &bench->run, .now = &bench->made, .is_full = true, .rate = 1e-3};
+    const CheckEvidence evidence = full_evidence(bench, NULL);
     assert_true(check_row_max(&read, &evidence) <= 2048);
     const size_t count = check_judge(&read, &evidence, bench->rows);
     *out = 0;
@@ -406,12 +418,7 @@ static CheckRow judge_shifted(Bench *bench, const Baseline *made, CheckMeasure *
                               size_t place, double shift)
 {
     fill_sample(members, &bench->run, place, shift, 2);
-    const CheckEvidence evidence = {.run = &bench->run,
-                                    .sample = members,
-                                    .sample_count = BASELINE_SAMPLE_SIZE,
-                                    .now = &bench->made,
-                                    .is_full = true,
-                                    .rate = 1e-3};
+    const CheckEvidence evidence = full_evidence(bench, members);
     const size_t count = check_judge(made, &evidence, bench->rows);
     for (size_t i = 0; i < count; i++) {
         if (bench->rows[i].band_kind == BAND_STATISTICAL) {
@@ -455,19 +462,15 @@ static void what_cannot_be_predicted_is_judged_by_its_distribution(void **state)
     fill_narrow_sample(members, &bench->run, place, 1e-9, 4.9e-8, 1);
     assert_true(baseline_set_sample(&read, members, BASELINE_SAMPLE_SIZE, 1e-3, &err));
     fill_narrow_sample(members, &bench->run, place, 1e-9, 4.9e-8, 2);
-    const CheckEvidence narrow = {.run = &bench->run,
-                                  .sample = members,
-                                  .sample_count = BASELINE_SAMPLE_SIZE,
-                                  .now = &bench->made,
-                                  .is_full = true,
-                                  .rate = 1e-3};
+    const CheckEvidence narrow = full_evidence(bench, members);
     const size_t narrow_count = check_judge(&read, &narrow, bench->rows);
     for (size_t i = 0; i < narrow_count; i++) {
         assert_false(check_row_is_out(&bench->rows[i]));
     }
 
     // a quick check does not look at it
-    const CheckEvidence quick = {.run = &bench->run, .now = &bench->made, .rate = 1e-3};
+    CheckEvidence quick = full_evidence(bench, NULL);
+    quick.is_full = false;
     const size_t count = check_judge(&read, &quick, bench->rows);
     for (size_t i = 0; i < count; i++) {
         assert_false(check_row_is_out(&bench->rows[i]));
@@ -506,12 +509,7 @@ static void rounding_of_a_baseline_moves_no_number_that_starts_share(void **stat
     static const double SHARED[] = {200.0 / 3.0, 200.0 / 3.0 * (1.0 + 1e-7)};
     for (size_t k = 0; k < 2; k++) {
         fill_shared_sample(members, &bench->run, place, SHARED[k]);
-        const CheckEvidence evidence = {.run = &bench->run,
-                                        .sample = members,
-                                        .sample_count = BASELINE_SAMPLE_SIZE,
-                                        .now = &bench->made,
-                                        .is_full = true,
-                                        .rate = 1e-3};
+        const CheckEvidence evidence = full_evidence(bench, members);
         const size_t count = check_judge(&bench->made, &evidence, bench->rows);
         size_t out = 0;
         for (size_t i = 0; i < count; i++) {
