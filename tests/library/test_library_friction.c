@@ -11,8 +11,6 @@
 
 #include <ode/ode.h>
 
-enum { STARTS = 16 };
-
 static const CartOptions RESTS = {
     .mass = 30.0, .friction = 0.8, .restitution = 0.8, .duration = 0.4};
 static const CartOptions SLIDES = {
@@ -22,31 +20,13 @@ static const CartOptions KNOCKED = {
 static const CartOptions KNOCKED_AND_DAMPED = {
     .mass = 20.0, .friction = 0.1, .restitution = 0.8, .duration = 0.4};
 
-// Root mean squares over starts.
-typedef struct Errors {
-    double position; // m
-    double angle;    // rad
-    int changes;
-    size_t fallbacks;
-} Errors;
-
-static Errors cart_errors(CartOptions cart, JpStepping stepping, double step)
+static CartErrors measure_cart(const CartOptions *cart, JpStepping stepping, double step)
 {
-    Errors errors = {0};
-    for (int i = 0; i < STARTS; i++) {
-        cart.arm_speed = 2.5 + 0.07 * i;
-        int changes;
-        const CartState truth = cart_truth(&cart, &changes);
-        CartState end;
-        JpWorldStats stats;
-        assert_true(cart_run(&cart, stepping, step, &end, &stats, NULL));
-        errors.position += pow(end.position - truth.position, 2) / STARTS;
-        errors.angle += pow(end.angle - truth.angle, 2) / STARTS;
-        errors.changes += changes;
-        errors.fallbacks += stats.fallbacks;
+    CartErrors errors;
+    JpError error;
+    if (!cart_errors(*cart, stepping, step, &errors, &error)) {
+        fail_msg("%s", error.text);
     }
-    errors.position = sqrt(errors.position);
-    errors.angle = sqrt(errors.angle);
     return errors;
 }
 
@@ -58,13 +38,13 @@ static double order(double coarse, double fine, double factor)
 // Impacts of 1.7 ms in steps from 4 ms to a fourteenth of one.
 static void order_two_holds(const CartOptions *cart, int changes)
 {
-    const Errors coarse = cart_errors(*cart, JP_STEPPING_IMPULSE, 4e-3);
-    const Errors fine = cart_errors(*cart, JP_STEPPING_IMPULSE, 0.125e-3);
+    const CartErrors coarse = measure_cart(cart, JP_STEPPING_IMPULSE, 4e-3);
+    const CartErrors fine = measure_cart(cart, JP_STEPPING_IMPULSE, 0.125e-3);
     assert_int_equal(coarse.changes, changes);
-    assert_int_equal(coarse.fallbacks + fine.fallbacks, 0);
+    assert_int_equal(coarse.stats.fallbacks + fine.stats.fallbacks, 0);
     assert_true(order(coarse.angle, fine.angle, 32.0) > 1.9);
     // the control: rows do not resolve the impacts
-    assert_true(cart_errors(*cart, JP_STEPPING_STAGGERED, 4e-3).angle > 100.0 * coarse.angle);
+    assert_true(measure_cart(cart, JP_STEPPING_STAGGERED, 4e-3).angle > 100.0 * coarse.angle);
 }
 
 static void friction_that_rests_or_slides_leaves_order_two(void **state)
@@ -78,16 +58,16 @@ static void friction_that_rests_or_slides_leaves_order_two(void **state)
     free.friction = 0.0;
     assert_true(cart_truth(&free, &changes).position - cart_truth(&SLIDES, &changes).position >
                 0.05);
-    assert_true(cart_errors(SLIDES, JP_STEPPING_IMPULSE, 4e-3).position < 1e-6);
+    assert_true(measure_cart(&SLIDES, JP_STEPPING_IMPULSE, 4e-3).position < 1e-6);
 }
 
 static void a_box_that_is_knocked_loose_has_order_two_once_steps_resolve_that(void **state)
 {
     (void)state;
-    const Errors coarse = cart_errors(KNOCKED, JP_STEPPING_IMPULSE, 0.25e-3);
-    const Errors fine = cart_errors(KNOCKED, JP_STEPPING_IMPULSE, 0.03125e-3);
-    assert_true(coarse.changes > 8 * STARTS);
-    assert_true(coarse.fallbacks + fine.fallbacks <= 2);
+    const CartErrors coarse = measure_cart(&KNOCKED, JP_STEPPING_IMPULSE, 0.25e-3);
+    const CartErrors fine = measure_cart(&KNOCKED, JP_STEPPING_IMPULSE, 0.03125e-3);
+    assert_true(coarse.changes > 8 * CART_STARTS);
+    assert_true(coarse.stats.fallbacks + fine.stats.fallbacks <= 2);
     assert_near(order(coarse.angle, fine.angle, 8.0), 2.0, 0.3);
     assert_true(order(coarse.position, fine.position, 8.0) > 1.7);
 }
@@ -97,8 +77,8 @@ static void a_box_that_is_knocked_loose_has_order_two_once_steps_resolve_that(vo
 static void a_force_that_sets_in_within_a_step_ends_the_order_of_odes_friction(void **state)
 {
     (void)state;
-    const Errors coarse = cart_errors(KNOCKED_AND_DAMPED, JP_STEPPING_IMPULSE, 0.25e-3);
-    const Errors fine = cart_errors(KNOCKED_AND_DAMPED, JP_STEPPING_IMPULSE, 0.03125e-3);
+    const CartErrors coarse = measure_cart(&KNOCKED_AND_DAMPED, JP_STEPPING_IMPULSE, 0.25e-3);
+    const CartErrors fine = measure_cart(&KNOCKED_AND_DAMPED, JP_STEPPING_IMPULSE, 0.03125e-3);
     assert_near(order(coarse.position, fine.position, 8.0), 1.2, 0.3);
     // ODE alone does the same
     const double step = 1e-3;

@@ -104,3 +104,28 @@ bool cart_run(const CartOptions *options, JpStepping stepping, double step, Cart
     dWorldDestroy(cart.world);
     return is_done;
 }
+
+bool cart_errors(CartOptions options, JpStepping stepping, double step, CartErrors *errors,
+                 JpError *error)
+{
+    *errors = (CartErrors){0};
+    for (int i = 0; i < CART_STARTS; i++) {
+        options.arm_speed = 2.5 + 0.07 * i;
+        int changes;
+        const CartState truth = cart_truth(&options, &changes);
+        CartState end;
+        JpWorldStats stats;
+        if (!cart_run(&options, stepping, step, &end, &stats, error)) {
+            return false;
+        }
+        errors->position += pow(end.position - truth.position, 2);
+        errors->angle += pow(end.angle - truth.angle, 2);
+        errors->changes += changes;
+        errors->stats.steps += stats.steps;
+        errors->stats.world_steps += stats.world_steps;
+        errors->stats.fallbacks += stats.fallbacks;
+    }
+    errors->position = sqrt(errors->position / CART_STARTS);
+    errors->angle = sqrt(errors->angle / CART_STARTS);
+    return true;
+}

@@ -33,6 +33,21 @@ bool cart_run(const CartOptions *options, JpStepping stepping, double step, Cart
 // often sliding began, ended or turned round.
 CartState cart_truth(const CartOptions *options, int *changes);
 
+// Root mean squares over starts with the arm at different speeds, against the equations of motion.
+enum { CART_STARTS = 16 };
+
+typedef struct CartErrors {
+    double position;    // m
+    double angle;       // rad
+    JpWorldStats stats; // of all starts together, as is the next
+    int changes;        // of the friction
+} CartErrors;
+
+// Takes the arm's speed of the options as a given one of each start. Returns false with an error
+// where the library refuses a start.
+bool cart_errors(CartOptions options, JpStepping stepping, double step, CartErrors *errors,
+                 JpError *error);
+
 // Of the arm: mass, kg; distance of its centre from the hinge, m; inertia about its centre, kg m^2.
 extern const double CART_ARM_MASS;
 extern const double CART_ARM_LENGTH;
