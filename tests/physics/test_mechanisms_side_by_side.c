@@ -6,6 +6,7 @@
 #include "close.h"
 #include "complete_run.h"
 #include "kept.h"
+#include "mechanism.h"
 
 #include "base/lcg.h"
 
@@ -139,26 +140,15 @@ static void each_moves_as_alone(void **state)
 // middle of their holes, of which no two are alike.
 static Scenario make_chain(size_t count)
 {
-    static const double LENGTH = 0.1;
     Scenario scenario = make_scenario();
-    Linkage *linkage = &scenario.linkage;
     uint64_t seed = lcg_stirred(1);
-    *linkage = linkage_create((LinkageRoom){.bodies = count, .joints = count});
+    scenario.linkage = mechanism_chain(count, 0.1, 0.1);
     for (size_t i = 0; i < count; i++) {
-        Body *body = &linkage->bodies[linkage->body_count++];
-        snprintf(body->name, sizeof body->name, "link-%zu", i);
-        body->mass = 0.1;
-        body->inertia = body->mass * LENGTH * LENGTH / 12.0;
-        body->start.position.x = LENGTH * ((double)i + 0.5);
+        Body *body = &scenario.linkage.bodies[i];
         body->start.velocity = (Vec2){0.02 * lcg_draw(&seed), 0.02 * lcg_draw(&seed)};
         body->start.omega = 0.2 * lcg_draw(&seed);
-        Joint *joint = &linkage->joints[linkage->joint_count++];
-        snprintf(joint->name, sizeof joint->name, "pin-%zu", i);
+        Joint *joint = &scenario.linkage.joints[i];
         joint->kind = JOINT_CLEARANCE;
-        joint->body_a = (int)i - 1;
-        joint->body_b = (int)i;
-        joint->anchor_a.x = i > 0 ? 0.5 * LENGTH : 0.0;
-        joint->anchor_b.x = -0.5 * LENGTH;
         joint->clearance = (Clearance){
             .hole_radius = 5.01e-3 + 5e-6 * lcg_draw(&seed), .pin_radius = 5e-3, .width = 0.01};
     }

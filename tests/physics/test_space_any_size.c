@@ -3,7 +3,7 @@
 // Outside truths: the plane, whose equations are others; ODE's own rows; the same mechanism alone.
 #include "close.h"
 #include "complete_run.h"
-#include "kept.h"
+#include "mechanism.h"
 
 #include "base/lcg.h"
 #include "model/space.h"
@@ -16,26 +16,19 @@ static const double MASS = 0.1;   // kg
 // Links in a row, level at the start and at rest.
 static Scenario make_chain(size_t count, Vec3 odd_axis)
 {
-    Scenario scenario = kept_default();
-    Linkage *linkage = &scenario.linkage;
-    *linkage = linkage_create((LinkageRoom){count, count, 0, 0});
-    linkage->is_spatial = true;
+    Scenario scenario = scenario_default();
+    scenario.linkage = mechanism_chain(count, LENGTH, MASS);
+    scenario.linkage.is_spatial = true;
     uint64_t seed = lcg_stirred(3);
     for (size_t i = 0; i < count; i++) {
-        Body *body = &linkage->bodies[linkage->body_count++];
-        snprintf(body->name, sizeof body->name, "link-%zu", i);
+        Body *body = &scenario.linkage.bodies[i];
         body->mass = MASS * (1.0 + 0.3 * lcg_draw(&seed));
         body->inertia = body->mass * LENGTH * LENGTH / 12.0;
-        body->start.position.x = LENGTH * ((double)i + 0.5);
-        Joint *joint = &linkage->joints[linkage->joint_count++];
-        snprintf(joint->name, sizeof joint->name, "pin-%zu", i);
-        joint->body_a = (int)i - 1;
-        joint->body_b = (int)i;
-        joint->anchor_a.x = i > 0 ? 0.5 * LENGTH : 0.0;
-        joint->anchor_b.x = -0.5 * LENGTH;
-        joint->space.axis = i % 2 == 1 ? odd_axis : (Vec3){0.0, 0.0, 1.0};
+        if (i % 2 == 1) {
+            scenario.linkage.joints[i].space.axis = odd_axis;
+        }
     }
-    space_complete(linkage);
+    space_complete(&scenario.linkage);
     scenario.gravity = 9.81;
     scenario.run.duration = 0.02;
     scenario.run.samples = 20;

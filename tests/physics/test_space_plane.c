@@ -4,8 +4,8 @@
 // plane. Each end of a hole has half of the joint's law: together they press as the planar pin
 // does, whose run by the planar reference is the truth. The controls have a reason to leave it.
 #include "complete_run.h"
-#include "kept.h"
 #include "load_case.h"
+#include "mechanism.h"
 
 #include "base/lcg.h"
 #include "model/space.h"
@@ -118,36 +118,26 @@ static Scenario make_chain(void)
 {
     enum { LINKS = 40 };
     static const double LENGTH = 0.1;
-    Scenario scenario = kept_default();
-    Linkage *linkage = &scenario.linkage;
+    Scenario scenario = scenario_default();
+    scenario.linkage = mechanism_chain(LINKS, LENGTH, 0.1);
     uint64_t seed = lcg_stirred(1);
     for (size_t i = 0; i < LINKS; i++) {
-        Body *body = &linkage->bodies[linkage->body_count++];
-        snprintf(body->name, sizeof body->name, "link-%zu", i);
-        body->mass = 0.1;
-        body->inertia = body->mass * LENGTH * LENGTH / 12.0;
-        body->start.position.x = LENGTH * ((double)i + 0.5);
+        Body *body = &scenario.linkage.bodies[i];
+        Joint *joint = &scenario.linkage.joints[i];
         // about the pins before: all points of the chain on one line stay there
         body->start.velocity.y = 0.02 * lcg_draw(&seed);
-        Joint *joint = &linkage->joints[linkage->joint_count++];
-        snprintf(joint->name, sizeof joint->name, "pin-%zu", i);
-        joint->kind = i % 3 == 0 ? JOINT_CLEARANCE : JOINT_REVOLUTE;
-        joint->body_a = (int)i - 1;
-        joint->body_b = (int)i;
-        joint->anchor_a.x = i > 0 ? 0.5 * LENGTH : 0.0;
-        joint->anchor_b.x = -0.5 * LENGTH;
-        joint->space.axis = (Vec3){0.0, 0.0, 1.0};
         if (i % 3 == 0) {
+            joint->kind = JOINT_CLEARANCE;
             joint->clearance =
                 (Clearance){.hole_radius = 5.01e-3, .pin_radius = 5e-3, .width = 0.02};
         } else {
-            const Body *before = &linkage->bodies[i - 1];
+            const Body *before = &scenario.linkage.bodies[i - 1];
             // the joint holds: the ends move alike
             const double end = before->start.velocity.y + 0.5 * LENGTH * before->start.omega;
             body->start.omega = (body->start.velocity.y - end) / (0.5 * LENGTH);
         }
     }
-    space_complete(linkage);
+    space_complete(&scenario.linkage);
     scenario.contact.stiffness = 6.6e9;
     scenario.contact.exponent = 1.5;
     scenario.run.duration = 2e-3;
@@ -189,6 +179,7 @@ static void forty_links_in_space_move_as_in_the_plane(void **state)
         trajectory_destroy(space);
         trajectory_destroy(plane);
     }
+    linkage_free(&scenario.linkage);
 }
 
 int main(void)

@@ -168,3 +168,20 @@ Scenario mechanism_slidercrank(double offset, double line, SliderSide side)
     assemble(&scenario);
     return scenario;
 }
+
+Linkage mechanism_chain(size_t count, double length, double mass)
+{
+    Linkage linkage = linkage_create((LinkageRoom){.bodies = count, .joints = count});
+    const Vec2 half = {0.5 * length, 0.0};
+    for (size_t i = 0; i < count; i++) {
+        char name[LINKAGE_NAME_SIZE];
+        snprintf(name, sizeof name, "link-%zu", i);
+        add_body(&linkage, name, mass, mass * length * length / 12.0,
+                 (Vec2){length * ((double)i + 0.5), 0.0}, 0.0);
+        snprintf(name, sizeof name, "pin-%zu", i);
+        add_joint(&linkage, name, (int)i - 1, i > 0 ? half : (Vec2){0.0, 0.0}, (int)i,
+                  vec2_scale(-1.0, half));
+        linkage.joints[i].space.axis = (Vec3){0.0, 0.0, 1.0};
+    }
+    return linkage;
+}

@@ -29,3 +29,8 @@ Scenario mechanism_parallelogram(void);
 // A slider-crank: crank 50 mm, rod 120 mm, 5000 rpm, every joint ideal; with the slider's line and
 // side as given, m and rad.
 Scenario mechanism_slidercrank(double offset, double line, SliderSide side);
+
+// Links of a length, m, and a mass, kg, in a row along x from the origin, level and at rest, each
+// pinned to the one before it and the first to the ground: link-0 by pin-0 and so on. All joints
+// ideal, about z. To be freed by linkage_free.
+Linkage mechanism_chain(size_t count, double length, double mass);
