@@ -28,38 +28,28 @@ static const Field DISTRIBUTION_FIELDS[] = {
     {0},
 };
 
-const Field METRIC_FIELDS[ENSEMBLE_METRIC_COUNT + 1] = {
-    {"force_max_N", FIELD_GROUP, KEPT, "force max", "N", METRIC(ENSEMBLE_FORCE_MAX),
-     .of = DISTRIBUTION_FIELDS},
-    {"impulse_N_s", FIELD_GROUP, KEPT, "impulse", "N s", METRIC(ENSEMBLE_IMPULSE),
-     .of = DISTRIBUTION_FIELDS},
-    {"impacts", FIELD_GROUP, KEPT, "impacts", "", METRIC(ENSEMBLE_IMPACTS),
-     .of = DISTRIBUTION_FIELDS},
-    {"penetration_max_m", FIELD_GROUP, KEPT, "deepest", "um", METRIC(ENSEMBLE_PENETRATION_MAX),
-     .of = DISTRIBUTION_FIELDS},
-    {"contact_fraction", FIELD_GROUP, KEPT, "in contact", "%", METRIC(ENSEMBLE_CONTACT_SHARE),
-     .of = DISTRIBUTION_FIELDS},
-    {0},
-};
+// A row for each metric: the keys and units of what a joint's contacts push, or turn.
+#define METRIC_ROW(key, title, unit, number) \
+    {key, FIELD_GROUP, KEPT, title, unit, METRIC(number), .of = DISTRIBUTION_FIELDS}
+#define METRIC_ROWS(force_key, force, impulse_key, impulse, depth_key, depth) \
+    METRIC_ROW("force_max_" force_key, "force max", force, ENSEMBLE_FORCE_MAX), \
+    METRIC_ROW("impulse_" impulse_key, "impulse", impulse, ENSEMBLE_IMPULSE), \
+    METRIC_ROW("impacts", "impacts", "", ENSEMBLE_IMPACTS), \
+    METRIC_ROW("penetration_max_" depth_key, "deepest", depth, ENSEMBLE_PENETRATION_MAX), \
+    METRIC_ROW("contact_fraction", "in contact", "%", ENSEMBLE_CONTACT_SHARE), \
+    {0}
 
-static const Field TURNING_METRIC_FIELDS[ENSEMBLE_METRIC_COUNT + 1] = {
-    {"force_max_N_m", FIELD_GROUP, KEPT, "force max", "N m", METRIC(ENSEMBLE_FORCE_MAX),
-     .of = DISTRIBUTION_FIELDS},
-    {"impulse_N_m_s", FIELD_GROUP, KEPT, "impulse", "N m s", METRIC(ENSEMBLE_IMPULSE),
-     .of = DISTRIBUTION_FIELDS},
-    {"impacts", FIELD_GROUP, KEPT, "impacts", "", METRIC(ENSEMBLE_IMPACTS),
-     .of = DISTRIBUTION_FIELDS},
-    {"penetration_max_rad", FIELD_GROUP, KEPT, "deepest", "mrad", METRIC(ENSEMBLE_PENETRATION_MAX),
-     .of = DISTRIBUTION_FIELDS},
-    {"contact_fraction", FIELD_GROUP, KEPT, "in contact", "%", METRIC(ENSEMBLE_CONTACT_SHARE),
-     .of = DISTRIBUTION_FIELDS},
-    {0},
+static const Field PUSHING_FIELDS[ENSEMBLE_METRIC_COUNT + 1] = {
+    METRIC_ROWS("N", "N", "N_s", "N s", "m", "um"),
+};
+static const Field TURNING_FIELDS[ENSEMBLE_METRIC_COUNT + 1] = {
+    METRIC_ROWS("N_m", "N m", "N_m_s", "N m s", "rad", "mrad"),
 };
 // clang-format on
 
 const Field *measured_metric_fields(const Joint *joint)
 {
-    return linkage_is_torsional(joint) ? TURNING_METRIC_FIELDS : METRIC_FIELDS;
+    return linkage_is_torsional(joint) ? TURNING_FIELDS : PUSHING_FIELDS;
 }
 
 json_t *ensemble_joints_json(const Linkage *linkage, const Ensemble *ensemble)

@@ -8,10 +8,8 @@
 // Of a TrajectoryError.
 extern const Field ERROR_FIELDS[];
 
-// Of the Distributions of one joint, by EnsembleMetric: a group each.
-extern const Field METRIC_FIELDS[ENSEMBLE_METRIC_COUNT + 1];
-
-// The same in the units of a joint: those of a joint whose limits turn it are torques and angles.
+// Of the Distributions of a joint, by EnsembleMetric: a group each, in the joint's units. Those of
+// a joint with limits about which it turns are torques and angles.
 const Field *measured_metric_fields(const Joint *joint);
 
 // New reference: the distributions of the joints with play, by joint and metric.

@@ -17,6 +17,7 @@ enum { COLUMN_COUNT = sizeof COLUMNS / sizeof COLUMNS[0] };
 static void spread_row(Table *table, const CompareReport *report, size_t scheme, size_t joint)
 {
     const LadderEnsemble *ensemble = &report->ladder->ensembles[scheme];
+    const Field *metrics = measured_metric_fields(&report->scenario->linkage.joints[joint]);
     table_cell(table, "%s", report->ladder->schemes[scheme].name);
     table_cell(table, ensemble->step_s > 0.0 ? "%.4g" : "its own", ensemble->step_s * UNITS_US);
     for (int i = 0; i < COLUMN_COUNT; i++) {
@@ -24,7 +25,7 @@ static void spread_row(Table *table, const CompareReport *report, size_t scheme,
         if (ensemble->ensemble.members == 0) {
             table_cell(table, "failed");
         } else {
-            const double scale = units_per_si(METRIC_FIELDS[COLUMNS[i]].unit);
+            const double scale = units_per_si(metrics[COLUMNS[i]].unit);
             table_cell(table, "%.4g [%.4g, %.4g]", d->median * scale, d->low * scale,
                        d->high * scale);
         }
@@ -46,12 +47,13 @@ static void write_failures(const CompareReport *report, const Style *style, Text
 // One joint with play: the motion's spread by every scheme that has one.
 static void write_joint(const CompareReport *report, size_t joint, const Style *style, Text *text)
 {
+    const Field *metrics = measured_metric_fields(&report->scenario->linkage.joints[joint]);
     Table *table = table_create(2 + COLUMN_COUNT);
     table_fit(table, style->width);
     table_head(table, 0, "scheme", "", TABLE_LEFT);
     table_head(table, 1, "step", "us", TABLE_RIGHT);
     for (int i = 0; i < COLUMN_COUNT; i++) {
-        const Field *metric = &METRIC_FIELDS[COLUMNS[i]];
+        const Field *metric = &metrics[COLUMNS[i]];
         table_head(table, (size_t)(2 + i), metric->title, metric->unit, TABLE_RIGHT);
     }
     for (size_t i = 0; i < report->ladder->scheme_count; i++) {
