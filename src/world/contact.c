@@ -28,6 +28,13 @@ static const LawKind PIN_LAWS[] = {
     [JP_PIN_DUBOWSKY_FREUDENSTEIN] = LAW_DUBOWSKY_FREUDENSTEIN,
 };
 
+// the program alone has those of the paper's tables, which follow from no theory of contact
+enum { PAPER_LAWS = 2 };
+_Static_assert(sizeof KINDS / sizeof *KINDS == DAMPING_COUNT,
+               "a damping of OPTIONS_DAMPING_LIST is missing: add it to JpDamping and to KINDS");
+_Static_assert(sizeof PIN_LAWS / sizeof *PIN_LAWS + PAPER_LAWS == LAW_COUNT,
+               "a law of OPTIONS_LAW_LIST is missing: add it to JpPinLaw and to PIN_LAWS");
+
 JpContact jp_contact_default(void)
 {
     return (JpContact){

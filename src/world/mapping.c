@@ -13,6 +13,10 @@ static const OdeMap MAPS[] = {
     [JP_MAP_EXACT] = ODE_MAP_EXACT,
 };
 
+// the last one makes no row
+_Static_assert(sizeof MAPS / sizeof *MAPS == ODE_MAP_COUNT - 1,
+               "a map of OPTIONS_ODE_MAP_LIST is missing: add it to JpMap and to MAPS");
+
 JpStatus mapping_of(JpMap kind, const Map **map, JpError *error)
 {
     if ((size_t)kind >= sizeof MAPS / sizeof *MAPS) {
