@@ -1,0 +1,148 @@
+// Does each key of a case reach the two places that list the scenario's numbers by hand?
+//
+// model/shake.c moves them by rounding, and tune's C program states them. A key that is missing in
+// one of them changes no result there, so nothing else would show it.
+#include "kept.h"
+#include "load_case.h"
+
+#include "base/text.h"
+#include "casefile/schema.h"
+#include "commands/tune/tune_code.h"
+#include "model/shake.h"
+
+#include <math.h>
+#include <string.h>
+
+// How a run is made and reported: chosen by the user, not measured, and the same on any machine.
+static const char *const UNSHAKEN[] = {
+    "run.revolutions",     "run.duration",    "run.tolerance",
+    "run.spike-threshold", "run.report-from", "reference.tolerance",
+};
+
+// What the program alone reads, of a run of ODE or before it.
+static const char *const UNWRITTEN[] = {
+    "space",             // programs are of the plane
+    "four-bar.assembly", // bodies say where they start
+    "run.most-steps",
+    "run.spike-threshold",
+    "run.report-from",
+};
+
+static bool is_listed(const char *path, const char *const *list, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(path, list[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+#define IS_LISTED(path, list) is_listed(path, list, sizeof(list) / sizeof *(list))
+
+static bool is_own(const SchemaRow *row, SchemaType type)
+{
+    return row->family == SCHEMA_SINGLE && row->holder == SCHEMA_SINGLE && row->type == type;
+}
+
+// A number that the row allows, is not 0 and is no default.
+static double unusual(const SchemaRow *row)
+{
+    const double high = fmin(row->high, row->low + 1.0);
+    return row->low + 0.377 * (high - row->low);
+}
+
+static void every_physical_number_is_shaken(void **state)
+{
+    (void)state;
+    const Scenario still = load("cases/paper/impact-k66.yaml", NULL, 0);
+    size_t checked = 0;
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        const SchemaRow *row = &SCHEMA_ROWS[i];
+        if (!is_own(row, SCHEMA_QUANTITY)) {
+            continue;
+        }
+        bool has_moved = false;
+        for (unsigned seed = 1; seed <= 20; seed++) {
+            Scenario scenario = kept_copy(&still);
+            double *field = schema_field(row, &scenario, 0);
+            const double before = *field = unusual(row);
+            shake_inputs(&scenario, seed);
+            has_moved = has_moved || *field != before;
+        }
+        if (has_moved == IS_LISTED(row->path, UNSHAKEN)) {
+            fail_msg("%s is %s: add it to model/shake.c if it is a physical number, otherwise to "
+                     "UNSHAKEN in %s",
+                     row->path, has_moved ? "shaken" : "not shaken", __FILE__);
+        }
+        checked++;
+    }
+    assert_true(checked > 20);
+}
+
+static void write_code(const Scenario *scenario, Text *text)
+{
+    const TuneCode code = {
+        .scenario = scenario, .words = "", .command = "", .error = 1e-3, .target = 1e-3};
+    Err err = {0};
+    text_init(text);
+    if (!tune_code_write(&code, text, &err)) {
+        fail_msg("%s", err.text);
+    }
+}
+
+// Changes the value of a row; false where this test does not know how.
+static bool change(const SchemaRow *row, Scenario *scenario)
+{
+    if (is_own(row, SCHEMA_QUANTITY)) {
+        *(double *)schema_field(row, scenario, 0) = unusual(row);
+    } else if (is_own(row, SCHEMA_INTEGER)) {
+        *(size_t *)schema_field(row, scenario, 0) += 1;
+    } else if (is_own(row, SCHEMA_CHOICE)) {
+        unsigned *choice = schema_field(row, scenario, 0);
+        *choice = row->words[*choice + 1] != NULL ? *choice + 1 : 0;
+    } else {
+        return false;
+    }
+    return true;
+}
+
+static void every_setting_of_ode_is_in_the_code(void **state)
+{
+    (void)state;
+    const char *const overrides[] = {"run.step=1 us", "contact.law=johnson",
+                                     "contact.damping=viscous",
+                                     "contact.viscous-coefficient=100 N s/m"};
+    const Scenario as_it_is = load("cases/paper/stackup-impact.yaml", overrides, 4);
+    Text before;
+    write_code(&as_it_is, &before);
+    size_t checked = 0;
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        const SchemaRow *row = &SCHEMA_ROWS[i];
+        Scenario scenario = kept_copy(&as_it_is);
+        const bool is_of_case = strncmp(row->path, "slider-crank", strlen("slider-crank")) != 0;
+        if (!is_of_case || !change(row, &scenario)) {
+            continue;
+        }
+        Text after;
+        write_code(&scenario, &after);
+        const bool is_written = strcmp(before.data, after.data) != 0;
+        text_finish(&after);
+        if (is_written == IS_LISTED(row->path, UNWRITTEN)) {
+            fail_msg("%s is %s the code of tune --one-file: add it to commands/tune/tune_code.c if "
+                     "ODE reads it, otherwise to UNWRITTEN in %s",
+                     row->path, is_written ? "in" : "not in", __FILE__);
+        }
+        checked++;
+    }
+    text_finish(&before);
+    assert_true(checked > 30);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_physical_number_is_shaken),
+        cmocka_unit_test(every_setting_of_ode_is_in_the_code),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
