@@ -71,8 +71,30 @@ static double duration_of(const void *record)
     return spike->end_s - spike->onset_s;
 }
 
+static const void *if_felt(const void *record)
+{
+    return ((const RunJoint *)record)->is_felt ? record : NULL;
+}
+
+RunJoint run_fields_joint(const Linkage *linkage, const Trajectory *run, size_t number)
+{
+    const JointExtremes *extremes = &run->joints[number];
+    const bool is_felt = trajectory_feels_play(run, &linkage->joints[number]);
+    return (RunJoint){
+        .is_felt = is_felt,
+        .impacts = extremes->impacts,
+        .force_max = extremes->force_max,
+        .impulse = is_felt ? extremes->impulse : NAN,
+        .penetration_max = is_felt ? extremes->penetration_max.value : NAN,
+        .tilt_max = is_felt ? extremes->tilt_max.value : NAN,
+        .axial_max = is_felt ? extremes->axial_max.value : NAN,
+        .contact_share = is_felt ? trajectory_contact_share(run, number) : NAN,
+    };
+}
+
 #define RUN(member)     .offset = offsetof(Trajectory, member)
 #define BODY(member)    .offset = offsetof(BodyExtremes, member)
+#define JOINT(member)   .offset = offsetof(RunJoint, member)
 #define CONTACT(member) .offset = offsetof(Spike, member)
 #define SPIKE(member)   .offset = offsetof(SignalSpike, member)
 #define ENERGY(member)  .offset = offsetof(Energy, member)
@@ -130,6 +152,33 @@ const Field RUN_BODY_FIELDS[] = {
     EXTREME("omega_min", "rad_s", "omega min", "rad/s", omega_min),
     EXTREME("alpha_max", "rad_s2", "alpha max", "rad/s^2", alpha_max),
     EXTREME("alpha_min", "rad_s2", "alpha min", "rad/s^2", alpha_min),
+    {0},
+};
+
+static const Field IMPACT_FIELDS[] = {
+    {"impacts", FIELD_COUNT, FIELD_JSON | FIELD_TABLE, "impacts", "", JOINT(impacts)},
+    {0},
+};
+const Field RUN_JOINT_FIELDS[] = {
+    {NULL, FIELD_LABEL, FIELD_TABLE, .title = "joint"},
+    {NULL, FIELD_LABEL, FIELD_TABLE, .title = "backend"},
+    {NULL, FIELD_PART, FIELD_JSON | FIELD_TABLE, .of = IMPACT_FIELDS, .has_nulls = true,
+     .part = if_felt},
+    {"force_max_N", FIELD_NUMBER, RUN_PUSHED, "force max", "N", JOINT(force_max.value)},
+    {"force_max_N_m", FIELD_NUMBER, RUN_TURNED, "torque max", "N m", JOINT(force_max.value)},
+    {"force_max_crank_deg", FIELD_DEGREES, FIELD_JSON | RUN_DRIVEN, "at crank", "deg", "%.1f",
+     JOINT(force_max.crank_rad)},
+    {NULL, FIELD_NUMBER, RUN_FREE, "at time", "ms", "%.4f", JOINT(force_max.time_s)},
+    {"impulse_N_s", FIELD_NUMBER, RUN_PUSHED, "impulse", "N s", JOINT(impulse),
+     .align = TABLE_DETAIL},
+    {"impulse_N_m_s", FIELD_NUMBER, RUN_TURNED, "impulse", "N m s", JOINT(impulse),
+     .align = TABLE_DETAIL},
+    {"penetration_max_m", FIELD_NUMBER, RUN_PUSHED, "deepest", "um", JOINT(penetration_max)},
+    {"penetration_max_rad", FIELD_NUMBER, RUN_TURNED, "deepest", "mrad", JOINT(penetration_max)},
+    {"tilt_max_rad", FIELD_NUMBER, RUN_SPATIAL, JOINT(tilt_max)},
+    {"axial_max_m", FIELD_NUMBER, RUN_SPATIAL, JOINT(axial_max)},
+    {"contact_fraction", FIELD_NUMBER, FIELD_JSON | FIELD_TABLE, "in contact", "%", "%.1f",
+     JOINT(contact_share)},
     {0},
 };
 

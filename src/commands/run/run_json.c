@@ -84,35 +84,21 @@ static void set_limits(json_t *object, const Linkage *linkage, const Trajectory 
 static json_t *joint_object(const Linkage *linkage, const Trajectory *run, size_t number)
 {
     const Joint *of = &linkage->joints[number];
-    const JointExtremes *extremes = &run->joints[number];
-    const JointUnits *units = joint_units(of);
     const bool has_play = linkage_has_play(of);
-    // without play that is felt there is no contact to count: null, not 0
-    const bool is_felt = trajectory_feels_play(run, of);
-    json_t *joint = json_object();
-    json_object_set_new(joint, "impacts",
-                        is_felt ? json_integer((json_int_t)extremes->impacts) : json_null());
-    set_in(joint, "force_max", units->force_key, extremes->force_max.value);
-    json_value_set(joint, "force_max_crank_deg", extremes->force_max.crank_rad * UNITS_DEG);
-    set_in(joint, "impulse", units->impulse_key, is_felt ? extremes->impulse : NAN);
-    set_in(joint, "penetration_max", units->length_key,
-           is_felt ? extremes->penetration_max.value : NAN);
-    if (linkage->is_spatial) {
-        json_value_set(joint, "tilt_max_rad", is_felt ? extremes->tilt_max.value : NAN);
-        json_value_set(joint, "axial_max_m", is_felt ? extremes->axial_max.value : NAN);
-    }
+    const RunJoint numbers = run_fields_joint(linkage, run, number);
+    const unsigned where =
+        FIELD_JSON | run_report_contact(of) | (linkage->is_spatial ? RUN_SPATIAL : 0);
+    json_t *joint = fields_json(RUN_JOINT_FIELDS, where, &numbers);
     if (slide_range_has(of)) {
-        set_slide(joint, linkage, run, number, is_felt);
+        set_slide(joint, linkage, run, number, numbers.is_felt);
     }
-    json_value_set(joint, "contact_fraction",
-                   is_felt ? trajectory_contact_share(run, number) : NAN);
     json_object_set_new(joint, "has_play", json_boolean(has_play));
     if (of->limits.kind != LIMIT_NONE) {
         set_limits(joint, linkage, run, number);
     } else if (has_play && of->kind != JOINT_STOP) {
         json_value_set(joint, "radial_clearance_m", linkage_radial_clearance(of));
     }
-    json_object_set_new(joint, "spikes", contacts_array(of, extremes, is_felt));
+    json_object_set_new(joint, "spikes", contacts_array(of, &run->joints[number], numbers.is_felt));
     spike_json_set(joint, run_report_force(of), linkage, &run->force_spikes[number]);
     return joint;
 }

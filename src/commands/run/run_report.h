@@ -88,7 +88,22 @@ enum {
     RUN_TORQUE = FIELD_OWN << 5,   // of spikes of a torque
     RUN_PUSHED = FIELD_OWN << 6,   // of contacts: forces and lengths,
     RUN_TURNED = FIELD_OWN << 7,   // or torques and angles
+    RUN_SPATIAL = FIELD_OWN << 8,  // of joints in space
 };
+
+// What a joint did in a run. Without play that is felt there are no contacts to count: null, not 0.
+typedef struct RunJoint {
+    bool is_felt;
+    size_t impacts;
+    Extreme force_max;      // N, or N m where limits turn it, as below
+    double impulse;         // N s
+    double penetration_max; // m
+    double tilt_max;        // rad
+    double axial_max;       // m
+    double contact_share;   // 1, of the time
+} RunJoint;
+
+RunJoint run_fields_joint(const Linkage *linkage, const Trajectory *run, size_t number);
 
 // The columns of a table of this mechanism.
 static inline unsigned run_report_columns(const RunReport *report)
@@ -108,9 +123,10 @@ static inline unsigned run_report_force(const Joint *joint)
     return linkage_is_torsional(joint) ? RUN_TORQUE : RUN_FORCE;
 }
 
-// The fields of Trajectory, BodyExtremes, Spike, SignalSpike and Energy.
+// The fields of Trajectory, BodyExtremes, RunJoint, Spike, SignalSpike and Energy.
 extern const Field RUN_FIELDS[];
 extern const Field RUN_BODY_FIELDS[];
+extern const Field RUN_JOINT_FIELDS[];
 extern const Field RUN_CONTACT_FIELDS[];
 extern const Field RUN_SPIKE_FIELDS[];
 extern const Field RUN_ENERGY_FIELDS[];

@@ -35,21 +35,6 @@ void run_tables_extremes(const RunReport *report, const Style *style, Text *text
     }
 }
 
-static void contact_row(Table *table, const RunReport *report, const Trajectory *run, size_t number)
-{
-    const Joint *joint = &report->scenario->linkage.joints[number];
-    const JointExtremes *extremes = &run->joints[number];
-    table_cell(table, "%s", joint->name);
-    table_cell(table, "%s", run->backend);
-    table_cell(table, "%zu", extremes->impacts);
-    section_number(table, extremes->force_max.value);
-    run_when_cell(table, report, extremes->force_max.time_s, extremes->force_max.crank_rad);
-    section_number(table, extremes->impulse);
-    section_number(table,
-                   extremes->penetration_max.value * units_per_si(joint_units(joint)->length));
-    table_cell(table, "%.1f", trajectory_contact_share(run, number) * UNITS_PERCENT);
-}
-
 // The farthest that a pin was from the centre of its hole at the samples, m.
 static double farthest_pin(const Trajectory *run, size_t joint)
 {
@@ -112,24 +97,7 @@ static void write_untouched(const RunReport *report, bool is_torsional, size_t w
 static void write_contacts(const RunReport *report, bool is_torsional, const Style *style,
                            Text *text)
 {
-    static const SectionHead HEADS[][8] = {
-        {{"joint", "", TABLE_LEFT},
-         {"backend", "", TABLE_LEFT},
-         {"impacts", "", TABLE_RIGHT},
-         {"force max", "N", TABLE_RIGHT},
-         {"", "", TABLE_RIGHT},
-         {"impulse", "N s", TABLE_RIGHT | TABLE_DETAIL},
-         {"deepest", "um", TABLE_RIGHT},
-         {"in contact", "%", TABLE_RIGHT}},
-        {{"joint", "", TABLE_LEFT},
-         {"backend", "", TABLE_LEFT},
-         {"impacts", "", TABLE_RIGHT},
-         {"torque max", "N m", TABLE_RIGHT},
-         {"", "", TABLE_RIGHT},
-         {"impulse", "N m s", TABLE_RIGHT | TABLE_DETAIL},
-         {"deepest", "mrad", TABLE_RIGHT},
-         {"in contact", "%", TABLE_RIGHT}},
-    };
+    const unsigned where = run_report_columns(report) | (is_torsional ? RUN_TURNED : RUN_PUSHED);
     const Linkage *linkage = &report->scenario->linkage;
     Table *table = NULL;
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
@@ -140,12 +108,14 @@ static void write_contacts(const RunReport *report, bool is_torsional, const Sty
                 continue;
             }
             if (table == NULL) {
-                table = section_begin(is_torsional ? "Contacts at the limits of pivots"
-                                                   : "Contacts in the joints with play",
-                                      8, HEADS[is_torsional ? 1 : 0], style, text);
-                run_when_head(table, 4, report);
+                table = fields_table(is_torsional ? "Contacts at the limits of pivots"
+                                                  : "Contacts in the joints with play",
+                                     RUN_JOINT_FIELDS, where, style, text);
             }
-            contact_row(table, report, run, joint);
+            const RunJoint numbers = run_fields_joint(linkage, run, joint);
+            table_cell(table, "%s", linkage->joints[joint].name);
+            table_cell(table, "%s", run->backend);
+            fields_table_row(RUN_JOINT_FIELDS, where, &numbers, table);
         }
     }
     if (table != NULL) {
