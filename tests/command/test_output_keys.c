@@ -105,12 +105,20 @@ static void look_for_keys(Missing *missing, json_t *value, const char *name)
     }
 }
 
+static void assert_listed(const Missing *missing, const char *command)
+{
+    if (missing->keys[0] != '\0') {
+        fail_msg("docs/output.md lacks these in its part on `jointplay %s`:%s", command,
+                 missing->keys);
+    }
+}
+
 // Keys shared by all commands are listed once, as those of a run.
 static void look_for_tool(json_t *root, char *page)
 {
     Missing missing = {.section = find_section(page, "run")};
     look_for_keys(&missing, json_object_get(root, "tool"), NULL);
-    assert_string_equal(missing.keys, "");
+    assert_listed(&missing, "run");
 }
 
 // Erases a key from every code span of a section.
@@ -148,7 +156,7 @@ static void check_keys(void **state, const char *command, const char *words, con
 
     Missing missing = {.section = find_section(page, command)};
     look_for_keys(&missing, root, NULL);
-    assert_string_equal(missing.keys, "");
+    assert_listed(&missing, command);
     assert_true(missing.key_count > 10);
 
     Missing control = {.section = missing.section};
@@ -203,7 +211,7 @@ static void check_columns(void **state, const char *command, const char *words, 
 
     Missing missing = {.section = find_section(page, command)};
     look_for_columns(&missing, table);
-    assert_string_equal(missing.keys, "");
+    assert_listed(&missing, command);
     assert_true(missing.key_count > 10);
 
     Missing control = {.section = missing.section};
