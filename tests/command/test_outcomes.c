@@ -1,4 +1,5 @@
 // Does `jointplay check` know how runs end, and does it never pass one that ends otherwise?
+#include "close.h"
 #include "program.h"
 
 // A pin that falls in its hole and bounces: a few milliseconds of work.
@@ -59,6 +60,8 @@ static void a_run_agrees_within_its_limit_alone(void **state)
     assert_string_equal(json_string_value(json_object_get(second, "outcome")), "agrees");
     const double error = json_number_value(json_object_get(second, "error"));
     assert_true(error > json_number_value(json_object_get(second, "reference_uncertainty")));
+    // the errors are taken over the whole run
+    assert_near(json_number_value(json_object_get(second, "horizon_s")), 0.012, 1e-9);
     json_decref(root);
     // the control: a limit below the error that was found
     char outcomes[256];

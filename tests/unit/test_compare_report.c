@@ -316,6 +316,34 @@ static void the_picture_has_lines_frontier_band_and_arrow(void **state)
     assert_null(strstr(svg, "inf\""));
 }
 
+// the stair of the frontier goes from fast and wrong to slow and right: to the right and down
+static void the_frontier_goes_down_to_the_right(void **state)
+{
+    Fixture *fixture = *state;
+    // a point of the second scheme comes between two of the first
+    LadderPoint *between = &fixture->ladder->points[STEPS];
+    between->run.error.omega_max *= 0.6;
+    between->run.error.omega_max_in_horizon *= 0.6;
+    ladder_conclude(fixture->ladder);
+    assert_true(between->is_on_frontier);
+    compare_plot_write(&fixture->report, &fixture->text);
+    const char *stair = strstr(fixture->text.data, "stroke-linecap=\"round\" d=\"M");
+    assert_non_null(stair);
+    double x = 0.0, y = 0.0;
+    int end = 0;
+    stair = strchr(stair, 'M');
+    assert_int_equal(sscanf(stair, "M%lf %lf%n", &x, &y, &end), 2);
+    int points = 1;
+    double next_x = 0.0, next_y = 0.0;
+    for (stair += end; sscanf(stair, "H%lfV%lf%n", &next_x, &next_y, &end) == 2; stair += end) {
+        assert_true(next_x > x && next_y > y);
+        x = next_x;
+        y = next_y;
+        points++;
+    }
+    assert_true(points > 2);
+}
+
 static void a_picture_of_nothing_is_still_a_picture(void **state)
 {
     Fixture *fixture = *state;
@@ -341,6 +369,7 @@ int main(void)
         REPORT_TEST(a_spreadsheet_has_as_many_cells_in_every_row),
         REPORT_TEST(a_number_that_does_not_exist_is_an_empty_cell_and_null),
         REPORT_TEST(the_picture_has_lines_frontier_band_and_arrow),
+        REPORT_TEST(the_frontier_goes_down_to_the_right),
         REPORT_TEST(a_picture_of_nothing_is_still_a_picture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,6 +11,7 @@
 
 #include "write/xml.h"
 
+#include <math.h>
 #include <string.h>
 
 static const char RUNS[] = "runs"; // name of the test that is the runs themselves
@@ -60,6 +61,12 @@ static void append_name(Text *text, const char *prefix, const char *words)
     text_finish(&name);
 }
 
+// A time as it is shown. The schema allows three decimals; what took time does not show as none.
+static double shown_time(double time_s)
+{
+    return time_s > 0.0 ? fmax(time_s, 0.001) : 0.0;
+}
+
 // A test up to its outcome.
 static void begin_test(Text *text, const CheckCase *item, const char *prefix, const char *name,
                        double time_s)
@@ -68,7 +75,7 @@ static void begin_test(Text *text, const CheckCase *item, const char *prefix, co
     append_class(text, item->path);
     text_append(text, "\" name=\"");
     append_name(text, prefix, name);
-    text_append(text, "\" time=\"%.3f\"", time_s);
+    text_append(text, "\" time=\"%.3f\"", shown_time(time_s));
 }
 
 // <tag message="..." type="...">...</tag> in a test; some systems show the one, some the other.
