@@ -68,13 +68,16 @@ typedef struct Encounter {
     double stiff_width_s; // of the next implicit step; 0 where a contact has just begun
 
     // of the step under way, to be filled in before encounter_run
-    double *mobility; // row by row: all of a row, or what is next to its diagonal
-    size_t reach;     // rows further apart do not move each other
-    size_t pitch;     // of `mobility`: between what two neighbouring rows have in one column
-    size_t origin;    // likewise: of the first row and column
-    double *free;     // acceleration while nothing acts
-    double *position; // at the start, m; of a line the gap and 0; not of turns
-    double *speed;    // at the start, m/s, rad/s
+    double *mobility;   // row by row: all of a row, or what is next to its diagonal
+    size_t reach;       // rows further apart do not move each other
+    size_t pitch;       // of `mobility`: between what two neighbouring rows have in one column
+    size_t origin;      // likewise: of the first row and column
+    double *free;       // acceleration while nothing acts
+    double *position;   // at the start, m; of a line the gap and 0; not of turns
+    double *speed;      // at the start, m/s, rad/s
+    size_t event_most;  // times in a step at which contacts may begin or end, until it is given up
+    size_t event_count; // so far in the step
+    struct EncounterInput *input; // what others do to the rows; NULL: nothing. Not owned
 
     // what came of it: nodes, the first at the start, two where a contact begins or ends
     size_t node_count;
@@ -119,7 +122,7 @@ static inline double *encounter_mobility(const Encounter *encounter, size_t row,
 size_t encounter_rows(const Encounter *encounter);
 
 // Integrates a step of a length, s. Returns false where that takes more local steps than there can
-// be sense in.
+// be sense in, or more events than are allowed.
 bool encounter_run(Encounter *encounter, double duration);
 
 // Impulses and their integrals over time, by row, and the losses, from the start to a time in the

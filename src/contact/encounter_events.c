@@ -100,7 +100,8 @@ size_t encounter_events_find(Encounter *encounter, EncounterStep *step, const En
         double first;
         double last;
         crossings[i] = INFINITY;
-        if (step->method == ENCOUNTER_FLIGHT && is_leaving(encounter, step->from, i)) {
+        if (step->method == ENCOUNTER_FLIGHT && encounter->input == NULL &&
+            is_leaving(encounter, step->from, i)) {
             crossings[i] = encounter_flight_time(encounter, i, step->from, whole_s);
             *width_s = fmin(*width_s, crossings[i]);
             found++;
@@ -123,11 +124,14 @@ bool encounter_events_shorten(const Encounter *encounter, const EncounterPoint *
 {
     const double whole_s = *width_s;
     for (size_t i = 0; i < encounter->joint_count; i++) {
+        if (encounter->joints[i].is_touching) {
+            continue;
+        }
         const PinHole start =
             encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment);
         const PinHole end = encounter_force_pose(encounter, i, to->time_s, to->impulse, to->moment);
-        if (!encounter->joints[i].is_touching && start.approach_speed < 0.0 &&
-            end.approach_speed > 0.0 && (start.penetration >= 0.0 || end.penetration > 0.0)) {
+        if (start.approach_speed < 0.0 && end.approach_speed > 0.0 &&
+            (start.penetration >= 0.0 || end.penetration > 0.0)) {
             const double share = start.approach_speed / (start.approach_speed - end.approach_speed);
             // one that turns right away has turned
             *width_s = share > TURNED ? fmin(*width_s, share * whole_s) : *width_s;

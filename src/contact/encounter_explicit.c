@@ -85,7 +85,10 @@ static void finish_order_5(Encounter *encounter, const EncounterPoint *from, dou
         last->impulse[i] = from->impulse[i] + h * (from->force[i] + rates);
         last->moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
     }
+    // what others do may jump at the end of the step, not inside it
+    encounter_input_look(encounter, true);
     encounter_rates_find(encounter, last);
+    encounter_input_look(encounter, false);
     for (size_t i = 0; i < encounter->row_count; i++) {
         const double rates =
             h * (from->rate[i] / 8.0 + 25.0 / 72.0 * inside->rate[i] + last->rate[i] / 36.0);

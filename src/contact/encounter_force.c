@@ -25,9 +25,8 @@ static inline double row_motion(const Encounter *encounter, size_t row, double t
 {
     const double *mobility = encounter_mobility(encounter, row, 0);
     const EncounterSpan span = encounter_span(encounter, row);
-    double speed = encounter->speed[row] + time_s * encounter->free[row];
-    double place = encounter->position[row] +
-                   time_s * (encounter->speed[row] + 0.5 * time_s * encounter->free[row]);
+    double speed = encounter_free_speed(encounter, row, time_s);
+    double place = encounter_free_position(encounter, row, time_s);
     for (size_t k = span.first; k < span.end; k++) {
         place += mobility[k] * moment[k];
         speed += mobility[k] * impulse[k];
@@ -41,7 +40,7 @@ double encounter_force_row_speed(const Encounter *encounter, size_t row, double 
 {
     const double *mobility = encounter_mobility(encounter, row, 0);
     const EncounterSpan span = encounter_span(encounter, row);
-    double speed = encounter->speed[row] + time_s * encounter->free[row];
+    double speed = encounter_free_speed(encounter, row, time_s);
     for (size_t k = span.first; k < span.end; k++) {
         speed += mobility[k] * impulse[k];
     }
@@ -134,6 +133,13 @@ static void find_all_rows(const Encounter *encounter, double time_s, const doubl
         speeds[i] = encounter->speed[i] + time_s * encounter->free[i];
         positions[i] = encounter->position[i] +
                        time_s * (encounter->speed[i] + 0.5 * time_s * encounter->free[i]);
+    }
+    if (encounter->input != NULL) {
+        const EncounterAdded *added = encounter_input_at(encounter, time_s);
+        for (size_t i = 0; i < width; i++) {
+            speeds[i] += added->speed[i];
+            positions[i] += added->position[i];
+        }
     }
     for (size_t k = 0; k < width; k++) {
         const double *mobility = encounter_mobility(encounter, k, 0);

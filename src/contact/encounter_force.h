@@ -2,7 +2,7 @@
 // contact/encounter_run.c is made of.
 #pragma once
 
-#include "contact/encounter.h"
+#include "contact/encounter_input.h"
 
 // The rows of a joint with friction, after those of its position: turns about the pin's axis of the
 // hole's and of the pin's body, and in space the sliding along the axis, and the turns of both
@@ -69,6 +69,30 @@ static inline EncounterSpan encounter_span(const Encounter *encounter, size_t ro
         .first = row > encounter->reach ? row - encounter->reach : 0,
         .end = end < encounter->row_count ? end : encounter->row_count,
     };
+}
+
+// The motion of a row beside what acts in the encounter's own rows.
+static inline double encounter_free_speed(const Encounter *encounter, size_t row, double time_s)
+{
+    const double speed = encounter->speed[row] + time_s * encounter->free[row];
+    return encounter->input == NULL ? speed
+                                    : speed + encounter_input_at(encounter, time_s)->speed[row];
+}
+
+static inline double encounter_free_position(const Encounter *encounter, size_t row, double time_s)
+{
+    const double position = encounter->position[row] +
+                            time_s * (encounter->speed[row] + 0.5 * time_s * encounter->free[row]);
+    return encounter->input == NULL
+               ? position
+               : position + encounter_input_at(encounter, time_s)->position[row];
+}
+
+static inline double encounter_free_rate(const Encounter *encounter, size_t row, double time_s)
+{
+    return encounter->input == NULL
+               ? encounter->free[row]
+               : encounter->free[row] + encounter_input_at(encounter, time_s)->acceleration[row];
 }
 
 // Writes the forces in all rows, and the powers lost in damping and in friction.

@@ -22,6 +22,7 @@ Encounter encounter_start(double friction, double friction_speed, double phase)
         .phase = phase,
         .stiff_phase = phase > 0.0 ? phase : STIFF_PHASE,
         .stable = 2.0,
+        .event_most = SIZE_MAX,
         .longest_s = {INFINITY, INFINITY},
     };
 }

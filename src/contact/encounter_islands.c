@@ -7,6 +7,8 @@
 // well, and islands that have grown by them are run again, from the start of the step.
 #include "contact/encounter_islands.h"
 
+#include "contact/encounter_blocks.h"
+
 #include "base/leaders.h"
 #include "base/zeroed.h"
 #include "contact/encounter_force.h"
@@ -28,20 +30,20 @@ EncounterIslands *encounter_islands_create(Encounter *all, const EncounterCoupli
     islands->pushes = zeroed(count, sizeof *islands->pushes);
     islands->leaders = zeroed(count, sizeof *islands->leaders);
     islands->longest_s = zeroed(count, sizeof *islands->longest_s);
+    islands->undivided_most = ENCOUNTER_LARGE;
+    islands->events_most = ENCOUNTER_BUSY;
+    islands->clusters = encounter_blocks_cluster(all, coupling);
+    islands->parents = zeroed(count, sizeof *islands->parents);
+    islands->is_divided = zeroed(count, sizeof *islands->is_divided);
+    islands->is_to_divide = zeroed(count, sizeof *islands->is_to_divide);
+    islands->waits = zeroed(count, sizeof *islands->waits);
+    islands->patience = zeroed(count, sizeof *islands->patience);
+    islands->is_kept_whole = zeroed(count, sizeof *islands->is_kept_whole);
+    islands->tracks = zeroed(count, sizeof *islands->tracks);
     for (size_t i = 0; i < count; i++) {
         islands->longest_s[i][0] = islands->longest_s[i][1] = INFINITY;
     }
     return islands;
-}
-
-static void free_island(EncounterIsland *island)
-{
-    if (island != NULL) {
-        encounter_finish(&island->encounter);
-        encounter_sums_free(&island->sums);
-        free(island->places);
-        free(island);
-    }
 }
 
 void encounter_islands_destroy(EncounterIslands *islands)
@@ -50,8 +52,17 @@ void encounter_islands_destroy(EncounterIslands *islands)
         return;
     }
     for (size_t i = 0; i < islands->all->joint_count; i++) {
-        free_island(islands->kept[i]);
+        encounter_island_free(islands->kept[i]);
+        encounter_track_finish(&islands->tracks[i]);
     }
+    free(islands->clusters);
+    free(islands->parents);
+    free(islands->is_divided);
+    free(islands->is_to_divide);
+    free(islands->is_kept_whole);
+    free(islands->waits);
+    free(islands->patience);
+    free(islands->tracks);
     free(islands->islands);
     free(islands->kept);
     free(islands->island_of);
@@ -124,47 +135,6 @@ static bool is_same(const EncounterIsland *island, const size_t *places, size_t 
            memcmp(island->places, places, count * sizeof *places) == 0;
 }
 
-// Makes an island of places, which it takes over.
-static EncounterIsland *make_island(const EncounterIslands *islands, size_t *places, size_t count)
-{
-    const Encounter *all = islands->all;
-    EncounterIsland *island = zeroed(1, sizeof *island);
-    Encounter *encounter = &island->encounter;
-    *encounter = encounter_start(all->friction, all->friction_speed, all->phase);
-    encounter->duration_before_s = islands->duration_before_s;
-    island->places = places;
-    for (size_t i = 0; i < count; i++) {
-        const EncounterJoint *joint = &all->joints[places[i]];
-        encounter_add(encounter, joint, joint->row_count);
-        for (size_t k = 0; joint->is_touching && k < 2; k++) {
-            encounter->longest_s[k] =
-                fmin(encounter->longest_s[k], islands->longest_s[places[i]][k]);
-        }
-    }
-    encounter_make_room(encounter, encounter_coupling_reach(&islands->coupling, encounter, places));
-    island->sums = encounter_sums(encounter->row_count);
-    return island;
-}
-
-// Gives an island the state of its places at the start of the step.
-static void start_island(const EncounterIslands *islands, EncounterIsland *island)
-{
-    const Encounter *all = islands->all;
-    Encounter *encounter = &island->encounter;
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        const EncounterJoint *from = &all->joints[island->places[i]];
-        EncounterJoint *joint = &encounter->joints[i];
-        const size_t first = joint->first_row;
-        const size_t size = joint->row_count * sizeof(double);
-        *joint = *from;
-        joint->first_row = first;
-        memcpy(encounter->position + first, all->position + from->first_row, size);
-        memcpy(encounter->speed + first, all->speed + from->first_row, size);
-        memcpy(encounter->free + first, all->free + from->first_row, size);
-    }
-    encounter_fill(encounter, &islands->coupling, island->places);
-}
-
 // The places of a joint are active together: what it does is the sum of what they do, and how stiff
 // one is depends on the others.
 static void activate_joints(EncounterIslands *islands)
@@ -188,6 +158,7 @@ static void make_islands(EncounterIslands *islands)
     const size_t count = islands->all->joint_count;
     activate_joints(islands);
     join_partners(islands);
+    encounter_blocks_divide(islands);
     size_t *sizes = number_active(islands);
     size_t **places = zeroed(islands->count, sizeof *places);
     for (size_t i = 0; i < islands->count; i++) {
@@ -203,13 +174,14 @@ static void make_islands(EncounterIslands *islands)
         if (is_same(*kept, places[i], sizes[i])) {
             free(places[i]);
         } else {
-            free_island(*kept);
-            *kept = make_island(islands, places[i], sizes[i]);
+            encounter_island_free(*kept);
+            *kept = encounter_island_make(islands, places[i], sizes[i]);
         }
         islands->islands[i] = *kept;
     }
     free(places);
     free(sizes);
+    encounter_blocks_connect(islands);
 }
 
 // How much the impulses in an island's rows vary in the step.
@@ -271,7 +243,7 @@ static void keep_states(EncounterIslands *islands, double duration)
     for (size_t i = 0; i < all->joint_count; i++) {
         EncounterJoint *joint = &all->joints[i];
         if (islands->kept[i] != NULL && !islands->kept[i]->is_run) {
-            free_island(islands->kept[i]);
+            encounter_island_free(islands->kept[i]);
             islands->kept[i] = NULL;
         }
         if (!islands->is_active[i]) {
@@ -290,6 +262,18 @@ static void keep_states(EncounterIslands *islands, double duration)
     islands->duration_before_s = duration;
 }
 
+static bool run_island(EncounterIslands *islands, EncounterIsland *island, double duration)
+{
+    const size_t before = island->encounter.evaluations;
+    encounter_island_start(islands, island);
+    if (!encounter_run(&island->encounter, duration)) {
+        return false;
+    }
+    island->is_run = true;
+    islands->all->evaluations += island->encounter.evaluations - before;
+    return true;
+}
+
 bool encounter_islands_run(EncounterIslands *islands, double duration)
 {
     Encounter *all = islands->all;
@@ -300,22 +284,15 @@ bool encounter_islands_run(EncounterIslands *islands, double duration)
             islands->kept[i]->is_run = false;
         }
     }
+    encounter_blocks_begin(islands);
+    EncounterBlocksEnd end;
     do {
         make_islands(islands);
-        for (size_t i = 0; i < islands->count; i++) {
-            EncounterIsland *island = islands->islands[i];
-            if (island->is_run) {
-                continue;
-            }
-            const size_t before = island->encounter.evaluations;
-            start_island(islands, island);
-            if (!encounter_run(&island->encounter, duration)) {
-                return false;
-            }
-            island->is_run = true;
-            all->evaluations += island->encounter.evaluations - before;
+        end = encounter_blocks_run(islands, run_island, duration);
+        if (end == ENCOUNTER_BLOCKS_FAILED) {
+            return false;
         }
-    } while (activate(islands, duration));
+    } while (end == ENCOUNTER_BLOCKS_ANEW || activate(islands, duration));
     keep_states(islands, duration);
     return true;
 }

@@ -5,13 +5,12 @@
 // step. Where two contacts that should end together do so a rounding apart, the force is linear
 // between the nodes: a difference of integrals over the square of that time would be rounding.
 #include "contact/encounter_force.h"
+#include "contact/encounter_quintic.h"
 #include "contact/encounter_stiff.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double NARROW = 1e-7; // of the step of the world, that the quintic is used for
 
 // Marks which joints touch from a node on.
 static void set_touching(const Encounter *encounter, uint64_t *words)
@@ -91,26 +90,14 @@ void encounter_at(const Encounter *encounter, size_t node, double time_s, Encoun
     const double *last = encounter->values + 3 * rows * next;
     const double width = encounter->times[next] - encounter->times[node];
     const double s = width > 0.0 ? (time_s - encounter->times[node]) / width : 0.0;
-    const bool is_short = width < NARROW * encounter->times[encounter->node_count - 1];
+    const bool is_short = width < ENCOUNTER_NARROW * encounter->times[encounter->node_count - 1];
     for (size_t i = 0; i < rows; i++) {
-        // Hermite's quintic for the moment, whose derivatives are impulse and force
-        const double p0 = width * first[i];
-        const double p1 = width * last[i];
-        const double f0 = width * width * first[2 * rows + i];
-        const double f1 = width * width * last[2 * rows + i];
-        const double rise = last[rows + i] - first[rows + i] - p0 - 0.5 * f0;
-        const double slope = p1 - p0 - f0;
-        const double bend = f1 - f0;
-        const double a = 10.0 * rise - 4.0 * slope + 0.5 * bend;
-        const double b = -15.0 * rise + 7.0 * slope - bend;
-        const double c = 6.0 * rise - 3.0 * slope + 0.5 * bend;
-        sums->moment[i] = first[rows + i] + s * (p0 + s * (0.5 * f0 + s * (a + s * (b + s * c))));
-        const double impulse = p0 + s * (f0 + s * (3.0 * a + s * (4.0 * b + s * 5.0 * c)));
-        const double force = f0 + s * (6.0 * a + s * (12.0 * b + s * 20.0 * c));
-        sums->impulse[i] = width > 0.0 ? impulse / width : first[i];
-        sums->force[i] = is_short || width == 0.0
-                             ? first[2 * rows + i] + s * (last[2 * rows + i] - first[2 * rows + i])
-                             : force / (width * width);
+        const EncounterNodeRow at = encounter_quintic(
+            (EncounterNodeRow){first[i], first[rows + i], first[2 * rows + i]},
+            (EncounterNodeRow){last[i], last[rows + i], last[2 * rows + i]}, width, s, is_short);
+        sums->impulse[i] = at.impulse;
+        sums->moment[i] = at.moment;
+        sums->force[i] = at.force;
     }
     const double *before = encounter->losses + 2 * node;
     const double *after = encounter->losses + 2 * next;

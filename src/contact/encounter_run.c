@@ -153,7 +153,7 @@ static bool advance_step(Encounter *encounter, EncounterStep *step, double left_
     double width_s = encounter_step_take(encounter, step, left_s, to);
     const double whole_s = width_s;
     bool is_solved = true;
-    if (step->method != ENCOUNTER_FLIGHT &&
+    if ((step->method != ENCOUNTER_FLIGHT || encounter->input != NULL) &&
         encounter_events_shorten(encounter, step->from, to, &width_s)) {
         is_solved = encounter_step_try(encounter, step, width_s, to);
     }
@@ -187,19 +187,27 @@ bool encounter_run(Encounter *encounter, double duration)
     EncounterStep step;
     begin_step(encounter, from);
     encounter->node_count = 0;
+    encounter->event_count = 0;
     set_tolerances(encounter, duration);
     settle_contacts(encounter, from);
     encounter_rates_find(encounter, from);
     encounter_nodes_add(encounter, from);
     const double rounding_s = 1e-14 * duration;
     while (duration - from->time_s > rounding_s) {
-        if (encounter->node_count > NODE_MAX) {
+        if (encounter->node_count > NODE_MAX || encounter->event_count > encounter->event_most) {
             return false;
         }
         size_t events;
         step.from = from;
-        if (!advance_step(encounter, &step, duration - from->time_s, to, &events)) {
+        // what others do is smooth between the ends of their contacts
+        const double stop_s =
+            fmin(duration, encounter_input_stop(encounter, from->time_s + rounding_s));
+        if (!advance_step(encounter, &step, stop_s - from->time_s, to, &events)) {
             continue;
+        }
+        if (fabs(to->time_s - stop_s) <= rounding_s && stop_s < duration) {
+            to->time_s = stop_s;
+            step.is_ended = false;
         }
         if (step.method == ENCOUNTER_STIFF && encounter->node_count == 1) {
             encounter_nodes_settle(encounter);
@@ -211,6 +219,7 @@ bool encounter_run(Encounter *encounter, double duration)
         }
         encounter_nodes_add(encounter, to);
         if (events != 0) {
+            encounter->event_count++;
             change_contacts(encounter, to);
             encounter_rates_find(encounter, to);
             encounter_nodes_add(encounter, to);

@@ -274,6 +274,13 @@ static void extend_forces(const Encounter *encounter, EncounterStages *stages,
             slopes.force[i] + slopes.by_place[i][0] * moved.x + slopes.by_place[i][1] * moved.y;
         for (size_t k = 0; k < own; k++) {
             force += slopes.by_speed[i][k] * after_s * free[k];
+            if (encounter->input != NULL) {
+                // by turns, for what others add is known at one time only
+                const double later =
+                    encounter_input_at(encounter, from->time_s + after_s)->speed[row + k];
+                force += slopes.by_speed[i][k] *
+                         (later - encounter_input_at(encounter, from->time_s)->speed[row + k]);
+            }
         }
         stages->forces[stage][row + i] = force;
     }

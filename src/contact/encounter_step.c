@@ -186,10 +186,11 @@ static double time_to_end(const EncounterJoint *joint, const EncounterPoint *fro
 
 // How soon a pin may be back at the wall, s, that the step of the world has moved off it while they
 // touched: nothing presses before, and no error says how long a step may be.
-static double time_to_wall(const Encounter *encounter, const EncounterJoint *joint,
+static double time_to_wall(const Encounter *encounter, const EncounterJoint *joint, double time_s,
                            const PinHole *pose)
 {
-    const double *free = encounter->free + joint->first_row;
+    const double free[2] = {encounter_free_rate(encounter, joint->first_row, time_s),
+                            encounter_free_rate(encounter, joint->first_row + 1, time_s)};
     const double speed = fmax(pose->approach_speed, 0.0);
     const double gap = -pose->penetration;
     return 2.0 * gap / (speed + sqrt(speed * speed + 2.0 * hypot(free[0], free[1]) * gap));
@@ -211,8 +212,8 @@ static double limit_explicit(const Encounter *encounter, const EncounterPoint *f
             encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment);
         const double depth = fmax(pose.penetration, 0.0);
         if (pose.penetration < 0.0) {
-            longest_s =
-                fmin(longest_s, fmax(time_to_wall(encounter, joint, &pose), joint->first_width_s));
+            longest_s = fmin(longest_s, fmax(time_to_wall(encounter, joint, from->time_s, &pose),
+                                             joint->first_width_s));
         }
         longest_s =
             fmin(longest_s, fmax(ENDING * time_to_end(joint, from, &pose), joint->first_width_s));
@@ -275,9 +276,14 @@ double encounter_step_take(Encounter *encounter, EncounterStep *step, double lef
 {
     step->is_ended = false;
     if (!is_any_touching(encounter)) {
+        // not beyond what is known of others' pushes
+        const double node_s =
+            encounter_input_node(encounter, step->from->time_s + SHORTEST * left_s) -
+            step->from->time_s;
+        const double width_s = fmin(left_s, node_s);
         step->method = ENCOUNTER_FLIGHT;
-        fly(encounter, step->from, left_s, to);
-        return left_s;
+        fly(encounter, step->from, width_s, to);
+        return width_s;
     }
     bool may_be_stiff;
     const double limit_s = limit_explicit(encounter, step->from, &may_be_stiff);

@@ -64,7 +64,7 @@ static bool check_depths(const Impulse *impulse, Err *err)
     const ImpulseStep *step = &impulse->step;
     const ImpulseScope *scope =
         impulse->islands != NULL ? impulse_islands_scope(impulse->islands) : &step->whole;
-    for (size_t n = 0; n < scope->part.place_count; n++) {
+    for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
         const Joint *joint = &step->scenario->linkage.joints[step->places[i].joint];
         if (!law_check_depth(&step->places[i].law, joint, impulse->depths[i], 1.0, err)) {

@@ -61,6 +61,7 @@ static void make_whole(ImpulseStep *step)
         .bodies = make_numbers(linkage->body_count),
         .joint_count = linkage->joint_count,
         .joints = make_numbers(linkage->joint_count),
+        .place_count = step->place_count,
         .part.place_count = step->place_count,
         .part.places = make_numbers(step->place_count),
     };

@@ -190,7 +190,7 @@ static void find_places(const ImpulseStep *step, const ImpulseScope *scope, Impu
                         double *depths)
 {
     const Linkage *linkage = &step->scenario->linkage;
-    for (size_t n = 0; n < scope->part.place_count; n++) {
+    for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
         const Touch *place = &step->places[i];
         const EncounterPose pose = pose_in_step(step, i, at, sums);

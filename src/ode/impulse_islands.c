@@ -36,6 +36,7 @@ struct ImpulseIslands {
     bool *has_body;     // whether it is in the scope
     bool *has_joint;
     bool *has_group;
+    bool *has_place;
 };
 
 ImpulseIslands *impulse_islands_create(ImpulseStep *step)
@@ -58,6 +59,7 @@ ImpulseIslands *impulse_islands_create(ImpulseStep *step)
     islands->has_body = zeroed(linkage->body_count, sizeof *islands->has_body);
     islands->has_joint = zeroed(linkage->joint_count, sizeof *islands->has_joint);
     islands->has_group = zeroed(step->groups.count, sizeof *islands->has_group);
+    islands->has_place = zeroed(places, sizeof *islands->has_place);
     return islands;
 }
 
@@ -77,6 +79,7 @@ void impulse_islands_destroy(ImpulseIslands *islands)
     free(islands->has_body);
     free(islands->has_joint);
     free(islands->has_group);
+    free(islands->has_place);
     free(islands);
 }
 
@@ -169,6 +172,7 @@ static void add_place(ImpulseIslands *islands, size_t place)
     const int bodies[2] = {joint->body_a, joint->body_b};
     ImpulseScope *scope = &islands->scope;
     scope->part.places[scope->part.place_count++] = place;
+    islands->has_place[place] = true;
     if (!islands->has_joint[number]) {
         islands->has_joint[number] = true;
         scope->joints[scope->joint_count++] = number;
@@ -190,6 +194,23 @@ static void add_place(ImpulseIslands *islands, size_t place)
     }
 }
 
+// Adds the places of other blocks that move the bodies of a block.
+static void add_neighbours(ImpulseIslands *islands)
+{
+    const ResponseGroups *groups = &islands->step->groups;
+    ResponsePart *part = &islands->scope.part;
+    for (size_t i = 0; i < part->group_count; i++) {
+        const size_t group = part->groups[i];
+        for (size_t n = groups->first_place[group]; n < groups->first_place[group + 1]; n++) {
+            const size_t place = groups->places[n];
+            if (islands->step->islands->is_active[place] && !islands->has_place[place]) {
+                islands->has_place[place] = true;
+                part->places[part->place_count++] = place;
+            }
+        }
+    }
+}
+
 // Makes the scope that of an island.
 static void set_scope(ImpulseIslands *islands, const EncounterIsland *island)
 {
@@ -203,11 +224,18 @@ static void set_scope(ImpulseIslands *islands, const EncounterIsland *island)
     for (size_t i = 0; i < scope->part.group_count; i++) {
         islands->has_group[scope->part.groups[i]] = false;
     }
+    for (size_t i = 0; i < scope->part.place_count; i++) {
+        islands->has_place[scope->part.places[i]] = false;
+    }
     scope->has_drive = false;
     scope->body_count = scope->joint_count = 0;
     scope->part.group_count = scope->part.place_count = 0;
     for (size_t i = 0; i < island->encounter.joint_count; i++) {
         add_place(islands, island->places[i]);
+    }
+    scope->place_count = scope->part.place_count;
+    if (islands->step->islands->is_divided[island->places[0]]) {
+        add_neighbours(islands);
     }
 }
 
@@ -225,6 +253,26 @@ static void scatter(ImpulseIslands *islands, const EncounterIsland *island)
     }
 }
 
+// Looks at the scope's island, and at others that move its bodies, and writes their sums.
+static void look_at_scope(ImpulseIslands *islands, const IslandMark *mark)
+{
+    const EncounterIslands *all = islands->step->islands;
+    const ImpulseScope *scope = &islands->scope;
+    encounter_island_look(all->islands[mark->island], mark->node, mark->time_s);
+    scatter(islands, all->islands[mark->island]);
+    size_t looked = mark->island;
+    for (size_t i = scope->place_count; i < scope->part.place_count; i++) {
+        const size_t number = all->island_of[scope->part.places[i]];
+        if (number != looked) {
+            EncounterIsland *other = all->islands[number];
+            encounter_island_look(other, encounter_node(&other->encounter, mark->time_s),
+                                  mark->time_s);
+            scatter(islands, other);
+            looked = number;
+        }
+    }
+}
+
 // Adds the contacts of a scope's places to the record.
 static void add_contacts(ImpulseIslands *islands, ImpulsePart *part, const ImpulseScope *scope,
                          double since_s, const double *depths)
@@ -233,7 +281,7 @@ static void add_contacts(ImpulseIslands *islands, ImpulsePart *part, const Impul
     for (size_t n = 0; n < scope->joint_count; n++) {
         part->is_known[scope->joints[n]] = false;
     }
-    for (size_t n = 0; n < scope->part.place_count; n++) {
+    for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
         const EncounterJoint *place = &step->encounter.joints[i];
         const double *impulse = islands->sums.impulse + place->first_row;
@@ -272,8 +320,7 @@ static void take_island(ImpulseIslands *islands, ImpulsePart *part, const Island
     EncounterIsland *island = step->islands->islands[mark->island];
     double *losses = islands->losses[mark->island];
     set_scope(islands, island);
-    encounter_island_look(island, mark->node, mark->time_s);
-    scatter(islands, island);
+    look_at_scope(islands, mark);
     part->end_s = step->start_s + mark->time_s;
     const ImpulseTime at = {mark->time_s, mark->node, true};
     impulse_step_inside(step, &islands->scope, at, &islands->sums, motions, joints, depths);

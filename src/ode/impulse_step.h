@@ -29,7 +29,9 @@ typedef struct ImpulseScope {
     size_t *bodies; // owned, as are all arrays
     size_t joint_count;
     size_t *joints;
-    ResponsePart part; // the places, and, of an island, the groups of bodies that they move
+    size_t place_count; // of those below, the first, that are looked at
+    ResponsePart part;  // the places; of an island also others of the groups of bodies that they
+                        // move, and these groups
 } ImpulseScope;
 
 typedef struct ImpulseStep {

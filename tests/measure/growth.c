@@ -7,7 +7,8 @@
 //           row         N four-bars in a row that share their uprights
 //           scissor     N crossed pairs of bars
 //   PLAY    ideal, or loose: every joint a pin with 50 um of play in its hole; space and
-//           space-loose: likewise in space, every second axis of a chain tilted
+//           space-loose: likewise in space, every second axis of a chain tilted; meeting, of a
+//           chain: loose, and all pins come to their walls within a step
 //   SOLVER  direct, quick: plain steps of ODE; staggered; impulse; reference
 // Prints bodies, joints, us and evaluations a step, and the memory that the solver takes, KiB; of
 // loose mechanisms under impulse once pins touch. A
@@ -24,7 +25,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { STEPS = 200, SETTLING = 5, LOOSE_SETTLING = 400 };
+enum { STEPS = 200, SETTLING = 5, LOOSE_SETTLING = 400, MEETING = 2 };
 
 static const double STEP_S = 2e-5;
 static const double MASS = 0.1;   // kg, of each bar
@@ -32,6 +33,7 @@ static const double LENGTH = 0.1; // m, of each link
 static const double PIN_RADIUS = 5e-3;
 static const double PLAY = 5e-5; // m, radial
 static const double WIDTH = 0.01;
+static const double MEETING_SPEED = 0.05; // m/s
 
 typedef struct Build {
     Linkage linkage;
@@ -151,6 +153,24 @@ static void build_scissor(Build *build, size_t count)
     }
 }
 
+// Moves the links of a chain so that each pin meets its wall at a time of its own in the same step,
+// by turns above and below.
+static void bring_to_walls(Linkage *linkage)
+{
+    double offset = 0.0;
+    double speed = 0.0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Clearance *clearance = &linkage->joints[i].clearance;
+        const double sign = i % 2 == 0 ? -1.0 : 1.0;
+        const double closing = MEETING_SPEED * (1.0 + 0.2 * sin(3.1 * (double)i));
+        const double left_s = STEP_S * (MEETING + 0.5 + 0.4 * sin(1.3 * (double)i));
+        offset += sign * (clearance->hole_radius - clearance->pin_radius - closing * left_s);
+        speed += sign * closing;
+        linkage->bodies[i].start.position.y += offset;
+        linkage->bodies[i].start.velocity.y = speed;
+    }
+}
+
 typedef struct Kind {
     const char *name;
     void (*build)(Build *, size_t);
@@ -254,9 +274,14 @@ int main(int argc, char **argv)
     }
     Build build = {.is_loose = strcmp(argv[2], "loose") == 0};
     const bool is_spatial = strncmp(argv[2], "space", strlen("space")) == 0;
-    build.is_loose = build.is_loose || strcmp(argv[2], "space-loose") == 0;
+    build.is_loose =
+        build.is_loose || strcmp(argv[2], "space-loose") == 0 || strcmp(argv[2], "meeting") == 0;
     build.linkage = linkage_create((LinkageRoom){3 * count + 1, 4 * count + 1, 0, 0});
     kind->build(&build, count);
+    const bool is_meeting = strcmp(argv[2], "meeting") == 0;
+    if (is_meeting) {
+        bring_to_walls(&build.linkage);
+    }
     if (is_spatial) {
         lifted(&build.linkage, kind->build == build_chain);
     }
@@ -265,7 +290,8 @@ int main(int argc, char **argv)
     scenario.contact.exponent = 1.5;
     // pins fall through their play in 160 steps
     const bool has_contacts = build.is_loose && scenario.ode.map == ODE_MAP_IMPULSE;
-    const int status = measure(&scenario, solver, has_contacts ? LOOSE_SETTLING : SETTLING, steps);
+    const size_t settling = is_meeting ? MEETING : has_contacts ? LOOSE_SETTLING : SETTLING;
+    const int status = measure(&scenario, solver, settling, steps);
     linkage_free(&build.linkage);
     return status;
 }
