@@ -10,6 +10,7 @@
 #include "reference/dynamics_places.h"
 #include "reference/dynamics_reactions.h"
 #include "reference/hinged.h"
+#include "reference/hinged_state.h"
 #include "reference/loops.h"
 
 #include <assert.h>
@@ -282,6 +283,9 @@ static void fill_rates(const Dynamics *dynamics, const DynamicsState *state, con
 bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
                        DynamicsState *state, double *rates)
 {
+    if (dynamics->hinged != NULL && dynamics->tree.base_drive.alpha == 0.0) {
+        return hinged_evaluate(dynamics->hinged, since_s, y, state, rates);
+    }
     Loads loads = dynamics->room.loads;
     if (!find_rates(dynamics, since_s, y, false, state, &loads)) {
         return false;

@@ -7,7 +7,7 @@
 #include "reference/hinged.h"
 
 #include "contact/pin_hole.h"
-#include "reference/hinged_pair.h"
+#include "reference/hinged_state.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -124,103 +124,8 @@ void hinged_destroy(Hinged *hinged)
     free(hinged);
 }
 
-// The drive's speed is steady.
-static inline void move_driven(const DriveState *drive, double since_s, HingedBody *body)
-{
-    const double omega = drive->omega;
-    body->turn = turned_by(omega * since_s);
-    body->omega = omega;
-    const Vec2 base = *body->own_base;
-    const Vec2 turned = turned_arm(&body->turn, base);
-    const Vec2 arm = vec2_add(base, turned);
-    body->arm = arm;
-    body->moved = vec2_scale(-1.0, turned);
-    body->velocity = vec2_scale(-omega, vec2_perp(arm));
-    body->bias = vec2_scale(omega * omega, arm);
-}
-
-static inline void move_floating(HingedBody *body, const double *q, const double *u)
-{
-    const size_t column = body->column;
-    body->turn = turned_by(q[column]);
-    body->omega = u[column];
-    body->arm = (Vec2){0.0, 0.0};
-    body->moved = (Vec2){q[column - 2], q[column - 1]};
-    body->velocity = (Vec2){u[column - 2], u[column - 1]};
-    body->bias = (Vec2){0.0, 0.0};
-}
-
-static inline void move_hinged(HingedBody *body, const double *q, const double *u)
-{
-    const double omega = u[body->column];
-    const TurnedBy turn = turned_by(q[body->column]);
-    const Vec2 base = *body->own_base;
-    const Vec2 turned = turned_arm(&turn, base);
-    const Vec2 arm = vec2_add(base, turned);
-    Vec2 moved = vec2_scale(-1.0, turned);
-    Vec2 velocity = vec2_scale(-omega, vec2_perp(arm));
-    Vec2 bias = vec2_scale(omega * omega, arm);
-    const HingedBody *parent = body->parent;
-    if (parent != NULL) {
-        const double spun = parent->omega;
-        const Vec2 outer_base = *body->outer_base;
-        const Vec2 outer_turned = turned_arm(&parent->turn, outer_base);
-        const Vec2 outer = vec2_add(outer_base, outer_turned);
-        moved = vec2_add(moved, vec2_add(parent->moved, outer_turned));
-        velocity =
-            vec2_add(velocity, vec2_add(parent->velocity, vec2_scale(spun, vec2_perp(outer))));
-        bias = vec2_add(bias, vec2_sub(parent->bias, vec2_scale(spun * spun, outer)));
-        body->outer = outer;
-    }
-    body->turn = turn;
-    body->omega = omega;
-    body->arm = arm;
-    body->moved = moved;
-    body->velocity = velocity;
-    body->bias = bias;
-}
-
-// How far an end has moved since the base, and how fast it does.
-static inline Vec2 move_end(HingedEnd *end, Vec2 *velocity)
-{
-    const HingedBody *body = end->body;
-    if (body == NULL) {
-        *velocity = (Vec2){0.0, 0.0};
-        return (Vec2){0.0, 0.0};
-    }
-    const Vec2 base = *end->base;
-    const Vec2 turned = turned_arm(&body->turn, base);
-    const Vec2 arm = vec2_add(base, turned);
-    end->arm = arm;
-    *velocity = vec2_add(body->velocity, vec2_scale(body->omega, vec2_perp(arm)));
-    return vec2_add(body->moved, turned);
-}
-
-// Power and force of what acts on the driven body beside the drive.
-typedef struct DrivenLoad {
-    double power;
-    Vec2 force;
-} DrivenLoad;
-
-static inline void load_driven(Vec2 force, Vec2 velocity, DrivenLoad *driven)
-{
-    driven->power += vec2_dot(force, velocity);
-    driven->force = vec2_add(driven->force, force);
-}
-
-static inline void load_end(const HingedEnd *end, Vec2 velocity, Vec2 force, DrivenLoad *driven)
-{
-    HingedBody *body = end->body;
-    if (end->is_driven) {
-        load_driven(force, velocity, driven);
-    } else if (body != NULL) {
-        body->force = vec2_add(body->force, force);
-        body->moment += vec2_cross(end->arm, force);
-    }
-}
-
 // Adds the force of a pin to the loads, and its losses to others. Returns its size.
-static inline double press(HingedPin *pin, DrivenLoad *driven, double *dissipated)
+static inline double press(HingedPin *pin, HingedLoad *driven, double *dissipated)
 {
     const Contact *contact = pin->contact;
     if (contact->mode == CONTACT_APART) {
@@ -228,8 +133,8 @@ static inline double press(HingedPin *pin, DrivenLoad *driven, double *dissipate
     }
     Vec2 velocity_a;
     Vec2 velocity_b;
-    const Vec2 moved_b = move_end(&pin->ends[1], &velocity_b);
-    const Vec2 moved_a = move_end(&pin->ends[0], &velocity_a);
+    const Vec2 moved_b = hinged_move_end(&pin->ends[1], &velocity_b);
+    const Vec2 moved_a = hinged_move_end(&pin->ends[0], &velocity_a);
     const Vec2 gap = vec2_add(*pin->gap, vec2_sub(moved_b, moved_a));
     const PinHole pose =
         pin_hole_pose((Vec2){0.0, 0.0}, gap, vec2_sub(velocity_b, velocity_a), contact->clearance);
@@ -239,82 +144,9 @@ static inline double press(HingedPin *pin, DrivenLoad *driven, double *dissipate
         return 0.0;
     }
     const Vec2 force = vec2_scale(press.normal, pose.normal);
-    load_end(&pin->ends[1], velocity_b, force, driven);
-    load_end(&pin->ends[0], velocity_a, vec2_scale(-1.0, force), driven);
+    hinged_load_end(&pin->ends[1], velocity_b, force, driven);
+    hinged_load_end(&pin->ends[0], velocity_a, vec2_scale(-1.0, force), driven);
     return sqrt(vec2_dot(force, force));
-}
-
-// The acceleration of a body's centre.
-static void accelerate(const double *rates, HingedBody *body)
-{
-    const double *own = rates + body->column;
-    body->spin = own[0];
-    if (body->is_floating) {
-        body->acceleration = (Vec2){own[-2], own[-1]};
-        return;
-    }
-    Vec2 carried = {0.0, 0.0};
-    const HingedBody *parent = body->parent;
-    if (parent != NULL) {
-        const Vec2 turned = vec2_sub(vec2_scale(parent->spin, vec2_perp(body->outer)),
-                                     vec2_scale(parent->omega * parent->omega, body->outer));
-        carried = vec2_add(parent->acceleration, turned);
-    }
-    const Vec2 about = vec2_sub(vec2_scale(body->omega * body->omega, body->arm),
-                                vec2_scale(body->spin, vec2_perp(body->arm)));
-    body->acceleration = vec2_add(carried, about);
-}
-
-// Adds the forces of the hinges on the driven body, children before parents.
-static void load_hinges(const Hinged *hinged, const double *rates, DrivenLoad *load)
-{
-    HingedBody *driven = hinged->driven;
-    driven->acceleration = driven->bias;
-    driven->spin = 0.0;
-    for (size_t i = 0; i < hinged->count; i++) {
-        accelerate(rates, &hinged->bodies[i]);
-    }
-    for (size_t i = hinged->count; i-- > 0;) {
-        const HingedBody *body = &hinged->bodies[i];
-        HingedBody *parent = body->parent;
-        if (parent == NULL) {
-            continue;
-        }
-        const Vec2 held = vec2_sub(vec2_scale(body->mass, body->acceleration), body->force);
-        const Vec2 force = vec2_scale(-1.0, held);
-        if (parent == driven) {
-            const Vec2 turning = vec2_scale(driven->omega, vec2_perp(body->outer));
-            load_driven(force, vec2_add(driven->velocity, turning), load);
-        } else {
-            parent->force = vec2_add(parent->force, force);
-        }
-    }
-}
-
-static double drive_power(const Hinged *hinged, const DrivenLoad *load)
-{
-    const HingedBody *driven = hinged->driven;
-    const Vec2 upward = {0.0, hinged->dynamics->system.scenario->gravity};
-    const Vec2 needed = vec2_scale(driven->mass, vec2_add(driven->bias, upward));
-    return vec2_dot(needed, driven->velocity) - load->power;
-}
-
-static inline void move_bodies(const Hinged *hinged, double since_s, const double *q,
-                               const double *u)
-{
-    if (hinged->driven != NULL) {
-        move_driven(&hinged->dynamics->tree.base_drive, since_s, hinged->driven);
-    }
-    for (size_t i = 0; i < hinged->count; i++) {
-        HingedBody *body = &hinged->bodies[i];
-        if (body->is_floating) {
-            move_floating(body, q, u);
-        } else {
-            move_hinged(body, q, u);
-        }
-        body->force = (Vec2){0.0, -body->weight};
-        body->moment = 0.0;
-    }
 }
 
 bool hinged_rates(Hinged *hinged, double since_s, const double *y, double *rates)
@@ -329,8 +161,8 @@ bool hinged_rates(Hinged *hinged, double since_s, const double *y, double *rates
     if (hinged->is_pair) {
         return hinged_pair_rates(hinged, since_s, y, rates);
     }
-    move_bodies(hinged, since_s, y, u);
-    DrivenLoad load = {.power = 0.0};
+    hinged_move(hinged, since_s, y, u);
+    HingedLoad load = {.power = 0.0};
     double dissipated = 0.0;
     for (size_t i = 0; i < hinged->pin_count; i++) {
         sums[SYSTEM_IMPULSES + i] = press(&hinged->pins[i], &load, &dissipated);
@@ -344,9 +176,10 @@ bool hinged_rates(Hinged *hinged, double since_s, const double *y, double *rates
     sums[SYSTEM_DRIVE_WORK] = 0.0;
     if (hinged->driven != NULL) {
         if (tree->is_driven_hung_on) {
-            load_hinges(hinged, rates + n, &load);
+            hinged_hold(hinged, rates + n, &load, NULL);
         }
-        sums[SYSTEM_DRIVE_WORK] = drive_power(hinged, &load);
+        sums[SYSTEM_DRIVE_WORK] =
+            vec2_dot(hinged_needed(hinged), hinged->driven->velocity) - load.power;
     }
     sums[SYSTEM_DISSIPATED] = dissipated;
     sums[SYSTEM_FRICTION] = 0.0;
