@@ -36,8 +36,7 @@ static const double STEADY = 0.02;
 // a step with a smaller share of the error allowed says no more than one with this
 static const double ERROR_LEAST = 1e-4;
 
-// What processors of this kind add and multiply at once, the same to the last bit as one by one.
-typedef double Pair __attribute__((vector_size(2 * sizeof(double)), may_alias));
+typedef Dop853Pair Pair;
 
 typedef struct Block {
     Pair first;
@@ -50,26 +49,26 @@ static size_t padded(size_t size)
     return (size + BLOCK - 1) / BLOCK * BLOCK;
 }
 
-// Keeps the weights that are not zero.
-static void set_row(const double *weights, Dop853Row *row)
+// Keeps the weights that are not zero, of stages so wide.
+static void set_row(const double *weights, size_t width, Dop853Row *row)
 {
-    for (int i = 0; i < DOP853_STAGES; i++) {
+    for (size_t i = 0; i < DOP853_STAGES; i++) {
         if (weights[i] != 0.0) {
-            row->stages[row->count] = (unsigned char)i;
-            row->weights[row->count++] = weights[i];
+            row->places[row->count] = i * width;
+            row->weights[row->count++] = (Pair){weights[i], weights[i]};
         }
     }
 }
 
-static void set_rows(Dop853 *integrator)
+static void set_rows(Dop853 *integrator, size_t width)
 {
     for (int i = 0; i < DOP853_STAGES; i++) {
-        set_row(DOP853_COUPLING[i], &integrator->rows[i]);
+        set_row(DOP853_COUPLING[i], width, &integrator->rows[i]);
     }
-    set_row(DOP853_ERROR_5, &integrator->rows[ROW_ERROR_5]);
-    set_row(DOP853_ERROR_3, &integrator->rows[ROW_ERROR_3]);
+    set_row(DOP853_ERROR_5, width, &integrator->rows[ROW_ERROR_5]);
+    set_row(DOP853_ERROR_3, width, &integrator->rows[ROW_ERROR_3]);
     for (int i = 0; i < DOP853_DENSE_ROWS; i++) {
-        set_row(DOP853_DENSE[i], &integrator->rows[ROW_DENSE + i]);
+        set_row(DOP853_DENSE[i], width, &integrator->rows[ROW_DENSE + i]);
     }
 }
 
@@ -97,7 +96,7 @@ void dop853_init(Dop853 *integrator, size_t size, size_t motion_size)
         integrator->polynomial[i] = free_from;
     }
     integrator->end_rates = integrator->stages[END_STAGE];
-    set_rows(integrator);
+    set_rows(integrator, width);
 }
 
 void dop853_finish(Dop853 *integrator)
@@ -110,9 +109,10 @@ void dop853_finish(Dop853 *integrator)
 static inline Block add_up(const Dop853 *integrator, const Dop853Row *row, size_t block)
 {
     Block total = {{0.0, 0.0}, {0.0, 0.0}};
-    for (int j = 0; j < row->count; j++) {
-        const double weight = row->weights[j];
-        const Pair *rates = (const Pair *)(integrator->stages[row->stages[j]] + block);
+    const double *first = integrator->stages[0] + block;
+    for (size_t j = 0; j < row->count; j++) {
+        const Pair weight = row->weights[j];
+        const Pair *rates = (const Pair *)(first + row->places[j]);
         total.first += weight * rates[0];
         total.second += weight * rates[1];
     }
@@ -348,7 +348,6 @@ void dop853_accept(Dop853 *integrator)
     integrator->time += integrator->tried;
     swap(&integrator->y, &integrator->next);
     swap(&integrator->carry, &integrator->next_carry);
-    swap(&integrator->stages[0], &integrator->stages[END_STAGE]);
-    integrator->end_rates = integrator->stages[END_STAGE];
+    memcpy(integrator->stages[0], integrator->end_rates, integrator->size * sizeof(double));
     integrator->accepted++;
 }

@@ -28,11 +28,15 @@ typedef void (*Dop853Rates)(double time, const double *y, double *rates, void *c
 typedef void (*Dop853Slopes)(double time, const double *y, double *by_position, double *by_rate,
                              void *context);
 
-// Of a row of coefficients those that are not zero.
+// What processors of this kind add and multiply at once, the same to the last bit as one by one.
+typedef double Dop853Pair __attribute__((vector_size(2 * sizeof(double)), may_alias));
+
+// Of a row of coefficients those that are not zero, twice each, and where the rates that they
+// weigh stand behind those of the first stage.
 typedef struct Dop853Row {
-    int count;
-    unsigned char stages[DOP853_STAGES];
-    double weights[DOP853_STAGES];
+    size_t count;
+    size_t places[DOP853_STAGES];
+    Dop853Pair weights[DOP853_STAGES];
 } Dop853Row;
 
 typedef struct Dop853 Dop853;
@@ -69,7 +73,7 @@ struct Dop853 {
     bool has_end_rates;
     bool is_filled; // whether the polynomial is that of the tried step
     Dop853Row rows[DOP853_ROWS];
-    double *stages[DOP853_STAGES];
+    double *stages[DOP853_STAGES]; // rates, one behind the other in memory
     double *polynomial[DOP853_POLYNOMIAL];
     bool was_rejected; // the step before had to be shortened: the next must not grow
     double last_error; // of the step before, over the error allowed

@@ -90,40 +90,6 @@ static void set_pins(Hinged *hinged)
     }
 }
 
-Hinged *hinged_create(const Dynamics *dynamics)
-{
-    if (!is_hinged(dynamics)) {
-        return NULL;
-    }
-    const Tree *tree = &dynamics->tree;
-    const size_t count = tree->node_count;
-    const size_t pin_count = dynamics->system.contact_count;
-    Hinged *hinged = calloc(1, sizeof *hinged + (1 + count) * sizeof(HingedBody) +
-                                   pin_count * sizeof(HingedPin));
-    assert(hinged != NULL);
-    HingedBody *bodies = (HingedBody *)(hinged + 1);
-    *hinged = (Hinged){
-        .dynamics = dynamics,
-        .driven = tree->driven >= 0 ? bodies : NULL,
-        .bodies = bodies + 1,
-        .count = count,
-        .pin_count = pin_count,
-        .pins = (HingedPin *)(bodies + 1 + count),
-    };
-    if (hinged->driven != NULL) {
-        set_driven(hinged);
-    }
-    set_bodies(hinged);
-    set_pins(hinged);
-    hinged->is_pair = hinged_pair_is(hinged);
-    return hinged;
-}
-
-void hinged_destroy(Hinged *hinged)
-{
-    free(hinged);
-}
-
 // Adds the force of a pin to the loads, and its losses to others. Returns its size.
 static inline double press(HingedPin *pin, HingedLoad *driven, double *dissipated)
 {
@@ -149,18 +115,13 @@ static inline double press(HingedPin *pin, HingedLoad *driven, double *dissipate
     return sqrt(vec2_dot(force, force));
 }
 
-bool hinged_rates(Hinged *hinged, double since_s, const double *y, double *rates)
+// The rates of any mechanism of this kind.
+static bool find_rates(const Hinged *hinged, double since_s, const double *y, double *rates)
 {
     const Tree *tree = &hinged->dynamics->tree;
     const size_t n = tree->coordinate_count;
     const double *u = y + n;
     double *sums = rates + 2 * n;
-    if (hinged->driven != NULL && tree->base_drive.alpha != 0.0) {
-        return false;
-    }
-    if (hinged->is_pair) {
-        return hinged_pair_rates(hinged, since_s, y, rates);
-    }
     hinged_move(hinged, since_s, y, u);
     HingedLoad load = {.power = 0.0};
     double dissipated = 0.0;
@@ -184,4 +145,45 @@ bool hinged_rates(Hinged *hinged, double since_s, const double *y, double *rates
     sums[SYSTEM_DISSIPATED] = dissipated;
     sums[SYSTEM_FRICTION] = 0.0;
     return true;
+}
+
+Hinged *hinged_create(const Dynamics *dynamics)
+{
+    if (!is_hinged(dynamics)) {
+        return NULL;
+    }
+    const Tree *tree = &dynamics->tree;
+    const size_t count = tree->node_count;
+    const size_t pin_count = dynamics->system.contact_count;
+    Hinged *hinged = calloc(1, sizeof *hinged + (1 + count) * sizeof(HingedBody) +
+                                   pin_count * sizeof(HingedPin));
+    assert(hinged != NULL);
+    HingedBody *bodies = (HingedBody *)(hinged + 1);
+    *hinged = (Hinged){
+        .dynamics = dynamics,
+        .driven = tree->driven >= 0 ? bodies : NULL,
+        .bodies = bodies + 1,
+        .count = count,
+        .pin_count = pin_count,
+        .pins = (HingedPin *)(bodies + 1 + count),
+    };
+    if (hinged->driven != NULL) {
+        set_driven(hinged);
+    }
+    set_bodies(hinged);
+    set_pins(hinged);
+    hinged->rates = hinged_pair_is(hinged) ? hinged_pair_rates : find_rates;
+    return hinged;
+}
+
+void hinged_destroy(Hinged *hinged)
+{
+    free(hinged);
+}
+
+bool hinged_rates(const Hinged *hinged, double since_s, const double *y, double *rates)
+{
+    // without a drive there is none whose speed may change
+    return hinged->dynamics->tree.base_drive.alpha == 0.0 &&
+           hinged->rates(hinged, since_s, y, rates);
 }

@@ -16,4 +16,4 @@ void hinged_destroy(Hinged *hinged);
 
 // Writes rates of the integrator's vector. Returns false where they are not determined, or where
 // the drive's speed changes, which is not for here.
-bool hinged_rates(Hinged *hinged, double since_s, const double *y, double *rates);
+bool hinged_rates(const Hinged *hinged, double since_s, const double *y, double *rates);

@@ -25,7 +25,8 @@ struct Hinged {
     size_t count;
     size_t pin_count;
     HingedPin *pins;
-    bool is_pair; // two bodies with a pin on the driven one (reference/hinged_pair.c)
+    // of a steady drive: of any such mechanism, or of a pair (reference/hinged_pair.c)
+    bool (*rates)(const Hinged *hinged, double since_s, const double *y, double *rates);
 };
 
 // Whether a mechanism is such a pair of bodies.

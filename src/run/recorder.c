@@ -130,10 +130,17 @@ static void add_ranges(Recorder *recorder, const StepRecord *step)
     add_to_stretch(recorder, step);
 }
 
-static inline void raise_to(Extreme *extreme, bool is_first, double value, double sign,
-                            double time_s)
+static inline void raise_to(Extreme *extreme, bool is_first, double value, double time_s)
 {
-    if (is_first || sign * value > sign * extreme->value) {
+    if (is_first || value > extreme->value) {
+        extreme->value = value;
+        extreme->time_s = time_s;
+    }
+}
+
+static inline void lower_to(Extreme *extreme, bool is_first, double value, double time_s)
+{
+    if (is_first || value < extreme->value) {
         extreme->value = value;
         extreme->time_s = time_s;
     }
@@ -208,17 +215,17 @@ static void add_contact(Recorder *recorder, size_t number, const StepRecord *ste
 static void raise_body(Recorder *recorder, size_t number, double omega, double alpha, double time_s)
 {
     BodyExtremes *body = &recorder->trajectory->bodies[number];
-    raise_to(&body->omega_max, recorder->is_empty, omega, 1.0, time_s);
-    raise_to(&body->omega_min, recorder->is_empty, omega, -1.0, time_s);
-    raise_to(&body->alpha_max, recorder->is_empty, alpha, 1.0, time_s);
-    raise_to(&body->alpha_min, recorder->is_empty, alpha, -1.0, time_s);
+    raise_to(&body->omega_max, recorder->is_empty, omega, time_s);
+    lower_to(&body->omega_min, recorder->is_empty, omega, time_s);
+    raise_to(&body->alpha_max, recorder->is_empty, alpha, time_s);
+    lower_to(&body->alpha_min, recorder->is_empty, alpha, time_s);
 }
 
 static void raise_joint(Recorder *recorder, size_t number, const JointTop *top, double time_s)
 {
     JointExtremes *joint = &recorder->trajectory->joints[number];
-    raise_to(&joint->force_max, recorder->is_empty, top->force, 1.0, time_s);
-    raise_to(&joint->penetration_max, recorder->is_empty, top->depth, 1.0, time_s);
+    raise_to(&joint->force_max, recorder->is_empty, top->force, time_s);
+    raise_to(&joint->penetration_max, recorder->is_empty, top->depth, time_s);
 }
 
 // Of a block between guides.
@@ -226,7 +233,7 @@ static void raise_tilt(Recorder *recorder, size_t number, const JointState *stat
 {
     if (recorder->scenario->linkage.joints[number].kind == JOINT_GUIDE) {
         raise_to(&recorder->trajectory->joints[number].tilt_max, recorder->is_empty,
-                 fabs(state->tilt), 1.0, time_s);
+                 fabs(state->tilt), time_s);
     }
 }
 
@@ -234,8 +241,8 @@ static void raise_joint_space(Recorder *recorder, size_t number, const SpaceJoin
                               double time_s)
 {
     JointExtremes *joint = &recorder->trajectory->joints[number];
-    raise_to(&joint->tilt_max, recorder->is_empty, state->tilt, 1.0, time_s);
-    raise_to(&joint->axial_max, recorder->is_empty, fabs(state->axial), 1.0, time_s);
+    raise_to(&joint->tilt_max, recorder->is_empty, state->tilt, time_s);
+    raise_to(&joint->axial_max, recorder->is_empty, fabs(state->axial), time_s);
 }
 
 static void raise_all(Recorder *recorder, const StepRecord *step)

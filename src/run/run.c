@@ -17,6 +17,8 @@
 // steps between two looks at the clock: some 0.1 ms of ODE, up to a second of a large reference
 enum { PROGRESS_EVERY = 64 };
 
+static const double SAME_TURN = 3.0; // rad, less than half a turn
+
 typedef struct Loop {
     const Scenario *scenario;
     const Solver *solver;
@@ -93,7 +95,11 @@ static void unwrap_angles(const Loop *loop, Sample *sample)
         }
         const double ahead = loop->omega[i] * (loop->reached_s - sample->time_s);
         double *angle = &sample->bodies[i].angle;
-        *angle += 2.0 * M_PI * round((loop->angle[i] - ahead - *angle) / (2.0 * M_PI));
+        const double apart = loop->angle[i] - ahead - *angle;
+        // hardly ever is it another turn than that of the solver
+        if (!(fabs(apart) < SAME_TURN)) {
+            *angle += 2.0 * M_PI * round(apart / (2.0 * M_PI));
+        }
     }
 }
 
