@@ -122,9 +122,9 @@ static void make_run(TruthRuns *runs, size_t index, bool is_callers)
     const Scenario *scenario = &runs->scenarios[index];
     const Solver *solver = registry_solver(BACKEND_REFERENCE);
     const RunWatch watch = is_callers ? runs->watch : (RunWatch){NULL, NULL};
-    // spikes are those of the first alone
+    // the others are there to be compared with
     runs->trajectories[index] = index == RUN_FIRST ? tracer_run(scenario, solver, watch)
-                                                   : run_scenario(scenario, solver, watch);
+                                                   : run_motion(scenario, solver, watch);
 }
 
 static void do_piece(size_t index, bool is_callers, void *context)

@@ -15,61 +15,34 @@ enum { LEAST_SAMPLES = 1000 }; // fewer steps of a horizon would say little
 static const double SMALLEST_SCALE =
     1e-3; // of the fastest point's: below it lies no motion to speak of
 
-DistanceMeasure distance_measure(const Trajectory *reference, size_t body)
+// How large the rates of a body are at a sample: of its centre, and of its turning.
+typedef struct Sizes {
+    double moving;
+    double turning;
+    double changing;
+    double speeding;
+} Sizes;
+
+static inline Sizes sizes_at(const Trajectory *reference, size_t sample, size_t body)
 {
-    return (DistanceMeasure){
-        .by_velocity = reference->driven_body == LINKAGE_GROUND || reference->slides[body],
-        .reach = reference->slides[body] ? reference->reach[body] : 0.0,
+    if (reference->space_motions == NULL) {
+        const Motion *motion = trajectory_motion(reference, sample, body);
+        return (Sizes){distance_size(motion->velocity), fabs(motion->omega),
+                       distance_size(motion->acceleration), fabs(motion->alpha)};
+    }
+    const Vec3 still = {0.0, 0.0, 0.0};
+    const SpaceMotion *motion = trajectory_space_motion(reference, sample, body);
+    return (Sizes){
+        distance_between(motion->velocity, still),
+        distance_between(motion->omega, still),
+        distance_between(motion->acceleration, still),
+        distance_between(motion->alpha, still),
     };
 }
 
-// A rate of the centre with that of turning at some reach.
-static Vec3 planar_rate(Vec2 moving, double turning, DistanceMeasure measure)
+static inline double raised(double largest, double value)
 {
-    const double at_reach = measure.reach > 0.0 ? measure.reach * turning : 0.0;
-    return measure.by_velocity ? (Vec3){moving.x, moving.y, at_reach} : (Vec3){turning, 0.0, 0.0};
-}
-
-Vec3 distance_rate(const Trajectory *trajectory, size_t sample, size_t body,
-                   DistanceMeasure measure)
-{
-    if (trajectory->space_motions == NULL) {
-        const Motion *planar = trajectory_motion(trajectory, sample, body);
-        return planar_rate(planar->velocity, planar->omega, measure);
-    }
-    const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, body);
-    return measure.by_velocity ? motion->velocity : motion->omega;
-}
-
-Vec3 distance_sample_rate(const Sample *sample, bool is_spatial, size_t body,
-                          DistanceMeasure measure)
-{
-    if (!is_spatial) {
-        return planar_rate(sample->bodies[body].velocity, sample->bodies[body].omega, measure);
-    }
-    const SpaceMotion *motion = &sample->space_bodies[body];
-    return measure.by_velocity ? motion->velocity : motion->omega;
-}
-
-Vec3 distance_change(const Trajectory *trajectory, size_t sample, size_t body,
-                     DistanceMeasure measure)
-{
-    if (trajectory->space_motions == NULL) {
-        const Motion *motion = trajectory_motion(trajectory, sample, body);
-        return planar_rate(motion->acceleration, motion->alpha, measure);
-    }
-    const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, body);
-    return measure.by_velocity ? motion->acceleration : motion->alpha;
-}
-
-double distance_between(Vec3 a, Vec3 b)
-{
-    const Vec3 apart = vec3_sub(a, b);
-    // of turning in the plane, and of moving
-    if (apart.z == 0.0) {
-        return apart.y == 0.0 ? fabs(apart.x) : hypot(apart.x, apart.y);
-    }
-    return hypot(hypot(apart.x, apart.y), apart.z);
+    return value > largest ? value : largest;
 }
 
 // The largest rates of one body. A point of it moves with |v| + |omega| reach at most.
@@ -77,26 +50,20 @@ static DistanceScale body_scale(const Trajectory *reference, size_t body)
 {
     const Vec3 still = {0.0, 0.0, 0.0};
     const DistanceMeasure own = distance_measure(reference, body);
-    const DistanceMeasure centre = {.by_velocity = true};
-    const DistanceMeasure turn = {.by_velocity = false};
     const double reach = reference->reach[body];
     DistanceScale scale = {.by_velocity = own.by_velocity};
     for (size_t k = 0; k < reference->sample_count; k++) {
-        const double moving = distance_between(distance_rate(reference, k, body, centre), still);
-        const double turning = distance_between(distance_rate(reference, k, body, turn), still);
-        const double changing =
-            distance_between(distance_change(reference, k, body, centre), still);
-        const double speeding = distance_between(distance_change(reference, k, body, turn), still);
-        double rate = own.by_velocity ? moving : turning;
-        double change = own.by_velocity ? changing : speeding;
+        const Sizes at = sizes_at(reference, k, body);
+        double rate = own.by_velocity ? at.moving : at.turning;
+        double change = own.by_velocity ? at.changing : at.speeding;
         if (own.reach > 0.0) {
             rate = distance_between(distance_rate(reference, k, body, own), still);
             change = distance_between(distance_change(reference, k, body, own), still);
         }
-        scale.omega = fmax(scale.omega, rate);
-        scale.alpha = fmax(scale.alpha, change);
-        scale.moving = fmax(scale.moving, moving + turning * reach);
-        scale.changing = fmax(scale.changing, changing + speeding * reach);
+        scale.omega = raised(scale.omega, rate);
+        scale.alpha = raised(scale.alpha, change);
+        scale.moving = raised(scale.moving, at.moving + at.turning * reach);
+        scale.changing = raised(scale.changing, at.changing + at.speeding * reach);
     }
     return scale;
 }

@@ -33,21 +33,69 @@ typedef struct DistanceMeasure {
     double reach;     // m: omega at this reach counts beside the velocity; 0: it does not
 } DistanceMeasure;
 
-DistanceMeasure distance_measure(const Trajectory *reference, size_t body);
+static inline DistanceMeasure distance_measure(const Trajectory *reference, size_t body)
+{
+    return (DistanceMeasure){
+        .by_velocity = reference->driven_body == LINKAGE_GROUND || reference->slides[body],
+        .reach = reference->slides[body] ? reference->reach[body] : 0.0,
+    };
+}
+
+// A rate of the centre with that of turning at some reach.
+static inline Vec3 distance_planar(Vec2 moving, double turning, DistanceMeasure measure)
+{
+    const double at_reach = measure.reach > 0.0 ? measure.reach * turning : 0.0;
+    return measure.by_velocity ? (Vec3){moving.x, moving.y, at_reach} : (Vec3){turning, 0.0, 0.0};
+}
 
 // A body's omega or velocity at a sample, and its alpha or acceleration: as vectors, in the plane
 // of omega (omega, 0, 0), of velocity (x, y, omega reach).
-Vec3 distance_rate(const Trajectory *trajectory, size_t sample, size_t body,
-                   DistanceMeasure measure);
-Vec3 distance_change(const Trajectory *trajectory, size_t sample, size_t body,
-                     DistanceMeasure measure);
+static inline Vec3 distance_rate(const Trajectory *trajectory, size_t sample, size_t body,
+                                 DistanceMeasure measure)
+{
+    if (trajectory->space_motions == NULL) {
+        const Motion *planar = trajectory_motion(trajectory, sample, body);
+        return distance_planar(planar->velocity, planar->omega, measure);
+    }
+    const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, body);
+    return measure.by_velocity ? motion->velocity : motion->omega;
+}
+
+static inline Vec3 distance_change(const Trajectory *trajectory, size_t sample, size_t body,
+                                   DistanceMeasure measure)
+{
+    if (trajectory->space_motions == NULL) {
+        const Motion *motion = trajectory_motion(trajectory, sample, body);
+        return distance_planar(motion->acceleration, motion->alpha, measure);
+    }
+    const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, body);
+    return measure.by_velocity ? motion->acceleration : motion->alpha;
+}
 
 // The rate of a body in a sample that no trajectory holds.
-Vec3 distance_sample_rate(const Sample *sample, bool is_spatial, size_t body,
-                          DistanceMeasure measure);
+static inline Vec3 distance_sample_rate(const Sample *sample, bool is_spatial, size_t body,
+                                        DistanceMeasure measure)
+{
+    if (!is_spatial) {
+        return distance_planar(sample->bodies[body].velocity, sample->bodies[body].omega, measure);
+    }
+    const SpaceMotion *motion = &sample->space_bodies[body];
+    return measure.by_velocity ? motion->velocity : motion->omega;
+}
 
-// How far apart two of these are.
-double distance_between(Vec3 a, Vec3 b);
+// How large a vector is, and how far apart two of these are.
+static inline double distance_size(Vec2 v)
+{
+    return v.y == 0.0 ? fabs(v.x) : (v.x == 0.0 ? fabs(v.y) : hypot(v.x, v.y));
+}
+
+static inline double distance_between(Vec3 a, Vec3 b)
+{
+    const Vec3 apart = vec3_sub(a, b);
+    // of turning in the plane, and of moving
+    const double across = distance_size((Vec2){apart.x, apart.y});
+    return apart.z == 0.0 ? across : hypot(across, apart.z);
+}
 
 // The largest relative distance of any body at one sample.
 double distance_at(const Trajectory *trajectory, const Trajectory *reference, size_t sample,

@@ -55,6 +55,9 @@ typedef struct Solver {
     // Takes one step of the solver's own choosing towards stop_s. It may end beyond stop_s only
     // if observe can look back into the step. Fails with ERR_SOLVER, saying when and why.
     bool (*step)(void *state, double stop_s, Err *err);
+    // Optional: takes a step as `step` does, but one that nobody wants a record of, which may take
+    // less. Writes when it ended, s. NULL: step and record do.
+    bool (*stride)(void *state, double stop_s, double *end_s, Err *err);
     // The record of the last step; not called before the first.
     StepRecord (*record)(const void *state);
     // The state at a time in the last step, both ends included. An omega that is no number marks a
@@ -69,6 +72,28 @@ typedef struct Solver {
     void (*extremes)(const void *state, double from_s, BodyExtremes *bodies);
     void (*close)(void *state);
 } Solver;
+
+// Takes a step of a solver that nobody wants a record of, and writes when it ended, s.
+static inline bool solver_stride(const Solver *solver, void *state, double stop_s, double *end_s,
+                                 Err *err)
+{
+    if (solver->stride != NULL) {
+        return solver->stride(state, stop_s, end_s, err);
+    }
+    if (!solver->step(state, stop_s, err)) {
+        return false;
+    }
+    *end_s = solver->record(state).end_s;
+    return true;
+}
+
+// The bodies' positions and velocities at a time in the last step; the rest of the sample is not
+// for use.
+static inline void solver_glance(const Solver *solver, const void *state, double time_s,
+                                 Sample *sample)
+{
+    (solver->glance != NULL ? solver->glance : solver->observe)(state, time_s, sample);
+}
 
 // The solvers, by the names in OPTIONS_BACKEND_LIST.
 #define SOLVER_DECLARE(id, word, solver) extern const Solver solver;

@@ -131,44 +131,30 @@ void trajectory_destroy(Trajectory *trajectory)
     free(trajectory);
 }
 
-void trajectory_store(Trajectory *trajectory, size_t sample_index, const Sample *sample)
+void trajectory_store_motion(Trajectory *trajectory, size_t sample_index, const Sample *sample)
 {
     assert(sample_index < trajectory->sample_count);
     trajectory->times[sample_index] = sample->time_s;
-    trajectory->crank_angles[sample_index] = sample->crank_rad;
     for (size_t i = 0; i < trajectory->body_count; i++) {
         trajectory->motions[sample_index * trajectory->body_count + i] = sample->bodies[i];
-    }
-    for (size_t i = 0; i < trajectory->joint_count; i++) {
-        trajectory->states[sample_index * trajectory->joint_count + i] = sample->joints[i];
     }
     if (trajectory->space_motions != NULL) {
         memcpy(trajectory->space_motions + sample_index * trajectory->body_count,
                sample->space_bodies, trajectory->body_count * sizeof *sample->space_bodies);
-        memcpy(trajectory->space_states + sample_index * trajectory->joint_count,
-               sample->space_joints, trajectory->joint_count * sizeof *sample->space_joints);
     }
 }
 
-const Motion *trajectory_motion(const Trajectory *trajectory, size_t sample, size_t body)
+void trajectory_store(Trajectory *trajectory, size_t sample_index, const Sample *sample)
 {
-    return trajectory->motions + sample * trajectory->body_count + body;
-}
-
-const JointState *trajectory_state(const Trajectory *trajectory, size_t sample, size_t joint)
-{
-    return trajectory->states + sample * trajectory->joint_count + joint;
-}
-
-const SpaceMotion *trajectory_space_motion(const Trajectory *trajectory, size_t sample, size_t body)
-{
-    return trajectory->space_motions + sample * trajectory->body_count + body;
-}
-
-const SpaceJointState *trajectory_space_state(const Trajectory *trajectory, size_t sample,
-                                              size_t joint)
-{
-    return trajectory->space_states + sample * trajectory->joint_count + joint;
+    trajectory_store_motion(trajectory, sample_index, sample);
+    trajectory->crank_angles[sample_index] = sample->crank_rad;
+    for (size_t i = 0; i < trajectory->joint_count; i++) {
+        trajectory->states[sample_index * trajectory->joint_count + i] = sample->joints[i];
+    }
+    if (trajectory->space_motions != NULL) {
+        memcpy(trajectory->space_states + sample_index * trajectory->joint_count,
+               sample->space_joints, trajectory->joint_count * sizeof *sample->space_joints);
+    }
 }
 
 static Range range_of(const Trajectory *trajectory, size_t signal, size_t sample)

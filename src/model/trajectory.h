@@ -154,6 +154,9 @@ void trajectory_destroy(Trajectory *trajectory);
 // Puts a sample into its place in the trajectory.
 void trajectory_store(Trajectory *trajectory, size_t sample_index, const Sample *sample);
 
+// The same of its time and the bodies' motions alone.
+void trajectory_store_motion(Trajectory *trajectory, size_t sample_index, const Sample *sample);
+
 // Gives the trajectory ranges: one or more stretches a sample interval. Without the memory for them
 // it has none, and no samples, and a message that says so.
 void trajectory_keep_ranges(Trajectory *trajectory, const Scenario *scenario);
@@ -169,12 +172,29 @@ Range trajectory_joint_range(const Trajectory *trajectory, size_t sample, size_t
 double trajectory_contact_share(const Trajectory *trajectory, size_t joint);
 
 // The state of one body or joint at one sample.
-const Motion *trajectory_motion(const Trajectory *trajectory, size_t sample, size_t body);
-const JointState *trajectory_state(const Trajectory *trajectory, size_t sample, size_t joint);
-const SpaceMotion *trajectory_space_motion(const Trajectory *trajectory, size_t sample,
-                                           size_t body);
-const SpaceJointState *trajectory_space_state(const Trajectory *trajectory, size_t sample,
-                                              size_t joint);
+static inline const Motion *trajectory_motion(const Trajectory *trajectory, size_t sample,
+                                              size_t body)
+{
+    return trajectory->motions + sample * trajectory->body_count + body;
+}
+
+static inline const JointState *trajectory_state(const Trajectory *trajectory, size_t sample,
+                                                 size_t joint)
+{
+    return trajectory->states + sample * trajectory->joint_count + joint;
+}
+
+static inline const SpaceMotion *trajectory_space_motion(const Trajectory *trajectory,
+                                                         size_t sample, size_t body)
+{
+    return trajectory->space_motions + sample * trajectory->body_count + body;
+}
+
+static inline const SpaceJointState *trajectory_space_state(const Trajectory *trajectory,
+                                                            size_t sample, size_t joint)
+{
+    return trajectory->space_states + sample * trajectory->joint_count + joint;
+}
 
 // Whether the run let the play of a joint happen: it is complete, the joint has play, and the
 // solver is not the closed form, which takes every joint as ideal.

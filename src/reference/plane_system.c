@@ -171,8 +171,10 @@ static void plane_peak(const System *system, const SystemState *state, size_t nu
 
 static void plane_project(const System *system, double since_s, double *y)
 {
-    const LoopsRoom room = dynamics_loops(dynamics_of(system));
-    loops_project(&room, since_s, y, y + system->coordinate_count);
+    if (dynamics_of(system)->tree.loop_count > 0) {
+        const LoopsRoom room = dynamics_loops(dynamics_of(system));
+        loops_project(&room, since_s, y, y + system->coordinate_count);
+    }
 }
 
 static bool plane_rebase(System *system, double since_s, double *y)

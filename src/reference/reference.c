@@ -210,6 +210,26 @@ static bool reference_step(void *state, double stop_s, Err *err)
     return advance(reference, err) || fail_at(reference, reference->end_s, err);
 }
 
+// A whole step, without a look for peaks.
+static bool reference_stride(void *state, double stop_s, double *end_s, Err *err)
+{
+    (void)stop_s;
+    Reference *reference = state;
+    Stepper *stepper = reference->stepper;
+    const System *system = stepper->system;
+    const Dop853 *integrator = &stepper->integrator;
+    bool is_known = stepper_next(stepper, err);
+    for (size_t i = 0; is_known && i < stepper->points.count; i++) {
+        is_known = system_check_depth(system, stepper->points.states[i], 1.0, err);
+    }
+    if (!is_known) {
+        return fail_at(reference, reference->end_s, err);
+    }
+    reference->end_s = system->kind->time(system, integrator->time + integrator->tried);
+    *end_s = reference->end_s;
+    return true;
+}
+
 static StepRecord reference_record(const void *state)
 {
     const Reference *reference = state;
@@ -298,6 +318,7 @@ const Solver REFERENCE_SOLVER = {
     .name = "reference",
     .open = reference_open,
     .step = reference_step,
+    .stride = reference_stride,
     .record = reference_record,
     .observe = reference_observe,
     .glance = reference_glance,

@@ -147,8 +147,7 @@ static double stored_energy(const Scenario *scenario, const Sample *sample)
 // Steps until a time is reached. A step that ends short of it by rounding has reached it.
 static bool reach(Loop *loop, double time_s, Err *err)
 {
-    const double rounding = 1e-9;
-    while (loop->reached_s < time_s - rounding * loop->width_s) {
+    while (loop->reached_s < time_s - RUN_ROUNDING * loop->width_s) {
         if (!take_step(loop, time_s, err)) {
             return false;
         }
@@ -163,10 +162,8 @@ static bool may_go_on(Loop *loop, const Trajectory *trajectory, size_t sample, E
     return !loop->is_stopped;
 }
 
-// A solver marks a state that the joints do not determine by omegas that are no numbers.
-static bool check_sample(const Loop *loop, const Sample *sample, Err *err)
+bool run_check_sample(const Linkage *linkage, const Sample *sample, Err *err)
 {
-    const Linkage *linkage = &loop->scenario->linkage;
     for (size_t i = 0; i < linkage->body_count; i++) {
         if (!isfinite(sample->bodies[i].omega)) {
             char where[LINKAGE_INSTANT_SIZE];
@@ -193,7 +190,7 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
         }
         Sample sample = loop->sample;
         loop->solver->observe(loop->state, time_s, &sample);
-        if (!check_sample(loop, &sample, err)) {
+        if (!run_check_sample(&loop->scenario->linkage, &sample, err)) {
             return false;
         }
         unwrap_angles(loop, &sample);
