@@ -294,25 +294,61 @@ void dop853_fill(Dop853 *integrator)
     }
 }
 
-void dop853_polynomial(const Dop853 *integrator, double share, double *y)
+// Of two equations from one on.
+static inline Pair polynomial_pair(const Dop853 *integrator, Pair s, Pair r, size_t i)
 {
-    const double s = share;
-    const double r = 1.0 - s;
-    double *const *p = integrator->polynomial;
-    for (size_t i = 0; i < integrator->size; i++) {
-        const double high = p[4][i] + s * (p[5][i] + r * (p[6][i] + s * p[7][i]));
-        y[i] = p[0][i] + s * (p[1][i] + r * (p[2][i] + s * (p[3][i] + r * high)));
+    Pair p[DOP853_POLYNOMIAL];
+    for (int k = 0; k < DOP853_POLYNOMIAL; k++) {
+        p[k] = *(const Pair *)(integrator->polynomial[k] + i);
+    }
+    const Pair high = p[4] + s * (p[5] + r * (p[6] + s * p[7]));
+    return p[0] + s * (p[1] + r * (p[2] + s * (p[3] + r * high)));
+}
+
+// Of the first equations.
+static void find_polynomial(const Dop853 *integrator, double share, size_t count, double *y)
+{
+    const Pair s = {share, share};
+    const Pair r = {1.0 - share, 1.0 - share};
+    size_t i = 0;
+    for (; i + 1 < count; i += 2) {
+        const Pair at = polynomial_pair(integrator, s, r, i);
+        y[i] = at[0];
+        y[i + 1] = at[1];
+    }
+    if (i < count) {
+        y[i] = polynomial_pair(integrator, s, r, i)[0];
     }
 }
 
-const double *dop853_dense(Dop853 *integrator, double time)
+void dop853_polynomial(const Dop853 *integrator, double share, double *y)
+{
+    find_polynomial(integrator, share, integrator->size, y);
+}
+
+// The share of the tried step that lies before a time, with the polynomial through it.
+static double fill_share(Dop853 *integrator, double time)
 {
     dop853_fill(integrator);
     // a step cut to nothing by an event at its start is a point
     const double tried = integrator->tried;
-    const double share = tried != 0.0 ? (time - integrator->time) / tried : 0.0;
-    dop853_polynomial(integrator, share, integrator->at);
+    return tried != 0.0 ? (time - integrator->time) / tried : 0.0;
+}
+
+void dop853_dense_all(Dop853 *integrator, double time, double *y)
+{
+    dop853_polynomial(integrator, fill_share(integrator, time), y);
+}
+
+const double *dop853_dense(Dop853 *integrator, double time)
+{
+    dop853_dense_all(integrator, time, integrator->at);
     return integrator->at;
+}
+
+void dop853_dense_motion(Dop853 *integrator, double time, double *y)
+{
+    find_polynomial(integrator, fill_share(integrator, time), integrator->motion_size, y);
 }
 
 void dop853_shift(Dop853 *integrator, double by)

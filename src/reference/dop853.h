@@ -111,6 +111,10 @@ const double *dop853_dense(Dop853 *integrator, double time);
 // The polynomial through the tried step, if it is not there yet.
 void dop853_fill(Dop853 *integrator);
 
+// The same, written elsewhere: of all equations, or of the motion alone.
+void dop853_dense_all(Dop853 *integrator, double time, double *y);
+void dop853_dense_motion(Dop853 *integrator, double time, double *y);
+
 // The polynomial at a share of the step; beyond 1 as it goes on.
 void dop853_polynomial(const Dop853 *integrator, double share, double *y);
 

@@ -46,33 +46,54 @@ void hinged_hold(const Hinged *hinged, const double *rates, HingedLoad *load, Ve
     }
 }
 
-// Shows how a body has moved, and how fast it does.
-static inline void show(const Tree *tree, int number, const HingedBody *body, double turned,
-                        TreeState *state)
+// Shows where a body has moved, and how fast it does.
+static inline void place(const Tree *tree, int number, const HingedBody *body, double turned,
+                         Motion *motions)
 {
     const Motion *base = &tree->base_motions[number];
-    state->motions[number] = (Motion){
-        .position = vec2_add(base->position, body->moved),
-        .angle = base->angle + turned,
-        .velocity = body->velocity,
-        .omega = body->omega,
-        .acceleration = body->acceleration,
-        .alpha = body->spin,
-    };
+    Motion *motion = &motions[number];
+    motion->position = vec2_add(base->position, body->moved);
+    motion->angle = base->angle + turned;
+    motion->velocity = body->velocity;
+    motion->omega = body->omega;
 }
 
-static inline void show_all(const Hinged *hinged, double since_s, const double *q, TreeState *state)
+static inline void place_all(const Hinged *hinged, double since_s, const double *q, Motion *motions)
 {
     const Tree *tree = &hinged->dynamics->tree;
-    const HingedBody *driven = hinged->driven;
-    if (driven != NULL) {
-        state->arms[2 * tree->linkage->driver.joint + 1] = driven->arm;
-        show(tree, tree->driven, driven, driven->omega * since_s, state);
+    if (hinged->driven != NULL) {
+        place(tree, tree->driven, hinged->driven, hinged->driven->omega * since_s, motions);
+    }
+    for (size_t i = 0; i < hinged->count; i++) {
+        const TreeNode *node = &tree->nodes[i];
+        place(tree, node->body, &hinged->bodies[i], q[node->column], motions);
+    }
+}
+
+void hinged_place(const Hinged *hinged, double since_s, const double *y, Motion *motions)
+{
+    hinged_move(hinged, since_s, y, y + hinged->dynamics->tree.coordinate_count);
+    place_all(hinged, since_s, y, motions);
+}
+
+static inline void show_acceleration(const HingedBody *body, Motion *motion)
+{
+    motion->acceleration = body->acceleration;
+    motion->alpha = body->spin;
+}
+
+// Shows accelerations, and the arms of hinges.
+static inline void show_all(const Hinged *hinged, TreeState *state)
+{
+    const Tree *tree = &hinged->dynamics->tree;
+    if (hinged->driven != NULL) {
+        state->arms[2 * tree->linkage->driver.joint + 1] = hinged->driven->arm;
+        show_acceleration(hinged->driven, &state->motions[tree->driven]);
     }
     for (size_t i = 0; i < hinged->count; i++) {
         const TreeNode *node = &tree->nodes[i];
         const HingedBody *body = &hinged->bodies[i];
-        show(tree, node->body, body, q[node->column], state);
+        show_acceleration(body, &state->motions[node->body]);
         if (body->is_floating) {
             continue;
         }
@@ -144,7 +165,8 @@ bool hinged_evaluate(const Hinged *hinged, double since_s, const double *y, Dyna
         return false;
     }
     hinged_hold(hinged, solved, &load, state->reactions);
-    show_all(hinged, since_s, y, &state->tree);
+    place_all(hinged, since_s, y, state->tree.motions);
+    show_all(hinged, &state->tree);
     state->drive_power = 0.0;
     state->damping_power = 0.0;
     if (hinged->driven != NULL) {

@@ -13,3 +13,6 @@ bool hinged_evaluate(const Hinged *hinged, double since_s, const double *y, Dyna
 // to these, and on the driven one. Writes the force of each hinge on its body b, N, by joint; NULL:
 // nowhere.
 void hinged_hold(const Hinged *hinged, const double *rates, HingedLoad *load, Vec2 *reactions);
+
+// Shows the bodies' positions and velocities; their accelerations stay as they are.
+void hinged_place(const Hinged *hinged, double since_s, const double *y, Motion *motions);

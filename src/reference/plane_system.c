@@ -4,6 +4,7 @@
 #include "model/forces.h"
 #include "reference/dynamics.h"
 #include "reference/dynamics_slopes.h"
+#include "reference/hinged_state.h"
 #include "reference/loops.h"
 #include "reference/tree_coordinate.h"
 #include "reference/tree_line.h"
@@ -331,6 +332,10 @@ static bool plane_place(const System *system, double since_s, const double *y, S
     const Dynamics *dynamics = dynamics_of(system);
     if (dynamics->tree.loop_count > 0) {
         return false;
+    }
+    if (dynamics->hinged != NULL && dynamics->tree.base_drive.alpha == 0.0) {
+        hinged_place(dynamics->hinged, since_s, y, sample->bodies);
+        return true;
     }
     DynamicsState *at = dynamics->room.state;
     tree_evaluate(&dynamics->tree, since_s, y, y + system->coordinate_count, &at->tree);

@@ -254,17 +254,6 @@ static StepRecord reference_record(const void *state)
     };
 }
 
-// The integrator's vector at a time in the last step, since the base.
-static const double *look_up(const Reference *reference, double since_s)
-{
-    const System *system = reference->stepper->system;
-    Dop853 *integrator = &reference->stepper->integrator;
-    double *y = reference->seen;
-    memcpy(y, dop853_dense(integrator, since_s), integrator->size * sizeof *y);
-    system->kind->project(system, since_s, y);
-    return y;
-}
-
 static void reference_observe(const void *state, double time_s, Sample *sample)
 {
     const Reference *reference = state;
@@ -272,7 +261,9 @@ static void reference_observe(const void *state, double time_s, Sample *sample)
     const System *system = reference->stepper->system;
     SystemState *at = reference->scratch;
     const double since_s = system->kind->since(system, time_s);
-    const double *y = look_up(reference, since_s);
+    double *y = reference->seen;
+    dop853_dense_all(&reference->stepper->integrator, since_s, y);
+    system->kind->project(system, since_s, y);
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
     if (!system->kind->evaluate(system, since_s, y, at, NULL)) {
@@ -291,8 +282,13 @@ static void reference_glance(const void *state, double time_s, Sample *sample)
     const Reference *reference = state;
     const System *system = reference->stepper->system;
     const double since_s = system->kind->since(system, time_s);
-    if (system->kind->place == NULL ||
-        !system->kind->place(system, since_s, look_up(reference, since_s), sample)) {
+    if (system->kind->place == NULL) {
+        reference_observe(state, time_s, sample);
+        return;
+    }
+    double *y = reference->seen;
+    dop853_dense_motion(&reference->stepper->integrator, since_s, y);
+    if (!system->kind->place(system, since_s, y, sample)) {
         reference_observe(state, time_s, sample);
     }
 }
