@@ -15,7 +15,7 @@
 // of the time: a step that ends short of it by rounding has reached it
 static const double SAME_TIME = 1e-12;
 
-enum { BEAT_EVERY = 64 }; // steps and samples
+enum { BEAT_EVERY = 64 }; // steps, between two samples
 
 // Samples up to which all runs go before the growth there is looked at, and by how much more for
 // the next time: a run that goes too far is work in vain, and so is to wait for one another.
@@ -28,7 +28,6 @@ typedef struct Walk {
     void *state; // of the solver
     bool has_step;
     double reached_s;
-    size_t beats;      // steps and samples so far
     size_t sample;     // the first of the samples that it has not come to
     bool is_away;      // so far that the growth is above the most, at the last sample it came to
     Err failure;       // why it did not come to the sample
@@ -56,10 +55,9 @@ struct GrowthRuns {
 
 typedef struct GrowthRuns Runs;
 
-// Tells whoever waits, now and then, that a run goes on: at a step or a sample.
-static void count_beat(const GrowthWork *work, Walk *walk, bool is_callers)
+static void beat(const GrowthWork *work, bool is_callers)
 {
-    if (++walk->beats % BEAT_EVERY == 0 && is_callers && work->pulse.beat != NULL) {
+    if (is_callers && work->pulse.beat != NULL) {
         work->pulse.beat(work->pulse.context);
     }
 }
@@ -69,15 +67,18 @@ static bool walk_to(const GrowthWork *work, Walk *walk, double time_s, bool is_c
                     Sample *sample)
 {
     const double near_s = time_s - SAME_TIME * time_s;
+    size_t steps = 0;
     // a first step comes before the first sample, though it may have no length
     while (!walk->has_step || walk->reached_s < near_s) {
         if (!solver_stride(work->solver, walk->state, time_s, &walk->reached_s, &walk->failure)) {
             return false;
         }
         walk->has_step = true;
-        count_beat(work, walk, is_callers);
+        if (++steps % BEAT_EVERY == 0) {
+            beat(work, is_callers);
+        }
     }
-    count_beat(work, walk, is_callers);
+    beat(work, is_callers);
     solver_glance(work->solver, walk->state, fmin(time_s, walk->reached_s), sample);
     return true;
 }
