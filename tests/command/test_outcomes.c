@@ -141,7 +141,9 @@ static void a_folder_is_all_cases_in_it(void **state)
     Program *program = *state;
     char path[PROGRAM_PATH_SIZE];
     write_case(program, "b.yaml", INSIDE, "  outcome: refused with \"inside the metal\"\n");
-    write_case(program, "a.yaml", ESCAPE, "  ode.outcome: detected as \"inside the wall\"\n");
+    write_case(program, "a.yaml", ESCAPE,
+               "  ode.outcome: detected as \"inside the wall\"\n"
+               "  reference.outcome: detected as \"inside the wall\"\n");
     program_run(program, "check -q . --markdown table.md --junit tests.xml");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "2 cases: 2 within, 0 out");
@@ -153,6 +155,7 @@ static void a_folder_is_all_cases_in_it(void **state)
     program_path(program, "tests.xml", path);
     program_read(path, text);
     assert_says(text, "name=\"expect/ode/outcome\"");
+    assert_says(text, "name=\"expect/reference/outcome\"");
     free(text);
     program_run(program, "check -q nothing");
     assert_int_equal(program->status, 5);
