@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { ENTRY_SIZE = 256, CHOSEN_COUNT = 4, LATER_MAX = CHOSEN_COUNT + BACKEND_COUNT };
+enum { ENTRY_SIZE = 256 };
 
 static int word_count(const char *const *words)
 {
@@ -68,7 +68,7 @@ static bool is_usual(const Scheme *scheme, bool has_map)
 static void add_ode(const Scheme *scheme, OdeCollider of_case, bool has_map, Scheme *schemes,
                     size_t *count)
 {
-    assert(*count + LATER_MAX < SCHEME_MAX);
+    assert(*count < SCHEME_MAX);
     Scheme *added = &schemes[(*count)++];
     *added = *scheme;
     added->is_asked = scheme->collider == ODE_COLLIDER_PIN_HOLE || scheme->collider == of_case;
@@ -82,7 +82,7 @@ static void add_chosen(const Scenario *scenario, Scheme *schemes, size_t *count)
     if (scenario_has_clearance(scenario) && scenario->contact.model == CONTACT_POISSON) {
         return;
     }
-    for (int digits = 3; digits < 3 + CHOSEN_COUNT; digits++) {
+    for (int digits = 3; digits < 3 + SCHEME_CHOSEN; digits++) {
         Scheme *added = &schemes[(*count)++];
         *added = (Scheme){.backend = BACKEND_ODE, .tolerance = pow(10.0, -digits)};
         snprintf(added->name, sizeof added->name, "auto/1e-%d", digits);

@@ -4,7 +4,13 @@
 
 #include "model/scenario.h"
 
-enum { SCHEME_MAX = 128, SCHEME_NAME_SIZE = 64 };
+enum {
+    SCHEME_CHOSEN = 4, // steps that ODE chooses for an error: auto/1e-3 and finer
+    // every combination of ODE's choices, and the solvers that choose their own steps
+    SCHEME_MAX = (ODE_QUICK + 1) * ODE_STEPPING_COUNT * ODE_MAP_COUNT * ODE_COLLIDER_COUNT +
+                 SCHEME_CHOSEN + BACKEND_COUNT,
+    SCHEME_NAME_SIZE = 64,
+};
 
 typedef struct Scheme {
     char name[SCHEME_NAME_SIZE]; // "direct/plain/textbook", "auto/1e-4", or the name of the backend

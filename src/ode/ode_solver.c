@@ -19,11 +19,10 @@ typedef struct Ode {
 static const Solver *choose(const Scenario *scenario)
 {
     static const Solver *const STEPPINGS[] = {OPTIONS_ODE_STEPPING_LIST(MEMBER)};
-    // extrapolated worlds are of ideal joints in the plane: the case is refused
-    static const Solver *const IN_SPACE[] = {
+    // NULL: of the plane alone, as extrapolated worlds are
+    static const Solver *const IN_SPACE[ODE_STEPPING_COUNT] = {
         [ODE_PLAIN] = &SPACE_PLAIN,
         [ODE_STAGGERED] = &SPACE_STAGGERED,
-        [ODE_EXTRAPOLATED] = NULL,
     };
     const bool is_spatial = scenario->linkage.is_spatial;
     if (scenario_integrates_contacts(scenario)) {
@@ -53,8 +52,8 @@ static bool ode_open(const Scenario *scenario, void **state, Err *err)
     ode->stepping = choose(scenario);
     if (ode->stepping == NULL) {
         free(ode);
-        return err_set(err, ERR_CASE,
-                       "ode.stepping extrapolated is for linkages in the plane; use staggered");
+        return err_set(err, ERR_CASE, "ode.stepping %s is for linkages in the plane; use staggered",
+                       OPTIONS_ODE_STEPPINGS[scenario->ode.stepping]);
     }
     if (!ode->stepping->open(scenario, &ode->state, err)) {
         free(ode);

@@ -54,6 +54,34 @@ static void both_descriptions_name_every_key(void **state)
     text_finish(&words);
 }
 
+static bool explains(const SchemaRow *row, const char *word)
+{
+    char explained[64];
+    snprintf(explained, sizeof explained, "%s: ", word);
+    return strstr(row->doc, explained) != NULL;
+}
+
+// Where the meaning of a choice explains its words one by one, it has all of them.
+static void a_choice_explains_each_word_or_none(void **state)
+{
+    (void)state;
+    size_t explained = 0;
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        const SchemaRow *row = &SCHEMA_ROWS[i];
+        if (row->type != SCHEMA_CHOICE || !explains(row, row->words[0])) {
+            continue;
+        }
+        for (size_t k = 0; row->words[k] != NULL; k++) {
+            if (!explains(row, row->words[k])) {
+                fail_msg("the doc of %s in casefile/schema_table.c explains '%s' and not '%s'",
+                         row->path, row->words[0], row->words[k]);
+            }
+            explained++;
+        }
+    }
+    assert_true(explained > 10);
+}
+
 // A mistake in any group is answered with all that is allowed there.
 static void there_is_room_for_the_keys_of_every_group(void **state)
 {
@@ -120,6 +148,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_page_is_what_the_program_describes),
         cmocka_unit_test(both_descriptions_name_every_key),
+        cmocka_unit_test(a_choice_explains_each_word_or_none),
         cmocka_unit_test(there_is_room_for_the_keys_of_every_group),
         cmocka_unit_test(words_for_a_terminal_fit_its_width),
         cmocka_unit_test(the_example_loads),
