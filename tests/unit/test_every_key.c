@@ -138,11 +138,29 @@ static void every_setting_of_ode_is_in_the_code(void **state)
     assert_true(checked > 30);
 }
 
+// Each has a file that tune hands out.
+static void every_stepping_and_collider_has_its_code(void **state)
+{
+    (void)state;
+    const char *const overrides[] = {"run.step=1 us", "ode.stepping=plain", "ode.map=textbook"};
+    Scenario scenario = load("cases/paper/stackup-impact.yaml", overrides, 3);
+    for (int stepping = 0; stepping < ODE_STEPPING_COUNT; stepping++) {
+        for (int collider = 0; collider < ODE_COLLIDER_COUNT; collider++) {
+            Text text;
+            scenario.ode.stepping = (OdeStepping)stepping;
+            scenario.ode.collider = (OdeCollider)collider;
+            write_code(&scenario, &text);
+            text_finish(&text);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_physical_number_is_shaken),
         cmocka_unit_test(every_setting_of_ode_is_in_the_code),
+        cmocka_unit_test(every_stepping_and_collider_has_its_code),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

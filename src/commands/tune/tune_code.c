@@ -12,7 +12,6 @@
 #include "contact/penalty.h"
 #include "write/number.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -354,8 +353,9 @@ bool tune_code_write(const TuneCode *code, Text *text, Err *err)
     snprintf(finding_contacts, sizeof finding_contacts, "ode/%s.c", collider);
     const char *files[] = {"run/run.c", "write/series_rows.c", taking_steps, finding_contacts};
     write_head(code, text);
-    const bool is_whole = tune_sources_write(files, sizeof files / sizeof files[0], text);
-    assert(is_whole);
+    if (!tune_sources_write(files, sizeof files / sizeof files[0], text, err)) {
+        return false;
+    }
     // without contacts no law is needed
     const bool has_laws = strstr(text->data, "---- contact/law.h ----") != NULL;
     if (has_laws && !write_laws(code->scenario, text, err)) {

@@ -5,6 +5,8 @@
 // Names at file scope must then be unique; tests/command/test_tune_code.c compiles the result.
 #include "commands/tune/tune_sources.h"
 
+#include "model/options.h"
+
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,13 +18,7 @@ enum { FILE_MAX = 256, NAME_SIZE = 64 };
 
 static const char MARK[] = "//// ";
 static const char INCLUDE[] = "#include \"";
-
-// each ends in a table of functions that stands for all of it, whatever header it includes first
-static const char *const MEMBERS[] = {
-    "ode/plain.c",           "ode/staggered.c",           "ode/impulse.c",
-    "ode/extrapolated.c",    "ode/collider_convex.c",     "ode/collider_pin_hole.c",
-    "ode/collider_staves.c", "ode/collider_staves_gjk.c", "ode/collider_trimesh.c",
-};
+static const char COLLIDERS[] = "ode/collider_";
 
 typedef struct Source {
     char name[NAME_SIZE];
@@ -86,14 +82,17 @@ static Source *find_source(Sources *sources, const char *name)
     return NULL;
 }
 
+// Whether a file is a stepping or a collider, each of which ends in a table of functions that
+// stands for all of it, whatever header it includes first.
 static bool is_member(const char *name)
 {
-    for (size_t i = 0; i < sizeof MEMBERS / sizeof MEMBERS[0]; i++) {
-        if (strcmp(name, MEMBERS[i]) == 0) {
-            return true;
-        }
+    char member[NAME_SIZE];
+    bool is_stepping = strcmp(name, "ode/impulse.c") == 0;
+    for (size_t i = 0; OPTIONS_ODE_STEPPINGS[i] != NULL; i++) {
+        snprintf(member, sizeof member, "ode/%s.c", OPTIONS_ODE_STEPPINGS[i]);
+        is_stepping = is_stepping || strcmp(name, member) == 0;
     }
-    return false;
+    return is_stepping || strncmp(name, COLLIDERS, sizeof COLLIDERS - 1) == 0;
 }
 
 // Marks the files that implement a header.
@@ -109,11 +108,14 @@ static void want_parts(Sources *sources, const char *header)
     }
 }
 
-static bool write_source(Sources *sources, const char *name, Text *text)
+static bool write_source(Sources *sources, const char *name, Text *text, Err *err)
 {
     Source *source = find_source(sources, name);
     if (source == NULL) {
-        return false;
+        return err_set(err, ERR_FILE,
+                       "the program does not carry its source %s: it must be in the list of "
+                       "src/commands/tune/meson.build",
+                       name);
     }
     if (source->is_written) {
         return true;
@@ -123,7 +125,8 @@ static bool write_source(Sources *sources, const char *name, Text *text)
     // headers first, so that no file is broken in two
     for (const char *line = source->begin; line < source->end; line = line_end(line)) {
         char included[NAME_SIZE];
-        if (read_include(line, source->end, included) && !write_source(sources, included, text)) {
+        if (read_include(line, source->end, included) &&
+            !write_source(sources, included, text, err)) {
             return false;
         }
     }
@@ -137,18 +140,18 @@ static bool write_source(Sources *sources, const char *name, Text *text)
     return true;
 }
 
-bool tune_sources_write(const char *const *files, size_t file_count, Text *text)
+bool tune_sources_write(const char *const *files, size_t file_count, Text *text, Err *err)
 {
     Sources sources;
     list_sources(&sources);
     bool is_whole = true;
     for (size_t i = 0; i < file_count && is_whole; i++) {
-        is_whole = write_source(&sources, files[i], text);
+        is_whole = write_source(&sources, files[i], text, err);
     }
     // what was written may need more
     for (size_t i = 0; i < sources.count && is_whole; i++) {
         if (sources.files[i].is_wanted && !sources.files[i].is_written) {
-            is_whole = write_source(&sources, sources.files[i].name, text);
+            is_whole = write_source(&sources, sources.files[i].name, text, err);
             i = (size_t)-1;
         }
     }
