@@ -1,8 +1,11 @@
 // What does the program do when nothing is said? Every default, and why it is that number.
 #include "model/options.h"
 
-#define WORD(id, word)                word,
-#define MEMBER_WORD(id, word, member) word,
+#include <string.h>
+
+#define WORD(id, word)                        word,
+#define MEMBER_WORD(id, word, ...)            word,
+#define MEMBER_HAS_PLAY(id, word, solver, is) is,
 
 const char *const OPTIONS_CONTACT_MODELS[] = {"impact", "poisson", NULL};
 const char *const OPTIONS_LAWS[] = {OPTIONS_LAW_LIST(MEMBER_WORD) NULL};
@@ -13,6 +16,17 @@ const char *const OPTIONS_ODE_MAPS[] = {OPTIONS_ODE_MAP_LIST(WORD) NULL};
 const char *const OPTIONS_ODE_COLLIDERS[] = {OPTIONS_ODE_COLLIDER_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_ODE_POLYGONS[] = {"circumscribed", "inscribed", NULL};
 const char *const OPTIONS_BACKENDS[] = {OPTIONS_BACKEND_LIST(MEMBER_WORD) NULL};
+const bool OPTIONS_BACKEND_HAS_PLAY[] = {OPTIONS_BACKEND_LIST(MEMBER_HAS_PLAY)};
+
+bool options_backend_has_play(const char *backend)
+{
+    bool has_play = true;
+    for (int i = 0; i < BACKEND_COUNT; i++) {
+        has_play =
+            has_play && (OPTIONS_BACKEND_HAS_PLAY[i] || strcmp(OPTIONS_BACKENDS[i], backend) != 0);
+    }
+    return has_play;
+}
 
 MaterialOptions material_options_default(void)
 {

@@ -57,11 +57,11 @@
     member(ODE_COLLIDER_CONVEX, "ode-convex", collider_convex) \
     member(ODE_COLLIDER_TRIMESH, "trimesh", collider_trimesh)
 
-// The solvers; see model/solver.h.
+// The solvers, see model/solver.h, and whether they model play: others take every joint as ideal.
 #define OPTIONS_BACKEND_LIST(member) \
-    member(BACKEND_ANALYTIC, "analytic", ANALYTIC_SOLVER) \
-    member(BACKEND_REFERENCE, "reference", REFERENCE_SOLVER) \
-    member(BACKEND_ODE, "ode", ODE_SOLVER)
+    member(BACKEND_ANALYTIC, "analytic", ANALYTIC_SOLVER, false) \
+    member(BACKEND_REFERENCE, "reference", REFERENCE_SOLVER, true) \
+    member(BACKEND_ODE, "ode", ODE_SOLVER, true)
 
 // clang-format on
 #define OPTIONS_ENUMERATOR(id, ...) id,
@@ -101,6 +101,10 @@ extern const char *const OPTIONS_ODE_MAPS[];
 extern const char *const OPTIONS_ODE_COLLIDERS[];
 extern const char *const OPTIONS_ODE_POLYGONS[];
 extern const char *const OPTIONS_BACKENDS[];
+
+// By BackendKind, and by the backend's name.
+extern const bool OPTIONS_BACKEND_HAS_PLAY[];
+bool options_backend_has_play(const char *backend);
 
 typedef struct MaterialOptions {
     double youngs_modulus; // Pa, of pin and hole alike

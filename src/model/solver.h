@@ -96,5 +96,5 @@ static inline void solver_glance(const Solver *solver, const void *state, double
 }
 
 // The solvers, by the names in OPTIONS_BACKEND_LIST.
-#define SOLVER_DECLARE(id, word, solver) extern const Solver solver;
+#define SOLVER_DECLARE(id, word, solver, has_play) extern const Solver solver;
 OPTIONS_BACKEND_LIST(SOLVER_DECLARE)

@@ -209,7 +209,7 @@ double trajectory_contact_share(const Trajectory *trajectory, size_t joint)
 bool trajectory_feels_play(const Trajectory *trajectory, const Joint *joint)
 {
     return trajectory->is_complete && linkage_has_play(joint) &&
-           strcmp(trajectory->backend, OPTIONS_BACKENDS[BACKEND_ANALYTIC]) != 0;
+           options_backend_has_play(trajectory->backend);
 }
 
 double trajectory_omega_scale(const Trajectory *trajectory, size_t body)

@@ -3,7 +3,7 @@
 
 #include <assert.h>
 
-#define MEMBER(id, word, solver) [id] = &solver,
+#define MEMBER(id, word, solver, has_play) [id] = &solver,
 static const Solver *const SOLVERS[] = {OPTIONS_BACKEND_LIST(MEMBER)};
 
 const Solver *registry_solver(BackendKind backend)

@@ -142,8 +142,7 @@ static void add_joints(CheckAdd *work, const Trajectory *run, BackendKind backen
             add_real(work, run, joint->name, is_turning ? "force_max_N_m" : "force_max_N",
                      extremes->force_max.value, 0.0);
         }
-        // the closed form takes every joint as ideal
-        if (!linkage_has_play(joint) || backend == BACKEND_ANALYTIC) {
+        if (!linkage_has_play(joint) || !OPTIONS_BACKEND_HAS_PLAY[backend]) {
             continue;
         }
         add_count(work, run, joint->name, "impacts", extremes->impacts);

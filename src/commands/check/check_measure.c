@@ -148,7 +148,7 @@ static Scenario cut_short(const Scenario *scenario, double horizon_s)
     }
     cut.run.backend_count = 0;
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
-        if (scenario->run.backends[i] != BACKEND_ANALYTIC) {
+        if (OPTIONS_BACKEND_HAS_PLAY[scenario->run.backends[i]]) {
             cut.run.backends[cut.run.backend_count++] = scenario->run.backends[i];
         }
     }
@@ -171,7 +171,7 @@ CheckPlan check_plan(const Truth *truth)
 static BackendKind motion_backend(const Scenario *scenario)
 {
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
-        if (scenario->run.backends[i] != BACKEND_ANALYTIC) {
+        if (OPTIONS_BACKEND_HAS_PLAY[scenario->run.backends[i]]) {
             return scenario->run.backends[i];
         }
     }

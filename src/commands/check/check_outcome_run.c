@@ -159,7 +159,7 @@ static bool add_backends(Outcomes *all, const ExpectedOutcome *expected)
         for (size_t k = 0; k < scenario->run.backend_count; k++) {
             const bool is_it = scenario->run.backends[k] == scheme.backend;
             const bool feels_play =
-                scheme.backend != BACKEND_ANALYTIC || !scenario_has_clearance(scenario);
+                OPTIONS_BACKEND_HAS_PLAY[i] || !scenario_has_clearance(scenario);
             is_run = is_run || (is_it && feels_play && expected->of[0] == '\0');
         }
         if (is_named || is_run) {

@@ -37,7 +37,7 @@ bool expect_value_concerns(const Expectation *expectation, const Scenario *scena
     if (expect_value_is_error(expectation) && backend == truth_backend(scenario)) {
         return false;
     }
-    return backend != BACKEND_ANALYTIC || !scenario_has_clearance(scenario);
+    return OPTIONS_BACKEND_HAS_PLAY[backend] || !scenario_has_clearance(scenario);
 }
 
 double expect_value_of(const Expectation *expectation, const Trajectory *run,

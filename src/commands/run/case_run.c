@@ -99,7 +99,7 @@ static void run_ensembles(CaseRun *run, Progress *progress)
 {
     const RunOptions *options = &run->scenario.run;
     for (size_t i = 0; i < options->backend_count; i++) {
-        if (options->backends[i] == BACKEND_ANALYTIC || !run->runs[i]->is_complete) {
+        if (!OPTIONS_BACKEND_HAS_PLAY[options->backends[i]] || !run->runs[i]->is_complete) {
             continue;
         }
         const Solver *solver = registry_solver(options->backends[i]);

@@ -63,10 +63,9 @@ static inline bool run_report_mixes_models(const RunReport *report)
 // Whether the error of a run is that of ideal joints against joints with play.
 static inline bool run_report_includes_play(const RunReport *report, size_t run)
 {
-    const char *ideal = OPTIONS_BACKENDS[BACKEND_ANALYTIC];
     return scenario_has_clearance(report->scenario) &&
-           (strcmp(report->errors[run].against, ideal) == 0 ||
-            strcmp(report->runs[run]->backend, ideal) == 0);
+           (!options_backend_has_play(report->errors[run].against) ||
+            !options_backend_has_play(report->runs[run]->backend));
 }
 
 // Whether spikes of a signal were looked for and it can have any.
