@@ -8,6 +8,7 @@
 #include "version.h"
 
 #include <argp.h>
+#include <malloc.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -79,9 +80,20 @@ static void print_error(const Err *err)
     text_finish(&text);
 }
 
+// What one run gives back the next one takes, in whichever thread: a page that the system gives
+// takes as long as thousands of instructions. Arrays of 32 MiB and more, the most that malloc has
+// for this, go back at once.
+static void keep_memory(void)
+{
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TRIM_THRESHOLD, 64 << 20);
+    mallopt(M_ARENA_MAX, 1);
+}
+
 int main(int argc, char **argv)
 {
     Err err = {0};
+    keep_memory();
     const bool is_ready = descriptors_reserve(&err);
     // a closed pipe and a file that is too large are then failed writes, which have an exit status
     signal(SIGPIPE, SIG_IGN);

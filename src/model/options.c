@@ -68,6 +68,7 @@ RunOptions run_options_default(void)
         .most_steps = 3000000, // a minute of world steps that are full of contacts, 20 us each
         // as much as ideal joints show by themselves, so that they show no spike
         .spike_threshold = 1.0,
+        .keeps_ranges = true,
         .backend_count = 3,
         .backends = {BACKEND_ANALYTIC, BACKEND_REFERENCE, BACKEND_ODE},
     };

@@ -139,6 +139,7 @@ typedef struct RunOptions {
     bool is_report_from_in_turns;
     size_t backend_count;
     BackendKind backends[BACKEND_COUNT];
+    bool keeps_ranges; // no key: whether somebody reads what signals did between the samples
 } RunOptions;
 
 typedef struct ReferenceOptions {

@@ -52,7 +52,23 @@ static void refuse_memory(Trajectory *trajectory, size_t samples)
              samples);
 }
 
-Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
+// Room for all but the bodies' motions at the samples; false where there is no memory for it.
+static bool make_states(const Scenario *scenario, Trajectory *trajectory)
+{
+    const size_t samples = trajectory->sample_count;
+    const size_t states = samples * trajectory->joint_count + 1;
+    trajectory->crank_angles = calloc(samples, sizeof *trajectory->crank_angles);
+    trajectory->states = calloc(states, sizeof *trajectory->states);
+    bool has_memory = trajectory->crank_angles != NULL && trajectory->states != NULL;
+    if (scenario->linkage.is_spatial) {
+        trajectory->space_states = calloc(states, sizeof *trajectory->space_states);
+        has_memory = has_memory && trajectory->space_states != NULL;
+    }
+    return has_memory;
+}
+
+// With room for them, or without.
+static Trajectory *create(const Scenario *scenario, const char *backend, bool has_states)
 {
     Trajectory *trajectory = calloc(1, sizeof *trajectory);
     assert(trajectory != NULL);
@@ -72,18 +88,15 @@ Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
     }
     trajectory->sample_count = samples;
     trajectory->times = calloc(samples, sizeof *trajectory->times);
-    trajectory->crank_angles = calloc(samples, sizeof *trajectory->crank_angles);
     trajectory->motions = calloc(samples * trajectory->body_count + 1, sizeof *trajectory->motions);
-    trajectory->states = calloc(samples * trajectory->joint_count + 1, sizeof *trajectory->states);
-    bool has_memory = trajectory->times != NULL && trajectory->crank_angles != NULL &&
-                      trajectory->motions != NULL && trajectory->states != NULL;
+    bool has_memory = trajectory->times != NULL && trajectory->motions != NULL;
     if (scenario->linkage.is_spatial) {
         trajectory->space_motions =
             calloc(samples * trajectory->body_count + 1, sizeof *trajectory->space_motions);
-        trajectory->space_states =
-            calloc(samples * trajectory->joint_count + 1, sizeof *trajectory->space_states);
-        has_memory =
-            has_memory && trajectory->space_motions != NULL && trajectory->space_states != NULL;
+        has_memory = has_memory && trajectory->space_motions != NULL;
+    }
+    if (has_states) {
+        has_memory = make_states(scenario, trajectory) && has_memory;
     }
     snprintf(trajectory->backend, sizeof trajectory->backend, "%s", backend);
     snprintf(trajectory->label, sizeof trajectory->label, "%s", backend);
@@ -92,6 +105,16 @@ Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
     }
     trajectory->report_from_s = scenario_report_from(scenario);
     return trajectory;
+}
+
+Trajectory *trajectory_create(const Scenario *scenario, const char *backend)
+{
+    return create(scenario, backend, true);
+}
+
+Trajectory *trajectory_create_motion(const Scenario *scenario, const char *backend)
+{
+    return create(scenario, backend, false);
 }
 
 void trajectory_keep_ranges(Trajectory *trajectory, const Scenario *scenario)

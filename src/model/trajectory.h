@@ -149,6 +149,9 @@ typedef struct Trajectory {
 // An empty trajectory with room for the scenario's samples. Without the memory for them it has
 // none, and a message that says so.
 Trajectory *trajectory_create(const Scenario *scenario, const char *backend);
+
+// One with room for times and the bodies' motions alone (trajectory_store_motion).
+Trajectory *trajectory_create_motion(const Scenario *scenario, const char *backend);
 void trajectory_destroy(Trajectory *trajectory);
 
 // Puts a sample into its place in the trajectory.

@@ -269,7 +269,7 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     Err err = {ERR_NONE, ""};
     Loop loop = {
         .scenario = scenario, .solver = solver, .watch = watch, .probe = probe, .guard = guard};
-    if (probe != NULL) {
+    if (probe != NULL && scenario->run.keeps_ranges) {
         trajectory_keep_ranges(trajectory, scenario);
     }
     if (trajectory->sample_count == 0) {

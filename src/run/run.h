@@ -15,7 +15,7 @@ typedef struct RunWatch {
 } RunWatch;
 
 // What looks at every step of a run besides the recorder, for those who ask for more than that. The
-// trajectory keeps ranges, too.
+// trajectory keeps ranges, too, where the scenario's options say that somebody reads them.
 typedef struct RunProbe {
     // Once the solver is open; what the probe asks the solver for it shows to the recorder. NULL:
     // there is nothing to look at in this run.

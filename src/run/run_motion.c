@@ -69,7 +69,7 @@ static bool go(Way *way, Sample *sample, Trajectory *trajectory, Err *err)
 
 Trajectory *run_motion(const Scenario *scenario, const Solver *solver, RunWatch watch)
 {
-    Trajectory *trajectory = trajectory_create(scenario, solver->name);
+    Trajectory *trajectory = trajectory_create_motion(scenario, solver->name);
     Err err = {ERR_NONE, ""};
     Way way = {.scenario = scenario, .solver = solver, .watch = watch, .started_s = clock_now_s()};
     if (trajectory->sample_count == 0) {

@@ -106,6 +106,7 @@ static bool fill_impact(RunWatch watch, ExtremesRow *row, Err *err)
     scenario.ode.stepping = ODE_STAGGERED;
     scenario.ode.map = ODE_MAP_IMPULSE;
     scenario.run.step = IMPACT_STEP_S;
+    scenario.run.keeps_ranges = false;
     // peaks inside the steps count
     fill_by_run(&scenario, tracer_run(&scenario, registry_solver(BACKEND_ODE), watch), row);
     scenario_free(&scenario);

@@ -104,6 +104,9 @@ static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
             return false;
         }
         runs[i].is_uncertified = command->is_uncertified;
+        // of samples in a file and of pictures
+        runs[i].scenario.run.keeps_ranges =
+            command->series != NULL || command->plot != NULL || command->common.folder != NULL;
         if (command->is_uncertified && !check_uncertified(&runs[i].scenario, err)) {
             return false;
         }
