@@ -11,10 +11,10 @@
 #include <string.h>
 
 // The bodies that an ideal joint can move; the ground where there are fewer than two.
-static void find_movers(const Response *response, size_t node, int movers[2])
+static void find_movers(const ResponseNodes *nodes, size_t node, int movers[2])
 {
     for (int side = 0; side < 2; side++) {
-        movers[side] = joint_nodes_mover(response->linkage, response->joint_of[2 * node], side);
+        movers[side] = joint_nodes_mover(nodes->linkage, nodes->joints[node], side);
     }
     if (movers[0] == LINKAGE_GROUND) {
         movers[0] = movers[1];
@@ -22,15 +22,15 @@ static void find_movers(const Response *response, size_t node, int movers[2])
     }
 }
 
-static void number_groups(const Response *response, ResponseGroups *groups)
+static void number_groups(const ResponseNodes *nodes, ResponseGroups *groups)
 {
-    const size_t body_count = response->linkage->body_count;
-    const int driven = linkage_driven_body(response->linkage);
+    const size_t body_count = nodes->linkage->body_count;
+    const int driven = linkage_driven_body(nodes->linkage);
     size_t *leaders = zeroed(body_count, sizeof *leaders);
     leaders_start(leaders, body_count);
-    for (size_t node = 0; node < response->ideal_rows / 2; node++) {
+    for (size_t node = 0; node < nodes->ideal; node++) {
         int movers[2];
-        find_movers(response, node, movers);
+        find_movers(nodes, node, movers);
         if (movers[1] != LINKAGE_GROUND) {
             leaders_join(leaders, (size_t)movers[0], (size_t)movers[1]);
         }
@@ -66,13 +66,13 @@ static void sort_into(size_t count, const size_t *group_of, size_t groups, size_
 }
 
 // Lists the places of each group, which those between two groups have in common.
-static void list_places(const Response *response, ResponseGroups *groups)
+static void list_places(const ResponseNodes *nodes, ResponseGroups *groups)
 {
-    const size_t count = response->place_count;
+    const size_t count = nodes->count - nodes->ideal;
     size_t *group_of = zeroed(2 * count, sizeof *group_of);
     for (size_t i = 0; i < 2 * count; i++) {
-        const int body =
-            joint_nodes_mover(response->linkage, response->places[i / 2].joint, (int)(i % 2));
+        const int joint = nodes->joints[nodes->ideal + i / 2];
+        const int body = joint_nodes_mover(nodes->linkage, joint, (int)(i % 2));
         group_of[i] = body == LINKAGE_GROUND ? groups->count : groups->group_of[body];
     }
     groups->first_place = zeroed(groups->count + 1, sizeof *groups->first_place);
@@ -84,30 +84,45 @@ static void list_places(const Response *response, ResponseGroups *groups)
     free(group_of);
 }
 
-void response_groups_init(const Response *response, ResponseGroups *groups)
+void response_groups_make(const ResponseNodes *nodes, ResponseGroups *groups)
 {
-    const Sparse *matrix = &response->matrix;
-    const size_t body_count = response->linkage->body_count;
-    const size_t ideal = response->ideal_rows / 2;
+    const size_t *node_at = nodes->matrix->node_at;
+    const size_t body_count = nodes->linkage->body_count;
+    const size_t ideal = nodes->ideal;
     *groups = (ResponseGroups){.group_of = zeroed(body_count, sizeof *groups->group_of)};
-    number_groups(response, groups);
+    number_groups(nodes, groups);
     groups->first_body = zeroed(groups->count + 1, sizeof *groups->first_body);
     groups->bodies = zeroed(body_count, sizeof *groups->bodies);
     sort_into(body_count, groups->group_of, groups->count, groups->first_body, groups->bodies);
-    list_places(response, groups);
+    list_places(nodes, groups);
     groups->first_node = zeroed(groups->count + 1, sizeof *groups->first_node);
     groups->nodes = zeroed(ideal, sizeof *groups->nodes);
+    groups->joints = zeroed(ideal, sizeof *groups->joints);
     size_t *group_at = zeroed(ideal, sizeof *group_at);
     for (size_t p = 0; p < ideal; p++) {
         int movers[2];
-        find_movers(response, matrix->node_at[p], movers);
+        find_movers(nodes, node_at[p], movers);
         group_at[p] = movers[0] == LINKAGE_GROUND ? groups->count : groups->group_of[movers[0]];
     }
     sort_into(ideal, group_at, groups->count, groups->first_node, groups->nodes);
     for (size_t i = 0; i < ideal; i++) {
-        groups->nodes[i] = matrix->node_at[groups->nodes[i]];
+        groups->nodes[i] = node_at[groups->nodes[i]];
+        groups->joints[i] = nodes->joints[groups->nodes[i]];
     }
     free(group_at);
+}
+
+void response_groups_init(const Response *response, ResponseGroups *groups)
+{
+    const size_t ideal = response->ideal_rows / 2;
+    const size_t count = ideal + response->place_count;
+    int *joints = zeroed(count, sizeof *joints);
+    for (size_t i = 0; i < count; i++) {
+        joints[i] = i < ideal ? response->joint_of[2 * i] : response->places[i - ideal].joint;
+    }
+    response_groups_make(
+        &(ResponseNodes){response->linkage, &response->matrix, ideal, count, joints}, groups);
+    free(joints);
 }
 
 void response_groups_finish(ResponseGroups *groups)
@@ -119,6 +134,7 @@ void response_groups_finish(ResponseGroups *groups)
     free(groups->places);
     free(groups->first_node);
     free(groups->nodes);
+    free(groups->joints);
     *groups = (ResponseGroups){.count = 0};
 }
 

@@ -14,8 +14,21 @@ typedef struct ResponseGroups {
     size_t *first_node; // likewise: the ideal joints as nodes of the response's matrix, in the
                         // order of their elimination
     size_t *nodes;
+    int *joints; // of these nodes
 } ResponseGroups;
 
+// Ideal joints as nodes of a response's matrix, and behind them places: the joint of each.
+typedef struct ResponseNodes {
+    const Linkage *linkage;
+    const Sparse *matrix;
+    size_t ideal;
+    size_t count;
+    const int *joints;
+} ResponseNodes;
+
+void response_groups_make(const ResponseNodes *nodes, ResponseGroups *groups);
+
+// The same of a response in the plane.
 void response_groups_init(const Response *response, ResponseGroups *groups);
 void response_groups_finish(ResponseGroups *groups);
 

@@ -203,13 +203,19 @@ void space_response_react(const SpaceResponse *response, const double *impulses,
     memcpy(reactions, answer_all(response, impulses), response->ideal_rows * sizeof *reactions);
 }
 
+void space_response_add_force(const SpaceResponse *response, size_t row, double reaction,
+                              Vec3 *forces)
+{
+    if (response->part_of[row] < SPACE_POINT_ROWS) {
+        Vec3 *force = &forces[response->joint_of[row]];
+        *force = vec3_add(*force, vec3_scale(reaction, response->direction_of[row]));
+    }
+}
+
 void space_response_add_forces(const SpaceResponse *response, const double *reactions, Vec3 *forces)
 {
     for (size_t i = 0; i < response->ideal_rows; i++) {
-        if (response->part_of[i] < SPACE_POINT_ROWS) {
-            Vec3 *force = &forces[response->joint_of[i]];
-            *force = vec3_add(*force, vec3_scale(reactions[i], response->direction_of[i]));
-        }
+        space_response_add_force(response, i, reactions[i], forces);
     }
 }
 
@@ -251,6 +257,12 @@ void space_response_apply(const SpaceResponse *response, const double *impulses,
     for (size_t i = 0; i < response->row_count; i++) {
         add_answer(&response->rows[i], all[i], changes);
     }
+}
+
+void space_response_add_row(const SpaceResponse *response, size_t row, double impulse,
+                            SpaceChange *changes)
+{
+    add_answer(&response->rows[row], impulse, changes);
 }
 
 void space_response_solve(const SpaceResponse *response, double *rows)

@@ -121,6 +121,10 @@ void space_response_react(const SpaceResponse *response, const double *impulses,
 void space_response_add_forces(const SpaceResponse *response, const double *reactions,
                                Vec3 *forces);
 
+// The same of one ideal row.
+void space_response_add_force(const SpaceResponse *response, size_t row, double reaction,
+                              Vec3 *forces);
+
 // Adds what impulses in the ideal rows are on one body.
 void space_response_add_reactions(const SpaceResponse *response, const double *reactions, int body,
                                   SpaceChange *load);
@@ -133,6 +137,10 @@ void space_response_load(const SpaceResponse *response, const double *impulses, 
 // joints' own impulses included.
 void space_response_apply(const SpaceResponse *response, const double *impulses,
                           SpaceChange *changes);
+
+// Adds by how much an impulse in one of all rows, by itself, changes the velocities of its bodies.
+void space_response_add_row(const SpaceResponse *response, size_t row, double impulse,
+                            SpaceChange *changes);
 
 // Solves D x = b for the ideal rows, D = J M^-1 J', in place.
 void space_response_solve(const SpaceResponse *response, double *rows);

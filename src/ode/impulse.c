@@ -37,6 +37,50 @@ static void impulse_close(void *state)
     }
 }
 
+static ImpulseSpan span_of(const void *context)
+{
+    const Impulse *impulse = context;
+    const ImpulseStep *step = &impulse->step;
+    return (ImpulseSpan){step->start_s, step->end_s, step->width_s, step->drive_work, step->damped};
+}
+
+static double mean_of(const void *context, size_t joint)
+{
+    const Impulse *impulse = context;
+    return impulse->step.mean[joint].force;
+}
+
+// Looks at a scope of the step, and tells how its bodies turn.
+static void look_inside(void *context, const ImpulseScope *scope, ImpulseTime at,
+                        const EncounterSums *sums)
+{
+    Impulse *impulse = context;
+    impulse_step_inside(&impulse->step, scope, at, sums, impulse->motions, impulse->joints,
+                        impulse->depths);
+    for (size_t n = 0; n < scope->body_count; n++) {
+        const size_t i = scope->bodies[n];
+        impulse->part.omega[i] = impulse->motions[i].omega;
+        impulse->part.alpha[i] = impulse->motions[i].alpha;
+    }
+}
+
+static ImpulseIslands *make_islands(Impulse *impulse)
+{
+    const ImpulseStep *step = &impulse->step;
+    return impulse_islands_create(&(ImpulseIslandsOf){
+        .linkage = &step->scenario->linkage,
+        .islands = step->islands,
+        .groups = &step->groups,
+        .whole = &step->whole,
+        .depths = impulse->depths,
+        .joints = impulse->joints,
+        .context = impulse,
+        .span = span_of,
+        .inside = look_inside,
+        .mean = mean_of,
+    });
+}
+
 static bool impulse_open(const Scenario *scenario, void **state, Err *err)
 {
     Impulse *impulse = calloc(1, sizeof *impulse);
@@ -46,12 +90,12 @@ static bool impulse_open(const Scenario *scenario, void **state, Err *err)
         const size_t rows = encounter_rows(&impulse->step.encounter);
         impulse_part_init(&impulse->part, linkage, rows);
         impulse->sums = encounter_sums(rows);
-        if (impulse->step.islands != NULL) {
-            impulse->islands = impulse_islands_create(&impulse->step);
-        }
         impulse->motions = zeroed(linkage->body_count, sizeof *impulse->motions);
         impulse->joints = zeroed(linkage->joint_count, sizeof *impulse->joints);
         impulse->depths = zeroed(impulse->step.place_count, sizeof *impulse->depths);
+        if (impulse->step.islands != NULL) {
+            impulse->islands = make_islands(impulse);
+        }
         *state = impulse;
         return true;
     }
@@ -79,16 +123,10 @@ static void take_part(Impulse *impulse)
 {
     const ImpulseStep *step = &impulse->step;
     ImpulsePart *part = &impulse->part;
-    Motion *motions = impulse->motions;
     const Mark *mark = impulse_part_next(part, &step->encounter, step->start_s, step->end_s);
     const ImpulseTime at = {mark->time_s, mark->node, !part->is_last};
-    impulse_step_inside(step, &step->whole, at, &part->sums, motions, impulse->joints,
-                        impulse->depths);
+    look_inside(impulse, &step->whole, at, &part->sums);
     impulse_part_record(part, &step->scenario->linkage, impulse->joints);
-    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
-        part->omega[i] = motions[i].omega;
-        part->alpha[i] = motions[i].alpha;
-    }
     impulse_part_add_contacts(part, &step->encounter, mark, impulse->depths, NULL);
     part->record.drive_work = part->is_last ? step->drive_work : 0.0;
     part->record.dissipated += part->is_last ? step->damped : 0.0;
@@ -119,8 +157,7 @@ static bool impulse_step(void *state, double stop_s, Err *err)
         return false;
     }
     if (impulse->islands != NULL) {
-        impulse_islands_next(impulse->islands, &impulse->part, impulse->motions, impulse->joints,
-                             impulse->depths);
+        impulse_islands_next(impulse->islands, &impulse->part);
     } else {
         take_part(impulse);
     }

@@ -9,9 +9,6 @@
 // for them together so many times
 enum { FEW_ROWS = 4 };
 
-// places up to which all are integrated together: what islands save they cost as well
-enum { FEW_PLACES = 16 };
-
 static void make_arrays(ImpulseStep *step)
 {
     const size_t bodies = step->scenario->linkage.body_count;
@@ -40,40 +37,6 @@ static void make_arrays(ImpulseStep *step)
         work->rows[i] = zeroed(step->response.row_count, sizeof *work->rows[i]);
         work->changes[i] = zeroed(3 * bodies, sizeof *work->changes[i]);
     }
-}
-
-static size_t *make_numbers(size_t count)
-{
-    size_t *numbers = zeroed(count, sizeof *numbers);
-    for (size_t i = 0; i < count; i++) {
-        numbers[i] = i;
-    }
-    return numbers;
-}
-
-static void make_whole(ImpulseStep *step)
-{
-    const Linkage *linkage = &step->scenario->linkage;
-    step->whole = (ImpulseScope){
-        .is_whole = true,
-        .has_drive = step->driven >= 0,
-        .body_count = linkage->body_count,
-        .bodies = make_numbers(linkage->body_count),
-        .joint_count = linkage->joint_count,
-        .joints = make_numbers(linkage->joint_count),
-        .place_count = step->place_count,
-        .part.place_count = step->place_count,
-        .part.places = make_numbers(step->place_count),
-    };
-}
-
-void impulse_scope_finish(ImpulseScope *scope)
-{
-    free(scope->bodies);
-    free(scope->joints);
-    free(scope->part.groups);
-    free(scope->part.places);
-    *scope = (ImpulseScope){.body_count = 0};
 }
 
 static void free_arrays(ImpulseStep *step)
@@ -172,7 +135,7 @@ static bool init_encounter(ImpulseStep *step, Err *err)
     }
     const size_t rows = encounter_rows(&step->encounter);
     step->total = encounter_sums(rows);
-    if (step->place_count <= FEW_PLACES) {
+    if (step->place_count <= IMPULSE_FEW_PLACES) {
         encounter_make_room(&step->encounter, rows);
         return true;
     }
@@ -192,7 +155,7 @@ bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
         return false;
     }
     make_arrays(step);
-    make_whole(step);
+    step->whole = impulse_scope_whole(&scenario->linkage, step->place_count);
     linkage_start(&scenario->linkage, step->after);
     return world_build(scenario, step->after, &step->world, err);
 }

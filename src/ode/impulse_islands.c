@@ -18,8 +18,9 @@ typedef struct IslandMark {
 } IslandMark;
 
 struct ImpulseIslands {
-    ImpulseStep *step;
-    Marks marks; // of one island at a time
+    ImpulseIslandsOf of;
+    ImpulseSpan span; // of the step
+    Marks marks;      // of one island at a time
     size_t count;
     size_t room;
     size_t next; // the first mark that has not been handed on; `count` of the step's end
@@ -39,13 +40,13 @@ struct ImpulseIslands {
     bool *has_place;
 };
 
-ImpulseIslands *impulse_islands_create(ImpulseStep *step)
+ImpulseIslands *impulse_islands_create(const ImpulseIslandsOf *of)
 {
-    const Linkage *linkage = &step->scenario->linkage;
-    const size_t rows = encounter_rows(&step->encounter);
-    const size_t places = step->place_count;
+    const Linkage *linkage = of->linkage;
+    const size_t rows = encounter_rows(of->islands->all);
+    const size_t places = of->islands->all->joint_count;
     ImpulseIslands *islands = zeroed(1, sizeof *islands);
-    islands->step = step;
+    islands->of = *of;
     islands->is_ended = true;
     islands->sums = encounter_sums(rows);
     islands->before = zeroed(rows, sizeof *islands->before);
@@ -54,11 +55,11 @@ ImpulseIslands *impulse_islands_create(ImpulseStep *step)
     islands->is_touching = zeroed(places, sizeof *islands->is_touching);
     islands->scope.bodies = zeroed(linkage->body_count, sizeof *islands->scope.bodies);
     islands->scope.joints = zeroed(linkage->joint_count, sizeof *islands->scope.joints);
-    islands->scope.part.groups = zeroed(step->groups.count, sizeof *islands->scope.part.groups);
+    islands->scope.part.groups = zeroed(of->groups->count, sizeof *islands->scope.part.groups);
     islands->scope.part.places = zeroed(places, sizeof *islands->scope.part.places);
     islands->has_body = zeroed(linkage->body_count, sizeof *islands->has_body);
     islands->has_joint = zeroed(linkage->joint_count, sizeof *islands->has_joint);
-    islands->has_group = zeroed(step->groups.count, sizeof *islands->has_group);
+    islands->has_group = zeroed(of->groups->count, sizeof *islands->has_group);
     islands->has_place = zeroed(places, sizeof *islands->has_place);
     return islands;
 }
@@ -99,7 +100,7 @@ static int compare_marks(const void *a, const void *b)
 // Lists the marks of an island but for that of the step's end.
 static void list_marks(ImpulseIslands *islands, size_t number)
 {
-    const EncounterIsland *island = islands->step->islands->islands[number];
+    const EncounterIsland *island = islands->of.islands->islands[number];
     marks_find(&islands->marks, &island->encounter);
     const size_t count = islands->marks.count - 1;
     if (islands->count + count > islands->room) {
@@ -117,18 +118,19 @@ static void list_marks(ImpulseIslands *islands, size_t number)
 
 void impulse_islands_begin(ImpulseIslands *islands, ImpulsePart *part)
 {
-    const ImpulseStep *step = islands->step;
+    const EncounterIslands *all = islands->of.islands;
+    islands->span = islands->of.span(islands->of.context);
     islands->count = islands->next = 0;
     islands->is_ended = false;
-    for (size_t i = 0; i < step->islands->count; i++) {
+    for (size_t i = 0; i < all->count; i++) {
         list_marks(islands, i);
         islands->losses[i][0] = islands->losses[i][1] = 0.0;
     }
     if (islands->count > 0) {
         qsort(islands->order, islands->count, sizeof *islands->order, compare_marks);
     }
-    memset(islands->before, 0, encounter_rows(&step->encounter) * sizeof *islands->before);
-    part->end_s = step->start_s;
+    memset(islands->before, 0, encounter_rows(all->all) * sizeof *islands->before);
+    part->end_s = islands->span.start_s;
 }
 
 bool impulse_islands_need_step(const ImpulseIslands *islands)
@@ -138,18 +140,17 @@ bool impulse_islands_need_step(const ImpulseIslands *islands)
 
 const ImpulseScope *impulse_islands_scope(const ImpulseIslands *islands)
 {
-    return islands->is_ended ? &islands->step->whole : &islands->scope;
+    return islands->is_ended ? islands->of.whole : &islands->scope;
 }
 
 static void add_group(ImpulseIslands *islands, size_t group)
 {
-    const ImpulseStep *step = islands->step;
-    const ResponseGroups *groups = &step->groups;
+    const ResponseGroups *groups = islands->of.groups;
     ImpulseScope *scope = &islands->scope;
     islands->has_group[group] = true;
     scope->part.groups[scope->part.group_count++] = group;
     for (size_t n = groups->first_node[group]; n < groups->first_node[group + 1]; n++) {
-        const size_t joint = (size_t)step->response.joint_of[2 * groups->nodes[n]];
+        const size_t joint = (size_t)groups->joints[n];
         if (!islands->has_joint[joint]) {
             islands->has_joint[joint] = true;
             scope->joints[scope->joint_count++] = joint;
@@ -166,9 +167,10 @@ static void add_group(ImpulseIslands *islands, size_t group)
 // Adds a place with its joint, its bodies, and all that its impulses move.
 static void add_place(ImpulseIslands *islands, size_t place)
 {
-    const ImpulseStep *step = islands->step;
-    const size_t number = (size_t)step->places[place].joint;
-    const Joint *joint = &step->scenario->linkage.joints[number];
+    const ResponseGroups *groups = islands->of.groups;
+    const size_t number = (size_t)islands->of.islands->all->joints[place].joint;
+    const Joint *joint = &islands->of.linkage->joints[number];
+    const int driven = linkage_driven_body(islands->of.linkage);
     const int bodies[2] = {joint->body_a, joint->body_b};
     ImpulseScope *scope = &islands->scope;
     scope->part.places[scope->part.place_count++] = place;
@@ -182,28 +184,28 @@ static void add_place(ImpulseIslands *islands, size_t place)
             continue;
         }
         const size_t body = (size_t)bodies[i];
-        const size_t group = step->groups.group_of[body];
-        if (group < step->groups.count && !islands->has_group[group]) {
+        const size_t group = groups->group_of[body];
+        if (group < groups->count && !islands->has_group[group]) {
             add_group(islands, group);
         }
         if (!islands->has_body[body]) {
             islands->has_body[body] = true;
             scope->bodies[scope->body_count++] = body;
         }
-        scope->has_drive = scope->has_drive || bodies[i] == step->driven;
+        scope->has_drive = scope->has_drive || bodies[i] == driven;
     }
 }
 
 // Adds the places of other blocks that move the bodies of a block.
 static void add_neighbours(ImpulseIslands *islands)
 {
-    const ResponseGroups *groups = &islands->step->groups;
+    const ResponseGroups *groups = islands->of.groups;
     ResponsePart *part = &islands->scope.part;
     for (size_t i = 0; i < part->group_count; i++) {
         const size_t group = part->groups[i];
         for (size_t n = groups->first_place[group]; n < groups->first_place[group + 1]; n++) {
             const size_t place = groups->places[n];
-            if (islands->step->islands->is_active[place] && !islands->has_place[place]) {
+            if (islands->of.islands->is_active[place] && !islands->has_place[place]) {
                 islands->has_place[place] = true;
                 part->places[part->place_count++] = place;
             }
@@ -234,7 +236,7 @@ static void set_scope(ImpulseIslands *islands, const EncounterIsland *island)
         add_place(islands, island->places[i]);
     }
     scope->place_count = scope->part.place_count;
-    if (islands->step->islands->is_divided[island->places[0]]) {
+    if (islands->of.islands->is_divided[island->places[0]]) {
         add_neighbours(islands);
     }
 }
@@ -242,7 +244,7 @@ static void set_scope(ImpulseIslands *islands, const EncounterIsland *island)
 // Writes the sums of an island's rows among those of all.
 static void scatter(ImpulseIslands *islands, const EncounterIsland *island)
 {
-    const Encounter *all = &islands->step->encounter;
+    const Encounter *all = islands->of.islands->all;
     for (size_t i = 0; i < island->encounter.joint_count; i++) {
         const EncounterJoint *joint = &island->encounter.joints[i];
         const size_t row = all->joints[island->places[i]].first_row;
@@ -256,7 +258,7 @@ static void scatter(ImpulseIslands *islands, const EncounterIsland *island)
 // Looks at the scope's island, and at others that move its bodies, and writes their sums.
 static void look_at_scope(ImpulseIslands *islands, const IslandMark *mark)
 {
-    const EncounterIslands *all = islands->step->islands;
+    const EncounterIslands *all = islands->of.islands;
     const ImpulseScope *scope = &islands->scope;
     encounter_island_look(all->islands[mark->island], mark->node, mark->time_s);
     scatter(islands, all->islands[mark->island]);
@@ -275,27 +277,31 @@ static void look_at_scope(ImpulseIslands *islands, const IslandMark *mark)
 
 // Adds the contacts of a scope's places to the record.
 static void add_contacts(ImpulseIslands *islands, ImpulsePart *part, const ImpulseScope *scope,
-                         double since_s, const double *depths)
+                         double since_s)
 {
-    const ImpulseStep *step = islands->step;
+    const EncounterIslands *all = islands->of.islands;
+    const bool *counts = islands->of.counts;
     for (size_t n = 0; n < scope->joint_count; n++) {
         part->is_known[scope->joints[n]] = false;
     }
     for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
-        const EncounterJoint *place = &step->encounter.joints[i];
+        const EncounterJoint *place = &all->all->joints[i];
         const double *impulse = islands->sums.impulse + place->first_row;
         double *before = islands->before + place->first_row;
         const bool is_touching =
-            encounter_islands_pose(step->islands, i, since_s, &islands->sums).is_touching;
-        const double elastic = is_touching ? force_law_energy(&place->law, depths[i]) : 0.0;
+            encounter_islands_pose(all, i, since_s, &islands->sums).is_touching;
+        const double elastic =
+            is_touching ? force_law_energy(&place->law, islands->of.depths[i]) : 0.0;
         const double pushed = hypot(impulse[0] - before[0], impulse[1] - before[1]);
         islands->elastic_total += elastic - islands->elastic[i];
         islands->elastic[i] = elastic;
         islands->touching += (is_touching ? 1 : 0);
         islands->touching -= (islands->is_touching[i] ? 1 : 0);
         islands->is_touching[i] = is_touching;
-        impulse_part_add_place(part, place, is_touching, pushed);
+        if (counts == NULL || counts[i]) {
+            impulse_part_add_place(part, place, is_touching, pushed);
+        }
         before[0] = impulse[0];
         before[1] = impulse[1];
     }
@@ -303,69 +309,55 @@ static void add_contacts(ImpulseIslands *islands, ImpulsePart *part, const Impul
     part->most_rows = islands->touching > part->most_rows ? islands->touching : part->most_rows;
 }
 
-static void tell_bodies(const ImpulseScope *scope, const Motion *motions, ImpulsePart *part)
-{
-    for (size_t n = 0; n < scope->body_count; n++) {
-        const size_t i = scope->bodies[n];
-        part->omega[i] = motions[i].omega;
-        part->alpha[i] = motions[i].alpha;
-    }
-}
-
 // The part up to a mark of an island.
-static void take_island(ImpulseIslands *islands, ImpulsePart *part, const IslandMark *mark,
-                        Motion *motions, JointState *joints, double *depths)
+static void take_island(ImpulseIslands *islands, ImpulsePart *part, const IslandMark *mark)
 {
-    const ImpulseStep *step = islands->step;
-    EncounterIsland *island = step->islands->islands[mark->island];
+    EncounterIsland *island = islands->of.islands->islands[mark->island];
     double *losses = islands->losses[mark->island];
     set_scope(islands, island);
     look_at_scope(islands, mark);
-    part->end_s = step->start_s + mark->time_s;
+    part->end_s = islands->span.start_s + mark->time_s;
     const ImpulseTime at = {mark->time_s, mark->node, true};
-    impulse_step_inside(step, &islands->scope, at, &islands->sums, motions, joints, depths);
+    islands->of.inside(islands->of.context, &islands->scope, at, &islands->sums);
     part->record.dissipated = island->sums.dissipated - losses[0];
     part->record.friction = island->sums.friction - losses[1];
     losses[0] = island->sums.dissipated;
     losses[1] = island->sums.friction;
-    tell_bodies(&islands->scope, motions, part);
-    add_contacts(islands, part, &islands->scope, mark->time_s, depths);
+    add_contacts(islands, part, &islands->scope, mark->time_s);
 }
 
 // The part up to the end of the step.
-static void take_end(ImpulseIslands *islands, ImpulsePart *part, Motion *motions,
-                     JointState *joints, double *depths)
+static void take_end(ImpulseIslands *islands, ImpulsePart *part)
 {
-    const ImpulseStep *step = islands->step;
-    encounter_islands_look(step->islands, step->width_s, &islands->sums);
-    part->end_s = step->end_s;
-    const ImpulseTime at = {step->width_s, 0, false};
-    impulse_step_inside(step, &step->whole, at, &islands->sums, motions, joints, depths);
-    part->record.dissipated = islands->sums.dissipated + step->damped;
+    const EncounterIslands *all = islands->of.islands;
+    const ImpulseScope *whole = islands->of.whole;
+    const ImpulseSpan *span = &islands->span;
+    encounter_islands_look(islands->of.islands, span->width_s, &islands->sums);
+    part->end_s = span->end_s;
+    const ImpulseTime at = {span->width_s, 0, false};
+    islands->of.inside(islands->of.context, whole, at, &islands->sums);
+    part->record.dissipated = islands->sums.dissipated + span->damped;
     part->record.friction = islands->sums.friction;
-    for (size_t i = 0; i < step->islands->count; i++) {
+    for (size_t i = 0; i < all->count; i++) {
         part->record.dissipated -= islands->losses[i][0];
         part->record.friction -= islands->losses[i][1];
     }
-    part->record.drive_work = step->drive_work;
+    part->record.drive_work = span->drive_work;
     // of ideal joints in the whole step
-    for (size_t i = 0; i < step->whole.joint_count; i++) {
-        part->impulse[i] = step->mean[i].force * step->width_s;
+    for (size_t i = 0; i < whole->joint_count; i++) {
+        part->impulse[i] = islands->of.mean(islands->of.context, i) * span->width_s;
     }
     // what rounding left of sums of differences ends here
-    memset(islands->elastic, 0, step->place_count * sizeof *islands->elastic);
+    memset(islands->elastic, 0, all->all->joint_count * sizeof *islands->elastic);
     islands->elastic_total = 0.0;
-    tell_bodies(&step->whole, motions, part);
-    add_contacts(islands, part, &step->whole, step->width_s, depths);
+    add_contacts(islands, part, whole, span->width_s);
     islands->is_ended = true;
 }
 
-void impulse_islands_next(ImpulseIslands *islands, ImpulsePart *part, Motion *motions,
-                          JointState *joints, double *depths)
+void impulse_islands_next(ImpulseIslands *islands, ImpulsePart *part)
 {
-    const ImpulseStep *step = islands->step;
     // what was pushed in the part before has been told
-    const ImpulseScope *told = islands->next == 0 ? &step->whole : &islands->scope;
+    const ImpulseScope *told = islands->next == 0 ? islands->of.whole : &islands->scope;
     for (size_t n = 0; n < told->joint_count; n++) {
         part->impulse[told->joints[n]] = 0.0;
     }
@@ -374,14 +366,15 @@ void impulse_islands_next(ImpulseIslands *islands, ImpulsePart *part, Motion *mo
     part->record = (StepRecord){
         .omega = part->omega,
         .alpha = part->alpha,
-        .joints = joints,
+        .joints = islands->of.joints,
+        .space_joints = islands->of.space_joints,
         .impulse = part->impulse,
         .approach = part->approach,
     };
     if (part->is_last) {
-        take_end(islands, part, motions, joints, depths);
+        take_end(islands, part);
     } else {
-        take_island(islands, part, &islands->order[islands->next++], motions, joints, depths);
+        take_island(islands, part, &islands->order[islands->next++]);
     }
     part->record.start_s = part->start_s;
     part->record.end_s = part->record.joint_s = part->end_s;

@@ -3,8 +3,8 @@
 
 #include "contact/encounter_islands.h"
 #include "contact/touch.h"
-#include "model/response_groups.h"
 #include "model/trajectory.h"
+#include "ode/impulse_scope.h"
 #include "ode/world.h"
 
 enum { IMPULSE_COLUMNS = 3 }; // steps of which it is known what rows do: a parabola in time
@@ -20,19 +20,6 @@ typedef struct ImpulseWork {
     Vec2 *offsets;
     JointState *joints;
 } ImpulseWork;
-
-// What is looked at within a step: bodies, joints and places; all, or those of one island.
-typedef struct ImpulseScope {
-    bool is_whole;
-    bool has_drive; // whether the driven body is among the bodies
-    size_t body_count;
-    size_t *bodies; // owned, as are all arrays
-    size_t joint_count;
-    size_t *joints;
-    size_t place_count; // of those below, the first, that are looked at
-    ResponsePart part;  // the places; of an island also others of the groups of bodies that they
-                        // move, and these groups
-} ImpulseScope;
 
 typedef struct ImpulseStep {
     const Scenario *scenario;
@@ -82,8 +69,6 @@ static inline bool impulse_step_is_free(const ImpulseStep *step, size_t body)
 bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err);
 void impulse_step_finish(ImpulseStep *step);
 
-void impulse_scope_finish(ImpulseScope *scope);
-
 // How the places of a response move each other.
 EncounterCoupling impulse_step_coupling(const Response *response);
 
@@ -110,13 +95,6 @@ bool impulse_step_take(ImpulseStep *step, Err *err);
 // the contacts are integrated, what the dampers feel of when in the step their impulse came.
 void impulse_step_push(ImpulseStep *step, const Motion *middle);
 void impulse_step_push_late(ImpulseStep *step, const Motion *middle);
-
-// A time within a step.
-typedef struct ImpulseTime {
-    double since_s; // since the step's start
-    size_t node;    // of the encounter; islands have been looked at then
-    bool is_peak;   // whether accelerations are worked out where the bodies are, not at mid-step
-} ImpulseTime;
 
 // How the bodies of a scope move and what its joints do then, from the contacts' sums up to then,
 // and how deep each place is, m.

@@ -4,7 +4,7 @@
 // A step is handed on in parts (ode/impulse_part.c).
 #include "base/zeroed.h"
 #include "contact/law.h"
-#include "ode/impulse_part.h"
+#include "ode/impulse_islands.h"
 #include "ode/impulse_parts.h"
 #include "ode/space_impulse_means.h"
 #include "ode/space_stepping.h"
@@ -14,7 +14,8 @@
 
 typedef struct SpaceImpulse {
     SpaceImpulseStep step;
-    ImpulsePart part; // of it, the one that is handed on
+    ImpulsePart part;        // of it, the one that is handed on
+    ImpulseIslands *islands; // where the step has them; owned
     SpaceJoints joints;
     SpaceJoints seen;     // at the time that is asked for
     SpaceMotion *motions; // owned, like the next two
@@ -28,6 +29,7 @@ static void space_impulse_close(void *state)
     SpaceImpulse *impulse = state;
     if (impulse != NULL) {
         impulse_part_finish(&impulse->part);
+        impulse_islands_destroy(impulse->islands);
         space_impulse_step_finish(&impulse->step);
         encounter_sums_free(&impulse->sums);
         space_joints_free(&impulse->joints);
@@ -39,26 +41,7 @@ static void space_impulse_close(void *state)
     }
 }
 
-static bool space_impulse_open(const Scenario *scenario, void **state, Err *err)
-{
-    SpaceImpulse *impulse = zeroed(1, sizeof *impulse);
-    if (space_impulse_step_init(scenario, &impulse->step, err)) {
-        const size_t rows = encounter_rows(&impulse->step.encounter);
-        impulse_part_init(&impulse->part, &scenario->linkage, rows);
-        impulse->sums = encounter_sums(rows);
-        impulse->joints = space_joints_create(&scenario->linkage);
-        impulse->seen = space_joints_create(&scenario->linkage);
-        impulse->motions = zeroed(scenario->linkage.body_count, sizeof *impulse->motions);
-        impulse->depths = zeroed(impulse->step.place_count, sizeof *impulse->depths);
-        impulse->are_ends = zeroed(impulse->step.place_count, sizeof *impulse->are_ends);
-        *state = impulse;
-        return true;
-    }
-    space_impulse_close(impulse);
-    return false;
-}
-
-// How deep the pin is at a place at the end of the part, m.
+// How deep the pin is at a place at the time that was looked at last, m.
 static double depth_at(const SpaceImpulse *impulse, size_t place)
 {
     const PinSpace *of = &impulse->step.places[place];
@@ -67,11 +50,92 @@ static double depth_at(const SpaceImpulse *impulse, size_t place)
                                          : -state->end_gaps[of->place];
 }
 
+// Looks at a scope of the step, and tells how its bodies turn.
+static void look_inside(void *context, const ImpulseScope *scope, ImpulseTime at,
+                        const EncounterSums *sums)
+{
+    SpaceImpulse *impulse = context;
+    space_impulse_step_inside(&impulse->step, scope, at, sums, impulse->motions, &impulse->joints);
+    for (size_t n = 0; n < scope->body_count; n++) {
+        const size_t i = scope->bodies[n];
+        impulse->part.omega[i] = impulse->motions[i].omega.z;
+        impulse->part.alpha[i] = impulse->motions[i].alpha.z;
+    }
+    for (size_t n = 0; n < scope->place_count; n++) {
+        const size_t i = scope->part.places[n];
+        impulse->depths[i] = depth_at(impulse, i);
+    }
+}
+
+static ImpulseSpan span_of(const void *context)
+{
+    const SpaceImpulse *impulse = context;
+    const SpaceImpulseStep *step = &impulse->step;
+    return (ImpulseSpan){step->start_s, step->end_s, step->width_s, step->drive_work, 0.0};
+}
+
+static double mean_of(const void *context, size_t joint)
+{
+    const SpaceImpulse *impulse = context;
+    return linkage_is_ideal(&impulse->step.scenario->linkage, joint)
+               ? vec3_length(impulse->step.mean[joint])
+               : impulse->joints.plane[joint].force;
+}
+
+static ImpulseIslands *make_islands(SpaceImpulse *impulse)
+{
+    const SpaceImpulseStep *step = &impulse->step;
+    return impulse_islands_create(&(ImpulseIslandsOf){
+        .linkage = &step->scenario->linkage,
+        .islands = step->islands,
+        .groups = &step->groups,
+        .whole = &step->whole,
+        .counts = impulse->are_ends,
+        .depths = impulse->depths,
+        .joints = impulse->joints.plane,
+        .space_joints = impulse->joints.space,
+        .context = impulse,
+        .span = span_of,
+        .inside = look_inside,
+        .mean = mean_of,
+    });
+}
+
+static bool space_impulse_open(const Scenario *scenario, void **state, Err *err)
+{
+    SpaceImpulse *impulse = zeroed(1, sizeof *impulse);
+    if (space_impulse_step_init(scenario, &impulse->step, err)) {
+        const size_t places = impulse->step.place_count;
+        const size_t rows = encounter_rows(&impulse->step.encounter);
+        impulse_part_init(&impulse->part, &scenario->linkage, rows);
+        impulse->sums = encounter_sums(rows);
+        impulse->joints = space_joints_create(&scenario->linkage);
+        impulse->seen = space_joints_create(&scenario->linkage);
+        impulse->motions = zeroed(scenario->linkage.body_count, sizeof *impulse->motions);
+        impulse->depths = zeroed(places, sizeof *impulse->depths);
+        impulse->are_ends = zeroed(places, sizeof *impulse->are_ends);
+        for (size_t i = 0; i < places; i++) {
+            impulse->are_ends[i] = impulse->step.places[i].place != PIN_SPACE_COLLAR;
+        }
+        if (impulse->step.islands != NULL) {
+            impulse->islands = make_islands(impulse);
+        }
+        *state = impulse;
+        return true;
+    }
+    space_impulse_close(impulse);
+    return false;
+}
+
 static bool check_depths(const SpaceImpulse *impulse, Err *err)
 {
-    for (size_t i = 0; i < impulse->step.place_count; i++) {
-        const PinSpace *place = &impulse->step.places[i];
-        if (!law_check_depth(&place->law, &impulse->step.scenario->linkage.joints[place->joint],
+    const SpaceImpulseStep *step = &impulse->step;
+    const ImpulseScope *scope =
+        impulse->islands != NULL ? impulse_islands_scope(impulse->islands) : &step->whole;
+    for (size_t n = 0; n < scope->place_count; n++) {
+        const size_t i = scope->part.places[n];
+        const PinSpace *place = &step->places[i];
+        if (!law_check_depth(&place->law, &step->scenario->linkage.joints[place->joint],
                              impulse->depths[i], 1.0, err)) {
             return false;
         }
@@ -83,39 +147,47 @@ static bool check_depths(const SpaceImpulse *impulse, Err *err)
 static void take_part(SpaceImpulse *impulse)
 {
     const SpaceImpulseStep *step = &impulse->step;
-    const Linkage *linkage = &step->scenario->linkage;
     ImpulsePart *part = &impulse->part;
-    SpaceMotion *motions = impulse->motions;
     const Mark *mark = impulse_part_next(part, &step->encounter, step->start_s, step->end_s);
-    space_impulse_step_inside(step, mark->node, mark->time_s, !part->is_last, &part->sums, motions,
-                              &impulse->joints);
-    impulse_part_record(part, linkage, impulse->joints.plane);
+    const ImpulseTime at = {mark->time_s, mark->node, !part->is_last};
+    look_inside(impulse, &step->whole, at, &part->sums);
+    impulse_part_record(part, &step->scenario->linkage, impulse->joints.plane);
     part->record.space_joints = impulse->joints.space;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        part->omega[i] = motions[i].omega.z;
-        part->alpha[i] = motions[i].alpha.z;
-    }
-    for (size_t i = 0; i < step->place_count; i++) {
-        impulse->depths[i] = depth_at(impulse, i);
-        impulse->are_ends[i] = step->places[i].place != PIN_SPACE_COLLAR;
-    }
     impulse_part_add_contacts(part, &step->encounter, mark, impulse->depths, impulse->are_ends);
     part->record.drive_work = part->is_last ? step->drive_work : 0.0;
+}
+
+// Takes the next step and begins to hand it on.
+static bool begin_step_of(SpaceImpulse *impulse, Err *err)
+{
+    SpaceImpulseStep *step = &impulse->step;
+    if (!space_impulse_step_take(step, err)) {
+        return false;
+    }
+    space_impulse_means_find(step);
+    if (impulse->islands != NULL) {
+        impulse_islands_begin(impulse->islands, &impulse->part);
+    } else {
+        impulse_part_begin(&impulse->part, &step->encounter, step->start_s);
+    }
+    return true;
 }
 
 static bool space_impulse_step(void *state, double stop_s, Err *err)
 {
     (void)stop_s; // samples are looked up inside the step
     SpaceImpulse *impulse = state;
-    SpaceImpulseStep *step = &impulse->step;
-    if (impulse_part_needs_step(&impulse->part)) {
-        if (!space_impulse_step_take(step, err)) {
-            return false;
-        }
-        space_impulse_means_find(step);
-        impulse_part_begin(&impulse->part, &step->encounter, step->start_s);
+    const SpaceImpulseStep *step = &impulse->step;
+    const bool needs_step = impulse->islands != NULL ? impulse_islands_need_step(impulse->islands)
+                                                     : impulse_part_needs_step(&impulse->part);
+    if (needs_step && !begin_step_of(impulse, err)) {
+        return false;
     }
-    take_part(impulse);
+    if (impulse->islands != NULL) {
+        impulse_islands_next(impulse->islands, &impulse->part);
+    } else {
+        take_part(impulse);
+    }
     return check_depths(impulse, err) ||
            stepping_fail(step->scenario, impulse->part.end_s, step->count, step->width_s, err);
 }
@@ -132,13 +204,18 @@ static void space_impulse_observe(const void *state, double time_s, Sample *samp
     const SpaceImpulseStep *step = &impulse->step;
     const Linkage *linkage = &step->scenario->linkage;
     const double since_s = fmin(fmax(time_s - step->start_s, 0.0), step->width_s);
-    const size_t node = encounter_node(&step->encounter, since_s);
+    ImpulseTime at = {since_s, 0, true};
     EncounterSums sums = impulse->sums; // which owns the arrays
     SpaceJoints joints = impulse->seen; // likewise
-    encounter_at(&step->encounter, node, since_s, &sums);
+    if (step->islands != NULL) {
+        encounter_islands_look(step->islands, since_s, &sums);
+    } else {
+        at.node = encounter_node(&step->encounter, since_s);
+        encounter_at(&step->encounter, at.node, since_s, &sums);
+    }
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
-    space_impulse_step_inside(step, node, since_s, true, &sums, sample->space_bodies, &joints);
+    space_impulse_step_inside(step, &step->whole, at, &sums, sample->space_bodies, &joints);
     for (size_t i = 0; i < linkage->body_count; i++) {
         sample->bodies[i] = space_planar(&sample->space_bodies[i]);
     }

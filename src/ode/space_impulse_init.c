@@ -4,6 +4,9 @@
 
 void space_impulse_step_finish(SpaceImpulseStep *step)
 {
+    encounter_islands_destroy(step->islands);
+    response_groups_finish(&step->groups);
+    impulse_scope_finish(&step->whole);
     encounter_finish(&step->encounter);
     space_response_finish(step->response);
     space_response_finish(step->there);
@@ -50,9 +53,16 @@ static bool init_encounter(SpaceImpulseStep *step, Err *err)
     return true;
 }
 
-// Makes room for the mobilities that are not always zero.
+// Makes room for the mobilities that are not always zero, or for islands.
 static void make_room(SpaceImpulseStep *step)
 {
+    if (step->place_count > IMPULSE_FEW_PLACES) {
+        const EncounterCoupling coupling = space_impulse_step_coupling(step->response);
+        encounter_make_rows(&step->encounter);
+        step->islands = encounter_islands_create(&step->encounter, &coupling);
+        space_response_groups_init(step->response, &step->groups);
+        return;
+    }
     size_t *places = zeroed(step->place_count, sizeof *places);
     for (size_t i = 0; i < step->place_count; i++) {
         places[i] = i;
@@ -125,5 +135,6 @@ bool space_impulse_step_init(const Scenario *scenario, SpaceImpulseStep *step, E
         return false;
     }
     make_room(step);
+    step->whole = impulse_scope_whole(&scenario->linkage, step->place_count);
     return true;
 }

@@ -14,17 +14,32 @@ static Vec3 moved_by(double since_s, double share, Vec3 speed, Vec3 mean, Vec3 p
     return vec3_add(vec3_add(coasted, pushed), vec3_scale(share * share, rest));
 }
 
+// What impulses in the rows of play do to the speeds of a scope's bodies.
+static void apply(const SpaceImpulseStep *step, const ImpulseScope *scope, const double *impulses,
+                  SpaceChange *changes)
+{
+    if (scope->is_whole) {
+        space_response_apply(step->response, impulses, changes);
+        return;
+    }
+    for (size_t n = 0; n < scope->body_count; n++) {
+        changes[scope->bodies[n]] = (SpaceChange){{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    }
+    space_response_groups_apply(step->response, &step->groups, &scope->part, impulses, changes);
+}
+
 // How the bodies move at a time within the step, from the contacts' sums up to then.
-static void find_motions(const SpaceImpulseStep *step, double since_s, const EncounterSums *sums,
-                         SpaceMotion *motions)
+static void find_motions(const SpaceImpulseStep *step, const ImpulseScope *scope, double since_s,
+                         const EncounterSums *sums, SpaceMotion *motions)
 {
     const Linkage *linkage = &step->scenario->linkage;
     const double share = since_s / step->width_s;
     SpaceChange *speeds = step->changes[0];
     SpaceChange *places = step->changes[1];
-    space_response_apply(step->response, sums->impulse, speeds);
-    space_response_apply(step->response, sums->moment, places);
-    for (size_t i = 0; i < linkage->body_count; i++) {
+    apply(step, scope, sums->impulse, speeds);
+    apply(step, scope, sums->moment, places);
+    for (size_t n = 0; n < scope->body_count; n++) {
+        const size_t i = scope->bodies[n];
         const SpaceMotion *first = &step->before[i];
         const SpaceChange *free = &step->free[i];
         const SpaceChange *rest = &step->rest[i];
@@ -37,7 +52,7 @@ static void find_motions(const SpaceImpulseStep *step, double since_s, const Enc
         space_change(&motions[i], &place, &speed);
         motions[i].acceleration = motions[i].alpha = (Vec3){0.0, 0.0, 0.0};
     }
-    if (step->driven >= 0) {
+    if (scope->has_drive) {
         motions[step->driven] = space_driven(linkage, step->start_s + since_s);
     }
 }
@@ -54,14 +69,21 @@ static bool place_there(const SpaceImpulseStep *step, const SpaceMotion *motions
     return space_response_place(step->there, motions, rows);
 }
 
-// Fills in the accelerations: those beside the contacts', linear in time, and the contacts'.
-static void find_accelerations(const SpaceImpulseStep *step, const SpaceResponse *response,
-                               double since_s, const EncounterSums *sums, SpaceMotion *motions)
+// Fills in the accelerations: those beside the contacts', linear in time, and the contacts'. At a
+// peak the response is taken where the bodies are; else, and of an island, at mid-step.
+static void find_accelerations(const SpaceImpulseStep *step, const ImpulseScope *scope,
+                               double since_s, bool is_peak, const EncounterSums *sums,
+                               SpaceMotion *motions)
 {
     SpaceChange *rates = step->changes[0];
     const double off_middle_s = since_s - 0.5 * step->width_s;
-    space_response_apply(response, sums->force, rates);
-    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
+    if (scope->is_whole && is_peak && place_there(step, motions)) {
+        space_response_apply(step->there, sums->force, rates);
+    } else {
+        apply(step, scope, sums->force, rates);
+    }
+    for (size_t n = 0; n < scope->body_count; n++) {
+        const size_t i = scope->bodies[n];
         if (space_impulse_step_is_free(step, i)) {
             const SpaceChange *free = &step->free[i];
             const SpaceChange *rate = &step->free_rate[i];
@@ -78,16 +100,25 @@ static Vec3 in_world(const PinSpaceRows *rows, Vec2 a)
     return vec3_add(vec3_scale(a.x, rows->across[0]), vec3_scale(a.y, rows->across[1]));
 }
 
+static EncounterPose pose_in_step(const SpaceImpulseStep *step, size_t place, ImpulseTime at,
+                                  const EncounterSums *sums)
+{
+    return step->islands != NULL
+               ? encounter_islands_pose(step->islands, place, at.since_s, sums)
+               : encounter_pose(&step->encounter, place, at.node, at.since_s, sums);
+}
+
 // The states of the joints with play, from the encounter.
-static void find_pins(const SpaceImpulseStep *step, size_t node, double since_s,
+static void find_pins(const SpaceImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                       const EncounterSums *sums, SpaceJoints *joints)
 {
-    for (size_t i = 0; i < step->place_count; i++) {
+    for (size_t n = 0; n < scope->place_count; n++) {
+        const size_t i = scope->part.places[n];
         const PinSpace *place = &step->places[i];
         const PinSpaceRows *rows = &step->rows[i];
         JointState *plane = &joints->plane[place->joint];
         SpaceJointState *space = &joints->space[place->joint];
-        const EncounterPose pose = encounter_pose(&step->encounter, i, node, since_s, sums);
+        const EncounterPose pose = pose_in_step(step, i, at, sums);
         Vec3 force = in_world(rows, pose.force);
         if (place->place == PIN_SPACE_COLLAR) {
             space_joints_press(joints, place, force, rows->across[0]);
@@ -112,48 +143,90 @@ static void find_pins(const SpaceImpulseStep *step, size_t node, double since_s,
     }
 }
 
+// How the ideal joints of an island answer what its contacts do beyond their means.
+static void add_answers(const SpaceImpulseStep *step, const ImpulseScope *scope,
+                        const EncounterSums *sums, Vec3 *forces)
+{
+    const SpaceResponse *response = step->response;
+    const ResponseGroups *groups = &step->groups;
+    double *beyond = step->play[0];
+    for (size_t n = 0; n < scope->part.place_count; n++) {
+        const EncounterJoint *joint = &step->encounter.joints[scope->part.places[n]];
+        for (size_t i = joint->first_row; i < joint->first_row + joint->row_count; i++) {
+            beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
+        }
+    }
+    const double *all =
+        space_response_groups_apply(response, groups, &scope->part, beyond, step->changes[0]);
+    for (size_t n = 0; n < scope->part.group_count; n++) {
+        const size_t group = scope->part.groups[n];
+        for (size_t k = groups->first_node[group]; k < groups->first_node[group + 1]; k++) {
+            const size_t *row = response->matrix.first_row + groups->nodes[k];
+            for (size_t i = row[0]; i < row[1]; i++) {
+                space_response_add_force(response, i, all[i], forces);
+            }
+        }
+    }
+}
+
+// The force of the drive: what the ideal joints' answer and the contacts leave to it.
+static void find_drive(const SpaceImpulseStep *step, const EncounterSums *sums,
+                       const double *reactions, const SpaceMotion *motions, SpaceJoints *joints)
+{
+    SpaceChange *loads = step->changes[0];
+    space_response_load(step->response, sums->force, loads);
+    SpaceChange *others = &loads[step->driven];
+    others->move = vec3_add(others->move, step->on_driven.move);
+    others->turn = vec3_add(others->turn, step->on_driven.turn);
+    space_response_add_reactions(step->response, reactions, step->driven, others);
+    Vec3 force;
+    space_joints_drive(step->scenario, &motions[step->driven], others, &force);
+    space_joints_hold(joints, (size_t)step->scenario->linkage.driver.joint, force);
+}
+
 // The forces of the ideal joints and of the drive: the means of the step, and how the joints answer
-// what the contacts do beyond theirs.
-static void find_forces(const SpaceImpulseStep *step, const EncounterSums *sums,
-                        const SpaceMotion *motions, SpaceJoints *joints)
+// what the contacts do beyond theirs. That of the drive hangs on all of them.
+static void find_forces(const SpaceImpulseStep *step, const ImpulseScope *scope,
+                        const EncounterSums *sums, const SpaceMotion *motions, SpaceJoints *joints)
 {
     const Linkage *linkage = &step->scenario->linkage;
     double *beyond = step->play[0];
     double *reactions = step->ideal[0];
     Vec3 *forces = step->forces;
-    memcpy(forces, step->mean, linkage->joint_count * sizeof *forces);
-    for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
-        beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
+    const bool is_of_all = scope->is_whole || scope->has_drive;
+    if (is_of_all) {
+        memcpy(forces, step->mean, linkage->joint_count * sizeof *forces);
+        for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
+            beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
+        }
+        space_response_react(step->response, beyond, reactions);
+        space_response_add_forces(step->response, reactions, forces);
+    } else {
+        for (size_t n = 0; n < scope->joint_count; n++) {
+            forces[scope->joints[n]] = step->mean[scope->joints[n]];
+        }
+        add_answers(step, scope, sums, forces);
     }
-    space_response_react(step->response, beyond, reactions);
-    space_response_add_forces(step->response, reactions, forces);
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage_is_ideal(linkage, i)) {
-            space_joints_hold(joints, i, forces[i]);
+    for (size_t n = 0; n < scope->joint_count; n++) {
+        if (linkage_is_ideal(linkage, scope->joints[n])) {
+            space_joints_hold(joints, scope->joints[n], forces[scope->joints[n]]);
         }
     }
-    if (step->driven >= 0) {
-        SpaceChange *loads = step->changes[0];
-        space_response_load(step->response, sums->force, loads);
-        SpaceChange *others = &loads[step->driven];
-        others->move = vec3_add(others->move, step->on_driven.move);
-        others->turn = vec3_add(others->turn, step->on_driven.turn);
-        space_response_add_reactions(step->response, reactions, step->driven, others);
-        Vec3 force;
-        space_joints_drive(step->scenario, &motions[step->driven], others, &force);
-        space_joints_hold(joints, (size_t)linkage->driver.joint, force);
+    if (scope->has_drive) {
+        find_drive(step, sums, reactions, motions, joints);
     }
 }
 
-void space_impulse_step_inside(const SpaceImpulseStep *step, size_t node, double since_s,
-                               bool is_peak, const EncounterSums *sums, SpaceMotion *motions,
+void space_impulse_step_inside(const SpaceImpulseStep *step, const ImpulseScope *scope,
+                               ImpulseTime at, const EncounterSums *sums, SpaceMotion *motions,
                                SpaceJoints *joints)
 {
-    find_motions(step, since_s, sums, motions);
-    const bool is_placed = is_peak && place_there(step, motions);
-    find_accelerations(step, is_placed ? step->there : step->response, since_s, sums, motions);
-    space_joints_clear(&step->scenario->linkage, joints);
-    space_joints_place(step->response, motions, joints->plane, joints->space);
-    find_pins(step, node, since_s, sums, joints);
-    find_forces(step, sums, motions, joints);
+    find_motions(step, scope, at.since_s, sums, motions);
+    find_accelerations(step, scope, at.since_s, at.is_peak, sums, motions);
+    for (size_t n = 0; n < scope->joint_count; n++) {
+        space_joints_clear_one(joints, scope->joints[n]);
+        space_joints_place_one(step->response, motions, scope->joints[n], joints);
+    }
+    find_pins(step, scope, at, sums, joints);
+    find_forces(step, scope, sums, motions, joints);
 }

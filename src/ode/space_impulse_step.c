@@ -108,7 +108,12 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
     }
     space_response_drift(step->response, loose, ideal_drift);
     const EncounterCoupling coupling = space_impulse_step_coupling(step->response);
-    encounter_fill(encounter, &coupling, NULL);
+    if (step->islands != NULL) {
+        // other rows may have been chosen
+        step->islands->coupling = coupling;
+    } else {
+        encounter_fill(encounter, &coupling, NULL);
+    }
     space_response_free(step->response, ideal_drift, play_drift, encounter->free);
     return true;
 }
@@ -123,11 +128,16 @@ static bool run_encounter(SpaceImpulseStep *step, const SpaceMotion *middle, Spa
                        "the ideal joints are redundant here: give one joint of the loop some play");
     }
     fill_rows(step);
-    if (!encounter_run(encounter, step->width_s)) {
+    if (!(step->islands != NULL ? encounter_islands_run(step->islands, step->width_s)
+                                : encounter_run(encounter, step->width_s))) {
         return err_set(err, ERR_SOLVER,
                        "contact sub-stepping exceeded 100000 steps in one step; reduce run.step");
     }
-    encounter_at(encounter, encounter->node_count - 1, step->width_s, &step->total);
+    if (step->islands != NULL) {
+        encounter_islands_look(step->islands, step->width_s, &step->total);
+    } else {
+        encounter_at(encounter, encounter->node_count - 1, step->width_s, &step->total);
+    }
     space_response_apply(step->response, step->total.impulse, pushed);
     return true;
 }

@@ -2,8 +2,10 @@
 // it: ode/impulse_step.h in space.
 #pragma once
 
-#include "contact/encounter_coupling.h"
+#include "contact/encounter_islands.h"
 #include "contact/pin_space_rows.h"
+#include "model/space_response_groups.h"
+#include "ode/impulse_scope.h"
 #include "ode/space_joints.h"
 #include "ode/space_world.h"
 
@@ -12,9 +14,12 @@ enum { SPACE_IMPULSE_ROOMS = 3 };
 typedef struct SpaceImpulseStep {
     const Scenario *scenario;
     World world;
-    SpaceResponse *response; // at mid-step; owned
-    SpaceResponse *there;    // at whatever time is looked at; owned
-    Encounter encounter;     // a joint of it is a place
+    SpaceResponse *response;   // at mid-step; owned
+    SpaceResponse *there;      // at whatever time is looked at; owned
+    Encounter encounter;       // a joint of it is a place
+    EncounterIslands *islands; // of the encounter's places; NULL where they are few
+    ResponseGroups groups;     // where there are islands
+    ImpulseScope whole;
     size_t place_count;
     PinSpace *places;   // owned, as are all arrays here
     PinSpaceRows *rows; // by place, at mid-step
@@ -65,8 +70,8 @@ EncounterCoupling space_impulse_step_coupling(const SpaceResponse *response);
 // ode/space_impulse_means.h finds.
 bool space_impulse_step_take(SpaceImpulseStep *step, Err *err);
 
-// How the bodies move and what the joints do at a time since the step's start, from the contacts'
-// sums up to then. Accelerations at a peak are worked out where the bodies are, else at mid-step.
-void space_impulse_step_inside(const SpaceImpulseStep *step, size_t node, double since_s,
-                               bool is_peak, const EncounterSums *sums, SpaceMotion *motions,
+// How the bodies of a scope move and what its joints do at a time within the step, from the
+// contacts' sums up to then.
+void space_impulse_step_inside(const SpaceImpulseStep *step, const ImpulseScope *scope,
+                               ImpulseTime at, const EncounterSums *sums, SpaceMotion *motions,
                                SpaceJoints *joints);

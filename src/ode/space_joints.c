@@ -74,10 +74,23 @@ void space_joints_place(const SpaceResponse *response, const SpaceMotion *motion
     }
 }
 
+void space_joints_place_one(const SpaceResponse *response, const SpaceMotion *motions, size_t joint,
+                            SpaceJoints *joints)
+{
+    place_joint(response, motions, joint, &joints->plane[joint], &joints->space[joint]);
+}
+
 void space_joints_clear(const Linkage *linkage, SpaceJoints *joints)
 {
-    memset(joints->plane, 0, linkage->joint_count * sizeof *joints->plane);
-    memset(joints->space, 0, linkage->joint_count * sizeof *joints->space);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        space_joints_clear_one(joints, i);
+    }
+}
+
+void space_joints_clear_one(SpaceJoints *joints, size_t joint)
+{
+    memset(&joints->plane[joint], 0, sizeof joints->plane[joint]);
+    memset(&joints->space[joint], 0, sizeof joints->space[joint]);
 }
 
 void space_joints_press(SpaceJoints *joints, const PinSpace *place, Vec3 force, Vec3 hole_axis)

@@ -18,8 +18,13 @@ void space_joints_free(SpaceJoints *joints);
 void space_joints_place(const SpaceResponse *response, const SpaceMotion *motions,
                         JointState *plane, SpaceJointState *space);
 
-// Takes all forces away.
+// The same of one joint.
+void space_joints_place_one(const SpaceResponse *response, const SpaceMotion *motions, size_t joint,
+                            SpaceJoints *joints);
+
+// Takes all that is known of the joints away, or of one.
 void space_joints_clear(const Linkage *linkage, SpaceJoints *joints);
+void space_joints_clear_one(SpaceJoints *joints, size_t joint);
 
 // Adds the force of a place on its joint's pin, N, friction included.
 void space_joints_press(SpaceJoints *joints, const PinSpace *place, Vec3 force, Vec3 hole_axis);
