@@ -46,7 +46,6 @@ static bool go_together(const Scheme *scheme, const Scenario *scenario, bool has
     const bool is_impulse = has_map && scheme->map == ODE_MAP_IMPULSE;
     return (scheme->stepping != ODE_EXTRAPOLATED || scenario_is_extrapolable(scenario)) &&
            !(is_impulse && scheme->stepping != ODE_STAGGERED) &&
-           !(is_impulse && !scenario_can_integrate_contacts(scenario)) &&
            !(is_impulse && scheme->collider != ODE_COLLIDER_PIN_HOLE);
 }
 

@@ -109,17 +109,6 @@ bool scenario_is_extrapolable(const Scenario *scenario)
            scenario->linkage.driver.speeds.count == 0;
 }
 
-bool scenario_can_integrate_contacts(const Scenario *scenario)
-{
-    const Linkage *linkage = &scenario->linkage;
-    for (size_t i = 0; linkage->is_spatial && i < linkage->joint_count; i++) {
-        if (linkage->joints[i].limits.kind != LIMIT_NONE) {
-            return false;
-        }
-    }
-    return true;
-}
-
 bool scenario_integrates_contacts(const Scenario *scenario)
 {
     return scenario->ode.stepping == ODE_STAGGERED && scenario->ode.map == ODE_MAP_IMPULSE &&
@@ -131,7 +120,7 @@ Scenario scenario_with_step(const Scenario *scenario, double step_s)
     Scenario given = *scenario;
     given.run.step = step_s;
     given.ode.stepping = scenario_is_extrapolable(scenario) ? ODE_EXTRAPOLATED : ODE_STAGGERED;
-    given.ode.map = scenario_can_integrate_contacts(scenario) ? ODE_MAP_IMPULSE : ODE_MAP_MIDPOINT;
+    given.ode.map = ODE_MAP_IMPULSE;
     // which follows the exact circle and asks no collider
     given.ode.collider = ODE_COLLIDER_PIN_HOLE;
     // contacts need fine steps and flight does not

@@ -96,9 +96,6 @@ bool scenario_has_closed_form(const Scenario *scenario);
 // the drive's speed without kinks.
 bool scenario_is_extrapolable(const Scenario *scenario);
 
-// Whether it could: map impulse does not know backlash and stops of pivots in space.
-bool scenario_can_integrate_contacts(const Scenario *scenario);
-
 // Whether ODE integrates the contacts within its steps, by the map that makes no rows.
 bool scenario_integrates_contacts(const Scenario *scenario);
 

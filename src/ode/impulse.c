@@ -51,8 +51,8 @@ static double mean_of(const void *context, size_t joint)
 }
 
 // Looks at a scope of the step, and tells how its bodies turn.
-static void look_inside(void *context, const ImpulseScope *scope, ImpulseTime at,
-                        const EncounterSums *sums)
+static void look_at_impulse(void *context, const ImpulseScope *scope, ImpulseTime at,
+                            const EncounterSums *sums)
 {
     Impulse *impulse = context;
     impulse_step_inside(&impulse->step, scope, at, sums, impulse->motions, impulse->joints,
@@ -64,7 +64,7 @@ static void look_inside(void *context, const ImpulseScope *scope, ImpulseTime at
     }
 }
 
-static ImpulseIslands *make_islands(Impulse *impulse)
+static ImpulseIslands *open_islands(Impulse *impulse)
 {
     const ImpulseStep *step = &impulse->step;
     return impulse_islands_create(&(ImpulseIslandsOf){
@@ -76,7 +76,7 @@ static ImpulseIslands *make_islands(Impulse *impulse)
         .joints = impulse->joints,
         .context = impulse,
         .span = span_of,
-        .inside = look_inside,
+        .inside = look_at_impulse,
         .mean = mean_of,
     });
 }
@@ -94,7 +94,7 @@ static bool impulse_open(const Scenario *scenario, void **state, Err *err)
         impulse->joints = zeroed(linkage->joint_count, sizeof *impulse->joints);
         impulse->depths = zeroed(impulse->step.place_count, sizeof *impulse->depths);
         if (impulse->step.islands != NULL) {
-            impulse->islands = make_islands(impulse);
+            impulse->islands = open_islands(impulse);
         }
         *state = impulse;
         return true;
@@ -125,7 +125,7 @@ static void take_part(Impulse *impulse)
     ImpulsePart *part = &impulse->part;
     const Mark *mark = impulse_part_next(part, &step->encounter, step->start_s, step->end_s);
     const ImpulseTime at = {mark->time_s, mark->node, !part->is_last};
-    look_inside(impulse, &step->whole, at, &part->sums);
+    look_at_impulse(impulse, &step->whole, at, &part->sums);
     impulse_part_record(part, &step->scenario->linkage, impulse->joints);
     impulse_part_add_contacts(part, &step->encounter, mark, impulse->depths, NULL);
     part->record.drive_work = part->is_last ? step->drive_work : 0.0;

@@ -37,16 +37,6 @@ static bool ode_open(const Scenario *scenario, void **state, Err *err)
 {
     // measure/chosen_run.c finds one
     assert(scenario->run.step > 0.0);
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        const Joint *joint = &scenario->linkage.joints[i];
-        if (scenario->linkage.is_spatial && scenario_integrates_contacts(scenario) &&
-            joint->limits.kind != LIMIT_NONE) {
-            return err_set(err, ERR_CASE,
-                           "joint '%s': in space map impulse does not know backlash and stops of "
-                           "pivots; use ode.map: midpoint",
-                           joint->name);
-        }
-    }
     Ode *ode = calloc(1, sizeof *ode);
     assert(ode != NULL);
     ode->stepping = choose(scenario);

@@ -44,6 +44,10 @@ static void space_impulse_close(void *state)
 // How deep the pin is at a place at the time that was looked at last, m.
 static double depth_at(const SpaceImpulse *impulse, size_t place)
 {
+    const StopSpace *stop = space_impulse_step_stop(&impulse->step, place);
+    if (stop != NULL) {
+        return -stop_space_gap(stop, impulse->joints.plane[stop->joint].tilt);
+    }
     const PinSpace *of = &impulse->step.places[place];
     const SpaceJointState *state = &impulse->joints.space[of->joint];
     return of->place == PIN_SPACE_COLLAR ? fabs(state->axial) - of->clearance
@@ -82,7 +86,7 @@ static double mean_of(const void *context, size_t joint)
                : impulse->joints.plane[joint].force;
 }
 
-static ImpulseIslands *make_islands(SpaceImpulse *impulse)
+static ImpulseIslands *open_islands(SpaceImpulse *impulse)
 {
     const SpaceImpulseStep *step = &impulse->step;
     return impulse_islands_create(&(ImpulseIslandsOf){
@@ -115,10 +119,11 @@ static bool space_impulse_open(const Scenario *scenario, void **state, Err *err)
         impulse->depths = zeroed(places, sizeof *impulse->depths);
         impulse->are_ends = zeroed(places, sizeof *impulse->are_ends);
         for (size_t i = 0; i < places; i++) {
-            impulse->are_ends[i] = impulse->step.places[i].place != PIN_SPACE_COLLAR;
+            impulse->are_ends[i] =
+                i >= impulse->step.pin_count || impulse->step.places[i].place != PIN_SPACE_COLLAR;
         }
         if (impulse->step.islands != NULL) {
-            impulse->islands = make_islands(impulse);
+            impulse->islands = open_islands(impulse);
         }
         *state = impulse;
         return true;
@@ -134,7 +139,7 @@ static bool check_depths(const SpaceImpulse *impulse, Err *err)
         impulse->islands != NULL ? impulse_islands_scope(impulse->islands) : &step->whole;
     for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
-        const PinSpace *place = &step->places[i];
+        const EncounterJoint *place = &step->encounter.joints[i];
         if (!law_check_depth(&place->law, &step->scenario->linkage.joints[place->joint],
                              impulse->depths[i], 1.0, err)) {
             return false;

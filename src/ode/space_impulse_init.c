@@ -15,12 +15,12 @@ void space_impulse_step_finish(SpaceImpulseStep *step)
     free(step->there);
     encounter_sums_free(&step->total);
     world_finish(&step->world);
-    void *const arrays[] = {step->places,     step->rows,       step->before,     step->after,
-                            step->free,       step->free_rate,  step->rest,       step->gyration,
-                            step->middle,     step->closing,    step->mean,       step->motions,
-                            step->changes[0], step->changes[1], step->changes[2], step->play_rows,
-                            step->play[0],    step->play[1],    step->ideal[0],   step->ideal[1],
-                            step->forces};
+    void *const arrays[] = {step->places,     step->stops,     step->angles,     step->rows,
+                            step->before,     step->after,     step->free,       step->free_rate,
+                            step->rest,       step->gyration,  step->middle,     step->closing,
+                            step->mean,       step->motions,   step->changes[0], step->changes[1],
+                            step->changes[2], step->play_rows, step->play[0],    step->play[1],
+                            step->ideal[0],   step->ideal[1],  step->forces};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }
@@ -36,7 +36,14 @@ static bool init_encounter(SpaceImpulseStep *step, Err *err)
     if (step->places == NULL) {
         return false;
     }
-    for (size_t i = 0; i < step->place_count; i++) {
+    size_t stop_count;
+    step->pin_count = step->place_count;
+    step->stops = stop_space_list(scenario, &stop_count, err);
+    if (step->stops == NULL) {
+        return false;
+    }
+    step->place_count += stop_count;
+    for (size_t i = 0; i < step->pin_count; i++) {
         const PinSpace *place = &step->places[i];
         const size_t rows = pin_space_row_count(place, contact->friction > 0.0);
         const Joint *joint = &scenario->linkage.joints[place->joint];
@@ -48,6 +55,11 @@ static bool init_encounter(SpaceImpulseStep *step, Err *err)
             .siblings = {place->place == 1 ? -1 : 0, place->place == 0 ? 1 : 0},
         };
         encounter_add(&step->encounter, &added, rows);
+    }
+    for (size_t i = 0; i < stop_count; i++) {
+        const StopSpace *stop = &step->stops[i];
+        const EncounterJoint added = {.law = stop->law, .shape = TOUCH_LINE, .joint = stop->joint};
+        encounter_add(&step->encounter, &added, PIN_SPACE_PLAIN_ROWS);
     }
     step->total = encounter_sums(encounter_rows(&step->encounter));
     return true;
@@ -82,6 +94,11 @@ static void make_arrays(SpaceImpulseStep *step)
     step->response = zeroed(1, sizeof *step->response);
     step->there = zeroed(1, sizeof *step->there);
     step->rows = zeroed(step->place_count, sizeof *step->rows);
+    step->angles = zeroed(joints, sizeof *step->angles);
+    for (size_t i = step->pin_count; i < step->place_count; i++) {
+        const int joint = space_impulse_step_joint(step, i);
+        step->angles[joint] = space_coordinate_start(&step->scenario->linkage, joint);
+    }
     step->before = zeroed(bodies, sizeof *step->before);
     step->after = zeroed(bodies, sizeof *step->after);
     step->free = zeroed(bodies, sizeof *step->free);
@@ -110,8 +127,8 @@ static bool build(SpaceImpulseStep *step, Err *err)
     const size_t count = step->place_count;
     SpaceResponsePlace *places = zeroed(count, sizeof *places);
     for (size_t i = 0; i < count; i++) {
-        places[i] =
-            (SpaceResponsePlace){step->places[i].joint, step->encounter.joints[i].row_count};
+        places[i] = (SpaceResponsePlace){space_impulse_step_joint(step, i),
+                                         step->encounter.joints[i].row_count};
     }
     const bool is_built =
         space_world_build(scenario, step->after, places, count, &step->world, step->response,

@@ -5,6 +5,7 @@
 // which is right to the order of the step, and ends where the step does.
 #include "ode/space_impulse_step.h"
 
+#include <math.h>
 #include <string.h>
 
 // How far or how fast one part of a body's motion goes.
@@ -62,8 +63,13 @@ static bool place_there(const SpaceImpulseStep *step, const SpaceMotion *motions
 {
     SpaceRow *rows = step->play_rows;
     for (size_t i = 0; i < step->place_count; i++) {
+        const StopSpace *stop = space_impulse_step_stop(step, i);
         PinSpaceRows moved = step->rows[i];
-        pin_space_rows_move(&step->places[i], motions, &moved);
+        if (stop != NULL) {
+            moved.rows[0] = stop_space_row(stop, &step->scenario->linkage, motions);
+        } else {
+            pin_space_rows_move(&step->places[i], motions, &moved);
+        }
         memcpy(rows + step->encounter.joints[i].first_row, moved.rows, moved.count * sizeof *rows);
     }
     return space_response_place(step->there, motions, rows);
@@ -114,6 +120,9 @@ static void find_pins(const SpaceImpulseStep *step, const ImpulseScope *scope, I
 {
     for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
+        if (i >= step->pin_count) {
+            continue;
+        }
         const PinSpace *place = &step->places[i];
         const PinSpaceRows *rows = &step->rows[i];
         JointState *plane = &joints->plane[place->joint];
@@ -140,6 +149,33 @@ static void find_pins(const SpaceImpulseStep *step, const ImpulseScope *scope, I
             plane->eccentricity = (Vec2){space->offset.x, space->offset.y};
             plane->gap = fmin(space->end_gaps[0], space->end_gaps[1]);
         }
+    }
+}
+
+// The states of limited joints: what presses at their ends, for what holds them beside is not told
+// of them.
+static void find_stops(const SpaceImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
+                       const EncounterSums *sums, SpaceJoints *joints)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    for (size_t n = 0; n < scope->place_count; n++) {
+        const size_t i = scope->part.places[n];
+        const StopSpace *stop = space_impulse_step_stop(step, i);
+        if (stop == NULL) {
+            continue;
+        }
+        const EncounterPose pose = pose_in_step(step, i, at, sums);
+        JointState *state = &joints->plane[stop->joint];
+        if (i == step->pin_count || stop[-1].joint != stop->joint) {
+            state->gap = INFINITY;
+            state->force = 0.0;
+            state->is_touching = false;
+        }
+        state->gap = fmin(state->gap, pose.pose.gap);
+        state->is_touching = state->is_touching || pose.is_touching;
+        state->force += pose.force.x;
+        state->moment_on_b +=
+            coordinate_sense(&linkage->joints[stop->joint]) * stop->sign * pose.force.x;
     }
 }
 
@@ -225,8 +261,11 @@ void space_impulse_step_inside(const SpaceImpulseStep *step, const ImpulseScope 
     find_accelerations(step, scope, at.since_s, at.is_peak, sums, motions);
     for (size_t n = 0; n < scope->joint_count; n++) {
         space_joints_clear_one(joints, scope->joints[n]);
+        // which of the angles that differ by turns
+        joints->plane[scope->joints[n]].tilt = step->angles[scope->joints[n]];
         space_joints_place_one(step->response, motions, scope->joints[n], joints);
     }
     find_pins(step, scope, at, sums, joints);
     find_forces(step, scope, sums, motions, joints);
+    find_stops(step, scope, at, sums, joints);
 }

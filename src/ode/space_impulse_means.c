@@ -36,9 +36,28 @@ static void find_means(SpaceImpulseStep *step)
     }
 }
 
+// The same of a stop, whose axis turns with body a: against body b's own turning.
+static double work_of_stop(const SpaceImpulseStep *step, size_t place)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    const StopSpace *stop = space_impulse_step_stop(step, place);
+    const Joint *joint = &linkage->joints[stop->joint];
+    const size_t row = step->encounter.joints[place].first_row;
+    if (joint->body_b != step->driven || joint->body_a == LINKAGE_GROUND) {
+        return 0.0;
+    }
+    const double early = 0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
+    const Vec3 axis = step->rows[place].rows[0].angular[1];
+    const Vec3 turning = vec3_cross(step->middle[joint->body_a].omega, axis);
+    return -early * vec3_dot(turning, step->middle[step->driven].omega);
+}
+
 // What the contacts' force does beyond its mean, as the points of the driven body turn.
 static double work_beyond(const SpaceImpulseStep *step, size_t place)
 {
+    if (place >= step->pin_count) {
+        return work_of_stop(step, place);
+    }
     const PinSpaceRows *rows = &step->rows[place];
     double work = 0.0;
     for (size_t k = 0; k < PIN_SPACE_PLAIN_ROWS; k++) {

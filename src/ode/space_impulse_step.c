@@ -37,11 +37,28 @@ EncounterCoupling space_impulse_step_coupling(const SpaceResponse *response)
     };
 }
 
+// Where a stop is at the start of the step, and how fast its gap opens.
+static void fill_stop(SpaceImpulseStep *step, size_t place)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    const StopSpace *stop = space_impulse_step_stop(step, place);
+    const size_t row = step->encounter.joints[place].first_row;
+    double *angle = &step->angles[stop->joint];
+    *angle = space_coordinate_near(linkage, step->before, stop->joint, *angle);
+    const SpaceRow opening = stop_space_row(stop, linkage, step->before);
+    step->encounter.position[row] = stop_space_gap(stop, *angle);
+    step->encounter.speed[row] = space_row_speed(&opening, step->before);
+    step->encounter.position[row + 1] = step->encounter.speed[row + 1] = 0.0;
+}
+
 // Where the rows of play are at the start of the step, and how fast they go.
 static void fill_rows(SpaceImpulseStep *step)
 {
     Encounter *encounter = &step->encounter;
-    for (size_t i = 0; i < step->place_count; i++) {
+    for (size_t i = step->pin_count; i < step->place_count; i++) {
+        fill_stop(step, i);
+    }
+    for (size_t i = 0; i < step->pin_count; i++) {
         const size_t row = encounter->joints[i].first_row;
         pin_space_rows_state(&step->places[i], &step->rows[i], step->before,
                              encounter->position + row, encounter->speed + row);
@@ -51,7 +68,21 @@ static void fill_rows(SpaceImpulseStep *step)
 // Whether a pin touches or will have come near its wall at the end of a step of that length.
 static bool is_near_wall(const SpaceImpulseStep *step, double width_s)
 {
-    for (size_t i = 0; i < step->place_count; i++) {
+    const Linkage *linkage = &step->scenario->linkage;
+    for (size_t i = step->pin_count; i < step->place_count; i++) {
+        const StopSpace *stop = space_impulse_step_stop(step, i);
+        const double gap =
+            stop_space_gap(stop, space_coordinate_near(linkage, step->before, stop->joint,
+                                                       step->angles[stop->joint]));
+        const SpaceRow opening = stop_space_row(stop, linkage, step->before);
+        const double moved = width_s * space_row_speed(&opening, step->before);
+        const double play = coordinate_play(&linkage->joints[stop->joint]);
+        const double limit = isfinite(play) ? NEAR * play : 0.0;
+        if (step->encounter.joints[i].is_touching || gap < limit || gap + moved < limit) {
+            return true;
+        }
+    }
+    for (size_t i = 0; i < step->pin_count; i++) {
         const PinSpacePose pose = pin_space_pose(&step->places[i], step->before);
         // the speed alone: what it may gain meanwhile is less than the margin
         const double limit = NEAR * step->places[i].clearance;
@@ -93,7 +124,14 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
     const bool has_friction = step->scenario->contact.friction > 0.0;
     for (size_t i = 0; i < step->place_count; i++) {
         const EncounterJoint *joint = &encounter->joints[i];
-        pin_space_rows_place(&step->places[i], middle, has_friction, &step->rows[i]);
+        const StopSpace *stop = space_impulse_step_stop(step, i);
+        if (stop != NULL) {
+            step->rows[i].count = PIN_SPACE_PLAIN_ROWS;
+            step->rows[i].rows[0] = stop_space_row(stop, &step->scenario->linkage, middle);
+            step->rows[i].rows[1] = (SpaceRow){.body = {LINKAGE_GROUND, LINKAGE_GROUND}};
+        } else {
+            pin_space_rows_place(&step->places[i], middle, has_friction, &step->rows[i]);
+        }
         memcpy(step->play_rows + joint->first_row, step->rows[i].rows,
                joint->row_count * sizeof *step->play_rows);
     }
@@ -103,8 +141,14 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
     memcpy(loose, middle, body_count(step) * sizeof *loose);
     space_response_loosen(step->response, step->scenario->gravity, loose);
     for (size_t i = 0; i < step->place_count; i++) {
-        pin_space_rows_drift(&step->places[i], &step->rows[i], loose,
-                             play_drift + encounter->joints[i].first_row);
+        const StopSpace *stop = space_impulse_step_stop(step, i);
+        double *drift = play_drift + encounter->joints[i].first_row;
+        if (stop != NULL) {
+            drift[0] = stop_space_drift(stop, &step->scenario->linkage, loose);
+            drift[1] = 0.0;
+        } else {
+            pin_space_rows_drift(&step->places[i], &step->rows[i], loose, drift);
+        }
     }
     space_response_drift(step->response, loose, ideal_drift);
     const EncounterCoupling coupling = space_impulse_step_coupling(step->response);

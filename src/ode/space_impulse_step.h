@@ -4,6 +4,7 @@
 
 #include "contact/encounter_islands.h"
 #include "contact/pin_space_rows.h"
+#include "contact/stop_space.h"
 #include "model/space_response_groups.h"
 #include "ode/impulse_scope.h"
 #include "ode/space_joints.h"
@@ -21,8 +22,11 @@ typedef struct SpaceImpulseStep {
     ResponseGroups groups;     // where there are islands
     ImpulseScope whole;
     size_t place_count;
-    PinSpace *places;   // owned, as are all arrays here
-    PinSpaceRows *rows; // by place, at mid-step
+    size_t pin_count; // of them the first, which are of pins; the others are stops
+    PinSpace *places; // of pins; owned, as are all arrays here
+    StopSpace *stops;
+    double *angles;     // rad, by joint: of limited ones at the start of the step
+    PinSpaceRows *rows; // by place, at mid-step; of a stop the first two rows alone
     int driven;         // body, or LINKAGE_GROUND
     double tick_s;      // the finest step
     size_t tick;        // at the end of the last step
@@ -62,6 +66,18 @@ static inline bool space_impulse_step_is_free(const SpaceImpulseStep *step, size
 // after a failure too.
 bool space_impulse_step_init(const Scenario *scenario, SpaceImpulseStep *step, Err *err);
 void space_impulse_step_finish(SpaceImpulseStep *step);
+
+// The joint that a place is of.
+static inline int space_impulse_step_joint(const SpaceImpulseStep *step, size_t place)
+{
+    return step->encounter.joints[place].joint;
+}
+
+// The stop that a place is; NULL of a pin's.
+static inline const StopSpace *space_impulse_step_stop(const SpaceImpulseStep *step, size_t place)
+{
+    return place < step->pin_count ? NULL : &step->stops[place - step->pin_count];
+}
 
 // How the places of a response move each other.
 EncounterCoupling space_impulse_step_coupling(const SpaceResponse *response);

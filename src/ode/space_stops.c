@@ -9,6 +9,7 @@
 #include "contact/law.h"
 #include "contact/law_row.h"
 #include "contact/overlap.h"
+#include "contact/stop_space.h"
 #include "ode/space_world.h"
 #include "world/pressing_row.h"
 
@@ -19,28 +20,20 @@ bool space_stops_list(SpaceStops *stops, const Scenario *scenario, Err *err)
     const Linkage *linkage = &scenario->linkage;
     memset(stops, 0, sizeof *stops);
     stops->scenario = scenario;
-    stops->stops = zeroed(2 * linkage->joint_count, sizeof *stops->stops);
+    StopSpace *listed = stop_space_list(scenario, &stops->count, err);
+    if (listed == NULL) {
+        return false;
+    }
+    stops->stops = zeroed(stops->count, sizeof *stops->stops);
     stops->angles = zeroed(linkage->joint_count, sizeof *stops->angles);
     stops->motions = zeroed(linkage->body_count, sizeof *stops->motions);
-    for (int i = 0; i < (int)linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        const double ends[2] = {coordinate_low(joint), coordinate_high(joint)};
-        ForceLaw law;
-        if (joint->limits.kind == LIMIT_NONE) {
-            continue;
-        }
-        if (!law_of_joint(scenario, joint, &law, err)) {
-            return false;
-        }
-        stops->angles[i] = space_coordinate_start(linkage, i);
-        for (int k = 0; k < 2; k++) {
-            if (isfinite(ends[k])) {
-                const double sign = k == 0 ? 1.0 : -1.0;
-                stops->stops[stops->count++] =
-                    (SpaceStop){.joint = i, .sign = sign, .limit = ends[k], .law = law};
-            }
-        }
+    for (size_t i = 0; i < stops->count; i++) {
+        const StopSpace *of = &listed[i];
+        stops->stops[i] =
+            (SpaceStop){.joint = of->joint, .sign = of->sign, .limit = of->limit, .law = of->law};
+        stops->angles[of->joint] = space_coordinate_start(linkage, of->joint);
     }
+    free(listed);
     return true;
 }
 
