@@ -215,7 +215,7 @@ static bool check_redundancy(const Entries *entries, const Linkage *linkage, con
     const EntryGroup *joints = entries_group(entries, "joints", 0);
     return rank == rows ||
            entries_refuse_group(joints, err,
-                                "ideal joints%s hold what others hold already: %zu of their %zu "
+                                "ideal joints%s are redundant: only %zu of their %zu "
                                 "constraints are independent at the start\nallowed: play in one of "
                                 "them, one joint less, or another start",
                                 linkage->driver.is_present ? " and drive" : "", rank, rows);
@@ -291,13 +291,11 @@ static bool refuse_positions(const Entries *entries, const Linkage *linkage, Err
     if (start == NULL && at == NULL) {
         return err_set(err, ERR_CASE, "the joints cannot all be closed");
     }
-    return start != NULL
-               ? entries_refuse(
-                     start, err,
-                     "the pins cannot all stand where they are to start\nallowed: centred")
-               : entries_refuse(at, err,
-                                "the joints cannot all be closed to rounding where they "
-                                "are\nallowed: joints and bodies of one size");
+    return start != NULL ? entries_refuse(start, err,
+                                          "the pins cannot all have these starts\nallowed: centred")
+                         : entries_refuse(at, err,
+                                          "the joints cannot all be closed to rounding where they "
+                                          "are\nallowed: joints and bodies of one size");
 }
 
 // Springs of which the case does not say where they are relaxed are so at time zero.

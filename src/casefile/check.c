@@ -165,11 +165,11 @@ static bool check_samples(const Entries *entries, const RunOptions *run, Err *er
 static const char *no_revolutions(const Entries *entries)
 {
     return entries_find(entries, "drive.force", 0) != NULL
-               ? "a force turns nothing by given revolutions"
+               ? "with a force the drive makes no given number of revolutions"
            : entries_find(entries, "drive.torque", 0) != NULL
-               ? "a torque turns nothing by given revolutions"
+               ? "with a torque the drive makes no given number of revolutions"
            : entries_find(entries, "drive.speed", 0) != NULL
-               ? "a drive whose speed changes has no revolutions to count by"
+               ? "a run with a drive of changing speed is not counted in revolutions"
                : "without a drive there are no revolutions";
 }
 
@@ -182,7 +182,8 @@ static bool check_length(const Entries *entries, bool is_turning, Err *err)
     }
     return is_turning
                ? entries_refuse(wrong, err,
-                                "a run with a drive of constant speed has no duration of its own\n"
+                                "the duration of a run with a drive of constant speed follows from "
+                                "its revolutions\n"
                                 "allowed: revolutions of the drive, such as revolutions: 1")
                : entries_refuse(wrong, err, "%s\nallowed: a duration, such as duration: 60 ms",
                                 no_revolutions(entries));
@@ -248,7 +249,7 @@ static bool check_collider(const Entries *entries, const Scenario *scenario, Err
     if (scenario_has_clearance(scenario) && is_impulse) {
         return entries_refuse(
             entries_blame(entries, "ode.map run.step ode.collider", 0), err,
-            "%s follows the exact circle and does not ask collider %s\n"
+            "%s uses the exact circle and not collider %s\n"
             "allowed: collider: pin-hole, or a step and another map, such as map: midpoint",
             scenario->run.step == 0.0 ? "step auto" : "map impulse",
             OPTIONS_ODE_COLLIDERS[ode->collider]);
@@ -258,7 +259,7 @@ static bool check_collider(const Entries *entries, const Scenario *scenario, Err
         const Joint *joint = &scenario->linkage.joints[i];
         if (linkage_has_play(joint) && joint->kind != JOINT_CLEARANCE) {
             return entries_refuse(entries_blame(entries, "ode.collider", 0), err,
-                                  "collider %s sees pins in their holes only, and '%s' is a %s\n"
+                                  "collider %s is for pins in their holes only, and '%s' is a %s\n"
                                   "allowed: pin-hole",
                                   OPTIONS_ODE_COLLIDERS[ode->collider], joint->name,
                                   joint->kind == JOINT_GUIDE             ? "block between guides"
@@ -347,8 +348,8 @@ static bool check_drive(const Entries *entries, const Linkage *linkage, Err *err
     }
     if (turns && has_play) {
         return entries_refuse(entry, err,
-                              "the drive leads joint '%s', and so nothing can press at its "
-                              "limits\nallowed: a torque, or another joint",
+                              "the drive prescribes the motion of joint '%s', so nothing can "
+                              "press at its limits\nallowed: a torque, or another joint",
                               driven->name);
     }
     if (turns && (driven->body_a == LINKAGE_GROUND || driven->body_b == LINKAGE_GROUND)) {

@@ -22,7 +22,8 @@ bool check_space(const Entries *entries, const Scenario *scenario, Err *err)
         if (!space_is_possible(&linkage->bodies[i])) {
             return entries_refuse_group(
                 entries_group(entries, path, index), err,
-                "no body has the moments and products of inertia of '%s'\nallowed: each moment at "
+                "no rigid body can have the moments and products of inertia of '%s'\nallowed: each "
+                "moment at "
                 "most the sum of the other two, and products that go with them",
                 linkage->bodies[i].name);
         }

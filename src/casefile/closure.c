@@ -215,12 +215,13 @@ bool closure_check_ideal(const Entries *entries, const Scenario *scenario, Err *
     const double crossed = lock.crossing - driver->start;
     if (lock.has_crossing && crossed >= extent.back && crossed <= extent.forth) {
         describe_less(driver, fabs(crossed) / (2.0 * M_PI), less, sizeof less);
-        return entries_refuse(entry, err,
-                              "ideal joints do not say how the mechanism goes on: from %.4g deg it "
-                              "reaches a change point at %.4g deg, where it can continue in two "
-                              "ways\nallowed: %s, or play in one of the "
-                              "joints that are in line there",
-                              driver->start / DEGREE, lock.crossing / DEGREE, less);
+        return entries_refuse(
+            entry, err,
+            "ideal joints do not determine how the mechanism continues: from %.4g deg it "
+            "reaches a change point at %.4g deg, where it can continue in two "
+            "ways\nallowed: %s, or play in one of the "
+            "joints that are in line there",
+            driver->start / DEGREE, lock.crossing / DEGREE, less);
     }
     if (lock.state != LOCK_FOUND) {
         return true;

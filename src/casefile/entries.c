@@ -169,7 +169,7 @@ static bool find_member(const Walk *walk, SchemaFamily family, const char *name,
     if (length == 0 || length >= LINKAGE_NAME_SIZE || strspn(name, LETTERS) != length ||
         is_ground) {
         return source_error(walk->source, span,
-                            is_ground ? "another name: the ground is there by itself"
+                            is_ground ? "another name: every case has the ground"
                                       : "letters, digits, - and _, at most 47",
                             walk->err, "'%.50s' cannot name a %s", name, row->what);
     }

@@ -165,7 +165,7 @@ static bool join(const Entries *entries, size_t index, Linkage *linkage, Err *er
                               pivots[0]->name, pivots[1]->name,
                               pivots[0] == pivots[1]     ? "are one"
                               : carrier < LINKAGE_GROUND ? "are on no common body"
-                                                         : "stand at one place");
+                                                         : "are at the same position");
     }
     joint->gear.carrier = carrier;
     joint->body_a = pivots[0]->body_a == carrier ? pivots[0]->body_b : pivots[0]->body_a;

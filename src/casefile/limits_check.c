@@ -56,7 +56,7 @@ static bool check_contact(const Entries *entries, size_t index, const Scenario *
     return !is_turning || joint->contact.viscous > 0.0 ||
            scenario->contact.damping != DAMPING_VISCOUS ||
            entries_refuse_group(group, err,
-                                "joint '%s', %s, needs a viscous-coefficient of its own: that of "
+                                "joint '%s', %s, needs its own viscous-coefficient: that of "
                                 "the contact is a force over a speed\nallowed: "
                                 "viscous-coefficient: 0.1 N m s/rad, or another contact.damping",
                                 joint->name, describe(joint));

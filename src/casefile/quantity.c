@@ -130,8 +130,8 @@ bool quantity_number(const char *text, double *value, Complaint *complaint)
         return false;
     }
     if (*text != '\0') {
-        return complain_of(complaint, DIMENSION_NONE,
-                           "expected a plain number; '%.*s' stands behind it", SHOWN_MAX, text);
+        return complain_of(complaint, DIMENSION_NONE, "expected a plain number; '%.*s' follows it",
+                           SHOWN_MAX, text);
     }
     *value = read;
     return true;

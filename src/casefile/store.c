@@ -136,12 +136,12 @@ static bool store_vector(const Target *target)
     const Node *pair[2];
     if (!is_word && row->default_words != NULL && node->kind == NODE_SCALAR &&
         text_nearest(node->text, &row->default_words, 1) != NULL) {
-        return target_refuse(target, node->span, "'%.40s' is no place; did you mean '%s'?",
+        return target_refuse(target, node->span, "'%.40s' is not a position; did you mean '%s'?",
                              node->text, row->default_words);
     }
     if (!is_word && !target_pair(node, pair)) {
         return target_refuse(target, node->span, "%s takes %s", target->path,
-                             row->dimension == DIMENSION_SPEED ? "two speeds" : "a place");
+                             row->dimension == DIMENSION_SPEED ? "two speeds" : "a position");
     }
     if (!is_word && (!target_number(target, pair[0], &x) || !target_number(target, pair[1], &y))) {
         return false;

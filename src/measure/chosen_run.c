@@ -99,7 +99,7 @@ static bool lacks_truth(const Chosen *chosen, char *message, size_t size)
     if (!is_made || truth->message[0] != '\0') {
         // no step passes a lock
         const Lock lock = lock_met(chosen->scenario, truth->trajectory->duration_s);
-        snprintf(message, size, "no step can be chosen, for the reference failed: %.600s%s",
+        snprintf(message, size, "no step can be chosen, because the reference failed: %.600s%s",
                  is_made ? truth->message : truth->trajectory->message,
                  lock.state == LOCK_FOUND ? "" : "; give run.step");
         return true;
@@ -114,7 +114,7 @@ static bool lacks_truth(const Chosen *chosen, char *message, size_t size)
     }
     if (!(truth->trajectory->times[1] <= chosen->window.until_s)) {
         snprintf(message, size,
-                 "no step can be chosen, for the motion cannot be predicted up to the first "
+                 "no step can be chosen, because the motion cannot be predicted up to the first "
                  "sample, %.4g ms; take more samples, or give run.step",
                  1e3 * truth->trajectory->times[1]);
         return true;
@@ -218,11 +218,12 @@ static Trajectory *end_trials(const Chosen *chosen, Trial *trial)
                  chosen->scenario->run.tolerance, chosen->scenario->run.most_steps,
                  1e6 * trial->step_s, trial->error);
     } else {
-        snprintf(message, sizeof message, "%s: %.300s",
-                 chosen->failures == FAILURES_ALIKE
-                     ? "no step will do, for trials at finer and finer ones fail at one place"
-                     : "no trial came to its end within run.most-steps",
-                 trial->run->message);
+        snprintf(
+            message, sizeof message, "%s: %.300s",
+            chosen->failures == FAILURES_ALIKE
+                ? "no step can be chosen, because trials at ever finer steps fail at the same time"
+                : "no trial was complete within run.most-steps",
+            trial->run->message);
     }
     Trajectory *none = fail(chosen, message);
     trial_finish(trial);

@@ -120,7 +120,7 @@ static bool find_joints(const Mapping *mapping, MappingWatch watch, MappingJoint
         return true;
     }
     if (!mapping_joint_measure(mapping->scenario, watch.run, joints, count, err)) {
-        err_prefix(err, "the run that masses and speeds are taken from (--mass and --speed "
+        err_prefix(err, "the run that provides masses and speeds (--mass and --speed "
                         "given together need none)");
         return false;
     }

@@ -228,7 +228,7 @@ Truth truth_make_uncertified(const Scenario *scenario, RunWatch watch)
         .horizon_s = scenario_duration(scenario),
         .growth = 1.0,
         .is_uncertified = true,
-        .message = "nobody asked for it",
+        .message = "it was not requested",
     };
     truth.trajectory = tracer_run(scenario, registry_solver(truth_backend(scenario)), watch);
     return truth;

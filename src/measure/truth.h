@@ -11,7 +11,7 @@ typedef struct Truth {
                             // nor the fastest of all starts 1e-10 beside is too far away
     double growth;          // 1: by how much that one's distance grew up to the horizon
     bool is_limited;        // whether the horizon ends before the run does
-    bool is_uncertified;    // because nobody asked for it
+    bool is_uncertified;    // because it was not requested
     char message[ERR_TEXT_SIZE]; // why it is not certified; empty where it is
 } Truth;
 

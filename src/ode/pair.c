@@ -55,7 +55,7 @@ bool pair_make(const Scenario *scenario, const Touch *touch, const dBodyID bodie
     }
     if (scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) {
         return err_set(err, ERR_SOLVER,
-                       "collider %s sees pins in their holes only, and joint '%s' is a %s; use "
+                       "collider %s is for pins in their holes only, and joint '%s' is a %s; use "
                        "collider pin-hole",
                        OPTIONS_ODE_COLLIDERS[scenario->ode.collider], joint->name,
                        joint->kind == JOINT_GUIDE ? "block between guides" : "stop");

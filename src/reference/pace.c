@@ -75,7 +75,7 @@ bool pace_astray(Err *err)
 {
     return err_set(err, ERR_SOLVER,
                    "the energy is not kept where the ideal joints pass a change point, at which "
-                   "they do not determine how the motion goes on; give one of them play, or a "
+                   "they do not determine how the motion continues; give one of them play, or a "
                    "looser reference.tolerance");
 }
 

@@ -22,7 +22,7 @@ static JpStatus check_joint(const JpWorld *world, dJointID joint, JpError *error
     const dJointType type = dJointGetType(joint);
     if (type != dJointTypeHinge && type != dJointTypeSlider) {
         return refusal(error, JP_ERROR_ARGUMENT,
-                       "the joint is of ODE's type %d; play is on a hinge or a slider", (int)type);
+                       "the joint is of ODE's type %d; play needs a hinge or a slider", (int)type);
     }
     const dBodyID bodies[2] = {dJointGetBody(joint, 0), dJointGetBody(joint, 1)};
     if (bodies[0] == NULL && bodies[1] == NULL) {
@@ -72,7 +72,7 @@ JpStatus jp_backlash_create(JpWorld *world, dJointID on, const JpBacklash *backl
                             JpJoint **created, JpError *error)
 {
     ForceLaw law;
-    REFUSAL_TRY(refusal_of_null(created, "where the joint is to go", error));
+    REFUSAL_TRY(refusal_of_null(created, "the pointer for the joint", error));
     REFUSAL_TRY(refusal_of_null(backlash, "the backlash", error));
     REFUSAL_TRY(check_joint(world, on, error));
     REFUSAL_TRY(refusal_of_negative(backlash->gap, "the gap", error));
@@ -95,7 +95,7 @@ JpStatus jp_stops_create(JpWorld *world, dJointID on, const JpStops *stops, JpJo
                          JpError *error)
 {
     ForceLaw law;
-    REFUSAL_TRY(refusal_of_null(created, "where the joint is to go", error));
+    REFUSAL_TRY(refusal_of_null(created, "the pointer for the joint", error));
     REFUSAL_TRY(refusal_of_null(stops, "the stops", error));
     REFUSAL_TRY(check_joint(world, on, error));
     if (!(stops->low < stops->high) || stops->low == INFINITY || stops->high == -INFINITY) {

@@ -314,7 +314,7 @@ JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInH
                        JpJoint **created, JpError *error)
 {
     ForceLaw law;
-    REFUSAL_TRY(refusal_of_null(created, "where the joint is to go", error));
+    REFUSAL_TRY(refusal_of_null(created, "the pointer for the joint", error));
     REFUSAL_TRY(refusal_of_null(given, "the pin", error));
     REFUSAL_TRY(check_bodies(world, hole, pin, error));
     REFUSAL_TRY(check_sizes(given, error));

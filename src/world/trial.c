@@ -19,10 +19,11 @@ JpStatus trial_check(JpWorld *world, JpError *error)
         return refusal(error, JP_ERROR_MEMORY, "the bodies of the world could not be counted");
     }
     if (unknown > 0) {
-        return refusal(error, JP_ERROR_WORLD,
-                       "%ld bodies of the world are linked with no joint of ours; add them with "
-                       "jp_world_add_body",
-                       unknown);
+        return refusal(
+            error, JP_ERROR_WORLD,
+            "%ld bodies of the world are connected with no joint of the library; add them with "
+            "jp_world_add_body",
+            unknown);
     }
     world->known_when_counted = world->bodies.count;
     return JP_OK;

@@ -16,7 +16,7 @@ JpStatus jp_world_create(dWorldID id, const JpWorldOptions *options, JpWorld **c
                          JpError *error)
 {
     REFUSAL_TRY(refusal_of_null(id, "the world", error));
-    REFUSAL_TRY(refusal_of_null(created, "where the world is to go", error));
+    REFUSAL_TRY(refusal_of_null(created, "the pointer for the world", error));
     const JpWorldOptions chosen = options != NULL ? *options : jp_world_options_default();
     if ((unsigned)chosen.stepping > JP_STEPPING_IMPULSE) {
         return refusal(error, JP_ERROR_ARGUMENT, "the stepping is %d, which is no JpStepping",

@@ -205,7 +205,7 @@ bool journal_open(Journal *journal, const JournalKind *kind, const char *path, j
     bool is_open = journal->file >= 0 || fail(journal, "open", err);
     if (is_open && work_lock_take(journal->file, 0) != 0) {
         is_open =
-            err_set(err, ERR_FILE, "the %s %s is at work in another process", kind->what, path);
+            err_set(err, ERR_FILE, "the %s %s is in use by another process", kind->what, path);
     }
     is_open = is_open && take_in(journal, key, is_fresh, err);
     if (!is_open) {
@@ -224,7 +224,7 @@ void journal_describe_damage(const Journal *journal, Text *text)
     if (journal->damaged_count > 1) {
         text_append(text, ", as %zu others,", journal->damaged_count - 1);
     }
-    text_append(text, " is damaged and not used; what it held is made again\n");
+    text_append(text, " is damaged and not used; its run is repeated\n");
 }
 
 // A line that does not fit is written as far as it does, and the reason is that of the rest.

@@ -33,7 +33,7 @@ typedef struct Journal {
 } Journal;
 
 // Opens the store, or creates it where there is none, or creates it again where `is_fresh`. Fails
-// with ERR_FILE where it cannot be read or written, is at work in another process, is no store, has
+// with ERR_FILE where it cannot be read or written, is in use by another process, is no store, has
 // a damaged first line, or holds another key: it then says what differs. Only a store is ever made
 // created again.
 bool journal_open(Journal *journal, const JournalKind *kind, const char *path, json_t *key,

@@ -239,8 +239,7 @@ static void a_line_of_the_store_that_was_changed_is_told_and_not_used(void **sta
     assert_int_equal(program->status, 0);
     char words[128];
     snprintf(words, sizeof words,
-             "line %zu of the store s.jsonl is damaged and not used; what it held is made again",
-             damaged);
+             "line %zu of the store s.jsonl is damaged and not used; its run is repeated", damaged);
     assert_says(program->errors, words);
     assert_near(error_of(program), error, 0.0);
     assert_int_equal(count_lines(program, "s.jsonl"), lines + 1);
@@ -292,7 +291,7 @@ static void the_usual_store_is_found_by_its_key(void **state)
     assert_int_equal(access(words, F_OK), 0);
     setenv("HOME", "", 1);
     snprintf(words, sizeof words, LINE, "");
-    program_fails_usage(program, words, "there is no home for the store");
+    program_fails_usage(program, words, "there is no folder for the store");
 }
 
 static void files_are_written(void **state)

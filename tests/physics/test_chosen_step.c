@@ -298,7 +298,7 @@ static void without_a_reference_its_own_words_come_first(void **state)
     Scenario scenario = loose(1e-4, 1);
     // so soft that the pin leaves the range of the law
     scenario.contact.stiffness = 1.0;
-    assert_refused(&scenario, NULL, "no step can be chosen, for the reference failed: ");
+    assert_refused(&scenario, NULL, "no step can be chosen, because the reference failed: ");
 }
 
 // The pin of a soft contact leaves the range of its law at every step: what the trials cost is a
@@ -312,7 +312,7 @@ static void trials_that_fail_at_one_place_are_few(void **state)
     scenario.run.tolerance = 10.0; // none is given up for its error
     Trajectory *run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
     assert_false(run->is_complete);
-    assert_non_null(strstr(run->message, "no step will do"));
+    assert_non_null(strstr(run->message, "no step can be chosen"));
     assert_in_range(run->trials, 2, 20);
     assert_true(run->steps > 0 && run->steps < scenario.run.most_steps / 1000);
     trajectory_destroy(run);

@@ -280,7 +280,7 @@ static void a_store_at_work_is_not_opened_twice(void **state)
     json_t *key = make_key(10);
     assert_true(journal_open(&journal, &JOURNAL_COMPARE, path, key, false, &err));
     assert_int_equal(open_store(10, false, &err), -1);
-    assert_non_null(strstr(err.text, "at work in another process"));
+    assert_non_null(strstr(err.text, "in use by another process"));
     journal_close(&journal);
     assert_int_equal(open_store(10, false, &err), 0);
     json_decref(key);

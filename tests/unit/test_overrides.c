@@ -107,7 +107,7 @@ static void malformed_overrides_say_what_is_needed(void **state)
            "                 ^~~\n"
            "allowed: crank-coupler, coupler-follower, follower-ground");
     refuse(IMPACT, "joints.crank-coupler.start=centered", ERR_USAGE,
-           "--set joints.crank-coupler.start=centered: 'centered' is no place; did you mean "
+           "--set joints.crank-coupler.start=centered: 'centered' is not a position; did you mean "
            "'centred'?\n"
            "    --set joints.crank-coupler.start=centered\n"
            "                                     ^~~~~~~~\n"

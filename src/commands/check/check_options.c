@@ -42,7 +42,7 @@ static bool check_together(void *target, Err *err)
     }
     if (options->is_expect_only && (options->is_blessing || options->path_count == 0)) {
         return err_set(err, ERR_USAGE,
-                       options->is_blessing ? "--expect-only looks at no baseline, and --bless "
+                       options->is_blessing ? "--expect-only ignores baselines, and --bless "
                                               "makes one: one of them, not both"
                                             : "--expect-only takes the cases to check");
     }

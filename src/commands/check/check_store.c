@@ -1,4 +1,4 @@
-// Where does a baseline in the making keep what is measured?
+// Where are the starts stored that were measured for a baseline?
 //
 // The key of the file is what the starts depend on: the program's fingerprint, the case, and every
 // setting that it makes use of.

@@ -21,8 +21,8 @@ static const OptionRow OPTIONS[] = {
     COMMON_JOBS(2,
                 "Error runs at a time (default: one per core); timing runs always go one by one"),
     COMMON_TIME_LIMIT(2, "A run that takes longer has failed (default: 600 s)"),
-    {"store", "FILE", "Keep finished runs here and take them from here", 2, OPTION_TEXT, AT(store)},
-    {"fresh", NULL, "Forget what the store holds", 2, OPTION_FLAG, AT(is_fresh)},
+    {"store", "FILE", "Where finished runs are stored and read from", 2, OPTION_TEXT, AT(store)},
+    {"fresh", NULL, "Discard the contents of the store", 2, OPTION_FLAG, AT(is_fresh)},
     COMMON_JSON(3),
     COMMON_WIDE(3),
     {"csv", "FILE.csv", "Write one row per point", 3, OPTION_TEXT, AT(csv)},
@@ -43,7 +43,7 @@ const Arguments COMPARE_ARGUMENTS = {
     .doc = "Runs every scheme of ODE over a ladder of steps and prints speed against error, "
            "the frontier, the order observed and the cheapest setting."
            "\vFinished runs are kept in a store under $XDG_CACHE_HOME or ~/.cache; a "
-           "comparison that was ended at any moment goes on from there.",
+           "comparison that is stopped at any moment resumes from there.",
     .argument = COMMON_PATH("compare takes one case"),
     OPTION_ROWS(OPTIONS),
     .check = check,

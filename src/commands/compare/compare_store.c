@@ -42,7 +42,8 @@ static bool find_path(const json_t *key, char path[FILE_PATH_SIZE], Err *err)
     const char *home = getenv("HOME");
     const bool has_cache = cache != NULL && cache[0] == '/';
     if (!has_cache && (home == NULL || home[0] == '\0')) {
-        return err_set(err, ERR_USAGE, "there is no home for the store; --store FILE names one");
+        return err_set(err, ERR_USAGE,
+                       "there is no folder for the store; --store FILE names the file");
     }
     char folder[FILE_PATH_SIZE];
     int length = snprintf(folder, sizeof folder, "%s%s/jointplay", has_cache ? cache : home,

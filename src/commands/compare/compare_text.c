@@ -1,4 +1,4 @@
-// How does speed stand against error, and what is the cheapest setting?
+// Which error does each scheme have, at which cost, and what is the cheapest setting?
 #include "commands/compare/compare_report.h"
 #include "write/section.h"
 #include "write/units.h"

@@ -67,7 +67,7 @@ static const OptionRow OPTIONS[] = {
      "The steps, such as '10 us, 3 us, 1 us' (default: 30 to 0.1 us and the case's own)", 1,
      OPTION_TEXT, AT(steps)},
     {"at-step", "TIME",
-     "Held to this step: also the best constants there, ERP and CFM, and Gazebo's kp and kd", 1,
+     "A step that cannot be changed: also the best ERP and CFM, and kp and kd, at it", 1,
      OPTION_QUANTITY, AT(at_step_s), .dimension = DIMENSION_TIME},
     {"maps", "LIST", "Only these of textbook, corrected, midpoint, exact, impulse", 1, OPTION_TEXT,
      AT(maps)},

@@ -67,7 +67,7 @@ static void write_mass(const Inverse *inverse, const InverseMass *mass, const St
     if (mass->predicted.is_ended && mass->mass > 0.0) {
         const ImpactSpread *predicted = &mass->predicted.restitution;
         text_append(text,
-                    "  Whatever it is read as, ODE gives back %.4g of the speed (%.4g to %.4g, by "
+                    "  By any map, ODE gives back %.4g of the speed (%.4g to %.4g, by "
                     "where the steps fall)",
                     predicted->mean, predicted->least, predicted->most);
     }

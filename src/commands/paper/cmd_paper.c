@@ -43,6 +43,6 @@ static bool run_paper(int argc, char **argv, Err *err)
 
 const Command cmd_paper = {
     .name = "paper",
-    .summary = "recomputes the paper's tables and holds them against the printed ones",
+    .summary = "recomputes the paper's tables and compares them with the printed ones",
     .run = run_paper,
 };

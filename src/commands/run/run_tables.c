@@ -239,7 +239,8 @@ static void write_chosen(const RunReport *report, const Trajectory *run, Text *t
     }
     const bool is_whole = run->is_short || run->estimate_s >= run->duration_s;
     text_append(text, "  Its error is at most %.2g up to %.4g ms%s.\n", run->error_estimate,
-                run->estimate_s * UNITS_MS, is_whole ? "" : "; later the reference does not say");
+                run->estimate_s * UNITS_MS,
+                is_whole ? "" : "; after that the reference is too uncertain");
 }
 
 void run_tables_cost(const RunReport *report, const Style *style, Text *text)
@@ -262,7 +263,7 @@ void run_tables_cost(const RunReport *report, const Style *style, Text *text)
         if (run->fallback_rows > 0) {
             text_append(text,
                         "  %s%s: the map would not have been stable in %zu contact row%s at this "
-                        "step; textbook took its place. A shorter step mends that.%s\n",
+                        "step; the textbook map was used. A shorter step avoids that.%s\n",
                         style->failure, run->backend, run->fallback_rows,
                         run->fallback_rows == 1 ? "" : "s", style->end);
         }

@@ -37,9 +37,9 @@ static bool read_title(const char *title, void *options, Err *err)
 #define AT(field) .offset = offsetof(DrawOptions, field)
 
 static const OptionRow OPTIONS[] = {
-    {"x", "COLUMN", "The column to the right", 1, OPTION_TEXT, AT(plot.x)},
-    {"y", "COLUMN", "The column upwards (default: how often each x occurs)", 1, OPTION_TEXT,
-     AT(plot.y)},
+    {"x", "COLUMN", "The column of the horizontal axis", 1, OPTION_TEXT, AT(plot.x)},
+    {"y", "COLUMN", "The column of the vertical axis (default: how often each x occurs)", 1,
+     OPTION_TEXT, AT(plot.y)},
     {"by", "COLUMN", "A colour for each value of this setting", 1, OPTION_TEXT, AT(plot.by)},
     {"title", "WORDS", "The title of the picture", 1, OPTION_READ, .read = read_title},
     {"quiet", NULL, "Nothing on standard error but errors", 2, OPTION_FLAG, AT(is_quiet),

@@ -113,7 +113,7 @@ static void write_fates(const Progress *progress, const Style *style, Text *text
 {
     static const SectionHead HEADS[] = {
         {"fate", "", TABLE_LEFT}, {"runs", "", TABLE_RIGHT}, {"share", "%", TABLE_RIGHT}};
-    Table *table = section_begin("What became of them", 3, HEADS, style, text);
+    Table *table = section_begin("How they ended", 3, HEADS, style, text);
     for (int fate = 0; fate < FATE_COUNT; fate++) {
         if (progress->count.fates[fate] > 0) {
             table_cell(table, "%s", FATE_WORDS[fate]);
@@ -232,7 +232,7 @@ bool study_text_summary(Store *store, const Style *style, Text *text, Err *err)
                                         {"most", "", TABLE_RIGHT}};
     Text section;
     text_init(&section);
-    Table *table = section_begin("Results of the runs that went well", sizeof HEADS / sizeof *HEADS,
+    Table *table = section_begin("Results of the complete runs", sizeof HEADS / sizeof *HEADS,
                                  HEADS, style, &section);
     bool is_read = true;
     for (size_t i = 0; i < store_layout(store)->result_count && is_read; i++) {

@@ -64,8 +64,8 @@ static const OptionRow OPTIONS[] = {
     {"cost", "time|steps", "What to minimise (default: time, or the unit of --max-cost)", 1,
      OPTION_CHOICE, AT(asked_cost), .words = COSTS},
     {"at-step", "TIME",
-     "The only step that can be taken, such as '1 ms': the least error there, of every scheme and "
-     "of contacts with constants; --error may be left out",
+     "A step that cannot be changed, such as '1 ms': the smallest error at it, of every scheme and "
+     "of contacts with constants; --error may be omitted",
      1, OPTION_QUANTITY, AT(at_step_s), .dimension = DIMENSION_TIME},
     COMMON_SCHEMES(1),
     COMMON_SET(1),
@@ -78,8 +78,8 @@ static const OptionRow OPTIONS[] = {
      "Write the setting as one C file of some thousand lines that needs only ODE and gives the "
      "same run, bit for bit",
      3, OPTION_TEXT, AT(one_file)},
-    {"sdf", "FILE.sdf", "Write the contact as Gazebo can have it", 3, OPTION_TEXT, AT(sdf)},
-    {"mjcf", "FILE.xml", "Write the contact as MuJoCo can have it", 3, OPTION_TEXT, AT(mjcf)},
+    {"sdf", "FILE.sdf", "Write the contact in Gazebo's form", 3, OPTION_TEXT, AT(sdf)},
+    {"mjcf", "FILE.xml", "Write the contact in MuJoCo's form", 3, OPTION_TEXT, AT(mjcf)},
     COMMON_JSON(3),
     COMMON_WIDE(3),
     COMMON_OUT(
@@ -95,8 +95,8 @@ static bool settle_cost(TuneOptions *options, Err *err)
     options->cost = has_steps ? TUNE_STEPS : TUNE_TIME;
     if (options->at_step_s > 0.0 && (has_steps || options->limit.time_s > 0.0)) {
         return err_set(err, ERR_USAGE,
-                       "--max-cost and --at-step do not go together: a step that is held leaves no "
-                       "cost to choose");
+                       "--max-cost and --at-step do not go together: with a fixed step there "
+                       "is no cost to choose");
     }
     if (cost == NULL) {
         return true;
@@ -105,8 +105,8 @@ static bool settle_cost(TuneOptions *options, Err *err)
     const bool has_limit = options->limit.steps > 0 || options->limit.time_s > 0.0;
     if (options->at_step_s > 0.0) {
         return err_set(err, ERR_USAGE,
-                       "--cost and --at-step do not go together: a step that is held leaves no "
-                       "cost to choose");
+                       "--cost and --at-step do not go together: with a fixed step there "
+                       "is no cost to choose");
     }
     if (has_limit && asked != options->cost) {
         return err_set(err, ERR_USAGE, "--cost %s and a --max-cost in %s do not go together", cost,
@@ -158,7 +158,7 @@ bool tune_options_search(const TuneOptions *options, const Scenario *scenario, T
     if (scenario->contact.model == CONTACT_POISSON && scenario_has_clearance(scenario)) {
         return err_set(err, ERR_CASE,
                        "contact.model poisson has no spring and no reference of its own: against "
-                       "the elastic law its error is that of the model, and no step mends it; "
+                       "the elastic law its error is that of the model, which no step removes; "
                        "allowed: contact.model impact");
     }
     const CommonOptions *common = &options->common;
