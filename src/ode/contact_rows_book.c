@@ -83,12 +83,11 @@ static double take_torque(const ContactRow *row, const WorldPair *pair)
     return pair->touch.sign * row->feedback.t1[2];
 }
 
-// Reads what a row of the step did.
-static void read_row(ContactRows *rows, size_t number, double step_s, JointState *state)
+// Reads what a row of the step did, with its force on body b.
+static void read_row(ContactRows *rows, size_t number, Vec2 force, double step_s, JointState *state)
 {
     ContactRow *row = &rows->rows[number];
     const WorldPair *pair = &rows->world->pairs[number];
-    const Vec2 force = row_force(rows, number);
     row->pressing = pair->row != NULL ? take_torque(row, pair) : vec2_length(force);
     if (pair->is_corner) {
         add_corner(row, pair, force, state);
@@ -96,7 +95,10 @@ static void read_row(ContactRows *rows, size_t number, double step_s, JointState
         state->force_on_b = force;
         state->force = row->pressing;
     }
-    tops_note_step(&row->tops, row->pressing, fmax(row->inside, 0.0), row->share, step_s);
+    if (pair->is_end) {
+        // whose largest values alone are asked for: contact_rows_tops
+        tops_note_step(&row->tops, row->pressing, fmax(row->inside, 0.0), row->share, step_s);
+    }
 }
 
 void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
@@ -108,11 +110,12 @@ void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
             // what holds the joint beside its coordinate is not told of it
             states[pair->joint].force = 0.0;
         }
+        const Vec2 force = row_force(rows, i);
         if (rows->rows[i].is_touching) {
-            read_row(rows, i, step_s, &states[pair->joint]);
+            read_row(rows, i, force, step_s, &states[pair->joint]);
             any = true;
         }
-        book_energy(rows, i, row_force(rows, i), step_s);
+        book_energy(rows, i, force, step_s);
     }
     if (any) {
         dJointGroupEmpty(rows->group);

@@ -170,15 +170,19 @@ static void end_contact(Recorder *recorder, size_t number)
 
 static double depth_of(const JointState *state)
 {
-    return state->is_touching ? fmax(0.0, -state->gap) : 0.0;
+    return state->is_touching && state->gap < 0.0 ? -state->gap : 0.0;
 }
 
 // The largest force and depth of a joint in a step, as far as it knows.
 static JointTop top_of(const StepRecord *step, size_t number)
 {
     const JointState *state = &step->joints[number];
-    const JointTop between = step->tops != NULL ? step->tops[number] : (JointTop){0.0, 0.0};
-    return (JointTop){fmax(state->force, between.force), fmax(depth_of(state), between.depth)};
+    const JointTop top = {.force = state->force, .depth = depth_of(state)};
+    if (step->tops == NULL) {
+        return top;
+    }
+    const JointTop *between = &step->tops[number];
+    return (JointTop){fmax(top.force, between->force), fmax(top.depth, between->depth)};
 }
 
 static void add_contact(Recorder *recorder, size_t number, const StepRecord *step)
