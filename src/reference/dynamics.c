@@ -284,7 +284,7 @@ bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y
                        DynamicsState *state, double *rates)
 {
     if (dynamics->hinged != NULL && dynamics->tree.base_drive.alpha == 0.0) {
-        return hinged_evaluate(dynamics->hinged, since_s, y, state, rates);
+        return dynamics->hinged->evaluate(dynamics->hinged, since_s, y, state, rates);
     }
     Loads loads = dynamics->room.loads;
     if (!find_rates(dynamics, since_s, y, false, state, &loads)) {

@@ -172,7 +172,9 @@ Hinged *hinged_create(const Dynamics *dynamics)
     }
     set_bodies(hinged);
     set_pins(hinged);
-    hinged->rates = hinged_pair_is(hinged) ? hinged_pair_rates : find_rates;
+    const bool is_pair = hinged_pair_is(hinged);
+    hinged->rates = is_pair ? hinged_pair_rates : find_rates;
+    hinged->evaluate = is_pair ? hinged_pair_evaluate : hinged_evaluate;
     return hinged;
 }
 

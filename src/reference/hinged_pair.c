@@ -140,6 +140,21 @@ static inline bool solve(const HingedBody *bodies, const Moving *inner, const Mo
     return bodies[1].inertia > 0.0 && inertia > 0.0;
 }
 
+// Rates of the integrator's vector.
+static inline void fill_rates(const size_t columns[2], const double *y, const double spins[2],
+                              const PairPress *pressed, double drive_power, double *rates)
+{
+    rates[0] = y[2];
+    rates[1] = y[3];
+    rates[2 + columns[0]] = spins[0];
+    rates[2 + columns[1]] = spins[1];
+    double *sums = rates + 4;
+    sums[SYSTEM_DRIVE_WORK] = drive_power;
+    sums[SYSTEM_DISSIPATED] = pressed->dissipated;
+    sums[SYSTEM_FRICTION] = 0.0;
+    sums[SYSTEM_IMPULSES] = pressed->size;
+}
+
 bool hinged_pair_rates(const Hinged *hinged, double since_s, const double *y, double *rates)
 {
     const HingedBody *bodies = hinged->bodies;
@@ -154,16 +169,141 @@ bool hinged_pair_rates(const Hinged *hinged, double since_s, const double *y, do
     const PairPress pressed = press(&hinged->pins[0], &driven, &outer);
     double spins[2];
     const bool is_solved = solve(bodies, &inner, &outer, lever_arm, &pressed, spins);
-    rates[0] = y[2];
-    rates[1] = y[3];
-    rates[2 + columns[0]] = spins[0];
-    rates[2 + columns[1]] = spins[1];
     const Vec2 upward = {0.0, hinged->dynamics->system.scenario->gravity};
     const Vec2 needed = vec2_scale(hinged->driven->mass, vec2_add(driven.bias, upward));
-    double *sums = rates + 4;
-    sums[SYSTEM_DRIVE_WORK] = vec2_dot(needed, driven.velocity) - pressed.power;
-    sums[SYSTEM_DISSIPATED] = pressed.dissipated;
-    sums[SYSTEM_FRICTION] = 0.0;
-    sums[SYSTEM_IMPULSES] = pressed.size;
+    const double drive_power = vec2_dot(needed, driven.velocity) - pressed.power;
+    fill_rates(columns, y, spins, &pressed, drive_power, rates);
     return is_solved;
+}
+
+// A body as a state has it, with its acceleration and how far it has turned since the base.
+static inline void show(const Tree *tree, int number, const Moving *body, double turned,
+                        Vec2 acceleration, double spin, Motion *motions)
+{
+    const Motion *base = &tree->base_motions[number];
+    motions[number] = (Motion){
+        .position = vec2_add(base->position, body->moved),
+        .angle = base->angle + turned,
+        .velocity = body->velocity,
+        .omega = body->omega,
+        .acceleration = acceleration,
+        .alpha = spin,
+    };
+}
+
+// Where the pin is and how it presses.
+static inline PairPress look_at(const Hinged *hinged, const Moving *driven, const Moving *outer,
+                                Vec2 *arms, ContactForce *at)
+{
+    const HingedPin *pin = &hinged->pins[0];
+    const Contact *contact = pin->contact;
+    const bool is_b = pin->ends[0].is_driven; // the outer body has the pin, and not the hole
+    const Moving *a = is_b ? driven : outer;
+    const Moving *b = is_b ? outer : driven;
+    Vec2 velocity_a;
+    Vec2 velocity_b;
+    const Vec2 moved_b = move_end(b, *pin->ends[1].base, &arms[1], &velocity_b);
+    const Vec2 moved_a = move_end(a, *pin->ends[0].base, &arms[0], &velocity_a);
+    const Vec2 gap = vec2_add(*pin->gap, vec2_sub(moved_b, moved_a));
+    const Vec2 velocity = vec2_sub(velocity_b, velocity_a);
+    const PinHole pose = pin_hole_pose((Vec2){0.0, 0.0}, gap, velocity, contact->clearance);
+    const Press found = press_find(contact, -pose.gap, pose.approach_speed);
+    at->pose = touch_pose_in_hole(&pose, velocity);
+    at->press = found;
+    at->force = (Vec2){0.0, 0.0};
+    at->couple = 0.0;
+    PairPress press = {.dissipated = found.damping_power};
+    if (contact->mode == CONTACT_PRESSING) {
+        at->force = vec2_scale(found.normal, pose.normal);
+        press.force = is_b ? at->force : vec2_scale(-1.0, at->force);
+        press.size = sqrt(vec2_dot(at->force, at->force));
+        press.moment = vec2_cross(arms[is_b ? 1 : 0], press.force);
+        press.power = vec2_dot(vec2_scale(-1.0, press.force), is_b ? velocity_a : velocity_b);
+    }
+    return press;
+}
+
+// The acceleration of a body's centre, whose hinge has one.
+static inline Vec2 accelerate(const Moving *body, double spin, Vec2 carried)
+{
+    const Vec2 about = vec2_sub(vec2_scale(body->omega * body->omega, body->arm),
+                                vec2_scale(spin, vec2_perp(body->arm)));
+    return vec2_add(carried, about);
+}
+
+// The force of a hinge on its body b, from what its outer body needs of it.
+static inline void show_reaction(const TreeNode *node, Vec2 held, Vec2 *reactions)
+{
+    reactions[node->joint] = node->own_end % 2 == 1 ? held : vec2_scale(-1.0, held);
+}
+
+// Accelerations of both bodies and the forces of their hinges.
+static inline void show_bodies(const Hinged *hinged, const Moving *inner, const Moving *outer,
+                               Vec2 lever_arm, const double *y, const double spins[2],
+                               const PairPress *pressed, DynamicsState *state)
+{
+    const HingedBody *bodies = hinged->bodies;
+    const Tree *tree = &hinged->dynamics->tree;
+    const Vec2 inner_acceleration = accelerate(inner, spins[0], (Vec2){0.0, 0.0});
+    const Vec2 turned = vec2_sub(vec2_scale(spins[0], vec2_perp(lever_arm)),
+                                 vec2_scale(inner->omega * inner->omega, lever_arm));
+    const Vec2 outer_acceleration =
+        accelerate(outer, spins[1], vec2_add(inner_acceleration, turned));
+    show(tree, tree->nodes[0].body, inner, y[bodies[0].column], inner_acceleration, spins[0],
+         state->tree.motions);
+    show(tree, tree->nodes[1].body, outer, y[bodies[1].column], outer_acceleration, spins[1],
+         state->tree.motions);
+    const Vec2 outer_force = vec2_add((Vec2){0.0, -bodies[1].weight}, pressed->force);
+    const Vec2 outer_held = vec2_sub(vec2_scale(bodies[1].mass, outer_acceleration), outer_force);
+    const Vec2 inner_force = vec2_add((Vec2){0.0, -bodies[0].weight}, vec2_scale(-1.0, outer_held));
+    const Vec2 inner_held = vec2_sub(vec2_scale(bodies[0].mass, inner_acceleration), inner_force);
+    show_reaction(&tree->nodes[1], outer_held, state->reactions);
+    show_reaction(&tree->nodes[0], inner_held, state->reactions);
+    state->tree.arms[tree->nodes[0].own_end] = inner->arm;
+    state->tree.arms[tree->nodes[1].own_end] = outer->arm;
+    state->tree.arms[tree->nodes[1].parent_end] = lever_arm;
+}
+
+// The driven body, with the drive's power and its joint's force.
+static inline void show_driven(const Hinged *hinged, const Moving *driven, double since_s,
+                               const PairPress *pressed, DynamicsState *state)
+{
+    const Tree *tree = &hinged->dynamics->tree;
+    const int joint = tree->linkage->driver.joint;
+    const Vec2 upward = {0.0, hinged->dynamics->system.scenario->gravity};
+    const Vec2 needed = vec2_scale(hinged->driven->mass, vec2_add(driven->bias, upward));
+    show(tree, tree->driven, driven, driven->omega * since_s, driven->bias, 0.0,
+         state->tree.motions);
+    state->tree.arms[2 * joint + 1] = driven->arm;
+    state->reactions[joint] = vec2_add(needed, pressed->force);
+    state->drive_power = vec2_dot(needed, driven->velocity) - pressed->power;
+    state->damping_power = 0.0;
+}
+
+bool hinged_pair_evaluate(const Hinged *hinged, double since_s, const double *y,
+                          DynamicsState *state, double *rates)
+{
+    const HingedBody *bodies = hinged->bodies;
+    const double drive_omega = hinged->dynamics->tree.base_drive.omega;
+    const size_t columns[2] = {bodies[0].column, bodies[1].column};
+    const Moving driven =
+        move_on_ground(*hinged->driven->own_base, drive_omega * since_s, drive_omega);
+    const Moving inner = move_on_ground(*bodies[0].own_base, y[columns[0]], y[2 + columns[0]]);
+    Vec2 lever_arm;
+    const Moving outer = move_on(&inner, *bodies[1].outer_base, *bodies[1].own_base, y[columns[1]],
+                                 y[2 + columns[1]], &lever_arm);
+    ContactForce *at = &state->contacts[0];
+    const size_t pair = 2 * (size_t)hinged->dynamics->places[0].pair;
+    const PairPress pressed = look_at(hinged, &driven, &outer, &state->tree.arms[pair], at);
+    state->shared.contacts[0] = at->press;
+    double spins[2];
+    if (!solve(bodies, &inner, &outer, lever_arm, &pressed, spins)) {
+        return false;
+    }
+    show_bodies(hinged, &inner, &outer, lever_arm, y, spins, &pressed, state);
+    show_driven(hinged, &driven, since_s, &pressed, state);
+    if (rates != NULL) {
+        fill_rates(columns, y, spins, &pressed, state->drive_power, rates);
+    }
+    return true;
 }

@@ -27,6 +27,8 @@ struct Hinged {
     HingedPin *pins;
     // of a steady drive: of any such mechanism, or of a pair (reference/hinged_pair.c)
     bool (*rates)(const Hinged *hinged, double since_s, const double *y, double *rates);
+    bool (*evaluate)(const Hinged *hinged, double since_s, const double *y, DynamicsState *state,
+                     double *rates);
 };
 
 // Whether a mechanism is such a pair of bodies.
@@ -34,3 +36,7 @@ bool hinged_pair_is(const Hinged *hinged);
 
 // As hinged_rates, of a steady drive, to the last bit.
 bool hinged_pair_rates(const Hinged *hinged, double since_s, const double *y, double *rates);
+
+// As hinged_evaluate, likewise.
+bool hinged_pair_evaluate(const Hinged *hinged, double since_s, const double *y,
+                          DynamicsState *state, double *rates);
