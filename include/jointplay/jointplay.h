@@ -198,9 +198,10 @@ JP_API JpStatus jp_step_longest(JpMap map, const JpContact *contact, double mass
 
 /* ---- worlds ----------------------------------------------------------------------------------
  *
- * A JpWorld steps a world of yours that has joints of ours. The world, its bodies, joints and
- * contacts stay yours; destroy a JpJoint before the ODE joint it is made on, and the JpWorld before
- * the world. Between two steps all bodies stand at one time, and ODE's getters read them there. */
+ * A JpWorld steps your world with the library's joints in it. The world, its bodies, joints and
+ * contacts remain yours; destroy a JpJoint before the ODE joint that it acts on, and the JpWorld
+ * before the world. Between two steps ODE's getters read all positions and velocities at the same
+ * time. */
 
 typedef struct JpWorld JpWorld;
 typedef struct JpJoint JpJoint;
@@ -209,7 +210,7 @@ typedef enum JpStepping {
     JP_STEPPING_PLAIN,     /* as ODE steps: order 1; rows of JP_MAP_MIDPOINT */
     JP_STEPPING_STAGGERED, /* forces at mid-step: order 2 at the same cost; rows of JP_MAP_MIDPOINT
                             */
-    JP_STEPPING_IMPULSE,   /* the same with the contacts of our joints integrated within the step,
+    JP_STEPPING_IMPULSE,   /* the same with the library's contacts integrated within the step,
                               however short they are: n + 3 steps of ODE where joints touch in
                               n rows, one of a hinge or slider, two to nine of an end of a pin;
                               fewer where steps are short, more where bounds are passed */
@@ -217,16 +218,16 @@ typedef enum JpStepping {
 
 typedef struct JpWorldOptions {
     JpStepping stepping;
-    bool is_quick; /* dWorldQuickStep in place of dWorldStep: its rows are as right as its
+    bool is_quick; /* dWorldQuickStep instead of dWorldStep: its rows are as accurate as its
                       iterations */
     /* Called once a step with the bodies where forces are evaluated, to make the step's contacts
-     * there; staggered, that is half a step on. May be NULL; contacts made before the step serve,
-     * too, and are half a step old then. */
+     * there; with staggered steps that is half a step later. May be NULL. Contacts made before
+     * the step are used as well, but are then half a step old. */
     void (*collide)(dWorldID world, void *data);
     void *collide_data;
-    /* Contacts of all pairs of geoms in a space are made for you there, and taken away after the
-     * step, but for bodies that a joint links; the bodies that geoms are on are found. NULL: none.
-     */
+    /* At that time the library makes the contacts of all pairs of geoms in this space, except of
+     * bodies that a joint connects, and removes them after the step. It finds the bodies of the
+     * geoms. NULL: none. */
     dSpaceID space;
     dSurfaceParameters surface; /* of all of these */
 } JpWorldOptions;
@@ -239,8 +240,8 @@ JP_API JpStatus jp_world_create(dWorldID world, const JpWorldOptions *options, J
                                 JpError *error);
 JP_API void jp_world_destroy(JpWorld *world);
 
-/* Bodies that no chain of joints links with a joint of ours have to be added, so that they are
- * stepped like all others, and removed before they are destroyed. The others are found. */
+/* Add bodies that no chain of joints connects with a joint of the library, so that they are stepped
+ * like all others, and remove them before they are destroyed. The library finds the others. */
 JP_API JpStatus jp_world_add_body(JpWorld *world, dBodyID body, JpError *error);
 JP_API JpStatus jp_world_remove_body(JpWorld *world, dBodyID body, JpError *error);
 
@@ -250,25 +251,25 @@ JP_API JpStatus jp_world_step(JpWorld *world, double step, JpError *error);
 typedef struct JpWorldStats {
     size_t steps;       /* of jp_world_step */
     size_t world_steps; /* of ODE, with those of trials */
-    size_t rows;        /* contacts of our joints, a step each */
-    size_t fallbacks;   /* rows beyond the limit of their map, which were the textbook's; of
-                           JP_STEPPING_IMPULSE steps in which the world did not answer linearly */
+    size_t rows;        /* contacts of the library's joints, summed over the steps */
+    size_t fallbacks;   /* rows beyond the limit of their map, which used the textbook's; with
+                           JP_STEPPING_IMPULSE steps in which the world did not respond linearly */
 } JpWorldStats;
 JP_API JpStatus jp_world_stats(const JpWorld *world, JpWorldStats *stats, JpError *error);
 
 /* ---- joints with play -------------------------------------------------------------------------
  *
- * On a hinge or a slider of yours, which goes on holding all but its own coordinate: the angle or
- * position that dJointGetHingeAngle or dJointGetSliderPosition give, followed beyond half a turn
- * where it turns by less than that in a step. Forces and lengths are torques and angles on a hinge.
- */
+ * They act on one of your hinges or sliders, which continues to constrain all but its coordinate:
+ * the angle or position of dJointGetHingeAngle or dJointGetSliderPosition, counted beyond half a
+ * turn if it turns by less than that in a step. On a hinge, forces and lengths are torques and
+ * angles. */
 
-/* Backlash: the teeth of one side stand between those of the other with a gap. Without a rotor the
- * gap is between the two bodies. With one, what stands in the gap is a rotor (motor, gears,
- * reflected to the joint by the square of the ratio), which is a mere number and no body: it is
- * driven by jp_backlash_drive, or led by jp_backlash_lead. What the gears press on the first body,
- * they press on the second the other way; the rotor's own reaction on its housing, smaller by the
- * ratio, is left out. */
+/* Backlash: the teeth of one side are between those of the other with a gap. Without a rotor the
+ * gap is between the two bodies. With a rotor (motor and gears, reflected to the joint by the
+ * square of the ratio) the rotor's teeth are in the gap. The rotor is a number and not a body: it
+ * is driven by jp_backlash_drive, or moved by jp_backlash_lead. The gears press on the two bodies
+ * with equal and opposite forces. The rotor's reaction on its housing, smaller by the ratio, is
+ * left out. */
 typedef struct JpBacklash {
     double gap;           /* rad or m, from tooth to tooth, >= 0 */
     double offset;        /* rad or m: the coordinate less the rotor's where the gap is centred */
@@ -281,8 +282,8 @@ JP_API JpBacklash jp_backlash_default(void);
 JP_API JpStatus jp_backlash_create(JpWorld *world, dJointID joint, const JpBacklash *backlash,
                                    JpJoint **created, JpError *error);
 
-/* The torque or force on the rotor from now on. A rotor that was led is free again. Fails without a
- * rotor. */
+/* Sets the torque or force on the rotor. A rotor that was moved by jp_backlash_lead is free again.
+ * Fails without a rotor. */
 JP_API JpStatus jp_backlash_drive(JpJoint *joint, double force, JpError *error);
 
 /* A servo: drives the rotor in the next step towards a position, rad or m, with a stiffness, N
@@ -290,11 +291,12 @@ JP_API JpStatus jp_backlash_drive(JpJoint *joint, double force, JpError *error);
 JP_API JpStatus jp_backlash_hold(JpJoint *joint, double position, double stiffness, double damper,
                                  JpError *error);
 
-/* Leads the rotor, or what the gap stands on where there is none: where it is now, and the speed
- * with which it goes on from there. */
+/* Prescribes the position of the rotor, or of the middle of the gap if there is no rotor, and the
+ * speed with which it continues from there. */
 JP_API JpStatus jp_backlash_lead(JpJoint *joint, double position, double speed, JpError *error);
 
-/* Stops that rebound as asked. Use them in place of dParamLoStop and dParamHiStop. */
+/* Stops that rebound with a given restitution. Use them instead of dParamLoStop and dParamHiStop.
+ */
 typedef struct JpStops {
     double low;  /* rad or m; may be -infinity */
     double high; /* rad or m, above low; may be infinity */
