@@ -1,8 +1,13 @@
 // Which forces keep the ideal joints of a world in space closed?
 //
-// Those of ode/world_hold.c, J v' = -(ERP / h) phi, from the response of the linkage. Plain
-// stepping leaves the turning of inertias to ODE, which nobody else knows before the step: there
-// the joints stay rows.
+// Those of ode/world_hold.c, J v' = -(ERP / h) phi, from the response of the linkage.
+//
+// Plain stepping has ODE's own torque of turning inertias, implicit Euler's, that depends on the
+// body alone. It has to be known before the step and is worked out here, with L = I omega:
+//     (I - h [L]x) omega' = L,   T = (I omega' - L) / h
+//
+// Source: C. Lacoursiere, Stabilizing gyroscopic forces in rigid multibody simulations, Umea 2006,
+// as ODE's step.cpp has it.
 #include "ode/space_hold.h"
 
 #include "base/zeroed.h"
@@ -11,6 +16,7 @@
 struct SpaceHold {
     double gravity;
     double erp;
+    bool is_plain;
     SpaceMotion *loose; // with the speeds behind the step if nothing held the joints
     double *openings;   // by ideal row, of as many as there can be
     double *impulses;   // N s, likewise
@@ -21,7 +27,7 @@ SpaceHold *space_hold_make(const Scenario *scenario, const SpaceResponse *respon
 {
     const Linkage *linkage = &scenario->linkage;
     const size_t rows = SPACE_JOINT_ROWS * linkage->joint_count;
-    if (scenario->ode.stepping == ODE_PLAIN || !world_hold_is_alone(scenario) ||
+    if (!world_hold_is_alone(scenario) ||
         response_matrix_largest(&response->matrix) <= WORLD_HOLD_ROWS) {
         return NULL;
     }
@@ -29,6 +35,7 @@ SpaceHold *space_hold_make(const Scenario *scenario, const SpaceResponse *respon
     *hold = (SpaceHold){
         .gravity = scenario->gravity,
         .erp = world_hold_erp(&scenario->ode),
+        .is_plain = scenario->ode.stepping == ODE_PLAIN,
         .loose = zeroed(linkage->body_count, sizeof *hold->loose),
         .openings = zeroed(rows, sizeof *hold->openings),
         .impulses = zeroed(rows, sizeof *hold->impulses),
@@ -104,11 +111,41 @@ static void add_row(const SpaceResponse *response, size_t number, double impulse
     }
 }
 
+// Lets the turning of inertias act as ODE does, which is not to do it again.
+static void gyrate(const SpaceResponse *response, double step_s, const World *world)
+{
+    const int driven = linkage_driven_body(response->linkage);
+    for (size_t i = 0; i < response->linkage->body_count; i++) {
+        if ((int)i == driven) {
+            continue;
+        }
+        const dBodyID body = world->bodies[i];
+        const Mat3 *turn = &response->turns[i];
+        const Mat3 *own = &response->own_inertia[i];
+        const Vec3 omega = mat3_apply_back(turn, vector(dBodyGetAngularVel(body)));
+        const Vec3 momentum = mat3_apply(own, omega);
+        // in the body's frame, column by column of what is crossed with the momentum
+        const Vec3 l = vec3_scale(step_s, momentum);
+        Mat3 matrix = *own;
+        matrix.row[0] = vec3_add(matrix.row[0], (Vec3){0.0, l.z, -l.y});
+        matrix.row[1] = vec3_add(matrix.row[1], (Vec3){-l.z, 0.0, l.x});
+        matrix.row[2] = vec3_add(matrix.row[2], (Vec3){l.y, -l.x, 0.0});
+        const Mat3 inverse = mat3_inverse(&matrix);
+        const Vec3 after = mat3_apply(own, mat3_apply(&inverse, momentum));
+        const Vec3 torque = mat3_apply(turn, vec3_scale(1.0 / step_s, vec3_sub(after, momentum)));
+        dBodySetGyroscopicMode(body, 0);
+        dBodyAddTorque(body, torque.x, torque.y, torque.z);
+    }
+}
+
 void space_hold_push(SpaceHold *hold, const SpaceResponse *response, const SpaceMotion *motions,
                      double step_s, World *world)
 {
     const Linkage *linkage = response->linkage;
     const int driven = linkage_driven_body(linkage);
+    if (hold->is_plain) {
+        gyrate(response, step_s, world);
+    }
     loosen(hold, response, motions, step_s, world);
     space_response_openings(response, hold->loose, hold->openings, hold->impulses);
     for (size_t i = 0; i < response->ideal_rows; i++) {

@@ -1,5 +1,5 @@
 // The ideal joints of a world in space with many of them, held by forces that are found here
-// instead of by rows of ODE: ode/world_hold.h in space, for staggered steps.
+// instead of by rows of ODE: ode/world_hold.h in space.
 #pragma once
 
 #include "model/scenario.h"
