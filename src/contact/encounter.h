@@ -23,6 +23,16 @@ enum {
     ENCOUNTER_ROWS_MOST = 9,  // with friction in space; RESPONSE_ROWS_A_JOINT in the plane
 };
 
+// The rows of a joint with friction, after those of its position: turns about the pin's axis of the
+// hole's and of the pin's body, and in space the sliding along the axis, and the turns of both
+// about x and y.
+enum {
+    ENCOUNTER_ROW_TURN = 2,
+    ENCOUNTER_ROW_AXIAL = 4,
+    ENCOUNTER_ROW_HOLE = 5,
+    ENCOUNTER_ROW_PIN = 7,
+};
+
 // One place of a joint with play. The first six are given; the rest lives on from one step to the
 // next. A disc outside another is a hole of negative size: the same formulas hold for both.
 typedef struct EncounterJoint {

@@ -4,16 +4,6 @@
 
 #include "contact/encounter_input.h"
 
-// The rows of a joint with friction, after those of its position: turns about the pin's axis of the
-// hole's and of the pin's body, and in space the sliding along the axis, and the turns of both
-// about x and y.
-enum {
-    ENCOUNTER_ROW_TURN = 2,
-    ENCOUNTER_ROW_AXIAL = 4,
-    ENCOUNTER_ROW_HOLE = 5,
-    ENCOUNTER_ROW_PIN = 7,
-};
-
 // The state of an encounter at one time.
 typedef struct EncounterPoint {
     double time_s;

@@ -107,7 +107,11 @@ static double track_change(const EncounterTrack *track, const Encounter *encount
                                force);
         }
         *largest = fmax(*largest, fmax(hypot(now[0], now[1]), hypot(impulse[0], impulse[1])));
-        const double apart = hypot(now[0] - impulse[0], now[1] - impulse[1]);
+        double apart = hypot(now[0] - impulse[0], now[1] - impulse[1]);
+        if (of->row_count > ENCOUNTER_ROW_AXIAL) {
+            // friction of a pin along its axis, which is in neither of the two
+            apart = hypot(apart, now[ENCOUNTER_ROW_AXIAL] - impulse[ENCOUNTER_ROW_AXIAL]);
+        }
         change = apart <= change ? change : apart; // a NaN must show
     }
     return change;
