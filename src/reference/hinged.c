@@ -7,6 +7,7 @@
 #include "reference/hinged.h"
 
 #include "contact/pin_hole.h"
+#include "reference/hinged_lone.h"
 #include "reference/hinged_state.h"
 
 #include <assert.h>
@@ -173,7 +174,9 @@ Hinged *hinged_create(const Dynamics *dynamics)
     set_bodies(hinged);
     set_pins(hinged);
     const bool is_pair = hinged_pair_is(hinged);
-    hinged->rates = is_pair ? hinged_pair_rates : find_rates;
+    hinged->rates = is_pair                  ? hinged_pair_rates
+                    : hinged_lone_is(hinged) ? hinged_lone_rates
+                                             : find_rates;
     hinged->evaluate = is_pair ? hinged_pair_evaluate : hinged_evaluate;
     return hinged;
 }

@@ -25,7 +25,8 @@ struct Hinged {
     size_t count;
     size_t pin_count;
     HingedPin *pins;
-    // of a steady drive: of any such mechanism, or of a pair (reference/hinged_pair.c)
+    // of a steady drive: of any such mechanism, of a pair (reference/hinged_pair.c) or of a lone
+    // body (reference/hinged_lone.c)
     bool (*rates)(const Hinged *hinged, double since_s, const double *y, double *rates);
     bool (*evaluate)(const Hinged *hinged, double since_s, const double *y, DynamicsState *state,
                      double *rates);
