@@ -33,20 +33,20 @@ void casefile_describe(Text *text);
 void casefile_describe_markdown(Text *text);
 
 typedef enum CasefileKind {
-    CASEFILE_NUMBER,  // a quantity in SI
-    CASEFILE_INTEGER, // a whole number, in numbers[0]
-    CASEFILE_WORD,    // one of a list of words
-    CASEFILE_WORDS,   // several of a list of words, separated by ", "
-    CASEFILE_TEXT,    // free text, or names separated by ", "
-    CASEFILE_POINTS,  // numbers in pairs: times and torques or speeds
+    CASEFILE_NUMBER,    // a quantity in SI, or a vector of two or three
+    CASEFILE_TOLERATED, // a length with a tolerance: nominal, and both limits as deviations
+    CASEFILE_INTEGER,   // a whole number, in numbers[0]
+    CASEFILE_WORD,      // one of a list of words
+    CASEFILE_WORDS,     // several of a list of words, separated by ", "
+    CASEFILE_TEXT,      // free text, or names separated by ", "
+    CASEFILE_POINTS,    // numbers in pairs: times and torques or speeds
 } CasefileKind;
 
 // One resolved setting of a scenario.
 typedef struct CasefileSetting {
     char key[CASEFILE_KEY_SIZE]; // as in a case file: joints.crank-coupler.hole
     CasefileKind kind;
-    size_t number_count; // of CASEFILE_NUMBER: 1; 2: a vector x, y; 3: nominal, lower and upper
-                         // limit of a length with a tolerance, the limits as deviations
+    size_t number_count;                // 0 of words
     double numbers[2 * TIME_TABLE_MAX]; // SI
     char unit[CASEFILE_UNIT_SIZE];      // SI, empty for plain numbers
     char text[CASEFILE_TEXT_SIZE];      // of a word, words or text

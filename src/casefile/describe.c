@@ -128,8 +128,9 @@ static void describe_default(size_t row_number, Text *text)
     }
     if (setting.kind == CASEFILE_NUMBER || setting.kind == CASEFILE_INTEGER) {
         const char *blank = setting.unit[0] != '\0' ? " " : "";
-        text_append(text, setting.number_count == 2 ? "[%.6g, %.6g]" : "%.6g", setting.numbers[0],
-                    setting.numbers[1]);
+        static const char *const FORMATS[] = {"%.6g", "[%.6g, %.6g]", "[%.6g, %.6g, %.6g]"};
+        text_append(text, FORMATS[setting.number_count - 1], setting.numbers[0], setting.numbers[1],
+                    setting.numbers[2]);
         text_append(text, "%s%s", blank, setting.unit);
     } else {
         text_append(text, "%s", setting.text);

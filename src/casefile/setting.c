@@ -45,7 +45,10 @@ static void set_tolerated(CasefileSetting *setting, const ToleratedLength *lengt
     set_number(setting, length->nominal);
     setting->numbers[1] = length->lower;
     setting->numbers[2] = length->upper;
-    setting->number_count = length->lower < 0.0 || length->upper > 0.0 ? 3 : 1;
+    if (length->lower < 0.0 || length->upper > 0.0) {
+        setting->kind = CASEFILE_TOLERATED;
+        setting->number_count = 3;
+    }
 }
 
 static void set_stiffness(CasefileSetting *setting, const char *unit, double stiffness,

@@ -37,6 +37,19 @@ static json_t *points_array(const CasefileSetting *setting)
     return list;
 }
 
+// A number, or the list of a vector.
+static json_t *numbers_value(const CasefileSetting *setting)
+{
+    if (setting->number_count == 1) {
+        return json_value_real(setting->numbers[0]);
+    }
+    json_t *list = json_array();
+    for (size_t i = 0; i < setting->number_count; i++) {
+        json_array_append_new(list, json_value_real(setting->numbers[i]));
+    }
+    return list;
+}
+
 static json_t *setting_value(const CasefileSetting *setting)
 {
     const double *numbers = setting->numbers;
@@ -44,7 +57,10 @@ static json_t *setting_value(const CasefileSetting *setting)
     case CASEFILE_INTEGER:
         return json_integer((json_int_t)numbers[0]);
     case CASEFILE_NUMBER:
-        break;
+        return numbers_value(setting);
+    case CASEFILE_TOLERATED:
+        return json_pack("{s:o, s:o, s:o}", "nominal", json_value_real(numbers[0]), "lower",
+                         json_value_real(numbers[1]), "upper", json_value_real(numbers[2]));
     case CASEFILE_POINTS:
         return points_array(setting);
     case CASEFILE_WORDS:
@@ -52,14 +68,6 @@ static json_t *setting_value(const CasefileSetting *setting)
     default:
         return json_value_text(setting->text);
     }
-    if (setting->number_count == 1) {
-        return json_value_real(numbers[0]);
-    }
-    if (setting->number_count == 2) {
-        return json_pack("[o, o]", json_value_real(numbers[0]), json_value_real(numbers[1]));
-    }
-    return json_pack("{s:o, s:o, s:o}", "nominal", json_value_real(numbers[0]), "lower",
-                     json_value_real(numbers[1]), "upper", json_value_real(numbers[2]));
 }
 
 // The settings that the scenario makes use of, by the key they have in a case file.

@@ -84,7 +84,7 @@ static void json_of_several_cases_is_a_list_of_them(void **state)
 {
     Program *program = *state;
     program_run(program, "run $cases/paper/ideal-nominal.yaml --json --backend analytic "
-                         "$cases/paper/ideal-stackup.yaml");
+                         "$cases/paper/ideal-nominal.yaml");
     assert_int_equal(program->status, 0);
     json_t *root = program_json(program);
     const json_t *cases = json_object_get(root, "cases");
@@ -109,6 +109,38 @@ static void settings_of_the_command_line_replace_those_of_the_case(void **state)
     assert_string_equal(json_string_value(json_object_get(run, "backend")), "ode");
     assert_near(json_number_value(json_object_get(run, "step_s")), 2e-5, 1e-18);
     assert_true(json_is_null(json_object_get(run, "error")));
+    json_decref(root);
+}
+
+// The length of a vector among the settings of a run, by its key.
+static double setting_length(const json_t *root, const char *key, size_t count)
+{
+    const json_t *list = json_object_get(json_object_get(root, "settings"), key);
+    assert_int_equal(json_array_size(list), count);
+    double square = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        const double part = json_number_value(json_array_get(list, i));
+        square += part * part;
+    }
+    return sqrt(square);
+}
+
+static void a_direction_among_the_settings_is_a_list_and_a_tolerated_length_is_not(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run -q --json --backend reference $cases/space/bennett.yaml");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    assert_near(setting_length(root, "joints.ground-crank.axis", 3), 1.0, 1e-12);
+    json_decref(root);
+    program_run(program, "run -q --json --uncertified --backend reference "
+                         "$cases/paper/stackup-impact.yaml");
+    assert_int_equal(program->status, 0);
+    root = program_json(program);
+    const json_t *length =
+        json_object_get(json_object_get(root, "settings"), "four-bar.crank.length");
+    assert_near(json_number_value(json_object_get(length, "nominal")), 0.108, 1e-15);
+    assert_near(json_number_value(json_object_get(length, "upper")), 0.3e-3, 1e-15);
     json_decref(root);
 }
 
@@ -386,6 +418,7 @@ int main(void)
         COMMAND_TEST(json_of_one_case_is_one_object),
         COMMAND_TEST(json_of_several_cases_is_a_list_of_them),
         COMMAND_TEST(settings_of_the_command_line_replace_those_of_the_case),
+        COMMAND_TEST(a_direction_among_the_settings_is_a_list_and_a_tolerated_length_is_not),
         COMMAND_TEST(a_series_holds_a_row_a_sample),
         COMMAND_TEST(a_folder_gets_all_there_is_to_know),
         COMMAND_TEST(two_cases_of_one_name_do_not_share_a_folder),
