@@ -7,7 +7,7 @@
 // along the line's normal, and the sliding along it. In space x and y are across the pin's axis,
 // and friction also has rows for the sliding along the axis and for the turns of both bodies about
 // x and y (contact/pin_space_rows.h). What acts in a row moves all rows by the mobility of the
-// linkage (model/response.h).
+// linkage (model/response.h), which may turn with the bodies in the step (model/response_drift.h).
 #pragma once
 
 #include "contact/force_law.h"
@@ -78,13 +78,18 @@ typedef struct Encounter {
     double stiff_width_s; // of the next implicit step; 0 where a contact has just begun
 
     // of the step under way, to be filled in before encounter_run
-    double *mobility;   // row by row: all of a row, or what is next to its diagonal
-    size_t reach;       // rows further apart do not move each other
-    size_t pitch;       // of `mobility`: between what two neighbouring rows have in one column
-    size_t origin;      // likewise: of the first row and column
-    double *free;       // acceleration while nothing acts
-    double *position;   // at the start, m; of a line the gap and 0; not of turns
-    double *speed;      // at the start, m/s, rad/s
+    double *mobility; // row by row: all of a row, or what is next to its diagonal
+    size_t reach;     // rows further apart do not move each other
+    size_t pitch;     // of `mobility`: between what two neighbouring rows have in one column
+    size_t origin;    // likewise: of the first row and column
+    double *drift;    // of few rows: how the mobility changes, 1/(kg s), laid out as it is; NULL
+                      // where it is taken as constant in the step
+    double *mobility_rate; // likewise, in the whole: what encounter_set_drift makes of it
+    double *free_rate;     // how the free acceleration changes by itself; NULL with `drift`
+    double middle_s;       // since the start: when mobility and free acceleration are as given
+    double *free;          // acceleration while nothing acts
+    double *position;      // at the start, m; of a line the gap and 0; not of turns
+    double *speed;         // at the start, m/s, rad/s
     size_t event_most;  // times in a step at which contacts may begin or end, until it is given up
     size_t event_count; // so far in the step
     struct EncounterInput *input; // what others do to the rows; NULL: nothing. Not owned
@@ -92,8 +97,9 @@ typedef struct Encounter {
     // what came of it: nodes, the first at the start, two where a contact begins or ends
     size_t node_count;
     size_t node_room;
-    double *times;      // s, since the start
-    double *values;     // by node: impulse, its integral over time, force; each by row
+    double *times; // s, since the start
+    double
+        *values; // by node: impulse, its integral over time, force, the integral's own; each by row
     double *losses;     // by node: J lost in damping and in friction since the start
     uint64_t *touching; // by node: which joints touch from there on, a word for each 64
     size_t evaluations; // of the forces, since the beginning
@@ -131,6 +137,15 @@ static inline double *encounter_mobility(const Encounter *encounter, size_t row,
 // The number of rows, all joints together.
 size_t encounter_rows(const Encounter *encounter);
 
+// Of an encounter whose rows all move each other: room for a mobility that changes in the step.
+void encounter_make_drift(Encounter *encounter);
+
+// Lets the mobility that has been filled in change in the step to come, of a length, s, about its
+// middle: `drift` is S, row by row, 1/(kg s), with which the mobility grows by S + S' and an
+// impulse P adds 2 S P to the rows' accelerations (model/response_drift.h). These change by
+// themselves, too, as has been written to `free_rate`.
+void encounter_set_drift(Encounter *encounter, const double *drift, double duration);
+
 // Integrates a step of a length, s. Returns false where that takes more local steps than there can
 // be sense in, or more events than are allowed.
 bool encounter_run(Encounter *encounter, double duration);
@@ -139,7 +154,7 @@ bool encounter_run(Encounter *encounter, double duration);
 // step, and the forces then.
 typedef struct EncounterSums {
     double *impulse;   // N s, N m s; owned, as the next two
-    double *moment;    // N s^2: integral of the impulse
+    double *moment;    // N s^2: integral of the impulse, by row, then that of the integral, N s^3
     double *force;     // N, N m
     double dissipated; // J
     double friction;   // J

@@ -63,7 +63,8 @@ static double share_of_joint(const Encounter *encounter, size_t joint, const Enc
     double changes[ENCOUNTER_ROWS_MOST];
     double errors[2][ENCOUNTER_ROWS_MOST];
     for (size_t i = 0; i < own; i++) {
-        speeds[i] = encounter_force_row_speed(encounter, first + i, from->time_s, from->impulse);
+        speeds[i] = encounter_force_row_speed(encounter, first + i, from->time_s, from->impulse,
+                                              from->moment);
     }
     move_rows(encounter, joint, moved, changes);
     move_rows(encounter, joint, impulse, errors[0]);

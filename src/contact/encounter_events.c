@@ -12,6 +12,7 @@ enum { ROOT_STEPS = 60, EVENT_STEPS = 8 };
 
 static const double TURNED = 1e-12; // of a flight, before which a pin has turned by rounding
 static const double EVENT_ROUNDING = 1e-14; // of a local step
+static const double NEARBY = 0.5; // of a flight: a closed form that is further off is another one
 
 // of a local step: contacts that begin or end nearer to each other than this do so together, for
 // rounding of positions keeps the contacts of equal mechanisms apart by no less
@@ -47,6 +48,24 @@ static double find_crossing(Encounter *encounter, EncounterStep *step, size_t jo
         }
     }
     return width;
+}
+
+// The same in a flight, from the closed form. That knows one acceleration, which may change.
+static double find_return(Encounter *encounter, EncounterStep *step, size_t joint, double whole_s)
+{
+    EncounterPoint *at = &encounter->work->trial;
+    double width_s = encounter_flight_time(encounter, joint, step->from, whole_s);
+    for (int i = 0; i < EVENT_STEPS && encounter->drift != NULL && width_s < INFINITY; i++) {
+        encounter_step_try(encounter, step, width_s, at);
+        const PinHole pose =
+            encounter_force_pose(encounter, joint, at->time_s, at->impulse, at->moment);
+        const double later_s = -pose.penetration / pose.approach_speed;
+        if (!(fabs(later_s) > EVENT_ROUNDING * whole_s) || !(fabs(later_s) < NEARBY * width_s)) {
+            break;
+        }
+        width_s += later_s;
+    }
+    return width_s > whole_s ? INFINITY : width_s;
 }
 
 // Whether the depth of a joint passes zero in a step, and between which widths and depths: at the
@@ -102,7 +121,7 @@ size_t encounter_events_find(Encounter *encounter, EncounterStep *step, const En
         crossings[i] = INFINITY;
         if (step->method == ENCOUNTER_FLIGHT && encounter->input == NULL &&
             is_leaving(encounter, step->from, i)) {
-            crossings[i] = encounter_flight_time(encounter, i, step->from, whole_s);
+            crossings[i] = find_return(encounter, step, i, whole_s);
             *width_s = fmin(*width_s, crossings[i]);
             found++;
         } else if (find_bracket(encounter, step, i, to, &first, &bracket_s, &last)) {

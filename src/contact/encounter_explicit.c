@@ -18,6 +18,9 @@
 // follows from the contact's frequency, or where a force that is no power of 1 begins or ends from
 // how near that is.
 //
+// The integral of Q need not be as good, for it stands beside the change of the mobility only:
+//     R+ = R + h Q + h^2 / 2 P + h^3 / 6 f + h^4 / 24 f'
+//
 // Sources: R. P. K. Chan and A. Y. J. Tsai, Numer. Algorithms 53 (2010) 171, for the two methods.
 #include "contact/encounter_explicit.h"
 
@@ -43,6 +46,19 @@ static const double REMEMBERED = 1.0;
 
 static const double STEP_SAFETY = 0.85;
 
+// The integrals of the moments a time after a point.
+static void add_second(const Encounter *encounter, const EncounterPoint *from, double since_s,
+                       double *moment)
+{
+    const size_t rows = encounter->row_count;
+    for (size_t i = 0; i < rows; i++) {
+        const double bend = from->force[i] / 6.0 + since_s / 24.0 * from->rate[i];
+        moment[rows + i] =
+            from->moment[rows + i] +
+            since_s * (from->moment[i] + since_s * (0.5 * from->impulse[i] + since_s * bend));
+    }
+}
+
 // The point at a share c of a step, by the rates at its start.
 static void find_middle_point(const Encounter *encounter, const EncounterPoint *from,
                               double since_s, EncounterPoint *point)
@@ -55,6 +71,7 @@ static void find_middle_point(const Encounter *encounter, const EncounterPoint *
             from->moment[i] +
             since_s * (from->impulse[i] + since_s * (0.5 * from->force[i] + half / 3.0));
     }
+    add_second(encounter, from, since_s, point->moment);
 }
 
 static void finish_order_4(const Encounter *encounter, const EncounterPoint *from, double h,
@@ -85,6 +102,7 @@ static void finish_order_5(Encounter *encounter, const EncounterPoint *from, dou
         last->impulse[i] = from->impulse[i] + h * (from->force[i] + rates);
         last->moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
     }
+    add_second(encounter, from, h, last->moment);
     // what others do may jump at the end of the step, not inside it
     encounter_input_look(encounter, true);
     encounter_rates_find(encounter, last);
@@ -115,6 +133,7 @@ void encounter_explicit_step(Encounter *encounter, const EncounterPoint *from, i
     find_middle_point(encounter, from, step->middle * width_s, step->inside);
     encounter_rates_find(encounter, step->inside);
     to->time_s = from->time_s + width_s;
+    add_second(encounter, from, width_s, to->moment);
     if (order == 4) {
         finish_order_4(encounter, from, width_s, step->inside, to);
     } else {
@@ -150,6 +169,7 @@ void encounter_explicit_inside(const Encounter *encounter, const EncounterExplic
                     h * h * s * s *
                         (from->force[i] / 2.0 + s * (slope / 6.0 + s * (a / 12.0 + s * b / 20.0)));
     }
+    add_second(encounter, from, h * s, moment);
 }
 
 void encounter_explicit_extend(const Encounter *encounter, const EncounterExplicit *step,

@@ -11,6 +11,7 @@
 // and friction is mu N tanh(s / v_s) against the direction of (v_t, v_z), s its size.
 #include "contact/encounter_force.h"
 
+#include "contact/encounter_drift.h"
 #include "contact/encounter_friction.h"
 
 #include <math.h>
@@ -31,20 +32,33 @@ static inline double row_motion(const Encounter *encounter, size_t row, double t
         place += mobility[k] * moment[k];
         speed += mobility[k] * impulse[k];
     }
+    if (encounter->drift != NULL) {
+        encounter_drift_add(encounter, row, time_s, impulse, moment, &speed, &place);
+    }
     *position = place;
     return speed;
 }
 
 double encounter_force_row_speed(const Encounter *encounter, size_t row, double time_s,
-                                 const double *impulse)
+                                 const double *impulse, const double *moment)
+{
+    double position;
+    return row_motion(encounter, row, time_s, impulse, moment, &position);
+}
+
+double encounter_force_row_acceleration(const Encounter *encounter, size_t row, double time_s,
+                                        const double *impulse, const double *force)
 {
     const double *mobility = encounter_mobility(encounter, row, 0);
     const EncounterSpan span = encounter_span(encounter, row);
-    double speed = encounter_free_speed(encounter, row, time_s);
+    double acceleration = encounter_free_rate(encounter, row, time_s);
     for (size_t k = span.first; k < span.end; k++) {
-        speed += mobility[k] * impulse[k];
+        acceleration += mobility[k] * force[k];
     }
-    return speed;
+    if (encounter->drift != NULL) {
+        acceleration += encounter_drift_acceleration(encounter, row, time_s, impulse, force);
+    }
+    return acceleration;
 }
 
 // What goes on along the line changes nothing.
@@ -141,6 +155,9 @@ static void find_all_rows(const Encounter *encounter, double time_s, const doubl
             positions[i] += added->position[i];
         }
     }
+    if (encounter->drift != NULL) {
+        encounter_drift_bend_all(encounter, time_s, positions, speeds);
+    }
     for (size_t k = 0; k < width; k++) {
         const double *mobility = encounter_mobility(encounter, k, 0);
         const EncounterSpan span = encounter_span(encounter, k);
@@ -153,6 +170,9 @@ static void find_all_rows(const Encounter *encounter, double time_s, const doubl
         for (size_t i = span.first; i < span.end; i++) {
             speeds[i] += mobility[i] * pushed;
             positions[i] += mobility[i] * moved;
+        }
+        if (encounter->drift != NULL) {
+            encounter_drift_add_all(encounter, k, time_s, impulse, moment, positions, speeds);
         }
     }
 }
@@ -171,7 +191,7 @@ static void find_own_rows(const Encounter *encounter, size_t joint, double time_
         } else if (i < 2) {
             speed[i] = row_motion(encounter, row + i, time_s, impulse, moment, &position[i]);
         } else {
-            speed[i] = encounter_force_row_speed(encounter, row + i, time_s, impulse);
+            speed[i] = encounter_force_row_speed(encounter, row + i, time_s, impulse, moment);
         }
     }
     for (size_t i = 0; is_wide && i < 2; i++) {

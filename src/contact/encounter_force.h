@@ -8,7 +8,7 @@
 typedef struct EncounterPoint {
     double time_s;
     double *impulse;       // N s, by row; the four are in one array that starts here
-    double *moment;        // N s^2, its integral over time
+    double *moment;        // N s^2, its integral over time, by row, then that one's, N s^3
     double *force;         // N
     double *rate;          // N/s, of the forces along the motion
     double powers[2];      // W, lost in damping and in friction
@@ -85,6 +85,9 @@ static inline double encounter_free_rate(const Encounter *encounter, size_t row,
                : encounter->free[row] + encounter_input_at(encounter, time_s)->acceleration[row];
 }
 
+// Moments, here and below, are by row the integrals of the impulses and then those of the
+// integrals.
+
 // Writes the forces in all rows, and the powers lost in damping and in friction.
 void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
                           const double *moment, double *force, double powers[2]);
@@ -103,9 +106,13 @@ PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double ti
 PinHole encounter_force_flight(const Encounter *encounter, size_t joint, double time_s,
                                const double moved[2], const double speeds[2]);
 
-// The rate of a row, m/s or rad/s, after impulses.
+// The rate of a row, m/s or rad/s, after impulses and their integrals.
 double encounter_force_row_speed(const Encounter *encounter, size_t row, double time_s,
-                                 const double *impulse);
+                                 const double *impulse, const double *moment);
+
+// The acceleration of a row, m/s^2 or rad/s^2, under forces, after impulses.
+double encounter_force_row_acceleration(const Encounter *encounter, size_t row, double time_s,
+                                        const double *impulse, const double *force);
 
 // How fast the damping of a contact at a depth takes up its closing speed, 1/s.
 double encounter_force_decay(const Encounter *encounter, size_t joint, Vec2 normal, double depth);

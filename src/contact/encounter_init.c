@@ -66,12 +66,12 @@ void encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t row
 
 EncounterPoint encounter_point(size_t rows)
 {
-    double *numbers = zeroed(4 * rows, sizeof *numbers);
+    double *numbers = zeroed(5 * rows, sizeof *numbers);
     return (EncounterPoint){
         .impulse = numbers,
         .moment = numbers + rows,
-        .force = numbers + 2 * rows,
-        .rate = numbers + 3 * rows,
+        .force = numbers + 3 * rows,
+        .rate = numbers + 4 * rows,
     };
 }
 
@@ -94,7 +94,7 @@ static EncounterWork *make_work(size_t rows, size_t joints)
     work->positions = zeroed(rows, sizeof *work->positions);
     work->speeds = zeroed(rows, sizeof *work->speeds);
     for (size_t i = 0; i < ENCOUNTER_ERRORS; i++) {
-        work->errors[i] = zeroed(rows, sizeof *work->errors[i]);
+        work->errors[i] = zeroed(2 * rows, sizeof *work->errors[i]);
     }
     work->crossings_s = zeroed(joints, sizeof *work->crossings_s);
     work->has_event = zeroed(joints, sizeof *work->has_event);
@@ -150,6 +150,9 @@ void encounter_finish(Encounter *encounter)
     free(encounter->joints);
     free(encounter->joint_of);
     free(encounter->mobility);
+    free(encounter->drift);
+    free(encounter->mobility_rate);
+    free(encounter->free_rate);
     free(encounter->free);
     free(encounter->position);
     free(encounter->speed);
@@ -164,9 +167,9 @@ void encounter_finish(Encounter *encounter)
 
 EncounterSums encounter_sums(size_t rows)
 {
-    double *numbers = zeroed(3 * rows, sizeof *numbers);
+    double *numbers = zeroed(4 * rows, sizeof *numbers);
     return (EncounterSums){
-        .impulse = numbers, .moment = numbers + rows, .force = numbers + 2 * rows};
+        .impulse = numbers, .moment = numbers + rows, .force = numbers + 3 * rows};
 }
 
 void encounter_sums_free(EncounterSums *sums)

@@ -45,7 +45,7 @@ void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point)
         const size_t room = encounter->node_room;
         encounter->times = realloc(encounter->times, room * sizeof *encounter->times);
         encounter->values =
-            realloc(encounter->values, (3 * rows * room + 1) * sizeof *encounter->values);
+            realloc(encounter->values, (4 * rows * room + 1) * sizeof *encounter->values);
         encounter->losses = realloc(encounter->losses, 2 * room * sizeof *encounter->losses);
         encounter->touching =
             realloc(encounter->touching, (words * room + 1) * sizeof *encounter->touching);
@@ -53,11 +53,12 @@ void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point)
                encounter->touching != NULL);
     }
     const size_t node = encounter->node_count++;
-    double *values = encounter->values + 3 * rows * node;
+    double *values = encounter->values + 4 * rows * node;
     encounter->times[node] = point->time_s;
     memcpy(values, point->impulse, rows * sizeof *values);
     memcpy(values + rows, point->moment, rows * sizeof *values);
     memcpy(values + 2 * rows, point->force, rows * sizeof *values);
+    memcpy(values + 3 * rows, point->moment + rows, rows * sizeof *values);
     memcpy(encounter->losses + 2 * node, point->losses, sizeof point->losses);
     set_touching(encounter, encounter->touching + words * node);
 }
@@ -82,21 +83,29 @@ size_t encounter_node(const Encounter *encounter, double time_s)
     return low;
 }
 
+static EncounterNodeRow node_row(const double *values, size_t rows, size_t row)
+{
+    return (EncounterNodeRow){.impulse = values[row],
+                              .moment = values[rows + row],
+                              .force = values[2 * rows + row],
+                              .second = values[3 * rows + row]};
+}
+
 void encounter_at(const Encounter *encounter, size_t node, double time_s, EncounterSums *sums)
 {
     const size_t rows = encounter_rows(encounter);
     const size_t next = node + 1 < encounter->node_count ? node + 1 : node;
-    const double *first = encounter->values + 3 * rows * node;
-    const double *last = encounter->values + 3 * rows * next;
+    const double *first = encounter->values + 4 * rows * node;
+    const double *last = encounter->values + 4 * rows * next;
     const double width = encounter->times[next] - encounter->times[node];
     const double s = width > 0.0 ? (time_s - encounter->times[node]) / width : 0.0;
     const bool is_short = width < ENCOUNTER_NARROW * encounter->times[encounter->node_count - 1];
     for (size_t i = 0; i < rows; i++) {
-        const EncounterNodeRow at = encounter_quintic(
-            (EncounterNodeRow){first[i], first[rows + i], first[2 * rows + i]},
-            (EncounterNodeRow){last[i], last[rows + i], last[2 * rows + i]}, width, s, is_short);
+        const EncounterNodeRow at = encounter_quintic(node_row(first, rows, i),
+                                                      node_row(last, rows, i), width, s, is_short);
         sums->impulse[i] = at.impulse;
         sums->moment[i] = at.moment;
+        sums->moment[rows + i] = at.second;
         sums->force[i] = at.force;
     }
     const double *before = encounter->losses + 2 * node;

@@ -12,6 +12,7 @@ typedef struct EncounterNodeRow {
     double impulse;
     double moment;
     double force;
+    double second; // the moment's integral, where it is asked for
 } EncounterNodeRow;
 
 // The row at a share `s` of the width, s, between two nodes.
@@ -33,6 +34,11 @@ static inline EncounterNodeRow encounter_quintic(EncounterNodeRow first, Encount
     return (EncounterNodeRow){
         .impulse = width > 0.0 ? impulse / width : first.impulse,
         .moment = first.moment + s * (p0 + s * (0.5 * f0 + s * (a + s * (b + s * c)))),
+        .second =
+            first.second +
+            width * s *
+                (first.moment +
+                 s * (p0 / 2.0 + s * (f0 / 6.0 + s * (a / 4.0 + s * (b / 5.0 + s * c / 6.0))))),
         .force = is_short || width == 0.0 ? first.force + s * (last.force - first.force)
                                           : force / (width * width),
     };

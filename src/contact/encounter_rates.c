@@ -192,17 +192,13 @@ static void rate_joint(Moving *moving, const EncounterTouch *touch, EncounterPoi
 }
 
 // How a joint's rows move under the forces.
-static void find_moving(const Encounter *encounter, double time_s, const double *forces,
-                        const EncounterTouch *touch, Moving *moving)
+static void find_moving(const Encounter *encounter, const EncounterPoint *point,
+                        const double *forces, const EncounterTouch *touch, Moving *moving)
 {
     const size_t first = moving->joint->first_row;
     for (size_t k = 0; k < moving->joint->row_count; k++) {
-        const double *mobility = encounter_mobility(encounter, first + k, 0);
-        const EncounterSpan span = encounter_span(encounter, first + k);
-        double acceleration = encounter_free_rate(encounter, first + k, time_s);
-        for (size_t m = span.first; m < span.end; m++) {
-            acceleration += mobility[m] * forces[m];
-        }
+        const double acceleration = encounter_force_row_acceleration(
+            encounter, first + k, point->time_s, point->impulse, forces);
         moving->speed[k] = (Rated){touch->speed[k], acceleration};
     }
 }
@@ -226,7 +222,7 @@ void encounter_rates_find(Encounter *encounter, EncounterPoint *point)
                 .force = point->force + joint->first_row,
                 .rate = point->rate + joint->first_row,
             };
-            find_moving(encounter, point->time_s, forces, &touching[i], &moving);
+            find_moving(encounter, point, forces, &touching[i], &moving);
             rate_joint(&moving, &touching[i], point);
         }
     }

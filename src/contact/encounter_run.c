@@ -5,8 +5,12 @@
 //     u'' = g + W f
 // With the impulse P' = f and its integral Q' = P that is
 //     u' = u0' + g t + W P,   u = u0 + u0' t + g t^2 / 2 + W Q
-// so that only P and Q are integrated, in local steps (contact/encounter_step.c). Ends of a contact
-// are found to rounding, and steps end there.
+// Of few rows W may be linear in time, and g in time and in the impulse, as model/response_drift.h
+// has it:
+//     u'' = g + g' (t - h/2) + 2 S P + (W + (t - h/2) (S + S^T)) f
+// which P, Q and the integral R of Q solve as well (contact/encounter_force.c),
+// so that only P, Q and R are integrated, in local steps (contact/encounter_step.c). Ends of a
+// contact are found to rounding, and steps end there.
 #include "contact/encounter.h"
 
 #include "contact/encounter_events.h"
@@ -26,6 +30,9 @@ static const double PHASE_ERROR = 1.0 / 120.0;
 // what is allowed where it is not given: of the error that comes of a response that is taken as
 // constant
 static const double ERROR_SHARE = 0.008;
+
+// the same where it changes in the step, which leaves a tenth of that error
+static const double DRIFT_SHARE = 0.004;
 static const double TOLERANCE_LEAST = 1e-10;
 static const double TOLERANCE_MOST = 1e-3;
 
@@ -65,6 +72,7 @@ static void set_tolerances(Encounter *encounter, double duration_s)
 {
     const double phase = encounter->phase;
     const double between_s = 0.5 * (duration_s + encounter->duration_before_s);
+    const double share = encounter->drift != NULL ? DRIFT_SHARE : ERROR_SHARE;
     for (size_t i = 0; i < encounter->joint_count; i++) {
         EncounterJoint *joint = &encounter->joints[i];
         const double *own = encounter_mobility(encounter, joint->first_row, joint->first_row);
@@ -73,8 +81,7 @@ static void set_tolerances(Encounter *encounter, double duration_s)
         } else if (encounter->duration_before_s > 0.0) {
             const double change = response_change(encounter, joint) * duration_s / between_s;
             const double turned = fmin(1.0, joint->frequency * duration_s / M_PI);
-            joint->tolerance =
-                fmin(fmax(ERROR_SHARE * change * turned, TOLERANCE_LEAST), TOLERANCE_MOST);
+            joint->tolerance = fmin(fmax(share * change * turned, TOLERANCE_LEAST), TOLERANCE_MOST);
         } else {
             joint->tolerance = TOLERANCE_LEAST;
         }
@@ -176,7 +183,7 @@ static void begin_step(const Encounter *encounter, EncounterPoint *point)
 {
     point->time_s = 0.0;
     memset(point->impulse, 0, encounter->row_count * sizeof *point->impulse);
-    memset(point->moment, 0, encounter->row_count * sizeof *point->moment);
+    memset(point->moment, 0, 2 * encounter->row_count * sizeof *point->moment);
     memset(point->losses, 0, sizeof point->losses);
 }
 

@@ -213,7 +213,8 @@ void encounter_slopes_find(const Encounter *encounter, size_t number, double tim
     }
     double speeds[SPEEDS] = {0.0};
     for (size_t i = 0; i < joint->row_count; i++) {
-        speeds[i] = encounter_force_row_speed(encounter, joint->first_row + i, time_s, impulse);
+        speeds[i] =
+            encounter_force_row_speed(encounter, joint->first_row + i, time_s, impulse, moment);
     }
     Gradient by_normal;
     const double normal =

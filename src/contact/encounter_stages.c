@@ -48,7 +48,7 @@ EncounterStages *encounter_stages_create(const Encounter *encounter)
     for (size_t i = 0; i < ENCOUNTER_STAGES; i++) {
         stages->moved[i] = zeroed(rows, sizeof *stages->moved[i]);
         stages->impulse[i] = zeroed(rows, sizeof *stages->impulse[i]);
-        stages->moment[i] = zeroed(rows, sizeof *stages->moment[i]);
+        stages->moment[i] = zeroed(2 * rows, sizeof *stages->moment[i]);
     }
     for (size_t i = 0; i <= ENCOUNTER_STAGES; i++) {
         stages->forces[i] = zeroed(rows, sizeof *stages->forces[i]);
@@ -165,13 +165,19 @@ static void differentiate(const Encounter *encounter, EncounterStages *stages, s
 static void find_stage(const Encounter *encounter, EncounterStages *stages,
                        const EncounterPoint *from, double width_s, size_t stage)
 {
-    for (size_t i = 0; i < encounter_rows(encounter); i++) {
+    const size_t rows = encounter_rows(encounter);
+    for (size_t i = 0; i < rows; i++) {
         double sum = ENCOUNTER_NODE[stage] * from->impulse[i];
         for (size_t j = 0; j < ENCOUNTER_STAGES; j++) {
             sum += ENCOUNTER_COUPLING[stage][j] * stages->moved[j][i];
         }
         stages->impulse[stage][i] = from->impulse[i] + stages->moved[stage][i];
         stages->moment[stage][i] = from->moment[i] + width_s * sum;
+        // what the impulses have been on the way is known well enough
+        const double since_s = ENCOUNTER_NODE[stage] * width_s;
+        const double bend = from->impulse[i] / 2.0 + stages->moved[stage][i] / 6.0;
+        stages->moment[stage][rows + i] =
+            from->moment[rows + i] + since_s * (from->moment[i] + since_s * bend);
     }
 }
 

@@ -48,10 +48,13 @@ static bool is_any_touching(const Encounter *encounter)
 static void fly(const Encounter *encounter, const EncounterPoint *from, double width_s,
                 EncounterPoint *to)
 {
+    const size_t rows = encounter->row_count;
     to->time_s = from->time_s + width_s;
-    for (size_t i = 0; i < encounter->row_count; i++) {
+    for (size_t i = 0; i < rows; i++) {
         to->impulse[i] = from->impulse[i];
         to->moment[i] = from->moment[i] + width_s * from->impulse[i];
+        to->moment[rows + i] =
+            from->moment[rows + i] + width_s * (from->moment[i] + 0.5 * width_s * from->impulse[i]);
         to->force[i] = to->rate[i] = 0.0;
     }
     memcpy(to->losses, from->losses, sizeof to->losses);

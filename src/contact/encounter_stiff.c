@@ -132,6 +132,7 @@ static double estimate_error(Encounter *encounter, EncounterStages *stages,
     for (size_t i = 0; i < rows; i++) {
         rate[i] = from->impulse[i] + impulse[i];
         sum[i] = from->moment[i] + moment[i];
+        sum[rows + i] = from->moment[rows + i];
     }
     encounter_force_find(encounter, from->time_s, rate, sum, force, powers);
     find_errors(encounter, stages, from, hg, force, rate, impulse, moment);
@@ -149,7 +150,7 @@ double encounter_stiff_step(Encounter *encounter, const EncounterPoint *from, do
     to->time_s = from->time_s + width_s;
     const size_t rows = encounter_rows(encounter);
     memcpy(to->impulse, stages->impulse[ENCOUNTER_STAGES - 1], rows * sizeof *to->impulse);
-    memcpy(to->moment, stages->moment[ENCOUNTER_STAGES - 1], rows * sizeof *to->moment);
+    memcpy(to->moment, stages->moment[ENCOUNTER_STAGES - 1], 2 * rows * sizeof *to->moment);
     for (size_t i = 0; i < 2; i++) {
         double sum = 0.0;
         for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {

@@ -68,8 +68,9 @@ void encounter_track_at(const EncounterTrack *track, double time_s, bool is_befo
     const bool is_short = width < ENCOUNTER_NARROW * track->times[track->count - 1];
     for (size_t i = 0; i < rows; i++) {
         const EncounterNodeRow at = encounter_quintic(
-            (EncounterNodeRow){first[i], first[rows + i], first[2 * rows + i]},
-            (EncounterNodeRow){last[i], last[rows + i], last[2 * rows + i]}, width, s, is_short);
+            (EncounterNodeRow){first[i], first[rows + i], first[2 * rows + i], 0.0},
+            (EncounterNodeRow){last[i], last[rows + i], last[2 * rows + i], 0.0}, width, s,
+            is_short);
         impulse[i] = at.impulse;
         moment[i] = at.moment;
         force[i] = at.force;
@@ -101,7 +102,7 @@ static double track_change(const EncounterTrack *track, const Encounter *encount
     size_t begin = 0;
     *largest = 0.0;
     for (size_t node = 0; node < encounter->node_count; node++) {
-        const double *now = encounter->values + 3 * encounter->row_count * node + of->first_row;
+        const double *now = encounter->values + 4 * encounter->row_count * node + of->first_row;
         if (track->count > 0) {
             encounter_track_at(track, encounter->times[node], false, &begin, impulse, moment,
                                force);
@@ -141,7 +142,7 @@ void encounter_track_write(EncounterTrack *track, const Encounter *encounter, si
         track->times[node] = encounter->times[node];
         for (size_t part = 0; part < 3; part++) {
             memcpy(track->values + (3 * node + part) * track->rows,
-                   encounter->values + (3 * node + part) * rows + of->first_row,
+                   encounter->values + (4 * node + part) * rows + of->first_row,
                    track->rows * sizeof *track->values);
         }
         if (node > 0 && encounter_touches(encounter, node, joint) !=

@@ -167,8 +167,10 @@ typedef struct OdeOptions {
     size_t settle_steps;    // of ODE_PLAIN: run before time zero where every joint is ideal
     size_t levels;          // of ODE_EXTRAPOLATED: worlds side by side
     size_t gear;            // of ODE_MAP_IMPULSE: by how much steps are finer near a wall
-    double contact_phase;   // rad, of ODE_MAP_IMPULSE: how accurate local steps of contacts are, as
-                            // classical steps of that phase; 0: as the step of the world allows
+    bool is_frozen;       // of ODE_MAP_IMPULSE: bodies answer contacts as at mid-step throughout a
+                          // step, as in space and in worlds of callers; no key of a case
+    double contact_phase; // rad, of ODE_MAP_IMPULSE: how accurate local steps of contacts are, as
+                          // classical steps of that phase; 0: as the step of the world allows
 } OdeOptions;
 
 // s, the step where a case names a way of stepping but no step: one that is chosen has its own way.

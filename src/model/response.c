@@ -88,26 +88,9 @@ void response_free(const Response *response, const Motion *motions, double gravi
     memcpy(rates, gamma + response->ideal_rows, response_play_rows(response) * sizeof *rates);
 }
 
-// Adds what an impulse in a row does to its bodies: changes of their speeds, or without a linkage
-// the impulses themselves.
-static void add_row(const Linkage *linkage, const ResponseRow *row, double impulse, double *sums)
-{
-    for (int end = 0; end < 2; end++) {
-        if (row->body[end] != LINKAGE_GROUND) {
-            const Body *body = linkage != NULL ? &linkage->bodies[row->body[end]] : NULL;
-            const double mass = body != NULL ? body->mass : 1.0;
-            const double inertia = body != NULL ? body->inertia : 1.0;
-            double *sum = sums + 3 * row->body[end];
-            sum[0] += row->x[end] * impulse / mass;
-            sum[1] += row->y[end] * impulse / mass;
-            sum[2] += row->turn[end] * impulse / inertia;
-        }
-    }
-}
-
 void response_add_row(const Response *response, size_t row, double impulse, double *changes)
 {
-    add_row(response->linkage, &response->rows[row], impulse, changes);
+    response_row_push(response->linkage, &response->rows[row], impulse, changes);
 }
 
 // All impulses that impulses in the joints with play bring with them, by row.
@@ -130,7 +113,7 @@ void response_apply(const Response *response, const double *impulses, double *ch
     const double *all = answer(response, impulses);
     memset(changes, 0, 3 * response->linkage->body_count * sizeof *changes);
     for (size_t i = 0; i < response->row_count; i++) {
-        add_row(response->linkage, &response->rows[i], all[i], changes);
+        response_row_push(response->linkage, &response->rows[i], all[i], changes);
     }
 }
 
@@ -138,7 +121,7 @@ void response_load(const Response *response, const double *impulses, double *loa
 {
     memset(loads, 0, 3 * response->linkage->body_count * sizeof *loads);
     for (size_t i = response->ideal_rows; i < response->row_count; i++) {
-        add_row(NULL, &response->rows[i], impulses[i - response->ideal_rows], loads);
+        response_row_push(NULL, &response->rows[i], impulses[i - response->ideal_rows], loads);
     }
 }
 
@@ -146,7 +129,7 @@ void response_hold(const Response *response, const double *reactions, double *lo
 {
     memset(loads, 0, 3 * response->linkage->body_count * sizeof *loads);
     for (size_t i = 0; i < response->ideal_rows; i++) {
-        add_row(NULL, &response->rows[i], reactions[i], loads);
+        response_row_push(NULL, &response->rows[i], reactions[i], loads);
     }
 }
 
@@ -164,7 +147,7 @@ void response_close(const Response *response, const double *openings, double *im
     response_solve(response, impulses);
     memset(changes, 0, 3 * response->linkage->body_count * sizeof *changes);
     for (size_t i = 0; i < response->ideal_rows; i++) {
-        add_row(response->linkage, &response->rows[i], impulses[i], changes);
+        response_row_push(response->linkage, &response->rows[i], impulses[i], changes);
     }
 }
 

@@ -144,6 +144,33 @@ void response_rows_place(Response *response, const Motion *motions)
     }
 }
 
+void response_row_push(const Linkage *linkage, const ResponseRow *row, double impulse, double *sums)
+{
+    for (int end = 0; end < 2; end++) {
+        if (row->body[end] != LINKAGE_GROUND) {
+            const Body *body = linkage != NULL ? &linkage->bodies[row->body[end]] : NULL;
+            const double mass = body != NULL ? body->mass : 1.0;
+            const double inertia = body != NULL ? body->inertia : 1.0;
+            double *sum = sums + 3 * row->body[end];
+            sum[0] += row->x[end] * impulse / mass;
+            sum[1] += row->y[end] * impulse / mass;
+            sum[2] += row->turn[end] * impulse / inertia;
+        }
+    }
+}
+
+double response_row_of(const ResponseRow *row, const double *speeds)
+{
+    double sum = 0.0;
+    for (int end = 0; end < 2; end++) {
+        if (row->body[end] != LINKAGE_GROUND) {
+            const double *speed = speeds + 3 * row->body[end];
+            sum += row->x[end] * speed[0] + row->y[end] * speed[1] + row->turn[end] * speed[2];
+        }
+    }
+    return sum;
+}
+
 // The rate of a body's turning under loads, rad/s^2; of the driven body that of the drive.
 static double free_turning(const Linkage *linkage, const Motion *motions, int body,
                            const BodyLoad *loads)

@@ -61,6 +61,14 @@ static inline size_t response_place_rows(const ResponsePlace *place)
     return place->has_turns ? RESPONSE_ROWS_A_JOINT : 2;
 }
 
+// Adds what an impulse in a row does to its bodies, three each: changes of their speeds, or without
+// a linkage the impulses themselves.
+void response_row_push(const Linkage *linkage, const ResponseRow *row, double impulse,
+                       double *sums);
+
+// What a row makes of speeds, three a body.
+double response_row_of(const ResponseRow *row, const double *speeds);
+
 // Writes the rows where the bodies are.
 void response_rows_place(Response *response, const Motion *motions);
 

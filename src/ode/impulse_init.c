@@ -5,9 +5,9 @@
 
 #include <stdlib.h>
 
-// rows up to which what each of them does is worked out once a step: that takes as much as asking
-// for them together so many times
-enum { FEW_ROWS = 4 };
+// rows up to which what each of them does, and how that changes, is worked out once a step: that
+// takes as the square of their number
+enum { FEW_ROWS = 16 };
 
 static void make_arrays(ImpulseStep *step)
 {
@@ -21,6 +21,7 @@ static void make_arrays(ImpulseStep *step)
     step->after = zeroed(bodies, sizeof *step->after);
     step->free = zeroed(3 * bodies, sizeof *step->free);
     step->free_rate = zeroed(3 * bodies, sizeof *step->free_rate);
+    step->ahead = zeroed(3 * bodies, sizeof *step->ahead);
     step->rest = zeroed(3 * bodies, sizeof *step->rest);
     step->closing = zeroed(step->response.ideal_rows, sizeof *step->closing);
     step->mean = zeroed(joints, sizeof *step->mean);
@@ -29,7 +30,14 @@ static void make_arrays(ImpulseStep *step)
     work->offsets = zeroed(joints, sizeof *work->offsets);
     work->joints = zeroed(joints, sizeof *work->joints);
     const size_t rows = encounter_rows(&step->encounter);
-    for (size_t i = 0; rows <= FEW_ROWS && i < IMPULSE_COLUMNS; i++) {
+    step->has_few_rows =
+        step->islands == NULL && rows <= FEW_ROWS && !step->scenario->ode.is_frozen;
+    if (step->has_few_rows) {
+        encounter_make_drift(&step->encounter);
+        step->drift = response_drift_create(&step->response);
+        step->columns[0] = step->drift.columns;
+    }
+    for (size_t i = 1; step->has_few_rows && i < IMPULSE_COLUMNS; i++) {
         step->columns[i] = zeroed(3 * bodies * rows, sizeof *step->columns[i]);
     }
     for (size_t i = 0; i < 2; i++) {
@@ -47,11 +55,13 @@ static void free_arrays(ImpulseStep *step)
     free(step->after);
     free(step->free);
     free(step->free_rate);
+    free(step->ahead);
     free(step->rest);
     free(step->closing);
-    for (size_t i = 0; i < IMPULSE_COLUMNS; i++) {
-        free(step->columns[i]);
+    for (size_t i = 1; i < IMPULSE_COLUMNS; i++) {
+        free(step->columns[i]); // the first one is the drift's
     }
+    response_drift_finish(&step->drift);
     free(step->moved[0]);
     free(step->moved[1]);
     free(step->mean);

@@ -10,18 +10,26 @@
 
 #include <string.h>
 
-// What impulses in the rows of play do to the speeds of a scope's bodies.
-static void apply(const ImpulseStep *step, const ImpulseScope *scope, const double *impulses,
-                  double *changes)
+// What impulses in the rows of play do to the speeds of an island's bodies.
+static void push_scope(const ImpulseStep *step, const ImpulseScope *scope, const double *impulses,
+                       double *changes)
 {
-    if (scope->is_whole) {
-        impulse_step_apply(step, impulses, changes);
-        return;
-    }
     for (size_t n = 0; n < scope->body_count; n++) {
         memset(changes + 3 * scope->bodies[n], 0, 3 * sizeof *changes);
     }
     response_groups_apply(&step->response, &step->groups, &scope->part, impulses, changes);
+}
+
+// What the contacts have done to the speeds and the positions of a scope's bodies up to a time.
+static void push_bodies(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
+                        const EncounterSums *sums, double *speeds, double *positions)
+{
+    if (scope->is_whole) {
+        impulse_step_push_bodies(step, since_s, sums, speeds, positions);
+        return;
+    }
+    push_scope(step, scope, sums->impulse, speeds);
+    push_scope(step, scope, sums->moment, positions);
 }
 
 // How the bodies move at a time within the step, from the contacts' sums up to then.
@@ -34,9 +42,9 @@ static void find_motions(const ImpulseStep *step, const ImpulseScope *scope, dou
     }
     double *speeds = step->work->changes[0];
     double *positions = step->work->changes[1];
-    apply(step, scope, sums->impulse, speeds);
-    apply(step, scope, sums->moment, positions);
+    push_bodies(step, scope, since_s, sums, speeds, positions);
     const double share = since_s / step->width_s;
+    const double half_s = step->has_few_rows ? 0.5 * since_s : 0.0;
     for (size_t n = 0; n < scope->body_count; n++) {
         const size_t i = scope->bodies[n];
         const Motion *first = &step->before[i];
@@ -45,8 +53,10 @@ static void find_motions(const ImpulseStep *step, const ImpulseScope *scope, dou
         double w[3];
         for (size_t k = 0; k < 3; k++) {
             const double mean = step->free[3 * i + k];
-            w[k] = v[k] + since_s * mean + speeds[3 * i + k];
+            const double bend = half_s * step->free_rate[3 * i + k];
+            w[k] = v[k] + since_s * mean + bend * (since_s - step->width_s) + speeds[3 * i + k];
             q[k] += since_s * (v[k] + 0.5 * since_s * mean) + positions[3 * i + k] +
+                    bend * since_s * (since_s / 3.0 - 0.5 * step->width_s) +
                     share * share * step->rest[3 * i + k];
         }
         motions[i] = (Motion){
@@ -66,30 +76,12 @@ static void find_contact_rates(const ImpulseStep *step, const ImpulseScope *scop
                                double *rates)
 {
     if (!scope->is_whole) {
-        apply(step, scope, sums->force, rates);
+        push_scope(step, scope, sums->force, rates);
         return;
     }
-    if (step->columns[0] == NULL || step->count < IMPULSE_COLUMNS) {
+    if (!impulse_step_parabola(step, since_s, sums->force, rates)) {
         const bool is_placed = is_peak && response_place(&step->work->there, motions);
         response_apply(is_placed ? &step->work->there : &step->response, sums->force, rates);
-        return;
-    }
-    const size_t count = 3 * step->scenario->linkage.body_count;
-    const double time_s = step->start_s + since_s;
-    memset(rates, 0, count * sizeof *rates);
-    for (size_t k = 0; k < IMPULSE_COLUMNS; k++) {
-        double weight = 1.0;
-        for (size_t j = 0; j < IMPULSE_COLUMNS; j++) {
-            weight *=
-                j == k ? 1.0
-                       : (time_s - step->middles_s[j]) / (step->middles_s[k] - step->middles_s[j]);
-        }
-        for (size_t row = 0; row < encounter_rows(&step->encounter); row++) {
-            const double force = weight * sums->force[row];
-            for (size_t i = 0; i < count; i++) {
-                rates[i] += force * step->columns[k][row * count + i];
-            }
-        }
     }
 }
 

@@ -6,6 +6,8 @@
 //     P, Q = impulse of the contacts and its integral over the step, by contact/encounter_run.c
 //     v' from dWorldStep at q_m under the mean force P / h, the driven body at its speed of t + h
 //     q' = q_m + (h/2) v' + A (Q - (h/2) P)           A P = what P does to the speeds
+//     and where A' is known (ode/impulse_columns.c), R the integral of Q
+//     v' += A' ((h/2) P - Q),   q' += A' ((h/2) Q - 2 R)
 //     q', v' put back on the ideal joints along the rows at mid-step
 // The last term of q' stands for when in the step the impulse came. The correction along the rows
 // at mid-step, not at the end, leaves the step symmetric in time to the order that matters: the
@@ -95,55 +97,6 @@ static bool is_near_wall(const ImpulseStep *step, double width_s)
     return false;
 }
 
-// The bodies at mid-step, with the speeds of its start.
-static void find_middle(const ImpulseStep *step, Motion *middle)
-{
-    const double half_s = 0.5 * step->width_s;
-    for (size_t i = 0; i < body_count(step); i++) {
-        const Motion *motion = &step->before[i];
-        middle[i] = *motion;
-        middle[i].position = vec2_add(motion->position, vec2_scale(half_s, motion->velocity));
-        middle[i].angle = motion->angle + half_s * motion->omega;
-    }
-    if (step->driven >= 0) {
-        middle[step->driven] = stepping_driven(&step->scenario->linkage, step->start_s + half_s);
-    }
-}
-
-void impulse_step_apply(const ImpulseStep *step, const double *impulses, double *changes)
-{
-    const double *columns = step->columns[0];
-    if (columns == NULL) {
-        response_apply(&step->response, impulses, changes);
-        return;
-    }
-    const size_t count = 3 * body_count(step);
-    memset(changes, 0, count * sizeof *changes);
-    for (size_t row = 0; row < encounter_rows(&step->encounter); row++) {
-        for (size_t i = 0; i < count; i++) {
-            changes[i] += impulses[row] * columns[row * count + i];
-        }
-    }
-}
-
-// What an impulse in each row does, if there are few: it is asked for several times in a step.
-static void find_columns(ImpulseStep *step)
-{
-    const size_t rows = encounter_rows(&step->encounter);
-    double *oldest = step->columns[IMPULSE_COLUMNS - 1];
-    memmove(step->columns + 1, step->columns, (IMPULSE_COLUMNS - 1) * sizeof *step->columns);
-    memmove(step->middles_s + 1, step->middles_s, (IMPULSE_COLUMNS - 1) * sizeof *step->middles_s);
-    step->columns[0] = oldest;
-    step->middles_s[0] = step->start_s + 0.5 * step->width_s;
-    double *unit = step->work->rows[0];
-    memset(unit, 0, rows * sizeof *unit);
-    for (size_t row = 0; oldest != NULL && row < rows; row++) {
-        unit[row] = 1.0;
-        response_apply(&step->response, unit, oldest + 3 * body_count(step) * row);
-        unit[row] = 0.0;
-    }
-}
-
 // Lets the contacts run through the step by themselves.
 static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
 {
@@ -152,16 +105,21 @@ static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
         return err_set(err, ERR_SOLVER,
                        "the ideal joints are redundant here: give one joint of the loop some play");
     }
-    find_columns(step);
-    const Applied *applied = &step->world.applied;
-    response_free(&step->response, middle, step->scenario->gravity,
-                  applied->is_any ? applied->loads : NULL, encounter->free);
+    double *free_before = step->work->rows[1];
+    if (step->has_few_rows) {
+        impulse_step_keep_free(step, free_before);
+        impulse_step_find_columns(step, middle);
+    }
+    impulse_step_find_free(step, middle);
     bool is_run;
     if (step->islands != NULL) {
         is_run = encounter_islands_run(step->islands, step->width_s);
     } else {
         const EncounterCoupling coupling = impulse_step_coupling(&step->response);
         encounter_fill(encounter, &coupling, NULL);
+        if (step->has_few_rows) {
+            impulse_step_set_drift(step, free_before);
+        }
         is_run = encounter_run(encounter, step->width_s);
     }
     if (!is_run) {
@@ -200,8 +158,8 @@ static bool step_world(ImpulseStep *step, const Motion *middle, Err *err)
 }
 
 // Adds changes, three a body, to the free bodies' positions and speeds.
-static void change_motions(const ImpulseStep *step, const double *positions, const double *speeds,
-                           Motion *motions)
+void impulse_step_change_motions(const ImpulseStep *step, const double *positions,
+                                 const double *speeds, Motion *motions)
 {
     for (size_t i = 0; i < body_count(step); i++) {
         if (impulse_step_is_free(step, i)) {
@@ -217,7 +175,7 @@ static void change_motions(const ImpulseStep *step, const double *positions, con
 }
 
 // Places and speeds at the end of the step.
-static void find_end(ImpulseStep *step, const Motion *middle)
+static void find_end(ImpulseStep *step)
 {
     const double half_s = 0.5 * step->width_s;
     for (size_t i = 0; i < body_count(step); i++) {
@@ -226,20 +184,28 @@ static void find_end(ImpulseStep *step, const Motion *middle)
             Motion *after = &step->after[i];
             after->velocity = now.velocity;
             after->omega = now.omega;
-            after->position = vec2_add(middle[i].position, vec2_scale(half_s, now.velocity));
-            after->angle = middle[i].angle + half_s * now.omega;
+            const Motion *before = &step->before[i];
+            const Vec2 moved = vec2_scale(half_s, before->velocity);
+            after->position =
+                vec2_add(vec2_add(before->position, moved), vec2_scale(half_s, now.velocity));
+            after->angle = before->angle + half_s * before->omega + half_s * now.omega;
         }
     }
     // when in the step the impulse came
     double *positions = step->work->changes[0];
     double *speeds = step->work->changes[1];
-    impulse_step_apply(step, step->total.impulse, step->moved[0]);
-    impulse_step_apply(step, step->total.moment, step->moved[1]);
+    const double cube = step->width_s * step->width_s * step->width_s / 12.0;
+    impulse_step_push_bodies(step, step->width_s, &step->total, step->moved[0], step->moved[1]);
+    // the world's step has the impulse along the rows of mid-step
+    impulse_step_turn_bodies(step, speeds);
     for (size_t i = 0; i < 3 * body_count(step); i++) {
-        positions[i] = step->moved[1][i] - half_s * step->moved[0][i];
+        positions[i] = step->moved[1][i] - half_s * (step->moved[0][i] - speeds[i]);
+        if (step->has_few_rows && step->is_calm) {
+            // accelerations that change beside the contacts'
+            positions[i] -= cube * step->free_rate[i];
+        }
     }
-    memset(speeds, 0, 3 * body_count(step) * sizeof *speeds);
-    change_motions(step, positions, speeds, step->after);
+    impulse_step_change_motions(step, positions, speeds, step->after);
     // back onto the ideal joints
     double *openings = step->work->rows[0];
     double *rates = step->work->rows[1];
@@ -247,7 +213,7 @@ static void find_end(ImpulseStep *step, const Motion *middle)
     // the impulses that close the positions are of no interest
     response_close(&step->response, openings, step->closing, positions);
     response_close(&step->response, rates, step->closing, speeds);
-    change_motions(step, positions, speeds, step->after);
+    impulse_step_change_motions(step, positions, speeds, step->after);
 }
 
 // What the state inside the step is worked out from.
@@ -274,7 +240,10 @@ static void prepare_inside(ImpulseStep *step, double width_before_s)
                 step->free_rate[n] = width_before_s > 0.0 ? change / apart_s : 0.0;
             }
             step->free[n] = mean;
-            step->rest[n] = p[k] - q[k] - width_s * (v[k] + 0.5 * width_s * mean) - positions[n];
+            const double bent =
+                step->has_few_rows ? width_s * width_s * width_s / 12.0 * step->free_rate[n] : 0.0;
+            step->rest[n] =
+                p[k] - q[k] - width_s * (v[k] + 0.5 * width_s * mean) - positions[n] + bent;
         }
     }
 }
@@ -330,6 +299,7 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
     const OdeOptions *options = &step->scenario->ode;
     // accelerations before a kink say nothing of those after it
     const double width_before_s = step->is_kink ? 0.0 : step->width_s;
+    step->steady = step->count == 0 || step->is_kink ? 0 : step->steady + 1;
     Motion *middle = step->middle;
     step->start_s = step->end_s;
     memcpy(step->before, step->after, body_count(step) * sizeof *step->before);
@@ -346,12 +316,13 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
         step->after[step->driven] =
             stepping_driven_since(&step->scenario->linkage, step->start_s, step->end_s);
     }
-    find_middle(step, middle);
+    impulse_step_look_ahead(step);
+    impulse_step_find_middle(step, width_before_s, middle);
     impulse_step_push(step, middle);
     if (!run_encounter(step, middle, err) || !step_world(step, middle, err)) {
         return stepping_fail(step->scenario, step->start_s, step->count + 1, step->width_s, err);
     }
-    find_end(step, middle);
+    find_end(step);
     prepare_inside(step, width_before_s);
     find_means(step, middle);
     impulse_step_find_work(step, middle);

@@ -3,6 +3,7 @@
 
 #include "contact/encounter_islands.h"
 #include "contact/touch.h"
+#include "model/response_drift.h"
 #include "model/trajectory.h"
 #include "ode/impulse_scope.h"
 #include "ode/world.h"
@@ -44,12 +45,17 @@ typedef struct ImpulseStep {
     Motion *after;       // at its end
     double *free;        // mean acceleration beside the contacts', three a body
     double *free_rate;   // its rate of change
+    double *ahead;       // of few rows, what it will be at mid-step, from the steps before, or zero
+    size_t steady;       // steps before this one since the start, or since a kink
+    bool is_calm;        // whether the contacts did not change the accelerations much in the last
     double *rest;        // of the end's positions, beyond the formula for inside
     double drive_work;   // J, in the whole step
     double damped;       // J, in dampers, likewise
     EncounterSums total; // of the contacts, in the whole step
+    bool has_few_rows;   // what each of them does, and how that changes, is worked out in each step
     // of few rows: what 1 N s in each does to all speeds, three a body, in this step and in those
-    // before it, and when these had their middles; NULL where there are more rows
+    // before it, and when these had their middles; this step's belong to `drift`
+    ResponseDrift drift;
     double *columns[IMPULSE_COLUMNS];
     double middles_s[IMPULSE_COLUMNS];
     double *moved[2]; // by the contacts in the whole step: speeds and positions, three a body
@@ -85,8 +91,52 @@ void impulse_step_add_end(const Linkage *linkage, const Touch *place, double pre
 // step that has just been taken, from the bodies at mid-step.
 void impulse_step_find_work(ImpulseStep *step, const Motion *middle);
 
-// Writes what impulses in the rows of play do to the speeds of all bodies, three each, at mid-step.
-void impulse_step_apply(const ImpulseStep *step, const double *impulses, double *changes);
+// Adds changes, three a body, to the free bodies' positions and speeds.
+void impulse_step_change_motions(const ImpulseStep *step, const double *positions,
+                                 const double *speeds, Motion *motions);
+
+// Sets what the accelerations beside the contacts' will be at mid-step: those of the step before.
+void impulse_step_look_ahead(ImpulseStep *step);
+
+// Finds the bodies at mid-step, with the speeds of its start; the step before was so long, s.
+void impulse_step_find_middle(const ImpulseStep *step, double width_before_s, Motion *middle);
+
+// Before the response is taken at mid-step: writes the free accelerations of the rows in the step
+// before with what its contacts did to them, and finds whether that was little.
+void impulse_step_keep_free(ImpulseStep *step, double *free_before);
+
+// Finds the free accelerations of the rows of play at mid-step, where the contacts have not changed
+// the speeds.
+void impulse_step_find_free(ImpulseStep *step, const Motion *middle);
+
+// Lets what the rows of play feel change in the step: their mobility with the bodies, their free
+// acceleration beside that as it did from the middle of the step before.
+void impulse_step_set_drift(ImpulseStep *step, const double *free_before);
+
+// Of few rows: finds what 1 N s in each does, and how that changes, from the response at mid-step,
+// where the bodies are as given.
+void impulse_step_find_columns(ImpulseStep *step, const Motion *middle);
+
+// Writes what the contacts have done up to a time in the step to the speeds and to the positions of
+// all bodies, three each, from their sums.
+void impulse_step_push_bodies(const ImpulseStep *step, double since_s, const EncounterSums *sums,
+                              double *speeds, double *positions);
+
+// Writes what the turning of the rows does in the whole step to the speeds of all bodies, three
+// each.
+void impulse_step_turn_bodies(const ImpulseStep *step, double *speeds);
+
+// Writes what forces in the rows of play do to the speeds of all bodies, per second, at a time
+// since the step's start: as in impulse_step_parabola, or else as in the last step whose response
+// is known.
+void impulse_step_press_bodies(const ImpulseStep *step, double since_s, const double *forces,
+                               double *rates);
+
+// Writes what forces in the rows of play do to the speeds of all bodies, per second, at a time in
+// the step: of few rows it is a parabola in time through this step and the two before. Returns
+// false where that is not known.
+bool impulse_step_parabola(const ImpulseStep *step, double since_s, const double *forces,
+                           double *rates);
 
 // Takes the next step.
 bool impulse_step_take(ImpulseStep *step, Err *err);

@@ -28,7 +28,7 @@ static double force_at(const Encounter *encounter, size_t joint, size_t node)
 {
     const size_t rows = encounter_rows(encounter);
     const double *force =
-        encounter->values + (3 * node + 2) * rows + encounter->joints[joint].first_row;
+        encounter->values + (4 * node + 2) * rows + encounter->joints[joint].first_row;
     return hypot(force[0], force[1]);
 }
 

@@ -189,7 +189,7 @@ static void one_truth_or_another_of_the_same_case_is_one_run(void **state)
 static void a_tolerance_that_takes_too_many_steps_is_held_as_far_as_they_go(void **state)
 {
     (void)state;
-    Scenario scenario = loose(1e-6, 1);
+    Scenario scenario = loose(1e-6, 3);
     Trajectory *whole = chosen(&scenario);
     scenario.run.most_steps = 2 * whole->steps / 3;
     Trajectory *run = chosen(&scenario);

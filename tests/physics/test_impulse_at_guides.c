@@ -74,7 +74,7 @@ static void the_first_contact_comes_with_the_second_order_of_the_step(void **sta
     static const double APPROACH = 0.841612322033;
     Impact impacts[3];
     for (int i = 0; i < 3; i++) {
-        const Scenario scenario = flores(1e8, 40e-6 / pow(4.0, i));
+        const Scenario scenario = flores(1e8, 10e-6 / pow(4.0, i));
         impacts[i] = first_impact(&scenario);
         assert_true(impacts[i].is_level);
         print_message("# step %g us: onset off by %.3g s, speed by %.3g m/s\n",
@@ -88,13 +88,13 @@ static void the_first_contact_comes_with_the_second_order_of_the_step(void **sta
     }
     // the speed's share of the step's square hangs on where in the step the contact begins
     for (int i = 0; i < 3; i++) {
-        const double step_s = 40e-6 / pow(4.0, i);
+        const double step_s = 10e-6 / pow(4.0, i);
         assert_near(impacts[i].approach, APPROACH, 5e4 * step_s * step_s);
     }
     // the two finest steps, extrapolated
     assert_near((16.0 * impacts[2].onset_s - impacts[1].onset_s) / 15.0, ONSET_S, 5e-12);
     // control: guides 10 nm wider
-    Scenario wider = flores(1e8, 2.5e-6);
+    Scenario wider = flores(1e8, 10e-6 / 16.0);
     wider.linkage.joints[SLIDER_GUIDE].guide.opening += 1e-8;
     assert_true(fabs(first_impact(&wider).onset_s - impacts[2].onset_s) > 5e-9);
 }
@@ -202,7 +202,7 @@ static void guides_that_turn_with_their_body_follow_the_reference(void **state)
         char what[64];
         snprintf(what, sizeof what, "%s driven, friction %g", i / 2 == 1 ? "lever" : "crank",
                  scenario.contact.friction);
-        assert_second_order(scenario, 40e-6, what);
+        assert_second_order(scenario, 20e-6, what);
     }
 }
 

@@ -134,7 +134,10 @@ static Scenario paper(const Way *way, double step_s)
     snprintf(step, sizeof step, "run.step=%.17g s", step_s);
     const char *const overrides[] = {"run.revolutions=0.05", "run.samples=3000", step,
                                      way->stepping, way->map};
-    return load("cases/paper/impact-k66.yaml", overrides, 5);
+    Scenario scenario = load("cases/paper/impact-k66.yaml", overrides, 5);
+    // the library does not know how the answer of a caller's bodies changes within a step
+    scenario.ode.is_frozen = true;
+    return scenario;
 }
 
 static double program_error(const Scenario *scenario, const Trajectory *truth)

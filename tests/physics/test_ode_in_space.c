@@ -58,6 +58,8 @@ static Apart lifted(Scenario flat, double height)
 {
     Scenario spatial = kept_copy(&flat);
     flat.linkage.is_spatial = false;
+    // in space bodies answer contacts within a step as at its middle
+    flat.ode.is_frozen = true;
     for (size_t i = 0; i < spatial.linkage.body_count; i++) {
         spatial.linkage.bodies[i].space.height = height;
     }

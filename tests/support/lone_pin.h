@@ -51,11 +51,11 @@ enum { LONE_PIN_ROWS = 9 };
 
 // An encounter's sums at a time, by themselves.
 typedef struct PinSums {
-    double impulse[LONE_PIN_ROWS]; // N s
-    double moment[LONE_PIN_ROWS];  // N s^2
-    double force[LONE_PIN_ROWS];   // N
-    double dissipated;             // J
-    double friction;               // J
+    double impulse[LONE_PIN_ROWS];    // N s
+    double moment[2 * LONE_PIN_ROWS]; // N s^2, then N s^3
+    double force[LONE_PIN_ROWS];      // N
+    double dissipated;                // J
+    double friction;                  // J
 } PinSums;
 
 static inline void pin_sums_at(const Encounter *encounter, size_t node, double time_s,

@@ -1,0 +1,171 @@
+// How does what a push in a joint with play does change as the bodies move?
+//
+// All rows J, those of the ideal joints and of play; an impulse of 1 in each row of play brings the
+// impulses Y in all rows (model/response.c) and the speeds A = M^-1 J' Y. With J. the rate of the
+// rows along the motion, S = Y' J. A:
+//     W = Y' J A,   dW/dt = S + S'
+//     dA/dt = M^-1 (J.' Y + J_i' z),   D_ii z = -(J_i M^-1 J.' Y + J._i A)
+// and a change A p of the speeds, J. v being of second degree in them, changes the rows'
+// accelerations by 2 S p. What an impulse P does in a row some time later is therefore, to the
+// first order in that time, W P + (S - S') times the integral of P with the W of that time: to
+// momenta W alone answers, and S - S' is the gyroscopic part that is left. The last holds of rows
+// that are rates of something, as all are but the sliding along a line.
+#include "model/response_drift.h"
+
+#include "base/zeroed.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+ResponseDrift response_drift_create(const Response *response)
+{
+    const size_t play = response_play_rows(response);
+    const size_t bodies = response->linkage->body_count;
+    return (ResponseDrift){
+        .answers = zeroed(play * response->row_count, sizeof(double)),
+        .columns = zeroed(play * 3 * bodies, sizeof(double)),
+        .rates = zeroed(play * 3 * bodies, sizeof(double)),
+        .drift = zeroed(play * play, sizeof(double)),
+        .turning = zeroed(response->row_count, sizeof(ResponseRow)),
+        .ahead = zeroed(bodies, sizeof(Motion)),
+    };
+}
+
+void response_drift_finish(ResponseDrift *drift)
+{
+    free(drift->answers);
+    free(drift->columns);
+    free(drift->rates);
+    free(drift->drift);
+    free(drift->turning);
+    free(drift->ahead);
+    *drift = (ResponseDrift){.answers = NULL};
+}
+
+void response_drift_columns(const Response *response, ResponseDrift *drift)
+{
+    const size_t play = response_play_rows(response);
+    const size_t all = response->row_count;
+    const size_t speeds = 3 * response->linkage->body_count;
+    memset(drift->answers, 0, play * all * sizeof *drift->answers);
+    for (size_t row = 0; row < play; row++) {
+        double *answer = drift->answers + row * all;
+        double *column = drift->columns + row * speeds;
+        answer[response->ideal_rows + row] = 1.0;
+        sparse_back(&response->matrix, answer);
+        memset(column, 0, speeds * sizeof *column);
+        for (size_t i = 0; i < response->ideal_rows; i++) {
+            response_add_row(response, i, answer[i], column);
+        }
+        response_add_row(response, response->ideal_rows + row, 1.0, column);
+    }
+}
+
+// The rates of two rows of a point: its arms turn with its bodies.
+static void turn_point(const ResponseRow *rows, const Motion *motions, ResponseRow *turning)
+{
+    for (size_t k = 0; k < 2; k++) {
+        turning[k] = (ResponseRow){.body = {rows[k].body[0], rows[k].body[1]}};
+    }
+    for (size_t end = 0; end < 2; end++) {
+        const int body = rows[0].body[end];
+        const double omega = body == LINKAGE_GROUND ? 0.0 : motions[body].omega;
+        turning[0].turn[end] = -omega * rows[1].turn[end];
+        turning[1].turn[end] = omega * rows[0].turn[end];
+    }
+}
+
+static bool is_point(const Response *response, size_t row)
+{
+    if (row < response->ideal_rows) {
+        return response->linkage->joints[response->joint_of[row]].kind != JOINT_PRISMATIC;
+    }
+    const ResponsePlace *place = &response->places[response->place_of[row]];
+    return !place->is_line && place->sign == 0.0;
+}
+
+// The rates of all rows that are no points', and nothing of the others.
+static void turn_all(Response *response, const Motion *motions, double short_s,
+                     ResponseDrift *drift)
+{
+    for (size_t i = 0; i < response->linkage->body_count; i++) {
+        Motion *ahead = &drift->ahead[i];
+        *ahead = motions[i];
+        ahead->position = vec2_add(ahead->position, vec2_scale(short_s, ahead->velocity));
+        ahead->angle += short_s * ahead->omega;
+    }
+    // the rows of there, into the other array
+    ResponseRow *const rows = response->rows;
+    memcpy(drift->turning, rows, response->row_count * sizeof *rows);
+    response->rows = drift->turning;
+    response_rows_place(response, drift->ahead);
+    response->rows = rows;
+    for (size_t i = 0; i < response->row_count; i++) {
+        ResponseRow *turning = &drift->turning[i];
+        for (size_t end = 0; end < 2; end++) {
+            turning->x[end] = (turning->x[end] - rows[i].x[end]) / short_s;
+            turning->y[end] = (turning->y[end] - rows[i].y[end]) / short_s;
+            turning->turn[end] = (turning->turn[end] - rows[i].turn[end]) / short_s;
+        }
+    }
+}
+
+static void find_turning(Response *response, const Motion *motions, double short_s,
+                         ResponseDrift *drift)
+{
+    bool are_points = true;
+    for (size_t row = 0; row < response->row_count; row++) {
+        are_points = are_points && is_point(response, row);
+    }
+    if (!are_points) {
+        turn_all(response, motions, short_s, drift);
+    }
+    for (size_t row = 0; row < response->row_count; row += 2) {
+        if (is_point(response, row)) {
+            turn_point(&response->rows[row], motions, &drift->turning[row]);
+        }
+        // turns of bodies are rows that stay as they are
+        const bool has_turns =
+            row >= response->ideal_rows && response->places[response->place_of[row]].has_turns;
+        if (has_turns) {
+            row += 2;
+            for (size_t k = 0; k < 2; k++) {
+                drift->turning[row + k] = (ResponseRow){.body = {LINKAGE_GROUND, LINKAGE_GROUND}};
+            }
+        }
+    }
+}
+
+void response_drift_find(Response *response, const Motion *motions, double short_s,
+                         ResponseDrift *drift)
+{
+    const size_t play = response_play_rows(response);
+    const size_t all = response->row_count;
+    const size_t speeds = 3 * response->linkage->body_count;
+    double *turned = response->work;
+    find_turning(response, motions, short_s, drift);
+    memset(drift->rates, 0, play * speeds * sizeof *drift->rates);
+    for (size_t of = 0; of < play; of++) {
+        const double *answer = drift->answers + of * all;
+        double *rate = drift->rates + of * speeds;
+        for (size_t i = 0; i < all; i++) {
+            turned[i] = response_row_of(&drift->turning[i], drift->columns + of * speeds);
+            response_row_push(response->linkage, &drift->turning[i], answer[i], rate);
+        }
+        for (size_t row = 0; row < play; row++) {
+            double sum = turned[response->ideal_rows + row];
+            for (size_t i = 0; i < response->ideal_rows; i++) {
+                sum += drift->answers[row * all + i] * turned[i];
+            }
+            drift->drift[row * play + of] = sum;
+        }
+        // the ideal joints stay closed
+        for (size_t i = 0; i < response->ideal_rows; i++) {
+            turned[i] = -turned[i] - response_row_of(&response->rows[i], rate);
+        }
+        response_solve(response, turned);
+        for (size_t i = 0; i < response->ideal_rows; i++) {
+            response_add_row(response, i, turned[i], rate);
+        }
+    }
+}
