@@ -75,6 +75,58 @@ static void the_error_is_met_on_running_again(void **state)
     }
 }
 
+// The hash of a run of the reference at a tolerance.
+static json_t *reference_run(Program *program, double tolerance)
+{
+    char line[2 * PROGRAM_PATH_SIZE];
+    snprintf(line, sizeof line,
+             "run %s --json --quiet --uncertified --backend reference --set "
+             "reference.tolerance=%.17g",
+             K66, tolerance);
+    program_run(program, line);
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    json_t *run = json_incref(json_array_get(json_object_get(root, "runs"), 0));
+    json_decref(root);
+    return run;
+}
+
+// The loosest tolerance that meets an error is looser than that of a smaller one, and its run can
+// be made again.
+static void the_reference_stands_beside_the_settings_of_ode(void **state)
+{
+    Program *program = *state;
+    static const double ERRORS[] = {1e-2, 1e-7};
+    double tolerances[2];
+    for (int i = 0; i < 2; i++) {
+        char options[PROGRAM_PATH_SIZE];
+        snprintf(options, sizeof options, "%s --error %g --schemes direct/staggered/impulse", K66,
+                 ERRORS[i]);
+        json_t *root = tune(program, options, 0);
+        const json_t *reference = json_object_get(root, "reference");
+        tolerances[i] = number(reference, "tolerance");
+        assert_true(number(reference, "error_omega") > 0.0);
+        assert_true(number(reference, "error_omega") < ERRORS[i]);
+        assert_true(number(reference, "processor_median_s") > 0.0);
+        json_t *again = reference_run(program, tolerances[i]);
+        assert_string_equal(words(again, "hash"), words(reference, "hash"));
+        json_decref(again);
+        // control: another tolerance is another run
+        again = reference_run(program, 0.5 * tolerances[i]);
+        assert_string_not_equal(words(again, "hash"), words(reference, "hash"));
+        json_decref(again);
+        json_decref(root);
+    }
+    assert_true(tolerances[1] < 0.1 * tolerances[0]);
+    json_t *root =
+        tune(program, K66_CASE " --at-step '20 us' --schemes direct/staggered/impulse", 0);
+    assert_true(json_is_null(json_object_get(root, "reference")));
+    json_decref(root);
+    program_run(program, "tune " K66_CASE " -q --error 1e-2 --schemes direct/staggered/impulse");
+    assert_says(program->output, "Without ODE");
+    assert_says(program->output, "reference, tolerance ");
+}
+
 // The cheapest point of a comparison that meets an error, by world steps.
 static double cheapest_steps(const json_t *root, double error)
 {
@@ -374,6 +426,8 @@ static void what_cannot_be_asked_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(the_reference_stands_beside_the_settings_of_ode,
+                                        program_set_up, program_tear_down),
         cmocka_unit_test_setup_teardown(the_error_is_met_on_running_again, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(nothing_much_cheaper_is_found_by_running_everything,

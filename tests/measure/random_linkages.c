@@ -8,12 +8,10 @@
 // Outcomes:
 //   refused   the case file, or the solver before its first step, says what is not allowed
 //   agrees    the error is below a limit: of the closed form and the reference AGREES_EXACT or
-//   three
-//             times what the reference states, of ODE at a fixed step AGREES_STEP, at `step: auto`
-//             its tolerance
+//             three times what the reference states, of ODE at a fixed step AGREES_STEP, at `step:
+//             auto` its tolerance
 //   reported  the error is above it, and the run prints it: ODE at a fixed step beside the
-//   reference,
-//             `step: auto` that ran out of steps, a reference that is not certified
+//             reference, `step: auto` that ran out of steps, a reference that is not certified
 //   detected  the run ends with a sentence
 //   slow      the time was up
 //   SILENT    anything else: numbers that are wrong or not finite in a run that says nothing, or a

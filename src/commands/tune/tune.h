@@ -100,6 +100,14 @@ typedef struct TuneContact {
     double restitution; // 1, that the law delivers; NAN of a viscous damper
 } TuneContact;
 
+// The reference as a way without ODE.
+typedef struct TuneReference {
+    double tolerance; // reference.tolerance of the loosest that meets the target; 0: none does
+    double error;     // 1: as of a trial
+    LadderRun run;    // that measured the error
+    double processor_median_s;
+} TuneReference;
+
 typedef struct Tune {
     double target;  // 1; INFINITY where any error will do
     double held_s;  // s, the only step that its user can take; 0: any
@@ -122,6 +130,7 @@ typedef struct Tune {
     TuneLinear linears[TUNE_LINEAR_MAX];
     int linear; // the kp and kd to take, or TUNE_NONE
     int row;    // the ERP and CFM, at a step that is held
+    TuneReference reference;
 } Tune;
 
 // The value of an index of the grid: 1, 0.8, 0.63, 0.5, 0.4, 0.315, 0.25, 0.2, 0.16, 0.125, 0.1,

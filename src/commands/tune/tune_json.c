@@ -1,5 +1,5 @@
 // What do other programs read of a search?
-#include "commands/tune/tune_report.h"
+#include "commands/tune/tune_reference.h"
 
 #include "commands/tune/tune_export.h"
 #include "commands/tune/tune_setting.h"
@@ -233,6 +233,7 @@ json_t *tune_json_build(const void *target)
         json_array_append_new(trials, trial_object(tune, &tune->trials[i]));
     }
     json_object_set_new(object, "trials", trials);
+    json_object_set_new(object, "reference", tune_reference_object(report));
     json_object_set_new(object, "own_loop", loop_object(report));
     json_t *linears = json_array();
     for (size_t i = 0; i < tune->linear_count; i++) {

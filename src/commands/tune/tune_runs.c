@@ -23,7 +23,7 @@ static bool next(void *owner, size_t *number, const void **context)
     *number = runs->choose != NULL ? *number : making->begun;
     making->begun++;
     making->task = (Task){.scenario = *making->search->scenario,
-                          .backend = BACKEND_ODE,
+                          .backend = runs->is_reference ? BACKEND_REFERENCE : BACKEND_ODE,
                           .run.kind = runs->is_timing ? LADDER_TIMING : LADDER_ERROR,
                           .truth = making->search->truth};
     runs->apply(runs->owner, *number, &making->task.scenario);

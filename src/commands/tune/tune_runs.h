@@ -26,7 +26,8 @@ typedef struct TuneRuns {
     void *owner;
     // Chooses the next run; false: none can begin now. NULL: each once, by rising number.
     bool (*choose)(void *owner, size_t *number);
-    bool is_timing; // one at a time, and nothing but the time is measured
+    bool is_timing;    // one at a time, and nothing but the time is measured
+    bool is_reference; // runs of the reference, not of ODE
 } TuneRuns;
 
 // Makes the runs until none is left. Fails with ERR_SOLVER where the system has no process left.

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "commands/tune/tune_held.h"
 #include "commands/tune/tune_linear.h"
+#include "commands/tune/tune_reference.h"
 #include "measure/truth_child.h"
 
 #include <math.h>
@@ -296,7 +297,7 @@ static bool search_cheapest(const TuneSearch *search, Err *err)
     tune_conclude(tune, search->scenario);
     is_done = is_done && time_finalists(search, err);
     tune_conclude(tune, search->scenario);
-    return is_done;
+    return is_done && tune_reference_run(search, err);
 }
 
 bool tune_search_execute(const TuneSearch *asked, Err *err)

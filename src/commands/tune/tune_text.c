@@ -1,5 +1,5 @@
 // What is the cheapest setting, how is it used, and what was tried?
-#include "commands/tune/tune_report.h"
+#include "commands/tune/tune_reference.h"
 #include "commands/tune/tune_setting.h"
 
 #include "commands/tune/tune_export.h"
@@ -265,6 +265,7 @@ void tune_text_write(const void *target, const Style *style, Text *text)
     if (is_searched) {
         write_schemes(report, style, text);
     }
+    tune_reference_write(report, style, text);
     tune_export_write(report, style, text);
     if (is_searched) {
         write_trials(report, style, text);
