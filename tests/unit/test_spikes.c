@@ -231,6 +231,28 @@ static void a_top_beside_a_higher_one_stands_out_from_the_valley(void **state)
     trace_finish(&trace);
 }
 
+// A top, a shoulder that has fallen by half and risen again, and ground for long.
+static double top_with_a_shoulder(double time_s)
+{
+    static const double VALUES[] = {0.0, 1000.0, 480.0, 760.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    const double place = time_s / DURATION;
+    const int i = (int)fmin(floor(place), 7.0);
+    return VALUES[i] + (place - i) * (VALUES[i + 1] - VALUES[i]);
+}
+
+static void a_spike_ends_where_its_signal_rises_again(void **state)
+{
+    (void)state;
+    Trace trace = trace_shape(top_with_a_shoulder, 8.0 * DURATION);
+    SignalSpike *spikes = NULL;
+    // the shoulder stands out by 280, too little for a spike
+    assert_int_equal(spikes_find(&trace, 450.0, &spikes), 1);
+    assert_near(spikes[0].end_s, 2.0 * DURATION, 1e-9);
+    assert_near(spikes[0].impulse, (500.0 + 740.0) * DURATION, 1e-3 * DURATION);
+    free(spikes);
+    trace_finish(&trace);
+}
+
 static double coupler_alpha(double time_s)
 {
     const Scenario scenario = mechanism_paper();
@@ -284,6 +306,7 @@ int main(void)
         cmocka_unit_test(noise_below_the_threshold_is_no_spike),
         cmocka_unit_test(the_threshold_is_the_least_prominence),
         cmocka_unit_test(a_top_beside_a_higher_one_stands_out_from_the_valley),
+        cmocka_unit_test(a_spike_ends_where_its_signal_rises_again),
         cmocka_unit_test(ideal_joints_show_no_spike),
         cmocka_unit_test(the_scale_of_a_linkage_of_bodies_is_that_of_the_four_bar),
     };
