@@ -305,15 +305,19 @@ static void without_a_truth_there_is_no_comparison(void **state)
     ladder_destroy(ladder);
 }
 
-// How long one member of the ensemble of the finest step takes here, s, and not nothing.
+// The longest time that one member of the ensemble of the finest step takes here, s, and not
+// nothing.
 static double time_of_member(const Scenario *scenario)
 {
     Scenario member = kept_copy(scenario);
     member.run.step = LADDER_STEPS[STEPS - 1];
-    Trajectory *trajectory = run_scenario(&member, registry_solver(BACKEND_ODE), (RunWatch){0});
-    const double wall_s = trajectory->wall_s;
-    trajectory_destroy(trajectory);
-    return fmax(wall_s, 1e-3);
+    double longest_s = 1e-3;
+    for (int i = 0; i < 9; i++) {
+        Trajectory *trajectory = run_scenario(&member, registry_solver(BACKEND_ODE), (RunWatch){0});
+        longest_s = fmax(longest_s, trajectory->wall_s);
+        trajectory_destroy(trajectory);
+    }
+    return longest_s;
 }
 
 static void ensembles_are_made_beyond_a_horizon(void **state)
@@ -333,7 +337,7 @@ static void ensembles_are_made_beyond_a_horizon(void **state)
     assert_near(ladder->ensembles[0].step_s, LADDER_STEPS[STEPS - 1], 0.0);
     assert_true(ladder->ensembles[0].ensemble.members > 0);
     // the limit is that of one run, not of all members
-    runner.time_limit_s = 8.0 * time_of_member(&scenario);
+    runner.time_limit_s = 0.75 * ENSEMBLE_MEMBERS * time_of_member(&scenario);
     ladder->ensembles[0].is_known = false;
     assert_true(runner_execute(&runner, &err));
     assert_int_equal(ladder->ensembles[0].ensemble.failed, 0);
