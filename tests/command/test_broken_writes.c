@@ -65,9 +65,11 @@ static void a_full_disk_is_named_whatever_the_length(void **state)
 }
 
 // A limit on the size of files, in blocks of 512 bytes. Counts of coverage, where the program makes
-// them, go elsewhere: cut off they would spoil those of the build, with words about it.
+// them, go elsewhere, for each run anew: cut off they would spoil those of the build or of the next
+// run, with words about it.
 #define FILE_LIMIT(blocks)                                                                         \
-    "export GCOV_PREFIX=\"$PWD/gcov\" GCOV_ERROR_FILE=/dev/null; ulimit -f " blocks "; "
+    "rm -rf gcov; export GCOV_PREFIX=\"$PWD/gcov\" GCOV_ERROR_FILE=/dev/null; ulimit -f " blocks   \
+    "; "
 
 static void a_limit_on_files_is_an_error(void **state)
 {
