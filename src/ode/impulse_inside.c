@@ -168,14 +168,6 @@ static void add_line(const Linkage *linkage, const Touch *place, const Encounter
     }
 }
 
-static EncounterPose pose_in_step(const ImpulseStep *step, size_t place, ImpulseTime at,
-                                  const EncounterSums *sums)
-{
-    return step->islands != NULL
-               ? encounter_islands_pose(step->islands, place, at.since_s, sums)
-               : encounter_pose(&step->encounter, place, at.node, at.since_s, sums);
-}
-
 // The states of the joints with play, and how deep each place is.
 static void find_places(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                         const EncounterSums *sums, const Motion *motions, JointState *joints,
@@ -185,7 +177,7 @@ static void find_places(const ImpulseStep *step, const ImpulseScope *scope, Impu
     for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
         const Touch *place = &step->places[i];
-        const EncounterPose pose = pose_in_step(step, i, at, sums);
+        const EncounterPose pose = impulse_scope_pose(&step->encounter, step->islands, i, at, sums);
         depths[i] = pose.pose.penetration;
         if (linkage->joints[place->joint].limits.kind != LIMIT_NONE) {
             const bool is_first = i == 0 || step->places[i - 1].joint != place->joint;

@@ -35,3 +35,10 @@ void impulse_scope_finish(ImpulseScope *scope)
     free(scope->part.places);
     *scope = (ImpulseScope){.body_count = 0};
 }
+
+EncounterPose impulse_scope_pose(const Encounter *encounter, const EncounterIslands *islands,
+                                 size_t place, ImpulseTime at, const EncounterSums *sums)
+{
+    return islands != NULL ? encounter_islands_pose(islands, place, at.since_s, sums)
+                           : encounter_pose(encounter, place, at.node, at.since_s, sums);
+}

@@ -2,6 +2,7 @@
 // space.
 #pragma once
 
+#include "contact/encounter_islands.h"
 #include "model/response_groups.h"
 
 // places up to which all are integrated together: what islands save they cost as well
@@ -30,3 +31,8 @@ typedef struct ImpulseTime {
 // All bodies, joints and places of a linkage.
 ImpulseScope impulse_scope_whole(const Linkage *linkage, size_t place_count);
 void impulse_scope_finish(ImpulseScope *scope);
+
+// How a place is at a time within the step, from the sums then: by its island, or where the islands
+// are NULL by the encounter of all.
+EncounterPose impulse_scope_pose(const Encounter *encounter, const EncounterIslands *islands,
+                                 size_t place, ImpulseTime at, const EncounterSums *sums);

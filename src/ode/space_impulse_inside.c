@@ -106,14 +106,6 @@ static Vec3 in_world(const PinSpaceRows *rows, Vec2 a)
     return vec3_add(vec3_scale(a.x, rows->across[0]), vec3_scale(a.y, rows->across[1]));
 }
 
-static EncounterPose pose_in_step(const SpaceImpulseStep *step, size_t place, ImpulseTime at,
-                                  const EncounterSums *sums)
-{
-    return step->islands != NULL
-               ? encounter_islands_pose(step->islands, place, at.since_s, sums)
-               : encounter_pose(&step->encounter, place, at.node, at.since_s, sums);
-}
-
 // The states of the joints with play, from the encounter.
 static void find_pins(const SpaceImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                       const EncounterSums *sums, SpaceJoints *joints)
@@ -127,7 +119,7 @@ static void find_pins(const SpaceImpulseStep *step, const ImpulseScope *scope, I
         const PinSpaceRows *rows = &step->rows[i];
         JointState *plane = &joints->plane[place->joint];
         SpaceJointState *space = &joints->space[place->joint];
-        const EncounterPose pose = pose_in_step(step, i, at, sums);
+        const EncounterPose pose = impulse_scope_pose(&step->encounter, step->islands, i, at, sums);
         Vec3 force = in_world(rows, pose.force);
         if (place->place == PIN_SPACE_COLLAR) {
             space_joints_press(joints, place, force, rows->across[0]);
@@ -164,7 +156,7 @@ static void find_stops(const SpaceImpulseStep *step, const ImpulseScope *scope, 
         if (stop == NULL) {
             continue;
         }
-        const EncounterPose pose = pose_in_step(step, i, at, sums);
+        const EncounterPose pose = impulse_scope_pose(&step->encounter, step->islands, i, at, sums);
         JointState *state = &joints->plane[stop->joint];
         if (i == step->pin_count || stop[-1].joint != stop->joint) {
             state->gap = INFINITY;
