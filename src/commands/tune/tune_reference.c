@@ -21,12 +21,11 @@ enum { TOLERANCE_COUNT = sizeof TOLERANCES / sizeof TOLERANCES[0] };
 
 typedef struct Looking {
     Tune *tune;
-    double least;    // tolerance of the truth
-    size_t next;     // tolerance to be run
-    bool is_busy;    // it is being run
-    bool is_done;    // two neighbours met the target
-    bool is_pending; // the last one did
-    LadderRun runs[TOLERANCE_COUNT];
+    double least;            // tolerance of the truth
+    size_t next;             // tolerance to be run
+    bool is_busy;            // it is being run
+    TuneReference candidate; // the last one, if it met the target
+    bool is_done;            // so did the next tighter one
     double times_s[TUNE_REPEATS];
     size_t timed;
 } Looking;
@@ -56,11 +55,14 @@ static void take_error(void *owner, size_t number, const LadderRun *run)
     char reason[LADDER_MESSAGE_SIZE];
     const double error = tune_error(tune, run, reason);
     const bool meets = error + tune->truth.uncertainty <= tune->target;
-    looking->runs[number] = *run;
-    looking->is_done = meets && looking->is_pending;
-    looking->is_pending = meets;
     looking->is_busy = false;
     looking->next++;
+    looking->is_done = meets && looking->candidate.tolerance > 0.0;
+    if (!looking->is_done) {
+        looking->candidate =
+            meets ? (TuneReference){.tolerance = TOLERANCES[number], .error = error, .run = *run}
+                  : (TuneReference){.tolerance = 0.0};
+    }
 }
 
 static void apply_found(void *owner, size_t number, Scenario *scenario)
@@ -112,13 +114,7 @@ bool tune_reference_run(const TuneSearch *search, Err *err)
     if (!looking.is_done) {
         return true;
     }
-    char reason[LADDER_MESSAGE_SIZE];
-    const size_t found = looking.next - 2;
-    tune->reference = (TuneReference){
-        .tolerance = TOLERANCES[found],
-        .run = looking.runs[found],
-        .error = tune_error(tune, &looking.runs[found], reason),
-    };
+    tune->reference = looking.candidate;
     return time_found(search, &looking, err);
 }
 
