@@ -27,8 +27,7 @@ void hinged_hold(const Hinged *hinged, const double *rates, HingedLoad *load, Ve
     HingedBody *driven = hinged->driven;
     const TreeNode *nodes = hinged->dynamics->tree.nodes;
     if (driven != NULL) {
-        driven->acceleration = driven->bias;
-        driven->spin = 0.0;
+        driven->acceleration = driven->bias; // at a steady speed
     }
     for (size_t i = 0; i < hinged->count; i++) {
         hinged_accelerate(rates, &hinged->bodies[i]);
