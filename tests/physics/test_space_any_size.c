@@ -159,15 +159,6 @@ static Scenario make_loose_chain(size_t count)
     return scenario;
 }
 
-static size_t count_impacts(const Trajectory *run)
-{
-    size_t impacts = 0;
-    for (size_t k = 0; k < run->joint_count; k++) {
-        impacts += run->joints[k].impacts;
-    }
-    return impacts;
-}
-
 // The largest difference of velocities at the samples, m/s.
 static double difference(const Trajectory *a, const Trajectory *b)
 {
@@ -198,10 +189,10 @@ static void contacts_of_a_long_chain_follow_the_reference(void **state)
         Trajectory *run = complete_run(&scenario, BACKEND_ODE);
         errors[i] = difference(run, truth);
         print_message("# step %g us: error %.2g m/s, %zu of %zu impacts, energy %.2g of %.2g J\n",
-                      1e6 * scenario.run.step, errors[i], count_impacts(run), count_impacts(truth),
+                      1e6 * scenario.run.step, errors[i], run_impacts(run), run_impacts(truth),
                       fabs(run->energy.residual), run->energy.friction);
-        assert_int_equal(count_impacts(run), count_impacts(truth));
-        assert_true(count_impacts(run) > LINKS);
+        assert_int_equal(run_impacts(run), run_impacts(truth));
+        assert_true(run_impacts(run) > LINKS);
         assert_close(run->energy.friction, truth->energy.friction, 1e-3);
         for (size_t k = 0; k < run->joint_count; k++) {
             const double force = truth->joints[k].force_max.value;
@@ -262,9 +253,9 @@ static void many_pins_that_meet_their_walls_at_once_follow_the_reference(void **
         Trajectory *run = complete_run(&scenario, BACKEND_ODE);
         errors[i] = difference(run, truth);
         print_message("# step %g us: error %.2g m/s, %zu of %zu impacts\n", 1e6 * scenario.run.step,
-                      errors[i], count_impacts(run), count_impacts(truth));
-        assert_int_equal(count_impacts(run), count_impacts(truth));
-        assert_true(count_impacts(run) >= LINKS);
+                      errors[i], run_impacts(run), run_impacts(truth));
+        assert_int_equal(run_impacts(run), run_impacts(truth));
+        assert_true(run_impacts(run) >= LINKS);
         trajectory_destroy(run);
     }
     assert_true(errors[0] < 1e-6 && errors[1] < errors[0] / 4.0);

@@ -16,3 +16,13 @@ static inline Trajectory *complete_run(const Scenario *scenario, BackendKind bac
     }
     return trajectory;
 }
+
+// The impacts of all joints.
+static inline size_t run_impacts(const Trajectory *run)
+{
+    size_t impacts = 0;
+    for (size_t k = 0; k < run->joint_count; k++) {
+        impacts += run->joints[k].impacts;
+    }
+    return impacts;
+}
