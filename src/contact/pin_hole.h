@@ -27,9 +27,7 @@ static inline PinHole pin_hole_pose(Vec2 hole_centre, Vec2 pin_centre, Vec2 rela
                                     double radial_clearance)
 {
     const Vec2 e = vec2_sub(pin_centre, hole_centre);
-    const double square = vec2_dot(e, e);
-    // the plain root is exact but for squares near the ends of double's range
-    const double size = square > 1e-280 && square < 1e280 ? sqrt(square) : vec2_length(e);
+    const double size = vec2_length(e);
     const double gap = radial_clearance - size;
     if (size == 0.0) {
         return (PinHole){
