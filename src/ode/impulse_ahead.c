@@ -46,7 +46,7 @@ static void move_middle(const ImpulseStep *step, double width_before_s, Motion *
 }
 
 // The bodies at mid-step, with the speeds of its start.
-void impulse_step_find_middle(const ImpulseStep *step, double width_before_s, Motion *middle)
+void impulse_step_find_middle(ImpulseStep *step, double width_before_s, Motion *middle)
 {
     const double half_s = 0.5 * step->width_s;
     for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
@@ -56,7 +56,10 @@ void impulse_step_find_middle(const ImpulseStep *step, double width_before_s, Mo
         middle[i].angle = motion->angle + half_s * motion->omega;
     }
     if (step->driven >= 0) {
-        middle[step->driven] = stepping_driven(&step->scenario->linkage, step->start_s + half_s);
+        const Linkage *linkage = &step->scenario->linkage;
+        step->arm = stepping_arm(linkage, step->start_s + half_s);
+        middle[step->driven] =
+            stepping_driven_since(linkage, &step->arm, step->start_s, step->start_s + half_s);
     }
     if (step->has_few_rows && step->steady > 0) {
         move_middle(step, width_before_s, middle);

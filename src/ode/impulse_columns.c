@@ -62,33 +62,10 @@ void impulse_step_turn_bodies(const ImpulseStep *step, double *speeds)
 void impulse_step_press_bodies(const ImpulseStep *step, double since_s, const double *forces,
                                double *rates)
 {
-    if (!impulse_step_parabola(step, since_s, forces, rates)) {
+    if (impulse_step_has_curves(step)) {
+        const double time_s = step->start_s + since_s;
+        impulse_curves_press(&step->curves, time_s - step->middles_s[0], forces, rates);
+    } else {
         response_apply(&step->response, forces, rates);
     }
-}
-
-bool impulse_step_parabola(const ImpulseStep *step, double since_s, const double *forces,
-                           double *rates)
-{
-    if (!step->has_few_rows || step->count < IMPULSE_COLUMNS) {
-        return false;
-    }
-    const size_t count = 3 * step->scenario->linkage.body_count;
-    const double time_s = step->start_s + since_s;
-    memset(rates, 0, count * sizeof *rates);
-    for (size_t k = 0; k < IMPULSE_COLUMNS; k++) {
-        double weight = 1.0;
-        for (size_t j = 0; j < IMPULSE_COLUMNS; j++) {
-            weight *=
-                j == k ? 1.0
-                       : (time_s - step->middles_s[j]) / (step->middles_s[k] - step->middles_s[j]);
-        }
-        for (size_t row = 0; row < encounter_rows(&step->encounter); row++) {
-            const double force = weight * forces[row];
-            for (size_t i = 0; i < count; i++) {
-                rates[i] += force * step->columns[k][row * count + i];
-            }
-        }
-    }
-    return true;
 }

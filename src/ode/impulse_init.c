@@ -5,10 +5,6 @@
 
 #include <stdlib.h>
 
-// rows up to which what each of them does, and how that changes, is worked out once a step: that
-// takes as the square of their number
-enum { FEW_ROWS = 16 };
-
 static void make_arrays(ImpulseStep *step)
 {
     const size_t bodies = step->scenario->linkage.body_count;
@@ -25,17 +21,25 @@ static void make_arrays(ImpulseStep *step)
     step->rest = zeroed(3 * bodies, sizeof *step->rest);
     step->closing = zeroed(step->response.ideal_rows, sizeof *step->closing);
     step->mean = zeroed(joints, sizeof *step->mean);
+    for (size_t i = 0; i < joints; i++) {
+        const Joint *joint = &step->scenario->linkage.joints[i];
+        step->mean[i].is_touching = !linkage_has_play(joint);
+        step->has_coordinates = step->has_coordinates || joint->kind == JOINT_PRISMATIC ||
+                                joint->limits.kind != LIMIT_NONE;
+    }
     work->motions = zeroed(bodies, sizeof *work->motions);
     work->loads = zeroed(bodies, sizeof *work->loads);
     work->offsets = zeroed(joints, sizeof *work->offsets);
     work->joints = zeroed(joints, sizeof *work->joints);
     const size_t rows = encounter_rows(&step->encounter);
+    step->pressing = zeroed(rows, sizeof *step->pressing);
     step->has_few_rows =
-        step->islands == NULL && rows <= FEW_ROWS && !step->scenario->ode.is_frozen;
+        step->islands == NULL && rows <= IMPULSE_FEW_ROWS && !step->scenario->ode.is_frozen;
     if (step->has_few_rows) {
         encounter_make_drift(&step->encounter);
         step->drift = response_drift_create(&step->response);
         step->columns[0] = step->drift.columns;
+        step->curves = impulse_curves_create(bodies, rows, step->driven);
     }
     for (size_t i = 1; step->has_few_rows && i < IMPULSE_COLUMNS; i++) {
         step->columns[i] = zeroed(3 * bodies * rows, sizeof *step->columns[i]);
@@ -65,6 +69,8 @@ static void free_arrays(ImpulseStep *step)
     free(step->moved[0]);
     free(step->moved[1]);
     free(step->mean);
+    free(step->pressing);
+    impulse_curves_finish(&step->curves);
     for (size_t i = 0; work != NULL && i < 2; i++) {
         free(work->rows[i]);
         free(work->changes[i]);
@@ -165,6 +171,9 @@ bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
         return false;
     }
     make_arrays(step);
+    if (step->driven >= 0) {
+        step->arm = stepping_arm(&scenario->linkage, 0.0);
+    }
     step->whole = impulse_scope_whole(&scenario->linkage, step->place_count);
     linkage_start(&scenario->linkage, step->after);
     return world_build(scenario, step->after, &step->world, err);

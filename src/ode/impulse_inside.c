@@ -32,6 +32,12 @@ static void push_bodies(const ImpulseStep *step, const ImpulseScope *scope, doub
     push_scope(step, scope, sums->moment, positions);
 }
 
+static Motion driven_at(const ImpulseStep *step, double since_s)
+{
+    return stepping_driven_since(&step->scenario->linkage, &step->arm, step->start_s,
+                                 step->start_s + since_s);
+}
+
 // How the bodies move at a time within the step, from the contacts' sums up to then.
 static void find_motions(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
                          const EncounterSums *sums, Motion *motions)
@@ -63,26 +69,38 @@ static void find_motions(const ImpulseStep *step, const ImpulseScope *scope, dou
             .position = {q[0], q[1]}, .angle = q[2], .velocity = {w[0], w[1]}, .omega = w[2]};
     }
     if (scope->has_drive) {
-        motions[step->driven] =
-            stepping_driven_since(&step->scenario->linkage, step->start_s, step->start_s + since_s);
+        motions[step->driven] = driven_at(step, since_s);
     }
 }
 
-// What the contacts' forces do to all speeds. It turns with the bodies: of few rows it is a
-// parabola in time through this step and the two before; else the response is taken where the
-// bodies are, at a peak, or at mid-step.
-static void find_contact_rates(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
-                               bool is_peak, const EncounterSums *sums, const Motion *motions,
-                               double *rates)
+// The same and the accelerations, from the curves of a step of few rows.
+static void follow_curves(const ImpulseStep *step, double since_s, const EncounterSums *sums,
+                          Motion *motions)
+{
+    impulse_curves_at(&step->curves, since_s, sums, motions);
+    if (step->driven >= 0) {
+        motions[step->driven] = driven_at(step, since_s);
+    }
+    for (size_t i = 0; since_s == step->width_s && i < step->scenario->linkage.body_count; i++) {
+        const Motion *after = &step->after[i];
+        motions[i].position = after->position;
+        motions[i].angle = after->angle;
+        motions[i].velocity = after->velocity;
+        motions[i].omega = after->omega;
+    }
+}
+
+// What the contacts' forces do to all speeds, by the response where the bodies are, at a peak, or
+// at mid-step.
+static void find_contact_rates(const ImpulseStep *step, const ImpulseScope *scope, bool is_peak,
+                               const EncounterSums *sums, const Motion *motions, double *rates)
 {
     if (!scope->is_whole) {
         push_scope(step, scope, sums->force, rates);
         return;
     }
-    if (!impulse_step_parabola(step, since_s, sums->force, rates)) {
-        const bool is_placed = is_peak && response_place(&step->work->there, motions);
-        response_apply(is_placed ? &step->work->there : &step->response, sums->force, rates);
-    }
+    const bool is_placed = is_peak && response_place(&step->work->there, motions);
+    response_apply(is_placed ? &step->work->there : &step->response, sums->force, rates);
 }
 
 // Fills in the accelerations: those beside the contacts', linear in time, and the contacts'.
@@ -91,7 +109,7 @@ static void find_accelerations(const ImpulseStep *step, const ImpulseScope *scop
 {
     double *rates = step->work->changes[0];
     const double off_middle_s = since_s - 0.5 * step->width_s;
-    find_contact_rates(step, scope, since_s, is_peak, sums, motions, rates);
+    find_contact_rates(step, scope, is_peak, sums, motions, rates);
     for (size_t n = 0; n < scope->body_count; n++) {
         const size_t i = scope->bodies[n];
         if (impulse_step_is_free(step, i)) {
@@ -201,29 +219,54 @@ static void find_places(const ImpulseStep *step, const ImpulseScope *scope, Impu
     }
 }
 
-// What the ideal joints do: their mean forces, and how they answer what the contacts do beyond
+// What the ideal joints do beside their mean forces: they answer what the contacts do beyond
 // theirs.
-static void find_ideal(const ImpulseStep *step, const ImpulseScope *scope,
-                       const EncounterSums *sums, const Motion *motions, JointState *joints)
+static void add_answers(const ImpulseStep *step, const EncounterSums *sums, const Motion *motions,
+                        JointState *joints)
+{
+    double *beyond = step->work->rows[0];
+    double *reactions = step->work->rows[1];
+    for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
+        beyond[i] = sums->force[i] - step->pressing[i];
+    }
+    response_react(&step->response, beyond, reactions);
+    for (size_t row = 0; row < step->response.ideal_rows; row += 2) {
+        impulse_step_add_ideal(step, row, reactions + row, motions,
+                               &joints[step->response.joint_of[row]]);
+    }
+}
+
+// The same of few rows, of which it is known what each is answered with.
+static void add_few_answers(const ImpulseStep *step, const EncounterSums *sums,
+                            const Motion *motions, JointState *joints)
+{
+    const size_t rows = encounter_rows(&step->encounter);
+    double beyond[IMPULSE_FEW_ROWS];
+    for (size_t i = 0; i < rows; i++) {
+        beyond[i] = sums->force[i] - step->pressing[i];
+    }
+    for (size_t row = 0; row < step->response.ideal_rows; row += 2) {
+        const double *answer = step->drift.answers + row;
+        double reaction[2] = {0.0, 0.0};
+        for (size_t i = 0; i < rows; i++) {
+            reaction[0] += answer[0] * beyond[i];
+            reaction[1] += answer[1] * beyond[i];
+            answer += step->response.row_count;
+        }
+        impulse_step_add_ideal(step, row, reaction, motions, &joints[step->response.joint_of[row]]);
+    }
+}
+
+// The same of the joints that hold the groups of an island.
+static void add_island_answers(const ImpulseStep *step, const ImpulseScope *scope,
+                               const EncounterSums *sums, const Motion *motions, JointState *joints)
 {
     const Encounter *encounter = &step->encounter;
     double *beyond = step->work->rows[0];
-    double *reactions = step->work->rows[1];
-    if (scope->is_whole) {
-        for (size_t i = 0; i < encounter_rows(encounter); i++) {
-            beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
-        }
-        response_react(&step->response, beyond, reactions);
-        for (size_t row = 0; row < step->response.ideal_rows; row += 2) {
-            impulse_step_add_ideal(step, row, reactions + row, motions,
-                                   &joints[step->response.joint_of[row]]);
-        }
-        return;
-    }
     for (size_t n = 0; n < scope->part.place_count; n++) {
         const EncounterJoint *joint = &encounter->joints[scope->part.places[n]];
         for (size_t i = joint->first_row; i < joint->first_row + joint->row_count; i++) {
-            beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
+            beyond[i] = sums->force[i] - step->pressing[i];
         }
     }
     const ResponseGroups *groups = &step->groups;
@@ -239,31 +282,42 @@ static void find_ideal(const ImpulseStep *step, const ImpulseScope *scope,
     }
 }
 
+static void find_ideal(const ImpulseStep *step, const ImpulseScope *scope,
+                       const EncounterSums *sums, const Motion *motions, JointState *joints)
+{
+    if (step->has_few_rows) {
+        add_few_answers(step, sums, motions, joints);
+    } else if (scope->is_whole) {
+        add_answers(step, sums, motions, joints);
+    } else {
+        add_island_answers(step, scope, sums, motions, joints);
+    }
+}
+
 // The states of the joints at a time within the step.
 static void find_joints(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                         const EncounterSums *sums, const Motion *motions, JointState *joints,
                         double *depths)
 {
     const Linkage *linkage = &step->scenario->linkage;
-    for (size_t n = 0; n < scope->joint_count; n++) {
+    if (scope->is_whole) {
+        memcpy(joints, step->mean, linkage->joint_count * sizeof *joints);
+    }
+    for (size_t n = 0; !scope->is_whole && n < scope->joint_count; n++) {
         joints[scope->joints[n]] = step->mean[scope->joints[n]];
     }
     find_places(step, scope, at, sums, motions, joints, depths);
     find_ideal(step, scope, sums, motions, joints);
-    for (size_t n = 0; n < scope->joint_count; n++) {
+    for (size_t n = 0; step->has_coordinates && n < scope->joint_count; n++) {
         const size_t i = scope->joints[n];
-        const JointKind kind = linkage->joints[i].kind;
-        joints[i].is_touching = joints[i].is_touching || !linkage_has_play(&linkage->joints[i]);
-        if (kind == JOINT_PRISMATIC) {
+        if (linkage->joints[i].kind == JOINT_PRISMATIC) {
             stepping_observe_line(linkage, (int)i, motions, &joints[i]);
         }
         stepping_observe_coordinate(linkage, (int)i, motions, &joints[i]);
     }
     if (scope->has_drive) {
-        Vec2 *offsets = step->work->offsets;
-        memset(offsets, 0, linkage->joint_count * sizeof *offsets);
         const BodyLoad load = applied_on(&step->world.applied, step->driven);
-        stepping_drive(step->scenario, &motions[step->driven], &load, offsets, joints);
+        stepping_drive_force(step->scenario, &motions[step->driven], &load, joints);
     }
 }
 
@@ -271,7 +325,11 @@ void impulse_step_inside(const ImpulseStep *step, const ImpulseScope *scope, Imp
                          const EncounterSums *sums, Motion *motions, JointState *joints,
                          double *depths)
 {
-    find_motions(step, scope, at.since_s, sums, motions);
-    find_accelerations(step, scope, at.since_s, at.is_peak, sums, motions);
+    if (impulse_step_has_curves(step)) {
+        follow_curves(step, at.since_s, sums, motions);
+    } else {
+        find_motions(step, scope, at.since_s, sums, motions);
+        find_accelerations(step, scope, at.since_s, at.is_peak, sums, motions);
+    }
     find_joints(step, scope, at, sums, motions, joints, depths);
 }

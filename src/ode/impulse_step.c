@@ -246,23 +246,28 @@ static void prepare_inside(ImpulseStep *step, double width_before_s)
                 p[k] - q[k] - width_s * (v[k] + 0.5 * width_s * mean) - positions[n] + bent;
         }
     }
+    for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
+        step->pressing[i] = step->total.impulse[i] / width_s;
+    }
 }
 
-void impulse_step_add_ideal(const ImpulseStep *step, size_t row, const double *values,
-                            const Motion *motions, JointState *state)
+// Of few rows, once there have been steps enough: the curves that the state inside is read from.
+static void find_curves(ImpulseStep *step)
 {
-    const Linkage *linkage = &step->scenario->linkage;
-    const int joint = step->response.joint_of[row];
-    if (linkage->joints[joint].kind == JOINT_PRISMATIC) {
-        const Vec2 across = vec2_perp(joint_rows_along(linkage, motions, joint));
-        state->force_on_b = vec2_add(state->force_on_b, vec2_scale(values[0], across));
-        state->moment_on_b += values[1];
-    } else {
-        state->force_on_b = vec2_add(state->force_on_b, (Vec2){values[0], values[1]});
+    step->curves.width_s = step->width_s;
+    for (size_t i = 0; i < body_count(step); i++) {
+        impulse_curves_set_body(&step->curves, i, &step->before[i], step->free + 3 * i,
+                                step->free_rate + 3 * i, step->rest + 3 * i);
     }
-    if (linkage->joints[joint].limits.kind == LIMIT_NONE) {
-        state->force = vec2_length(state->force_on_b);
-    }
+    impulse_curves_set_columns(&step->curves, step->columns, step->middles_s, step->drift.rates);
+}
+
+void impulse_step_add_sliding(const Linkage *linkage, int joint, const double *values,
+                              const Motion *motions, JointState *state)
+{
+    const Vec2 across = vec2_perp(joint_rows_along(linkage, motions, joint));
+    state->force_on_b = vec2_add(state->force_on_b, vec2_scale(values[0], across));
+    state->moment_on_b += values[1];
 }
 
 // The mean forces of the ideal joints: those of the step of the world, whose rows stand at
@@ -304,7 +309,8 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
     step->start_s = step->end_s;
     memcpy(step->before, step->after, body_count(step) * sizeof *step->before);
     if (step->driven >= 0) {
-        step->before[step->driven] = stepping_driven(&step->scenario->linkage, step->start_s);
+        step->before[step->driven] = stepping_driven_since(&step->scenario->linkage, &step->arm,
+                                                           step->start_s, step->start_s);
     }
     fill_rows(step);
     const double coarse_s = (double)options->gear * step->tick_s;
@@ -314,7 +320,7 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
     step->width_s = step->end_s - step->start_s;
     if (step->driven >= 0) {
         step->after[step->driven] =
-            stepping_driven_since(&step->scenario->linkage, step->start_s, step->end_s);
+            stepping_driven_since(&step->scenario->linkage, &step->arm, step->start_s, step->end_s);
     }
     impulse_step_look_ahead(step);
     impulse_step_find_middle(step, width_before_s, middle);
@@ -327,5 +333,8 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
     find_means(step, middle);
     impulse_step_find_work(step, middle);
     step->count++;
+    if (impulse_step_has_curves(step)) {
+        find_curves(step);
+    }
     return true;
 }

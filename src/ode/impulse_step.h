@@ -5,10 +5,10 @@
 #include "contact/touch.h"
 #include "model/response_drift.h"
 #include "model/trajectory.h"
+#include "ode/impulse_curves.h"
 #include "ode/impulse_scope.h"
+#include "ode/stepping.h"
 #include "ode/world.h"
-
-enum { IMPULSE_COLUMNS = 3 }; // steps of which it is known what rows do: a parabola in time
 
 // What a step works with: arrays by row of the response, by body three numbers each, by body and by
 // joint.
@@ -43,6 +43,7 @@ typedef struct ImpulseStep {
     Motion *before;      // at its start
     Motion *middle;      // at mid-step, with the speeds of its start
     Motion *after;       // at its end
+    SteppingArm arm;     // of the driven body, at mid-step
     double *free;        // mean acceleration beside the contacts', three a body
     double *free_rate;   // its rate of change
     double *ahead;       // of few rows, what it will be at mid-step, from the steps before, or zero
@@ -58,9 +59,12 @@ typedef struct ImpulseStep {
     ResponseDrift drift;
     double *columns[IMPULSE_COLUMNS];
     double middles_s[IMPULSE_COLUMNS];
-    double *moved[2]; // by the contacts in the whole step: speeds and positions, three a body
-    double *closing;  // N s, of the ideal joints' rows, beside the world's step
-    JointState *mean; // mean forces of the ideal joints
+    ImpulseCurves curves; // what is inside the step, once there have been so many
+    double *moved[2];     // by the contacts in the whole step: speeds and positions, three a body
+    double *closing;      // N s, of the ideal joints' rows, beside the world's step
+    JointState *mean;     // mean forces of the ideal joints
+    double *pressing;     // N, of the rows of play, likewise
+    bool has_coordinates; // whether a joint that slides or is limited is to be observed
     ImpulseWork *work;
 } ImpulseStep;
 
@@ -78,10 +82,27 @@ void impulse_step_finish(ImpulseStep *step);
 // How the places of a response move each other.
 EncounterCoupling impulse_step_coupling(const Response *response);
 
-// Adds what an ideal joint does to its body b: the values of its two rows, forces in N, the first
-// of which is given; a linkage's bodies are where the motions say.
-void impulse_step_add_ideal(const ImpulseStep *step, size_t row, const double *values,
-                            const Motion *motions, JointState *state);
+// Adds what a prismatic joint does to its body b: the values of its two rows, N and N m; a
+// linkage's bodies are where the motions say.
+void impulse_step_add_sliding(const Linkage *linkage, int joint, const double *values,
+                              const Motion *motions, JointState *state);
+
+// The same of any ideal joint, of which the first row is given: forces in N.
+static inline void impulse_step_add_ideal(const ImpulseStep *step, size_t row, const double *values,
+                                          const Motion *motions, JointState *state)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    const int number = step->response.joint_of[row];
+    const Joint *joint = &linkage->joints[number];
+    if (joint->kind == JOINT_PRISMATIC) {
+        impulse_step_add_sliding(linkage, number, values, motions, state);
+    } else {
+        state->force_on_b = vec2_add(state->force_on_b, (Vec2){values[0], values[1]});
+    }
+    if (joint->limits.kind == LIMIT_NONE) {
+        state->force = vec2_length(state->force_on_b);
+    }
+}
 
 // Adds what an end of a limited coordinate presses with, N or N m.
 void impulse_step_add_end(const Linkage *linkage, const Touch *place, double pressing,
@@ -99,7 +120,7 @@ void impulse_step_change_motions(const ImpulseStep *step, const double *position
 void impulse_step_look_ahead(ImpulseStep *step);
 
 // Finds the bodies at mid-step, with the speeds of its start; the step before was so long, s.
-void impulse_step_find_middle(const ImpulseStep *step, double width_before_s, Motion *middle);
+void impulse_step_find_middle(ImpulseStep *step, double width_before_s, Motion *middle);
 
 // Before the response is taken at mid-step: writes the free accelerations of the rows in the step
 // before with what its contacts did to them, and finds whether that was little.
@@ -127,16 +148,16 @@ void impulse_step_push_bodies(const ImpulseStep *step, double since_s, const Enc
 void impulse_step_turn_bodies(const ImpulseStep *step, double *speeds);
 
 // Writes what forces in the rows of play do to the speeds of all bodies, per second, at a time
-// since the step's start: as in impulse_step_parabola, or else as in the last step whose response
-// is known.
+// since the step's start: as the curves have it, or else as in the last step whose response is
+// known.
 void impulse_step_press_bodies(const ImpulseStep *step, double since_s, const double *forces,
                                double *rates);
 
-// Writes what forces in the rows of play do to the speeds of all bodies, per second, at a time in
-// the step: of few rows it is a parabola in time through this step and the two before. Returns
-// false where that is not known.
-bool impulse_step_parabola(const ImpulseStep *step, double since_s, const double *forces,
-                           double *rates);
+// Whether the curves of the last step are known: of few rows, once there have been steps enough.
+static inline bool impulse_step_has_curves(const ImpulseStep *step)
+{
+    return step->has_few_rows && step->count >= IMPULSE_COLUMNS;
+}
 
 // Takes the next step.
 bool impulse_step_take(ImpulseStep *step, Err *err);

@@ -13,12 +13,18 @@
 #include <math.h>
 #include <stdio.h>
 
-static Motion driven_motion(const Linkage *linkage, const DriveState *drive)
+static Vec2 driven_arm(const Linkage *linkage, double angle_rad)
+{
+    const Joint *joint = &linkage->joints[linkage->driver.joint];
+    return vec2_scale(-1.0, vec2_rotate(angle_rad, joint->anchor_b));
+}
+
+// How the driven body moves whose centre is so far from its joint.
+static Motion driven_motion(const Linkage *linkage, const DriveState *drive, Vec2 arm)
 {
     const Joint *joint = &linkage->joints[linkage->driver.joint];
     const double omega = drive->omega;
     Motion motion = {.angle = drive->angle, .omega = omega, .alpha = drive->alpha};
-    const Vec2 arm = vec2_scale(-1.0, vec2_rotate(motion.angle, joint->anchor_b));
     motion.position = vec2_add(joint->anchor_a, arm);
     motion.velocity = vec2_scale(omega, vec2_perp(arm));
     motion.acceleration = vec2_scale(-omega * omega, arm);
@@ -35,16 +41,23 @@ Motion stepping_driven(const Linkage *linkage, double time_s)
         return (Motion){.angle = 0.0};
     }
     const DriveState drive = drive_at(&linkage->driver, time_s);
-    return driven_motion(linkage, &drive);
+    return driven_motion(linkage, &drive, driven_arm(linkage, drive.angle));
 }
 
-Motion stepping_driven_since(const Linkage *linkage, double from_s, double time_s)
+SteppingArm stepping_arm(const Linkage *linkage, double time_s)
 {
-    if (linkage->driver.speeds.count == 0) {
-        return stepping_driven(linkage, time_s);
-    }
-    const DriveState drive = drive_since(&linkage->driver, from_s, time_s);
-    return driven_motion(linkage, &drive);
+    const double angle = drive_angle(&linkage->driver, time_s);
+    return (SteppingArm){angle, driven_arm(linkage, angle)};
+}
+
+Motion stepping_driven_since(const Linkage *linkage, const SteppingArm *near, double from_s,
+                             double time_s)
+{
+    const DriveState drive = linkage->driver.speeds.count == 0
+                                 ? drive_at(&linkage->driver, time_s)
+                                 : drive_since(&linkage->driver, from_s, time_s);
+    const double turned = drive.angle - near->angle;
+    return driven_motion(linkage, &drive, vec2_rotate_slightly(turned, near->arm));
 }
 
 long stepping_start(const Scenario *scenario, double step_s, long steps_back, Motion *motions)
@@ -75,6 +88,32 @@ void stepping_offsets(const Linkage *linkage, const Motion *motions, int body, V
     }
 }
 
+// What the driven body needs so as to move as it does, N.
+static Vec2 driven_force(const Scenario *scenario, const Body *own, const Motion *driven)
+{
+    return vec2_scale(own->mass, vec2_add(driven->acceleration, (Vec2){0.0, scenario->gravity}));
+}
+
+void stepping_drive_force(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
+                          JointState *joints)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const int driver = linkage->driver.joint;
+    const int body = linkage->joints[driver].body_b;
+    Vec2 others = load->force;
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (i != driver && joint->body_a == body) {
+            others = vec2_sub(others, joints[i].force_on_b);
+        } else if (i != driver && joint->body_b == body) {
+            others = vec2_add(others, joints[i].force_on_b);
+        }
+    }
+    const Vec2 needed = driven_force(scenario, &linkage->bodies[body], driven);
+    joints[driver].force_on_b = vec2_sub(needed, others);
+    joints[driver].force = vec2_length(joints[driver].force_on_b);
+}
+
 double stepping_drive(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
                       const Vec2 *offsets, JointState *joints)
 {
@@ -84,10 +123,7 @@ double stepping_drive(const Scenario *scenario, const Motion *driven, const Body
         return 0.0;
     }
     const Body *own = &linkage->bodies[body];
-    const Vec2 needed =
-        vec2_scale(own->mass, vec2_add(driven->acceleration, (Vec2){0.0, scenario->gravity}));
-    Vec2 others = load->force;
-    double power = vec2_dot(needed, driven->velocity) +
+    double power = vec2_dot(driven_force(scenario, own, driven), driven->velocity) +
                    own->inertia * driven->alpha * driven->omega - forces_load_power(load, driven);
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
@@ -100,12 +136,9 @@ double stepping_drive(const Scenario *scenario, const Motion *driven, const Body
         const Vec2 anchor = vec2_rotate(driven->angle, is_on_a ? joint->anchor_a : joint->anchor_b);
         const Vec2 arm = vec2_add(anchor, offsets[i]);
         const Vec2 velocity = vec2_add(driven->velocity, vec2_scale(driven->omega, vec2_perp(arm)));
-        others = vec2_add(others, force);
         power -= vec2_dot(force, velocity) + sign * joints[i].moment_on_b * driven->omega;
     }
-    JointState *drive = &joints[linkage->driver.joint];
-    drive->force_on_b = vec2_sub(needed, others);
-    drive->force = vec2_length(drive->force_on_b);
+    stepping_drive_force(scenario, driven, load, joints);
     return power;
 }
 

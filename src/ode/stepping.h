@@ -14,9 +14,19 @@ extern const Solver STEPPING_IMPULSE; // where contacts are integrated within th
 // where there is no driver.
 Motion stepping_driven(const Linkage *linkage, double time_s);
 
-// The same within a step: with the acceleration that holds from its start on, also where the step
-// ends at a kink of the drive's speed.
-Motion stepping_driven_since(const Linkage *linkage, double from_s, double time_s);
+// Where the centre of the driven body stands from its joint with the ground, m, at an angle.
+typedef struct SteppingArm {
+    double angle; // rad
+    Vec2 arm;
+} SteppingArm;
+
+SteppingArm stepping_arm(const Linkage *linkage, double time_s);
+
+// How the driven body moves within a step: with the acceleration that holds from its start on, also
+// where the step ends at a kink of the drive's speed. From where it stands at a time nearby that is
+// soon worked out.
+Motion stepping_driven_since(const Linkage *linkage, const SteppingArm *near, double from_s,
+                             double time_s);
 
 // Where the bodies stand at the start of a run, or at most so many steps earlier: where the drive
 // determines the motion, and not further back than the linkage closes. Returns how many steps.
@@ -32,6 +42,10 @@ void stepping_offsets(const Linkage *linkage, const Motion *motions, int body, V
 // m; `load` is of springs and dampers on the driven body.
 double stepping_drive(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
                       const Vec2 *offsets, JointState *joints);
+
+// The force in the driven joint alone.
+void stepping_drive_force(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
+                          JointState *joints);
 
 // Where a step ends that would end on a tick, s: there, but not beyond the run, so that no contact
 // is recorded there. What is left to its end by less than a share of a tick is no step of its own.

@@ -1,0 +1,145 @@
+// How do bodies move inside a step of few rows?
+//
+// The parabola A + B s + C s^2 has Newton's form, through the last three steps' values at their
+// middles.
+#include "ode/impulse_curves.h"
+
+#include "base/zeroed.h"
+
+ImpulseCurves impulse_curves_create(size_t body_count, size_t row_count, int driven)
+{
+    return (ImpulseCurves){
+        .body_count = body_count,
+        .row_count = row_count,
+        .driven = driven,
+        .bodies = zeroed(body_count, sizeof(ImpulseCurve)),
+        .columns = zeroed(body_count * row_count, sizeof(ImpulseColumn)),
+    };
+}
+
+void impulse_curves_finish(ImpulseCurves *curves)
+{
+    free(curves->bodies);
+    free(curves->columns);
+    *curves = (ImpulseCurves){.body_count = 0};
+}
+
+void impulse_curves_set_body(ImpulseCurves *curves, size_t body, const Motion *before,
+                             const double *mean, const double *rate, const double *rest)
+{
+    const double width_s = curves->width_s;
+    const double per_square = 1.0 / (width_s * width_s);
+    const double position[3] = {before->position.x, before->position.y, before->angle};
+    const double speed[3] = {before->velocity.x, before->velocity.y, before->omega};
+    ImpulseCurve *curve = &curves->bodies[body];
+    for (size_t k = 0; k < 3; k++) {
+        curve->position[k / 2][k % 2] = position[k];
+        curve->speed[k / 2][k % 2] = speed[k];
+        curve->bend[k / 2][k % 2] = 0.5 * mean[k] - 0.25 * width_s * rate[k] + per_square * rest[k];
+        curve->acceleration[k / 2][k % 2] = mean[k] - 0.5 * width_s * rate[k];
+        curve->rate[k / 2][k % 2] = rate[k];
+    }
+}
+
+void impulse_curves_set_columns(ImpulseCurves *curves, double *const columns[IMPULSE_COLUMNS],
+                                const double middles_s[IMPULSE_COLUMNS], const double *rates)
+{
+    const double last_s = middles_s[0] - middles_s[1];
+    const double per_last = 1.0 / last_s;
+    const double per_former = 1.0 / (middles_s[1] - middles_s[2]);
+    const double per_both = 1.0 / (middles_s[0] - middles_s[2]);
+    for (size_t body = 0; body < curves->body_count; body++) {
+        for (size_t row = 0; row < curves->row_count; row++) {
+            ImpulseColumn *column = &curves->columns[body * curves->row_count + row];
+            const size_t first = 3 * (row * curves->body_count + body);
+            for (size_t k = 0; k < 3; k++) {
+                const double now = columns[0][first + k];
+                const double rise = per_last * (now - columns[1][first + k]);
+                const double before = per_former * (columns[1][first + k] - columns[2][first + k]);
+                column->middle[k / 2][k % 2] = now;
+                column->rate[k / 2][k % 2] = rates[first + k];
+                column->bend[k / 2][k % 2] = per_both * (rise - before);
+                column->slope[k / 2][k % 2] = rise + last_s * column->bend[k / 2][k % 2];
+            }
+        }
+    }
+}
+
+// Whether the contacts have done anything so far, or do now.
+static bool has_pushed(const EncounterSums *sums, size_t rows)
+{
+    for (size_t row = 0; row < rows; row++) {
+        if (sums->impulse[row] != 0.0 || sums->moment[row] != 0.0 || sums->force[row] != 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// How one body moves under so many rows, all or none.
+static inline Motion body_at(const ImpulseCurve *curve, const ImpulseColumn *columns, size_t rows,
+                             double since_s, double off_s, const EncounterSums *sums)
+{
+    Double2 q[IMPULSE_HALVES];
+    Double2 v[IMPULSE_HALVES];
+    Double2 a[IMPULSE_HALVES];
+    for (size_t k = 0; k < IMPULSE_HALVES; k++) {
+        const Double2 grown = since_s * curve->rate[k];
+        q[k] = curve->position[k] +
+               since_s * (curve->speed[k] + since_s * (curve->bend[k] + (1.0 / 6.0) * grown));
+        v[k] = curve->speed[k] + since_s * (curve->acceleration[k] + 0.5 * grown);
+        a[k] = curve->acceleration[k] + grown;
+    }
+    for (size_t row = 0; row < rows; row++) {
+        const ImpulseColumn *column = &columns[row];
+        const double moved = sums->moment[row];
+        const double twice = 2.0 * sums->moment[rows + row];
+        for (size_t k = 0; k < IMPULSE_HALVES; k++) {
+            const Double2 now = column->middle[k] + off_s * column->rate[k];
+            q[k] += moved * now - twice * column->rate[k];
+            v[k] += sums->impulse[row] * now - moved * column->rate[k];
+            a[k] += sums->force[row] *
+                    (column->middle[k] + off_s * (column->slope[k] + off_s * column->bend[k]));
+        }
+    }
+    return (Motion){
+        .position = {q[0][0], q[0][1]},
+        .angle = q[1][0],
+        .velocity = {v[0][0], v[0][1]},
+        .omega = v[1][0],
+        .acceleration = {a[0][0], a[0][1]},
+        .alpha = a[1][0],
+    };
+}
+
+void impulse_curves_at(const ImpulseCurves *curves, double since_s, const EncounterSums *sums,
+                       Motion *motions)
+{
+    const double off_s = since_s - 0.5 * curves->width_s;
+    const size_t rows = has_pushed(sums, curves->row_count) ? curves->row_count : 0;
+    for (size_t i = 0; i < curves->body_count; i++) {
+        if ((int)i != curves->driven) {
+            motions[i] = body_at(&curves->bodies[i], curves->columns + i * curves->row_count, rows,
+                                 since_s, off_s, sums);
+        }
+    }
+}
+
+void impulse_curves_press(const ImpulseCurves *curves, double off_s, const double *forces,
+                          double *rates)
+{
+    for (size_t i = 0; i < curves->body_count; i++) {
+        const ImpulseColumn *columns = curves->columns + i * curves->row_count;
+        Double2 sum[IMPULSE_HALVES] = {{0.0, 0.0}, {0.0, 0.0}};
+        for (size_t row = 0; row < curves->row_count; row++) {
+            for (size_t k = 0; k < IMPULSE_HALVES; k++) {
+                const ImpulseColumn *column = &columns[row];
+                sum[k] += forces[row] * (column->middle[k] +
+                                         off_s * (column->slope[k] + off_s * column->bend[k]));
+            }
+        }
+        rates[3 * i] = sum[0][0];
+        rates[3 * i + 1] = sum[0][1];
+        rates[3 * i + 2] = sum[1][0];
+    }
+}

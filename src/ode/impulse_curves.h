@@ -1,0 +1,71 @@
+// How the bodies move inside a step of few rows, as polynomials in time that are worked out once a
+// step: samples and parts of the step are then looked up at the cost of a few products.
+//
+// With t since the step's start, s since its middle, and by row the contacts' impulse P, its
+// integral Q, that one's R and the force f at t (contact/encounter.h),
+//     q = position + speed t + bend t^2 + rate t^3 / 6 + sum of A Q + A' (s Q - 2 R)
+//     v = speed + acceleration t + rate t^2 / 2        + sum of A P + A' (s P - Q)
+//     a = acceleration + rate t                        + sum of (A + B s + C s^2) f
+#pragma once
+
+#include "base/double2.h"
+#include "contact/encounter.h"
+#include "model/linkage.h"
+
+enum {
+    IMPULSE_FEW_ROWS = 16, // so many at most: working out what each does takes as their square
+    IMPULSE_COLUMNS = 3,   // steps of which it is known what rows do: a parabola in time
+};
+
+// The freedoms of one body: x and y in m; the angle in rad, and nothing.
+enum { IMPULSE_HALVES = 2 };
+
+// One body beside the contacts.
+typedef struct ImpulseCurve {
+    Double2 position[IMPULSE_HALVES];
+    Double2 speed[IMPULSE_HALVES];
+    Double2 bend[IMPULSE_HALVES];
+    Double2 acceleration[IMPULSE_HALVES];
+    Double2 rate[IMPULSE_HALVES];
+} ImpulseCurve;
+
+// What 1 N s in a row does to the speeds of a body.
+typedef struct ImpulseColumn {
+    Double2 middle[IMPULSE_HALVES]; // A, at mid-step
+    Double2 rate[IMPULSE_HALVES];   // A', its rate of change there (model/response_drift.h)
+    Double2
+        slope[IMPULSE_HALVES]; // B and C: with A the parabola through this step and the two before
+    Double2 bend[IMPULSE_HALVES];
+} ImpulseColumn;
+
+typedef struct ImpulseCurves {
+    size_t body_count;
+    size_t row_count;
+    int driven;             // a body that is left alone, or LINKAGE_GROUND
+    double width_s;         // of the step
+    ImpulseCurve *bodies;   // owned, as the next
+    ImpulseColumn *columns; // of a body those of all rows, body by body
+} ImpulseCurves;
+
+ImpulseCurves impulse_curves_create(size_t body_count, size_t row_count, int driven);
+void impulse_curves_finish(ImpulseCurves *curves);
+
+// Sets how a body moves beside the contacts: from its motion at the start of a step of so many s,
+// its mean acceleration, how that changes, 1/s of it, and what its position at the end has beyond
+// these; three numbers each.
+void impulse_curves_set_body(ImpulseCurves *curves, size_t body, const Motion *before,
+                             const double *mean, const double *rate, const double *rest);
+
+// Sets what the rows do: by row and body three numbers, in this step and the two before, the last
+// of them first, and when these had their middles, s; and how it changes in this step.
+void impulse_curves_set_columns(ImpulseCurves *curves, double *const columns[IMPULSE_COLUMNS],
+                                const double middles_s[IMPULSE_COLUMNS], const double *rates);
+
+// Writes how the bodies move at a time since the step's start, with the contacts' sums up to then.
+void impulse_curves_at(const ImpulseCurves *curves, double since_s, const EncounterSums *sums,
+                       Motion *motions);
+
+// Writes what forces in the rows do to the speeds of all bodies, per second, three each, at a time
+// since mid-step, s.
+void impulse_curves_press(const ImpulseCurves *curves, double off_s, const double *forces,
+                          double *rates);
