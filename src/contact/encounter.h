@@ -98,9 +98,9 @@ typedef struct Encounter {
     size_t node_count;
     size_t node_room;
     double *times; // s, since the start
-    double
-        *values; // by node: impulse, its integral over time, force, the integral's own; each by row
-    double *losses;     // by node: J lost in damping and in friction since the start
+    double *values;   // by node: impulse, its integral over time, that one's, force; each by row
+    double *closings; // by node: closing speeds, m/s, of all joints; 0 where one does not touch
+    double *losses;   // by node: J lost in damping and in friction since the start
     uint64_t *touching; // by node: which joints touch from there on, a word for each 64
     size_t evaluations; // of the forces, since the beginning
 } Encounter;
@@ -163,6 +163,17 @@ typedef struct EncounterSums {
 // Sums of so many rows, all zero.
 EncounterSums encounter_sums(size_t rows);
 void encounter_sums_free(EncounterSums *sums);
+
+// What a node has in all rows: impulses, their integrals, these ones' integrals, and forces.
+static inline const double *encounter_node_values(const Encounter *encounter, size_t node)
+{
+    return encounter->values + 4 * encounter->row_count * node;
+}
+
+static inline const double *encounter_node_forces(const Encounter *encounter, size_t node)
+{
+    return encounter_node_values(encounter, node) + 3 * encounter->row_count;
+}
 
 // The sums at a time between two neighbouring nodes, of which `node` is the first.
 void encounter_at(const Encounter *encounter, size_t node, double time_s, EncounterSums *sums);

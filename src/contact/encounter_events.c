@@ -57,9 +57,8 @@ static double find_return(Encounter *encounter, EncounterStep *step, size_t join
     double width_s = encounter_flight_time(encounter, joint, step->from, whole_s);
     for (int i = 0; i < EVENT_STEPS && encounter->drift != NULL && width_s < INFINITY; i++) {
         encounter_step_try(encounter, step, width_s, at);
-        const PinHole pose =
-            encounter_force_pose(encounter, joint, at->time_s, at->impulse, at->moment);
-        const double later_s = -pose.penetration / pose.approach_speed;
+        const PinHole *pose = encounter_point_pose(encounter, at, joint);
+        const double later_s = -pose->penetration / pose->approach_speed;
         if (!(fabs(later_s) > EVENT_ROUNDING * whole_s) || !(fabs(later_s) < NEARBY * width_s)) {
             break;
         }
@@ -74,9 +73,8 @@ static bool find_bracket(Encounter *encounter, EncounterStep *step, size_t joint
                          const EncounterPoint *to, double *first, double *width_s, double *last)
 {
     const EncounterPoint *from = step->from;
-    const PinHole start =
-        encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
-    const PinHole end = encounter_force_pose(encounter, joint, to->time_s, to->impulse, to->moment);
+    const PinHole start = *encounter_point_pose(encounter, from, joint);
+    const PinHole end = *encounter_point_pose(encounter, to, joint);
     *first = start.penetration;
     *last = end.penetration;
     if (encounter->joints[joint].is_touching) {
@@ -101,11 +99,10 @@ static bool find_bracket(Encounter *encounter, EncounterStep *step, size_t joint
 // Whether a pin that does not touch is at its wall, to rounding, and on its way off it.
 static bool is_leaving(const Encounter *encounter, const EncounterPoint *from, size_t joint)
 {
-    const PinHole pose =
-        encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
+    const PinHole *pose = encounter_point_pose(encounter, from, joint);
     const double rounding = encounter_error_rounding(encounter, joint, from->time_s);
-    return !encounter->joints[joint].is_touching && pose.penetration >= -AT_WALL * rounding &&
-           pose.approach_speed < 0.0;
+    return !encounter->joints[joint].is_touching && pose->penetration >= -AT_WALL * rounding &&
+           pose->approach_speed < 0.0;
 }
 
 size_t encounter_events_find(Encounter *encounter, EncounterStep *step, const EncounterPoint *to,
@@ -146,9 +143,8 @@ bool encounter_events_shorten(const Encounter *encounter, const EncounterPoint *
         if (encounter->joints[i].is_touching) {
             continue;
         }
-        const PinHole start =
-            encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment);
-        const PinHole end = encounter_force_pose(encounter, i, to->time_s, to->impulse, to->moment);
+        const PinHole start = *encounter_point_pose(encounter, from, i);
+        const PinHole end = *encounter_point_pose(encounter, to, i);
         if (start.approach_speed < 0.0 && end.approach_speed > 0.0 &&
             (start.penetration >= 0.0 || end.penetration > 0.0)) {
             const double share = start.approach_speed / (start.approach_speed - end.approach_speed);
@@ -171,9 +167,8 @@ bool encounter_events_step(Encounter *encounter, EncounterStep *step, double *wi
         if (!encounter_step_try(encounter, step, *width_s, to)) {
             return false;
         }
-        const PinHole pose =
-            encounter_force_pose(encounter, first, to->time_s, to->impulse, to->moment);
-        const double later_s = -pose.penetration / pose.approach_speed;
+        const PinHole *pose = encounter_point_pose(encounter, to, first);
+        const double later_s = -pose->penetration / pose->approach_speed;
         if (i == EVENT_STEPS || step->method != ENCOUNTER_EXPLICIT ||
             !(fabs(later_s) > EVENT_ROUNDING * whole_s) || !(*width_s + later_s > 0.0) ||
             !(fabs(later_s) < whole_s)) {

@@ -63,7 +63,7 @@ static void add_second(const Encounter *encounter, const EncounterPoint *from, d
 static void find_middle_point(const Encounter *encounter, const EncounterPoint *from,
                               double since_s, EncounterPoint *point)
 {
-    point->time_s = from->time_s + since_s;
+    encounter_point_begin(encounter, point, from->time_s + since_s);
     for (size_t i = 0; i < encounter->row_count; i++) {
         const double half = 0.5 * since_s * from->rate[i];
         point->impulse[i] = from->impulse[i] + since_s * (from->force[i] + half);
@@ -94,7 +94,7 @@ static void finish_order_5(Encounter *encounter, const EncounterPoint *from, dou
                            const EncounterPoint *inside, EncounterPoint *to)
 {
     EncounterPoint *last = &encounter->work->last;
-    last->time_s = from->time_s + h;
+    encounter_point_begin(encounter, last, from->time_s + h);
     for (size_t i = 0; i < encounter->row_count; i++) {
         const double rates = 0.25 * h * (3.0 * inside->rate[i] - from->rate[i]);
         const double second =
@@ -132,7 +132,7 @@ void encounter_explicit_step(Encounter *encounter, const EncounterPoint *from, i
     step->inside = &encounter->work->inside;
     find_middle_point(encounter, from, step->middle * width_s, step->inside);
     encounter_rates_find(encounter, step->inside);
-    to->time_s = from->time_s + width_s;
+    encounter_point_begin(encounter, to, from->time_s + width_s);
     add_second(encounter, from, width_s, to->moment);
     if (order == 4) {
         finish_order_4(encounter, from, width_s, step->inside, to);
@@ -212,8 +212,7 @@ double encounter_explicit_error(const Encounter *encounter, EncounterExplicit *s
         if (!joint->is_touching) {
             continue;
         }
-        const PinHole pose =
-            encounter_force_pose(encounter, i, inside->time_s, inside->impulse, inside->moment);
+        const PinHole pose = *encounter_point_pose(encounter, inside, i);
         const double depth = fmax(pose.penetration, 0.0);
         const double frequency = encounter_force_frequency(encounter, i, pose.normal, depth);
         double fastest = frequency;

@@ -20,12 +20,12 @@
 // rows of an encounter from which on all are worked out together
 enum { WIDE = 8 };
 
-// Where a row is and how fast it goes, from the impulses so far.
-static inline double row_motion(const Encounter *encounter, size_t row, double time_s,
-                                const double *impulse, const double *moment, double *position)
+// Where a row is and how fast it goes, from the impulses in a span of so many rows.
+static inline double row_motion_by(const Encounter *encounter, EncounterSpan span, size_t rows,
+                                   size_t row, double time_s, const double *impulse,
+                                   const double *moment, double *position)
 {
     const double *mobility = encounter_mobility(encounter, row, 0);
-    const EncounterSpan span = encounter_span(encounter, row);
     double speed = encounter_free_speed(encounter, row, time_s);
     double place = encounter_free_position(encounter, row, time_s);
     for (size_t k = span.first; k < span.end; k++) {
@@ -33,10 +33,24 @@ static inline double row_motion(const Encounter *encounter, size_t row, double t
         speed += mobility[k] * impulse[k];
     }
     if (encounter->drift != NULL) {
-        encounter_drift_add(encounter, row, time_s, impulse, moment, &speed, &place);
+        encounter_drift_add(encounter, rows, row, time_s, impulse, moment, &speed, &place);
     }
     *position = place;
     return speed;
+}
+
+// Where a row is and how fast it goes, from the impulses so far. One pin without friction is what
+// most linkages have; its loops are unrolled.
+static inline double row_motion(const Encounter *encounter, size_t row, double time_s,
+                                const double *impulse, const double *moment, double *position)
+{
+    const size_t rows = encounter->row_count;
+    if (rows == ENCOUNTER_ROWS_PLAIN) {
+        return row_motion_by(encounter, (EncounterSpan){0, ENCOUNTER_ROWS_PLAIN},
+                             ENCOUNTER_ROWS_PLAIN, row, time_s, impulse, moment, position);
+    }
+    return row_motion_by(encounter, encounter_span(encounter, row), rows, row, time_s, impulse,
+                         moment, position);
 }
 
 double encounter_force_row_speed(const Encounter *encounter, size_t row, double time_s,
@@ -108,18 +122,48 @@ static inline PinHole pose_of(const Encounter *encounter, size_t joint, const do
                : other_pose(of, position, speed);
 }
 
-PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double time_s,
-                             const double *impulse, const double *moment)
+// The pose of a joint, and how fast its first two rows go.
+static PinHole find_pose(const Encounter *encounter, size_t joint, double time_s,
+                         const double *impulse, const double *moment, double speed[2])
 {
     const size_t row = encounter->joints[joint].first_row;
     double position[2];
-    double speed[2];
     speed[0] = row_motion(encounter, row, time_s, impulse, moment, &position[0]);
-    if (encounter->joints[joint].shape == TOUCH_LINE) {
-        return line_pose(position[0], speed[0]);
-    }
     speed[1] = row_motion(encounter, row + 1, time_s, impulse, moment, &position[1]);
     return pose_of(encounter, joint, position, speed);
+}
+
+PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double time_s,
+                             const double *impulse, const double *moment)
+{
+    double speed[2];
+    if (encounter->joints[joint].shape == TOUCH_LINE) {
+        double gap;
+        const size_t row = encounter->joints[joint].first_row;
+        speed[0] = row_motion(encounter, row, time_s, impulse, moment, &gap);
+        return line_pose(gap, speed[0]);
+    }
+    return find_pose(encounter, joint, time_s, impulse, moment, speed);
+}
+
+void encounter_point_begin(const Encounter *encounter, EncounterPoint *point, double time_s)
+{
+    point->time_s = time_s;
+    for (size_t i = 0; i < encounter->joint_count; i++) {
+        point->placed[i].is_known = false;
+    }
+}
+
+const PinHole *encounter_point_pose(const Encounter *encounter, const EncounterPoint *point,
+                                    size_t joint)
+{
+    EncounterPlaced *placed = &point->placed[joint];
+    if (!placed->is_known) {
+        placed->pose = find_pose(encounter, joint, point->time_s, point->impulse, point->moment,
+                                 placed->speed);
+        placed->is_known = true;
+    }
+    return &placed->pose;
 }
 
 PinHole encounter_force_flight(const Encounter *encounter, size_t joint, double time_s,
@@ -177,26 +221,16 @@ static void find_all_rows(const Encounter *encounter, double time_s, const doubl
     }
 }
 
-// Where one joint's rows are, and how fast they go; of many rows as they were found together.
-static void find_own_rows(const Encounter *encounter, size_t joint, double time_s,
-                          const double *impulse, const double *moment, bool is_wide,
-                          double position[2], double *speed)
+// The pose of a joint at a point from rows that were found together.
+static void place_by_rows(const Encounter *encounter, size_t joint, EncounterPlaced *placed)
 {
     const size_t row = encounter->joints[joint].first_row;
-    const size_t count = encounter->joints[joint].row_count;
     const EncounterWork *work = encounter->work;
-    for (size_t i = 0; i < count; i++) {
-        if (is_wide) {
-            speed[i] = work->speeds[row + i];
-        } else if (i < 2) {
-            speed[i] = row_motion(encounter, row + i, time_s, impulse, moment, &position[i]);
-        } else {
-            speed[i] = encounter_force_row_speed(encounter, row + i, time_s, impulse, moment);
-        }
-    }
-    for (size_t i = 0; is_wide && i < 2; i++) {
-        position[i] = work->positions[row + i];
-    }
+    const double position[2] = {work->positions[row], work->positions[row + 1]};
+    placed->speed[0] = work->speeds[row];
+    placed->speed[1] = work->speeds[row + 1];
+    placed->pose = pose_of(encounter, joint, position, placed->speed);
+    placed->is_known = true;
 }
 
 // How fast a pin slides round its hole.
@@ -268,21 +302,30 @@ static double pressing(const EncounterJoint *joint, const EncounterTouch *touch)
     return total < 0.0 ? 0.0 : total; // a comparison that lets NaN through
 }
 
-// How a joint is; of its rows beyond the first two only where there is friction.
-static void find_touch(const Encounter *encounter, size_t joint, double time_s,
-                       const double *impulse, const double *moment, bool is_wide,
-                       EncounterTouch *touch)
+// How a joint is at a point; of its rows beyond the first two only where there is friction. Many
+// rows have been found together.
+static void find_touch(const Encounter *encounter, const EncounterPoint *point, size_t joint,
+                       bool is_wide, EncounterTouch *touch)
 {
-    double position[2];
-    find_own_rows(encounter, joint, time_s, impulse, moment, is_wide, position, touch->speed);
-    touch->pose = pose_of(encounter, joint, position, touch->speed);
-    force_law_both(&encounter->joints[joint].law, touch->pose.penetration, &touch->elastic,
-                   &touch->tangent);
+    const EncounterJoint *of = &encounter->joints[joint];
+    EncounterPlaced *placed = &point->placed[joint];
+    if (is_wide) {
+        place_by_rows(encounter, joint, placed);
+    }
+    touch->pose = *encounter_point_pose(encounter, point, joint);
+    touch->speed[0] = placed->speed[0];
+    touch->speed[1] = placed->speed[1];
+    for (size_t i = ENCOUNTER_ROWS_PLAIN; i < of->row_count; i++) {
+        const size_t row = of->first_row + i;
+        touch->speed[i] = is_wide ? encounter->work->speeds[row]
+                                  : encounter_force_row_speed(encounter, row, point->time_s,
+                                                              point->impulse, point->moment);
+    }
+    force_law_both(&of->law, touch->pose.penetration, &touch->elastic, &touch->tangent);
 }
 
-void encounter_force_find_touching(Encounter *encounter, double time_s, const double *impulse,
-                                   const double *moment, double *force, double powers[2],
-                                   EncounterTouch *touching)
+void encounter_force_find_touching(Encounter *encounter, const EncounterPoint *point, double *force,
+                                   double powers[2], EncounterTouch *touching)
 {
     const bool is_wide = encounter->row_count >= WIDE;
     bool is_any = false;
@@ -295,12 +338,12 @@ void encounter_force_find_touching(Encounter *encounter, double time_s, const do
             continue;
         }
         if (!is_any && is_wide) {
-            find_all_rows(encounter, time_s, impulse, moment, encounter->work->positions,
-                          encounter->work->speeds);
+            find_all_rows(encounter, point->time_s, point->impulse, point->moment,
+                          encounter->work->positions, encounter->work->speeds);
         }
         is_any = true;
         EncounterTouch *touch = &touching[i];
-        find_touch(encounter, i, time_s, impulse, moment, is_wide, touch);
+        find_touch(encounter, point, i, is_wide, touch);
         const PinHole *pose = &touch->pose;
         const double normal = pressing(joint, touch);
         own[0] = normal * pose->normal.x;
@@ -316,8 +359,11 @@ void encounter_force_find_touching(Encounter *encounter, double time_s, const do
 void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
                           const double *moment, double *force, double powers[2])
 {
-    encounter_force_find_touching(encounter, time_s, impulse, moment, force, powers,
-                                  encounter->work->touching);
+    EncounterPoint *point = &encounter->work->last; // of explicit steps, which ask for no forces
+    encounter_point_begin(encounter, point, time_s);
+    memcpy(point->impulse, impulse, encounter->row_count * sizeof *impulse);
+    memcpy(point->moment, moment, 2 * encounter->row_count * sizeof *moment);
+    encounter_force_find_touching(encounter, point, force, powers, encounter->work->touching);
 }
 
 // By how much the places that can press together with one move it along its normal, 1/kg; of a

@@ -4,16 +4,24 @@
 
 #include "contact/encounter_input.h"
 
+// Where a joint is at a point, and how fast its first two rows go; found when it is first asked for.
+typedef struct EncounterPlaced {
+    bool is_known;
+    PinHole pose;
+    double speed[2];
+} EncounterPlaced;
+
 // The state of an encounter at one time.
 typedef struct EncounterPoint {
     double time_s;
-    double *impulse;       // N s, by row; the four are in one array that starts here
-    double *moment;        // N s^2, its integral over time, by row, then that one's, N s^3
-    double *force;         // N
-    double *rate;          // N/s, of the forces along the motion
-    double powers[2];      // W, lost in damping and in friction
-    double power_rates[2]; // W/s
-    double losses[2];      // J, likewise, since the start
+    EncounterPlaced *placed; // by joint; owned
+    double *impulse;         // N s, by row; the four are in one array that starts here
+    double *moment;          // N s^2, its integral over time, by row, then that one's, N s^3
+    double *force;           // N
+    double *rate;            // N/s, of the forces along the motion
+    double powers[2];        // W, lost in damping and in friction
+    double power_rates[2];   // W/s
+    double losses[2];        // J, likewise, since the start
 } EncounterPoint;
 
 // How a joint that touches is at a point: its pose, how fast its rows go, what its spring presses
@@ -31,7 +39,7 @@ enum { ENCOUNTER_ERRORS = 5 };
 typedef struct EncounterWork {
     EncounterPoint ends[2]; // of a local step
     EncounterPoint inside;  // the points of an explicit step
-    EncounterPoint last;
+    EncounterPoint last;    // which forces that are asked for by themselves take as well
     EncounterPoint trial; // where a depth is looked at
     EncounterTouch *touching;
     double *forces;
@@ -42,9 +50,16 @@ typedef struct EncounterWork {
     bool *has_event;                  // whether a contact begins or ends at the end of a local step
 } EncounterWork;
 
-// A point of so many rows, all zero.
-EncounterPoint encounter_point(size_t rows);
+// A point of so many rows and joints, all zero.
+EncounterPoint encounter_point(size_t rows, size_t joints);
 void encounter_point_free(EncounterPoint *point);
+
+// Begins a point at another time, of which impulses and moments are about to be written.
+void encounter_point_begin(const Encounter *encounter, EncounterPoint *point, double time_s);
+
+// The pose of one joint at a point.
+const PinHole *encounter_point_pose(const Encounter *encounter, const EncounterPoint *point,
+                                    size_t joint);
 
 // Which columns of a row's mobility may be other than zero.
 typedef struct EncounterSpan {
@@ -92,10 +107,9 @@ static inline double encounter_free_rate(const Encounter *encounter, size_t row,
 void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,
                           const double *moment, double *force, double powers[2]);
 
-// The same, and how the joints are that touch, by joint.
-void encounter_force_find_touching(Encounter *encounter, double time_s, const double *impulse,
-                                   const double *moment, double *force, double powers[2],
-                                   EncounterTouch *touching);
+// The same at a point, and how the joints are that touch, by joint.
+void encounter_force_find_touching(Encounter *encounter, const EncounterPoint *point, double *force,
+                                   double powers[2], EncounterTouch *touching);
 
 // The pose of one joint after impulses and their integrals.
 PinHole encounter_force_pose(const Encounter *encounter, size_t joint, double time_s,

@@ -64,10 +64,11 @@ void encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t row
     encounter->joint_count++;
 }
 
-EncounterPoint encounter_point(size_t rows)
+EncounterPoint encounter_point(size_t rows, size_t joints)
 {
     double *numbers = zeroed(5 * rows, sizeof *numbers);
     return (EncounterPoint){
+        .placed = zeroed(joints, sizeof(EncounterPlaced)),
         .impulse = numbers,
         .moment = numbers + rows,
         .force = numbers + 3 * rows,
@@ -77,6 +78,7 @@ EncounterPoint encounter_point(size_t rows)
 
 void encounter_point_free(EncounterPoint *point)
 {
+    free(point->placed);
     free(point->impulse);
     *point = (EncounterPoint){.time_s = 0.0};
 }
@@ -84,11 +86,11 @@ void encounter_point_free(EncounterPoint *point)
 static EncounterWork *make_work(size_t rows, size_t joints)
 {
     EncounterWork *work = zeroed(1, sizeof *work);
-    work->ends[0] = encounter_point(rows);
-    work->ends[1] = encounter_point(rows);
-    work->inside = encounter_point(rows);
-    work->last = encounter_point(rows);
-    work->trial = encounter_point(rows);
+    work->ends[0] = encounter_point(rows, joints);
+    work->ends[1] = encounter_point(rows, joints);
+    work->inside = encounter_point(rows, joints);
+    work->last = encounter_point(rows, joints);
+    work->trial = encounter_point(rows, joints);
     work->touching = zeroed(joints, sizeof *work->touching);
     work->forces = zeroed(rows, sizeof *work->forces);
     work->positions = zeroed(rows, sizeof *work->positions);
@@ -158,6 +160,7 @@ void encounter_finish(Encounter *encounter)
     free(encounter->speed);
     free(encounter->times);
     free(encounter->values);
+    free(encounter->closings);
     free(encounter->losses);
     free(encounter->touching);
     free_work(encounter->work);

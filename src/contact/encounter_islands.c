@@ -190,7 +190,7 @@ static void find_variations(const Encounter *encounter, double *variations)
     const size_t rows = encounter->row_count;
     memset(variations, 0, rows * sizeof *variations);
     for (size_t node = 0; node + 1 < encounter->node_count; node++) {
-        const double *impulse = encounter->values + 4 * rows * node;
+        const double *impulse = encounter_node_values(encounter, node);
         for (size_t row = 0; row < rows; row++) {
             variations[row] += fabs(impulse[4 * rows + row] - impulse[row]);
         }

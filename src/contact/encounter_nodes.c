@@ -12,14 +12,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Marks which joints touch from a node on.
-static void set_touching(const Encounter *encounter, uint64_t *words)
+// Marks which joints touch from a node on, and how fast they close.
+static void set_touching(const Encounter *encounter, const EncounterPoint *point, uint64_t *words,
+                         double *closings)
 {
     const size_t count = encounter->joint_count;
     for (size_t first = 0; first < count; first += 64) {
         uint64_t bits = 0;
         for (size_t i = first; i < count && i < first + 64; i++) {
-            bits |= encounter->joints[i].is_touching ? UINT64_C(1) << (i - first) : 0;
+            const bool touches = encounter->joints[i].is_touching;
+            bits |= touches ? UINT64_C(1) << (i - first) : 0;
+            closings[i] = touches ? encounter_point_pose(encounter, point, i)->approach_speed : 0.0;
         }
         words[first / 64] = bits;
     }
@@ -36,36 +39,49 @@ bool encounter_touches_any(const Encounter *encounter, size_t node)
     return false;
 }
 
+// Makes room for more nodes.
+static void grow(Encounter *encounter)
+{
+    encounter->node_room = 2 * encounter->node_room + 64;
+    const size_t room = encounter->node_room;
+    const size_t rows = encounter->row_count;
+    const size_t joints = encounter->joint_count;
+    const size_t words = (joints + 63) / 64;
+    encounter->times = realloc(encounter->times, room * sizeof *encounter->times);
+    encounter->values =
+        realloc(encounter->values, (4 * rows * room + 1) * sizeof *encounter->values);
+    encounter->closings =
+        realloc(encounter->closings, (joints * room + 1) * sizeof *encounter->closings);
+    encounter->losses = realloc(encounter->losses, 2 * room * sizeof *encounter->losses);
+    encounter->touching =
+        realloc(encounter->touching, (words * room + 1) * sizeof *encounter->touching);
+    assert(encounter->times != NULL && encounter->values != NULL && encounter->closings != NULL &&
+           encounter->losses != NULL && encounter->touching != NULL);
+}
+
 void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point)
 {
-    const size_t rows = encounter_rows(encounter);
-    const size_t words = (encounter->joint_count + 63) / 64;
     if (encounter->node_count == encounter->node_room) {
-        encounter->node_room = 2 * encounter->node_room + 64;
-        const size_t room = encounter->node_room;
-        encounter->times = realloc(encounter->times, room * sizeof *encounter->times);
-        encounter->values =
-            realloc(encounter->values, (4 * rows * room + 1) * sizeof *encounter->values);
-        encounter->losses = realloc(encounter->losses, 2 * room * sizeof *encounter->losses);
-        encounter->touching =
-            realloc(encounter->touching, (words * room + 1) * sizeof *encounter->touching);
-        assert(encounter->times != NULL && encounter->values != NULL && encounter->losses != NULL &&
-               encounter->touching != NULL);
+        grow(encounter);
     }
+    const size_t rows = encounter->row_count;
+    const size_t joints = encounter->joint_count;
+    const size_t words = (joints + 63) / 64;
     const size_t node = encounter->node_count++;
     double *values = encounter->values + 4 * rows * node;
     encounter->times[node] = point->time_s;
-    memcpy(values, point->impulse, rows * sizeof *values);
-    memcpy(values + rows, point->moment, rows * sizeof *values);
-    memcpy(values + 2 * rows, point->force, rows * sizeof *values);
-    memcpy(values + 3 * rows, point->moment + rows, rows * sizeof *values);
+    // as they stand in the point: impulses, both integrals, forces
+    for (size_t i = 0; i < 4 * rows; i++) {
+        values[i] = point->impulse[i];
+    }
     memcpy(encounter->losses + 2 * node, point->losses, sizeof point->losses);
-    set_touching(encounter, encounter->touching + words * node);
+    set_touching(encounter, point, encounter->touching + words * node,
+                 encounter->closings + joints * node);
 }
 
 void encounter_nodes_settle(Encounter *encounter)
 {
-    encounter_stiff_settled(encounter, encounter->values + 2 * encounter_rows(encounter));
+    encounter_stiff_settled(encounter, encounter->values + 3 * encounter->row_count);
 }
 
 size_t encounter_node(const Encounter *encounter, double time_s)
@@ -87,16 +103,16 @@ static EncounterNodeRow node_row(const double *values, size_t rows, size_t row)
 {
     return (EncounterNodeRow){.impulse = values[row],
                               .moment = values[rows + row],
-                              .force = values[2 * rows + row],
-                              .second = values[3 * rows + row]};
+                              .second = values[2 * rows + row],
+                              .force = values[3 * rows + row]};
 }
 
 void encounter_at(const Encounter *encounter, size_t node, double time_s, EncounterSums *sums)
 {
     const size_t rows = encounter_rows(encounter);
     const size_t next = node + 1 < encounter->node_count ? node + 1 : node;
-    const double *first = encounter->values + 4 * rows * node;
-    const double *last = encounter->values + 4 * rows * next;
+    const double *first = encounter_node_values(encounter, node);
+    const double *last = encounter_node_values(encounter, next);
     const double width = encounter->times[next] - encounter->times[node];
     const double s = width > 0.0 ? (time_s - encounter->times[node]) / width : 0.0;
     const bool is_short = width < ENCOUNTER_NARROW * encounter->times[encounter->node_count - 1];

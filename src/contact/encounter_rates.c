@@ -208,8 +208,8 @@ void encounter_rates_find(Encounter *encounter, EncounterPoint *point)
     const size_t rows = encounter->row_count;
     const EncounterTouch *touching = encounter->work->touching;
     double *forces = encounter->work->forces;
-    encounter_force_find_touching(encounter, point->time_s, point->impulse, point->moment, forces,
-                                  point->powers, encounter->work->touching);
+    encounter_force_find_touching(encounter, point, forces, point->powers,
+                                  encounter->work->touching);
     memset(point->force, 0, rows * sizeof *point->force);
     memset(point->rate, 0, rows * sizeof *point->rate);
     memset(point->powers, 0, sizeof point->powers);

@@ -125,12 +125,11 @@ static void settle_contacts(Encounter *encounter, const EncounterPoint *point)
 {
     for (size_t i = 0; i < encounter->joint_count; i++) {
         EncounterJoint *joint = &encounter->joints[i];
-        const PinHole pose =
-            encounter_force_pose(encounter, i, point->time_s, point->impulse, point->moment);
+        const PinHole *pose = encounter_point_pose(encounter, point, i);
         if (joint->is_touching) {
-            joint->is_touching = pose.penetration > 0.0 || pose.approach_speed > 0.0;
-        } else if (pose.penetration > 0.0 && pose.approach_speed > 0.0) {
-            begin_contact(encounter, i, &pose);
+            joint->is_touching = pose->penetration > 0.0 || pose->approach_speed > 0.0;
+        } else if (pose->penetration > 0.0 && pose->approach_speed > 0.0) {
+            begin_contact(encounter, i, pose);
         }
     }
 }
@@ -144,9 +143,7 @@ static void change_contacts(Encounter *encounter, const EncounterPoint *point)
         if (encounter->joints[i].is_touching) {
             encounter->joints[i].is_touching = false;
         } else {
-            const PinHole pose =
-                encounter_force_pose(encounter, i, point->time_s, point->impulse, point->moment);
-            begin_contact(encounter, i, &pose);
+            begin_contact(encounter, i, encounter_point_pose(encounter, point, i));
         }
     }
 }
@@ -181,7 +178,7 @@ static bool advance_step(Encounter *encounter, EncounterStep *step, double left_
 // The point at the start of a step.
 static void begin_step(const Encounter *encounter, EncounterPoint *point)
 {
-    point->time_s = 0.0;
+    encounter_point_begin(encounter, point, 0.0);
     memset(point->impulse, 0, encounter->row_count * sizeof *point->impulse);
     memset(point->moment, 0, 2 * encounter->row_count * sizeof *point->moment);
     memset(point->losses, 0, sizeof point->losses);
@@ -213,7 +210,7 @@ bool encounter_run(Encounter *encounter, double duration)
             continue;
         }
         if (fabs(to->time_s - stop_s) <= rounding_s && stop_s < duration) {
-            to->time_s = stop_s;
+            encounter_point_begin(encounter, to, stop_s);
             step.is_ended = false;
         }
         if (step.method == ENCOUNTER_STIFF && encounter->node_count == 1) {

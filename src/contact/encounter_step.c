@@ -49,7 +49,7 @@ static void fly(const Encounter *encounter, const EncounterPoint *from, double w
                 EncounterPoint *to)
 {
     const size_t rows = encounter->row_count;
-    to->time_s = from->time_s + width_s;
+    encounter_point_begin(encounter, to, from->time_s + width_s);
     for (size_t i = 0; i < rows; i++) {
         to->impulse[i] = from->impulse[i];
         to->moment[i] = from->moment[i] + width_s * from->impulse[i];
@@ -84,11 +84,11 @@ double encounter_step_depth(Encounter *encounter, EncounterStep *step, size_t jo
     if (step->method != ENCOUNTER_EXPLICIT) {
         encounter_step_try(encounter, step, width_s, at);
     } else {
-        at->time_s = step->from->time_s + width_s;
+        encounter_point_begin(encounter, at, step->from->time_s + width_s);
         encounter_explicit_inside(encounter, &step->explicit, step->from,
                                   width_s / step->explicit.width_s, at->impulse, at->moment);
     }
-    return encounter_force_pose(encounter, joint, at->time_s, at->impulse, at->moment).penetration;
+    return encounter_point_pose(encounter, at, joint)->penetration;
 }
 
 // How short a local step has to be at least next to the ends of a contact, of a share of its
@@ -113,8 +113,7 @@ static double choose_width(const Encounter *encounter, const EncounterPoint *poi
         if (!joint->is_touching) {
             continue;
         }
-        const PinHole pose =
-            encounter_force_pose(encounter, i, point->time_s, point->impulse, point->moment);
+        const PinHole pose = *encounter_point_pose(encounter, point, i);
         const double depth = fmax(pose.penetration, 0.0);
         const double frequency =
             fmax(joint->frequency, encounter_force_frequency(encounter, i, pose.normal, depth));
@@ -138,10 +137,9 @@ static double longest_width(const Encounter *encounter, const EncounterPoint *fr
     for (size_t i = 0; i < encounter->joint_count; i++) {
         const EncounterJoint *joint = &encounter->joints[i];
         if (joint->is_touching) {
-            const PinHole pose =
-                encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment);
-            width_s =
-                fmin(width_s, width_before_end(&pose, encounter->stiff_phase / joint->frequency));
+            const double share_s = encounter->stiff_phase / joint->frequency;
+            const PinHole *pose = encounter_point_pose(encounter, from, i);
+            width_s = fmin(width_s, width_before_end(pose, share_s));
         }
     }
     return width_s;
@@ -211,8 +209,7 @@ static double limit_explicit(const Encounter *encounter, const EncounterPoint *f
         if (!joint->is_touching) {
             continue;
         }
-        const PinHole pose =
-            encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment);
+        const PinHole pose = *encounter_point_pose(encounter, from, i);
         const double depth = fmax(pose.penetration, 0.0);
         if (pose.penetration < 0.0) {
             longest_s = fmin(longest_s, fmax(time_to_wall(encounter, joint, from->time_s, &pose),

@@ -45,8 +45,7 @@ bool encounter_stiff_is_needed(const Encounter *encounter, const EncounterPoint 
         if (!joint->is_touching || (joint->law.hysteresis == 0.0 && joint->law.viscous == 0.0)) {
             continue;
         }
-        const PinHole pose =
-            encounter_force_pose(encounter, i, point->time_s, point->impulse, point->moment);
+        const PinHole pose = *encounter_point_pose(encounter, point, i);
         const double width_s = joint->is_overdamped ? frictionless_s : explicit_s;
         // as deep as the step leads
         const double depth = fmax(pose.penetration, 0.0) + width_s * fmax(pose.approach_speed, 0.0);
@@ -147,7 +146,7 @@ double encounter_stiff_step(Encounter *encounter, const EncounterPoint *from, do
     }
     EncounterStages *stages = encounter->stages;
     const bool is_solved = encounter_stages_solve(encounter, stages, from, width_s);
-    to->time_s = from->time_s + width_s;
+    encounter_point_begin(encounter, to, from->time_s + width_s);
     const size_t rows = encounter_rows(encounter);
     memcpy(to->impulse, stages->impulse[ENCOUNTER_STAGES - 1], rows * sizeof *to->impulse);
     memcpy(to->moment, stages->moment[ENCOUNTER_STAGES - 1], 2 * rows * sizeof *to->moment);

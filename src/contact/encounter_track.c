@@ -102,7 +102,7 @@ static double track_change(const EncounterTrack *track, const Encounter *encount
     size_t begin = 0;
     *largest = 0.0;
     for (size_t node = 0; node < encounter->node_count; node++) {
-        const double *now = encounter->values + 4 * encounter->row_count * node + of->first_row;
+        const double *now = encounter_node_values(encounter, node) + of->first_row;
         if (track->count > 0) {
             encounter_track_at(track, encounter->times[node], false, &begin, impulse, moment,
                                force);
@@ -140,9 +140,10 @@ void encounter_track_write(EncounterTrack *track, const Encounter *encounter, si
     track->stop_count = 0;
     for (size_t node = 0; node < count; node++) {
         track->times[node] = encounter->times[node];
+        const double *values = encounter_node_values(encounter, node);
+        const double *parts[3] = {values, values + rows, encounter_node_forces(encounter, node)};
         for (size_t part = 0; part < 3; part++) {
-            memcpy(track->values + (3 * node + part) * track->rows,
-                   encounter->values + (4 * node + part) * rows + of->first_row,
+            memcpy(track->values + (3 * node + part) * track->rows, parts[part] + of->first_row,
                    track->rows * sizeof *track->values);
         }
         if (node > 0 && encounter_touches(encounter, node, joint) !=

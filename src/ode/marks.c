@@ -24,18 +24,12 @@ static void add_mark(Marks *marks, double time_s, size_t node)
     marks->marks[at] = (Mark){time_s, node};
 }
 
-static double force_at(const Encounter *encounter, size_t joint, size_t node)
+// The square of a joint's force at a node.
+static double force_squared(const Encounter *encounter, size_t joint, size_t node)
 {
-    const size_t rows = encounter_rows(encounter);
     const double *force =
-        encounter->values + (4 * node + 2) * rows + encounter->joints[joint].first_row;
-    return hypot(force[0], force[1]);
-}
-
-static double closing_at(const Encounter *encounter, size_t joint, size_t node,
-                         const EncounterSums *sums)
-{
-    return encounter_pose(encounter, joint, node, encounter->times[node], sums).pose.approach_speed;
+        encounter_node_forces(encounter, node) + encounter->joints[joint].first_row;
+    return force[0] * force[0] + force[1] * force[1];
 }
 
 // The time of a maximum of the force that node `middle` is nearest to, or NAN.
@@ -46,29 +40,31 @@ static double force_peak(const Encounter *encounter, size_t joint, size_t middle
         !encounter_touches(encounter, middle, joint)) {
         return NAN;
     }
-    const double t0 = encounter->times[middle - 1];
-    const double t1 = encounter->times[middle];
-    const double t2 = encounter->times[middle + 1];
-    const double f1 = force_at(encounter, joint, middle);
-    const double rise = f1 - force_at(encounter, joint, middle - 1);
-    const double fall = f1 - force_at(encounter, joint, middle + 1);
-    if (!(rise > 0.0 && fall >= 0.0 && t1 > t0 && t2 > t1)) {
+    const double squares[3] = {
+        force_squared(encounter, joint, middle - 1),
+        force_squared(encounter, joint, middle),
+        force_squared(encounter, joint, middle + 1),
+    };
+    const double *t = encounter->times + middle - 1;
+    if (!(squares[1] > squares[0] && squares[1] >= squares[2] && t[1] > t[0] && t[2] > t[1])) {
         return NAN;
     }
+    const double rise = sqrt(squares[1]) - sqrt(squares[0]);
+    const double fall = sqrt(squares[1]) - sqrt(squares[2]);
     // the slopes of the chords stand at their middles; in between the slope is linear
-    const double up = rise / (t1 - t0);
-    const double down = fall / (t2 - t1);
-    return 0.5 * (t0 + t1) + 0.5 * (t2 - t0) * up / (up + down);
+    const double up = rise / (t[1] - t[0]);
+    const double down = fall / (t[2] - t[1]);
+    return 0.5 * (t[0] + t[1]) + 0.5 * (t[2] - t[0]) * up / (up + down);
 }
 
-// The maxima of one joint in the interval behind a node, from the sums at both its ends.
-static void mark_maxima(Marks *marks, const Encounter *encounter, size_t joint, size_t node,
-                        const EncounterSums sums[2])
+// The maxima of one joint in the interval behind a node.
+static void mark_maxima(Marks *marks, const Encounter *encounter, size_t joint, size_t node)
 {
     const double start_s = encounter->times[node];
     const double end_s = encounter->times[node + 1];
-    const double before = closing_at(encounter, joint, node, &sums[0]);
-    const double behind = closing_at(encounter, joint, node + 1, &sums[1]);
+    const size_t count = encounter->joint_count;
+    const double before = encounter->closings[node * count + joint];
+    const double behind = encounter->closings[(node + 1) * count + joint];
     if (before > 0.0 && behind <= 0.0) {
         add_mark(marks, start_s + (end_s - start_s) * before / (before - behind), node);
     }
@@ -98,11 +94,9 @@ static void mark_interval(Marks *marks, const Encounter *encounter, size_t node)
     if (!encounter_touches_any(encounter, node)) {
         return;
     }
-    encounter_at(encounter, node, encounter->times[node], &marks->sums[0]);
-    encounter_at(encounter, node + 1, encounter->times[node + 1], &marks->sums[1]);
     for (size_t joint = 0; joint < encounter->joint_count; joint++) {
         if (encounter_touches(encounter, node, joint)) {
-            mark_maxima(marks, encounter, joint, node, marks->sums);
+            mark_maxima(marks, encounter, joint, node);
         }
     }
 }
@@ -121,9 +115,6 @@ void marks_find(Marks *marks, const Encounter *encounter)
 {
     marks->count = 0;
     marks->next = 0;
-    for (size_t i = 0; i < 2 && marks->sums[i].impulse == NULL; i++) {
-        marks->sums[i] = encounter_sums(encounter_rows(encounter));
-    }
     const size_t last = encounter->node_count - 1;
     for (size_t node = 0; node < last; node++) {
         const size_t behind = last_at_once(encounter, node);
@@ -149,7 +140,5 @@ void marks_find(Marks *marks, const Encounter *encounter)
 void marks_finish(Marks *marks)
 {
     free(marks->marks);
-    encounter_sums_free(&marks->sums[0]);
-    encounter_sums_free(&marks->sums[1]);
     *marks = (Marks){.count = 0};
 }

@@ -12,9 +12,8 @@ typedef struct Mark {
 typedef struct Marks {
     size_t count;
     size_t room;
-    size_t next;           // the first that has not been handed on
-    Mark *marks;           // in order of time; owned
-    EncounterSums sums[2]; // to work with: at both ends of an interval
+    size_t next; // the first that has not been handed on
+    Mark *marks; // in order of time; owned
 } Marks;
 
 // Finds the marks of an encounter that has run. The last is the step's end.
