@@ -97,10 +97,10 @@ typedef struct Encounter {
     // what came of it: nodes, the first at the start, two where a contact begins or ends
     size_t node_count;
     size_t node_room;
-    double *times; // s, since the start
-    double *values;   // by node: impulse, its integral over time, that one's, force; each by row
-    double *closings; // by node: closing speeds, m/s, of all joints; 0 where one does not touch
-    double *losses;   // by node: J lost in damping and in friction since the start
+    double *times;      // s, since the start
+    double *values;     // by node: impulse, its integral over time, that one's, force; each by row
+    double *closings;   // by node: closing speeds, m/s, of all joints; 0 where one does not touch
+    double *losses;     // by node: J lost in damping and in friction since the start
     uint64_t *touching; // by node: which joints touch from there on, a word for each 64
     size_t evaluations; // of the forces, since the beginning
 } Encounter;

@@ -90,16 +90,3 @@ void encounter_drift_bend_all(const Encounter *encounter, double time_s, double 
         positions[i] += bend * time_s * (time_s / 3.0 - encounter->middle_s);
     }
 }
-
-double encounter_drift_acceleration(const Encounter *encounter, size_t row, double time_s,
-                                    const double *impulse, const double *force)
-{
-    const size_t rows = encounter->row_count;
-    const double since_s = time_s - encounter->middle_s;
-    double sum = since_s * encounter->free_rate[row];
-    for (size_t k = 0; k < rows; k++) {
-        sum += since_s * encounter->mobility_rate[row * rows + k] * force[k] +
-               2.0 * encounter->drift[row * rows + k] * impulse[k];
-    }
-    return sum;
-}

@@ -31,6 +31,16 @@ void encounter_drift_add_all(const Encounter *encounter, size_t row, double time
                              const double *impulse, const double *moment, double *positions,
                              double *speeds);
 
-// What a row's acceleration has more, under forces, after impulses.
-double encounter_drift_acceleration(const Encounter *encounter, size_t row, double time_s,
-                                    const double *impulse, const double *force);
+// What a row's acceleration has more, under forces, after impulses, likewise.
+static inline double encounter_drift_acceleration(const Encounter *encounter, size_t rows,
+                                                  size_t row, double time_s, const double *impulse,
+                                                  const double *force)
+{
+    const double since_s = time_s - encounter->middle_s;
+    double sum = since_s * encounter->free_rate[row];
+    for (size_t k = 0; k < rows; k++) {
+        sum += since_s * encounter->mobility_rate[row * rows + k] * force[k] +
+               2.0 * encounter->drift[row * rows + k] * impulse[k];
+    }
+    return sum;
+}

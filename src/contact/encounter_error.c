@@ -57,14 +57,14 @@ static double share_of_joint(const Encounter *encounter, size_t joint, const Enc
     const double square = encounter->stiff_phase * encounter->stiff_phase;
     const double rounding = encounter_error_rounding(encounter, joint, from->time_s + width_s);
     const PinHole pose =
-        encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
+        encounter_motion_pose(encounter, joint, from->time_s, from->impulse, from->moment);
     const Vec2 tangent = vec2_perp(pose.normal);
     double speeds[ENCOUNTER_ROWS_MOST];
     double changes[ENCOUNTER_ROWS_MOST];
     double errors[2][ENCOUNTER_ROWS_MOST];
     for (size_t i = 0; i < own; i++) {
-        speeds[i] = encounter_force_row_speed(encounter, first + i, from->time_s, from->impulse,
-                                              from->moment);
+        speeds[i] =
+            encounter_motion_speed(encounter, first + i, from->time_s, from->impulse, from->moment);
     }
     move_rows(encounter, joint, moved, changes);
     move_rows(encounter, joint, impulse, errors[0]);

@@ -185,6 +185,11 @@ void encounter_explicit_extend(const Encounter *encounter, const EncounterExplic
     }
 }
 
+static double force_size(const double force[2])
+{
+    return sqrt(force[0] * force[0] + force[1] * force[1]);
+}
+
 // h^3 times the third derivative of a joint's force, N.
 static double third_change(const EncounterJoint *joint, const EncounterExplicit *step,
                            const EncounterPoint *from)
@@ -225,10 +230,9 @@ double encounter_explicit_error(const Encounter *encounter, EncounterExplicit *s
         }
         const double changes = third_change(joint, step, from);
         const double allowed =
-            joint->tolerance *
-            fmax(joint->force_per_speed *
-                     fmax(fabs(pose.approach_speed), REMEMBERED * joint->impact_speed),
-                 hypot(inside->force[joint->first_row], inside->force[joint->first_row + 1]));
+            joint->tolerance * fmax(joint->force_per_speed * fmax(fabs(pose.approach_speed),
+                                                                  REMEMBERED * joint->impact_speed),
+                                    force_size(inside->force + joint->first_row));
         // error over what is allowed, of either order at this length
         const double theta = fastest * h;
         const double errors[2] = {ERROR_FACTORS[0] * theta * changes / allowed,
@@ -237,9 +241,10 @@ double encounter_explicit_error(const Encounter *encounter, EncounterExplicit *s
         step->extends = step->extends &&
                         EXTEND_FACTORS[step->order - 4] * theta * changes <= EXTEND_MOST * allowed;
         worst = own <= worst ? worst : own; // a NaN must show
+        const double shares[2] = {1.0 / sqrt(sqrt(errors[0])), pow(errors[1], -1.0 / 5.0)};
         for (int k = 0; k < 2; k++) {
-            const double factor = STEP_SAFETY * pow(errors[k], k == 0 ? -1.0 / 4.0 : -1.0 / 5.0);
-            longest_s[k] = fmin(longest_s[k], fmin(factor * h, THETA_MOST[k] / frequency));
+            const double wanted_s = STEP_SAFETY * shares[k] * h;
+            longest_s[k] = fmin(longest_s[k], fmin(wanted_s, THETA_MOST[k] / frequency));
         }
     }
     return worst;

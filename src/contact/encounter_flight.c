@@ -78,11 +78,11 @@ double encounter_flight_time(const Encounter *encounter, size_t joint, const Enc
     // nothing presses: the impulses, and what they do to the accelerations, stay as they are
     double free[2];
     for (size_t i = 0; i < 2; i++) {
-        free[i] = encounter_force_row_acceleration(encounter, of->first_row + i, from->time_s,
-                                                   from->impulse, from->force);
+        free[i] = encounter_motion_acceleration(encounter, of->first_row + i, from->time_s,
+                                                from->impulse, from->force);
     }
     const PinHole pose =
-        encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
+        encounter_motion_pose(encounter, joint, from->time_s, from->impulse, from->moment);
     if (of->shape == TOUCH_LINE) {
         // the gap grows by -approach t + free t^2 / 2
         const double time_s = 2.0 * pose.approach_speed / free[0];
@@ -91,10 +91,9 @@ double encounter_flight_time(const Encounter *encounter, size_t joint, const Enc
     const Vec2 e = pose.eccentricity;
     const Vec2 a = {free[0], free[1]};
     const Vec2 v = {
-        encounter_force_row_speed(encounter, of->first_row, from->time_s, from->impulse,
-                                  from->moment),
-        encounter_force_row_speed(encounter, of->first_row + 1, from->time_s, from->impulse,
-                                  from->moment),
+        encounter_motion_speed(encounter, of->first_row, from->time_s, from->impulse, from->moment),
+        encounter_motion_speed(encounter, of->first_row + 1, from->time_s, from->impulse,
+                               from->moment),
     };
     const double sign = of->radial_clearance < 0.0 ? -1.0 : 1.0;
     const Cubic cubic = {{

@@ -353,7 +353,7 @@ static PinHole flying_pose(const EncounterIslands *islands, size_t place, double
             }
         }
     }
-    return encounter_force_flight(islands->all, place, time_s, moved, speeds);
+    return encounter_motion_flight(islands->all, place, time_s, moved, speeds);
 }
 
 EncounterPose encounter_islands_pose(const EncounterIslands *islands, size_t place, double time_s,

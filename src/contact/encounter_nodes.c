@@ -135,7 +135,7 @@ EncounterPose encounter_pose(const Encounter *encounter, size_t joint, size_t no
 {
     const size_t row = encounter->joints[joint].first_row;
     return (EncounterPose){
-        .pose = encounter_force_pose(encounter, joint, time_s, sums->impulse, sums->moment),
+        .pose = encounter_motion_pose(encounter, joint, time_s, sums->impulse, sums->moment),
         .force = {sums->force[row], sums->force[row + 1]},
         .is_touching = encounter_touches(encounter, node, joint),
     };

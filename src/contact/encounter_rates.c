@@ -197,7 +197,7 @@ static void find_moving(const Encounter *encounter, const EncounterPoint *point,
 {
     const size_t first = moving->joint->first_row;
     for (size_t k = 0; k < moving->joint->row_count; k++) {
-        const double acceleration = encounter_force_row_acceleration(
+        const double acceleration = encounter_motion_acceleration(
             encounter, first + k, point->time_s, point->impulse, forces);
         moving->speed[k] = (Rated){touch->speed[k], acceleration};
     }

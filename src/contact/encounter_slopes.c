@@ -206,7 +206,7 @@ void encounter_slopes_find(const Encounter *encounter, size_t number, double tim
                            EncounterSlopes *slopes)
 {
     const EncounterJoint *joint = &encounter->joints[number];
-    const PinHole pose = encounter_force_pose(encounter, number, time_s, impulse, moment);
+    const PinHole pose = encounter_motion_pose(encounter, number, time_s, impulse, moment);
     memset(slopes, 0, sizeof *slopes);
     if (!joint->is_touching || (pose.penetration <= 0.0 && from_depth == 0.0)) {
         return;
@@ -214,7 +214,7 @@ void encounter_slopes_find(const Encounter *encounter, size_t number, double tim
     double speeds[SPEEDS] = {0.0};
     for (size_t i = 0; i < joint->row_count; i++) {
         speeds[i] =
-            encounter_force_row_speed(encounter, joint->first_row + i, time_s, impulse, moment);
+            encounter_motion_speed(encounter, joint->first_row + i, time_s, impulse, moment);
     }
     Gradient by_normal;
     const double normal =

@@ -96,7 +96,7 @@ static void list_rows(const Encounter *encounter, EncounterStages *stages,
     stages->count = 0;
     for (size_t i = 0; i < encounter->joint_count; i++) {
         const PinHole pose =
-            encounter_force_pose(encounter, i, from->time_s, from->impulse, from->moment);
+            encounter_motion_pose(encounter, i, from->time_s, from->impulse, from->moment);
         stages->from_depth[i] = FROM_DEPTH * fmax(pose.penetration, 0.0);
     }
     for (size_t i = 0; i < encounter_rows(encounter); i++) {
@@ -271,9 +271,9 @@ static void extend_forces(const Encounter *encounter, EncounterStages *stages,
     encounter_slopes_find(encounter, joint, from->time_s, from->impulse, from->moment,
                           stages->from_depth[joint], &slopes);
     const PinHole before =
-        encounter_force_pose(encounter, joint, from->time_s, from->impulse, from->moment);
-    const PinHole after = encounter_force_pose(encounter, joint, from->time_s + after_s,
-                                               stages->impulse[stage], stages->moment[stage]);
+        encounter_motion_pose(encounter, joint, from->time_s, from->impulse, from->moment);
+    const PinHole after = encounter_motion_pose(encounter, joint, from->time_s + after_s,
+                                                stages->impulse[stage], stages->moment[stage]);
     const Vec2 moved = vec2_sub(after.eccentricity, before.eccentricity);
     for (size_t i = 0; i < own; i++) {
         double force =
@@ -344,8 +344,8 @@ static bool is_joint_pressing(const Encounter *encounter, const EncounterStages 
     const size_t row = encounter->joints[joint].first_row;
     for (size_t s = 0; s < ENCOUNTER_STAGES; s++) {
         const PinHole pose =
-            encounter_force_pose(encounter, joint, from->time_s + ENCOUNTER_NODE[s] * width_s,
-                                 stages->impulse[s], stages->moment[s]);
+            encounter_motion_pose(encounter, joint, from->time_s + ENCOUNTER_NODE[s] * width_s,
+                                  stages->impulse[s], stages->moment[s]);
         const double along =
             pose.normal.x * stages->forces[s][row] + pose.normal.y * stages->forces[s][row + 1];
         if (!(along >= 0.0 && pose.penetration >= stages->from_depth[joint])) {

@@ -22,8 +22,8 @@ static void make_mobile(Encounter *pin, uint64_t *seed)
 // The point a little before or after, under the forces there.
 static EncounterPoint point_beside(Encounter *pin, const EncounterPoint *at, double since_s)
 {
-    EncounterPoint beside = encounter_point(pin->row_count);
-    beside.time_s = at->time_s + since_s;
+    EncounterPoint beside = encounter_point(pin->row_count, pin->joint_count);
+    encounter_point_begin(pin, &beside, at->time_s + since_s);
     for (size_t i = 0; i < pin->row_count; i++) {
         const double rise = 0.5 * since_s * at->rate[i];
         beside.impulse[i] = since_s * (at->force[i] + rise);
@@ -38,7 +38,7 @@ static EncounterPoint point_beside(Encounter *pin, const EncounterPoint *at, dou
 // the motion leads.
 static double mismatch(Encounter *pin, double stretched)
 {
-    EncounterPoint at = encounter_point(pin->row_count);
+    EncounterPoint at = encounter_point(pin->row_count, pin->joint_count);
     encounter_rates_find(pin, &at);
     EncounterPoint after = point_beside(pin, &at, stretched * APART_S);
     EncounterPoint before = point_beside(pin, &at, -stretched * APART_S);
@@ -63,7 +63,7 @@ static double mismatch(Encounter *pin, double stretched)
 static void check(Encounter *pin, uint64_t *seed)
 {
     make_mobile(pin, seed);
-    EncounterPoint at = encounter_point(pin->row_count);
+    EncounterPoint at = encounter_point(pin->row_count, pin->joint_count);
     double force[ENCOUNTER_ROWS_MOST];
     double powers[2];
     encounter_rates_find(pin, &at);

@@ -236,7 +236,7 @@ static double energy_of_balls(const Encounter *balls, size_t *touching)
         energy += 0.5 * ONE_IMPACT_MASS * speed * speed;
     }
     for (size_t i = 0; i < BALL_PLACES; i++) {
-        const PinHole pose = encounter_force_pose(balls, i, time_s, impulses, moments);
+        const PinHole pose = encounter_motion_pose(balls, i, time_s, impulses, moments);
         energy += force_law_energy(&balls->joints[i].law, pose.penetration);
         *touching += encounter_touches(balls, last, i) ? 1 : 0;
     }
