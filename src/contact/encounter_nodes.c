@@ -40,7 +40,7 @@ bool encounter_touches_any(const Encounter *encounter, size_t node)
 }
 
 // Makes room for more nodes.
-static void grow(Encounter *encounter)
+static void grow_nodes(Encounter *encounter)
 {
     encounter->node_room = 2 * encounter->node_room + 64;
     const size_t room = encounter->node_room;
@@ -62,7 +62,7 @@ static void grow(Encounter *encounter)
 void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point)
 {
     if (encounter->node_count == encounter->node_room) {
-        grow(encounter);
+        grow_nodes(encounter);
     }
     const size_t rows = encounter->row_count;
     const size_t joints = encounter->joint_count;

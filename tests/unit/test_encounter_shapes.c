@@ -224,7 +224,7 @@ static Encounter balls_in_a_row(ForceLaw law, double gap, size_t reach)
 static double energy_of_balls(const Encounter *balls, size_t *touching)
 {
     const size_t last = balls->node_count - 1;
-    const double *impulses = balls->values + 4 * balls->row_count * last;
+    const double *impulses = encounter_node_values(balls, last);
     const double *moments = impulses + balls->row_count;
     const double time_s = balls->times[last];
     double energy = balls->losses[2 * last];
@@ -263,7 +263,7 @@ static void many_damped_balls_keep_the_balance_of_energy(void **state)
         const double lost = balls.losses[2 * (balls.node_count - 1)];
         assert_true(lost > 0.1 * 0.5 * ONE_IMPACT_MASS * ONE_IMPACT_SPEED * ONE_IMPACT_SPEED);
         assert_true(touching > 40);
-        ends[i] = balls.values[4 * balls.row_count * (balls.node_count - 1)];
+        ends[i] = encounter_node_values(&balls, balls.node_count - 1)[0];
         encounter_finish(&balls);
     }
     assert_true(ends[0] > 0.5 * ONE_IMPACT_MASS * ONE_IMPACT_SPEED);
@@ -282,7 +282,7 @@ static void a_hundred_balls_hand_an_impact_on(void **state)
     const double next_s = gap / ONE_IMPACT_SPEED + 0.5 * contact_s;
     assert_true(encounter_run(&pin, PLACES * next_s + 0.4 * contact_s));
     const size_t last = pin.node_count - 1;
-    const double *impulses = pin.values + 4 * pin.row_count * last;
+    const double *impulses = encounter_node_values(&pin, last);
     for (size_t i = 0; i + 1 < PLACES; i++) {
         assert_false(encounter_touches(&pin, last, i));
         assert_close(impulses[ENCOUNTER_ROWS_PLAIN * i], ONE_IMPACT_MASS * ONE_IMPACT_SPEED, 1e-6);
@@ -320,8 +320,8 @@ static void forces_between_nodes_are_no_rounding(void **state)
             pin_sums_at(&pin, node, pin.times[node] + 0.25 * i * width_s, &sums[i]);
         }
         for (size_t row = 0; row < 4; row += 2) {
-            const double most =
-                fmax(pin.values[16 * node + 8 + row], pin.values[16 * (node + 1) + 8 + row]);
+            const double most = fmax(encounter_node_forces(&pin, node)[row],
+                                     encounter_node_forces(&pin, node + 1)[row]);
             strongest = fmax(strongest, most);
             for (int i = 0; i < 5; i++) {
                 assert_true(fabs(sums[i].force[row]) <= 2.0 * most + 0.1);
