@@ -31,8 +31,10 @@ static const double PHASE_ERROR = 1.0 / 120.0;
 // constant
 static const double ERROR_SHARE = 0.008;
 
-// the same where it changes in the step, which leaves a tenth of that error
+// the same where it changes in the step, which leaves a tenth of that error, and of its square,
+// which is left beside that
 static const double DRIFT_SHARE = 0.004;
+static const double DRIFT_SQUARE = 0.5;
 static const double TOLERANCE_LEAST = 1e-10;
 static const double TOLERANCE_MOST = 1e-3;
 
@@ -66,13 +68,19 @@ static double response_change(const Encounter *encounter, const EncounterJoint *
     return sqrt(change / size);
 }
 
+// The error that is allowed where the response changes by a share in the step.
+static double allowed_error(const Encounter *encounter, double change)
+{
+    return encounter->drift != NULL ? change * (DRIFT_SHARE + DRIFT_SQUARE * change)
+                                    : ERROR_SHARE * change;
+}
+
 // Sets the errors allowed: a share of what comes of the response being taken as constant, which
 // moves a pin by W' h^2 / 12 for each newton second.
 static void set_tolerances(Encounter *encounter, double duration_s)
 {
     const double phase = encounter->phase;
     const double between_s = 0.5 * (duration_s + encounter->duration_before_s);
-    const double share = encounter->drift != NULL ? DRIFT_SHARE : ERROR_SHARE;
     for (size_t i = 0; i < encounter->joint_count; i++) {
         EncounterJoint *joint = &encounter->joints[i];
         const double *own = encounter_mobility(encounter, joint->first_row, joint->first_row);
@@ -81,7 +89,8 @@ static void set_tolerances(Encounter *encounter, double duration_s)
         } else if (encounter->duration_before_s > 0.0) {
             const double change = response_change(encounter, joint) * duration_s / between_s;
             const double turned = fmin(1.0, joint->frequency * duration_s / M_PI);
-            joint->tolerance = fmin(fmax(share * change * turned, TOLERANCE_LEAST), TOLERANCE_MOST);
+            const double allowed = allowed_error(encounter, change) * turned;
+            joint->tolerance = fmin(fmax(allowed, TOLERANCE_LEAST), TOLERANCE_MOST);
         } else {
             joint->tolerance = TOLERANCE_LEAST;
         }
