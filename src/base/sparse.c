@@ -22,6 +22,8 @@ void sparse_finish(Sparse *sparse)
     free(sparse->first_block);
     free(sparse->block_node);
     free(sparse->block_value);
+    free(sparse->block_row);
+    free(sparse->first_kept);
     free(sparse->first_target);
     free(sparse->targets);
     free(sparse->values);
@@ -72,6 +74,24 @@ static void list_blocks(Sparse *sparse, const SparseList *later)
     sparse->values = zeroed(value, sizeof *sparse->values);
 }
 
+// Notes where the rows of blocks begin, and the first block of each column that stays.
+static void note_rows(Sparse *sparse)
+{
+    const size_t blocks = sparse->first_block[sparse->count];
+    sparse->block_row = zeroed(blocks, sizeof *sparse->block_row);
+    for (size_t b = 0; b < blocks; b++) {
+        sparse->block_row[b] = sparse->first_row[sparse->node_at[sparse->block_node[b]]];
+    }
+    for (size_t p = 0; p < sparse->eliminated; p++) {
+        size_t kept = sparse->first_block[p + 1];
+        while (kept > sparse->first_block[p] + 1 &&
+               sparse->block_node[kept - 1] >= sparse->eliminated) {
+            kept--;
+        }
+        sparse->first_kept[p] = kept;
+    }
+}
+
 // The block of a column in the row of a later node, by their orders.
 static size_t find_block(const Sparse *sparse, size_t row, size_t column)
 {
@@ -120,6 +140,7 @@ void sparse_init(size_t count, const size_t *sizes, size_t eliminated, size_t li
     sparse->order = zeroed(count, sizeof *sparse->order);
     sparse->node_at = zeroed(count, sizeof *sparse->node_at);
     sparse->first_block = zeroed(count + 1, sizeof *sparse->first_block);
+    sparse->first_kept = zeroed(eliminated, sizeof *sparse->first_kept);
     sparse->first_target = zeroed(eliminated + 1, sizeof *sparse->first_target);
     for (size_t i = 0; i < count; i++) {
         sparse->first_row[i + 1] = sparse->first_row[i] + sizes[i];
@@ -132,6 +153,7 @@ void sparse_init(size_t count, const size_t *sizes, size_t eliminated, size_t li
         sparse->order[sparse->node_at[p]] = p;
     }
     list_blocks(sparse, later);
+    note_rows(sparse);
     list_targets(sparse);
     for (size_t i = 0; i < count; i++) {
         free(later[i].nodes);
@@ -268,14 +290,17 @@ bool sparse_factor(Sparse *sparse, double share)
     return true;
 }
 
-// The end of a column's blocks in eliminated rows.
-static inline size_t eliminated_end(const Sparse *sparse, size_t p)
+// Takes a block's share of the unknowns of its column, n of them, out of its own rows.
+static inline void subtract_before(const double *block, size_t count, size_t n, const double *x,
+                                   double *y)
 {
-    size_t end = sparse->first_block[p + 1];
-    while (end > sparse->first_block[p] + 1 && sparse->block_node[end - 1] >= sparse->eliminated) {
-        end--;
+    for (size_t i = 0; i < count; i++) {
+        double left = y[i];
+        for (size_t k = 0; k < n; k++) {
+            left -= block[i * n + k] * x[k];
+        }
+        y[i] = left;
     }
-    return end;
 }
 
 static void go_forward(const Sparse *sparse, bool with_kept, double *rows)
@@ -283,7 +308,7 @@ static void go_forward(const Sparse *sparse, bool with_kept, double *rows)
     for (size_t p = 0; p < sparse->eliminated; p++) {
         const size_t n = size_at(sparse, p);
         const size_t first = sparse->first_block[p];
-        const size_t end = with_kept ? sparse->first_block[p + 1] : eliminated_end(sparse, p);
+        const size_t end = with_kept ? sparse->first_block[p + 1] : sparse->first_kept[p];
         const double *own = sparse->values + sparse->block_value[first];
         double *x = rows + sparse->first_row[sparse->node_at[p]];
         for (size_t k = 0; k < n; k++) {
@@ -294,29 +319,34 @@ static void go_forward(const Sparse *sparse, bool with_kept, double *rows)
         }
         for (size_t b = first + 1; b < end; b++) {
             const double *block = sparse->values + sparse->block_value[b];
-            const size_t node = sparse->node_at[sparse->block_node[b]];
-            const size_t count = sparse->first_row[node + 1] - sparse->first_row[node];
-            double *y = rows + sparse->first_row[node];
-            for (size_t i = 0; i < count; i++) {
-                for (size_t k = 0; k < n; k++) {
-                    y[i] -= block[i * n + k] * x[k];
-                }
+            const size_t size = sparse->block_value[b + 1] - sparse->block_value[b];
+            double *y = rows + sparse->block_row[b];
+            if (n == 2 && size == 4) {
+                subtract_before(block, 2, 2, x, y);
+            } else {
+                subtract_before(block, size / n, n, x, y);
             }
         }
     }
 }
 
-// Takes a block's share of the unknowns below out of one row of a column's node.
-static inline void subtract_below(const Sparse *sparse, const double *rows, size_t block, size_t n,
-                                  size_t k, double *x)
+// Takes the share of the unknowns below, in some blocks of a column, out of one row of its node.
+static inline double subtract_below(const Sparse *sparse, const double *rows, size_t first,
+                                    size_t end, size_t n, size_t k, double left)
 {
-    const double *values = sparse->values + sparse->block_value[block];
-    const size_t node = sparse->node_at[sparse->block_node[block]];
-    const double *y = rows + sparse->first_row[node];
-    const size_t count = sparse->first_row[node + 1] - sparse->first_row[node];
-    for (size_t i = 0; i < count; i++) {
-        x[k] -= values[i * n + k] * y[i];
+    for (size_t b = first; b < end; b++) {
+        const double *values = sparse->values + sparse->block_value[b] + k;
+        const double *y = rows + sparse->block_row[b];
+        const size_t size = sparse->block_value[b + 1] - sparse->block_value[b];
+        if (n == 2 && size == 4) {
+            left = left - values[0] * y[0] - values[2] * y[1];
+            continue;
+        }
+        for (size_t i = 0; i < size / n; i++) {
+            left -= values[i * n] * y[i];
+        }
     }
+    return left;
 }
 
 // Finds the unknowns of one column from those behind it.
@@ -324,21 +354,16 @@ static inline void go_back_to(const Sparse *sparse, size_t p, bool with_kept, do
 {
     const size_t n = size_at(sparse, p);
     const size_t first = sparse->first_block[p];
-    const size_t kept = eliminated_end(sparse, p);
+    const size_t kept = sparse->first_kept[p];
     const size_t end = with_kept ? sparse->first_block[p + 1] : kept;
     const double *own = sparse->values + sparse->block_value[first];
     double *x = rows + sparse->first_row[sparse->node_at[p]];
     for (size_t k = n; k-- > 0;) {
-        for (size_t b = kept; b < end; b++) {
-            subtract_below(sparse, rows, b, n, k, x);
-        }
+        double left = subtract_below(sparse, rows, kept, end, n, k, x[k]);
         for (size_t j = k + 1; j < n; j++) {
-            x[k] -= own[j * n + k] * x[j];
+            left -= own[j * n + k] * x[j];
         }
-        for (size_t b = first + 1; b < kept; b++) {
-            subtract_below(sparse, rows, b, n, k, x);
-        }
-        x[k] /= own[k * n + k];
+        x[k] = subtract_below(sparse, rows, first + 1, kept, n, k, left) / own[k * n + k];
     }
 }
 

@@ -27,6 +27,8 @@ typedef struct Sparse {
     size_t *first_block; // and behind the last one the number of blocks
     size_t *block_node;  // of a block: its row, as an order of elimination
     size_t *block_value; // of a block: where its numbers begin, row by row
+    size_t *block_row;   // of a block: the first row of its node
+    size_t *first_kept;  // of an eliminated column: its first block in the row of a kept node
     size_t *first_target;
     size_t *targets;   // blocks that are changed where a column is taken out, in order
     double *values;    // the matrix, then its factor and the Schur complement

@@ -151,15 +151,39 @@ void response_close(const Response *response, const double *openings, double *im
     }
 }
 
+// How a joint's end on a body stands and moves.
+static JointGap end_of(const Response *response, const Motion *motions, JointEnd end)
+{
+    if (end.body == LINKAGE_GROUND) {
+        return (JointGap){.position = end.anchor};
+    }
+    const Motion *motion = &motions[end.body];
+    const Vec2 arm = response_arm(response, motions, end.body, end.anchor);
+    return (JointGap){
+        .position = vec2_add(motion->position, arm),
+        .velocity = vec2_add(motion->velocity, vec2_scale(motion->omega, vec2_perp(arm))),
+    };
+}
+
 void response_openings(const Response *response, const Motion *motions, double *positions,
                        double *rates)
 {
     const Linkage *linkage = response->linkage;
     for (size_t row = 0; row < response->ideal_rows; row += 2) {
-        JointRows joint;
-        joint_rows_find(linkage, motions, response->joint_of[row], &joint);
-        memcpy(positions + row, joint.position, sizeof joint.position);
-        memcpy(rates + row, joint.rate, sizeof joint.rate);
+        const Joint *of = &linkage->joints[response->joint_of[row]];
+        if (of->kind == JOINT_PRISMATIC) {
+            JointRows joint;
+            joint_rows_find(linkage, motions, response->joint_of[row], &joint);
+            memcpy(positions + row, joint.position, sizeof joint.position);
+            memcpy(rates + row, joint.rate, sizeof joint.rate);
+            continue;
+        }
+        const JointGap a = end_of(response, motions, linkage_end(of, 0));
+        const JointGap b = end_of(response, motions, linkage_end(of, 1));
+        positions[row] = b.position.x - a.position.x;
+        positions[row + 1] = b.position.y - a.position.y;
+        rates[row] = b.velocity.x - a.velocity.x;
+        rates[row + 1] = b.velocity.y - a.velocity.y;
     }
 }
 

@@ -16,6 +16,7 @@ void response_finish(Response *response)
     free(response->place_of);
     free(response->blocks);
     free(response->work);
+    free(response->turns);
     sparse_finish(&response->matrix);
     *response = (Response){.linkage = NULL};
 }
@@ -58,6 +59,10 @@ void response_init_places(const Linkage *linkage, const ResponsePlace *places, s
     }
     response->rows = zeroed(response->row_count, sizeof *response->rows);
     response->work = zeroed(response->row_count, sizeof *response->work);
+    response->turns = zeroed(linkage->body_count, sizeof *response->turns);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        response->turns[i].angle = NAN;
+    }
     response->blocks = response_matrix_init(linkage, joints, sizes, nodes, response->ideal_rows / 2,
                                             &response->matrix, &response->block_count);
     response->largest_group = response_matrix_largest(&response->matrix);

@@ -28,7 +28,7 @@ static void place_point(Response *response, size_t row, const JointEnd ends[2],
         const JointEnd end = ends[side];
         const bool stays = is_fixed(response->linkage, end.body);
         const double sign = side == 0 ? -1.0 : 1.0;
-        const Vec2 arm = stays ? end.anchor : vec2_rotate(motions[end.body].angle, end.anchor);
+        const Vec2 arm = stays ? end.anchor : response_arm(response, motions, end.body, end.anchor);
         x_row->body[side] = y_row->body[side] = stays ? LINKAGE_GROUND : end.body;
         x_row->x[side] = sign;
         x_row->turn[side] = -sign * arm.y;
@@ -144,33 +144,6 @@ void response_rows_place(Response *response, const Motion *motions)
     }
 }
 
-void response_row_push(const Linkage *linkage, const ResponseRow *row, double impulse, double *sums)
-{
-    for (int end = 0; end < 2; end++) {
-        if (row->body[end] != LINKAGE_GROUND) {
-            const Body *body = linkage != NULL ? &linkage->bodies[row->body[end]] : NULL;
-            const double mass = body != NULL ? body->mass : 1.0;
-            const double inertia = body != NULL ? body->inertia : 1.0;
-            double *sum = sums + 3 * row->body[end];
-            sum[0] += row->x[end] * impulse / mass;
-            sum[1] += row->y[end] * impulse / mass;
-            sum[2] += row->turn[end] * impulse / inertia;
-        }
-    }
-}
-
-double response_row_of(const ResponseRow *row, const double *speeds)
-{
-    double sum = 0.0;
-    for (int end = 0; end < 2; end++) {
-        if (row->body[end] != LINKAGE_GROUND) {
-            const double *speed = speeds + 3 * row->body[end];
-            sum += row->x[end] * speed[0] + row->y[end] * speed[1] + row->turn[end] * speed[2];
-        }
-    }
-    return sum;
-}
-
 // The rate of a body's turning under loads, rad/s^2; of the driven body that of the drive.
 static double free_turning(const Linkage *linkage, const Motion *motions, int body,
                            const BodyLoad *loads)
@@ -185,17 +158,18 @@ static double free_turning(const Linkage *linkage, const Motion *motions, int bo
 }
 
 // Acceleration of the end of a joint on one body under gravity and loads.
-static Vec2 end_acceleration(const Linkage *linkage, const Motion *motions, int body, Vec2 anchor,
+static Vec2 end_acceleration(const Response *response, const Motion *motions, int body, Vec2 anchor,
                              double gravity, const BodyLoad *loads)
 {
     if (body == LINKAGE_GROUND) {
         return (Vec2){0.0, 0.0};
     }
+    const Linkage *linkage = response->linkage;
     const Motion *motion = &motions[body];
     const bool is_driven = body == linkage_driven_body(linkage);
     const double alpha = free_turning(linkage, motions, body, loads);
     Vec2 centre = is_driven ? motion->acceleration : (Vec2){0.0, -gravity};
-    const Vec2 arm = vec2_rotate(motion->angle, anchor);
+    const Vec2 arm = response_arm(response, motions, body, anchor);
     if (loads != NULL && !is_driven) {
         const double mass = linkage->bodies[body].mass;
         const Vec2 turning = vec2_scale(alpha, vec2_perp(arm));
@@ -207,13 +181,13 @@ static Vec2 end_acceleration(const Linkage *linkage, const Motion *motions, int 
 }
 
 // Acceleration of the anchor on body b less that of the anchor on body a.
-static Vec2 relative_acceleration(const Linkage *linkage, const Motion *motions, int joint,
+static Vec2 relative_acceleration(const Response *response, const Motion *motions, int joint,
                                   Vec2 anchor_a, Vec2 anchor_b, double gravity,
                                   const BodyLoad *loads)
 {
-    const Joint *of = &linkage->joints[joint];
-    return vec2_sub(end_acceleration(linkage, motions, of->body_b, anchor_b, gravity, loads),
-                    end_acceleration(linkage, motions, of->body_a, anchor_a, gravity, loads));
+    const Joint *of = &response->linkage->joints[joint];
+    return vec2_sub(end_acceleration(response, motions, of->body_b, anchor_b, gravity, loads),
+                    end_acceleration(response, motions, of->body_a, anchor_a, gravity, loads));
 }
 
 // The rates of the rates of a line's rows, from the relative acceleration of its anchors.
@@ -295,7 +269,7 @@ void response_rows_loose(const Response *response, const Motion *motions, double
             prismatic_free(linkage, number, motions, gravity, loads, gamma + row);
             continue;
         }
-        const Vec2 relative = relative_acceleration(linkage, motions, number, joint->anchor_a,
+        const Vec2 relative = relative_acceleration(response, motions, number, joint->anchor_a,
                                                     joint->anchor_b, gravity, loads);
         gamma[row] = relative.x;
         gamma[row + 1] = relative.y;
@@ -303,8 +277,8 @@ void response_rows_loose(const Response *response, const Motion *motions, double
     for (size_t i = 0; i < response->place_count; i++) {
         const ResponsePlace *place = &response->places[i];
         const Joint *joint = &linkage->joints[place->joint];
-        const Vec2 relative = relative_acceleration(linkage, motions, place->joint, place->anchor_a,
-                                                    place->anchor_b, gravity, loads);
+        const Vec2 relative = relative_acceleration(
+            response, motions, place->joint, place->anchor_a, place->anchor_b, gravity, loads);
         gamma[row] = relative.x;
         gamma[row + 1] = relative.y;
         if (place->sign != 0.0) {

@@ -35,6 +35,12 @@ typedef struct ResponseRow {
     double turn[2]; // m, or 1 for a row that is a turn: of its angular velocity
 } ResponseRow;
 
+// The angle of a body, rad, and its cosine and sine.
+typedef struct ResponseTurn {
+    double angle; // NAN: not known yet
+    Vec2 direction;
+} ResponseTurn;
+
 typedef struct Response {
     const Linkage *linkage;
     size_t ideal_rows; // they come first, two a joint; the drive's joint has none
@@ -53,6 +59,7 @@ typedef struct Response {
     size_t block_count;
     ResponseBlock *blocks; // of D that are not zero
     double *work;          // by row
+    ResponseTurn *turns;   // of each body, the last that was asked for
 } Response;
 
 // The number of rows of a place.
@@ -63,11 +70,48 @@ static inline size_t response_place_rows(const ResponsePlace *place)
 
 // Adds what an impulse in a row does to its bodies, three each: changes of their speeds, or without
 // a linkage the impulses themselves.
-void response_row_push(const Linkage *linkage, const ResponseRow *row, double impulse,
-                       double *sums);
+static inline void response_row_push(const Linkage *linkage, const ResponseRow *row, double impulse,
+                                     double *sums)
+{
+    for (int end = 0; end < 2; end++) {
+        if (row->body[end] != LINKAGE_GROUND) {
+            const Body *body = linkage != NULL ? &linkage->bodies[row->body[end]] : NULL;
+            const double mass = body != NULL ? body->mass : 1.0;
+            const double inertia = body != NULL ? body->inertia : 1.0;
+            double *sum = sums + 3 * row->body[end];
+            sum[0] += row->x[end] * impulse / mass;
+            sum[1] += row->y[end] * impulse / mass;
+            sum[2] += row->turn[end] * impulse / inertia;
+        }
+    }
+}
 
 // What a row makes of speeds, three a body.
-double response_row_of(const ResponseRow *row, const double *speeds);
+static inline double response_row_of(const ResponseRow *row, const double *speeds)
+{
+    double sum = 0.0;
+    for (int end = 0; end < 2; end++) {
+        if (row->body[end] != LINKAGE_GROUND) {
+            const double *speed = speeds + 3 * row->body[end];
+            sum += row->x[end] * speed[0] + row->y[end] * speed[1] + row->turn[end] * speed[2];
+        }
+    }
+    return sum;
+}
+
+// Where an anchor of a body is, seen from its centre: sine and cosine of an angle are found once.
+static inline Vec2 response_arm(const Response *response, const Motion *motions, int body,
+                                Vec2 anchor)
+{
+    ResponseTurn *turn = &response->turns[body];
+    if (turn->angle != motions[body].angle) {
+        turn->angle = motions[body].angle;
+        turn->direction = (Vec2){cos(turn->angle), sin(turn->angle)};
+    }
+    const Vec2 direction = turn->direction;
+    return (Vec2){direction.x * anchor.x - direction.y * anchor.y,
+                  direction.y * anchor.x + direction.x * anchor.y};
+}
 
 // Writes the rows where the bodies are.
 void response_rows_place(Response *response, const Motion *motions);
