@@ -6,14 +6,18 @@
 
 #include "base/zeroed.h"
 
-ImpulseCurves impulse_curves_create(size_t body_count, size_t row_count, int driven)
+ImpulseCurves impulse_curves_create(size_t place_count, size_t row_count, size_t body_count,
+                                    int driven)
 {
     return (ImpulseCurves){
         .body_count = body_count,
         .row_count = row_count,
         .driven = driven,
-        .bodies = zeroed(body_count, sizeof(ImpulseCurve)),
+        .place_count = place_count,
+        .bodies = zeroed(body_count * IMPULSE_HALVES, sizeof(ImpulseCurve)),
         .columns = zeroed(body_count * row_count, sizeof(ImpulseColumn)),
+        .places = zeroed(place_count, sizeof(ImpulseCurve)),
+        .place_columns = zeroed(place_count * row_count, sizeof(ImpulsePlaceColumn)),
     };
 }
 
@@ -21,6 +25,8 @@ void impulse_curves_finish(ImpulseCurves *curves)
 {
     free(curves->bodies);
     free(curves->columns);
+    free(curves->places);
+    free(curves->place_columns);
     *curves = (ImpulseCurves){.body_count = 0};
 }
 
@@ -31,13 +37,39 @@ void impulse_curves_set_body(ImpulseCurves *curves, size_t body, const Motion *b
     const double per_square = 1.0 / (width_s * width_s);
     const double position[3] = {before->position.x, before->position.y, before->angle};
     const double speed[3] = {before->velocity.x, before->velocity.y, before->omega};
-    ImpulseCurve *curve = &curves->bodies[body];
     for (size_t k = 0; k < 3; k++) {
-        curve->position[k / 2][k % 2] = position[k];
-        curve->speed[k / 2][k % 2] = speed[k];
-        curve->bend[k / 2][k % 2] = 0.5 * mean[k] - 0.25 * width_s * rate[k] + per_square * rest[k];
-        curve->acceleration[k / 2][k % 2] = mean[k] - 0.5 * width_s * rate[k];
-        curve->rate[k / 2][k % 2] = rate[k];
+        ImpulseCurve *curve = &curves->bodies[body * IMPULSE_HALVES + k / 2];
+        curve->position[k % 2] = position[k];
+        curve->speed[k % 2] = speed[k];
+        curve->bend[k % 2] = 0.5 * mean[k] - 0.25 * width_s * rate[k] + per_square * rest[k];
+        curve->acceleration[k % 2] = mean[k] - 0.5 * width_s * rate[k];
+        curve->rate[k % 2] = rate[k];
+    }
+}
+
+void impulse_curves_set_places(ImpulseCurves *curves, const Encounter *encounter)
+{
+    const size_t rows = curves->row_count;
+    for (size_t place = 0; place < curves->place_count; place++) {
+        ImpulseCurve *curve = &curves->places[place];
+        for (size_t i = 0; i < 2; i++) {
+            const size_t row = encounter->joints[place].first_row + i;
+            const double bent = 0.5 * curves->width_s * encounter->free_rate[row];
+            curve->position[i] = encounter->position[row];
+            curve->speed[i] = encounter->speed[row];
+            curve->bend[i] = 0.5 * (encounter->free[row] - bent);
+            curve->acceleration[i] = encounter->free[row] - bent;
+            curve->rate[i] = encounter->free_rate[row];
+            for (size_t k = 0; k < rows; k++) {
+                ImpulsePlaceColumn *column = &curves->place_columns[place * rows + k];
+                const double drift = encounter->drift[row * rows + k];
+                const double rate = encounter->mobility_rate[row * rows + k];
+                column->middle[i] = *encounter_mobility(encounter, row, k);
+                column->rate[i] = rate;
+                column->late[i] = 2.0 * drift - rate;
+                column->second[i] = 2.0 * (drift - rate);
+            }
+        }
     }
 }
 
@@ -76,6 +108,17 @@ static bool has_pushed(const EncounterSums *sums, size_t rows)
     return false;
 }
 
+static inline Double2 position_on(const ImpulseCurve *curve, double since_s)
+{
+    const Double2 bent = curve->bend + (1.0 / 6.0 * since_s) * curve->rate;
+    return curve->position + since_s * (curve->speed + since_s * bent);
+}
+
+static inline Double2 speed_on(const ImpulseCurve *curve, double since_s)
+{
+    return curve->speed + since_s * (curve->acceleration + (0.5 * since_s) * curve->rate);
+}
+
 // How one body moves under so many rows, all or none.
 static inline Motion body_at(const ImpulseCurve *curve, const ImpulseColumn *columns, size_t rows,
                              double since_s, double off_s, const EncounterSums *sums)
@@ -84,11 +127,9 @@ static inline Motion body_at(const ImpulseCurve *curve, const ImpulseColumn *col
     Double2 v[IMPULSE_HALVES];
     Double2 a[IMPULSE_HALVES];
     for (size_t k = 0; k < IMPULSE_HALVES; k++) {
-        const Double2 grown = since_s * curve->rate[k];
-        q[k] = curve->position[k] +
-               since_s * (curve->speed[k] + since_s * (curve->bend[k] + (1.0 / 6.0) * grown));
-        v[k] = curve->speed[k] + since_s * (curve->acceleration[k] + 0.5 * grown);
-        a[k] = curve->acceleration[k] + grown;
+        q[k] = position_on(&curve[k], since_s);
+        v[k] = speed_on(&curve[k], since_s);
+        a[k] = curve[k].acceleration + since_s * curve[k].rate;
     }
     for (size_t row = 0; row < rows; row++) {
         const ImpulseColumn *column = &columns[row];
@@ -119,10 +160,30 @@ void impulse_curves_at(const ImpulseCurves *curves, double since_s, const Encoun
     const size_t rows = has_pushed(sums, curves->row_count) ? curves->row_count : 0;
     for (size_t i = 0; i < curves->body_count; i++) {
         if ((int)i != curves->driven) {
-            motions[i] = body_at(&curves->bodies[i], curves->columns + i * curves->row_count, rows,
-                                 since_s, off_s, sums);
+            motions[i] =
+                body_at(curves->bodies + i * IMPULSE_HALVES,
+                        curves->columns + i * curves->row_count, rows, since_s, off_s, sums);
         }
     }
+}
+
+void impulse_curves_place_at(const ImpulseCurves *curves, size_t place, double since_s,
+                             const EncounterSums *sums, double position[2], double speed[2])
+{
+    const size_t rows = curves->row_count;
+    const double off_s = since_s - 0.5 * curves->width_s;
+    Double2 u = position_on(&curves->places[place], since_s);
+    Double2 v = speed_on(&curves->places[place], since_s);
+    for (size_t row = 0; row < rows; row++) {
+        const ImpulsePlaceColumn *column = &curves->place_columns[place * rows + row];
+        const Double2 now = column->middle + off_s * column->rate;
+        u += sums->moment[row] * now + sums->moment[rows + row] * column->second;
+        v += sums->impulse[row] * now + sums->moment[row] * column->late;
+    }
+    position[0] = u[0];
+    position[1] = u[1];
+    speed[0] = v[0];
+    speed[1] = v[1];
 }
 
 void impulse_curves_press(const ImpulseCurves *curves, double off_s, const double *forces,

@@ -6,6 +6,9 @@
 //     q = position + speed t + bend t^2 + rate t^3 / 6 + sum of A Q + A' (s Q - 2 R)
 //     v = speed + acceleration t + rate t^2 / 2        + sum of A P + A' (s P - Q)
 //     a = acceleration + rate t                        + sum of (A + B s + C s^2) f
+// The rows of a place at which a joint touches go likewise (contact/encounter_drift.c),
+//     u  = position + speed t + bend t^2 + rate t^3 / 6 + sum of (W + W' s) Q - 2 S^T R
+//     u' = speed + acceleration t + rate t^2 / 2        + sum of (W + W' s) P + (S - S^T) Q
 #pragma once
 
 #include "base/double2.h"
@@ -20,34 +23,46 @@ enum {
 // The freedoms of one body: x and y in m; the angle in rad, and nothing.
 enum { IMPULSE_HALVES = 2 };
 
-// One body beside the contacts.
+// Two coordinates beside the contacts.
 typedef struct ImpulseCurve {
-    Double2 position[IMPULSE_HALVES];
-    Double2 speed[IMPULSE_HALVES];
-    Double2 bend[IMPULSE_HALVES];
-    Double2 acceleration[IMPULSE_HALVES];
-    Double2 rate[IMPULSE_HALVES];
+    Double2 position;
+    Double2 speed;
+    Double2 bend;
+    Double2 acceleration;
+    Double2 rate;
 } ImpulseCurve;
 
 // What 1 N s in a row does to the speeds of a body.
 typedef struct ImpulseColumn {
     Double2 middle[IMPULSE_HALVES]; // A, at mid-step
     Double2 rate[IMPULSE_HALVES];   // A', its rate of change there (model/response_drift.h)
-    Double2
-        slope[IMPULSE_HALVES]; // B and C: with A the parabola through this step and the two before
-    Double2 bend[IMPULSE_HALVES];
+    Double2 slope[IMPULSE_HALVES];  // B and C: with A the parabola through this step and the two
+    Double2 bend[IMPULSE_HALVES];   // before
 } ImpulseColumn;
+
+// What it does to the first two rows of a place.
+typedef struct ImpulsePlaceColumn {
+    Double2 middle; // W
+    Double2 rate;   // W'
+    Double2 late;   // S - S^T
+    Double2 second; // -2 S^T
+} ImpulsePlaceColumn;
 
 typedef struct ImpulseCurves {
     size_t body_count;
     size_t row_count;
-    int driven;             // a body that is left alone, or LINKAGE_GROUND
-    double width_s;         // of the step
-    ImpulseCurve *bodies;   // owned, as the next
-    ImpulseColumn *columns; // of a body those of all rows, body by body
+    int driven; // a body that is left alone, or LINKAGE_GROUND
+    size_t place_count;
+    double width_s;                    // of the step
+    ImpulseCurve *bodies;              // by body IMPULSE_HALVES; owned, as all arrays
+    ImpulseColumn *columns;            // of a body those of all rows, body by body
+    ImpulseCurve *places;              // of the first two rows of each place
+    ImpulsePlaceColumn *place_columns; // of a place those of all rows, place by place
 } ImpulseCurves;
 
-ImpulseCurves impulse_curves_create(size_t body_count, size_t row_count, int driven);
+// Room for curves of so many places, rows and bodies, but for the driven one.
+ImpulseCurves impulse_curves_create(size_t place_count, size_t row_count, size_t body_count,
+                                    int driven);
 void impulse_curves_finish(ImpulseCurves *curves);
 
 // Sets how a body moves beside the contacts: from its motion at the start of a step of so many s,
@@ -60,6 +75,14 @@ void impulse_curves_set_body(ImpulseCurves *curves, size_t body, const Motion *b
 // of them first, and when these had their middles, s; and how it changes in this step.
 void impulse_curves_set_columns(ImpulseCurves *curves, double *const columns[IMPULSE_COLUMNS],
                                 const double middles_s[IMPULSE_COLUMNS], const double *rates);
+
+// Sets how the places go, from an encounter that has run.
+void impulse_curves_set_places(ImpulseCurves *curves, const Encounter *encounter);
+
+// Writes where the first two rows of a place are at a time since the step's start, m, and how fast
+// they go, with the contacts' sums up to then.
+void impulse_curves_place_at(const ImpulseCurves *curves, size_t place, double since_s,
+                             const EncounterSums *sums, double position[2], double speed[2]);
 
 // Writes how the bodies move at a time since the step's start, with the contacts' sums up to then.
 void impulse_curves_at(const ImpulseCurves *curves, double since_s, const EncounterSums *sums,

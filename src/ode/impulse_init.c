@@ -39,7 +39,7 @@ static void make_arrays(ImpulseStep *step)
         encounter_make_drift(&step->encounter);
         step->drift = response_drift_create(&step->response);
         step->columns[0] = step->drift.columns;
-        step->curves = impulse_curves_create(bodies, rows, step->driven);
+        step->curves = impulse_curves_create(step->place_count, rows, bodies, step->driven);
     }
     for (size_t i = 1; step->has_few_rows && i < IMPULSE_COLUMNS; i++) {
         step->columns[i] = zeroed(3 * bodies * rows, sizeof *step->columns[i]);

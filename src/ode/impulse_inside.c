@@ -6,6 +6,7 @@
 // joints answer what the contacts do beyond theirs.
 #include "ode/impulse_step.h"
 
+#include "contact/encounter_motion.h"
 #include "ode/stepping.h"
 
 #include <string.h>
@@ -186,6 +187,25 @@ static void add_line(const Linkage *linkage, const Touch *place, const Encounter
     }
 }
 
+// How a place is, and what presses there.
+static EncounterPose look_at_place(const ImpulseStep *step, size_t place, ImpulseTime at,
+                                   const EncounterSums *sums)
+{
+    const Encounter *encounter = &step->encounter;
+    if (!impulse_step_has_curves(step)) {
+        return impulse_scope_pose(encounter, step->islands, place, at, sums);
+    }
+    const size_t row = encounter->joints[place].first_row;
+    double position[2];
+    double speed[2];
+    impulse_curves_place_at(&step->curves, place, at.since_s, sums, position, speed);
+    return (EncounterPose){
+        .pose = encounter_motion_pose_of(encounter, place, position, speed),
+        .force = {sums->force[row], sums->force[row + 1]},
+        .is_touching = encounter_touches(encounter, at.node, place),
+    };
+}
+
 // The states of the joints with play, and how deep each place is.
 static void find_places(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                         const EncounterSums *sums, const Motion *motions, JointState *joints,
@@ -195,7 +215,7 @@ static void find_places(const ImpulseStep *step, const ImpulseScope *scope, Impu
     for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
         const Touch *place = &step->places[i];
-        const EncounterPose pose = impulse_scope_pose(&step->encounter, step->islands, i, at, sums);
+        const EncounterPose pose = look_at_place(step, i, at, sums);
         depths[i] = pose.pose.penetration;
         if (linkage->joints[place->joint].limits.kind != LIMIT_NONE) {
             const bool is_first = i == 0 || step->places[i - 1].joint != place->joint;

@@ -260,6 +260,7 @@ static void find_curves(ImpulseStep *step)
                                 step->free_rate + 3 * i, step->rest + 3 * i);
     }
     impulse_curves_set_columns(&step->curves, step->columns, step->middles_s, step->drift.rates);
+    impulse_curves_set_places(&step->curves, &step->encounter);
 }
 
 void impulse_step_add_sliding(const Linkage *linkage, int joint, const double *values,

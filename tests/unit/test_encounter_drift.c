@@ -5,6 +5,8 @@
 // for a pin in its hole, and the closed form of the flight before.
 #include "lone_pin.h"
 
+#include "ode/impulse_curves.h"
+
 static const double DURATION_S = 1e-4; // flight, contact of 60 us, and flight again
 static const double SHARE = 0.02;      // of the mobility, that it changes by in the step
 static const double SIDE_SPEED = 0.2;  // m/s
@@ -156,10 +158,49 @@ static void a_flight_ends_where_a_changing_acceleration_ends_it(void **state)
     encounter_finish(&pin);
 }
 
+// How far the first two rows are from where the encounter has them, over the clearance, at most.
+static double curves_off(const ImpulseCurves *curves, const Encounter *pin)
+{
+    EncounterSums sums = encounter_sums(ENCOUNTER_ROWS_PLAIN);
+    double most = 0.0;
+    for (int i = 0; i <= 20; i++) {
+        const double time_s = i * DURATION_S / 20.0;
+        const size_t node = encounter_node(pin, time_s);
+        encounter_at(pin, node, time_s, &sums);
+        const PinHole pose = encounter_pose(pin, 0, node, time_s, &sums).pose;
+        double position[2];
+        double speed[2];
+        impulse_curves_place_at(curves, 0, time_s, &sums, position, speed);
+        const Vec2 at = {position[0], position[1]};
+        const double closing = -vec2_dot(pose.normal, (Vec2){speed[0], speed[1]});
+        most = fmax(most, vec2_length(vec2_sub(at, pose.eccentricity)) / ONE_IMPACT_CLEARANCE);
+        most = fmax(most, fabs(closing - pose.approach_speed) / ONE_IMPACT_SPEED);
+    }
+    encounter_sums_free(&sums);
+    return most;
+}
+
+static void curves_of_a_step_have_its_rows_where_they_are(void **state)
+{
+    (void)state;
+    Encounter pin = turning_pin(true);
+    ImpulseCurves curves = impulse_curves_create(1, ENCOUNTER_ROWS_PLAIN, 0, LINKAGE_GROUND);
+    curves.width_s = DURATION_S;
+    assert_true(encounter_run(&pin, DURATION_S));
+    impulse_curves_set_places(&curves, &pin);
+    assert_true(curves_off(&curves, &pin) < 1e-13);
+    // control: another half of the drift that has no part in the mobility's rate
+    curves.place_columns[0].late[1] = -curves.place_columns[0].late[1];
+    assert_true(curves_off(&curves, &pin) > 1e-6);
+    impulse_curves_finish(&curves);
+    encounter_finish(&pin);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rows_that_turn_move_as_their_equations_say),
+        cmocka_unit_test(curves_of_a_step_have_its_rows_where_they_are),
         cmocka_unit_test(a_flight_ends_where_a_changing_acceleration_ends_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -41,7 +41,7 @@ static ImpulseCurves make_curves(void)
         }
         all[k] = columns[k];
     }
-    ImpulseCurves curves = impulse_curves_create(BODIES, ROWS, DRIVEN);
+    ImpulseCurves curves = impulse_curves_create(0, ROWS, BODIES, DRIVEN);
     curves.width_s = WIDTH_S;
     impulse_curves_set_body(&curves, 1, &BEFORE, MEAN, RATE, REST);
     impulse_curves_set_columns(&curves, all, MIDDLES_S, rates);
