@@ -14,9 +14,22 @@ typedef struct JointTop {
     double depth;
 } JointTop;
 
-// What happened in one step. The arrays hold as many entries as the linkage has bodies or joints
-// and stay valid until the next call.
+// Bodies and joints of a linkage that share nothing but the ground with the others, by their
+// numbers there.
+typedef struct SolverPart {
+    size_t number; // of the part, less than the number of bodies of the linkage
+    size_t body_count;
+    size_t joint_count;
+    const int *bodies;
+    const int *joints;
+} SolverPart;
+
+// What happened in one step. The arrays hold as many entries as the linkage, or the part that the
+// record is of, has bodies or joints, and stay valid until the next call.
 typedef struct StepRecord {
+    const SolverPart *part; // whose bodies and joints these are, in its order; NULL: all
+    bool is_partial;        // others are still to be stepped as far as this part: of the state now
+                            // only this one may be observed
     double start_s;
     double end_s;
     double joint_s;           // the instant that the joints' states belong to
@@ -63,6 +76,8 @@ typedef struct Solver {
     // The state at a time in the last step, both ends included. An omega that is no number marks a
     // state that the joints do not determine: the run ends there.
     void (*observe)(const void *state, double time_s, Sample *sample);
+    // Of a solver that hands on parts: the same for the bodies and joints of the last record alone.
+    void (*observe_part)(const void *state, double time_s, Sample *sample);
     // Optional: the bodies' positions and velocities alone, which may take less; the rest of the
     // sample stays as it is. NULL: observe has them.
     void (*glance)(const void *state, double time_s, Sample *sample);
@@ -80,11 +95,38 @@ static inline bool solver_stride(const Solver *solver, void *state, double stop_
     if (solver->stride != NULL) {
         return solver->stride(state, stop_s, end_s, err);
     }
-    if (!solver->step(state, stop_s, err)) {
-        return false;
+    for (;;) {
+        if (!solver->step(state, stop_s, err)) {
+            return false;
+        }
+        const StepRecord record = solver->record(state);
+        *end_s = record.end_s;
+        if (!record.is_partial) {
+            return true;
+        }
     }
-    *end_s = solver->record(state).end_s;
-    return true;
+}
+
+// The numbers of bodies and joints of a part, or of a whole linkage (NULL), and in the linkage that
+// of each.
+static inline size_t solver_body_count(const SolverPart *part, const Linkage *linkage)
+{
+    return part != NULL ? part->body_count : linkage->body_count;
+}
+
+static inline size_t solver_joint_count(const SolverPart *part, const Linkage *linkage)
+{
+    return part != NULL ? part->joint_count : linkage->joint_count;
+}
+
+static inline size_t solver_body(const SolverPart *part, size_t index)
+{
+    return part != NULL ? (size_t)part->bodies[index] : index;
+}
+
+static inline size_t solver_joint(const SolverPart *part, size_t index)
+{
+    return part != NULL ? (size_t)part->joints[index] : index;
 }
 
 // The bodies' positions and velocities at a time in the last step; the rest of the sample is not

@@ -159,7 +159,14 @@ Member *impulse_members_make(const Scenario *scenario, size_t *count)
     }
     share_out(whole, member_of, members, *count);
     for (size_t i = 0; i < *count; i++) {
-        members[i].sample = sample_create(&members[i].scenario->linkage);
+        Member *member = &members[i];
+        const Linkage *linkage = &member->scenario->linkage;
+        member->sample = sample_create(linkage);
+        member->part = (SolverPart){.number = i,
+                                    .body_count = linkage->body_count,
+                                    .joint_count = linkage->joint_count,
+                                    .bodies = member->bodies,
+                                    .joints = member->joints};
     }
     free(rooms);
     free(member_of);

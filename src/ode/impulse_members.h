@@ -4,15 +4,15 @@
 
 #include "model/solver.h"
 
-// One mechanism and the part of its step that comes next (ode/impulse_parts.c).
+// One mechanism.
 typedef struct Member {
     Scenario *scenario; // with its bodies and joints alone; owned, as are the arrays
-    int *bodies;        // their numbers in the whole
+    SolverPart part;
+    int *bodies; // of the part
     int *joints;
     Sample sample;
-    void *state; // of the solver; closed with the member
-    StepRecord next;
-    double elastic; // J, at the end of its last part
+    void *state;    // of the solver; closed with the member
+    double elastic; // J, at the end of its last record
 } Member;
 
 size_t impulse_members_count(const Linkage *linkage);

@@ -22,6 +22,7 @@ bool impulse_parts_open(const Scenario *scenario, const ImpulsePartsOf *of, void
 bool impulse_parts_step(void *state, double stop_s, Err *err);
 StepRecord impulse_parts_record(const void *state);
 void impulse_parts_observe(const void *state, double time_s, Sample *sample);
+void impulse_parts_observe_part(const void *state, double time_s, Sample *sample);
 SolverModel impulse_parts_model(const void *state);
 void impulse_parts_close(void *state);
 

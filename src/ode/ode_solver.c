@@ -71,6 +71,12 @@ static void ode_observe(const void *state, double time_s, Sample *sample)
     ode->stepping->observe(ode->state, time_s, sample);
 }
 
+static void ode_observe_part(const void *state, double time_s, Sample *sample)
+{
+    const Ode *ode = state;
+    ode->stepping->observe_part(ode->state, time_s, sample);
+}
+
 static SolverModel ode_model(const void *state)
 {
     const Ode *ode = state;
@@ -92,6 +98,7 @@ const Solver ODE_SOLVER = {
     .step = ode_step,
     .record = ode_record,
     .observe = ode_observe,
+    .observe_part = ode_observe_part,
     .model = ode_model,
     .close = ode_close,
 };

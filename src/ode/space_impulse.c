@@ -260,6 +260,7 @@ const Solver SPACE_IMPULSE_PARTS = {
     .step = impulse_parts_step,
     .record = impulse_parts_record,
     .observe = impulse_parts_observe,
+    .observe_part = impulse_parts_observe_part,
     .model = impulse_parts_model,
     .close = impulse_parts_close,
 };

@@ -65,31 +65,49 @@ static Look new_look(Looker *looker, double time_s)
     return look_in(looker, *block, time_s);
 }
 
-void looker_keep(Looker *looker, Look *look)
+Look looker_first(Looker *looker)
 {
-    size_t at = 0;
-    while (at < looker->look_count && looker->blocks[at] != look->omega) {
-        at++;
+    assert(looker->look_count == 0);
+    return new_look(looker, 0.0);
+}
+
+void looker_keep(Looker *looker, Look *first, const Look *look)
+{
+    const Linkage *linkage = &looker->scenario->linkage;
+    const size_t body_count = solver_body_count(looker->part, linkage);
+    const size_t joint_count = solver_joint_count(looker->part, linkage);
+    assert(looker->look_count > 0 && looker->blocks[0] == first->omega);
+    first->time_s = look->time_s;
+    for (size_t k = 0; k < body_count; k++) {
+        const size_t i = solver_body(looker->part, k);
+        first->omega[i] = look->omega[i];
+        first->alpha[i] = look->alpha[i];
     }
-    assert(at < looker->look_count);
-    double *kept = looker->blocks[at];
-    looker->blocks[at] = looker->blocks[0];
-    looker->blocks[0] = kept;
+    for (size_t k = 0; k < joint_count; k++) {
+        const size_t i = solver_joint(looker->part, k);
+        first->force[i] = look->force[i];
+    }
     looker->look_count = 1;
 }
 
 Look look_inside(Looker *looker, double time_s)
 {
     const Linkage *linkage = &looker->scenario->linkage;
+    const SolverPart *part = looker->part;
+    const Solver *solver = looker->solver;
     const Look look = new_look(looker, time_s);
     const Sample *sample = &looker->sample;
-    looker->solver->observe(looker->state, time_s, &looker->sample);
-    recorder_see(looker->recorder, sample);
-    for (size_t i = 0; i < linkage->body_count; i++) {
+    (part != NULL ? solver->observe_part : solver->observe)(looker->state, time_s, &looker->sample);
+    recorder_see(looker->recorder, part, sample);
+    const size_t body_count = solver_body_count(part, linkage);
+    const size_t joint_count = solver_joint_count(part, linkage);
+    for (size_t k = 0; k < body_count; k++) {
+        const size_t i = solver_body(part, k);
         look.omega[i] = sample->bodies[i].omega;
         look.alpha[i] = sample->bodies[i].alpha;
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
+    for (size_t k = 0; k < joint_count; k++) {
+        const size_t i = solver_joint(part, k);
         look.force[i] = sample->joints[i].force;
     }
     return look;
@@ -99,10 +117,15 @@ Look look_at_end(Looker *looker, const StepRecord *step)
 {
     const Linkage *linkage = &looker->scenario->linkage;
     const Look look = new_look(looker, step->end_s);
-    memcpy(look.omega, step->omega, linkage->body_count * sizeof *look.omega);
-    memcpy(look.alpha, step->alpha, linkage->body_count * sizeof *look.alpha);
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        look.force[i] = step->joints[i].force;
+    const size_t body_count = solver_body_count(step->part, linkage);
+    const size_t joint_count = solver_joint_count(step->part, linkage);
+    for (size_t k = 0; k < body_count; k++) {
+        const size_t i = solver_body(step->part, k);
+        look.omega[i] = step->omega[k];
+        look.alpha[i] = step->alpha[k];
+    }
+    for (size_t k = 0; k < joint_count; k++) {
+        look.force[solver_joint(step->part, k)] = step->joints[k].force;
     }
     return look;
 }
@@ -139,21 +162,26 @@ static bool is_near(const Aim *aim, double value, double share)
     return value >= aim->extreme - share * fabs(aim->extreme);
 }
 
-// The next signal with a sign to look for; false behind the last. The smallest force is nothing
-// that is reported.
+// The next signal of the part with a sign to look for; false behind the last. The smallest force is
+// nothing that is reported.
 static bool next_aim(Looker *looker, size_t *number, Aim *aim)
 {
     const Linkage *linkage = &looker->scenario->linkage;
-    const size_t bodies = linkage->body_count;
-    if (linkage->driver.is_present && *number / 2 == (size_t)linkage_driven_body(linkage)) {
+    const SolverPart *part = looker->part;
+    const size_t body_count = solver_body_count(part, linkage);
+    const size_t driven = (size_t)linkage_driven_body(linkage);
+    if (*number < 2 * body_count && linkage->driver.is_present &&
+        solver_body(part, *number / 2) == driven) {
         *number += 2;
     }
     const size_t i = (*number)++;
-    if (i >= 2 * bodies + linkage->joint_count) {
+    if (i >= 2 * body_count + solver_joint_count(part, linkage)) {
         return false;
     }
-    const size_t signal = i < 2 * bodies ? i / 2 : i - bodies;
-    const double sign = i < 2 * bodies && i % 2 == 1 ? -1.0 : 1.0;
+    const bool is_body = i < 2 * body_count;
+    const size_t signal = is_body ? solver_body(part, i / 2)
+                                  : linkage->body_count + solver_joint(part, i - 2 * body_count);
+    const double sign = is_body && i % 2 == 1 ? -1.0 : 1.0;
     *aim = (Aim){looker, signal, sign, extreme_so_far(looker, signal, sign)};
     return true;
 }
@@ -268,7 +296,9 @@ static double turn_rate(double time_s, void *context)
 static void look_for_turns(Looker *looker, const Look *first, const Look *last)
 {
     const Trajectory *trajectory = looker->recorder->trajectory;
-    for (size_t i = 0; i < trajectory->body_count; i++) {
+    const size_t body_count = solver_body_count(looker->part, &looker->scenario->linkage);
+    for (size_t k = 0; k < body_count; k++) {
+        const size_t i = solver_body(looker->part, k);
         if (!(first->alpha[i] * last->alpha[i] < 0.0)) {
             continue;
         }

@@ -20,18 +20,22 @@ typedef struct Looker {
     const Solver *solver;
     const void *state; // of the solver
     Recorder *recorder;
-    Sample sample;      // owned, as the room
-    size_t look_count;  // looks that are in the room
-    size_t block_count; // of them there is room for
-    double **blocks;    // of one look each
+    const SolverPart *part; // of the last record: looks hold its bodies and joints; NULL: all
+    Sample sample;          // owned, as the room
+    size_t look_count;      // looks that are in the room
+    size_t block_count;     // of them there is room for
+    double **blocks;        // of one look each
 } Looker;
 
 Looker looker_start(const Scenario *scenario, const Solver *solver, const void *state,
                     Recorder *recorder);
 void looker_finish(Looker *looker);
 
-// Empties the room; what is in the look stays, and is the first one in it.
-void looker_keep(Looker *looker, Look *look);
+// A first look in the room, with nothing in it.
+Look looker_first(Looker *looker);
+
+// Empties the room but for the first look in it, which takes on what the look has of the part.
+void looker_keep(Looker *looker, Look *first, const Look *look);
 
 Look look_inside(Looker *looker, double time_s);
 

@@ -1,18 +1,16 @@
 // What happens between samples, gathered step by step in memory that does not grow with the steps.
 #pragma once
 
-#include "model/solver.h"
+#include "run/recorder_ranges.h"
 
 typedef struct Recorder {
     const Scenario *scenario;
     Trajectory *trajectory; // receives extremes, contacts, ranges and hash
-    bool is_empty;          // before the first step that is reported
-    bool *was_touching;     // by joint, in the step before; owned, like the arrays below
-    Spike *open;            // the contact under way, by joint
-    size_t stretch;         // of the ranges, under way
-    double stretch_end_s;
-    Range *now;   // of the steps in it, by signal
-    Vec2 *forces; // N, on each body in a step; room
+    bool *has_body;         // whether it has been in a step that is reported; owned, as all arrays
+    bool *has_joint;
+    bool *was_touching; // by joint, in the step before
+    Spike *open;        // the contact under way, by joint
+    RecorderRanges ranges;
 } Recorder;
 
 Recorder recorder_start(const Scenario *scenario, Trajectory *trajectory);
@@ -20,9 +18,9 @@ Recorder recorder_start(const Scenario *scenario, Trajectory *trajectory);
 // Takes in one step.
 void recorder_add(Recorder *recorder, const StepRecord *step);
 
-// Takes in a state that the solver was asked for, at a time in the last step: extremes and ranges
-// hold it.
-void recorder_see(Recorder *recorder, const Sample *sample);
+// Takes in a state that the solver was asked for, at a time in the last step, of a part or of all
+// (NULL): extremes and ranges hold it.
+void recorder_see(Recorder *recorder, const SolverPart *part, const Sample *sample);
 
 // Closes contacts that are still under way at the end of the run, and frees what the recorder has.
 void recorder_finish(Recorder *recorder);

@@ -56,32 +56,47 @@ static void make_room(Loop *loop)
 // Adds what each body has turned in a step: enough to know which turn an angle is in.
 static void add_turning(Loop *loop, const StepRecord *record)
 {
-    const double width_s = record->end_s - loop->reached_s;
-    for (size_t i = 0; i < loop->scenario->linkage.body_count; i++) {
-        loop->angle[i] += 0.5 * width_s * (loop->omega[i] + record->omega[i]);
-        loop->omega[i] = record->omega[i];
+    const double start_s = record->part != NULL ? record->start_s : loop->reached_s;
+    const double width_s = record->end_s - start_s;
+    const size_t count = solver_body_count(record->part, &loop->scenario->linkage);
+    for (size_t k = 0; k < count; k++) {
+        const size_t i = solver_body(record->part, k);
+        loop->angle[i] += 0.5 * width_s * (loop->omega[i] + record->omega[k]);
+        loop->omega[i] = record->omega[k];
     }
 }
 
-static bool take_step(Loop *loop, double stop_s, Err *err)
+// Takes in what comes next of a step.
+static bool take_record(Loop *loop, double stop_s, StepRecord *record, Err *err)
 {
     if (!loop->solver->step(loop->state, stop_s, err)) {
         return false;
     }
-    const StepRecord record = loop->solver->record(loop->state);
-    recorder_add(&loop->recorder, &record);
+    *record = loop->solver->record(loop->state);
+    recorder_add(&loop->recorder, record);
     if (loop->probe_own != NULL) {
-        loop->probe->look(loop->probe_own, &record);
+        loop->probe->look(loop->probe_own, record);
     }
-    add_turning(loop, &record);
-    loop->width_s = record.end_s - loop->reached_s;
-    loop->reached_s = record.end_s;
-    loop->elastic = record.elastic;
+    add_turning(loop, record);
     loop->steps++;
     if (loop->watch.progress != NULL && loop->steps % PROGRESS_EVERY == 0) {
         loop->watch.progress(loop->reached_s / scenario_duration(loop->scenario),
                              clock_now_s() - loop->started_s, loop->watch.context);
     }
+    return true;
+}
+
+static bool take_step(Loop *loop, double stop_s, Err *err)
+{
+    StepRecord record;
+    do {
+        if (!take_record(loop, stop_s, &record, err)) {
+            return false;
+        }
+    } while (record.is_partial);
+    loop->width_s = record.end_s - loop->reached_s;
+    loop->reached_s = record.end_s;
+    loop->elastic = record.elastic;
     return true;
 }
 
@@ -198,7 +213,7 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
             loop->start_energy =
                 mechanical_energy(loop->scenario, &sample) + stored_energy(loop->scenario, &sample);
         }
-        recorder_see(&loop->recorder, &sample);
+        recorder_see(&loop->recorder, NULL, &sample);
         trajectory_store(trajectory, k, &sample);
         if (!may_go_on(loop, trajectory, k, err)) {
             return false;

@@ -39,11 +39,12 @@ typedef struct Tracer {
     const Scenario *scenario;
     Looker looker;
     SpikeScale scale;
-    Trace *alpha;    // by body; owned, like the next two
-    Trace *force;    // by joint
-    double *impulse; // N s, so far
-    Look last;       // at the end of the last step
-    bool has_begun;
+    Trace *alpha;               // by body; owned, like the next two
+    Trace *force;               // by joint
+    double *impulse;            // N s, so far
+    Look last;                  // at the end of the last step, of each part its own
+    bool *has_begun;            // by part; owned, like the next
+    const SolverPart **part_of; // by body; NULL of one that is in no part
 } Tracer;
 
 static bool is_traced(const Tracer *tracer, size_t body)
@@ -64,6 +65,8 @@ static void *tracer_begin(const Scenario *scenario, const Solver *solver, const 
     tracer->alpha = zeroed(scenario->linkage.body_count, sizeof *tracer->alpha);
     tracer->force = zeroed(scenario->linkage.joint_count, sizeof *tracer->force);
     tracer->impulse = zeroed(scenario->linkage.joint_count, sizeof *tracer->impulse);
+    tracer->has_begun = zeroed(scenario->linkage.body_count, sizeof *tracer->has_begun);
+    tracer->part_of = zeroed(scenario->linkage.body_count, sizeof *tracer->part_of);
     tracer->scale = spike_scale(scenario);
     const double fine = tracer->scale.is_known ? FINENESS * scenario->run.spike_threshold : 0.0;
     for (size_t i = 0; i < scenario->linkage.body_count; i++) {
@@ -79,18 +82,22 @@ static void *tracer_begin(const Scenario *scenario, const Solver *solver, const 
 static void add_means(Tracer *tracer, const StepRecord *step)
 {
     const Linkage *linkage = &tracer->scenario->linkage;
+    const size_t body_count = solver_body_count(step->part, linkage);
+    const size_t joint_count = solver_joint_count(step->part, linkage);
     const double half_s = 0.5 * (step->end_s - step->start_s);
     const double middle_s = step->start_s + half_s;
-    for (size_t i = 0; i < linkage->body_count; i++) {
+    for (size_t k = 0; k < body_count; k++) {
+        const size_t i = solver_body(step->part, k);
         if (is_traced(tracer, i)) {
-            trace_add(&tracer->alpha[i], middle_s, step->alpha[i],
-                      step->omega[i] - half_s * step->alpha[i]);
+            trace_add(&tracer->alpha[i], middle_s, step->alpha[k],
+                      step->omega[k] - half_s * step->alpha[k]);
         }
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const double half = 0.5 * step->impulse[i];
-        trace_add(&tracer->force[i], middle_s, step->joints[i].force, tracer->impulse[i] + half);
-        tracer->impulse[i] += step->impulse[i];
+    for (size_t k = 0; k < joint_count; k++) {
+        const size_t i = solver_joint(step->part, k);
+        const double half = 0.5 * step->impulse[k];
+        trace_add(&tracer->force[i], middle_s, step->joints[k].force, tracer->impulse[i] + half);
+        tracer->impulse[i] += step->impulse[k];
     }
 }
 
@@ -109,31 +116,34 @@ static bool has_play(const Tracer *tracer, size_t joint)
 static int count_parts(const Tracer *tracer, const StepRecord *step)
 {
     const Linkage *linkage = &tracer->scenario->linkage;
+    const size_t body_count = solver_body_count(step->part, linkage);
+    const size_t joint_count = solver_joint_count(step->part, linkage);
     const double width_s = step->end_s - step->start_s;
     double parts = 1.0;
     if (!(width_s > 0.0)) {
         return 1;
     }
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        const double mean = (step->omega[i] - tracer->last.omega[i]) / width_s;
+    for (size_t k = 0; k < body_count; k++) {
+        const size_t i = solver_body(step->part, k);
+        const double mean = (step->omega[k] - tracer->last.omega[i]) / width_s;
         if (is_traced(tracer, i)) {
-            parts = fmax(parts, parts_for(tracer->last.alpha[i], step->alpha[i], mean,
+            parts = fmax(parts, parts_for(tracer->last.alpha[i], step->alpha[k], mean,
                                           tracer->alpha[i].tolerance));
         }
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
+    for (size_t k = 0; k < joint_count; k++) {
+        const size_t i = solver_joint(step->part, k);
         if (has_play(tracer, i)) {
-            parts = fmax(parts, parts_for(tracer->last.force[i], step->joints[i].force,
-                                          step->impulse[i] / width_s, tracer->force[i].tolerance));
+            parts = fmax(parts, parts_for(tracer->last.force[i], step->joints[k].force,
+                                          step->impulse[k] / width_s, tracer->force[i].tolerance));
         }
     }
     return (int)ceil(fmin(parts, LOOK_PARTS_MAX));
 }
 
 // The force of a joint at the looks. Its impulse in the parts is in proportion to what the broken
-// line holds; the impulse of a contact in the whole step is the solver's.
-static void add_forces(Tracer *tracer, size_t joint, const StepRecord *step, int count,
-                       const Look *looks)
+// line holds; the impulse of a contact in the whole step, N s, is the solver's.
+static void add_forces(Tracer *tracer, size_t joint, double impulse, int count, const Look *looks)
 {
     double sums[LOOK_MAX];
     double sum = 0.0;
@@ -144,7 +154,7 @@ static void add_forces(Tracer *tracer, size_t joint, const StepRecord *step, int
         sums[k] = sum;
         before = &looks[k];
     }
-    const double factor = has_play(tracer, joint) && sum > 0.0 ? step->impulse[joint] / sum : 1.0;
+    const double factor = has_play(tracer, joint) && sum > 0.0 ? impulse / sum : 1.0;
     for (int k = 0; k < count; k++) {
         trace_add(&tracer->force[joint], looks[k].time_s, looks[k].force[joint],
                   tracer->impulse[joint] + factor * sums[k]);
@@ -152,29 +162,49 @@ static void add_forces(Tracer *tracer, size_t joint, const StepRecord *step, int
     tracer->impulse[joint] += factor * sum;
 }
 
+// Adds a look at bodies to their traces.
+static void add_bodies(Tracer *tracer, const SolverPart *part, const Look *look)
+{
+    const size_t body_count = solver_body_count(part, &tracer->scenario->linkage);
+    for (size_t k = 0; k < body_count; k++) {
+        const size_t i = solver_body(part, k);
+        if (is_traced(tracer, i)) {
+            trace_add(&tracer->alpha[i], look->time_s, look->alpha[i], look->omega[i]);
+        }
+    }
+}
+
 // Where the run begins nothing has been looked at before.
 static void look_at_start(Tracer *tracer, const StepRecord *step)
 {
-    const Linkage *linkage = &tracer->scenario->linkage;
-    const Look look = look_inside(&tracer->looker, step->start_s);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        if (is_traced(tracer, i)) {
-            trace_add(&tracer->alpha[i], look.time_s, look.alpha[i], look.omega[i]);
-        }
+    const size_t body_count = solver_body_count(step->part, &tracer->scenario->linkage);
+    const size_t joint_count = solver_joint_count(step->part, &tracer->scenario->linkage);
+    if (tracer->last.omega == NULL) {
+        tracer->last = looker_first(&tracer->looker);
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
+    for (size_t k = 0; k < body_count; k++) {
+        tracer->part_of[solver_body(step->part, k)] = step->part;
+    }
+    const Look look = look_inside(&tracer->looker, step->start_s);
+    add_bodies(tracer, step->part, &look);
+    for (size_t k = 0; k < joint_count; k++) {
+        const size_t i = solver_joint(step->part, k);
         trace_add(&tracer->force[i], look.time_s, look.force[i], 0.0);
     }
-    tracer->last = look;
-    tracer->has_begun = true;
+    looker_keep(&tracer->looker, &tracer->last, &look);
 }
 
 static void add_instants(Tracer *tracer, const StepRecord *step)
 {
-    if (!tracer->has_begun) {
+    bool *has_begun = &tracer->has_begun[step->part != NULL ? step->part->number : 0];
+    tracer->looker.part = step->part;
+    if (!*has_begun) {
         look_at_start(tracer, step);
+        *has_begun = true;
     }
-    const Linkage *linkage = &tracer->scenario->linkage;
+    if (step->part != NULL) {
+        tracer->last.time_s = step->start_s; // the last step was another part's
+    }
     const int parts = count_parts(tracer, step);
     const double part_s = (step->end_s - step->start_s) / parts;
     Look looks[LOOK_MAX];
@@ -183,16 +213,14 @@ static void add_instants(Tracer *tracer, const StepRecord *step)
     }
     looks[parts - 1] = look_at_end(&tracer->looker, step);
     const int count = look_for_extremes(&tracer->looker, &tracer->last, parts, looks);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        for (int k = 0; is_traced(tracer, i) && k < count; k++) {
-            trace_add(&tracer->alpha[i], looks[k].time_s, looks[k].alpha[i], looks[k].omega[i]);
-        }
+    for (int k = 0; k < count; k++) {
+        add_bodies(tracer, step->part, &looks[k]);
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        add_forces(tracer, i, step, count, looks);
+    const size_t joint_count = solver_joint_count(step->part, &tracer->scenario->linkage);
+    for (size_t k = 0; k < joint_count; k++) {
+        add_forces(tracer, solver_joint(step->part, k), step->impulse[k], count, looks);
     }
-    tracer->last = looks[count - 1];
-    looker_keep(&tracer->looker, &tracer->last);
+    looker_keep(&tracer->looker, &tracer->last, &looks[count - 1]);
 }
 
 static void tracer_look(void *own, const StepRecord *step)
@@ -227,12 +255,15 @@ static double range_within(const Trace *trace, double from_s, double to_s)
     return most - least;
 }
 
-// The joint with play whose force changes most within a spike.
-static int find_joint(const Tracer *tracer, const SignalSpike *spike)
+// The joint with play whose force changes most within a spike of a body.
+static int find_joint(const Tracer *tracer, size_t body, const SignalSpike *spike)
 {
+    const SolverPart *part = tracer->part_of[body];
+    const size_t count = solver_joint_count(part, &tracer->scenario->linkage);
     int found = -1;
     double most = 0.0;
-    for (size_t i = 0; i < tracer->scenario->linkage.joint_count; i++) {
+    for (size_t k = 0; k < count; k++) {
+        const size_t i = solver_joint(part, k);
         if (has_play(tracer, i)) {
             const double range = range_within(&tracer->force[i], spike->onset_s, spike->end_s);
             found = range > most ? (int)i : found;
@@ -256,8 +287,9 @@ static void count_sector(SignalSpikes *spikes, const SignalSpike *spike)
     spikes->sectors[sector].largest = fmax(spikes->sectors[sector].largest, fabs(spike->value));
 }
 
-// The spikes of one signal that reach a threshold. A signal that is nothing has none.
-static void tell_signal(const Tracer *tracer, const Trace *trace, double threshold, bool is_body,
+// The spikes of one signal, of a body or of none (-1), that reach a threshold. A signal that is
+// nothing has none.
+static void tell_signal(const Tracer *tracer, const Trace *trace, double threshold, int body,
                         SignalSpikes *spikes)
 {
     const Linkage *linkage = &tracer->scenario->linkage;
@@ -271,7 +303,7 @@ static void tell_signal(const Tracer *tracer, const Trace *trace, double thresho
         }
         spikes->count++;
         found[i].crank_rad = linkage_crank_angle(linkage, found[i].time_s);
-        found[i].joint = is_body ? find_joint(tracer, &found[i]) : -1;
+        found[i].joint = body >= 0 ? find_joint(tracer, (size_t)body, &found[i]) : -1;
         sorted_insert(spikes->spikes, &spikes->kept, SIGNAL_SPIKE_MAX, &found[i], sizeof found[i],
                       is_stronger);
         if (linkage->driver.is_present) {
@@ -312,13 +344,13 @@ static void tell_all(Tracer *tracer, Trajectory *trajectory)
         tell_signal(tracer, &tracer->alpha[i],
                     tracer->scale.is_known ? scenario->run.spike_threshold * tracer->scale.alpha
                                            : own_threshold(tracer, &tracer->alpha[i], least),
-                    true, &trajectory->alpha_spikes[i]);
+                    (int)i, &trajectory->alpha_spikes[i]);
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         tell_signal(tracer, &tracer->force[i],
                     tracer->scale.is_known ? scenario->run.spike_threshold * tracer->scale.force
                                            : own_threshold(tracer, &tracer->force[i], 0.0),
-                    false, &trajectory->force_spikes[i]);
+                    -1, &trajectory->force_spikes[i]);
     }
 }
 
@@ -337,6 +369,8 @@ static void tracer_end(void *own, Trajectory *trajectory)
     free(tracer->alpha);
     free(tracer->force);
     free(tracer->impulse);
+    free(tracer->has_begun);
+    free(tracer->part_of);
     looker_finish(&tracer->looker);
     free(tracer);
 }

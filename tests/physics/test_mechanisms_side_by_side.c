@@ -9,6 +9,7 @@
 #include "mechanism.h"
 
 #include "base/lcg.h"
+#include "run/tracer.h"
 
 // cmocka.h needs these before it
 #include <setjmp.h>
@@ -57,12 +58,22 @@ static Scenario make_scenario(void)
     scenario.run.step = 4e-5;
     scenario.ode.stepping = ODE_STAGGERED;
     scenario.ode.map = ODE_MAP_IMPULSE;
+    scenario.run.keeps_ranges = true;
     return scenario;
 }
 
 static Trajectory *run_ode(const Scenario *scenario)
 {
     Trajectory *run = run_scenario(scenario, &ODE_SOLVER, (RunWatch){NULL, NULL});
+    assert_non_null(run);
+    assert_true(run->is_complete);
+    return run;
+}
+
+// The same, and its spikes are looked for.
+static Trajectory *trace_ode(const Scenario *scenario)
+{
+    Trajectory *run = tracer_run(scenario, &ODE_SOLVER, (RunWatch){NULL, NULL});
     assert_non_null(run);
     assert_true(run->is_complete);
     return run;
@@ -79,17 +90,63 @@ static void assert_same_joint(const JointExtremes *a, const JointExtremes *b)
     assert_int_equal(a->impacts, b->impacts);
     assert_same_extreme(&a->force_max, &b->force_max);
     assert_same_extreme(&a->penetration_max, &b->penetration_max);
-    // sums over other stretches of time
-    assert_close(a->impulse, b->impulse, 1e-12);
-    assert_close(a->contact_time, b->contact_time, 1e-10);
+    assert_true(a->impulse == b->impulse);
+    assert_true(a->contact_time == b->contact_time);
     assert_int_equal(a->spike_count, b->spike_count);
     for (size_t i = 0; i < a->spike_count; i++) {
         assert_true(a->spikes[i].onset_s == b->spikes[i].onset_s);
         assert_true(a->spikes[i].approach_speed == b->spikes[i].approach_speed);
         assert_true(a->spikes[i].force_max == b->spikes[i].force_max);
-        assert_close(a->spikes[i].duration_s, b->spikes[i].duration_s, 1e-10);
-        assert_close(a->spikes[i].impulse, b->spikes[i].impulse, 1e-12);
+        assert_true(a->spikes[i].duration_s == b->spikes[i].duration_s);
+        assert_true(a->spikes[i].impulse == b->spikes[i].impulse);
     }
+}
+
+// Spikes of a signal. Where they name a joint, its numbers are so far apart.
+static void assert_same_spikes(const SignalSpikes *a, const SignalSpikes *b, int apart)
+{
+    assert_true(a->threshold == b->threshold);
+    assert_int_equal(a->count, b->count);
+    assert_int_equal(a->kept, b->kept);
+    for (size_t i = 0; i < a->kept; i++) {
+        assert_true(a->spikes[i].time_s == b->spikes[i].time_s);
+        assert_true(a->spikes[i].value == b->spikes[i].value);
+        assert_true(a->spikes[i].impulse == b->spikes[i].impulse);
+        assert_int_equal(a->spikes[i].joint >= 0 ? a->spikes[i].joint + apart : -1,
+                         b->spikes[i].joint);
+    }
+}
+
+static void assert_same_range(const Trajectory *alone, const Trajectory *together, size_t own,
+                              size_t signal)
+{
+    const size_t count = alone->ranges.count;
+    assert_int_equal(count, together->ranges.count);
+    for (size_t i = 0; i < count; i++) {
+        const Range a = ranges_over(&alone->ranges, own, i, i + 1);
+        const Range b = ranges_over(&together->ranges, signal, i, i + 1);
+        assert_true(a.least == b.least && a.most == b.most);
+    }
+}
+
+// What was seen between the samples: the ranges and the spikes of a link and of its pin.
+static void assert_same_between(const Trajectory *alone, const Trajectory *together, size_t k,
+                                size_t at)
+{
+    const Ranges *ranges = &alone->ranges;
+    const int apart = (int)(at - k);
+    assert_true(ranges->count > 0);
+    for (int i = 0; i < RANGES_OF_BODY; i++) {
+        assert_same_range(alone, together, ranges_of_body(k, (RangesOfBody)i),
+                          ranges_of_body(at, (RangesOfBody)i));
+    }
+    for (int i = 0; i < RANGES_OF_JOINT; i++) {
+        assert_same_range(alone, together, ranges_of_joint(ranges, k, (RangesOfJoint)i),
+                          ranges_of_joint(&together->ranges, at, (RangesOfJoint)i));
+    }
+    assert_same_spikes(&alone->alpha_spikes[k], &together->alpha_spikes[at], apart);
+    assert_same_spikes(&alone->force_spikes[k], &together->force_spikes[at], apart);
+    assert_true(alone->force_spikes[k].count > 2);
 }
 
 static void each_moves_as_alone(void **state)
@@ -101,11 +158,11 @@ static void each_moves_as_alone(void **state)
     for (int number = 0; number < PENDULA; number++) {
         add_pendulum(&all, number);
     }
-    Trajectory *together = run_ode(&all);
+    Trajectory *together = trace_ode(&all);
     for (int number = 0; number < PENDULA; number++) {
         Scenario one = make_scenario();
         add_pendulum(&one, number);
-        Trajectory *alone = run_ode(&one);
+        Trajectory *alone = trace_ode(&one);
         for (size_t k = 0; k < LINKS; k++) {
             const size_t at = LINKS * (size_t)number + k;
             for (size_t i = 0; i < alone->sample_count; i++) {
@@ -120,6 +177,7 @@ static void each_moves_as_alone(void **state)
             assert_same_extreme(&alone->bodies[k].alpha_max, &together->bodies[at].alpha_max);
             assert_same_extreme(&alone->bodies[k].alpha_min, &together->bodies[at].alpha_min);
             assert_same_joint(&alone->joints[k], &together->joints[at]);
+            assert_same_between(alone, together, k, at);
             assert_true(alone->joints[k].impacts > 2);
         }
         lost += alone->energy.dissipated;
