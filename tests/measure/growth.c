@@ -14,6 +14,9 @@
 // loose mechanisms under impulse once pins touch. A
 // step is one of 20 us of ODE's world, or one of the reference's own. Nobody looks at the states in
 // between. tests/measure/growth.sh makes tables of it.
+//
+// Whatever N is, steps are those of the same stretch of time, and small ones are run one after the
+// other until they are COPIES, no two of which are alike: how often pins bounce depends on both.
 #include "base/zeroed.h"
 #include "lifted.h"
 #include "model/solver.h"
@@ -25,7 +28,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { STEPS = 200, SETTLING = 5, LOOSE_SETTLING = 400, MEETING = 2 };
+enum { STEPS = 200, SETTLING = 5, LOOSE_SETTLING = 400, MEETING = 2, COPIES = 256 };
 
 static const double STEP_S = 2e-5;
 static const double MASS = 0.1;   // kg, of each bar
@@ -38,6 +41,7 @@ static const double MEETING_SPEED = 0.05; // m/s
 typedef struct Build {
     Linkage linkage;
     bool is_loose;
+    size_t first; // number of its first bar, of all copies
 } Build;
 
 // A bar from one point to another; returns its number.
@@ -49,7 +53,7 @@ static int add_bar(Build *build, Vec2 from, Vec2 to)
     Body *body = &linkage->bodies[linkage->body_count];
     snprintf(body->name, sizeof body->name, "bar-%zu", linkage->body_count);
     // no two alike, so that no two contacts begin at once
-    body->mass = MASS * (1.0 + 0.2 * sin(1.7 * (double)linkage->body_count));
+    body->mass = MASS * (1.0 + 0.2 * sin(1.7 * (double)(build->first + linkage->body_count)));
     body->inertia = body->mass * length * length / 12.0;
     body->start.position = vec2_scale(0.5, vec2_add(from, to));
     body->start.angle = atan2(along.y, along.x);
@@ -76,7 +80,8 @@ static void add_pin(Build *build, int a, int b, Vec2 at)
     joint->anchor_a = local(linkage, a, at);
     joint->anchor_b = local(linkage, b, at);
     // no two alike, so that few contacts begin at once
-    const double play = PLAY * (1.0 + 0.2 * sin(2.3 * (double)linkage->joint_count));
+    const double play =
+        PLAY * (1.0 + 0.2 * sin(2.3 * (double)(build->first + linkage->joint_count)));
     joint->clearance =
         (Clearance){.hole_radius = PIN_RADIUS + play, .pin_radius = PIN_RADIUS, .width = WIDTH};
 }
@@ -216,82 +221,140 @@ static size_t in_use(void)
     return info.uordblks + info.hblkhd;
 }
 
-// Takes steps until so many have been taken. Valgrind can be told to count in here alone.
-__attribute__((noinline)) bool growth_take(const Solver *solver, void *state, size_t steps,
-                                           Err *err);
-__attribute__((noinline)) bool growth_take(const Solver *solver, void *state, size_t steps,
-                                           Err *err)
+// Takes steps until a number of ODE's have been taken since time zero, or that number of others.
+static bool take_steps(const Solver *solver, void *state, bool is_fixed, size_t steps, Err *err)
 {
-    while (solver->model(state).steps < steps) {
+    const double end_s = ((double)steps - 0.5) * STEP_S;
+    StepRecord record = {.end_s = 0.0};
+    // a step may be handed on in several records
+    for (size_t i = 0; is_fixed ? record.end_s < end_s || record.is_partial : i < steps; i++) {
         if (!solver->step(state, INFINITY, err)) {
             return false;
         }
+        record = solver->record(state);
     }
     return true;
 }
 
-static int measure(const Scenario *scenario, const Solver *solver, size_t settling, size_t steps)
+// The steps that are measured. Valgrind can be told to count in here alone.
+__attribute__((noinline)) bool growth_take(const Solver *solver, void *state, bool is_fixed,
+                                           size_t steps, Err *err);
+__attribute__((noinline)) bool growth_take(const Solver *solver, void *state, bool is_fixed,
+                                           size_t steps, Err *err)
+{
+    return take_steps(solver, state, is_fixed, steps, err);
+}
+
+// What was measured, of all copies together.
+typedef struct Totals {
+    size_t copies;
+    double opening_s;
+    double taken_s;
+    double steps;
+    double evaluations;
+    size_t bytes;
+} Totals;
+
+static bool measure(const Scenario *scenario, const Solver *solver, size_t settling, size_t steps,
+                    Totals *totals)
 {
     Err err = {ERR_NONE, ""};
     void *state = NULL;
+    const bool is_fixed = solver != &REFERENCE_SOLVER;
     const size_t before = in_use();
     const double opening_s = processor_s();
     // the first steps find the contacts
-    if (!solver->open(scenario, &state, &err) || !growth_take(solver, state, settling, &err)) {
+    if (!solver->open(scenario, &state, &err) ||
+        !take_steps(solver, state, is_fixed, settling, &err)) {
         fprintf(stderr, "growth: %s\n", err.text);
-        return 4;
+        return false;
     }
     const SolverModel start = solver->model(state);
     const double begun_s = processor_s();
-    if (!growth_take(solver, state, start.steps + steps, &err)) {
+    const size_t last = is_fixed ? settling + steps : steps;
+    if (!growth_take(solver, state, is_fixed, last, &err)) {
         fprintf(stderr, "growth: %s\n", err.text);
-        return 4;
+        return false;
     }
-    const double taken_s = processor_s() - begun_s;
+    totals->taken_s += processor_s() - begun_s;
     const SolverModel end = solver->model(state);
-    const double count = (double)(end.steps - start.steps);
-    printf("%zu bodies %zu joints %.3f us a step %.1f evaluations a step %zu KiB %.3f ms to open\n",
-           scenario->linkage.body_count, scenario->linkage.joint_count, 1e6 * taken_s / count,
-           (double)(end.evaluations - start.evaluations) / count, (in_use() - before) / 1024,
-           1e3 * (begun_s - opening_s));
+    totals->copies++;
+    totals->opening_s += begun_s - opening_s;
+    totals->steps += (double)(end.steps - start.steps);
+    totals->evaluations += (double)(end.evaluations - start.evaluations);
+    totals->bytes += in_use() - before;
     solver->close(state);
-    return 0;
+    return true;
+}
+
+static void print_totals(const Linkage *linkage, const Totals *totals)
+{
+    printf("%zu bodies %zu joints %.3f us a step %.1f evaluations a step %zu KiB %.3f ms to open\n",
+           linkage->body_count, linkage->joint_count, 1e6 * totals->taken_s / totals->steps,
+           totals->evaluations / totals->steps, totals->bytes / totals->copies / 1024,
+           1e3 * totals->opening_s / (double)totals->copies);
+}
+
+typedef struct Task {
+    const Kind *kind;
+    const char *play;
+    size_t count;
+    size_t steps;
+} Task;
+
+// Builds and runs the number asked for, of bars from a number on, and moves that on.
+static bool run_copy(const Task *task, const Solver *solver, Scenario *scenario, size_t *first,
+                     Totals *totals)
+{
+    const bool is_meeting = strcmp(task->play, "meeting") == 0;
+    Build build = {
+        .is_loose = is_meeting || strcmp(task->play, "loose") == 0 ||
+                    strcmp(task->play, "space-loose") == 0,
+        .linkage = linkage_create((LinkageRoom){3 * task->count + 1, 4 * task->count + 1, 0, 0}),
+        .first = *first,
+    };
+    task->kind->build(&build, task->count);
+    if (is_meeting) {
+        bring_to_walls(&build.linkage);
+    }
+    if (strncmp(task->play, "space", strlen("space")) == 0) {
+        lifted(&build.linkage, task->kind->build == build_chain);
+    }
+    *first += build.linkage.body_count;
+    scenario->linkage = build.linkage;
+    // pins fall through their play in 160 steps
+    const bool has_contacts = build.is_loose && scenario->ode.map == ODE_MAP_IMPULSE;
+    const size_t settling = is_meeting ? MEETING : has_contacts ? LOOSE_SETTLING : SETTLING;
+    const bool is_done = measure(scenario, solver, settling, task->steps, totals);
+    if (is_done && totals->copies * task->count >= COPIES) {
+        print_totals(&build.linkage, totals);
+    }
+    linkage_free(&build.linkage);
+    return is_done;
 }
 
 int main(int argc, char **argv)
 {
-    const Kind *kind = NULL;
+    Task task = {.play = argc >= 3 ? argv[2] : "", .steps = STEPS};
     for (size_t i = 0; argc >= 5 && i < sizeof KINDS / sizeof *KINDS; i++) {
-        kind = strcmp(argv[1], KINDS[i].name) == 0 ? &KINDS[i] : kind;
+        task.kind = strcmp(argv[1], KINDS[i].name) == 0 ? &KINDS[i] : task.kind;
     }
     Scenario scenario = scenario_default();
     const Solver *solver = argc >= 5 ? choose(argv[3], &scenario) : NULL;
-    const size_t count = argc >= 5 ? strtoul(argv[4], NULL, 10) : 0;
-    const size_t steps = argc == 6 ? strtoul(argv[5], NULL, 10) : STEPS;
-    if (kind == NULL || solver == NULL || count == 0 || steps == 0 || argc > 6) {
+    task.count = argc >= 5 ? strtoul(argv[4], NULL, 10) : 0;
+    task.steps = argc == 6 ? strtoul(argv[5], NULL, 10) : STEPS;
+    if (task.kind == NULL || solver == NULL || task.count == 0 || task.steps == 0 || argc > 6) {
         fprintf(stderr, "usage: growth KIND PLAY SOLVER N [STEPS]\n");
         return 2;
     }
-    Build build = {.is_loose = strcmp(argv[2], "loose") == 0};
-    const bool is_spatial = strncmp(argv[2], "space", strlen("space")) == 0;
-    build.is_loose =
-        build.is_loose || strcmp(argv[2], "space-loose") == 0 || strcmp(argv[2], "meeting") == 0;
-    build.linkage = linkage_create((LinkageRoom){3 * count + 1, 4 * count + 1, 0, 0});
-    kind->build(&build, count);
-    const bool is_meeting = strcmp(argv[2], "meeting") == 0;
-    if (is_meeting) {
-        bring_to_walls(&build.linkage);
-    }
-    if (is_spatial) {
-        lifted(&build.linkage, kind->build == build_chain);
-    }
-    scenario.linkage = build.linkage;
     scenario.contact.stiffness = 6.6e10;
     scenario.contact.exponent = 1.5;
-    // pins fall through their play in 160 steps
-    const bool has_contacts = build.is_loose && scenario.ode.map == ODE_MAP_IMPULSE;
-    const size_t settling = is_meeting ? MEETING : has_contacts ? LOOSE_SETTLING : SETTLING;
-    const int status = measure(&scenario, solver, settling, steps);
-    linkage_free(&build.linkage);
-    return status;
+    Totals totals = {0};
+    size_t first = 0;
+    while (totals.copies * task.count < COPIES) {
+        if (!run_copy(&task, solver, &scenario, &first, &totals)) {
+            return 4;
+        }
+    }
+    return 0;
 }
