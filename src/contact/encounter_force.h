@@ -51,6 +51,9 @@ double encounter_force_frequency(const Encounter *encounter, size_t joint, Vec2 
 // The time in which friction takes hold of what slides in a joint, s, under the forces given.
 double encounter_force_friction_time(const Encounter *encounter, size_t joint, const double *force);
 
+// Forgets the nodes of the step before, and gives back room that it alone needed.
+void encounter_nodes_begin(Encounter *encounter);
+
 // Adds a node.
 void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point);
 

@@ -12,6 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum {
+    FIRST_ROOM = 8, // nodes; a step without contacts has two
+    // what more a step took is given back when steps are calm again: of many mechanisms side by
+    // side few touch at a time
+    MOST_KEPT = 32,
+};
+
 // Marks which joints touch from a node on, and how fast they close.
 static void set_touching(const Encounter *encounter, const EncounterPoint *point, uint64_t *words,
                          double *closings)
@@ -39,10 +46,31 @@ bool encounter_touches_any(const Encounter *encounter, size_t node)
     return false;
 }
 
+// Gives back the room for nodes.
+static void drop_nodes(Encounter *encounter)
+{
+    free(encounter->times);
+    free(encounter->values);
+    free(encounter->closings);
+    free(encounter->losses);
+    free(encounter->touching);
+    encounter->times = encounter->values = encounter->closings = encounter->losses = NULL;
+    encounter->touching = NULL;
+    encounter->node_room = 0;
+}
+
+void encounter_nodes_begin(Encounter *encounter)
+{
+    if (encounter->node_room > MOST_KEPT && encounter->node_room > 4 * encounter->node_count) {
+        drop_nodes(encounter);
+    }
+    encounter->node_count = 0;
+}
+
 // Makes room for more nodes.
 static void grow_nodes(Encounter *encounter)
 {
-    encounter->node_room = 2 * encounter->node_room + 64;
+    encounter->node_room = 2 * encounter->node_room + FIRST_ROOM;
     const size_t room = encounter->node_room;
     const size_t rows = encounter->row_count;
     const size_t joints = encounter->joint_count;

@@ -199,7 +199,7 @@ bool encounter_run(Encounter *encounter, double duration)
     EncounterPoint *to = &encounter->work->ends[1];
     EncounterStep step;
     begin_step(encounter, from);
-    encounter->node_count = 0;
+    encounter_nodes_begin(encounter);
     encounter->event_count = 0;
     set_tolerances(encounter, duration);
     settle_contacts(encounter, from);
