@@ -162,7 +162,7 @@ bool assemble_scenario(const Entries *entries, Scenario *scenario, Err *err)
         return false;
     }
     const Source *source = entries_group(entries, "", 0)->source;
-    text_copy(built.path, sizeof built.path, source->name);
+    scenario_set_path(&built, source->name);
     *scenario = built;
     return true;
 }

@@ -17,7 +17,7 @@ enum { CASEFILE_KEY_SIZE = 160, CASEFILE_UNIT_SIZE = 24, CASEFILE_TEXT_SIZE = 25
 bool casefile_load(const char *path, const char *const *overrides, size_t override_count,
                    Scenario *scenario, Err *err);
 
-// The same from memory. The name stands in messages and in scenario->path.
+// The same from memory. The name stands in messages and is the path of the scenario.
 bool casefile_load_text(const char *name, const char *text, size_t size,
                         const char *const *overrides, size_t override_count, Scenario *scenario,
                         Err *err);

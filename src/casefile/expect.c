@@ -289,6 +289,10 @@ bool expect_store(const Entries *entries, const Entry *entry, Scenario *scenario
     if (!keys_check_map(entry->source, map, err)) {
         return false;
     }
+    if (scenario->expectations == NULL) {
+        scenario->expectations = zeroed(EXPECTATION_MAX, sizeof *scenario->expectations);
+        scenario->outcomes = zeroed(OUTCOME_MAX, sizeof *scenario->outcomes);
+    }
     scenario->expectation_count = 0;
     scenario->outcome_count = 0;
     for (const Node *node = map->first; node != NULL; node = node->next) {

@@ -66,7 +66,8 @@ static void say_idle(const Scenario *scenario, const char *const *overrides, siz
         }
     }
     if (idle > 0) {
-        output_say(" (nothing in %s makes use of %s)\n", scenario->path, idle == 1 ? "it" : "them");
+        output_say(" (nothing in %s makes use of %s)\n", scenario_path(scenario),
+                   idle == 1 ? "it" : "them");
     }
 }
 

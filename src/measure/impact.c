@@ -68,12 +68,11 @@ static void lone_pin(const Scenario *scenario, int joint, double mass, Scenario 
     const Joint *from = &scenario->linkage.joints[joint];
     const double radius = law_touching_radius(from);
     const double size = isfinite(radius) ? radius : 1e-2; // m: it does not turn
-    *lone = *scenario;
+    *lone = scenario_around(scenario, linkage_create((LinkageRoom){.bodies = 1, .joints = 1}));
     lone->has_fourbar = false;
     lone->has_slidercrank = false;
     lone->point_count = 0;
     lone->gravity = 0.0;
-    lone->linkage = linkage_create((LinkageRoom){.bodies = 1, .joints = 1});
     lone->linkage.body_count = 1;
     lone->linkage.bodies[0] = (Body){
         .name = "pin",

@@ -268,7 +268,7 @@ bool mapping_make(const Scenario *scenario, const MappingSettings *settings, Map
         return err_set(err, ERR_CASE,
                        "no joint of %s has play, so there is no contact to map; give one its "
                        "sizes, such as joints.%s.radial-clearance=20 um",
-                       scenario->path[0] != '\0' ? scenario->path : "the case",
+                       scenario_path(scenario)[0] != '\0' ? scenario_path(scenario) : "the case",
                        pin_that_could_have_play(&scenario->linkage));
     }
     if (!make_contacts(mapping, watch, err)) {

@@ -1,7 +1,9 @@
 // What is to be run, for how long, and how often is it looked at?
 #include "model/scenario.h"
 
-#include <stdlib.h>
+#include "base/zeroed.h"
+
+#include <string.h>
 
 const char *const SCENARIO_SPACES[] = {"planar", "spatial", NULL};
 
@@ -17,16 +19,60 @@ Scenario scenario_default(void)
     };
 }
 
+// A copy of an array; NULL of NULL.
+static void *copied(const void *array, size_t count, size_t size)
+{
+    if (array == NULL) {
+        return NULL;
+    }
+    void *copy = zeroed(count, size);
+    memcpy(copy, array, count * size);
+    return copy;
+}
+
 Scenario scenario_copy(const Scenario *scenario)
 {
     Scenario copy = *scenario;
     copy.linkage = linkage_copy(&scenario->linkage);
+    copy.path = copied(scenario->path, 1 + strlen(scenario_path(scenario)), 1);
+    copy.expectations =
+        copied(scenario->expectations, scenario->expectation_count, sizeof *scenario->expectations);
+    copy.outcomes = copied(scenario->outcomes, scenario->outcome_count, sizeof *scenario->outcomes);
     return copy;
+}
+
+Scenario scenario_around(const Scenario *scenario, Linkage linkage)
+{
+    Scenario around = *scenario;
+    around.linkage = linkage;
+    around.path = NULL;
+    around.expectations = NULL;
+    around.outcomes = NULL;
+    around.expectation_count = around.outcome_count = 0;
+    return around;
+}
+
+const char *scenario_path(const Scenario *scenario)
+{
+    return scenario->path != NULL ? scenario->path : "";
+}
+
+void scenario_set_path(Scenario *scenario, const char *path)
+{
+    free(scenario->path);
+    scenario->path = copied(path, 1 + strlen(path), 1);
 }
 
 void scenario_free(Scenario *scenario)
 {
     linkage_free(&scenario->linkage);
+    free(scenario->path);
+    free(scenario->expectations);
+    free(scenario->outcomes);
+    scenario->path = NULL;
+    scenario->expectations = NULL;
+    scenario->outcomes = NULL;
+    scenario->expectation_count = scenario->outcome_count = 0;
 }
 
 void scenario_destroy(Scenario *scenario)

@@ -24,13 +24,13 @@ typedef enum ScenarioSpace {
 
 extern const char *const SCENARIO_SPACES[]; // the words, ending in NULL
 
-// It owns the arrays of its linkage. An assignment shares them: it is for a scenario of other
-// options that does not outlive the first. What is to have other bodies, joints or a life of its
-// own needs scenario_copy.
+// It owns the arrays of its linkage and its own. An assignment shares them: it is for a scenario of
+// other options that does not outlive the first. What is to have other bodies, joints or a life of
+// its own needs scenario_copy.
 typedef struct Scenario {
     char title[SCENARIO_TITLE_SIZE];
-    char path[SCENARIO_PATH_SIZE]; // of the case file, as given; empty where there is none
-    ScenarioSpace space;           // linkage.is_spatial is the same
+    char *path; // of the case file, as given; owned; NULL where there is none: scenario_path
+    ScenarioSpace space; // linkage.is_spatial is the same
     Linkage linkage;
     bool has_fourbar; // whether the case used that short form
     FourBar fourbar;
@@ -45,16 +45,24 @@ typedef struct Scenario {
     ReferenceOptions reference;
     OdeOptions ode;
     size_t expectation_count;
-    Expectation expectations[EXPECTATION_MAX]; // for the checks of runs; no solver reads them
+    Expectation *expectations; // for the checks of runs; no solver reads them; owned
     size_t outcome_count;
-    ExpectedOutcome outcomes[OUTCOME_MAX]; // likewise
+    ExpectedOutcome *outcomes; // likewise
 } Scenario;
 
 // A scenario with every option at its default and an empty linkage, without arrays.
 Scenario scenario_default(void);
 
-// One with a linkage of its own, of the same contents. For scenario_free.
+// One with arrays of its own, of the same contents. For scenario_free.
 Scenario scenario_copy(const Scenario *scenario);
+
+// The same options around another linkage, which is now the scenario's; of no file, expecting
+// nothing. For scenario_free.
+Scenario scenario_around(const Scenario *scenario, Linkage linkage);
+
+// The path of the case file, empty where there is none.
+const char *scenario_path(const Scenario *scenario);
+void scenario_set_path(Scenario *scenario, const char *path);
 
 // Frees what the scenario owns; its linkage is then empty.
 void scenario_free(Scenario *scenario);

@@ -150,8 +150,7 @@ Member *impulse_members_make(const Scenario *scenario, size_t *count)
     for (size_t i = 0; i < *count; i++) {
         Member *member = &members[i];
         member->scenario = zeroed(1, sizeof *member->scenario);
-        *member->scenario = *scenario;
-        member->scenario->linkage = linkage_create(rooms[i]);
+        *member->scenario = scenario_around(scenario, linkage_create(rooms[i]));
         // one without the driver has no revolutions
         member->scenario->run.duration = scenario_duration(scenario);
         member->bodies = zeroed(rooms[i].bodies, sizeof *member->bodies);

@@ -92,7 +92,7 @@ static void set_settings(json_t *object, const Scenario *scenario)
 void settings_json_begin(json_t *object, const Scenario *scenario)
 {
     json_object_set_new(object, "tool", settings_json_tool());
-    json_object_set_new(object, "case", json_value_text(scenario->path));
+    json_object_set_new(object, "case", json_value_text(scenario_path(scenario)));
     json_object_set_new(object, "title", json_value_text(scenario->title));
     set_settings(object, scenario);
 }

@@ -28,6 +28,18 @@ static inline Linkage kept_linkage(void)
     return kept->linkage;
 }
 
+static inline void kept_hold(void *memory)
+{
+    static struct Held {
+        void *memory;
+        struct Held *before;
+    } * last;
+    struct Held *held = malloc(sizeof *held);
+    assert(held != NULL);
+    *held = (struct Held){memory, last};
+    last = held;
+}
+
 static inline Linkage kept_linkage_copy(const Linkage *linkage)
 {
     const Linkage own = kept_linkage();
@@ -58,6 +70,15 @@ static inline Scenario kept_copy(const Scenario *scenario)
 static inline Scenario kept_instead(Scenario *scenario)
 {
     const Scenario copy = kept_copy(scenario);
-    scenario_free(scenario);
+    kept_hold(copy.path);
+    kept_hold(copy.expectations);
+    kept_hold(copy.outcomes);
+    linkage_free(&scenario->linkage);
     return copy;
+}
+
+static inline void kept_set_path(Scenario *scenario, const char *path)
+{
+    scenario_set_path(scenario, path);
+    kept_hold(scenario->path);
 }

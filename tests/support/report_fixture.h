@@ -165,7 +165,7 @@ static inline int fixture_set_up(void **state)
     fixture->scenario = kept_default();
     Scenario *scenario = &fixture->scenario;
     strcpy(scenario->title, "A test & <nothing> else");
-    strcpy(scenario->path, "cases/test.yaml");
+    kept_set_path(scenario, "cases/test.yaml");
     make_linkage(scenario);
     scenario->run.samples = SAMPLES - 1;
     scenario->point_count = 1;

@@ -3,6 +3,7 @@
 #include "write/file.h"
 
 #include "close.h"
+#include "kept.h"
 #include "mechanism.h"
 
 #include <stdlib.h>
@@ -49,7 +50,7 @@ static int set_up(void **state)
     fixture->scenario = mechanism_paper();
     mechanism_loosen(&fixture->scenario, "crank-coupler");
     strcpy(fixture->scenario.title, "Play & <nothing> else");
-    strcpy(fixture->scenario.path, "cases/test.yaml");
+    kept_set_path(&fixture->scenario, "cases/test.yaml");
     fixture->ladder = ladder_create(SCHEMES, 3, STEP_LIST, STEPS, REPEATS);
     fixture->ladder->truth = (LadderTruth){true, "reference", 4e-6, 0.025, 2e4, true, 1.5, ""};
     add_runs(fixture->ladder);

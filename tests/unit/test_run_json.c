@@ -212,7 +212,7 @@ static void a_number_that_is_not_finite_becomes_null(void **state)
 static void a_path_that_is_not_utf8_is_still_written(void **state)
 {
     Fixture *fixture = *state;
-    strcpy(fixture->scenario.path, "cases/\xff.yaml");
+    kept_set_path(&fixture->scenario, "cases/\xff.yaml");
     json_t *root = run_json_build(&fixture->report);
     assert_string_equal(json_string_value(json_object_get(root, "case")), "cases/\\xff.yaml");
     json_decref(root);

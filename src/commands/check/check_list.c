@@ -125,7 +125,7 @@ static void add_named(CheckItem *item, const CheckOptions *options)
     resolve(path, whole);
     resolve(options->folder, folder);
     relative_path(folder, whole, item->relative);
-    file_stem(item->scenario->path, name, sizeof name);
+    file_stem(scenario_path(item->scenario), name, sizeof name);
     const int length = snprintf(item->baseline_path, sizeof item->baseline_path, "%s/%s.json",
                                 options->folder, name);
     if (length < 0 || length >= FILE_PATH_SIZE) {

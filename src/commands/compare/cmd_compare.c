@@ -87,7 +87,7 @@ static bool compare_ladder(const CompareOptions *options, const Scenario *scenar
     ladder_conclude(ladder);
     const CompareReport report = {scenario, ladder, listening.store.machine};
     results_print(&RESULTS, &options->common, &report);
-    return results_write(&RESULTS, &options->common, scenario->path, &report, err) &&
+    return results_write(&RESULTS, &options->common, scenario_path(scenario), &report, err) &&
            check_points(ladder, err);
 }
 
@@ -115,7 +115,7 @@ static bool compare_case(void *target, Err *err)
     assert(scenario != NULL);
     bool is_done = common_options_load(&options->common, scenario, err) &&
                    compare_options_ladder(options, scenario, &ladder, err) &&
-                   results_claim(&RESULTS, &options->common, scenario->path, err);
+                   results_claim(&RESULTS, &options->common, scenario_path(scenario), err);
     if (is_done) {
         warn(options, scenario);
         is_done = compare_ladder(options, scenario, ladder, err);

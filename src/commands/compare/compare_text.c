@@ -11,7 +11,7 @@ static void write_head(const CompareReport *report, const Style *style, Text *te
     const Scenario *scenario = report->scenario;
     const Ladder *ladder = report->ladder;
     const LadderTruth *truth = &ladder->truth;
-    section_title(scenario->title, scenario->path, style, text);
+    section_title(scenario->title, scenario_path(scenario), style, text);
     if (truth->message[0] != '\0') {
         text_append(text, "  truth       %s, made in %.3g s; could not be certified: %s\n",
                     truth->backend, truth->wall_s, truth->message);

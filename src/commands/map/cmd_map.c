@@ -101,7 +101,8 @@ static void say_hint(const MapOptions *options, const Scenario *scenario)
 static bool map_scenario(const MapOptions *options, const Scenario *scenario,
                          const MappingSettings *settings, Err *err)
 {
-    const char *path = scenario->path[0] != '\0' ? scenario->path : "lone-contact";
+    const char *path =
+        scenario_path(scenario)[0] != '\0' ? scenario_path(scenario) : "lone-contact";
     if (!results_claim(&RESULTS, &options->common, path, err)) {
         return false;
     }
@@ -140,7 +141,7 @@ static bool add_masses(const MapOptions *options, const Scenario *scenario, Inve
         return err_set(err, ERR_CASE,
                        "no joint of %s has play, so it has no mass to offer; give "
                        "one, such as --mass '0.1 kg'",
-                       scenario->path);
+                       scenario_path(scenario));
     }
     MappingJoint *joints = NULL;
     size_t count = 0;

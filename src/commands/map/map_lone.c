@@ -107,8 +107,8 @@ bool map_lone_make(const MapOptions *options, Scenario *scenario, MappingSetting
                             overrides.count, scenario, err)) {
         return false;
     }
-    scenario->path[0] = '\0'; // there is no file
-    scenario->run.step = 0.0; // nor a step but those of the options
+    scenario_set_path(scenario, ""); // there is no file
+    scenario->run.step = 0.0;        // nor a step but those of the options
     if (!map_options_settings(options, scenario, settings, err)) {
         return false;
     }

@@ -35,7 +35,7 @@ static bool has_lines(const Linkage *linkage)
 static void write_head(const MappingReport *report, const Style *style, Text *text)
 {
     const Scenario *scenario = report->scenario;
-    section_title(scenario->title, scenario->path, style, text);
+    section_title(scenario->title, scenario_path(scenario), style, text);
     text_append(
         text,
         "  valid       restitution%s within %.0f %% of what is asked, wherever the steps fall\n",

@@ -89,7 +89,7 @@ static bool check_uncertified(const Scenario *scenario, Err *err)
                            "%s: the step of ode is chosen by its error against the certified "
                            "reference; with --uncertified give --step TIME, or --backend without "
                            "ode",
-                           scenario->path);
+                           scenario_path(scenario));
         }
     }
     return true;
@@ -115,9 +115,9 @@ static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
     for (size_t i = 0; command->common.folder != NULL && i < command->case_count; i++) {
         char name[SCENARIO_PATH_SIZE];
         char other[SCENARIO_PATH_SIZE];
-        file_stem(runs[i].scenario.path, name, sizeof name);
+        file_stem(scenario_path(&runs[i].scenario), name, sizeof name);
         for (size_t k = 0; k < i; k++) {
-            file_stem(runs[k].scenario.path, other, sizeof other);
+            file_stem(scenario_path(&runs[k].scenario), other, sizeof other);
             if (strcmp(name, other) == 0) {
                 return err_set(err, ERR_USAGE, "%s and %s would write the same files into %s",
                                command->cases[k], command->cases[i], command->common.folder);
@@ -152,7 +152,7 @@ static bool report_case(const RunCommand *command, const CaseRun *run, json_t *o
     return (command->series == NULL ||
             run_files_series(run, command->series, common->is_quiet, err)) &&
            (common->folder == NULL || run_files_folder(run, common, err)) &&
-           results_write(&RESULTS, common, run->scenario.path, &run->report, err);
+           results_write(&RESULTS, common, scenario_path(&run->scenario), &run->report, err);
 }
 
 // One case is one object, several are {"cases": [...]}.
@@ -176,8 +176,9 @@ static bool count_failures(const RunCommand *command, const CaseRun *runs, Err *
             first_case = &runs[i];
         }
     }
-    return failed == 0 || err_set(err, ERR_SOLVER, "%zu of %zu runs failed: %s on %s: %s", failed,
-                                  all, first_case->scenario.path, first->backend, first->message);
+    return failed == 0 ||
+           err_set(err, ERR_SOLVER, "%zu of %zu runs failed: %s on %s: %s", failed, all,
+                   scenario_path(&first_case->scenario), first->backend, first->message);
 }
 
 // What cannot be written is reported before anything runs.
@@ -186,7 +187,7 @@ static bool claim_files(const RunCommand *command, const CaseRun *runs, Err *err
     const CommonOptions *common = &command->common;
     bool is_claimed = command->series == NULL || run_files_claim(&runs[0], command->series, err);
     for (size_t i = 0; i < command->case_count && is_claimed; i++) {
-        is_claimed = results_claim(&RESULTS, common, runs[i].scenario.path, err) &&
+        is_claimed = results_claim(&RESULTS, common, scenario_path(&runs[i].scenario), err) &&
                      (common->folder == NULL || run_files_claim_folder(&runs[i], common, err));
     }
     return is_claimed;

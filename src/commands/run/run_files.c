@@ -84,7 +84,7 @@ static bool find_member(const CaseRun *run, const CommonOptions *options, size_t
     char name[SCENARIO_PATH_SIZE];
     char ending[LINKAGE_NAME_SIZE + 8];
     const RunOptions *backends = &run->scenario.run;
-    file_stem(run->scenario.path, name, sizeof name);
+    file_stem(scenario_path(&run->scenario), name, sizeof name);
     snprintf(ending, sizeof ending, "-%s.csv", OPTIONS_BACKENDS[backends->backends[number]]);
     return results_path(options, name, ending, path, err);
 }

@@ -316,7 +316,7 @@ void run_text_write(const void *of, const Style *style, Text *text)
 {
     const RunReport *report = of;
     const Scenario *scenario = report->scenario;
-    section_title(scenario->title, scenario->path, style, text);
+    section_title(scenario->title, scenario_path(scenario), style, text);
     write_mechanism(report, style->width, text);
     write_drive(scenario, text);
     write_contact(scenario, style->width, text);

@@ -186,7 +186,7 @@ static bool tune_case(void *target, Err *err)
     assert(scenario != NULL);
     bool is_done = common_options_load(common, scenario, err) &&
                    tune_options_search(options, scenario, &tune, err) &&
-                   results_claim(&RESULTS, common, scenario->path, err);
+                   results_claim(&RESULTS, common, scenario_path(scenario), err);
     if (is_done) {
         warn(options, scenario);
         is_done = search(options, scenario, tune, err);
@@ -195,7 +195,7 @@ static bool tune_case(void *target, Err *err)
         const TuneReport report = {scenario, tune, common->overrides, common->override_count,
                                    common->time_limit_s};
         results_print(&RESULTS, common, &report);
-        is_done = results_write(&RESULTS, common, scenario->path, &report, err) &&
+        is_done = results_write(&RESULTS, common, scenario_path(scenario), &report, err) &&
                   check_met(&report, err);
     }
     tune_destroy(tune);

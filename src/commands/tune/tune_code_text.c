@@ -30,7 +30,7 @@ void tune_code_head(const TuneCode *code, const char *what, const char *compile,
                 "//   cc THIS_FILE.c -o run %s && ./run > series.csv\n//\n// case     ",
                 what, JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION, compile);
     // as in the command below: a name never ends the comment, nor joins the next line to it
-    shell_append_word(text, code->scenario->path);
+    shell_append_word(text, scenario_path(code->scenario));
     text_append(text, "\n// setting  %s\n// error    %.3g measured", code->words, code->error);
     if (isfinite(code->target)) {
         text_append(text, ", %.3g asked for", code->target);

@@ -57,7 +57,7 @@ void tune_setting_command(const TuneReport *report, const TuneTrial *trial, cons
                           Text *text)
 {
     text_append(text, "jointplay run ");
-    const char *path = report->scenario->path;
+    const char *path = scenario_path(report->scenario);
     shell_append_path(text, strcmp(path, INPUT_STDIN) == 0 ? "-" : path);
     for (size_t i = 0; i < report->override_count; i++) {
         if (!tune_setting_replaces(report->overrides[i])) {

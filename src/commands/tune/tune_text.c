@@ -33,7 +33,7 @@ static void write_head(const TuneReport *report, const Style *style, Text *text)
 {
     const Scenario *scenario = report->scenario;
     const Tune *tune = report->tune;
-    section_title(scenario->title, scenario->path, style, text);
+    section_title(scenario->title, scenario_path(scenario), style, text);
     write_asked(tune, text);
     text_append(text, "  truth       %s, to %.2g of omega\n", tune->truth.backend,
                 tune->truth.uncertainty);
