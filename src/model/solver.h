@@ -66,7 +66,9 @@ typedef struct Solver {
     // Makes the state at time zero. On failure *state stays NULL.
     bool (*open)(const Scenario *scenario, void **state, Err *err);
     // Takes one step of the solver's own choosing towards stop_s. It may end beyond stop_s only
-    // if observe can look back into the step. Fails with ERR_SOLVER, saying when and why.
+    // if observe can look back into the step. A solver that hands on parts may take several,
+    // though not at first, whose last one reaches stop_s or ends before. Fails with ERR_SOLVER,
+    // saying when and why.
     bool (*step)(void *state, double stop_s, Err *err);
     // Optional: takes a step as `step` does, but one that nobody wants a record of, which may take
     // less. Writes when it ended, s. NULL: step and record do.

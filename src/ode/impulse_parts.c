@@ -2,9 +2,10 @@
 // the step?
 //
 // Each by itself (ode/impulse.c), in a world of its own: a contact of one shortens no local step of
-// another, and nothing is solved for all of them together. One after the other takes a step and
-// hands it on up to its end, in parts that tell of this mechanism alone. Whoever looks at them thus
-// has no more to do than for each mechanism by itself, and its memory is still in the cache.
+// another, and nothing is solved for all of them together. One after the other takes its steps up
+// to the time that is asked for, and hands them on in parts that tell of this mechanism alone.
+// Whoever looks at them thus has no more to do than for each mechanism by itself, and memory is
+// read into the cache once for several steps: a thousand mechanisms do not fit into it.
 #include "ode/impulse_parts.h"
 
 #include "base/zeroed.h"
@@ -18,10 +19,17 @@ typedef struct Parts {
     const ImpulsePartsOf *of;
     size_t count;
     Member *members; // owned
-    size_t now;      // the member whose step is being handed on
+    size_t now;      // the member whose steps are being handed on
+    size_t taken;    // of them so far
+    size_t steps;    // of each member in this round; 0: the first member is still taking them
+    bool is_over;    // whether the member makes way for the next one
+    bool has_begun;  // after the first round, which is one step: samples at time zero stand in it
     double elastic;  // J, of all members
     StepRecord record;
 } Parts;
+
+// Steps that a member takes at most before the next one goes on.
+enum { STEPS_MOST = 16 };
 
 static bool is_whole(const Scenario *scenario)
 {
@@ -63,25 +71,48 @@ bool impulse_parts_open(const Scenario *scenario, const ImpulsePartsOf *of, void
     return true;
 }
 
+// Whether the member that has just ended a step makes way for the next one.
+static bool is_turn_over(const Parts *parts, double stop_s)
+{
+    if (parts->steps > 0) {
+        return parts->taken == parts->steps;
+    }
+    const double last_s = fmin(stop_s, scenario_duration(parts->scenario));
+    const double near_s = last_s - STEPPING_ROUNDING * parts->scenario->run.step;
+    return !parts->has_begun || parts->taken == STEPS_MOST || parts->record.end_s >= near_s;
+}
+
+// Goes on to the next member.
+static void turn(Parts *parts)
+{
+    const bool is_last = parts->now + 1 == parts->count;
+    parts->steps = is_last ? 0 : parts->taken;
+    parts->now = is_last ? 0 : parts->now + 1;
+    parts->taken = 0;
+    parts->has_begun = parts->has_begun || is_last;
+    parts->is_over = false;
+}
+
 bool impulse_parts_step(void *state, double stop_s, Err *err)
 {
     Parts *parts = state;
-    Member *member = &parts->members[parts->now];
-    // one that has come to the end of its step makes way for the next
-    if (parts->record.part == &member->part && parts->of->is_at_end(member->state)) {
-        parts->now = (parts->now + 1) % parts->count;
-        member = &parts->members[parts->now];
+    if (parts->is_over) {
+        turn(parts);
     }
+    Member *member = &parts->members[parts->now];
     if (!parts->of->solver->step(member->state, stop_s, err)) {
         return false;
     }
     parts->record = parts->of->solver->record(member->state);
+    if (parts->of->is_at_end(member->state)) {
+        parts->taken++;
+        parts->is_over = is_turn_over(parts, stop_s);
+    }
     parts->elastic += parts->record.elastic - member->elastic;
     member->elastic = parts->record.elastic;
     parts->record.elastic = parts->elastic;
     parts->record.part = &member->part;
-    parts->record.is_partial =
-        parts->now + 1 < parts->count || !parts->of->is_at_end(member->state);
+    parts->record.is_partial = !parts->is_over || parts->now + 1 < parts->count;
     return true;
 }
 
