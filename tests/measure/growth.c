@@ -1,6 +1,6 @@
 // How do time and memory of a step grow with the number of bodies?
 //
-// growth KIND PLAY SOLVER N [STEPS]
+// growth KIND PLAY SOLVER N [STEPS [INTERVAL]]
 //   KIND    chain       N links in a row, hung up at one end, level at the start
 //           pendula     N pendula that have nothing to do with each other
 //           four-bars   N four-bars side by side
@@ -9,6 +9,9 @@
 //   PLAY    ideal, or loose: every joint a pin with 50 um of play in its hole; space and
 //           space-loose: likewise in space, every second axis of a chain tilted; meeting, of a
 //           chain: loose, and all pins come to their walls within a step
+//   INTERVAL  steps from one sample to the next, 16: mechanisms side by side take as many as that
+//   one
+//           before the next one goes on
 //   SOLVER  direct, quick: plain steps of ODE; staggered; impulse; reference
 // Prints bodies, joints, us and evaluations a step, and the memory that the solver takes, KiB; of
 // loose mechanisms under impulse once pins touch. A
@@ -28,7 +31,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { STEPS = 200, SETTLING = 5, LOOSE_SETTLING = 400, MEETING = 2, COPIES = 256 };
+enum { STEPS = 200, SETTLING = 5, LOOSE_SETTLING = 400, MEETING = 2, INTERVAL = 16, COPIES = 256 };
 
 static const double STEP_S = 2e-5;
 static const double MASS = 0.1;   // kg, of each bar
@@ -221,28 +224,42 @@ static size_t in_use(void)
     return info.uordblks + info.hblkhd;
 }
 
+// A solver that is under way, sampled every so many steps of ODE's.
+typedef struct Going {
+    const Solver *solver;
+    void *state;
+    bool is_fixed; // whether its steps are ODE's
+    size_t interval;
+    double sample_s;
+    double reached_s;
+} Going;
+
 // Takes steps until a number of ODE's have been taken since time zero, or that number of others.
-static bool take_steps(const Solver *solver, void *state, bool is_fixed, size_t steps, Err *err)
+static bool take_steps(Going *going, size_t steps, Err *err)
 {
     const double end_s = ((double)steps - 0.5) * STEP_S;
-    StepRecord record = {.end_s = 0.0};
-    // a step may be handed on in several records
-    for (size_t i = 0; is_fixed ? record.end_s < end_s || record.is_partial : i < steps; i++) {
-        if (!solver->step(state, INFINITY, err)) {
+    bool is_partial = false; // a step may be handed on in several records
+    for (size_t i = 0; is_partial || (going->is_fixed ? going->reached_s < end_s : i < steps);
+         i++) {
+        if (!is_partial && going->reached_s > going->sample_s - 0.5 * STEP_S) {
+            going->sample_s = going->reached_s + (double)going->interval * STEP_S;
+        }
+        const double stop_s = going->is_fixed ? fmin(going->sample_s, end_s) : INFINITY;
+        if (!going->solver->step(going->state, stop_s, err)) {
             return false;
         }
-        record = solver->record(state);
+        const StepRecord record = going->solver->record(going->state);
+        is_partial = record.is_partial;
+        going->reached_s = record.end_s;
     }
     return true;
 }
 
 // The steps that are measured. Valgrind can be told to count in here alone.
-__attribute__((noinline)) bool growth_take(const Solver *solver, void *state, bool is_fixed,
-                                           size_t steps, Err *err);
-__attribute__((noinline)) bool growth_take(const Solver *solver, void *state, bool is_fixed,
-                                           size_t steps, Err *err)
+__attribute__((noinline)) bool growth_take(Going *going, size_t steps, Err *err);
+__attribute__((noinline)) bool growth_take(Going *going, size_t steps, Err *err)
 {
-    return take_steps(solver, state, is_fixed, steps, err);
+    return take_steps(going, steps, err);
 }
 
 // What was measured, of all copies together.
@@ -255,35 +272,41 @@ typedef struct Totals {
     size_t bytes;
 } Totals;
 
-static bool measure(const Scenario *scenario, const Solver *solver, size_t settling, size_t steps,
-                    Totals *totals)
+typedef struct Task {
+    const Kind *kind;
+    const char *play;
+    size_t count;
+    size_t steps;
+    size_t interval;
+} Task;
+
+static bool measure(const Task *task, const Scenario *scenario, const Solver *solver,
+                    size_t settling, Totals *totals)
 {
     Err err = {ERR_NONE, ""};
-    void *state = NULL;
-    const bool is_fixed = solver != &REFERENCE_SOLVER;
+    Going going = {
+        .solver = solver, .is_fixed = solver != &REFERENCE_SOLVER, .interval = task->interval};
     const size_t before = in_use();
     const double opening_s = processor_s();
     // the first steps find the contacts
-    if (!solver->open(scenario, &state, &err) ||
-        !take_steps(solver, state, is_fixed, settling, &err)) {
+    if (!solver->open(scenario, &going.state, &err) || !take_steps(&going, settling, &err)) {
         fprintf(stderr, "growth: %s\n", err.text);
         return false;
     }
-    const SolverModel start = solver->model(state);
+    const SolverModel start = solver->model(going.state);
     const double begun_s = processor_s();
-    const size_t last = is_fixed ? settling + steps : steps;
-    if (!growth_take(solver, state, is_fixed, last, &err)) {
+    if (!growth_take(&going, (going.is_fixed ? settling : 0) + task->steps, &err)) {
         fprintf(stderr, "growth: %s\n", err.text);
         return false;
     }
     totals->taken_s += processor_s() - begun_s;
-    const SolverModel end = solver->model(state);
+    const SolverModel end = solver->model(going.state);
     totals->copies++;
     totals->opening_s += begun_s - opening_s;
     totals->steps += (double)(end.steps - start.steps);
     totals->evaluations += (double)(end.evaluations - start.evaluations);
     totals->bytes += in_use() - before;
-    solver->close(state);
+    solver->close(going.state);
     return true;
 }
 
@@ -294,13 +317,6 @@ static void print_totals(const Linkage *linkage, const Totals *totals)
            totals->evaluations / totals->steps, totals->bytes / totals->copies / 1024,
            1e3 * totals->opening_s / (double)totals->copies);
 }
-
-typedef struct Task {
-    const Kind *kind;
-    const char *play;
-    size_t count;
-    size_t steps;
-} Task;
 
 // Builds and runs the number asked for, of bars from a number on, and moves that on.
 static bool run_copy(const Task *task, const Solver *solver, Scenario *scenario, size_t *first,
@@ -325,7 +341,7 @@ static bool run_copy(const Task *task, const Solver *solver, Scenario *scenario,
     // pins fall through their play in 160 steps
     const bool has_contacts = build.is_loose && scenario->ode.map == ODE_MAP_IMPULSE;
     const size_t settling = is_meeting ? MEETING : has_contacts ? LOOSE_SETTLING : SETTLING;
-    const bool is_done = measure(scenario, solver, settling, task->steps, totals);
+    const bool is_done = measure(task, scenario, solver, settling, totals);
     if (is_done && totals->copies * task->count >= COPIES) {
         print_totals(&build.linkage, totals);
     }
@@ -335,16 +351,17 @@ static bool run_copy(const Task *task, const Solver *solver, Scenario *scenario,
 
 int main(int argc, char **argv)
 {
-    Task task = {.play = argc >= 3 ? argv[2] : "", .steps = STEPS};
+    Task task = {.play = argc >= 3 ? argv[2] : "", .steps = STEPS, .interval = INTERVAL};
     for (size_t i = 0; argc >= 5 && i < sizeof KINDS / sizeof *KINDS; i++) {
         task.kind = strcmp(argv[1], KINDS[i].name) == 0 ? &KINDS[i] : task.kind;
     }
     Scenario scenario = scenario_default();
     const Solver *solver = argc >= 5 ? choose(argv[3], &scenario) : NULL;
     task.count = argc >= 5 ? strtoul(argv[4], NULL, 10) : 0;
-    task.steps = argc == 6 ? strtoul(argv[5], NULL, 10) : STEPS;
-    if (task.kind == NULL || solver == NULL || task.count == 0 || task.steps == 0 || argc > 6) {
-        fprintf(stderr, "usage: growth KIND PLAY SOLVER N [STEPS]\n");
+    task.steps = argc >= 6 ? strtoul(argv[5], NULL, 10) : STEPS;
+    task.interval = argc >= 7 ? strtoul(argv[6], NULL, 10) : INTERVAL;
+    if (task.kind == NULL || solver == NULL || task.count == 0 || task.steps == 0 || argc > 7) {
+        fprintf(stderr, "usage: growth KIND PLAY SOLVER N [STEPS [INTERVAL]]\n");
         return 2;
     }
     scenario.contact.stiffness = 6.6e10;
