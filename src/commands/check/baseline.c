@@ -147,10 +147,6 @@ static double largest_deviation(const CheckMeasure *members, size_t member_count
 static void set_band(BaselineMetric *metric, const CheckMetric *measured, double deviation,
                      size_t member_count)
 {
-    if (deviation > fmax(SPREAD_LIMIT * measured->scale, measured->floor)) {
-        metric->band_kind = BAND_STATISTICAL;
-        return;
-    }
     // steps that a solver chooses by itself have a floor, and so no exact count
     if (measured->kind != CHECK_REAL && deviation == 0.0 && measured->floor == 0.0) {
         metric->band_kind = BAND_EXACT;
@@ -158,7 +154,8 @@ static void set_band(BaselineMetric *metric, const CheckMetric *measured, double
                  member_count);
         return;
     }
-    metric->band_kind = BAND_ROUNDING;
+    const double most = fmax(SPREAD_LIMIT * measured->scale, measured->floor);
+    metric->band_kind = deviation > most ? BAND_STATISTICAL : BAND_ROUNDING;
     const double measured_band = BAND_FACTOR * deviation;
     metric->band = fmax(measured_band, measured->floor);
     if (measured_band >= measured->floor) {
@@ -179,7 +176,7 @@ static bool are_of_one_run(const char *name, const char *other)
 
 // A run of which one number cannot be predicted has none that can: what 8 starts hardly moved may
 // be far off in a ninth that takes another course. Whole numbers that none of them moved stay
-// exact.
+// exact; steps and evaluations that a solver chose anew do not make another course.
 static void spread_doubt(BaselineMetric *metrics, size_t count)
 {
     // the metrics of a run stand together
@@ -189,7 +186,8 @@ static void spread_doubt(BaselineMetric *metrics, size_t count)
         for (behind = first;
              behind < count && are_of_one_run(metrics[first].name, metrics[behind].name);
              behind++) {
-            is_doubtful = is_doubtful || metrics[behind].band_kind == BAND_STATISTICAL;
+            is_doubtful = is_doubtful || (metrics[behind].band_kind == BAND_STATISTICAL &&
+                                          metrics[behind].kind != CHECK_EFFORT);
         }
         for (size_t i = first; is_doubtful && i < behind; i++) {
             if (metrics[i].band_kind == BAND_ROUNDING) {
@@ -302,15 +300,13 @@ static bool set_samples(Baseline *baseline, const CheckMeasure *members, size_t 
         if (!fill_sample(metric, i, members, member_count, err)) {
             return false;
         }
+        const double range = metric->sample[member_count - 1] - metric->sample[0];
         const double shift = rank_test_shift(test, metric->sample, member_count, rate);
-        if (!isfinite(shift) && metric->band > 0.0) {
-            // it is doubted for the run's other numbers alone, and did not move: its band holds
+        if (!isfinite(shift) || range <= members[0].metrics[i].floor) {
+            // too few values for a rank test, or so close together that it would find the rounding
+            // of another machine: the band of the 8 starts holds
             metric->band_kind = BAND_ROUNDING;
             continue;
-        }
-        if (!isfinite(shift)) {
-            return err_set(err, ERR_SOLVER, "%s takes too few values for a rank test to tell any",
-                           metric->name);
         }
         metric->value = sorted_median(metric->sample, member_count);
         metric->band = shift;

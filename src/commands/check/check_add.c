@@ -44,6 +44,19 @@ static void add_real(CheckAdd *work, const Trajectory *run, const char *part, co
             .kind = CHECK_REAL, .value = value, .scale = whole, .floor = ROUNDING * whole});
 }
 
+// What a joint carries may be nothing but the rounding of what moves the mechanism.
+static void add_force(CheckAdd *work, const Trajectory *run, const Joint *joint, const char *name,
+                      double value, double scale)
+{
+    const double whole = fmax(fabs(value), scale);
+    const double moving = linkage_is_torsional(joint) ? work->energy : work->force;
+    add(work, run, joint->name, name,
+        (CheckMetric){.kind = CHECK_REAL,
+                      .value = value,
+                      .scale = whole,
+                      .floor = ROUNDING * fmax(whole, moving)});
+}
+
 static void add_count(CheckAdd *work, const Trajectory *run, const char *part, const char *name,
                       size_t value)
 {
@@ -136,11 +149,10 @@ static void add_joints(CheckAdd *work, const Trajectory *run, BackendKind backen
         const bool is_turning = linkage_is_torsional(joint);
         // the reference looks for the peak of a contact between its steps
         if (is_by_samples(backend) && !linkage_has_play(joint)) {
-            add_real(work, run, joint->name, "force_max_at_samples_N", force_at_samples(run, i),
-                     0.0);
+            add_force(work, run, joint, "force_max_at_samples_N", force_at_samples(run, i), 0.0);
         } else {
-            add_real(work, run, joint->name, is_turning ? "force_max_N_m" : "force_max_N",
-                     extremes->force_max.value, 0.0);
+            add_force(work, run, joint, is_turning ? "force_max_N_m" : "force_max_N",
+                      extremes->force_max.value, 0.0);
         }
         if (!linkage_has_play(joint) || !OPTIONS_BACKEND_HAS_PLAY[backend]) {
             continue;
@@ -158,18 +170,13 @@ static void add_joints(CheckAdd *work, const Trajectory *run, BackendKind backen
 // Of the signals that were looked at for spikes: how many there are, and the mean size of the
 // strongest. Widths and impulses come from a history that is thinned where it is nearly straight,
 // so that rounding now and then moves them by what the thinning allows.
-static void add_signal(CheckAdd *work, const Trajectory *run, const char *part, const char *count,
-                       const char *mean, const SignalSpikes *found)
+static double mean_size(const SignalSpikes *found)
 {
-    if (!found->is_known) {
-        return;
-    }
     double sum = 0.0;
     for (size_t i = 0; i < found->kept; i++) {
         sum += fabs(found->spikes[i].value) / (double)found->kept;
     }
-    add_count(work, run, part, count, found->count);
-    add_real(work, run, part, mean, sum, found->threshold);
+    return sum;
 }
 
 static void add_spikes(CheckAdd *work, const Trajectory *run, BackendKind backend)
@@ -177,16 +184,23 @@ static void add_spikes(CheckAdd *work, const Trajectory *run, BackendKind backen
     const Linkage *linkage = &work->scenario->linkage;
     // the reference's chosen steps meet the peak of a spike at varying distances
     for (size_t i = 0; !is_by_samples(backend) && i < run->body_count; i++) {
-        if ((int)i != run->driven_body) {
-            add_signal(work, run, linkage->bodies[i].name, "alpha_spikes",
-                       "alpha_spikes_mean_rad_s2", &run->alpha_spikes[i]);
+        const char *name = linkage->bodies[i].name;
+        const SignalSpikes *found = &run->alpha_spikes[i];
+        if ((int)i != run->driven_body && found->is_known) {
+            add_count(work, run, name, "alpha_spikes", found->count);
+            add_real(work, run, name, "alpha_spikes_mean_rad_s2", mean_size(found),
+                     found->threshold);
         }
     }
     for (size_t i = 0; !is_by_samples(backend) && i < run->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        add_signal(work, run, joint->name, "force_spikes",
-                   linkage_is_torsional(joint) ? "force_spikes_mean_N_m" : "force_spikes_mean_N",
-                   &run->force_spikes[i]);
+        const SignalSpikes *found = &run->force_spikes[i];
+        if (found->is_known) {
+            add_count(work, run, joint->name, "force_spikes", found->count);
+            add_force(work, run, joint,
+                      linkage_is_torsional(joint) ? "force_spikes_mean_N_m" : "force_spikes_mean_N",
+                      mean_size(found), found->threshold);
+        }
     }
 }
 
@@ -209,7 +223,7 @@ static void add_effort(CheckAdd *work, const Trajectory *run, const char *name, 
     const double floor = run->step_s > 0.0 ? 0.0 : CHOSEN_STEPS * (double)value;
     add(work, run, "cost", name,
         (CheckMetric){
-            .kind = CHECK_COUNT, .value = (double)value, .scale = (double)value, .floor = floor});
+            .kind = CHECK_EFFORT, .value = (double)value, .scale = (double)value, .floor = floor});
 }
 
 static void add_cost(CheckAdd *work, const Trajectory *run)
@@ -222,8 +236,10 @@ static void add_cost(CheckAdd *work, const Trajectory *run)
     add(work, run, "", "hash", (CheckMetric){.kind = CHECK_HASH, .hash = run->hash});
 }
 
-// Errors are shares already: what rounding may change of them is a share of 1.
-void check_add_error(CheckAdd *work, const Trajectory *run, const TrajectoryError *error)
+// Errors are shares already: what rounding may change of them is a share of 1, and the truth that
+// they are against may itself be off by its uncertainty.
+void check_add_error(CheckAdd *work, const Trajectory *run, const TrajectoryError *error,
+                     double uncertainty)
 {
     const double values[] = {error->omega_max, error->omega_rms, error->alpha_max};
     static const char *const NAMES[] = {"omega_max_1", "omega_rms_1", "alpha_max_1"};
@@ -232,7 +248,8 @@ void check_add_error(CheckAdd *work, const Trajectory *run, const TrajectoryErro
             (CheckMetric){.kind = CHECK_REAL,
                           .value = values[i],
                           .scale = values[i],
-                          .floor = ROUNDING + (i == 2 ? alpha_rounding(run, 1.0) : 0.0)});
+                          .floor =
+                              ROUNDING + uncertainty + (i == 2 ? alpha_rounding(run, 1.0) : 0.0)});
     }
 }
 
@@ -256,6 +273,7 @@ CheckAdd check_add_begin(const Scenario *scenario, const char *group, CheckMeasu
     for (size_t i = 0; i < scenario->linkage.body_count; i++) {
         const Body *body = &scenario->linkage.bodies[i];
         work.energy += 0.5 * body->mass * work.speeds.moving * work.speeds.moving;
+        work.force += body->mass * work.speeds.changing;
     }
     return work;
 }

@@ -9,8 +9,9 @@ enum { CHECK_NAME_SIZE = 112, CHECK_MESSAGE_SIZE = 512 };
 
 typedef enum CheckKind {
     CHECK_REAL,
-    CHECK_COUNT, // a whole number
-    CHECK_HASH,  // of a trajectory: equal or not
+    CHECK_COUNT,  // a whole number
+    CHECK_EFFORT, // likewise, of what a solver spent: says nothing of the motion
+    CHECK_HASH,   // of a trajectory: equal or not
 } CheckKind;
 
 // One number. Its name says where it is from and what its unit is:
@@ -42,7 +43,8 @@ typedef struct CheckAdd {
     CheckMeasure *measure;
     const char *group; // behind the backend's name: "" or "-to-horizon"
     SpeedScale speeds;
-    double energy; // J, of everything at the scale of speeds
+    double energy; // J, of everything at the scale of speeds; N m, of a torque that does so
+    double force;  // N, which gives everything the acceleration of that scale
 } CheckAdd;
 
 // For check_add_end.
@@ -52,7 +54,9 @@ void check_add_end(CheckAdd *work);
 // Adds extremes, spikes, contacts, energy and cost of a run.
 void check_add_run(CheckAdd *work, const Trajectory *run, BackendKind backend);
 
-// Adds what the error is, and one order of convergence from two errors.
-void check_add_error(CheckAdd *work, const Trajectory *run, const TrajectoryError *error);
+// Adds what the error is, against a truth that is known to `uncertainty`, and one order of
+// convergence from two errors.
+void check_add_error(CheckAdd *work, const Trajectory *run, const TrajectoryError *error,
+                     double uncertainty);
 void check_add_order(CheckAdd *work, const Trajectory *run, const char *name, double error,
                      double finer);

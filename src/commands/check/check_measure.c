@@ -94,7 +94,7 @@ static void measure_run(CheckAdd *work, BackendKind backend, const Trajectory *r
     if (!error.is_known) {
         return;
     }
-    check_add_error(work, run, &error);
+    check_add_error(work, run, &error, plan->uncertainty);
     measure_expected(work, backend, run, &error);
     if (plan->is_full && backend == BACKEND_ODE && work->scenario->run.step > 0.0) {
         add_orders(work, run, truth, plan);
