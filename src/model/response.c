@@ -31,6 +31,14 @@ size_t response_play_rows(const Response *response)
     return response->row_count - response->ideal_rows;
 }
 
+// What two rows have in common through a body that is one end of each.
+static inline double coupling_by(const Body *body, const ResponseRow *a, int end_a,
+                                 const ResponseRow *b, int end_b)
+{
+    return (a->x[end_a] * b->x[end_b] + a->y[end_a] * b->y[end_b]) / body->mass +
+           a->turn[end_a] * b->turn[end_b] / body->inertia;
+}
+
 // One entry of D: what the rows have in common through the bodies they share.
 static double coupling(const Linkage *linkage, const ResponseRow *a, const ResponseRow *b)
 {
@@ -38,13 +46,46 @@ static double coupling(const Linkage *linkage, const ResponseRow *a, const Respo
     for (int i = 0; i < 2; i++) {
         for (int k = 0; k < 2; k++) {
             if (a->body[i] != LINKAGE_GROUND && a->body[i] == b->body[k]) {
-                const Body *body = &linkage->bodies[a->body[i]];
-                sum += (a->x[i] * b->x[k] + a->y[i] * b->y[k]) / body->mass +
-                       a->turn[i] * b->turn[k] / body->inertia;
+                sum += coupling_by(&linkage->bodies[a->body[i]], a, i, b, k);
             }
         }
     }
     return sum;
+}
+
+// The block of two rows of one joint and two of another, which have the same bodies: a row that has
+// none is all zero.
+static void couple_pairs(const Linkage *linkage, const ResponseRow a[2], const ResponseRow b[2],
+                         double values[4])
+{
+    for (size_t n = 0; n < 4; n++) {
+        values[n] = 0.0;
+    }
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < 2; k++) {
+            if (a->body[i] != LINKAGE_GROUND && a->body[i] == b->body[k]) {
+                const Body *body = &linkage->bodies[a->body[i]];
+                for (size_t n = 0; n < 4; n++) {
+                    values[n] += coupling_by(body, &a[n / 2], i, &b[n % 2], k);
+                }
+            }
+        }
+    }
+}
+
+static void couple_all(const Linkage *linkage, const ResponseRow *a, const ResponseRow *b,
+                       const ResponseBlock *block)
+{
+    const bool is_own = block->rows == block->columns;
+    for (size_t i = 0; i < block->row_count; i++) {
+        double *row = block->values + i * block->column_count;
+        for (size_t k = 0; k < (is_own ? i + 1 : block->column_count); k++) {
+            row[k] = coupling(linkage, &a[i], &b[k]);
+            if (is_own) {
+                block->values[k * block->column_count + i] = row[k];
+            }
+        }
+    }
 }
 
 bool response_place(Response *response, const Motion *motions)
@@ -53,16 +94,12 @@ bool response_place(Response *response, const Motion *motions)
     sparse_clear(&response->matrix);
     for (size_t n = 0; n < response->block_count; n++) {
         const ResponseBlock *block = &response->blocks[n];
-        const bool is_own = block->rows == block->columns;
-        for (size_t i = 0; i < block->row_count; i++) {
-            double *row = block->values + i * block->column_count;
-            for (size_t k = 0; k < (is_own ? i + 1 : block->column_count); k++) {
-                row[k] = coupling(response->linkage, &response->rows[block->rows + i],
-                                  &response->rows[block->columns + k]);
-                if (is_own) {
-                    block->values[k * block->column_count + i] = row[k];
-                }
-            }
+        const ResponseRow *a = &response->rows[block->rows];
+        const ResponseRow *b = &response->rows[block->columns];
+        if (block->row_count == 2 && block->column_count == 2) {
+            couple_pairs(response->linkage, a, b, block->values);
+        } else {
+            couple_all(response->linkage, a, b, block);
         }
     }
     return sparse_factor(&response->matrix, INDEPENDENT);

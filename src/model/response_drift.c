@@ -17,6 +17,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+static bool is_point(const Response *response, size_t row)
+{
+    if (row < response->ideal_rows) {
+        return response->linkage->joints[response->joint_of[row]].kind != JOINT_PRISMATIC;
+    }
+    const ResponsePlace *place = &response->places[response->place_of[row]];
+    return !place->is_line && place->sign == 0.0;
+}
+
+static bool are_points(const Response *response)
+{
+    for (size_t row = 0; row < response->row_count; row++) {
+        if (!is_point(response, row)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 ResponseDrift response_drift_create(const Response *response)
 {
     const size_t play = response_play_rows(response);
@@ -26,6 +45,7 @@ ResponseDrift response_drift_create(const Response *response)
         .columns = zeroed(play * 3 * bodies, sizeof(double)),
         .rates = zeroed(play * 3 * bodies, sizeof(double)),
         .drift = zeroed(play * play, sizeof(double)),
+        .are_points = are_points(response),
         .turning = zeroed(response->row_count, sizeof(ResponseRow)),
         .ahead = zeroed(bodies, sizeof(Motion)),
     };
@@ -55,9 +75,10 @@ void response_drift_columns(const Response *response, ResponseDrift *drift)
         sparse_back(&response->matrix, answer);
         memset(column, 0, speeds * sizeof *column);
         for (size_t i = 0; i < response->ideal_rows; i++) {
-            response_add_row(response, i, answer[i], column);
+            response_row_push(response->linkage, &response->rows[i], answer[i], column);
         }
-        response_add_row(response, response->ideal_rows + row, 1.0, column);
+        response_row_push(response->linkage, &response->rows[response->ideal_rows + row], 1.0,
+                          column);
     }
 }
 
@@ -73,15 +94,6 @@ static void turn_point(const ResponseRow *rows, const Motion *motions, ResponseR
         turning[0].turn[end] = -omega * rows[1].turn[end];
         turning[1].turn[end] = omega * rows[0].turn[end];
     }
-}
-
-static bool is_point(const Response *response, size_t row)
-{
-    if (row < response->ideal_rows) {
-        return response->linkage->joints[response->joint_of[row]].kind != JOINT_PRISMATIC;
-    }
-    const ResponsePlace *place = &response->places[response->place_of[row]];
-    return !place->is_line && place->sign == 0.0;
 }
 
 // The rates of all rows that are no points', and nothing of the others.
@@ -113,15 +125,11 @@ static void turn_all(Response *response, const Motion *motions, double short_s,
 static void find_turning(Response *response, const Motion *motions, double short_s,
                          ResponseDrift *drift)
 {
-    bool are_points = true;
-    for (size_t row = 0; row < response->row_count; row++) {
-        are_points = are_points && is_point(response, row);
-    }
-    if (!are_points) {
+    if (!drift->are_points) {
         turn_all(response, motions, short_s, drift);
     }
     for (size_t row = 0; row < response->row_count; row += 2) {
-        if (is_point(response, row)) {
+        if (drift->are_points || is_point(response, row)) {
             turn_point(&response->rows[row], motions, &drift->turning[row]);
         }
         // turns of bodies are rows that stay as they are
@@ -132,6 +140,39 @@ static void find_turning(Response *response, const Motion *motions, double short
             for (size_t k = 0; k < 2; k++) {
                 drift->turning[row + k] = (ResponseRow){.body = {LINKAGE_GROUND, LINKAGE_GROUND}};
             }
+        }
+    }
+}
+
+// What a row's rate makes of speeds, three a body, and what an impulse in it adds to them: of a
+// point by the turning of its bodies alone.
+static inline double turned_by(const ResponseDrift *drift, size_t number, const double *speeds)
+{
+    const ResponseRow *row = &drift->turning[number];
+    if (!drift->are_points) {
+        return response_row_of(row, speeds);
+    }
+    double sum = 0.0;
+    for (int end = 0; end < 2; end++) {
+        if (row->body[end] != LINKAGE_GROUND) {
+            sum += row->turn[end] * speeds[3 * row->body[end] + 2];
+        }
+    }
+    return sum;
+}
+
+static inline void push_turning(const Linkage *linkage, const ResponseDrift *drift, size_t number,
+                                double impulse, double *sums)
+{
+    const ResponseRow *row = &drift->turning[number];
+    if (!drift->are_points) {
+        response_row_push(linkage, row, impulse, sums);
+        return;
+    }
+    for (int end = 0; end < 2; end++) {
+        const int body = row->body[end];
+        if (body != LINKAGE_GROUND) {
+            sums[3 * body + 2] += row->turn[end] * impulse / linkage->bodies[body].inertia;
         }
     }
 }
@@ -149,8 +190,8 @@ void response_drift_find(Response *response, const Motion *motions, double short
         const double *answer = drift->answers + of * all;
         double *rate = drift->rates + of * speeds;
         for (size_t i = 0; i < all; i++) {
-            turned[i] = response_row_of(&drift->turning[i], drift->columns + of * speeds);
-            response_row_push(response->linkage, &drift->turning[i], answer[i], rate);
+            turned[i] = turned_by(drift, i, drift->columns + of * speeds);
+            push_turning(response->linkage, drift, i, answer[i], rate);
         }
         for (size_t row = 0; row < play; row++) {
             double sum = turned[response->ideal_rows + row];
@@ -165,7 +206,7 @@ void response_drift_find(Response *response, const Motion *motions, double short
         }
         response_solve(response, turned);
         for (size_t i = 0; i < response->ideal_rows; i++) {
-            response_add_row(response, i, turned[i], rate);
+            response_row_push(response->linkage, &response->rows[i], turned[i], rate);
         }
     }
 }

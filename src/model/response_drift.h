@@ -11,6 +11,7 @@ typedef struct ResponseDrift {
     double *rates;   // how that changes with time, 1/s of it
     double *drift;   // S, row by row, 1/(kg s): the mobility changes by S + S', and an impulse P in
                      // the rows of play changes their accelerations by 2 S P
+    bool are_points; // whether all rows are points': they turn with bodies, and nothing else
     ResponseRow *turning; // the rates of all rows
     Motion *ahead;
 } ResponseDrift;

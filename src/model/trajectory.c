@@ -158,9 +158,8 @@ void trajectory_store_motion(Trajectory *trajectory, size_t sample_index, const 
 {
     assert(sample_index < trajectory->sample_count);
     trajectory->times[sample_index] = sample->time_s;
-    for (size_t i = 0; i < trajectory->body_count; i++) {
-        trajectory->motions[sample_index * trajectory->body_count + i] = sample->bodies[i];
-    }
+    memcpy(trajectory->motions + sample_index * trajectory->body_count, sample->bodies,
+           trajectory->body_count * sizeof *sample->bodies);
     if (trajectory->space_motions != NULL) {
         memcpy(trajectory->space_motions + sample_index * trajectory->body_count,
                sample->space_bodies, trajectory->body_count * sizeof *sample->space_bodies);
@@ -171,9 +170,8 @@ void trajectory_store(Trajectory *trajectory, size_t sample_index, const Sample 
 {
     trajectory_store_motion(trajectory, sample_index, sample);
     trajectory->crank_angles[sample_index] = sample->crank_rad;
-    for (size_t i = 0; i < trajectory->joint_count; i++) {
-        trajectory->states[sample_index * trajectory->joint_count + i] = sample->joints[i];
-    }
+    memcpy(trajectory->states + sample_index * trajectory->joint_count, sample->joints,
+           trajectory->joint_count * sizeof *sample->joints);
     if (trajectory->space_motions != NULL) {
         memcpy(trajectory->space_states + sample_index * trajectory->joint_count,
                sample->space_joints, trajectory->joint_count * sizeof *sample->space_joints);

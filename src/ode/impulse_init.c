@@ -176,5 +176,12 @@ bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
     }
     step->whole = impulse_scope_whole(&scenario->linkage, step->place_count);
     linkage_start(&scenario->linkage, step->after);
-    return world_build(scenario, step->after, &step->world, err);
+    if (!world_build(scenario, step->after, &step->world, err)) {
+        return false;
+    }
+    // where a step of the world leaves the bodies is not asked for: the cheapest turn will do
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        dBodySetFiniteRotationMode(step->world.bodies[i], 0);
+    }
+    return true;
 }

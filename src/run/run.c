@@ -104,8 +104,9 @@ static bool take_step(Loop *loop, double stop_s, Err *err)
 static void unwrap_angles(const Loop *loop, Sample *sample)
 {
     const Linkage *linkage = &loop->scenario->linkage;
+    const int driven = linkage_driven_body(linkage);
     for (size_t i = 0; i < linkage->body_count; i++) {
-        if ((int)i == linkage_driven_body(linkage)) {
+        if ((int)i == driven) {
             continue;
         }
         const double ahead = loop->omega[i] * (loop->reached_s - sample->time_s);
