@@ -31,12 +31,6 @@ void sparse_finish(Sparse *sparse)
     *sparse = (Sparse){.count = 0};
 }
 
-static inline size_t size_at(const Sparse *sparse, size_t order)
-{
-    const size_t node = sparse->node_at[order];
-    return sparse->first_row[node + 1] - sparse->first_row[node];
-}
-
 static int compare_orders(const void *a, const void *b)
 {
     const size_t first = *(const size_t *)a;
@@ -66,7 +60,7 @@ static void list_blocks(Sparse *sparse, const SparseList *later)
         qsort(below, column->count, sizeof *below, compare_orders);
         for (size_t b = sparse->first_block[p]; b < next; b++) {
             sparse->block_value[b] = value;
-            value += size_at(sparse, sparse->block_node[b]) * size_at(sparse, p);
+            value += sparse_rows_at(sparse, sparse->block_node[b]) * sparse_rows_at(sparse, p);
         }
     }
     sparse->first_block[sparse->count] = next;
@@ -237,7 +231,7 @@ static inline void subtract_product(double *target, const double *a, size_t rows
 // Takes a column out of those behind it.
 static void take_column_out(Sparse *sparse, size_t p)
 {
-    const size_t n = size_at(sparse, p);
+    const size_t n = sparse_rows_at(sparse, p);
     const size_t *target = sparse->targets + sparse->first_target[p];
     const size_t end = sparse->first_block[p + 1];
     for (size_t j = sparse->first_block[p] + 1; j < end; j++) {
@@ -274,7 +268,7 @@ bool sparse_factor(Sparse *sparse, double share)
 {
     keep_diagonals(sparse);
     for (size_t p = 0; p < sparse->eliminated; p++) {
-        const size_t n = size_at(sparse, p);
+        const size_t n = sparse_rows_at(sparse, p);
         const size_t first = sparse->first_block[p];
         double *own = sparse->values + sparse->block_value[first];
         double *diagonal = sparse->diagonals + sparse->first_row[sparse->node_at[p]];
@@ -288,111 +282,4 @@ bool sparse_factor(Sparse *sparse, double share)
         take_column_out(sparse, p);
     }
     return true;
-}
-
-// Takes a block's share of the unknowns of its column, n of them, out of its own rows.
-static inline void subtract_before(const double *block, size_t count, size_t n, const double *x,
-                                   double *y)
-{
-    for (size_t i = 0; i < count; i++) {
-        double left = y[i];
-        for (size_t k = 0; k < n; k++) {
-            left -= block[i * n + k] * x[k];
-        }
-        y[i] = left;
-    }
-}
-
-static void go_forward(const Sparse *sparse, bool with_kept, double *rows)
-{
-    for (size_t p = 0; p < sparse->eliminated; p++) {
-        const size_t n = size_at(sparse, p);
-        const size_t first = sparse->first_block[p];
-        const size_t end = with_kept ? sparse->first_block[p + 1] : sparse->first_kept[p];
-        const double *own = sparse->values + sparse->block_value[first];
-        double *x = rows + sparse->first_row[sparse->node_at[p]];
-        for (size_t k = 0; k < n; k++) {
-            for (size_t j = 0; j < k; j++) {
-                x[k] -= own[k * n + j] * x[j];
-            }
-            x[k] /= own[k * n + k];
-        }
-        for (size_t b = first + 1; b < end; b++) {
-            const double *block = sparse->values + sparse->block_value[b];
-            const size_t size = sparse->block_value[b + 1] - sparse->block_value[b];
-            double *y = rows + sparse->block_row[b];
-            if (n == 2 && size == 4) {
-                subtract_before(block, 2, 2, x, y);
-            } else {
-                subtract_before(block, size / n, n, x, y);
-            }
-        }
-    }
-}
-
-// Takes the share of the unknowns below, in some blocks of a column, out of one row of its node.
-static inline double subtract_below(const Sparse *sparse, const double *rows, size_t first,
-                                    size_t end, size_t n, size_t k, double left)
-{
-    for (size_t b = first; b < end; b++) {
-        const double *values = sparse->values + sparse->block_value[b] + k;
-        const double *y = rows + sparse->block_row[b];
-        const size_t size = sparse->block_value[b + 1] - sparse->block_value[b];
-        if (n == 2 && size == 4) {
-            left = left - values[0] * y[0] - values[2] * y[1];
-            continue;
-        }
-        for (size_t i = 0; i < size / n; i++) {
-            left -= values[i * n] * y[i];
-        }
-    }
-    return left;
-}
-
-// Finds the unknowns of one column from those behind it.
-static inline void go_back_to(const Sparse *sparse, size_t p, bool with_kept, double *rows)
-{
-    const size_t n = size_at(sparse, p);
-    const size_t first = sparse->first_block[p];
-    const size_t kept = sparse->first_kept[p];
-    const size_t end = with_kept ? sparse->first_block[p + 1] : kept;
-    const double *own = sparse->values + sparse->block_value[first];
-    double *x = rows + sparse->first_row[sparse->node_at[p]];
-    for (size_t k = n; k-- > 0;) {
-        double left = subtract_below(sparse, rows, kept, end, n, k, x[k]);
-        for (size_t j = k + 1; j < n; j++) {
-            left -= own[j * n + k] * x[j];
-        }
-        x[k] = subtract_below(sparse, rows, first + 1, kept, n, k, left) / own[k * n + k];
-    }
-}
-
-static void go_back(const Sparse *sparse, bool with_kept, double *rows)
-{
-    for (size_t p = sparse->eliminated; p-- > 0;) {
-        go_back_to(sparse, p, with_kept, rows);
-    }
-}
-
-void sparse_forward(const Sparse *sparse, double *rows)
-{
-    go_forward(sparse, true, rows);
-}
-
-void sparse_back(const Sparse *sparse, double *rows)
-{
-    go_back(sparse, true, rows);
-}
-
-void sparse_back_some(const Sparse *sparse, size_t count, const size_t *nodes, double *rows)
-{
-    for (size_t i = count; i-- > 0;) {
-        go_back_to(sparse, sparse->order[nodes[i]], true, rows);
-    }
-}
-
-void sparse_solve(const Sparse *sparse, double *rows)
-{
-    go_forward(sparse, false, rows);
-    go_back(sparse, false, rows);
 }

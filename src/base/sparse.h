@@ -35,6 +35,13 @@ typedef struct Sparse {
     double *diagonals; // by row: of the matrix, then the inverse of the factor's
 } Sparse;
 
+// The number of rows of the node that is eliminated then.
+static inline size_t sparse_rows_at(const Sparse *sparse, size_t order)
+{
+    const size_t node = sparse->node_at[order];
+    return sparse->first_row[node + 1] - sparse->first_row[node];
+}
+
 // Prepares a matrix: nodes with their numbers of rows, of which the first `eliminated` are taken
 // out, and the links between different nodes, in any order, maybe more than once. It owns its
 // memory.
