@@ -115,60 +115,55 @@ static void add_contact(Recorder *recorder, const StepRecord *step, size_t index
 }
 
 // Raises the extremes of one body and one joint to what they are at a time.
-static void raise_body(Recorder *recorder, size_t number, double omega, double alpha, double time_s)
+static inline void raise_body(BodyExtremes *body, bool is_first, double omega, double alpha,
+                              double time_s)
 {
-    BodyExtremes *body = &recorder->trajectory->bodies[number];
-    const bool is_first = !recorder->has_body[number];
     raise_to(&body->omega_max, is_first, omega, time_s);
     lower_to(&body->omega_min, is_first, omega, time_s);
     raise_to(&body->alpha_max, is_first, alpha, time_s);
     lower_to(&body->alpha_min, is_first, alpha, time_s);
 }
 
-static void raise_joint(Recorder *recorder, size_t number, const JointTop *top, double time_s)
+// The tilt is that of a block between guides.
+static inline void raise_joint(JointExtremes *extremes, bool is_first, const Joint *joint,
+                               const JointTop *top, double tilt, double time_s)
 {
-    JointExtremes *joint = &recorder->trajectory->joints[number];
-    const bool is_first = !recorder->has_joint[number];
-    raise_to(&joint->force_max, is_first, top->force, time_s);
-    raise_to(&joint->penetration_max, is_first, top->depth, time_s);
-}
-
-// Of a block between guides.
-static void raise_tilt(Recorder *recorder, size_t number, const JointState *state, double time_s)
-{
-    if (recorder->scenario->linkage.joints[number].kind == JOINT_GUIDE) {
-        raise_to(&recorder->trajectory->joints[number].tilt_max, !recorder->has_joint[number],
-                 fabs(state->tilt), time_s);
+    raise_to(&extremes->force_max, is_first, top->force, time_s);
+    raise_to(&extremes->penetration_max, is_first, top->depth, time_s);
+    if (joint->kind == JOINT_GUIDE) {
+        raise_to(&extremes->tilt_max, is_first, fabs(tilt), time_s);
     }
 }
 
-static void raise_joint_space(Recorder *recorder, size_t number, const SpaceJointState *state,
+static void raise_joint_space(JointExtremes *joint, bool is_first, const SpaceJointState *state,
                               double time_s)
 {
-    JointExtremes *joint = &recorder->trajectory->joints[number];
-    const bool is_first = !recorder->has_joint[number];
     raise_to(&joint->tilt_max, is_first, state->tilt, time_s);
     raise_to(&joint->axial_max, is_first, fabs(state->axial), time_s);
 }
 
 static void raise_all(Recorder *recorder, const StepRecord *step)
 {
+    Trajectory *trajectory = recorder->trajectory;
     const Linkage *linkage = &recorder->scenario->linkage;
     const size_t body_count = solver_body_count(step->part, linkage);
     const size_t joint_count = solver_joint_count(step->part, linkage);
     for (size_t k = 0; k < body_count; k++) {
         const size_t i = solver_body(step->part, k);
-        raise_body(recorder, i, step->omega[k], step->alpha[k], step->end_s);
+        raise_body(&trajectory->bodies[i], !recorder->has_body[i], step->omega[k], step->alpha[k],
+                   step->end_s);
         recorder->has_body[i] = true;
     }
     for (size_t k = 0; k < joint_count; k++) {
         const size_t i = solver_joint(step->part, k);
         const JointTop top = top_of(step, k);
+        const bool is_first = !recorder->has_joint[i];
+        JointExtremes *joint = &trajectory->joints[i];
         if (step->space_joints != NULL) {
-            raise_joint_space(recorder, i, &step->space_joints[k], step->joint_s);
+            raise_joint_space(joint, is_first, &step->space_joints[k], step->joint_s);
         }
-        raise_joint(recorder, i, &top, step->joint_s);
-        raise_tilt(recorder, i, &step->joints[k], step->joint_s);
+        raise_joint(joint, is_first, &linkage->joints[i], &top, step->joints[k].tilt,
+                    step->joint_s);
         recorder->has_joint[i] = true;
     }
 }
@@ -213,7 +208,8 @@ void recorder_see(Recorder *recorder, const SolverPart *part, const Sample *samp
     for (size_t k = 0; k < body_count; k++) {
         const size_t i = solver_body(part, k);
         if (recorder->has_body[i]) {
-            raise_body(recorder, i, sample->bodies[i].omega, sample->bodies[i].alpha, time_s);
+            raise_body(&trajectory->bodies[i], false, sample->bodies[i].omega,
+                       sample->bodies[i].alpha, time_s);
         }
     }
     for (size_t k = 0; k < joint_count; k++) {
@@ -223,10 +219,9 @@ void recorder_see(Recorder *recorder, const SolverPart *part, const Sample *samp
         }
         const JointState *state = &sample->joints[i];
         const JointTop top = {.force = state->force, .depth = depth_of(state)};
-        raise_joint(recorder, i, &top, time_s);
-        raise_tilt(recorder, i, &sample->joints[i], time_s);
+        raise_joint(&trajectory->joints[i], false, &linkage->joints[i], &top, state->tilt, time_s);
         if (linkage->is_spatial) {
-            raise_joint_space(recorder, i, &sample->space_joints[i], time_s);
+            raise_joint_space(&trajectory->joints[i], false, &sample->space_joints[i], time_s);
         }
     }
 }
