@@ -121,9 +121,10 @@ static void masses_far_apart_are_followed(void **state)
     // 1e5 kg beside .1 mg; ODE with a step of 1 us ends after 163147 steps, with the same words
     run_case(program, &CASE_SEPARATING, 3, "--backend reference --set reference.tolerance=1e-9");
     assert_int_equal(program->status, 4);
-    const char *at = strstr(program->errors, "at ");
+    // not what a slow machine says meanwhile of how far the run has come
+    const char *at = strstr(program->errors, ": at ");
     assert_non_null(at);
-    assert_near(strtod(at + strlen("at "), NULL), 163.147, 1e-3);
+    assert_near(strtod(at + strlen(": at "), NULL), 163.147, 1e-3);
     assert_says(program->errors, "the pin of pin-0 is 0.5 mm inside the wall of its hole");
 }
 

@@ -7,7 +7,7 @@
 
 enum { ROWS = ENCOUNTER_ROWS_MOST };
 
-static const double NOTHING[ROWS] = {0.0};
+static const double NOTHING[2 * ROWS] = {0.0}; // integrals have two for each row
 
 // By central differences: where `at` points into the encounter.
 static void differences(Encounter *pin, double *at, double nudge, double *slopes)
