@@ -171,6 +171,12 @@ bool impulse_is_at_end(const void *state)
     return impulse->part.is_last;
 }
 
+dWorldID impulse_world(const void *state)
+{
+    const Impulse *impulse = state;
+    return impulse->step.world.id;
+}
+
 static StepRecord impulse_record(const void *state)
 {
     const Impulse *impulse = state;

@@ -66,6 +66,12 @@ bool impulse_parts_open(const Scenario *scenario, const ImpulsePartsOf *of, void
             impulse_parts_close(parts);
             return false;
         }
+        // they are stepped one after the other: one working memory will do
+        if (i > 0) {
+            dWorldUseSharedWorkingMemory(of->world(member->state), NULL); // its own, yet empty
+            dWorldUseSharedWorkingMemory(of->world(member->state),
+                                         of->world(parts->members[0].state));
+        }
     }
     *state = parts;
     return true;
@@ -180,7 +186,7 @@ SolverModel impulse_parts_model(const void *state)
 
 static bool open_plane(const Scenario *scenario, void **state, Err *err)
 {
-    static const ImpulsePartsOf PLANE = {&STEPPING_IMPULSE, impulse_is_at_end};
+    static const ImpulsePartsOf PLANE = {&STEPPING_IMPULSE, impulse_is_at_end, impulse_world};
     return impulse_parts_open(scenario, &PLANE, state, err);
 }
 

@@ -3,18 +3,22 @@
 
 #include "model/solver.h"
 
+#include <ode/ode.h>
+
 // How many mechanisms of a linkage can be stepped apart; 1 where they have to be stepped
 // together.
 size_t impulse_parts_count(const Scenario *scenario);
 
 // Whether the part that an impulse solver has taken last ends with its step.
 bool impulse_is_at_end(const void *state);
+dWorldID impulse_world(const void *state);
 
-// How a mechanism by itself is stepped, and whether the part that was taken last ends with its
-// step.
+// How a mechanism by itself is stepped, whether the part that was taken last ends with its step,
+// and its world.
 typedef struct ImpulsePartsOf {
     const Solver *solver;
     bool (*is_at_end)(const void *state);
+    dWorldID (*world)(const void *state);
 } ImpulsePartsOf;
 
 // A solver of several mechanisms, each stepped so: impulse_parts_open and the rest.

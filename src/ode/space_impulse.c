@@ -248,9 +248,16 @@ static bool space_impulse_is_at_end(const void *state)
     return impulse->part.is_last;
 }
 
+static dWorldID space_impulse_world(const void *state)
+{
+    const SpaceImpulse *impulse = state;
+    return impulse->step.world.id;
+}
+
 static bool open_parts(const Scenario *scenario, void **state, Err *err)
 {
-    static const ImpulsePartsOf SPACE = {&SPACE_IMPULSE, space_impulse_is_at_end};
+    static const ImpulsePartsOf SPACE = {&SPACE_IMPULSE, space_impulse_is_at_end,
+                                         space_impulse_world};
     return impulse_parts_open(scenario, &SPACE, state, err);
 }
 

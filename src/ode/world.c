@@ -90,8 +90,6 @@ void world_start(const Scenario *scenario, World *world)
     memset(world, 0, sizeof *world);
     world->bodies = zeroed(linkage->body_count, sizeof *world->bodies);
     world->feedback = zeroed(linkage->joint_count, sizeof *world->feedback);
-    world->sliding = zeroed(linkage->joint_count, sizeof *world->sliding);
-    world->pairs = zeroed(TOUCH_CORNERS * linkage->joint_count, sizeof *world->pairs);
     engine_start();
     engine_seed(options->seed);
     const dWorldID id = dWorldCreate();
@@ -113,6 +111,21 @@ void world_start(const Scenario *scenario, World *world)
     dWorldSetQuickStepW(id, options->over_relaxation);
 }
 
+// Room for what only a world in the plane has: it may be one of many, each small.
+static void make_pair_room(const Linkage *linkage, World *world)
+{
+    size_t pairs = 0;
+    size_t slidings = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        Touch places[TOUCH_CORNERS];
+        const Joint *joint = &linkage->joints[i];
+        pairs += linkage_has_play(joint) ? touch_places(joint, (int)i, places) : 0;
+        slidings += joint->kind == JOINT_PRISMATIC ? 1 : 0;
+    }
+    world->sliding = zeroed(slidings, sizeof *world->sliding);
+    world->pairs = zeroed(pairs, sizeof *world->pairs);
+}
+
 bool world_build(const Scenario *scenario, const Motion *motions, World *world, Err *err)
 {
     memset(world, 0, sizeof *world);
@@ -124,6 +137,7 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
     world->constraint_rows = rows;
     world->collider = collider_get(scenario->ode.collider);
     world->hold = world_hold_make(scenario);
+    make_pair_room(&scenario->linkage, world);
     make_bodies(scenario, motions, world);
     world->ends = ends_make(&scenario->linkage, world->bodies, motions);
     const Linkage *linkage = &scenario->linkage;
