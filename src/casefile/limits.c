@@ -75,19 +75,33 @@ static bool is_angle(const Node *node)
            quantity_parse(node->text, DIMENSION_ANGLE, &value, &unused);
 }
 
+static bool is_length(SchemaType type)
+{
+    return type == SCHEMA_COORDINATE || type == SCHEMA_START;
+}
+
+SchemaRow limits_row(const SchemaRow *row, JointKind kind, const Node *value)
+{
+    const bool is_force = row->family == SCHEMA_JOINT &&
+                          (row->type == SCHEMA_STIFFNESS || row->type == SCHEMA_DAMPER);
+    const bool is_of_gears = kind == JOINT_GEAR && is_length(row->type) && is_angle(value);
+    const bool is_turned =
+        is_of_gears || (kind == JOINT_REVOLUTE && (is_force || is_length(row->type)));
+    SchemaRow own = is_turned ? as_angle(row) : *row;
+    own.type = is_length(row->type) ? SCHEMA_QUANTITY : own.type;
+    return own;
+}
+
 bool limits_store(const Target *target, Joint *joint)
 {
     const SchemaRow *row = target->entry->row;
     const Node *node = target->entry->node;
-    const bool is_length = row->type == SCHEMA_COORDINATE || row->type == SCHEMA_START;
-    const bool is_of_gears = joint->kind == JOINT_GEAR && is_length && is_angle(node);
-    const bool is_turned = joint->kind == JOINT_REVOLUTE || is_of_gears;
+    const bool is_of_gears = joint->kind == JOINT_GEAR && is_length(row->type) && is_angle(node);
     if (row->type == SCHEMA_START && node->kind == NODE_SCALAR &&
         strcmp(node->text, row->default_words) == 0) {
         return true;
     }
-    SchemaRow own = is_turned ? as_angle(row) : *row;
-    own.type = is_length ? SCHEMA_QUANTITY : own.type;
+    const SchemaRow own = limits_row(row, joint->kind, node);
     const Entry entry = {&own, target->entry->index, node, target->entry->source};
     Target of_own = *target;
     of_own.entry = &entry;

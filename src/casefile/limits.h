@@ -10,6 +10,10 @@ bool limits_are_given(const Entries *entries, size_t joint);
 // Prepares the limits of a joint before values are stored.
 Limits limits_prepare(const Entries *entries, size_t joint);
 
+// The row of such a key as a value for a joint of that kind has it: that of an angle, or of a
+// length. Every other row stays as it is.
+SchemaRow limits_row(const SchemaRow *row, JointKind kind, const Node *value);
+
 // Stores a value of a key that depends on what the coordinate of its joint is: an angle or a
 // length. Of the kinds SCHEMA_COORDINATE, SCHEMA_DAMPER, SCHEMA_STIFFNESS and SCHEMA_START.
 bool limits_store(const Target *target, Joint *joint);

@@ -9,6 +9,7 @@
 #include "casefile/input.h"
 #include "casefile/joint_kind.h"
 #include "casefile/keys.h"
+#include "casefile/limits.h"
 #include "casefile/store.h"
 #include "casefile/target.h"
 
@@ -95,6 +96,9 @@ bool probe_key(const Probe *probe, const Source *source, const Node *value, Prob
     if (is_good) {
         text_copy(found.path, sizeof found.path, value->key->text);
         found.kind = kind_of(found.row->type);
+        if (found.row->family == SCHEMA_JOINT) {
+            found.joint_kind = joint_kind_find(&entries, found.index);
+        }
         *key = found;
     }
     entries_finish(&entries);
@@ -122,7 +126,9 @@ bool probe_check(const Probe *probe, const Source *source, const ProbeKey *key, 
     const Entry entry = {key->row, key->index, value, source};
     Scenario *scratch = scratch_scenario(key);
     if (key->row->family == SCHEMA_JOINT) {
-        scratch->linkage.joints[key->index].kind = joint_kind_find(&probe->entries, key->index);
+        Joint *joint = &scratch->linkage.joints[key->index];
+        joint->kind = joint_kind_find(&probe->entries, key->index);
+        joint->limits = limits_prepare(&probe->entries, key->index);
     }
     const bool is_good = store_value(&probe->entries, &entry, scratch, err);
     scenario_free(scratch);
@@ -133,7 +139,8 @@ bool probe_check(const Probe *probe, const Source *source, const ProbeKey *key, 
 bool probe_number(const Source *source, const ProbeKey *key, const Node *value, ProbeNumber *number,
                   Err *err)
 {
-    const SchemaRow *row = key->row;
+    const SchemaRow own = limits_row(key->row, key->joint_kind, value);
+    const SchemaRow *row = &own;
     TargetNumber read;
     Complaint complaint = {0};
     if (value->kind != NODE_SCALAR || value->text[0] == '\0') {
@@ -153,8 +160,10 @@ bool probe_number(const Source *source, const ProbeKey *key, const Node *value, 
               : read.is_in_turns       ? "revolutions"
                                        : "s");
     if (row->type == SCHEMA_STIFFNESS) {
-        snprintf(number->unit, sizeof number->unit, read.exponent == 1.0 ? "N/m" : "N/m^%.17g",
-                 read.exponent);
+        const bool is_torsional = row->dimension == DIMENSION_TORSION_SPRING;
+        const char *linear = units_si(is_torsional ? row->dimension : DIMENSION_SPRING);
+        snprintf(number->unit, sizeof number->unit, read.exponent == 1.0 ? "%s" : "%s^%.17g",
+                 linear, read.exponent);
     }
     return true;
 }

@@ -19,6 +19,7 @@ typedef struct ProbeKey {
     const SchemaRow *row;
     size_t index; // of the member of the row's family
     ProbeKind kind;
+    JointKind joint_kind; // of a joint's key
 } ProbeKey;
 
 // A number as a case file would give it with its unit: SI, of a diameter the diameter.

@@ -3,6 +3,8 @@
 
 #include "study_file.h"
 
+#include <math.h>
+
 static const char STEPS[] = "vary:\n  run.step: [1 us, 2 us]\n";
 
 static void what_is_left_out_has_its_default(void **state)
@@ -192,6 +194,61 @@ static void a_study_that_is_not_there_is_an_error_of_the_file(void **state)
     assert_string_equal(other.text, "cases: is a directory\nallowed: a study file");
 }
 
+// A variable of a study as the one scenario of its first run has it.
+static void expect_limit(const char *file, const char *words, const char *unit, double first,
+                         double (*of)(const Limits *limits))
+{
+    Spec spec = study_read(file, words);
+    assert_int_equal(spec.variable_count, 1);
+    assert_string_equal(spec.variables[0].column_unit, unit);
+    Cell values[RECORD_SETTING_MAX];
+    Scenario scenario;
+    BackendKind backend;
+    Err err = {0};
+    design_values(&spec, 0, values);
+    assert_true(design_scenario(&spec, values, &scenario, &backend, &err));
+    double found = NAN;
+    for (size_t i = 0; i < scenario.linkage.joint_count; i++) {
+        const Limits *limits = &scenario.linkage.joints[i].limits;
+        found = limits->kind != LIMIT_NONE ? of(limits) : found;
+    }
+    assert_close(found, first, 1e-14);
+    scenario_free(&scenario);
+    spec_finish(&spec);
+}
+
+static double backlash_of(const Limits *limits)
+{
+    return limits->backlash;
+}
+
+static double high_of(const Limits *limits)
+{
+    return limits->high;
+}
+
+// Of gears the backlash is an angle or a length, whichever the values say.
+static void limits_of_a_joint_vary_in_its_own_units(void **state)
+{
+    (void)state;
+    const double degree = M_PI / 180.0;
+    expect_limit("mechanisms/servo-backlash.yaml",
+                 "vary:\n  joints.output.backlash: [0.5 deg, 1 deg]\n", "rad", 0.5 * degree,
+                 backlash_of);
+    expect_limit("mechanisms/gear-pair.yaml", "vary:\n  joints.mesh.backlash: [0.2 mm, 0.3 mm]\n",
+                 "m", 2e-4, backlash_of);
+    expect_limit("mechanisms/stop-rebound.yaml",
+                 "vary:\n  joints.hinge.high: {from: 80 deg, to: 90 deg, count: 2}\n", "rad",
+                 80.0 * degree, high_of);
+    Spec spec = study_read("mechanisms/servo-backlash.yaml",
+                           "vary:\n"
+                           "  joints.output.stiffness: [100 N m/rad, 200 N m/rad]\n"
+                           "  joints.output.start: [0.1 deg, 0.2 deg]\n");
+    assert_string_equal(spec.variables[0].column_unit, "N m/rad");
+    assert_true(spec.variables[0].numbers[1] == 200.0);
+    spec_finish(&spec);
+}
+
 // Those that come with the program are read, and their first, middle and last runs are cases.
 static void the_studies_of_the_program_are_good(void **state)
 {
@@ -233,6 +290,7 @@ int main(void)
         cmocka_unit_test(the_fingerprint_is_that_of_the_runs),
         cmocka_unit_test(a_number_that_is_a_joints_own_makes_other_runs),
         cmocka_unit_test(a_study_that_is_not_there_is_an_error_of_the_file),
+        cmocka_unit_test(limits_of_a_joint_vary_in_its_own_units),
         cmocka_unit_test(the_studies_of_the_program_are_good),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -93,16 +93,19 @@ bool spec_read_number(Reading *reading, const Node *node, bool is_checked, doubl
     if (!probe_number(&reading->source, key, node, &read, reading->err)) {
         return false;
     }
-    // the unit of a stiffness gives the exponent of its law, that of a span what it counts
-    const bool is_stiffness = key->row->type == SCHEMA_STIFFNESS;
-    if ((is_stiffness || key->row->type == SCHEMA_SPAN) && variable->unit[0] != '\0' &&
-        strcmp(variable->unit, read.unit) != 0) {
+    // the unit of a stiffness gives the exponent of its law, that of a span what it counts, that of
+    // a backlash whether it is an angle
+    const SchemaType type = key->row->type;
+    const bool is_stiffness = type == SCHEMA_STIFFNESS;
+    const bool has_own_unit =
+        is_stiffness || type == SCHEMA_SPAN || type == SCHEMA_COORDINATE || type == SCHEMA_DAMPER;
+    if (has_own_unit && variable->unit[0] != '\0' && strcmp(variable->unit, read.unit) != 0) {
         return spec_read_refuse(
             reading, node, is_stiffness ? "values with one exponent" : "values in one unit",
             "this value is in %s, those before it in %s", read.unit, variable->unit);
     }
     text_copy(variable->unit, sizeof variable->unit, read.unit);
-    if (is_stiffness || key->row->type == SCHEMA_SPAN) {
+    if (has_own_unit) {
         text_copy(variable->column_unit, sizeof variable->column_unit, read.unit);
     }
     *number = read.value;
