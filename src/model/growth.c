@@ -15,7 +15,7 @@
 // of the time: a step that ends short of it by rounding has reached it
 static const double SAME_TIME = 1e-12;
 
-enum { BEAT_EVERY = 64 }; // steps, between two samples
+enum { BEAT_EVERY = 64 }; // steps and samples: each beat asks the clock
 
 // Samples up to which all runs go before the growth there is looked at, and by how much more for
 // the next time: a run that goes too far is work in vain, and so is to wait for one another.
@@ -27,6 +27,7 @@ enum { ROOM = 1 << 22 }; // vectors that all runs may keep of a block: 100 MB
 typedef struct Walk {
     void *state; // of the solver
     bool has_step;
+    size_t beats; // that were due or not
     double reached_s;
     size_t sample;     // the first of the samples that it has not come to
     bool is_away;      // so far that the growth is above the most, at the last sample it came to
@@ -55,9 +56,9 @@ struct GrowthRuns {
 
 typedef struct GrowthRuns Runs;
 
-static void beat(const GrowthWork *work, bool is_callers)
+static void beat(const GrowthWork *work, Walk *walk, bool is_callers)
 {
-    if (is_callers && work->pulse.beat != NULL) {
+    if (++walk->beats % BEAT_EVERY == 0 && is_callers && work->pulse.beat != NULL) {
         work->pulse.beat(work->pulse.context);
     }
 }
@@ -67,18 +68,15 @@ static bool walk_to(const GrowthWork *work, Walk *walk, double time_s, bool is_c
                     Sample *sample)
 {
     const double near_s = time_s - SAME_TIME * time_s;
-    size_t steps = 0;
     // a first step comes before the first sample, though it may have no length
     while (!walk->has_step || walk->reached_s < near_s) {
         if (!solver_stride(work->solver, walk->state, time_s, &walk->reached_s, &walk->failure)) {
             return false;
         }
         walk->has_step = true;
-        if (++steps % BEAT_EVERY == 0) {
-            beat(work, is_callers);
-        }
+        beat(work, walk, is_callers);
     }
-    beat(work, is_callers);
+    beat(work, walk, is_callers);
     solver_glance(work->solver, walk->state, fmin(time_s, walk->reached_s), sample);
     return true;
 }
