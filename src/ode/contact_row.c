@@ -21,12 +21,27 @@ static bool find_exactly(const WorldPair *pair, const TouchPose *pose, const Ove
     return true;
 }
 
+// Of a pin in its hole, as two circles: the points where its force acts are the circles' own.
+static bool find_in_hole(const WorldPair *pair, const TouchPose *pose, ContactRow *row)
+{
+    if (!(pose->gap < 0.0)) {
+        return false;
+    }
+    row->depth = -pose->gap;
+    row->normal = pose->normal;
+    row->arms[0] = vec2_scale(-pair->touch.radius_a, pose->normal);
+    row->arms[1] = vec2_scale(-pair->touch.radius_b, pose->normal);
+    row->point = vec2_add(pair_centre(pair), row->arms[0]);
+    return true;
+}
+
 // The contact of a pair.
 static bool find_collision(const World *world, const WorldPair *pair, const TouchPose *pose,
                            const Overlap *overlap, ContactRow *row)
 {
     if (pair->hole == NULL) {
-        return find_exactly(pair, pose, overlap, row);
+        return pair->touch.shape == TOUCH_HOLE ? find_in_hole(pair, pose, row)
+                                               : find_exactly(pair, pose, overlap, row);
     }
     Collision collision;
     if (!world->collider->find(pair->collision, pair->hole, pair->pin, &collision)) {

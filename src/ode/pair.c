@@ -51,7 +51,9 @@ bool pair_make(const Scenario *scenario, const Touch *touch, const dBodyID bodie
         .bodies = {bodies[0], bodies[1]},
     };
     if (touch->shape == TOUCH_HOLE) {
-        return make_geoms(scenario, collider, pair, err);
+        // of two circles the bodies say all
+        return scenario->ode.collider == ODE_COLLIDER_PIN_HOLE ||
+               make_geoms(scenario, collider, pair, err);
     }
     if (scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) {
         return err_set(err, ERR_SOLVER,
@@ -92,42 +94,40 @@ void pair_finish(const Collider *collider, WorldPair *pair)
     }
 }
 
-static Vec2 geom_position(dGeomID geom)
-{
-    const dReal *position = dGeomGetPosition(geom);
-    return (Vec2){position[0], position[1]};
-}
-
 // The velocity of a body's point, m/s; zero of the ground.
-static Vec2 velocity_at(dBodyID body, Vec2 point)
+static Vec2 velocity_at(const Snapshot *body, Vec2 point)
 {
-    if (body == NULL) {
-        return (Vec2){0.0, 0.0};
-    }
-    const dReal *at = dBodyGetPosition(body);
-    const dReal *speed = dBodyGetLinearVel(body);
-    const double omega = dBodyGetAngularVel(body)[2];
-    return (Vec2){speed[0] - omega * (point.y - at[1]), speed[1] + omega * (point.x - at[0])};
+    const Vec2 arm = vec2_sub(point, body->position);
+    return (Vec2){body->velocity.x - body->omega * arm.y, body->velocity.y + body->omega * arm.x};
 }
 
 Vec2 pair_velocity(const WorldPair *pair, Vec2 point)
 {
-    return vec2_sub(velocity_at(pair->bodies[1], point), velocity_at(pair->bodies[0], point));
+    const Snapshot a = snapshot_of(pair->bodies[0]);
+    const Snapshot b = snapshot_of(pair->bodies[1]);
+    return vec2_sub(velocity_at(&b, point), velocity_at(&a, point));
+}
+
+// Where a point given in a body's frame is.
+static Vec2 point_of(const Snapshot *body, Vec2 local)
+{
+    return vec2_add(body->position, snapshot_turn(body, local));
 }
 
 static TouchPose hole_pose(const WorldPair *pair)
 {
-    const Vec2 hole = geom_position(pair->hole);
-    const Vec2 pin = geom_position(pair->pin);
-    const Vec2 velocity =
-        vec2_sub(velocity_at(pair->bodies[1], pin), velocity_at(pair->bodies[0], hole));
+    const Snapshot a = snapshot_of(pair->bodies[0]);
+    const Snapshot b = snapshot_of(pair->bodies[1]);
+    const Vec2 hole = point_of(&a, pair->touch.anchor_a);
+    const Vec2 pin = point_of(&b, pair->touch.anchor_b);
+    const Vec2 velocity = vec2_sub(velocity_at(&b, pin), velocity_at(&a, hole));
     const PinHole pose = pin_hole_pose(hole, pin, velocity, pair->touch.clearance);
     return touch_pose_in_hole(&pose, velocity);
 }
 
 TouchPose pair_pose(const WorldPair *pair)
 {
-    if (pair->hole != NULL) {
+    if (pair->touch.shape == TOUCH_HOLE) {
         return hole_pose(pair);
     }
     if (pair->ends != NULL) {
@@ -142,22 +142,21 @@ TouchPose pair_pose(const WorldPair *pair)
     return touch_pose_of(&pair->touch, offset, velocity, snapshot_turn(&a, pair->line), a.omega);
 }
 
-Vec2 pair_centre(const WorldPair *pair)
-{
-    return geom_position(pair->hole);
-}
-
 // Where an anchor is.
 static Vec2 anchor_of(const WorldPair *pair, int side)
 {
     const Snapshot body = snapshot_of(pair->bodies[side]);
-    const Vec2 anchor = side == 0 ? pair->touch.anchor_a : pair->touch.anchor_b;
-    return vec2_add(body.position, snapshot_turn(&body, anchor));
+    return point_of(&body, side == 0 ? pair->touch.anchor_a : pair->touch.anchor_b);
+}
+
+Vec2 pair_centre(const WorldPair *pair)
+{
+    return anchor_of(pair, 0);
 }
 
 Vec2 pair_anchor_b(const WorldPair *pair)
 {
-    return pair->pin != NULL ? geom_position(pair->pin) : anchor_of(pair, 1);
+    return anchor_of(pair, 1);
 }
 
 // Where the pitch circles of gears touch.

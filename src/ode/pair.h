@@ -1,6 +1,7 @@
-// A place at which a joint with play touches, in ODE's world, or an end of a limited coordinate. Of
-// a pin in its hole the world's collider is asked, about two geoms: a hole on one body, a cylinder
-// on the other. Of any other place the bodies' positions say all, exactly.
+// A place at which a joint with play touches, in ODE's world, or an end of a limited coordinate. The
+// bodies' positions say all, exactly, of two circles as well; collider pin-hole is that. Any other
+// collider is asked of a pin in its hole, about two geoms: a hole on one body, a cylinder on the
+// other.
 #pragma once
 
 #include "contact/touch.h"
@@ -15,7 +16,7 @@ typedef struct WorldPair {
     bool is_end;       // of a limited coordinate: nothing slides there
     Vec2 beside[2];    // m, from the joint's anchors to the place's, in their bodies' frames
     dBodyID bodies[2]; // a and b; NULL: the ground
-    dGeomID hole;      // of a TOUCH_HOLE, else NULL, like the next two
+    dGeomID hole;      // of a TOUCH_HOLE that a collider is asked about, else NULL, as the next two
     dGeomID pin;
     void *collision; // what the world's collider keeps of the joint; owned
     WorldEnds *ends; // of a TOUCH_TURN or TOUCH_TEETH, else NULL: the world's
