@@ -94,6 +94,7 @@ void world_start(const Scenario *scenario, World *world)
     engine_seed(options->seed);
     const dWorldID id = dWorldCreate();
     world->id = id;
+    world->jobs = jobs_make(id);
     world->linkage = linkage;
     dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);
     dWorldSetERP(id, world_hold_erp(options));
@@ -163,6 +164,7 @@ void world_finish(World *world)
     if (world->id != NULL) {
         dWorldDestroy(world->id);
     }
+    jobs_free(world->jobs);
     free(world->bodies);
     free(world->feedback);
     free(world->sliding);

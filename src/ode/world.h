@@ -6,6 +6,7 @@
 #include "ode/applied.h"
 #include "ode/collider.h"
 #include "ode/ends.h"
+#include "ode/jobs.h"
 #include "ode/pair.h"
 #include "ode/sliding.h"
 #include "ode/snapshot.h"
@@ -16,6 +17,7 @@
 typedef struct World {
     const Linkage *linkage;
     dWorldID id;
+    Jobs *jobs;               // of its steps; owned
     dBodyID *bodies;          // owned, as are all arrays here
     dJointFeedback *feedback; // of the revolute joints, by joint
     size_t sliding_count;
