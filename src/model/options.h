@@ -140,6 +140,8 @@ typedef struct RunOptions {
     size_t backend_count;
     BackendKind backends[BACKEND_COUNT];
     bool keeps_ranges; // no key: whether somebody reads what signals did between the samples
+    bool keeps_all;    // no key: whether somebody reads more than extremes and contacts; without,
+                       // the hash and what else may be are left out
 } RunOptions;
 
 typedef struct ReferenceOptions {

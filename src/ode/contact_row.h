@@ -33,9 +33,10 @@ typedef struct ContactRow {
     double faster;    // m/s, by how much that is more than the rate of the exact penetration
     double sliding;   // m/s, along the wall before the step, where there is friction
     double elastic;   // J, stored in the contact after the step
-    double dissipated; // J, lost along the normal in the step
-    double friction;   // J, lost in sliding in the step
-    dContact contact;  // as ODE is given it
+    double dissipated;          // J, lost along the normal in the step
+    double friction;            // J, lost in sliding in the step
+    dSurfaceParameters surface; // of CONTACT_POISSON, without friction
+    dContact contact;           // as ODE is given it
     dJointFeedback feedback;
 } ContactRow;
 

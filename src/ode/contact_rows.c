@@ -17,6 +17,54 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Of the velocity-level model, always the same.
+static dSurfaceParameters poisson_surface(const ContactRows *rows, size_t number)
+{
+    const ContactOptions *options = &rows->scenario->contact;
+    const int joint = rows->world->pairs[number].joint;
+    return (dSurfaceParameters){
+        .mode = dContactSoftERP | dContactSoftCFM | dContactBounce,
+        .mu = 0.0, // makes one row, along the normal
+        .bounce = scenario_restitution(rows->scenario, &rows->scenario->linkage.joints[joint]),
+        .bounce_vel = options->bounce_speed,
+        .soft_erp = rows->scenario->ode.push_out,
+        .soft_cfm = map_poisson_cfm(rows->penalty),
+    };
+}
+
+static dSurfaceParameters impact_surface(const ContactRows *rows, ContactRow *row, double step_s)
+{
+    const LawRow at = {
+        .depth = row->depth,
+        .closing = row->closing,
+        .impact_speed = row->impact_speed,
+        .share = row->share,
+        .mass = row->mass,
+    };
+    const MapContact contact = law_row_contact(&row->law, &at, step_s);
+    const ErpCfm soft = law_row_soft(rows->map, row->falls_back, &contact);
+    row->damping = contact.damping;
+    return (dSurfaceParameters){
+        .mode = dContactSoftERP | dContactSoftCFM,
+        .mu = 0.0,
+        .soft_erp = soft.erp,
+        .soft_cfm = soft.cfm,
+    };
+}
+
+// What of a place's contacts does not change.
+static void init_row(ContactRows *rows, size_t number, const ForceLaw *law)
+{
+    ContactRow *row = &rows->rows[number];
+    const WorldPair *pair = &rows->world->pairs[number];
+    row->law = *law;
+    row->surface = rows->map == NULL ? poisson_surface(rows, number) : row->surface;
+    row->contact.geom = (dContactGeom){.g1 = pair->hole, .g2 = pair->pin, .side1 = -1, .side2 = -1};
+    if (pair->row != NULL) {
+        dJointSetFeedback(pair->row, &row->feedback);
+    }
+}
+
 bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world, bool is_staggered,
                        Err *err)
 {
@@ -44,10 +92,7 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
                         ? scenario->contact.penalty
                         : penalty_estimate(scenario->linkage.driver.speed, &scenario->material);
     for (size_t i = 0; i < world->pair_count; i++) {
-        rows->rows[i].law = places[i].law;
-        if (world->pairs[i].row != NULL) {
-            dJointSetFeedback(world->pairs[i].row, &rows->rows[i].feedback);
-        }
+        init_row(rows, i, &places[i].law);
     }
     free(places);
     rows->group = dJointGroupCreate(0);
@@ -66,37 +111,6 @@ void contact_rows_finish(ContactRows *rows)
     contact_friction_free(rows->work);
     response_finish(&rows->mass.response);
     memset(rows, 0, sizeof *rows);
-}
-
-static dSurfaceParameters surface_of(const ContactRows *rows, size_t number, ContactRow *row,
-                                     double step_s)
-{
-    const ContactOptions *options = &rows->scenario->contact;
-    // mu 0 makes one row, along the normal
-    dSurfaceParameters surface = {.mode = dContactSoftERP | dContactSoftCFM, .mu = 0.0};
-    if (options->model == CONTACT_POISSON) {
-        surface.mode |= dContactBounce;
-        const int joint = rows->world->pairs[number].joint;
-        surface.bounce =
-            scenario_restitution(rows->scenario, &rows->scenario->linkage.joints[joint]);
-        surface.bounce_vel = options->bounce_speed;
-        surface.soft_erp = rows->scenario->ode.push_out;
-        surface.soft_cfm = map_poisson_cfm(rows->penalty);
-        return surface;
-    }
-    const LawRow at = {
-        .depth = row->depth,
-        .closing = row->closing,
-        .impact_speed = row->impact_speed,
-        .share = row->share,
-        .mass = row->mass,
-    };
-    const MapContact contact = law_row_contact(&row->law, &at, step_s);
-    const ErpCfm soft = law_row_soft(rows->map, row->falls_back, &contact);
-    row->damping = contact.damping;
-    surface.soft_erp = soft.erp;
-    surface.soft_cfm = soft.cfm;
-    return surface;
 }
 
 FrictionRow contact_rows_friction(const ContactRows *rows, size_t number)
@@ -217,22 +231,19 @@ static void check_stability(ContactRows *rows, size_t number, double step_s)
     rows->fallback_count += row->falls_back ? 1 : 0;
 }
 
-// A contact as ODE wants it: its normal is that of the force on body a.
-static dContact contact_of(ContactRows *rows, size_t number, double step_s)
+// What ODE is to know of a contact; its normal is that of the force on body a.
+static void write_contact(ContactRows *rows, size_t number, double step_s)
 {
     ContactRow *row = &rows->rows[number];
-    const WorldPair *pair = &rows->world->pairs[number];
-    return (dContact){
-        .surface = surface_of(rows, number, row, step_s),
-        .geom = {.pos = {row->point.x, row->point.y, 0.0},
-                 .normal = {-row->normal.x, -row->normal.y, 0.0},
-                 .depth = row->depth,
-                 .g1 = pair->hole,
-                 .g2 = pair->pin,
-                 .side1 = -1,
-                 .side2 = -1},
-        .fdir1 = {-row->normal.y, row->normal.x, 0.0, 0.0},
-    };
+    dContact *contact = &row->contact;
+    contact->surface = rows->map == NULL ? row->surface : impact_surface(rows, row, step_s);
+    contact->geom.pos[0] = row->point.x;
+    contact->geom.pos[1] = row->point.y;
+    contact->geom.normal[0] = -row->normal.x;
+    contact->geom.normal[1] = -row->normal.y;
+    contact->geom.depth = row->depth;
+    contact->fdir1[0] = -row->normal.y;
+    contact->fdir1[1] = row->normal.x;
 }
 
 bool contact_rows_is_first(const ContactRows *rows, size_t number)
@@ -248,10 +259,10 @@ static void find_row(ContactRows *rows, size_t number, double step_s, JointState
     const WorldPair *pair = &rows->world->pairs[number];
     ContactRow *row = &rows->rows[number];
     JointState *state = &states[pair->joint];
+    const bool is_first = contact_rows_is_first(rows, number);
     JointState place;
-    contact_row_find(row, rows->world, pair, rows->is_staggered, step_s, &place);
-    if (contact_rows_is_first(rows, number)) {
-        *state = place;
+    contact_row_find(row, rows->world, pair, rows->is_staggered, step_s, is_first ? state : &place);
+    if (is_first) {
         approach[pair->joint] = pair->is_corner && !row->is_touching ? 0.0 : row->impact_speed;
         return;
     }
@@ -276,7 +287,7 @@ bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, dou
     for (size_t i = 0; i < count; i++) {
         if (rows->rows[i].is_touching) {
             check_stability(rows, i, step_s);
-            rows->rows[i].contact = contact_of(rows, i, step_s);
+            write_contact(rows, i, step_s);
         }
     }
     make_contact_rows(rows, step_s);

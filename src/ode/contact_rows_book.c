@@ -115,7 +115,9 @@ void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
             read_row(rows, i, force, step_s, &states[pair->joint]);
             any = true;
         }
-        book_energy(rows, i, force, step_s);
+        if (rows->scenario->run.keeps_all) {
+            book_energy(rows, i, force, step_s);
+        }
     }
     if (any) {
         dJointGroupEmpty(rows->group);

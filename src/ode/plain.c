@@ -81,7 +81,7 @@ static bool advance(Plain *plain, Err *err)
         world_place(&plain->world, (size_t)plain->driven, &driven);
     }
     for (size_t i = 0; i < plain->scenario->linkage.body_count; i++) {
-        plain->before[i] = world_snapshot(&plain->world, i);
+        plain->before[i] = snapshot_of(plain->world.bodies[i]);
     }
     applied_push(&plain->world.applied, start_s, plain->step_s, APPLIED_AT_END, 1);
     const bool is_quick = plain->scenario->ode.solver == ODE_QUICK;
@@ -89,11 +89,16 @@ static bool advance(Plain *plain, Err *err)
         !world_step(&plain->world, plain->step_s, is_quick, err)) {
         return stepping_fail(plain->scenario, start_s, plain->steps + 1, plain->step_s, err);
     }
-    world_joint_forces(&plain->world, plain->joints);
+    const bool keeps_all = plain->scenario->run.keeps_all;
+    if (keeps_all) {
+        world_joint_forces(&plain->world, plain->joints);
+    }
     contact_rows_clear(&plain->contacts, plain->step_s, plain->joints);
     read_velocities(plain);
-    plain->applied = applied_book(&plain->world.applied, plain->step_s);
-    plain->drive_work = drive_power(plain, &driven) * plain->step_s + plain->applied.torque;
+    if (keeps_all) {
+        plain->applied = applied_book(&plain->world.applied, plain->step_s);
+        plain->drive_work = drive_power(plain, &driven) * plain->step_s + plain->applied.torque;
+    }
     for (size_t i = 0; i < plain->scenario->linkage.joint_count; i++) {
         plain->impulse[i] = plain->joints[i].force * plain->step_s;
     }

@@ -44,17 +44,19 @@ static dBodyID body_of(const World *world, int body)
     return body == LINKAGE_GROUND ? 0 : world->bodies[body];
 }
 
-static void make_ball(const Linkage *linkage, const Motion *motions, size_t number,
-                      const OdeOptions *options, World *world)
+static void make_ball(const Scenario *scenario, const Motion *motions, size_t number, World *world)
 {
-    const Joint *joint = &linkage->joints[number];
+    const OdeOptions *options = &scenario->ode;
+    const Joint *joint = &scenario->linkage.joints[number];
     const dJointID ball = dJointCreateBall(world->id, 0);
     dJointAttach(ball, body_of(world, joint->body_a), body_of(world, joint->body_b));
     const Vec2 anchor = linkage_point(motions, joint->body_a, joint->anchor_a);
     dJointSetBallAnchor(ball, anchor.x, anchor.y, 0.0);
     dJointSetBallParam(ball, dParamERP, world_hold_erp(options));
     dJointSetBallParam(ball, dParamCFM, options->cfm);
-    dJointSetFeedback(ball, &world->feedback[number]);
+    if (scenario->run.keeps_all) {
+        dJointSetFeedback(ball, &world->feedback[number]);
+    }
 }
 
 static void make_sliding(const Linkage *linkage, int number, const OdeOptions *options,
@@ -146,7 +148,7 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
         if (linkage->joints[i].kind == JOINT_PRISMATIC && world->hold == NULL) {
             make_sliding(linkage, (int)i, &scenario->ode, world);
         } else if (linkage_is_ideal(linkage, i) && world->hold == NULL) {
-            make_ball(linkage, motions, i, &scenario->ode, world);
+            make_ball(scenario, motions, i, world);
         }
         if (linkage_has_play(&linkage->joints[i]) && !make_pairs(scenario, (int)i, world, err)) {
             return false;

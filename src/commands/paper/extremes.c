@@ -5,7 +5,7 @@
 // Stack-up rows   ODE on the case with play; peaks over every step. IMPACT with contacts that are
 //                 integrated within the step: at 10 us its peaks are right to 5e-5, where textbook
 //                 use of ODE is off by a tenth at 1 us. POISSON's forces are impulses over a step.
-//                 It takes longest, and runs in a process of its own while all else is made.
+//                 It takes longest: a thread makes all else meanwhile.
 //
 // The crank turns clockwise, which flips the signs of omega and leaves those of alpha. The paper
 // gives no step, damping, restitution, friction or sampling for its stack-up rows, and a peak of
@@ -15,7 +15,6 @@
 #include "analytic/fourbar_motion.h"
 #include "base/text.h"
 #include "commands/paper/embedded.h"
-#include "measure/child.h"
 #include "run/registry.h"
 #include "run/tracer.h"
 
@@ -27,7 +26,6 @@
 enum { DEGREES = 360 };
 
 static const double IMPACT_STEP_S = 1e-5;
-static const double PAUSE_S = 1.0; // longest wait for a process, which is over before
 
 static const RunWatch NOBODY = {NULL, NULL};
 
@@ -97,7 +95,7 @@ static bool fill_ideal(EmbeddedCase which, ExtremesRow *row, Err *err)
     return true;
 }
 
-static bool fill_impact(RunWatch watch, ExtremesRow *row, Err *err)
+static bool fill_impact(ExtremesRow *row, Err *err)
 {
     Scenario scenario;
     if (!embedded_load(EMBEDDED_STACKUP_IMPACT, &scenario, err)) {
@@ -108,47 +106,23 @@ static bool fill_impact(RunWatch watch, ExtremesRow *row, Err *err)
     scenario.run.step = IMPACT_STEP_S;
     scenario.run.keeps_ranges = false;
     // peaks inside the steps count
-    fill_by_run(&scenario, tracer_run(&scenario, registry_solver(BACKEND_ODE), watch), row);
+    fill_by_run(&scenario, tracer_run(&scenario, registry_solver(BACKEND_ODE), NOBODY), row);
     scenario_free(&scenario);
     return true;
 }
 
-// The row that a process of its own fills.
-struct ExtremesWork {
-    Scenario scenario; // owned
-    ExtremesRow row;   // what stands in it from the start
-    ExtremesRow made;
-    Child child;
-};
-
-static void fill_in_child(const void *context, void *result)
+static bool fill_poisson(RunWatch watch, ExtremesRow *row, Err *err)
 {
-    const ExtremesWork *own = context;
-    ExtremesRow *row = result;
-    *row = own->row;
-    fill_by_run(&own->scenario, run_scenario(&own->scenario, registry_solver(BACKEND_ODE), NOBODY),
-                row);
-}
-
-void extremes_abandon(ExtremesWork *work)
-{
-    child_kill(&work->child);
-    scenario_free(&work->scenario);
-    free(work);
-}
-
-static void finish_poisson(ExtremesWork *work, ExtremesRow *row)
-{
-    while (work->child.end == CHILD_RUNNING) {
-        child_wait(&work->child, 1, PAUSE_S);
+    Scenario scenario;
+    if (!embedded_load(EMBEDDED_STACKUP_POISSON, &scenario, err)) {
+        return false;
     }
-    *row = work->made;
-    if (work->child.end != CHILD_DONE) {
-        char words[CHILD_TEXT_SIZE];
-        child_describe(&work->child, words);
-        *row = work->row;
-        snprintf(row->message, sizeof row->message, "the run's process %s", words);
-    }
+    // nothing else of it is read
+    scenario.run.keeps_all = false;
+    scenario.run.samples = 1;
+    fill_by_run(&scenario, run_scenario(&scenario, registry_solver(BACKEND_ODE), watch), row);
+    scenario_free(&scenario);
+    return true;
 }
 
 // Largest and smallest of a curve sampled at whole degrees.
@@ -203,40 +177,23 @@ static ExtremesRow empty_row(int number)
     return row;
 }
 
-ExtremesWork *extremes_begin(Err *err)
+bool extremes_longest(RunWatch watch, ExtremesRow *row, Err *err)
 {
-    ExtremesWork *work = calloc(1, sizeof *work);
-    assert(work != NULL);
-    work->row = empty_row(PRINTED_POISSON);
-    const ChildLimits none = {.time_s = 0.0};
-    if (!embedded_load(EMBEDDED_STACKUP_POISSON, &work->scenario, err)) {
-        free(work);
-        return NULL;
-    }
-    if (!child_start(&work->child, fill_in_child, work, &work->made, sizeof work->made, none,
-                     err)) {
-        scenario_free(&work->scenario);
-        free(work);
-        return NULL;
-    }
-    return work;
+    *row = empty_row(PRINTED_POISSON);
+    return fill_poisson(watch, row, err);
 }
 
-bool extremes_finish(ExtremesWork *work, RunWatch watch, ExtremesRow rows[PRINTED_ROW_COUNT],
-                     Err *err)
+bool extremes_others(ExtremesRow rows[PRINTED_ROW_COUNT], Err *err)
 {
     for (int i = 0; i < PRINTED_ROW_COUNT; i++) {
-        rows[i] = empty_row(i);
+        if (i != PRINTED_POISSON) {
+            rows[i] = empty_row(i);
+        }
     }
-    const bool is_made = fill_ideal(EMBEDDED_IDEAL_NOMINAL, &rows[PRINTED_IDEAL_NOMINAL], err) &&
-                         fill_ideal(EMBEDDED_IDEAL_STACKUP, &rows[PRINTED_IDEAL_STACKUP], err) &&
-                         fill_impact(watch, &rows[PRINTED_IMPACT], err) &&
-                         fill_by_sampling(&rows[PRINTED_IDEAL_ANALYTICAL], err);
-    if (is_made) {
-        finish_poisson(work, &rows[PRINTED_POISSON]);
-    }
-    extremes_abandon(work);
-    return is_made;
+    return fill_ideal(EMBEDDED_IDEAL_NOMINAL, &rows[PRINTED_IDEAL_NOMINAL], err) &&
+           fill_ideal(EMBEDDED_IDEAL_STACKUP, &rows[PRINTED_IDEAL_STACKUP], err) &&
+           fill_impact(&rows[PRINTED_IMPACT], err) &&
+           fill_by_sampling(&rows[PRINTED_IDEAL_ANALYTICAL], err);
 }
 
 double extremes_difference_max(const ExtremesRow rows[PRINTED_ROW_COUNT])

@@ -1,6 +1,7 @@
 // What did the paper compute, does it come out again, and what should it have been?
 #include "commands/paper/paper.h"
 
+#include "base/side_by_side.h"
 #include "commands/paper/embedded.h"
 
 static bool compute_physical(Physical *physical, Err *err)
@@ -14,29 +15,48 @@ static bool compute_physical(Physical *physical, Err *err)
     return is_computed;
 }
 
+// What is made at the same time.
+enum { PIECE_LONGEST, PIECE_OTHERS, PIECE_COUNT };
+
+typedef struct Making {
+    PaperResult made;
+    RunWatch watch;
+    Err errors[PIECE_COUNT];
+    bool is_made[PIECE_COUNT];
+} Making;
+
+static void make_piece(size_t index, bool is_callers, void *context)
+{
+    (void)is_callers;
+    Making *making = context;
+    PaperResult *made = &making->made;
+    Err *err = &making->errors[index];
+    making->is_made[index] =
+        index == PIECE_LONGEST
+            ? extremes_longest(making->watch, &made->extremes[PRINTED_POISSON], err)
+            : compute_physical(&made->physical, err) && extremes_others(made->extremes, err);
+}
+
 bool paper_compute(PaperResult *result, RunWatch watch, Err *err)
 {
-    // what takes longest goes first
-    ExtremesWork *work = extremes_begin(err);
-    if (work == NULL) {
-        return false;
+    Making making = {.made = {.inputs = estimate_inputs_printed()}, .watch = watch};
+    PaperResult *made = &making.made;
+    // what takes longest goes first, and is the caller's
+    side_by_side_run(PIECE_COUNT, side_by_side_processors(), make_piece, &making);
+    for (int i = 0; i < PIECE_COUNT; i++) {
+        if (!making.is_made[i]) {
+            *err = making.errors[i];
+            return false;
+        }
     }
-    PaperResult made = {.inputs = estimate_inputs_printed()};
-    estimate_compute(&made.inputs, made.tables);
+    estimate_compute(&made->inputs, made->tables);
     for (int i = 0; i < PRINTED_TABLE_COUNT; i++) {
-        made.cell_count += made.tables[i].cell_count;
-        made.as_printed += made.tables[i].as_printed;
+        made->cell_count += made->tables[i].cell_count;
+        made->as_printed += made->tables[i].as_printed;
     }
-    if (!compute_physical(&made.physical, err)) {
-        extremes_abandon(work);
-        return false;
-    }
-    if (!extremes_finish(work, watch, made.extremes, err)) {
-        return false;
-    }
-    made.ideal_difference_max = extremes_difference_max(made.extremes);
-    made.ideal_as_printed = extremes_as_printed(made.extremes, &made.ideal_cell_count);
-    *result = made;
+    made->ideal_difference_max = extremes_difference_max(made->extremes);
+    made->ideal_as_printed = extremes_as_printed(made->extremes, &made->ideal_cell_count);
+    *result = *made;
     return true;
 }
 

@@ -23,20 +23,12 @@ typedef struct ExtremesRow {
     double force_max; // N, largest in it
 } ExtremesRow;
 
-// The rows while the longest of them is made in a process of its own.
-typedef struct ExtremesWork ExtremesWork;
+// Makes the row that takes longest, PRINTED_POISSON; the watch follows it. Fails where an embedded
+// case cannot be loaded; of a run that fails the row says so.
+bool extremes_longest(RunWatch watch, ExtremesRow *row, Err *err);
 
-// Starts that process. NULL where an embedded case cannot be loaded, or no process started.
-ExtremesWork *extremes_begin(Err *err);
-
-// Makes the other rows, waits for the process, and frees the work. The watch follows the run with
-// play that is made here. Fails where an embedded case cannot be loaded; of a run that fails the
-// row says so.
-bool extremes_finish(ExtremesWork *work, RunWatch watch, ExtremesRow rows[PRINTED_ROW_COUNT],
-                     Err *err);
-
-// Frees the work of rows that nobody needs any more, and ends the process.
-void extremes_abandon(ExtremesWork *work);
+// Makes the other rows, likewise.
+bool extremes_others(ExtremesRow rows[PRINTED_ROW_COUNT], Err *err);
 
 // Over the target rows: the largest relative difference, and how many of their cells are as
 // printed (and how many cells there are).
