@@ -150,6 +150,10 @@ static bool plain_open(const Scenario *scenario, void **state, Err *err)
         plain_close(plain);
         return false;
     }
+    if (plain->driven >= 0 && !scenario->run.keeps_all) {
+        // it is put on its path at every step's start: only energies ask where a step leaves it
+        dBodySetFiniteRotationMode(plain->world.bodies[plain->driven], 0);
+    }
     *state = plain;
     return true;
 }
