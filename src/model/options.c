@@ -69,7 +69,6 @@ RunOptions run_options_default(void)
         // as much as ideal joints show by themselves, so that they show no spike
         .spike_threshold = 1.0,
         .keeps_ranges = true,
-        .keeps_all = true,
         .backend_count = 3,
         .backends = {BACKEND_ANALYTIC, BACKEND_REFERENCE, BACKEND_ODE},
     };

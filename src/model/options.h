@@ -140,8 +140,8 @@ typedef struct RunOptions {
     size_t backend_count;
     BackendKind backends[BACKEND_COUNT];
     bool keeps_ranges; // no key: whether somebody reads what signals did between the samples
-    bool keeps_all;    // no key: whether somebody reads more than extremes and contacts; without,
-                       // the hash and what else may be are left out
+    bool is_lean; // no key: extremes and contacts are all that is read; energies, the forces of
+                  // ideal joints and the hash are left out where that saves anything
 } RunOptions;
 
 typedef struct ReferenceOptions {

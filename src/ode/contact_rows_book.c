@@ -115,7 +115,7 @@ void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
             read_row(rows, i, force, step_s, &states[pair->joint]);
             any = true;
         }
-        if (rows->scenario->run.keeps_all) {
+        if (!rows->scenario->run.is_lean) {
             book_energy(rows, i, force, step_s);
         }
     }

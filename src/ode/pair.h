@@ -1,7 +1,7 @@
-// A place at which a joint with play touches, in ODE's world, or an end of a limited coordinate. The
-// bodies' positions say all, exactly, of two circles as well; collider pin-hole is that. Any other
-// collider is asked of a pin in its hole, about two geoms: a hole on one body, a cylinder on the
-// other.
+// A place at which a joint with play touches, in ODE's world, or an end of a limited coordinate.
+// The bodies' positions say all, exactly, of two circles as well; collider pin-hole is that. Any
+// other collider is asked of a pin in its hole, about two geoms: a hole on one body, a cylinder on
+// the other.
 #pragma once
 
 #include "contact/touch.h"

@@ -89,13 +89,13 @@ static bool advance(Plain *plain, Err *err)
         !world_step(&plain->world, plain->step_s, is_quick, err)) {
         return stepping_fail(plain->scenario, start_s, plain->steps + 1, plain->step_s, err);
     }
-    const bool keeps_all = plain->scenario->run.keeps_all;
-    if (keeps_all) {
+    const bool is_lean = plain->scenario->run.is_lean;
+    if (!is_lean) {
         world_joint_forces(&plain->world, plain->joints);
     }
     contact_rows_clear(&plain->contacts, plain->step_s, plain->joints);
     read_velocities(plain);
-    if (keeps_all) {
+    if (!is_lean) {
         plain->applied = applied_book(&plain->world.applied, plain->step_s);
         plain->drive_work = drive_power(plain, &driven) * plain->step_s + plain->applied.torque;
     }
@@ -150,7 +150,7 @@ static bool plain_open(const Scenario *scenario, void **state, Err *err)
         plain_close(plain);
         return false;
     }
-    if (plain->driven >= 0 && !scenario->run.keeps_all) {
+    if (plain->driven >= 0 && scenario->run.is_lean) {
         // it is put on its path at every step's start: only energies ask where a step leaves it
         dBodySetFiniteRotationMode(plain->world.bodies[plain->driven], 0);
     }

@@ -54,7 +54,7 @@ static void make_ball(const Scenario *scenario, const Motion *motions, size_t nu
     dJointSetBallAnchor(ball, anchor.x, anchor.y, 0.0);
     dJointSetBallParam(ball, dParamERP, world_hold_erp(options));
     dJointSetBallParam(ball, dParamCFM, options->cfm);
-    if (scenario->run.keeps_all) {
+    if (!scenario->run.is_lean) {
         dJointSetFeedback(ball, &world->feedback[number]);
     }
 }

@@ -10,7 +10,7 @@
 
 static const RunWatch NOBODY = {NULL, NULL};
 
-static Scenario scenario_of(ContactModel model, bool keeps_all)
+static Scenario scenario_of(ContactModel model, bool is_lean)
 {
     Scenario scenario = mechanism_loose(1);
     scenario.contact.model = model;
@@ -18,13 +18,13 @@ static Scenario scenario_of(ContactModel model, bool keeps_all)
     scenario.ode.map = ODE_MAP_TEXTBOOK;
     scenario.run.step = 5e-6;
     scenario.run.samples = 1;
-    scenario.run.keeps_all = keeps_all;
+    scenario.run.is_lean = is_lean;
     return scenario;
 }
 
-static Trajectory *run(ContactModel model, bool keeps_all)
+static Trajectory *run(ContactModel model, bool is_lean)
 {
-    Scenario scenario = scenario_of(model, keeps_all);
+    Scenario scenario = scenario_of(model, is_lean);
     Trajectory *made = run_scenario(&scenario, registry_solver(BACKEND_ODE), NOBODY);
     assert_string_equal(made->message, "");
     assert_true(made->is_complete);
@@ -37,8 +37,8 @@ static void a_run_that_keeps_little_has_the_same_extremes_and_contacts(void **st
     (void)state;
     const ContactModel models[] = {CONTACT_IMPACT, CONTACT_POISSON};
     for (int i = 0; i < 2; i++) {
-        Trajectory *whole = run(models[i], true);
-        Trajectory *lean = run(models[i], false);
+        Trajectory *whole = run(models[i], false);
+        Trajectory *lean = run(models[i], true);
         assert_memory_equal(lean->bodies, whole->bodies, whole->body_count * sizeof *whole->bodies);
         for (size_t k = 0; k < whole->joint_count; k++) {
             const JointExtremes *a = &whole->joints[k];

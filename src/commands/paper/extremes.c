@@ -118,7 +118,7 @@ static bool fill_poisson(RunWatch watch, ExtremesRow *row, Err *err)
         return false;
     }
     // nothing else of it is read
-    scenario.run.keeps_all = false;
+    scenario.run.is_lean = true;
     scenario.run.samples = 1;
     fill_by_run(&scenario, run_scenario(&scenario, registry_solver(BACKEND_ODE), watch), row);
     scenario_free(&scenario);
