@@ -122,6 +122,7 @@ typedef struct DriveLine {
     int body_b;
     Vec2 along;  // unit, of body b
     Vec2 point;  // anchor of body b, at which the force acts, m
+    double way;  // m, of that point from the anchor of body a
     double rate; // m/s, of that point against the point of body a under it
 } DriveLine;
 
@@ -138,6 +139,7 @@ static DriveLine drive_line(const Linkage *linkage, const Motion *motions)
         .body_b = joint->body_b,
         .along = along,
         .point = linkage_point(motions, joint->body_b, joint->anchor_b),
+        .way = vec2_dot(along, gap.position),
         .rate = vec2_dot(along, vec2_sub(gap.velocity, carried)),
     };
 }
@@ -147,10 +149,18 @@ static bool is_force(const Linkage *linkage)
     return linkage->joints[linkage->torque.joint].kind == JOINT_PRISMATIC;
 }
 
+JointTurn forces_drive_turn(const Linkage *linkage, const Motion *motions)
+{
+    if (!is_force(linkage)) {
+        return forces_turn(linkage, linkage->torque.joint, motions);
+    }
+    const DriveLine line = drive_line(linkage, motions);
+    return (JointTurn){line.way, line.rate};
+}
+
 double forces_drive_rate(const Linkage *linkage, const Motion *motions)
 {
-    return is_force(linkage) ? drive_line(linkage, motions).rate
-                             : forces_turn(linkage, linkage->torque.joint, motions).rate;
+    return forces_drive_turn(linkage, motions).rate;
 }
 
 void forces_add_torque(const Linkage *linkage, const Motion *motions, double torque,

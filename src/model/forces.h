@@ -32,8 +32,9 @@ typedef struct JointTurn {
 
 JointTurn forces_turn(const Linkage *linkage, int joint, const Motion *motions);
 
-// How fast a torque over time moves what it pushes: the rate of its joint's angle, rad/s, or of the
-// way along its line, m/s.
+// How far a torque over time has moved what it pushes, and how fast it does: its joint's angle,
+// rad, or the way along its line, m.
+JointTurn forces_drive_turn(const Linkage *linkage, const Motion *motions);
 double forces_drive_rate(const Linkage *linkage, const Motion *motions);
 
 // Add the loads, by body, of all springs, all dampers, and a torque, N m, at the drive's joint (a

@@ -154,6 +154,18 @@ static void find_mean_motions(const ImpulseStep *step, const Motion *middle, Mot
     }
 }
 
+// What a torque over time does, J: contacts change the speeds inside the step, so it is taken by
+// the way that it goes.
+static double work_of_torque(const ImpulseStep *step)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    if (linkage->torque.table.count == 0) {
+        return 0.0;
+    }
+    return step->world.applied.torque * (forces_drive_turn(linkage, step->after).angle -
+                                         forces_drive_turn(linkage, step->before).angle);
+}
+
 void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
 {
     const Linkage *linkage = &step->scenario->linkage;
@@ -182,5 +194,5 @@ void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
     const BodyLoad load = applied_on(&step->world.applied, step->driven);
     const double power = stepping_drive(step->scenario, driven, &load, offsets, step->work->joints);
     step->damped = applied.damping;
-    step->drive_work = work + step->width_s * power + applied.torque;
+    step->drive_work = work + step->width_s * power + work_of_torque(step);
 }

@@ -234,9 +234,9 @@ static double slipping_power(const Reading *reading, double time)
     double power = 0.0;
     for (size_t i = 0; joint->has_friction && i < joint->row_count; i++) {
         const size_t row = joint->first_row + i;
-        power += reading->sums->force[row] * encounter_motion_speed(reading->encounter, row,
-                                                                       time, reading->sums->impulse,
-                                                                       reading->sums->moment);
+        power += reading->sums->force[row] * encounter_motion_speed(reading->encounter, row, time,
+                                                                    reading->sums->impulse,
+                                                                    reading->sums->moment);
     }
     return joint->has_friction ? reading->power - power : 0.0;
 }

@@ -191,6 +191,47 @@ static void a_torque_over_time_turns_as_its_integral(void **state)
     trajectory_destroy(run);
 }
 
+// A motor's rotor takes a load along by a coupling with backlash: a constant torque does the torque
+// times the angle, however long the steps in which the coupling's impacts are.
+static void a_torque_with_impacts_inside_the_step_does_what_its_angle_says(void **state)
+{
+    (void)state;
+    const double torque = 0.7; // N m
+    Scenario scenario = arm();
+    Linkage *linkage = &scenario.linkage;
+    linkage->body_count = linkage->joint_count = 2;
+    linkage->bodies[0] = (Body){.name = "rotor", .mass = 1.0, .inertia = 5e-4};
+    linkage->bodies[1] = (Body){.name = "load", .mass = 2.0, .inertia = 3e-3};
+    linkage->joints[0] = (Joint){.name = "bearing", .body_a = LINKAGE_GROUND, .body_b = 0};
+    linkage->joints[1] = (Joint){
+        .name = "coupling",
+        .body_a = 0,
+        .body_b = 1,
+        .limits = {.kind = LIMIT_BACKLASH, .backlash = 2.0 * M_PI / 180.0},
+        .contact = {.stiffness = 500.0, .exponent = 1.0, .viscous = 0.2},
+    };
+    linkage->torque =
+        (Torque){.joint = 0, .table = {.count = 1, .times = {0.0}, .values = {torque}}};
+    scenario.ode.stepping = ODE_STAGGERED;
+    scenario.ode.map = ODE_MAP_IMPULSE;
+    scenario.run.duration = 0.3;
+    scenario.run.samples = 20; // a step each
+    scenario.run.step = 0.015;
+    Trajectory *run = complete_run(&scenario, BACKEND_ODE);
+    const double angle = at_end(run, 0)->angle;
+    double by_speeds = 0.0;
+    for (size_t i = 1; i < run->sample_count; i++) {
+        by_speeds +=
+            0.5 * (run->times[i] - run->times[i - 1]) *
+            (trajectory_motion(run, i - 1, 0)->omega + trajectory_motion(run, i, 0)->omega);
+    }
+    assert_true(run->joints[1].impacts > 0);
+    assert_close(run->energy.drive_work, torque * angle, 1e-12);
+    // control: the means of the speeds at the ends of steps
+    assert_true(fabs(by_speeds - angle) > 1e-3 * angle);
+    trajectory_destroy(run);
+}
+
 // The same table as a force on a mass of 0.5 kg, along a line.
 static void a_force_over_time_pushes_a_slider_as_its_integral(void **state)
 {
@@ -283,6 +324,7 @@ int main(void)
         cmocka_unit_test(a_damped_oscillator_decays_as_its_closed_form),
         cmocka_unit_test(a_strong_damper_is_stable_at_any_step),
         cmocka_unit_test(a_torque_over_time_turns_as_its_integral),
+        cmocka_unit_test(a_torque_with_impacts_inside_the_step_does_what_its_angle_says),
         cmocka_unit_test(a_force_over_time_pushes_a_slider_as_its_integral),
         cmocka_unit_test(a_force_between_lever_and_block_keeps_their_angular_momentum),
     };
