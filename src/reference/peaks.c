@@ -65,6 +65,20 @@ static bool has_peak(const Peak *peak)
            OVERSHOOT * fmax(peak->value, peak->last) > peak->largest;
 }
 
+// When a maximum of one quantity is passed up to the end of a step, s; INFINITY: not at all. It is
+// sought once, however many maxima of other contacts the step is interrupted for.
+static double seek(Peak *peak, Search search, double start_s, double end_s)
+{
+    if (!peak->is_sought) {
+        double time = end_s;
+        const bool is_found =
+            root_find(peak_rate, &search, start_s, end_s, NARROW * (end_s - start_s), &time);
+        peak->is_sought = true;
+        peak->passes_s = is_found && time > start_s ? time : INFINITY;
+    }
+    return peak->passes_s;
+}
+
 // Leaves a contact where it is now, or at its end.
 static void leave(Peak *peak, bool is_pressing)
 {
@@ -72,9 +86,21 @@ static void leave(Peak *peak, bool is_pressing)
         peak->was_rising = peak->rate > 0.0;
         peak->last = peak->value;
         peak->largest = fmax(peak->largest, peak->value);
+        peak->is_sought = false;
     } else {
         // the next contact begins with both rising from nothing
         *peak = (Peak){.was_rising = true};
+    }
+}
+
+// Passes all maxima at a time, which several contacts may have at once.
+static void pass(Peaks *peaks, const System *system, double time_s)
+{
+    for (size_t i = 0; i < PEAK_COUNT * system->contact_count; i++) {
+        Peak *peak = &peaks->peaks[i];
+        if (peak->is_sought && peak->passes_s <= time_s) {
+            peak->was_rising = false;
+        }
     }
 }
 
@@ -96,7 +122,6 @@ double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
 {
     const System *system = stepper->system;
     double earliest = end_s;
-    Peak *passed = NULL;
     for (size_t i = 0; i < system->contact_count; i++) {
         Peak *pair = &peaks->peaks[PEAK_COUNT * i];
         if (system->contacts[i].mode != CONTACT_PRESSING) {
@@ -104,18 +129,14 @@ double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
         }
         look_at(pair, system, state, i);
         for (int which = PEAK_FORCE; which < PEAK_COUNT; which++) {
-            Search search = {stepper, peaks->scratch, i, which};
-            double time = end_s;
-            if (has_peak(&pair[which]) &&
-                root_find(peak_rate, &search, start_s, end_s, NARROW * (end_s - start_s), &time) &&
-                time < earliest && time > start_s) {
-                earliest = time;
-                passed = &pair[which];
+            const Search search = {stepper, peaks->scratch, i, which};
+            if (has_peak(&pair[which])) {
+                earliest = fmin(earliest, seek(&pair[which], search, start_s, end_s));
             }
         }
     }
-    if (passed != NULL) {
-        passed->was_rising = false;
+    if (earliest < end_s) {
+        pass(peaks, system, earliest);
         return earliest;
     }
     for (size_t i = 0; i < PEAK_COUNT * system->contact_count; i++) {

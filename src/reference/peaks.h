@@ -10,6 +10,8 @@ typedef struct Peak {
     double largest; // since the contact began, at the times looked at
     double rate;
     double value;
+    bool is_sought;  // since it was left
+    double passes_s; // when it has a maximum then, s; INFINITY: it has none
 } Peak;
 
 // Force and depth of each contact.

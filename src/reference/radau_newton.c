@@ -6,21 +6,21 @@
 #include "reference/radau_newton.h"
 
 #include "base/dense.h"
+#include "base/room.h"
+#include "base/zeroed.h"
 
-#include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 
 void radau_newton_init(RadauNewton *newton, size_t count)
 {
     *newton = (RadauNewton){.count = count};
-    newton->by_position[0] = calloc(2 * RADAU_STAGES * count * count, sizeof(double));
-    newton->own = calloc(RADAU_STAGES * count, sizeof *newton->own);
-    newton->sizes = calloc(count, sizeof *newton->sizes);
-    newton->members = calloc(count, sizeof *newton->members);
-    newton->is_taken = calloc(count, sizeof *newton->is_taken);
-    assert(newton->by_position[0] != NULL && newton->own != NULL && newton->sizes != NULL &&
-           newton->members != NULL && newton->is_taken != NULL);
+    newton->by_position[0] = zeroed(2 * RADAU_STAGES * count * count, sizeof(double));
+    newton->own = zeroed(RADAU_STAGES * count, sizeof *newton->own);
+    newton->blocks = zeroed(count, sizeof *newton->blocks);
+    newton->members = zeroed(count, sizeof *newton->members);
+    newton->place = zeroed(count, sizeof *newton->place);
+    newton->is_taken = zeroed(count, sizeof *newton->is_taken);
+    newton->pivots = zeroed(RADAU_STAGES * count, sizeof *newton->pivots);
     for (size_t i = 0; i < RADAU_STAGES; i++) {
         newton->by_position[i] = newton->by_position[0] + i * count * count;
         newton->by_rate[i] = newton->by_position[0] + (RADAU_STAGES + i) * count * count;
@@ -29,10 +29,14 @@ void radau_newton_init(RadauNewton *newton, size_t count)
 
 void radau_newton_finish(RadauNewton *newton)
 {
+    for (size_t i = 0; newton->blocks != NULL && i < newton->count; i++) {
+        banded_finish(&newton->blocks[i].banded);
+    }
     free(newton->by_position[0]);
     free(newton->own);
-    free(newton->sizes);
+    free(newton->blocks);
     free(newton->members);
+    free(newton->place);
     free(newton->is_taken);
     free(newton->matrix);
     free(newton->pivots);
@@ -52,7 +56,8 @@ static bool are_coupled(const RadauNewton *newton, size_t n, size_t a, size_t b)
     return false;
 }
 
-// Sorts the coordinates into blocks: each takes in, one after the other, all that its members feel.
+// Sorts the coordinates into blocks: each takes in, one after the other, all that its members feel,
+// so that those which feel each other are near to each other.
 static void find_blocks(RadauNewton *newton, size_t n)
 {
     bool *is_taken = newton->is_taken;
@@ -64,72 +69,135 @@ static void find_blocks(RadauNewton *newton, size_t n)
             continue;
         }
         const size_t start = count;
+        RadauBlock *block = &newton->blocks[newton->block_count++];
+        block->reach = 0;
         is_taken[first] = true;
+        newton->place[first] = 0;
         newton->members[count++] = first;
         for (size_t at = start; at < count; at++) {
             for (size_t k = 0; k < n; k++) {
-                if (!is_taken[k] && are_coupled(newton, n, newton->members[at], k)) {
+                if (is_taken[k] && newton->place[k] + start <= at) {
+                    continue;
+                }
+                if (!are_coupled(newton, n, newton->members[at], k)) {
+                    continue;
+                }
+                if (!is_taken[k]) {
                     is_taken[k] = true;
+                    newton->place[k] = count - start;
                     newton->members[count++] = k;
                 }
+                const size_t apart = newton->place[k] + start - at;
+                block->reach = apart > block->reach ? apart : block->reach;
             }
         }
-        newton->sizes[newton->block_count++] = count - start;
+        block->size = count - start;
+        const size_t reach = RADAU_STAGES * (block->reach + 1);
+        block->is_banded = 2 * reach + 1 < RADAU_STAGES * block->size;
     }
 }
 
-// One part of Newton's matrix of a block of m coordinates: how the equation of a stage depends on
-// the rates of another.
-static void fill_part(const RadauNewton *newton, size_t n, const size_t *members, size_t m,
-                      double step, size_t stage, size_t other, double *matrix)
+// How the equation of one coordinate at a stage depends on the rate of another at another stage.
+typedef struct Weights {
+    double rate;                    // s, of the derivative by rates at the other stage
+    double positions[RADAU_STAGES]; // s^2, of those by coordinates at all stages
+} Weights;
+
+static Weights weights_of(double step, size_t stage, size_t other)
+{
+    Weights weights = {.rate = step * RADAU_COUPLING[stage][other]};
+    for (size_t k = 0; k < RADAU_STAGES; k++) {
+        weights.positions[k] = RADAU_COUPLING[stage][k] * RADAU_COUPLING[k][other];
+    }
+    return weights;
+}
+
+static double entry(const RadauNewton *newton, size_t at, const Weights *weights, double step,
+                    size_t other, bool is_own)
+{
+    double twice = 0.0;
+    for (size_t k = 0; k < RADAU_STAGES; k++) {
+        twice += weights->positions[k] * newton->by_position[k][at];
+    }
+    return (is_own ? 1.0 : 0.0) - weights->rate * newton->by_rate[other][at] - step * step * twice;
+}
+
+// Newton's matrix of a block, the unknowns stage by stage.
+static void fill_dense(const RadauNewton *newton, const size_t *members, size_t m, double step,
+                       double *matrix)
 {
     const size_t width = RADAU_STAGES * m;
-    double weights[RADAU_STAGES];
-    for (size_t k = 0; k < RADAU_STAGES; k++) {
-        weights[k] = RADAU_COUPLING[stage][k] * RADAU_COUPLING[k][other];
-    }
-    for (size_t row = 0; row < m; row++) {
-        for (size_t column = 0; column < m; column++) {
-            const size_t at = members[row] * n + members[column];
-            double twice = 0.0;
-            for (size_t k = 0; k < RADAU_STAGES; k++) {
-                twice += weights[k] * newton->by_position[k][at];
+    for (size_t stage = 0; stage < RADAU_STAGES; stage++) {
+        for (size_t other = 0; other < RADAU_STAGES; other++) {
+            const Weights weights = weights_of(step, stage, other);
+            for (size_t row = 0; row < m; row++) {
+                for (size_t column = 0; column < m; column++) {
+                    const size_t at = members[row] * newton->count + members[column];
+                    matrix[(stage * m + row) * width + other * m + column] =
+                        entry(newton, at, &weights, step, other, stage == other && row == column);
+                }
             }
-            const double own = stage == other && row == column ? 1.0 : 0.0;
-            matrix[(stage * m + row) * width + other * m + column] =
-                own - step * RADAU_COUPLING[stage][other] * newton->by_rate[other][at] -
-                step * step * twice;
         }
     }
+}
+
+// The same banded, the unknowns coordinate by coordinate.
+static void fill_banded(const RadauNewton *newton, const size_t *members, RadauBlock *block,
+                        double step)
+{
+    const size_t m = block->size;
+    banded_shape(&block->banded, RADAU_STAGES * m, RADAU_STAGES * (block->reach + 1));
+    for (size_t stage = 0; stage < RADAU_STAGES; stage++) {
+        for (size_t other = 0; other < RADAU_STAGES; other++) {
+            const Weights weights = weights_of(step, stage, other);
+            for (size_t row = 0; row < m; row++) {
+                const size_t first = row > block->reach ? row - block->reach : 0;
+                for (size_t column = first; column < m && column <= row + block->reach; column++) {
+                    const size_t at = members[row] * newton->count + members[column];
+                    *banded_entry(&block->banded, RADAU_STAGES * row + stage,
+                                  RADAU_STAGES * column + other) =
+                        entry(newton, at, &weights, step, other, stage == other && row == column);
+                }
+            }
+        }
+    }
+}
+
+// Makes room for the blocks that are not banded.
+static void make_room(RadauNewton *newton)
+{
+    size_t room = 0;
+    for (size_t i = 0; i < newton->block_count; i++) {
+        const size_t width = RADAU_STAGES * newton->blocks[i].size;
+        room += newton->blocks[i].is_banded ? 0 : width * width;
+    }
+    newton->matrix = room_grow(newton->matrix, &newton->room, room, sizeof *newton->matrix);
 }
 
 bool radau_newton_factor(RadauNewton *newton, double step)
 {
-    const size_t n = newton->count;
-    if (newton->matrix == NULL) {
-        const size_t width = RADAU_STAGES * n;
-        newton->matrix = malloc(width * width * sizeof *newton->matrix);
-        newton->pivots = malloc(width * sizeof *newton->pivots);
-        assert(newton->matrix != NULL && newton->pivots != NULL);
-    }
-    find_blocks(newton, n);
+    find_blocks(newton, newton->count);
+    make_room(newton);
     const size_t *members = newton->members;
     double *matrix = newton->matrix;
     size_t *pivots = newton->pivots;
-    for (size_t block = 0; block < newton->block_count; block++) {
-        const size_t m = newton->sizes[block];
-        const size_t width = RADAU_STAGES * m;
-        for (size_t i = 0; i < RADAU_STAGES; i++) {
-            for (size_t j = 0; j < RADAU_STAGES; j++) {
-                fill_part(newton, n, members, m, step, i, j, matrix);
+    for (size_t i = 0; i < newton->block_count; i++) {
+        RadauBlock *block = &newton->blocks[i];
+        const size_t width = RADAU_STAGES * block->size;
+        if (block->is_banded) {
+            fill_banded(newton, members, block, step);
+            if (!banded_factor(&block->banded)) {
+                return false;
             }
+        } else {
+            fill_dense(newton, members, block->size, step, matrix);
+            if (!dense_factor(width, matrix, pivots)) {
+                return false;
+            }
+            matrix += width * width;
+            pivots += width;
         }
-        if (!dense_factor(width, matrix, pivots)) {
-            return false;
-        }
-        members += m;
-        matrix += width * width;
-        pivots += width;
+        members += block->size;
     }
     return true;
 }
@@ -141,18 +209,26 @@ void radau_newton_solve(const RadauNewton *newton, double *change)
     const double *matrix = newton->matrix;
     const size_t *pivots = newton->pivots;
     double *own = newton->own;
-    for (size_t block = 0; block < newton->block_count; block++) {
-        const size_t m = newton->sizes[block];
+    for (size_t i = 0; i < newton->block_count; i++) {
+        const RadauBlock *block = &newton->blocks[i];
+        const size_t m = block->size;
         const size_t width = RADAU_STAGES * m;
-        for (size_t i = 0; i < width; i++) {
-            own[i] = change[i / m * n + members[i % m]];
+        // strides of stages and of coordinates
+        const size_t by_stage = block->is_banded ? 1 : m;
+        const size_t by_member = block->is_banded ? RADAU_STAGES : 1;
+        for (size_t k = 0; k < width; k++) {
+            own[k / m * by_stage + k % m * by_member] = change[k / m * n + members[k % m]];
         }
-        dense_substitute(width, matrix, pivots, own);
-        for (size_t i = 0; i < width; i++) {
-            change[i / m * n + members[i % m]] = own[i];
+        if (block->is_banded) {
+            banded_substitute(&block->banded, own);
+        } else {
+            dense_substitute(width, matrix, pivots, own);
+            matrix += width * width;
+            pivots += width;
+        }
+        for (size_t k = 0; k < width; k++) {
+            change[k / m * n + members[k % m]] = own[k / m * by_stage + k % m * by_member];
         }
         members += m;
-        matrix += width * width;
-        pivots += width;
     }
 }

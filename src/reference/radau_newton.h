@@ -1,11 +1,22 @@
 // The linear equations of Newton's method for the stages of an implicit step. Coordinates that have
-// nothing to do with one another are in separate blocks, each factored by itself.
+// nothing to do with one another are in separate blocks, each factored by itself; a block whose
+// coordinates meet only their neighbours, as those of a long chain, is banded.
 #pragma once
 
+#include "base/banded.h"
 #include "reference/radau_table.h"
 
 #include <stdbool.h>
 #include <stddef.h>
+
+// Coordinates that feel one another, directly or by others.
+typedef struct RadauBlock {
+    size_t size; // of them
+    size_t
+        reach; // how far apart two are at most, in the block's order, of which one feels the other
+    bool is_banded;
+    Banded banded; // owned
+} RadauBlock;
 
 typedef struct RadauNewton {
     size_t count; // of coordinates
@@ -13,12 +24,15 @@ typedef struct RadauNewton {
     double *by_position[RADAU_STAGES];
     double *by_rate[RADAU_STAGES];
     size_t block_count;
-    size_t *sizes;   // coordinates, by block
-    size_t *members; // which they are, block by block
+    RadauBlock *blocks; // as many as there are coordinates
+    size_t *members;    // which they are, block by block
     // room to work in, owned like all of the above
     bool *is_taken;
     double *own;
-    double *matrix; // blocks one behind the other; NULL before the first
+    size_t *place; // of a coordinate in its block
+    double
+        *matrix; // of the blocks that are not banded, one behind the other; NULL before the first
+    size_t room; // of it
     size_t *pivots;
 } RadauNewton;
 

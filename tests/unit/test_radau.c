@@ -217,7 +217,7 @@ static void systems_side_by_side_move_as_each_alone(void **state)
     // control: they are solved for in two blocks, the larger one of coordinates that are not
     // neighbours
     assert_int_equal(radau->newton.block_count, 2);
-    assert_int_equal(radau->newton.sizes[0], 2);
+    assert_int_equal(radau->newton.blocks[0].size, 2);
     assert_int_equal(radau->newton.members[1], 2);
     finish(&integrator, radau);
 }
