@@ -185,11 +185,6 @@ void encounter_explicit_extend(const Encounter *encounter, const EncounterExplic
     }
 }
 
-static double force_size(const double force[2])
-{
-    return sqrt(force[0] * force[0] + force[1] * force[1]);
-}
-
 // h^3 times the third derivative of a joint's force, N.
 static double third_change(const EncounterJoint *joint, const EncounterExplicit *step,
                            const EncounterPoint *from)
@@ -229,10 +224,11 @@ double encounter_explicit_error(const Encounter *encounter, EncounterExplicit *s
             fastest = fmax(fastest, 1.5 * fabs(pose.approach_speed) / depth);
         }
         const double changes = third_change(joint, step, from);
+        const double *force = inside->force + joint->first_row;
         const double allowed =
             joint->tolerance * fmax(joint->force_per_speed * fmax(fabs(pose.approach_speed),
                                                                   REMEMBERED * joint->impact_speed),
-                                    force_size(inside->force + joint->first_row));
+                                    vec2_length((Vec2){force[0], force[1]}));
         // error over what is allowed, of either order at this length
         const double theta = fastest * h;
         const double errors[2] = {ERROR_FACTORS[0] * theta * changes / allowed,
