@@ -4,8 +4,3 @@
 #pragma once
 
 typedef double Double2 __attribute__((vector_size(2 * sizeof(double))));
-
-static inline Double2 double2_of(double both)
-{
-    return (Double2){both, both};
-}
