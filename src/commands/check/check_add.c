@@ -35,26 +35,30 @@ static void add(CheckAdd *work, const Trajectory *run, const char *part, const c
     measure->metrics[measure->count++] = metric;
 }
 
-static void add_real(CheckAdd *work, const Trajectory *run, const char *part, const char *name,
-                     double value, double scale)
+// A number of which rounding is that of something else, if that is larger than its scale.
+static void add_beside(CheckAdd *work, const Trajectory *run, const char *part, const char *name,
+                       double value, double scale, double beside)
 {
     const double whole = fmax(fabs(value), scale);
     add(work, run, part, name,
-        (CheckMetric){
-            .kind = CHECK_REAL, .value = value, .scale = whole, .floor = ROUNDING * whole});
+        (CheckMetric){.kind = CHECK_REAL,
+                      .value = value,
+                      .scale = whole,
+                      .floor = ROUNDING * fmax(whole, beside)});
+}
+
+static void add_real(CheckAdd *work, const Trajectory *run, const char *part, const char *name,
+                     double value, double scale)
+{
+    add_beside(work, run, part, name, value, scale, 0.0);
 }
 
 // What a joint carries may be nothing but the rounding of what moves the mechanism.
 static void add_force(CheckAdd *work, const Trajectory *run, const Joint *joint, const char *name,
                       double value, double scale)
 {
-    const double whole = fmax(fabs(value), scale);
     const double moving = linkage_is_torsional(joint) ? work->energy : work->force;
-    add(work, run, joint->name, name,
-        (CheckMetric){.kind = CHECK_REAL,
-                      .value = value,
-                      .scale = whole,
-                      .floor = ROUNDING * fmax(whole, moving)});
+    add_beside(work, run, joint->name, name, value, scale, moving);
 }
 
 static void add_count(CheckAdd *work, const Trajectory *run, const char *part, const char *name,
