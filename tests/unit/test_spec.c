@@ -23,6 +23,18 @@ static void what_is_left_out_has_its_default(void **state)
     spec_finish(&spec);
 }
 
+// The case of a study's first run, which the caller frees.
+static Scenario first_scenario(const Spec *spec)
+{
+    Cell values[RECORD_SETTING_MAX];
+    Scenario scenario;
+    BackendKind backend;
+    Err err = {0};
+    design_values(spec, 0, values);
+    assert_true(design_scenario(spec, values, &scenario, &backend, &err));
+    return scenario;
+}
+
 static void what_is_said_is_kept(void **state)
 {
     (void)state;
@@ -50,12 +62,7 @@ static void what_is_said_is_kept(void **state)
     assert_true(spec.limits.time_s == 0.0);
     assert_int_equal(spec.limits.memory_bytes, 500000000);
     // what was quoted is understood
-    Cell values[RECORD_SETTING_MAX];
-    Scenario scenario;
-    BackendKind backend;
-    Err err = {0};
-    design_values(&spec, 0, values);
-    assert_true(design_scenario(&spec, values, &scenario, &backend, &err));
+    Scenario scenario = first_scenario(&spec);
     assert_string_equal(scenario.title, "one: two");
     assert_true(scenario.linkage.joints[1].clearance.start.x == -3e-6);
     scenario_free(&scenario);
@@ -201,12 +208,7 @@ static void expect_limit(const char *file, const char *words, const char *unit, 
     Spec spec = study_read(file, words);
     assert_int_equal(spec.variable_count, 1);
     assert_string_equal(spec.variables[0].column_unit, unit);
-    Cell values[RECORD_SETTING_MAX];
-    Scenario scenario;
-    BackendKind backend;
-    Err err = {0};
-    design_values(&spec, 0, values);
-    assert_true(design_scenario(&spec, values, &scenario, &backend, &err));
+    Scenario scenario = first_scenario(&spec);
     double found = NAN;
     for (size_t i = 0; i < scenario.linkage.joint_count; i++) {
         const Limits *limits = &scenario.linkage.joints[i].limits;
