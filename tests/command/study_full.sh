@@ -16,7 +16,8 @@ cd "$folder" || exit 1
 cat >s.yaml <<END
 title: A study that fills the disk
 case: $cases/paper/ideal-nominal.yaml
-set: {run.samples: 36, run.step: 100 us}
+# long enough that a quarter of a second, which is committed at once, does not fill the disk
+set: {run.samples: 36, run.step: 15 us}
 vary:
   drive.speed: {from: 500 rpm, to: 1500 rpm, count: 300}
   scheme: [direct/plain, direct/staggered]
