@@ -30,6 +30,7 @@ typedef struct StepRecord {
     const SolverPart *part; // whose bodies and joints these are, in its order; NULL: all
     bool is_partial;        // others are still to be stepped as far as this part: of the state now
                             // only this one may be observed
+    double reached_s;       // of the last of several parts: up to where all have been stepped
     double start_s;
     double end_s;
     double joint_s;           // the instant that the joints' states belong to
@@ -66,9 +67,8 @@ typedef struct Solver {
     // Makes the state at time zero. On failure *state stays NULL.
     bool (*open)(const Scenario *scenario, void **state, Err *err);
     // Takes one step of the solver's own choosing towards stop_s. It may end beyond stop_s only
-    // if observe can look back into the step. A solver that hands on parts may take several,
-    // though not at first, whose last one reaches stop_s or ends before. Fails with ERR_SOLVER,
-    // saying when and why.
+    // if observe can look back into the step. A solver that hands on parts may take several of
+    // each, though not at first. Fails with ERR_SOLVER, saying when and why.
     bool (*step)(void *state, double stop_s, Err *err);
     // Optional: takes a step as `step` does, but one that nobody wants a record of, which may take
     // less. Writes when it ended, s. NULL: step and record do.
@@ -90,6 +90,12 @@ typedef struct Solver {
     void (*close)(void *state);
 } Solver;
 
+// Up to where the whole linkage has been stepped with a record that is not partial, s.
+static inline double solver_reached(const StepRecord *record)
+{
+    return record->part != NULL ? record->reached_s : record->end_s;
+}
+
 // Takes a step of a solver that nobody wants a record of, and writes when it ended, s.
 static inline bool solver_stride(const Solver *solver, void *state, double stop_s, double *end_s,
                                  Err *err)
@@ -102,7 +108,7 @@ static inline bool solver_stride(const Solver *solver, void *state, double stop_
             return false;
         }
         const StepRecord record = solver->record(state);
-        *end_s = record.end_s;
+        *end_s = solver_reached(&record);
         if (!record.is_partial) {
             return true;
         }

@@ -9,7 +9,7 @@
 #include "ode/impulse_parts.h"
 
 #include "base/zeroed.h"
-#include "ode/impulse_members.h"
+#include "model/members.h"
 #include "ode/stepping.h"
 
 #include <math.h>
@@ -42,14 +42,14 @@ size_t impulse_parts_count(const Scenario *scenario)
     if (is_whole(scenario) || scenario->linkage.body_count == 0) {
         return 1;
     }
-    return impulse_members_count(&scenario->linkage);
+    return members_count(&scenario->linkage);
 }
 
 void impulse_parts_close(void *state)
 {
     Parts *parts = state;
     if (parts != NULL) {
-        impulse_members_free(parts->members, parts->count, parts->of->solver);
+        members_free(parts->members, parts->count, parts->of->solver);
         free(parts);
     }
 }
@@ -59,7 +59,7 @@ bool impulse_parts_open(const Scenario *scenario, const ImpulsePartsOf *of, void
     Parts *parts = zeroed(1, sizeof *parts);
     parts->scenario = scenario;
     parts->of = of;
-    parts->members = impulse_members_make(scenario, &parts->count);
+    parts->members = members_make(scenario, &parts->count);
     for (size_t i = 0; i < parts->count; i++) {
         Member *member = &parts->members[i];
         if (!of->solver->open(member->scenario, &member->state, err)) {
@@ -119,6 +119,7 @@ bool impulse_parts_step(void *state, double stop_s, Err *err)
     parts->record.elastic = parts->elastic;
     parts->record.part = &member->part;
     parts->record.is_partial = !parts->is_over || parts->now + 1 < parts->count;
+    parts->record.reached_s = parts->record.end_s;
     return true;
 }
 
@@ -130,21 +131,8 @@ StepRecord impulse_parts_record(const void *state)
 
 static void observe(const Parts *parts, Member *member, double time_s, Sample *sample)
 {
-    const SolverPart *part = &member->part;
-    const bool is_spatial = member->scenario->linkage.is_spatial;
     parts->of->solver->observe(member->state, time_s, &member->sample);
-    for (size_t k = 0; k < part->body_count; k++) {
-        sample->bodies[part->bodies[k]] = member->sample.bodies[k];
-        if (is_spatial) {
-            sample->space_bodies[part->bodies[k]] = member->sample.space_bodies[k];
-        }
-    }
-    for (size_t k = 0; k < part->joint_count; k++) {
-        sample->joints[part->joints[k]] = member->sample.joints[k];
-        if (is_spatial) {
-            sample->space_joints[part->joints[k]] = member->sample.space_joints[k];
-        }
-    }
+    member_show(member, sample);
 }
 
 static void set_time(const Parts *parts, double time_s, Sample *sample)

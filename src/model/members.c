@@ -1,7 +1,7 @@
 // Which mechanisms of a linkage share nothing but the ground?
 //
 // Those whose bodies no joint and no spring connects, not by way of the driven body either.
-#include "ode/impulse_members.h"
+#include "model/members.h"
 
 #include "base/leaders.h"
 #include "base/zeroed.h"
@@ -132,7 +132,7 @@ static LinkageRoom *count_rooms(const Linkage *whole, const size_t *member_of, s
     return rooms;
 }
 
-size_t impulse_members_count(const Linkage *linkage)
+size_t members_count(const Linkage *linkage)
 {
     size_t *member_of = zeroed(linkage->body_count, sizeof *member_of);
     const size_t count = number_members(linkage, member_of);
@@ -140,7 +140,7 @@ size_t impulse_members_count(const Linkage *linkage)
     return count;
 }
 
-Member *impulse_members_make(const Scenario *scenario, size_t *count)
+Member *members_make(const Scenario *scenario, size_t *count)
 {
     const Linkage *whole = &scenario->linkage;
     size_t *member_of = zeroed(whole->body_count, sizeof *member_of);
@@ -172,7 +172,7 @@ Member *impulse_members_make(const Scenario *scenario, size_t *count)
     return members;
 }
 
-void impulse_members_free(Member *members, size_t count, const Solver *solver)
+void members_free(Member *members, size_t count, const Solver *solver)
 {
     for (size_t i = 0; i < count; i++) {
         if (members[i].state != NULL) {
@@ -184,4 +184,29 @@ void impulse_members_free(Member *members, size_t count, const Solver *solver)
         free(members[i].joints);
     }
     free(members);
+}
+
+void member_show_bodies(const Member *member, Sample *sample)
+{
+    const bool is_spatial = member->scenario->linkage.is_spatial;
+    for (size_t k = 0; k < member->part.body_count; k++) {
+        const int body = member->bodies[k];
+        sample->bodies[body] = member->sample.bodies[k];
+        if (is_spatial) {
+            sample->space_bodies[body] = member->sample.space_bodies[k];
+        }
+    }
+}
+
+void member_show(const Member *member, Sample *sample)
+{
+    const bool is_spatial = member->scenario->linkage.is_spatial;
+    member_show_bodies(member, sample);
+    for (size_t k = 0; k < member->part.joint_count; k++) {
+        const int joint = member->joints[k];
+        sample->joints[joint] = member->sample.joints[k];
+        if (is_spatial) {
+            sample->space_joints[joint] = member->sample.space_joints[k];
+        }
+    }
 }
