@@ -41,7 +41,8 @@ typedef struct Gathering {
     size_t place_count;
     Touch *places; // owned
     size_t play_count;
-    Gathered *play; // owned
+    Gathered *play;  // owned
+    size_t *play_of; // by joint, its number there plus one; 0: it has none; owned
 } Gathering;
 
 static void gathering_finish(Gathering *gathering)
@@ -52,6 +53,7 @@ static void gathering_finish(Gathering *gathering)
     }
     response_finish(&gathering->response);
     free(gathering->play);
+    free(gathering->play_of);
     free(gathering->places);
     free(gathering);
 }
@@ -62,11 +64,13 @@ static Gathering *gathering_start(const Scenario *scenario)
     assert(gathering != NULL);
     gathering->scenario = scenario;
     gathering->play = calloc(scenario->linkage.joint_count + 1, sizeof *gathering->play);
-    assert(gathering->play != NULL);
+    gathering->play_of = calloc(scenario->linkage.joint_count + 1, sizeof *gathering->play_of);
+    assert(gathering->play != NULL && gathering->play_of != NULL);
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         if (linkage_has_play(&scenario->linkage.joints[i])) {
             Gathered *gathered = &gathering->play[gathering->play_count++];
             gathered->joint = (int)i;
+            gathering->play_of[i] = gathering->play_count;
             gathered->masses = calloc(MASS_COUNT, sizeof *gathered->masses);
             assert(gathered->masses != NULL);
         }
@@ -121,10 +125,15 @@ static void add_speed(Gathered *gathered, double speed)
 
 static void add_record(Gathering *gathering, const StepRecord *record)
 {
-    for (size_t i = 0; i < gathering->play_count; i++) {
-        Gathered *gathered = &gathering->play[i];
-        const double approach = record->approach[gathered->joint];
-        const JointState *state = &record->joints[gathered->joint];
+    const size_t count = solver_joint_count(record->part, &gathering->scenario->linkage);
+    for (size_t k = 0; k < count; k++) {
+        const size_t play = gathering->play_of[solver_joint(record->part, k)];
+        if (play == 0) {
+            continue;
+        }
+        Gathered *gathered = &gathering->play[play - 1];
+        const double approach = record->approach[k];
+        const JointState *state = &record->joints[k];
         if (state->is_touching && !gathered->was_touching && approach > 0.0) {
             add_speed(gathered, approach);
         }
@@ -146,7 +155,7 @@ static bool step_to(Gathering *gathering, void *state, double time_s, double *re
         }
         const StepRecord record = solver->record(state);
         add_record(gathering, &record);
-        *reached_s = record.end_s;
+        *reached_s = record.is_partial ? *reached_s : solver_reached(&record);
     }
     return true;
 }

@@ -33,7 +33,8 @@ typedef struct Loop {
     size_t steps;
     double reached_s;    // simulated
     double width_s;      // length of the last step
-    double *angle;       // rad, of each body there, by adding up omega; owned, like the next two
+    double *told_s;      // by body, the end of its last record; owned, like the next three
+    double *angle;       // rad, there, by adding up omega
     double *omega;       // rad/s, there
     Sample sample;       // the last one
     double elastic;      // J, stored in the contacts there
@@ -44,6 +45,7 @@ typedef struct Loop {
 static void make_room(Loop *loop)
 {
     const Linkage *linkage = &loop->scenario->linkage;
+    loop->told_s = zeroed(linkage->body_count, sizeof *loop->told_s);
     loop->angle = zeroed(linkage->body_count, sizeof *loop->angle);
     loop->omega = zeroed(linkage->body_count, sizeof *loop->omega);
     loop->sample = sample_create(linkage);
@@ -56,13 +58,13 @@ static void make_room(Loop *loop)
 // Adds what each body has turned in a step: enough to know which turn an angle is in.
 static void add_turning(Loop *loop, const StepRecord *record)
 {
-    const double start_s = record->part != NULL ? record->start_s : loop->reached_s;
-    const double width_s = record->end_s - start_s;
     const size_t count = solver_body_count(record->part, &loop->scenario->linkage);
     for (size_t k = 0; k < count; k++) {
         const size_t i = solver_body(record->part, k);
+        const double width_s = record->end_s - loop->told_s[i];
         loop->angle[i] += 0.5 * width_s * (loop->omega[i] + record->omega[k]);
         loop->omega[i] = record->omega[k];
+        loop->told_s[i] = record->end_s;
     }
 }
 
@@ -94,8 +96,9 @@ static bool take_step(Loop *loop, double stop_s, Err *err)
             return false;
         }
     } while (record.is_partial);
-    loop->width_s = record.end_s - loop->reached_s;
-    loop->reached_s = record.end_s;
+    const double reached_s = solver_reached(&record);
+    loop->width_s = reached_s - loop->reached_s;
+    loop->reached_s = reached_s;
     loop->elastic = record.elastic;
     return true;
 }
@@ -109,7 +112,7 @@ static void unwrap_angles(const Loop *loop, Sample *sample)
         if ((int)i == driven) {
             continue;
         }
-        const double ahead = loop->omega[i] * (loop->reached_s - sample->time_s);
+        const double ahead = loop->omega[i] * (loop->told_s[i] - sample->time_s);
         double *angle = &sample->bodies[i].angle;
         const double apart = loop->angle[i] - ahead - *angle;
         // hardly ever is it another turn than that of the solver
@@ -321,6 +324,7 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     }
     snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
     solver->close(loop.state);
+    free(loop.told_s);
     free(loop.angle);
     free(loop.omega);
     sample_free(&loop.sample);

@@ -4,6 +4,7 @@
 //   chain      an open chain of N links that hangs on a pivot
 //   pendula    N pendulums side by side, independent of one another
 //   four-bars  N four-bars in a row; neighbours share an upright
+//   separate   N four-bars side by side, independent of one another
 //   scissors   a scissor linkage of N crossed pairs of bars, one foot of which is pinned
 // All links are 1 m long and of 1 kg; the seed draws the angles at which they start, at rest. With
 // a clearance all joints have play. The same numbers give the same case on every machine.
@@ -110,6 +111,36 @@ static void write_four_bars(Case *made)
     }
 }
 
+static void write_separate(Case *made)
+{
+    const Case start = *made;
+    printf("bodies:\n");
+    for (size_t i = 0; i < made->count; i++) {
+        const double angle = 0.5 * M_PI + draw_between(&made->draw, -0.3, 0.3);
+        const Point left = along((Point){2.0 * (double)i, 0.0}, angle, 0.5);
+        const Point top = along(left, angle, 0.5);
+        write_body("left", i, left, angle);
+        write_body("right", i, (Point){left.x + 1.0, left.y}, angle);
+        write_body("coupler", i, (Point){top.x + 0.5, top.y}, 0.0);
+    }
+    made->draw = start.draw;
+    printf("joints:\n");
+    for (size_t i = 0; i < made->count; i++) {
+        const double angle = 0.5 * M_PI + draw_between(&made->draw, -0.3, 0.3);
+        const Point foot = {2.0 * (double)i, 0.0};
+        const Point top = along(foot, angle, 1.0);
+        char between[64];
+        snprintf(between, sizeof between, "ground, left-%zu", i);
+        write_joint(made, "left-foot", i, between, foot);
+        snprintf(between, sizeof between, "ground, right-%zu", i);
+        write_joint(made, "right-foot", i, between, (Point){foot.x + 1.0, 0.0});
+        snprintf(between, sizeof between, "left-%zu, coupler-%zu", i, i);
+        write_joint(made, "left-pin", i, between, top);
+        snprintf(between, sizeof between, "coupler-%zu, right-%zu", i, i);
+        write_joint(made, "right-pin", i, between, (Point){top.x + 1.0, top.y});
+    }
+}
+
 static void write_scissors(Case *made)
 {
     const double angle = 0.25 * M_PI + draw_between(&made->draw, -0.2, 0.2);
@@ -143,10 +174,8 @@ typedef struct Kind {
 } Kind;
 
 static const Kind KINDS[] = {
-    {"chain", write_chain},
-    {"pendula", write_pendula},
-    {"four-bars", write_four_bars},
-    {"scissors", write_scissors},
+    {"chain", write_chain},       {"pendula", write_pendula},   {"four-bars", write_four_bars},
+    {"separate", write_separate}, {"scissors", write_scissors},
 };
 
 int main(int argc, char **argv)
@@ -169,7 +198,7 @@ int main(int argc, char **argv)
             return 0;
         }
     }
-    fprintf(stderr, "usage: growing_case chain|pendula|four-bars|scissors N [SEED "
+    fprintf(stderr, "usage: growing_case chain|pendula|four-bars|separate|scissors N [SEED "
                     "[CLEARANCE_UM]]\n");
     return 2;
 }

@@ -1,8 +1,8 @@
 // Do mechanisms that share nothing but the ground move as each does alone, and long chains with
 // play in all pins as the reference says?
 //
-// Contacts integrated within the step, which are handed on in parts: of what is between the samples
-// nothing may be lost, counted twice, or put to another time.
+// Contacts integrated within ODE's step, and the reference: both hand on one mechanism after the
+// other. Of what is between the samples nothing may be lost, counted twice, or put to another time.
 #include "close.h"
 #include "complete_run.h"
 #include "kept.h"
@@ -71,9 +71,9 @@ static Trajectory *run_ode(const Scenario *scenario)
 }
 
 // The same, and its spikes are looked for.
-static Trajectory *trace_ode(const Scenario *scenario)
+static Trajectory *trace(const Scenario *scenario, const Solver *solver)
 {
-    Trajectory *run = tracer_run(scenario, &ODE_SOLVER, (RunWatch){NULL, NULL});
+    Trajectory *run = tracer_run(scenario, solver, (RunWatch){NULL, NULL});
     assert_non_null(run);
     assert_true(run->is_complete);
     return run;
@@ -149,20 +149,19 @@ static void assert_same_between(const Trajectory *alone, const Trajectory *toget
     assert_true(alone->force_spikes[k].count > 2);
 }
 
-static void each_moves_as_alone(void **state)
+static void check_alone(const Solver *solver)
 {
-    (void)state;
     Scenario all = make_scenario();
     double lost = 0.0;
     double rubbed = 0.0;
     for (int number = 0; number < PENDULA; number++) {
         add_pendulum(&all, number);
     }
-    Trajectory *together = trace_ode(&all);
+    Trajectory *together = trace(&all, solver);
     for (int number = 0; number < PENDULA; number++) {
         Scenario one = make_scenario();
         add_pendulum(&one, number);
-        Trajectory *alone = trace_ode(&one);
+        Trajectory *alone = trace(&one, solver);
         for (size_t k = 0; k < LINKS; k++) {
             const size_t at = LINKS * (size_t)number + k;
             for (size_t i = 0; i < alone->sample_count; i++) {
@@ -191,6 +190,45 @@ static void each_moves_as_alone(void **state)
     assert_close(together->energy.friction, rubbed, 1e-12);
     assert_true(rubbed > 0.0);
     assert_true(fabs(together->energy.residual) < 1e-3 * lost);
+    trajectory_destroy(together);
+}
+
+static void each_moves_as_alone_in_ode(void **state)
+{
+    (void)state;
+    check_alone(&ODE_SOLVER);
+}
+
+static void each_moves_as_alone_in_the_reference(void **state)
+{
+    (void)state;
+    check_alone(&REFERENCE_SOLVER);
+}
+
+// Without records, as certification runs it.
+static void each_moves_as_alone_where_motions_alone_are_asked_for(void **state)
+{
+    (void)state;
+    Scenario all = make_scenario();
+    for (int number = 0; number < PENDULA; number++) {
+        add_pendulum(&all, number);
+    }
+    Trajectory *together = run_motion(&all, &REFERENCE_SOLVER, (RunWatch){NULL, NULL});
+    assert_true(together->is_complete);
+    assert_true(together->duration_s == all.run.duration);
+    for (int number = 0; number < PENDULA; number++) {
+        Scenario one = make_scenario();
+        add_pendulum(&one, number);
+        Trajectory *alone = run_motion(&one, &REFERENCE_SOLVER, (RunWatch){NULL, NULL});
+        for (size_t k = 0; k < alone->sample_count * LINKS; k++) {
+            const size_t at = LINKS * (size_t)number + k % LINKS;
+            const Motion *a = trajectory_motion(alone, k / LINKS, k % LINKS);
+            const Motion *b = trajectory_motion(together, k / LINKS, at);
+            assert_true(a->omega == b->omega && a->angle == b->angle);
+            assert_true(a->position.x == b->position.x && a->velocity.y == b->velocity.y);
+        }
+        trajectory_destroy(alone);
+    }
     trajectory_destroy(together);
 }
 
@@ -304,7 +342,9 @@ static void many_pins_that_meet_their_walls_at_once_follow_the_reference(void **
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_moves_as_alone),
+        cmocka_unit_test(each_moves_as_alone_in_ode),
+        cmocka_unit_test(each_moves_as_alone_in_the_reference),
+        cmocka_unit_test(each_moves_as_alone_where_motions_alone_are_asked_for),
         cmocka_unit_test(many_pins_that_meet_their_walls_at_once_follow_the_reference),
         cmocka_unit_test(a_chain_with_play_in_all_pins_follows_the_reference),
     };
