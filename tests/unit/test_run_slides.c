@@ -97,6 +97,23 @@ static void a_picture_shows_the_panels_of_the_joints_that_are_there(void **state
     }
 }
 
+static void the_legend_has_the_ideal_sliders_that_the_picture_draws(void **state)
+{
+    Fixture *fixture = *state;
+    Joint *joint = &fixture->scenario.linkage.joints[3];
+    char words[LINKAGE_NAME_SIZE + 16];
+    snprintf(words, sizeof words, ">joint %s<", joint->name);
+    // the control: of an ideal pivot beside a pin with play nothing is drawn
+    for (int is_slider = 0; is_slider < 2; is_slider++) {
+        joint->kind = is_slider == 1 ? JOINT_PRISMATIC : JOINT_REVOLUTE;
+        Text svg;
+        text_init(&svg);
+        plot_run_write(&fixture->report, &svg);
+        assert_int_equal(strstr(svg.data, words) != NULL, is_slider == 1);
+        text_finish(&svg);
+    }
+}
+
 static void a_picture_shows_where_limited_coordinates_are(void **state)
 {
     Fixture *fixture = *state;
@@ -149,6 +166,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_block_has_its_own_lines_and_keys, fixture_set_up,
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_picture_shows_the_panels_of_the_joints_that_are_there,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(the_legend_has_the_ideal_sliders_that_the_picture_draws,
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_picture_shows_where_limited_coordinates_are,
                                         fixture_set_up, fixture_tear_down),

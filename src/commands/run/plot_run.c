@@ -200,11 +200,11 @@ static void add_marks(Legend *legend, const Trajectory *run)
                      (PlotStyle){"#333333", 1.0, 1.0, NULL});
 }
 
-// The colour of a body or joint that is shown.
+// The colour of a body or joint that a panel draws.
 static void add_colour(Legend *legend, const PlotView *view, bool is_joint, size_t index,
                        const char *what, const char *name)
 {
-    if (plot_look_shows(view, is_joint, index)) {
+    if (plot_view_set(view, is_joint)->is_named[index]) {
         PlotStyle style = plot_style(1, plot_look_colour(view, is_joint, index));
         style.width = 3.0;
         char words[LINKAGE_NAME_SIZE + 16];

@@ -5,6 +5,7 @@
 #include "commands/run/plot_view.h"
 
 #include "base/zeroed.h"
+#include "commands/run/slide_range.h"
 
 #include <math.h>
 
@@ -106,6 +107,7 @@ static PlotSet set_create(size_t count)
         .is_shown = zeroed(count, sizeof(bool)),
         .is_other = zeroed(count, sizeof(bool)),
         .is_left_out = zeroed(count, sizeof(bool)),
+        .is_named = zeroed(count, sizeof(bool)),
         .of_palette = zeroed(count, sizeof(unsigned)),
     };
 }
@@ -115,11 +117,12 @@ static void set_free(PlotSet *set)
     free(set->is_shown);
     free(set->is_other);
     free(set->is_left_out);
+    free(set->is_named);
     free(set->of_palette);
 }
 
-// Takes out of those that are shown what is left out. Colours go by the order of the case, from the
-// one given on.
+// Takes out of those that are shown or named what is left out. Colours go by the order of the case,
+// from the one given on.
 static void settle(PlotSet *set, size_t count, unsigned first_colour)
 {
     unsigned colour = first_colour;
@@ -128,8 +131,9 @@ static void settle(PlotSet *set, size_t count, unsigned first_colour)
         set->is_shown[i] = set->is_shown[i] && !set->is_left_out[i];
         set->left_out += set->is_other[i] ? 1 : 0;
         set->drawn += set->is_shown[i] ? 1 : 0;
+        set->is_named[i] = set->is_shown[i] || (set->is_named[i] && !set->is_left_out[i]);
         set->of_palette[i] = colour;
-        colour += set->is_shown[i] ? 1 : 0;
+        colour += set->is_named[i] ? 1 : 0;
     }
 }
 
@@ -162,6 +166,7 @@ static void choose_joints(PlotView *view)
             if (linkage->joints[i].kind == kind) {
                 ranked[count++].number = i;
                 view->joints.is_shown[i] = !has_clearance || linkage_has_play(&linkage->joints[i]);
+                view->joints.is_named[i] = slide_range_has(&linkage->joints[i]);
             }
         }
         choose(view, true, ranked, count);

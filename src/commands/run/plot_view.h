@@ -9,9 +9,10 @@
 typedef struct PlotSet {
     size_t drawn;      // in the panels of all; the sum of this and the next is what these are about
     size_t left_out;   // of them, because there are so many
-    bool *is_shown;    // it is drawn in them; owned, like the three below
+    bool *is_shown;    // it is drawn in them; owned, like the four below
     bool *is_other;    // it is left out of them
     bool *is_left_out; // from every panel
+    bool *is_named;    // some panel draws it in its colour, which the legend has
     unsigned *of_palette; // the number of its colour
 } PlotSet;
 
