@@ -137,33 +137,68 @@ void plot_joints_forces(const PlotView *view, PlotPanel panel)
 static Vec2 pin_at(const RunReport *report, const Trajectory *run, size_t sample,
                    const PlotPath *path)
 {
-    (void)report;
-    const Vec2 eccentricity = trajectory_state(run, sample, path->joint)->eccentricity;
+    const Vec2 eccentricity =
+        run->space_states == NULL
+            ? trajectory_state(run, sample, path->joint)->eccentricity
+            : plot_pins_across(report, run, sample, path->joint,
+                               trajectory_space_state(run, sample, path->joint)->offset);
     return vec2_scale(path->per_metre, eccentricity);
 }
 
-// How far from the hole's centre a pin comes in x or y: in a unit given as its number per metre, or
-// where that is 0 as a share of the joint's radial clearance.
-static double farthest(const PlotView *view, double per_metre)
+// Whether the path of a pin is drawn, and then in which unit: um, or where there are several pins
+// the joint's radial clearance.
+static bool find_path(const PlotView *view, size_t run, size_t joint, bool is_one, PlotPath *path)
+{
+    const Joint *shape = &view->report->scenario->linkage.joints[joint];
+    if (view->joints.is_left_out[joint] || shape->kind != JOINT_CLEARANCE ||
+        !trajectory_feels_play(view->report->runs[run], shape)) {
+        return false;
+    }
+    *path = (PlotPath){.joint = joint,
+                       .per_metre = is_one ? UNITS_UM : 1.0 / linkage_radial_clearance(shape),
+                       .at = pin_at};
+    return true;
+}
+
+// How far from the hole's centre a pin comes in x or y, in the units of their paths.
+static double farthest(const PlotView *view, bool is_one)
 {
     const RunReport *report = view->report;
     double most = 0.0;
     for (size_t run = 0; run < report->run_count; run++) {
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
-            const Joint *shape = &report->scenario->linkage.joints[joint];
-            const bool is_shown = !view->joints.is_left_out[joint] &&
-                                  shape->kind == JOINT_CLEARANCE &&
-                                  trajectory_feels_play(trajectory, shape);
-            for (size_t i = 0; is_shown && i < trajectory->sample_count; i++) {
-                const Vec2 e = trajectory_state(trajectory, i, joint)->eccentricity;
-                const double scale =
-                    per_metre > 0.0 ? per_metre : 1.0 / linkage_radial_clearance(shape);
-                most = fmax(most, scale * fmax(fabs(e.x), fabs(e.y)));
+            PlotPath path;
+            const bool is_drawn = find_path(view, run, joint, is_one, &path);
+            for (size_t i = 0; is_drawn && i < trajectory->sample_count; i++) {
+                const Vec2 e = pin_at(report, trajectory, i, &path);
+                most = fmax(most, fmax(fabs(e.x), fabs(e.y)));
             }
         }
     }
     return most;
+}
+
+// The directions of a panel are the world's where every hole's axis is z.
+static bool has_tilted_hole(const Linkage *linkage)
+{
+    bool is_tilted = false;
+    for (size_t i = 0; linkage->is_spatial && i < linkage->joint_count; i++) {
+        const Vec3 axis = linkage->joints[i].space.axis;
+        is_tilted |= linkage->joints[i].kind == JOINT_CLEARANCE && (axis.x != 0.0 || axis.y != 0.0);
+    }
+    return is_tilted;
+}
+
+static void name_directions(const Linkage *linkage, bool is_one, PlotPanel *panel)
+{
+    if (has_tilted_hole(linkage)) {
+        panel->x.title = is_one ? "across the hole's axis, um" : "across / radial clearance";
+        panel->y.title = is_one ? "at right angles to that, um" : "at right angles to that";
+    } else {
+        panel->x.title = is_one ? "e_x, um" : "e_x / radial clearance";
+        panel->y.title = is_one ? "e_y, um" : "e_y / radial clearance";
+    }
 }
 
 void plot_joints_paths(const PlotView *view, PlotPanel panel)
@@ -182,22 +217,17 @@ void plot_joints_paths(const PlotView *view, PlotPanel panel)
     const bool is_one = joints_with_play == 1;
     const double radius = is_one ? clearance * UNITS_UM : 1.0;
     // the same scale in both directions: the circle is one
-    const double high = fmax(1.15 * radius, 1.06 * farthest(view, is_one ? UNITS_UM : 0.0));
+    const double high = fmax(1.15 * radius, 1.06 * farthest(view, is_one));
     const double wide = high * panel.width / panel.height;
     panel.title = "Pin in its hole; dashed: where they touch";
-    panel.x =
-        (Axis){.title = is_one ? "e_x, um" : "e_x / radial clearance", .low = -wide, .high = wide};
-    panel.y =
-        (Axis){.title = is_one ? "e_y, um" : "e_y / radial clearance", .low = -high, .high = high};
+    panel.x = (Axis){.low = -wide, .high = wide};
+    panel.y = (Axis){.low = -high, .high = high};
+    name_directions(linkage, is_one, &panel);
     plot_enter(&panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-            if (!view->joints.is_left_out[joint] &&
-                linkage->joints[joint].kind == JOINT_CLEARANCE &&
-                trajectory_feels_play(report->runs[run], &linkage->joints[joint])) {
-                const double play = linkage_radial_clearance(&linkage->joints[joint]);
-                const PlotPath path = {
-                    .joint = joint, .per_metre = is_one ? UNITS_UM : 1.0 / play, .at = pin_at};
+            PlotPath path;
+            if (find_path(view, run, joint, is_one, &path)) {
                 plot_look_path(view, &panel, run, &path);
             }
         }

@@ -58,7 +58,7 @@ void plot_look_others(const PlotView *view, const PlotPanel *panel, PlotQuantity
 typedef struct PlotPath {
     size_t joint;
     int end;          // of a hole in space; 0: the line is not dashed
-    double per_metre; // the panel's unit, of a joint in the plane
+    double per_metre; // the panel's unit, of a pin in its hole
     Vec2 (*at)(const RunReport *report, const Trajectory *run, size_t sample,
                const struct PlotPath *path);
 } PlotPath;
@@ -70,9 +70,14 @@ void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, co
 // marks for the spikes of the table.
 void plot_joints_forces(const PlotView *view, PlotPanel panel);
 
-// The path of each pin in its hole, as the eccentricity over the radial clearance where several
-// joints have play.
+// The path of each pin in its hole, in space of its middle across the hole's axis, as the
+// eccentricity over the radial clearance where several joints have play.
 void plot_joints_paths(const PlotView *view, PlotPanel panel);
+
+// An offset, m, of a pin in its hole in space as what it is across the hole's axis, in two
+// directions at right angles: the world's x and y where that axis is z.
+Vec2 plot_pins_across(const RunReport *report, const Trajectory *run, size_t sample, size_t joint,
+                      Vec3 offset);
 
 // Of a linkage in space: how each pin tilts, and the path of its axis at both ends of its hole in
 // the last run that has any.

@@ -15,8 +15,27 @@ static const PlotQuantity TILT = {"tilt, mrad", true, -1, tilt_of};
 static bool shows(const PlotView *view, size_t run, size_t joint)
 {
     return !view->joints.is_left_out[joint] &&
+           view->report->scenario->linkage.joints[joint].kind == JOINT_CLEARANCE &&
            trajectory_feels_play(view->report->runs[run],
                                  &view->report->scenario->linkage.joints[joint]);
+}
+
+// The world's z is turned into the hole's axis on the shortest way, and x and y with it: so they
+// move as smoothly as the axis does. An axis that points to the back at the start is taken the
+// other way round.
+Vec2 plot_pins_across(const RunReport *report, const Trajectory *run, size_t sample, size_t joint,
+                      Vec3 offset)
+{
+    const SpaceEnd hole = space_end(&report->scenario->linkage, joint, 0);
+    const SpaceMotion *first = trajectory_space_motion(run, 0, 0);
+    const SpaceMotion *motions = trajectory_space_motion(run, sample, 0);
+    const double sign = space_direction(first, hole.body, hole.axis).z < 0.0 ? -1.0 : 1.0;
+    const Vec3 axis = vec3_scale(sign, space_direction(motions, hole.body, hole.axis));
+    // only an axis that turns over comes to -z, where no way is the shortest
+    const double share = 1.0 / fmax(1.0 + axis.z, 1e-9);
+    const Vec3 x = {1.0 - share * axis.x * axis.x, -share * axis.x * axis.y, -axis.x};
+    const Vec3 y = {-share * axis.x * axis.y, 1.0 - share * axis.y * axis.y, -axis.y};
+    return (Vec2){vec3_dot(x, offset), vec3_dot(y, offset)};
 }
 
 // The tilt at which a pin touches at both ends, mrad.
@@ -63,20 +82,14 @@ void plot_pins_tilts(const PlotView *view, PlotPanel panel)
     plot_leave(&panel);
 }
 
-// Where the pin's axis is at an end of the hole, as a share of the play, in two directions across
-// the hole's axis: x and y where that is z.
+// Where the pin's axis is at an end of the hole, as a share of the play.
 static Vec2 end_at(const RunReport *report, const Trajectory *run, size_t sample,
                    const PlotPath *path)
 {
-    const Linkage *linkage = &report->scenario->linkage;
-    const SpaceEnd hole = space_end(linkage, path->joint, 0);
-    const SpaceMotion *motions = trajectory_space_motion(run, sample, 0);
-    const Vec3 axis = space_direction(motions, hole.body, hole.axis);
-    const Vec3 first = vec3_normal_to(axis);
     const Vec3 offset = trajectory_space_state(run, sample, path->joint)->ends[path->end];
-    const double scale = 1.0 / linkage_radial_clearance(&linkage->joints[path->joint]);
-    return (Vec2){scale * vec3_dot(first, offset),
-                  scale * vec3_dot(vec3_cross(axis, first), offset)};
+    const Joint *joint = &report->scenario->linkage.joints[path->joint];
+    return vec2_scale(1.0 / linkage_radial_clearance(joint),
+                      plot_pins_across(report, run, sample, path->joint, offset));
 }
 
 // How far the axis of any pin comes from the middle of an end of its hole, of its play.
