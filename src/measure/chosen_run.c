@@ -159,6 +159,7 @@ static Trajectory *finish(const Chosen *chosen, Trial *trial)
     run->wall_s = chosen->wall_s;
     run->error_estimate = trial->held_error;
     run->estimate_s = trial->holds ? chosen->window.until_s : trial->held_s;
+    run->estimate_is_cut = trial->holds && chosen->window.is_uncertain;
     run->is_short = !trial->holds;
     const size_t length = strlen(run->label);
     snprintf(run->label + length, sizeof run->label - length, ", error %.3g wanted",

@@ -88,15 +88,16 @@ static TrialWindow shorten(const Trajectory *truth, const Trajectory *other, Tri
     for (size_t k = 0; k < truth->sample_count && truth->times[k] <= whole.until_s; k++) {
         largest = fmax(largest, distance_at(other, truth, k, scales));
     }
-    TrialWindow window = {0.0, 0.0};
+    TrialWindow window = {.until_s = 0.0};
     double so_far = 0.0;
     for (size_t k = 0; largest > 0.0 && k < truth->sample_count; k++) {
         so_far = fmax(so_far, distance_at(other, truth, k, scales));
         const double uncertainty = whole.uncertainty * so_far / largest;
-        if (truth->times[k] > whole.until_s || !(uncertainty <= most)) {
+        window.is_uncertain = truth->times[k] <= whole.until_s && !(uncertainty <= most);
+        if (truth->times[k] > whole.until_s || window.is_uncertain) {
             break;
         }
-        window = (TrialWindow){truth->times[k], uncertainty};
+        window = (TrialWindow){.until_s = truth->times[k], .uncertainty = uncertainty};
     }
     free(scales);
     return window;
@@ -113,7 +114,7 @@ TrialWindow trial_window(const Scenario *scenario, const Truth *truth, double mo
         return whole;
     }
     if (!isfinite(truth->uncertainty)) {
-        return (TrialWindow){0.0, 0.0};
+        return (TrialWindow){.is_uncertain = true};
     }
     Scenario other = *scenario;
     // looser, or tighter where no run is as loose
@@ -121,7 +122,7 @@ TrialWindow trial_window(const Scenario *scenario, const Truth *truth, double mo
     other.reference.tolerance = own < OPTIONS_REFERENCE_LOOSEST / OTHER ? OTHER * own : own / OTHER;
     Trajectory *run = run_scenario(&other, registry_solver(BACKEND_REFERENCE), watch);
     const TrialWindow window =
-        run->is_complete ? shorten(truth->trajectory, run, whole, most) : (TrialWindow){0.0, 0.0};
+        run->is_complete ? shorten(truth->trajectory, run, whole, most) : (TrialWindow){.is_uncertain = true};
     trajectory_destroy(run);
     return window;
 }

@@ -142,6 +142,7 @@ typedef struct Trajectory {
     size_t trials;          // made to choose the step for a tolerance, this run included; else 0
     double error_estimate;  // 1, of omega: an upper bound, where the step was chosen; else 0
     double estimate_s;      // s, up to which it holds
+    bool estimate_is_cut;   // the reference is too uncertain after that for the error wanted
     bool is_short;          // that is less than was asked for: the trials had no more steps
     uint64_t hash;          // of every step's velocities, accelerations and joint forces
 } Trajectory;

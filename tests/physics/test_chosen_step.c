@@ -149,6 +149,7 @@ static void where_motion_cannot_be_predicted_the_error_holds_up_to_there(void **
     assert_true(error.omega_max > 1e-3);
     assert_false(run->is_short);
     assert_near(run->estimate_s, truth.horizon_s, 1e-12);
+    assert_false(run->estimate_is_cut); // it is the motion that ends it
     trajectory_destroy(run);
     truth_finish(&truth);
 }
@@ -266,6 +267,7 @@ static void where_the_reference_is_not_sure_enough_the_window_ends(void **state)
     Trajectory *run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
     assert_true(run->is_complete);
     assert_true(run->estimate_s > 0.0 && run->estimate_s < scenario_duration(&scenario));
+    assert_true(run->estimate_is_cut);
     assert_true(error_of(run, &scenario, BACKEND_REFERENCE) <= run->error_estimate);
     assert_true(run->error_estimate <= 1e-6);
     trajectory_destroy(run);
@@ -273,6 +275,7 @@ static void where_the_reference_is_not_sure_enough_the_window_ends(void **state)
     truth.uncertainty = 1e-8;
     run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
     assert_near(run->estimate_s, scenario_duration(&scenario), 1e-12);
+    assert_false(run->estimate_is_cut);
     trajectory_destroy(run);
     truth_finish(&truth);
 }

@@ -49,6 +49,29 @@ static void the_text_says_what_was_modelled_and_what_came_out(void **state)
     text_finish(&text);
 }
 
+static void a_chosen_step_says_why_its_error_is_not_known_further(void **state)
+{
+    Fixture *fixture = *state;
+    Trajectory *run = fixture->runs[1];
+    const double end_s = run->times[run->sample_count - 1];
+    run->trials = 3;
+    run->error_estimate = 5e-5;
+    run->duration_s = 1.0001 * end_s; // whole steps go beyond the last sample
+    static const char UNCERTAIN[] = "the reference is too uncertain";
+    static const char UNPREDICTABLE[] = "the motion cannot be predicted further";
+    for (int i = 0; i < 3; i++) {
+        run->estimate_s = i == 0 ? end_s : 0.5 * end_s;
+        run->estimate_is_cut = i == 1;
+        Text text;
+        text_init(&text);
+        run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+        assert_non_null(strstr(text.data, "Its error is at most 5e-05"));
+        assert_int_equal(strstr(text.data, UNCERTAIN) != NULL, i == 1);
+        assert_int_equal(strstr(text.data, UNPREDICTABLE) != NULL, i == 2);
+        text_finish(&text);
+    }
+}
+
 static void at_most_five_contacts_of_a_joint_are_listed(void **state)
 {
     Fixture *fixture = *state;
@@ -356,6 +379,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_text_says_what_was_modelled_and_what_came_out,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(a_chosen_step_says_why_its_error_is_not_known_further,
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(at_most_five_contacts_of_a_joint_are_listed, fixture_set_up,
                                         fixture_tear_down),

@@ -237,10 +237,13 @@ static void write_chosen(const RunReport *report, const Trajectory *run, Text *t
                     report->scenario->run.tolerance, run->estimate_s * UNITS_MS,
                     run->duration_s * UNITS_MS);
     }
-    const bool is_whole = run->is_short || run->estimate_s >= run->duration_s;
+    // without the reference's doubts what is not whole ends at the horizon, at a sample
+    const bool is_whole = run->is_short || run->estimate_s >= run->times[run->sample_count - 1];
     text_append(text, "  Its error is at most %.2g up to %.4g ms%s.\n", run->error_estimate,
                 run->estimate_s * UNITS_MS,
-                is_whole ? "" : "; after that the reference is too uncertain");
+                run->estimate_is_cut ? "; after that the reference is too uncertain to say"
+                : is_whole           ? ""
+                                     : "; the motion cannot be predicted further");
 }
 
 void run_tables_cost(const RunReport *report, const Style *style, Text *text)
