@@ -18,9 +18,9 @@ static const double LONG = 60.0;       // s: longer work is announced where prog
 static const double LONG_QUIET = 20.0; // s: likewise, where none is shown
 static const RunWatch NOBODY = {NULL, NULL};
 
-// A time in words, such as "3.2 h".
-static void write_time(double time_s, char *words, size_t size)
+void long_work_time(double time_s, char words[LONG_WORK_TIME_SIZE])
 {
+    const size_t size = LONG_WORK_TIME_SIZE;
     if (time_s < 120.0) {
         snprintf(words, size, "%.0f s", time_s);
     } else if (time_s < 7200.0) {
@@ -65,8 +65,8 @@ bool long_work_warn(const char *what, double time_s, bool is_quiet)
     if (!(time_s > long_work_limit(is_quiet))) {
         return false;
     }
-    char words[32];
-    write_time(time_s, words, sizeof words);
+    char words[LONG_WORK_TIME_SIZE];
+    long_work_time(time_s, words);
     output_say("jointplay: warning: %s takes about %s\n", what, words);
     return true;
 }

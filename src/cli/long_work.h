@@ -8,6 +8,11 @@
 // The time, s, from which on work is long: less where no progress is shown.
 double long_work_limit(bool is_quiet);
 
+enum { LONG_WORK_TIME_SIZE = 32 };
+
+// A time, s, in words, such as "3.2 h".
+void long_work_time(double time_s, char words[LONG_WORK_TIME_SIZE]);
+
 // Warns on standard error of work that takes long; returns whether it did.
 bool long_work_warn(const char *what, double time_s, bool is_quiet);
 

@@ -8,16 +8,29 @@
 #include <stdio.h>
 
 static const double WARN_AFTER = 5.0; // s: by then the pace of a run is known
-static const double WARN_QUIET =
-    15.0; // s: the longest wait without a message where no progress is shown
+// s: the longest wait without a message where no progress is shown
+static const double WARN_QUIET = 15.0;
+static const double WARN_ANYWAY = 30.0; // s: likewise, of runs each of which is over soon
+
+// How long the run under way, or the trial of it, has gone on, s.
+static double part_time(const Progress *progress)
+{
+    return progress->run_wall_s - progress->part_from_s;
+}
+
+// How long it will still go on at its pace, s; at a share of 0 that is unknown, and INFINITY.
+static double part_left(const Progress *progress, double share)
+{
+    return share > 0.0 ? part_time(progress) * (1.0 - share) / share : INFINITY;
+}
 
 // Where no progress is shown, warns once of a run that takes long at its pace.
 static void warn_of_run(Progress *progress, double share)
 {
     const bool is_quiet = progress->line.is_quiet;
-    const double wall_s = progress->run_wall_s - progress->part_from_s;
-    // at a share of 0 the pace is unknown
+    const double wall_s = part_time(progress);
     if (progress->is_warned || wall_s < WARN_AFTER || !(share > 0.0) ||
+        part_left(progress, share) < STATUS_LINE_SOON ||
         !(wall_s > long_work_limit(is_quiet) * share)) {
         return;
     }
@@ -32,12 +45,14 @@ static double all_time(const Progress *progress)
     return fmax(progress->before_s + progress->run_wall_s, status_line_time(&progress->line));
 }
 
-// Likewise of work that goes on for long in a run without a pace, or in many short ones.
-static void warn_of_all(Progress *progress)
+// Likewise of work that goes on for long in a run without a pace, or in many short ones: the one
+// under way may be the last.
+static void warn_of_all(Progress *progress, double share)
 {
     const double all_s = all_time(progress);
+    const bool may_end = part_left(progress, share) < STATUS_LINE_SOON;
     if (progress->line.is_quiet && !progress->is_warned && !progress->is_told &&
-        all_s > WARN_QUIET) {
+        all_s > (may_end ? WARN_ANYWAY : WARN_QUIET)) {
         progress->is_told = true;
         output_say("jointplay: warning: %s%s goes on for longer than %.0f s%s\n", progress->backend,
                    progress->doing, WARN_QUIET,
@@ -61,9 +76,9 @@ static void show(double share, double wall_s, void *context)
     StatusLine *line = &progress->line;
     if (line->is_quiet || !line->is_terminal) {
         warn_of_run(progress, share);
-        warn_of_all(progress);
+        warn_of_all(progress, share);
     }
-    if (!line->is_quiet && status_line_is_due(line, all_time(progress))) {
+    if (!line->is_quiet && status_line_is_due(line, all_time(progress), INFINITY)) {
         char words[LINKAGE_NAME_SIZE + sizeof progress->doing + 64];
         snprintf(words, sizeof words,
                  line->is_terminal ? "%s%s: %.0f %%, %.1f s" : "%s%s: %.0f %%, %.0f s",

@@ -5,8 +5,11 @@
 #include "base/printable.h"
 #include "cli/output.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+const double STATUS_LINE_SOON = 5.0; // s
 
 static const double FIRST_LINE = 2.0;     // s: no line before that
 static const double TERMINAL_PAUSE = 0.2; // s, between two lines on a terminal
@@ -25,11 +28,11 @@ double status_line_time(const StatusLine *line)
     return clock_now_s() - line->started_s;
 }
 
-bool status_line_is_due(StatusLine *line, double wall_s)
+bool status_line_is_due(StatusLine *line, double wall_s, double left_s)
 {
     const double pause = line->is_terminal ? TERMINAL_PAUSE : LOG_PAUSE;
     if (line->is_quiet) {
-        const bool is_due = wall_s >= QUIET_LINE && !line->is_warned;
+        const bool is_due = wall_s >= QUIET_LINE && left_s >= STATUS_LINE_SOON && !line->is_warned;
         line->is_warned = line->is_warned || is_due;
         return is_due;
     }
@@ -44,6 +47,9 @@ void status_line_append_left(Text *words, double left_s)
 {
     const double minute = 60.0;
     const double hour = 3600.0;
+    if (!(left_s >= 0.5) || !isfinite(left_s)) {
+        return;
+    }
     // two digits: it is an estimate
     if (left_s < 2.0 * minute) {
         text_append(words, ", some %.0f s left", left_s);

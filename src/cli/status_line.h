@@ -7,6 +7,9 @@
 
 #include <stdbool.h>
 
+// Work with less than that left, s, is over before a warning of it is read.
+extern const double STATUS_LINE_SOON;
+
 typedef struct StatusLine {
     bool is_quiet;
     bool is_terminal;
@@ -21,10 +24,12 @@ StatusLine status_line_start(bool is_quiet);
 // The time since the start, s.
 double status_line_time(const StatusLine *line);
 
-// Whether a line is due at this time after the start, s; if so it counts as written.
-bool status_line_is_due(StatusLine *line, double wall_s);
+// Whether a line is due at this time after the start, s, with about so much left, s, INFINITY where
+// that is not known; if so it counts as written. Where quiet, what is over soon is not worth one.
+bool status_line_is_due(StatusLine *line, double wall_s, double left_s);
 
-// Appends ", some 40 s left", in seconds, minutes or hours.
+// Appends ", some 40 s left", in seconds, minutes or hours; nothing where none is left or it is not
+// known.
 void status_line_append_left(Text *words, double left_s);
 
 // Writes the line.

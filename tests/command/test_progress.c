@@ -129,7 +129,7 @@ static void time_goes_on_from_run_to_run(void **state)
         progress_end(&progress);
         stop_listening(&listener);
         assert_string_equal(listener.output,
-                            is_quiet ? "jointplay: warning: reference goes on for longer than 15 s"
+                            is_quiet ? "jointplay: warning: ode goes on for longer than 15 s"
                                        ", with the runs before it\n"
                                      : "reference: 11 %, 1 s\node: 22 %, 2 s\node: 33 %, 3 s\n");
     }
@@ -145,6 +145,12 @@ static void who_wants_quiet_is_told_of_long_work_alone(void **state)
     const RunWatch quick = progress_watch(&progress, "quick");
     for (int i = 1; i <= 14; i++) {
         quick.progress(i / 14.0, i, quick.context);
+    }
+    // with two seconds left a warning is of no use
+    progress_begin(&progress, true);
+    const RunWatch nearly = progress_watch(&progress, "quickly over");
+    for (int i = 1; i <= 17; i++) {
+        nearly.progress(i / 17.0, i, nearly.context);
     }
     progress_begin(&progress, true);
     const RunWatch slow = progress_watch(&progress, "slow");
@@ -208,7 +214,7 @@ static void who_wants_quiet_gets_one_line_of_long_work(void **state)
     listen_on_pipe(&listener);
     StatusLine line = status_line_start(true);
     for (int i = 1; i <= 60; i++) {
-        if (status_line_is_due(&line, 0.5 * i)) {
+        if (status_line_is_due(&line, 0.5 * i, INFINITY)) {
             char words[32];
             snprintf(words, sizeof words, "searching, %.0f s", 0.5 * i);
             status_line_show(&line, words);
@@ -217,7 +223,10 @@ static void who_wants_quiet_gets_one_line_of_long_work(void **state)
     status_line_end(&line);
     // control: what is short stays silent
     StatusLine brief = status_line_start(true);
-    assert_false(status_line_is_due(&brief, 14.9));
+    assert_false(status_line_is_due(&brief, 14.9, INFINITY));
+    // and what is over soon; the control has more left
+    assert_false(status_line_is_due(&brief, 16.0, 2.0));
+    assert_true(status_line_is_due(&brief, 16.0, 20.0));
     stop_listening(&listener);
     assert_string_equal(listener.output, "jointplay: warning: long work: searching, 15 s\n");
 }

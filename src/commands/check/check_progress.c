@@ -3,6 +3,8 @@
 
 #include "base/text.h"
 
+#include <math.h>
+
 CheckProgress check_progress_start(const char *doing, bool is_quiet)
 {
     return (CheckProgress){.doing = doing, .line = status_line_start(is_quiet)};
@@ -11,7 +13,10 @@ CheckProgress check_progress_start(const char *doing, bool is_quiet)
 void check_progress_show(CheckProgress *progress, const CheckWorkState *state)
 {
     const double wall_s = status_line_time(&progress->line);
-    if (!status_line_is_due(&progress->line, wall_s)) {
+    // what is left is that of this case alone
+    const bool is_last = progress->case_number >= progress->case_count;
+    const double left_s = is_last && state->left_s > 0.0 ? state->left_s : INFINITY;
+    if (!status_line_is_due(&progress->line, wall_s, left_s)) {
         return;
     }
     Text words;
@@ -26,9 +31,7 @@ void check_progress_show(CheckProgress *progress, const CheckWorkState *state)
         text_append(&words, "%zu of %zu starts", state->done, state->total);
     }
     text_append(&words, ", %.0f s", wall_s);
-    if (state->left_s > 0.0) {
-        status_line_append_left(&words, state->left_s);
-    }
+    status_line_append_left(&words, state->left_s);
     status_line_show(&progress->line, words.data);
     text_finish(&words);
 }

@@ -11,6 +11,7 @@
 #include "commands/map/mapping_report.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -22,7 +23,7 @@ typedef struct Watching {
 
 static void show(Watching *watching, const char *words)
 {
-    if (status_line_is_due(&watching->line, status_line_time(&watching->line))) {
+    if (status_line_is_due(&watching->line, status_line_time(&watching->line), INFINITY)) {
         status_line_show(&watching->line, words);
     }
 }

@@ -23,7 +23,9 @@ enum { PRINT_SIZE = 17 };
 // How far it has come, and how long the rest will take.
 static void show_progress(const SweepState *state, void *line)
 {
-    if (!status_line_is_due(line, state->wall_s)) {
+    const double rate = (double)state->made / state->wall_s;
+    const double left_s = state->made > 0 ? (double)(state->total - state->done) / rate : INFINITY;
+    if (!status_line_is_due(line, state->wall_s, left_s)) {
         return;
     }
     Text words;
@@ -33,9 +35,8 @@ static void show_progress(const SweepState *state, void *line)
         text_append(&words, ", %" PRIu64 " failed", state->failed);
     }
     if (state->made > 0) {
-        const double rate = (double)state->made / state->wall_s;
         text_append(&words, ", %.3g runs/s", rate);
-        status_line_append_left(&words, (double)(state->total - state->done) / rate);
+        status_line_append_left(&words, left_s);
     }
     status_line_show(line, words.data);
     text_finish(&words);
