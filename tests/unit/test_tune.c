@@ -1,5 +1,6 @@
 // Does a search take the right settings from the errors it is given?
 #include "commands/tune/tune.h"
+#include "commands/tune/tune_left.h"
 
 #include "close.h"
 #include "kept.h"
@@ -89,6 +90,37 @@ static void only_steps_that_no_order_reaches_are_left_out(void **state)
     // near the target none is left out
     take(tune, 0, 31, 3e-4, 1000);
     assert_int_equal(tune->schemes[0].next, 32);
+    tune_destroy(tune);
+}
+
+static void what_is_left_goes_by_the_order_that_was_seen(void **state)
+{
+    (void)state;
+    const Scenario scenario = loose();
+    Tune *tune = search(&scenario, "direct/plain/corrected,direct/staggered/midpoint", 1e-4);
+    TuneLeft left = {.is_in = {true}, .best = INFINITY, .margin = 1.3, .limit_s = 1e9};
+    assert_near(tune_left(tune, &left), 0.0, 0.0);
+    // order 2 between a step and half of it: 1.5e-3 needs a quarter of that, six settings on, and
+    // one more to confirm it
+    take(tune, 0, 40, 6.0e-3, 10000);
+    take(tune, 0, 43, 1.5e-3, 20000);
+    tune->schemes[0].next = 44;
+    double sum_s = 0.0;
+    for (int index = 44; index <= 50; index++) {
+        sum_s += tune_time(tune, 0, index);
+    }
+    assert_near(tune_left(tune, &left), sum_s, 1e-12);
+    // not what costs more than the best, nor what takes too long
+    left.best = tune_time(tune, 0, 45) / left.margin;
+    assert_near(tune_left(tune, &left), tune_time(tune, 0, 44) + tune_time(tune, 0, 45), 1e-12);
+    left.best = INFINITY;
+    left.limit_s = 1.001 * tune_time(tune, 0, 44);
+    assert_near(tune_left(tune, &left), tune_time(tune, 0, 44), 1e-12);
+    // a scheme that has ended, unless it is taken up again
+    tune->schemes[0].outcome = TUNE_COSTLIER;
+    assert_near(tune_left(tune, &left), 0.0, 0.0);
+    left.is_reopened = true;
+    assert_near(tune_left(tune, &left), tune_time(tune, 0, 44), 1e-12);
     tune_destroy(tune);
 }
 
@@ -186,6 +218,7 @@ int main(void)
         cmocka_unit_test(values_are_preferred_numbers),
         cmocka_unit_test(a_lucky_dip_is_no_setting),
         cmocka_unit_test(only_steps_that_no_order_reaches_are_left_out),
+        cmocka_unit_test(what_is_left_goes_by_the_order_that_was_seen),
         cmocka_unit_test(a_run_that_fails_or_is_unstable_has_no_error),
         cmocka_unit_test(the_uncertainty_of_the_truth_counts_as_error),
         cmocka_unit_test(the_cheapest_wins_by_steps_and_by_time),

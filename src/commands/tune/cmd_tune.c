@@ -25,16 +25,19 @@ typedef struct Watching {
     StatusLine line;
 } Watching;
 
-static void wait(const char *doing, void *context)
+static void wait(const char *doing, double left_s, void *context)
 {
     Watching *watching = context;
     const double wall_s = status_line_time(&watching->line);
-    if (status_line_is_due(&watching->line, wall_s)) {
-        char words[128];
-        snprintf(words, sizeof words, "%s: %zu settings run, %.0f s", doing,
-                 watching->tune->trial_count, wall_s);
-        status_line_show(&watching->line, words);
+    if (!status_line_is_due(&watching->line, wall_s, left_s)) {
+        return;
     }
+    Text words;
+    text_init(&words);
+    text_append(&words, "%s: %zu settings run, %.0f s", doing, watching->tune->trial_count, wall_s);
+    status_line_append_left(&words, left_s);
+    status_line_show(&watching->line, words.data);
+    text_finish(&words);
 }
 
 // Whether there is a contact to write; where there is none, why.

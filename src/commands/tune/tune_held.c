@@ -35,7 +35,7 @@ static void watch_run(double share, double wall_s, void *context)
     (void)share;
     (void)wall_s;
     const TuneSearch *search = context;
-    search->wait("measuring the contacts", search->context);
+    search->wait("measuring the contacts", INFINITY, search->context);
 }
 
 static void add_settings(Tune *tune, TuneLinearSource source, const Held *held)
@@ -68,7 +68,7 @@ static void add_impact(const TuneSearch *search, const MappingJoint *joint, doub
     const double closing = fmax(speed, search->scenario->contact.impact_speed_floor);
     if (mass > 0.0 && closing > 0.0 &&
         mapping_contact_make(search->scenario, joint, mass, closing, contact, &ignored)) {
-        search->wait("finding constants for the step", search->context);
+        search->wait("finding constants for the step", INFINITY, search->context);
         held_find(contact, search->tune->held_s, held);
         add_settings(search->tune, source, held);
     }

@@ -1,16 +1,20 @@
 // How are the runs of a search made?
 #include "commands/tune/tune_runs.h"
 
+#include "base/clock.h"
 #include "measure/pool.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 
 typedef struct Making {
     const TuneSearch *search;
     const TuneRuns *runs;
     size_t begun;
-    Task task; // that is about to begin
+    size_t taken;
+    double started_s; // by the clock
+    Task task;        // that is about to begin
 } Making;
 
 static bool next(void *owner, size_t *number, const void **context)
@@ -34,17 +38,34 @@ static bool next(void *owner, size_t *number, const void **context)
 static bool take(void *owner, size_t number, const void *result, const Child *child, Err *err)
 {
     (void)err;
-    const TuneRuns *runs = ((Making *)owner)->runs;
+    Making *making = owner;
+    making->taken++;
+    const TuneRuns *runs = making->runs;
     const LadderRun asked = {.kind = runs->is_timing ? LADDER_TIMING : LADDER_ERROR};
     const LadderRun run = task_run(asked, result, child);
     runs->take(runs->owner, number, &run);
     return true;
 }
 
+// Of runs with a count from those of them that are over.
+static double time_left(const Making *making)
+{
+    const TuneRuns *runs = making->runs;
+    if (runs->choose != NULL) {
+        return runs->left != NULL ? runs->left(runs->owner) / (double)making->search->jobs
+                                  : INFINITY;
+    }
+    if (making->taken == 0) {
+        return INFINITY;
+    }
+    return (clock_now_s() - making->started_s) * (double)(runs->count - making->taken) /
+           (double)making->taken;
+}
+
 static bool wait(void *owner)
 {
     const Making *making = owner;
-    making->search->wait(making->runs->doing, making->search->context);
+    making->search->wait(making->runs->doing, time_left(making), making->search->context);
     return true;
 }
 
@@ -52,7 +73,7 @@ bool tune_runs_make(const TuneSearch *search, const TuneRuns *runs, Err *err)
 {
     Making *making = calloc(1, sizeof *making);
     assert(making != NULL);
-    *making = (Making){.search = search, .runs = runs};
+    *making = (Making){.search = search, .runs = runs, .started_s = clock_now_s()};
     const Pool pool = {
         .jobs = runs->is_timing ? 1 : search->jobs,
         .work = task_measure,

@@ -8,9 +8,10 @@
 typedef struct TuneSearch {
     Tune *tune;
     const Scenario *scenario;
-    size_t jobs;                                    // runs at a time; timing runs go one by one
-    double time_limit_s;                            // of one run
-    void (*wait)(const char *doing, void *context); // a few times a second
+    size_t jobs;         // runs at a time; timing runs go one by one
+    double time_limit_s; // of one run
+    // Called a few times a second, with the time left, s, INFINITY where it is not known.
+    void (*wait)(const char *doing, double left_s, void *context);
     void *context;
     const Truth *truth; // that runs are held against; the search makes it
 } TuneSearch;
@@ -26,6 +27,8 @@ typedef struct TuneRuns {
     void *owner;
     // Chooses the next run; false: none can begin now. NULL: each once, by rising number.
     bool (*choose)(void *owner, size_t *number);
+    // The time, s, that runs which are chosen will still take one after another; NULL: not known.
+    double (*left)(void *owner);
     bool is_timing;    // one at a time, and nothing but the time is measured
     bool is_reference; // runs of the reference, not of ODE
 } TuneRuns;

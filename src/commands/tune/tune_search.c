@@ -7,11 +7,13 @@
 
 #include "base/clock.h"
 #include "commands/tune/tune_held.h"
+#include "commands/tune/tune_left.h"
 #include "commands/tune/tune_linear.h"
 #include "commands/tune/tune_reference.h"
 #include "measure/truth_child.h"
 
 #include <math.h>
+#include <string.h>
 
 // steps of one run: some minutes
 static const double STEPS_MOST = 1e8;
@@ -112,13 +114,50 @@ static void take_next(void *owner, size_t number, const LadderRun *run)
     tune_take(tune, number, tune->schemes[number].next, run);
 }
 
+// What a pass has before it.
+static TuneLeft pass_left(const Pass *pass, bool is_reopened)
+{
+    const Tune *tune = pass->search->tune;
+    TuneLeft left = {.best = best_cost(tune, pass),
+                     .margin = tune->cost == TUNE_TIME ? PRUNE_MARGIN : 1.0,
+                     .limit_s = pass->limit_s,
+                     .is_reopened = is_reopened};
+    memcpy(left.is_in, pass->is_in, sizeof left.is_in);
+    return left;
+}
+
+static Pass plain_pass(const TuneSearch *search)
+{
+    Pass pass = {.search = search, .limit_s = fmin(PLAIN_LIMIT_S, search->time_limit_s)};
+    for (size_t i = 0; i < search->tune->scheme_count; i++) {
+        pass.is_in[i] = tune_is_plain_row(search->tune, search->scenario, i);
+    }
+    return pass;
+}
+
+// With the plain rows that come after it, where none of them has met the target by then.
+static double time_left(void *owner)
+{
+    const Pass *pass = owner;
+    const Tune *tune = pass->search->tune;
+    const TuneLeft own = pass_left(pass, false);
+    double left_s = tune_left(tune, &own);
+    if (pass->limit_s == pass->search->time_limit_s && tune->held_s == 0.0) {
+        const Pass plain = plain_pass(pass->search);
+        const TuneLeft next = pass_left(&plain, true);
+        left_s += isfinite(next.best) ? 0.0 : tune_left(tune, &next);
+    }
+    return left_s;
+}
+
 static bool run_pass(Pass *pass, const char *doing, Err *err)
 {
     const TuneRuns runs = {.doing = doing,
                            .apply = apply_next,
                            .take = take_next,
                            .owner = pass,
-                           .choose = choose_next};
+                           .choose = choose_next,
+                           .left = time_left};
     return tune_runs_make(pass->search, &runs, err);
 }
 
@@ -136,10 +175,7 @@ static bool search_all(const TuneSearch *search, Err *err)
 static bool search_plain(const TuneSearch *search, Err *err)
 {
     Tune *tune = search->tune;
-    Pass pass = {.search = search, .limit_s = fmin(PLAIN_LIMIT_S, search->time_limit_s)};
-    for (size_t i = 0; i < tune->scheme_count; i++) {
-        pass.is_in[i] = tune_is_plain_row(tune, search->scenario, i);
-    }
+    Pass pass = plain_pass(search);
     if (isfinite(best_cost(tune, &pass))) {
         return true;
     }
@@ -300,21 +336,27 @@ static bool search_cheapest(const TuneSearch *search, Err *err)
     return is_done && tune_reference_run(search, err);
 }
 
+static void wait_for_truth(const char *doing, void *context)
+{
+    const TuneSearch *search = context;
+    search->wait(doing, INFINITY, search->context);
+}
+
 bool tune_search_execute(const TuneSearch *asked, Err *err)
 {
     Tune *tune = asked->tune;
+    Truth truth = {.trajectory = NULL};
+    TuneSearch search = *asked;
+    search.truth = &truth;
     const TruthChild work = {.scenario = asked->scenario,
                              .run_limit_s = asked->time_limit_s,
-                             .wait = asked->wait,
-                             .context = asked->context};
+                             .wait = wait_for_truth,
+                             .context = &search};
     const double started_s = clock_now_s();
-    Truth truth = {.trajectory = NULL};
     bool is_done = truth_child_make(&work, &truth, err);
     if (is_done) {
         tune->truth = ladder_truth_of(&truth, clock_now_s() - started_s);
     }
-    TuneSearch search = *asked;
-    search.truth = &truth;
     is_done = is_done && check_target(tune, err) &&
               (tune->held_s > 0.0 ? search_held(&search, err) : search_cheapest(&search, err)) &&
               tune_linear_run(&search, err);
