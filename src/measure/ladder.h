@@ -89,6 +89,7 @@ typedef struct Ladder {
     LadderTruth truth;
     size_t point_count;
     LadderPoint *points; // owned; scheme by scheme, coarse to fine
+    size_t *error_order; // owned; the points as their error runs are made: step by step
     LadderEnsemble ensembles[SCHEME_MAX];
     // set by ladder_conclude
     Order orders[SCHEME_MAX];             // by scheme; of the steps of the ladder
@@ -110,7 +111,8 @@ size_t ladder_find(const Ladder *ladder, const char *scheme, double step_s);
 bool ladder_add(Ladder *ladder, const LadderRun *run);
 
 // The next run from a number on that has not been made, or ladder_run_total: first the error runs
-// of all points, then round by round the timing runs of all points that did not fail.
+// of all points, the coarsest step of every scheme first, so that the pace of each is known early;
+// then round by round the timing runs of all points that did not fail.
 size_t ladder_next(const Ladder *ladder, size_t from);
 size_t ladder_run_total(const Ladder *ladder);
 // The runs that are made or need not be made any more.
@@ -118,8 +120,16 @@ size_t ladder_run_done(const Ladder *ladder);
 // Kind, point and round of a run by its number.
 LadderRun ladder_run(const Ladder *ladder, size_t number);
 
-// How long the runs still to be made will take one after another, from those that were, s.
-double ladder_time_left(const Ladder *ladder);
+// Whether the coarsest step of every scheme with steps has been run, and one of them to its end.
+bool ladder_has_pace(const Ladder *ladder);
+
+// How long the runs still to be made will take, s, from those that were: of each scheme the finest.
+// Error runs are made `jobs` at a time. Of schemes that choose their steps what is not known is
+// left out.
+double ladder_time_left(const Ladder *ladder, size_t jobs);
+
+// How long a ladder of the first steps alone would take from the start, s, the truth included.
+double ladder_time_of_steps(const Ladder *ladder, size_t step_count, size_t jobs);
 
 // The finest point of a scheme that did not fail, or point_count.
 size_t ladder_finest(const Ladder *ladder, size_t scheme);

@@ -21,12 +21,24 @@ typedef struct Stage {
     Task task;   // that is about to begin
 } Stage;
 
+static bool is_stopped(const Runner *runner)
+{
+    const RunnerListener *listener = &runner->listener;
+    return listener->should_stop != NULL && listener->should_stop(listener->context);
+}
+
 static bool wait(void *owner)
 {
     const Stage *stage = owner;
     const RunnerListener *listener = &stage->runner->listener;
     listener->wait(stage->doing, listener->context);
-    return true;
+    return !is_stopped(stage->runner);
+}
+
+// Runs a pool; one that is stopped leaves what it was for undone.
+static bool run_pool(const Runner *runner, const Pool *pool, Err *err)
+{
+    return pool_run(pool, err) && (!is_stopped(runner) || err_set(err, ERR_SOLVER, "stopped"));
 }
 
 static bool next_run(void *owner, size_t *number, const void **context)
@@ -103,7 +115,7 @@ static bool make_runs(const Runner *runner, const Truth *truth, const char *doin
         .wait = wait,
         .owner = &stage,
     };
-    return pool_run(&pool, err);
+    return run_pool(runner, &pool, err);
 }
 
 static bool make_ensembles(const Runner *runner, const Truth *truth, Err *err)
@@ -123,7 +135,7 @@ static bool make_ensembles(const Runner *runner, const Truth *truth, Err *err)
         .wait = wait,
         .owner = &stage,
     };
-    return pool_run(&pool, err);
+    return run_pool(runner, &pool, err);
 }
 
 static bool make_truth(const Runner *runner, Truth *truth, Err *err)
@@ -133,6 +145,7 @@ static bool make_truth(const Runner *runner, Truth *truth, Err *err)
         .scenario = runner->scenario,
         .run_limit_s = runner->time_limit_s,
         .wait = runner->listener.wait,
+        .should_stop = runner->listener.should_stop,
         .context = runner->listener.context,
     };
     if (!truth_child_make(&work, truth, err)) {

@@ -9,6 +9,7 @@ typedef struct RunnerListener {
     bool (*keep_run)(const LadderRun *run, void *context, Err *err);
     bool (*keep_ensemble)(size_t scheme, const LadderEnsemble *ensemble, void *context, Err *err);
     void (*wait)(const char *doing, void *context); // a few times a second
+    bool (*should_stop)(void *context);             // likewise; NULL: never
     void *context;
 } RunnerListener;
 
@@ -22,5 +23,6 @@ typedef struct Runner {
 
 // Makes all that is missing in the ladder: the truth, the error runs, the timing runs, and where
 // the truth is limited by a horizon the ensembles. A run that fails, hangs or dies is a failed run
-// of the ladder. Fails with ERR_SOLVER where there is no truth, and with what a keeper says.
+// of the ladder. Fails with ERR_SOLVER where there is no truth or it was stopped, and with what a
+// keeper says.
 bool runner_execute(const Runner *runner, Err *err);

@@ -1,9 +1,9 @@
 // Does `jointplay compare` print, write and end as it should, and lose nothing when it is killed?
 #include "program.h"
 
-#include <fcntl.h>
 #include <signal.h>
 #include <time.h>
+#include <unistd.h>
 
 // a part of a turn is as good as all of it
 #define PART "run.revolutions=0.1"
@@ -122,22 +122,28 @@ static void json_holds_every_point(void **state)
     json_decref(root);
 }
 
-// Starts the program in its folder and ends it after so many seconds, as the worst of users would.
-static void kill_after(const Program *program, double seconds)
+// Starts the program by itself in its folder.
+static pid_t start(const Program *program, const char *steps)
 {
     const pid_t process = fork();
     if (process == 0) {
         char word[PROGRAM_PATH_SIZE];
         snprintf(word, sizeof word, "%s/paper/ideal-nominal.yaml", getenv("JOINTPLAY_CASES"));
-        const int nowhere = open("/dev/null", O_WRONLY);
-        dup2(nowhere, STDOUT_FILENO);
-        dup2(nowhere, STDERR_FILENO);
-        if (chdir(program->folder) == 0) {
+        signal(SIGINT, SIG_DFL);
+        if (chdir(program->folder) == 0 && freopen(".output", "w", stdout) != NULL &&
+            freopen(".errors", "w", stderr) != NULL) {
             execl(getenv("JOINTPLAY_PROGRAM"), "jointplay", "compare", word, "--store", "s.jsonl",
-                  "--steps", "100 us, 30us, 50 us", "--set", PART, (char *)NULL);
+                  "--steps", steps, "--set", PART, (char *)NULL);
         }
         _exit(127);
     }
+    return process;
+}
+
+// Starts it and ends it after so many seconds, as the worst of users would.
+static void kill_after(const Program *program, double seconds)
+{
+    const pid_t process = start(program, "100 us, 30us, 50 us");
     const struct timespec pause = {0, (long)(1e9 * seconds)};
     nanosleep(&pause, NULL);
     kill(process, SIGKILL);
@@ -178,6 +184,26 @@ static void killing_it_at_any_moment_loses_nothing(void **state)
     run_words(program, "--json --repeats 6");
     assert_says(program->errors, "took ");
     assert_int_equal(count_lines(program, "s.jsonl"), runs + runs / 6 + 2);
+}
+
+static void told_to_stop_it_says_what_is_kept_and_ends_by_the_signal(void **state)
+{
+    Program *program = *state;
+    const pid_t process = start(program, "100 us, 0.001 us"); // minutes
+    while (count_lines(program, "s.jsonl") < 4 && waitpid(process, NULL, WNOHANG) == 0) {
+        usleep(5000);
+    }
+    kill(process, SIGINT);
+    int status = 0;
+    waitpid(process, &status, 0);
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, ".errors", path);
+    program_read(path, program->errors);
+    char words[128];
+    snprintf(words, sizeof words, "stopped; %zu of ", count_lines(program, "s.jsonl") - 2);
+    assert_says(program->errors, words);
+    assert_says(program->errors, "kept in s.jsonl, and the same command goes on from there");
 }
 
 static void a_store_of_another_comparison_is_refused(void **state)
@@ -411,6 +437,7 @@ int main(void)
         COMPARE_TEST(points_orders_and_the_cheapest_are_printed),
         STORE_TEST(json_holds_every_point),
         COMPARE_TEST(killing_it_at_any_moment_loses_nothing),
+        COMPARE_TEST(told_to_stop_it_says_what_is_kept_and_ends_by_the_signal),
         STORE_TEST(a_store_of_another_comparison_is_refused),
         COMPARE_TEST(a_line_of_the_store_that_was_changed_is_told_and_not_used),
         COMPARE_TEST(a_case_whose_only_body_is_driven_is_refused),

@@ -63,20 +63,46 @@ static void every_run_stands_once_and_rounds_are_taken_in_turn(void **state)
     ladder_destroy(NULL);
 }
 
+static void the_pace_of_every_scheme_is_known_early(void **state)
+{
+    (void)state;
+    Ladder *ladder = make_ladder();
+    // two schemes with three steps each, and the reference, which has none
+    static const size_t ORDER[] = {0, 3, 1, 4, 6, 2, 5};
+    for (size_t i = 0; i < 7; i++) {
+        assert_int_equal(ladder_run(ladder, i).point, ORDER[i]);
+    }
+    LadderRun run = {.point = 0, .is_complete = true, .wall_s = 1.0};
+    assert_true(ladder_add(ladder, &run));
+    assert_false(ladder_has_pace(ladder));
+    run = (LadderRun){.point = 3, .is_complete = true, .wall_s = 10.0};
+    assert_true(ladder_add(ladder, &run));
+    assert_true(ladder_has_pace(ladder));
+    // each scheme by its own pace: 1, 2, 4 s and 10, 20, 40 s
+    assert_near(ladder_time_left(ladder, 1), (77.0 - 11.0) + REPEATS * 77.0, 1e-9);
+    ladder->truth.wall_s = 3.0;
+    assert_near(ladder_time_of_steps(ladder, 2, 1), 3.0 + 33.0 + REPEATS * 33.0, 1e-9);
+    assert_near(ladder_time_of_steps(ladder, 0, 1), 3.0, 1e-9);
+    ladder_destroy(ladder);
+}
+
 static void a_run_is_taken_once(void **state)
 {
     (void)state;
     Ladder *ladder = make_ladder();
     LadderRun run = {.kind = LADDER_ERROR, .point = 1, .is_complete = true, .wall_s = 2.0};
     assert_int_equal(ladder_next(ladder, 0), 0);
-    assert_near(ladder_time_left(ladder), 0.0, 0.0);
+    assert_near(ladder_time_left(ladder, 1), 0.0, 0.0);
     assert_true(ladder_add(ladder, &run));
     assert_false(ladder_add(ladder, &run));
-    assert_int_equal(ladder_next(ladder, 1), 2);
+    // the error run of point 1 comes third, after those of the coarsest steps
+    assert_int_equal(ladder_next(ladder, 2), 3);
     assert_int_equal(ladder_run_done(ladder), 1);
     // points 0, 1, 2 of either scheme take 1, 2, 4 s: six error runs but one, then five rounds of
     // those; that of the reference is not known
-    assert_near(ladder_time_left(ladder), (14.0 - 2.0) + REPEATS * 14.0, 1e-9);
+    assert_near(ladder_time_left(ladder, 1), (14.0 - 2.0) + REPEATS * 14.0, 1e-9);
+    // error runs are made side by side
+    assert_near(ladder_time_left(ladder, 2), 0.5 * (14.0 - 2.0) + REPEATS * 14.0, 1e-9);
     run = (LadderRun){.kind = LADDER_TIMING, .point = 1, .round = 2, .is_complete = true};
     assert_true(ladder_add(ladder, &run));
     assert_false(ladder_add(ladder, &run));
@@ -224,7 +250,7 @@ static Runner make_runner(Ladder *ladder, const Scenario *scenario, Counts *coun
         .scenario = scenario,
         .jobs = 2,
         .time_limit_s = 120.0,
-        .listener = {count_truth, count_run, count_ensemble, count_wait, counts},
+        .listener = {count_truth, count_run, count_ensemble, count_wait, .context = counts},
     };
 }
 
@@ -261,6 +287,32 @@ static void a_runner_makes_what_is_missing(void **state)
     // first order against the closed form
     assert_near(ladder->orders[0].order, 1.0, 0.1);
     assert_true(ladder->points[2].wall_median_s > 0.0);
+    ladder_destroy(ladder);
+}
+
+static bool stops_after_three(void *context)
+{
+    return ((const Counts *)context)->runs >= 3;
+}
+
+static void a_runner_that_is_stopped_goes_on_later(void **state)
+{
+    (void)state;
+    Scenario scenario;
+    Ladder *ladder = make_real(&scenario);
+    Counts counts = {0};
+    Runner runner = make_runner(ladder, &scenario, &counts);
+    runner.listener.should_stop = stops_after_three;
+    Err err = {0};
+    assert_false(runner_execute(&runner, &err));
+    assert_string_equal(err.text, "stopped");
+    assert_true(counts.runs < ladder_run_total(ladder));
+    assert_int_equal(ladder_run_done(ladder), counts.runs);
+    // the control: nobody stops it
+    runner.listener.should_stop = NULL;
+    err = (Err){0};
+    assert_true(runner_execute(&runner, &err));
+    assert_int_equal(counts.runs, ladder_run_total(ladder));
     ladder_destroy(ladder);
 }
 
@@ -393,6 +445,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_run_stands_once_and_rounds_are_taken_in_turn),
+        cmocka_unit_test(the_pace_of_every_scheme_is_known_early),
         cmocka_unit_test(a_run_is_taken_once),
         cmocka_unit_test(a_failed_point_is_not_timed),
         cmocka_unit_test(errors_times_frontier_and_orders_are_put_together),
@@ -400,6 +453,7 @@ int main(void)
         cmocka_unit_test(unstable_and_unknown_errors_are_no_numbers),
         cmocka_unit_test(a_point_without_a_sample_in_the_horizon_has_no_error),
         cmocka_unit_test(a_runner_makes_what_is_missing),
+        cmocka_unit_test(a_runner_that_is_stopped_goes_on_later),
         cmocka_unit_test(a_run_that_hangs_is_a_failed_run),
         cmocka_unit_test(without_a_truth_there_is_no_comparison),
         cmocka_unit_test(ensembles_are_made_beyond_a_horizon),

@@ -1,4 +1,6 @@
 // How does speed stand against error, over every scheme and a ladder of steps?
+#include "cli/interrupt.h"
+#include "cli/output.h"
 #include "cli/results.h"
 #include "cli/warnings.h"
 #include "commands/commands.h"
@@ -36,6 +38,25 @@ static void wait(const char *doing, void *context)
     compare_progress_show(&((Listening *)context)->progress, doing);
 }
 
+static bool should_stop(void *context)
+{
+    (void)context;
+    return interrupt_number() != 0;
+}
+
+// Ends by the signal that stopped the work.
+static void end_stopped(const CompareOptions *options, const Ladder *ladder, CompareStore *store)
+{
+    if (!options->common.is_quiet) {
+        output_say("stopped; %zu of %zu runs are kept in %s, and the same command%s goes on from "
+                   "there\n",
+                   ladder_run_done(ladder), ladder_run_total(ladder), store->journal.path,
+                   options->is_fresh ? " without --fresh" : "");
+    }
+    compare_store_close(store);
+    interrupt_obey();
+}
+
 static const ResultFile FILES[] = {
     {.ending = ".txt", .kind = FILE_REPORT},
     {"--csv", offsetof(CompareOptions, csv), ".csv", FILE_TABLE, .write = compare_rows_write_csv},
@@ -69,17 +90,22 @@ static bool check_points(const Ladder *ladder, Err *err)
 static bool compare_ladder(const CompareOptions *options, const Scenario *scenario, Ladder *ladder,
                            Err *err)
 {
-    Listening listening = {.progress = compare_progress_start(ladder, options->common.is_quiet)};
+    Listening listening = {
+        .progress = compare_progress_start(ladder, options->common.jobs, options->common.is_quiet)};
     const Runner runner = {
         .ladder = ladder,
         .scenario = scenario,
         .jobs = options->common.jobs,
         .time_limit_s = options->common.time_limit_s,
-        .listener = {keep_truth, keep_run, keep_ensemble, wait, &listening},
+        .listener = {keep_truth, keep_run, keep_ensemble, wait, should_stop, &listening},
     };
+    interrupt_watch();
     const bool is_run = compare_store_open(&listening.store, options, scenario, ladder, err) &&
                         runner_execute(&runner, err);
     compare_progress_end(&listening.progress);
+    if (!is_run && interrupt_number() != 0) {
+        end_stopped(options, ladder, &listening.store);
+    }
     compare_store_close(&listening.store);
     if (!is_run) {
         return false;

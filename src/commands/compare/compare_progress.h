@@ -6,12 +6,15 @@
 
 typedef struct CompareProgress {
     const Ladder *ladder;
+    size_t jobs; // error runs at a time
+    bool is_announced;
     StatusLine line;
 } CompareProgress;
 
-CompareProgress compare_progress_start(const Ladder *ladder, bool is_quiet);
+CompareProgress compare_progress_start(const Ladder *ladder, size_t jobs, bool is_quiet);
 
-// Says what is being done, if it is time for a line.
+// Says what is being done, if it is time for a line. Once the pace of every scheme is known, by its
+// coarsest step, long work (long_work.h) is announced, with what would take less.
 void compare_progress_show(CompareProgress *progress, const char *doing);
 
 // Takes the line away again.
