@@ -346,6 +346,20 @@ const double *dop853_dense(Dop853 *integrator, double time)
     return integrator->at;
 }
 
+const double *dop853_dense_some(Dop853 *integrator, double time, const size_t *numbers,
+                                size_t count)
+{
+    const double share = fill_share(integrator, time);
+    const Pair s = {share, share};
+    const Pair r = {1.0 - share, 1.0 - share};
+    for (size_t k = 0; k < count; k++) {
+        const size_t other = numbers[k] % 2;
+        const Pair at = polynomial_pair(integrator, s, r, numbers[k] - other);
+        integrator->at[numbers[k]] = at[other];
+    }
+    return integrator->at;
+}
+
 void dop853_dense_motion(Dop853 *integrator, double time, double *y)
 {
     find_polynomial(integrator, fill_share(integrator, time), integrator->motion_size, y);

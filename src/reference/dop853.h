@@ -108,6 +108,10 @@ bool dop853_attempt(Dop853 *integrator, double longest);
 // such call. The first one of a step takes three evaluations, or four.
 const double *dop853_dense(Dop853 *integrator, double time);
 
+// The same of so many of the equations alone, by their numbers; the others are not for use.
+const double *dop853_dense_some(Dop853 *integrator, double time, const size_t *numbers,
+                                size_t count);
+
 // The polynomial through the tried step, if it is not there yet.
 void dop853_fill(Dop853 *integrator);
 

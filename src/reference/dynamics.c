@@ -317,6 +317,15 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
     return force;
 }
 
+size_t dynamics_contact_needs(const System *system, size_t contact, size_t *coordinates)
+{
+    const Dynamics *dynamics = (const Dynamics *)system;
+    const PlanePlace *place = &dynamics->places[contact];
+    return place->touch.shape == TOUCH_TEETH
+               ? 0
+               : tree_pair_coordinates(&dynamics->tree, place->pair, coordinates);
+}
+
 // The rates of any mechanism; apart from the shorter way, so that this sets up nothing for it.
 __attribute__((noinline)) static void find_all_rates(const Dynamics *dynamics, double since_s,
                                                      const double *y, double *rates)

@@ -30,3 +30,7 @@ LoopsRoom dynamics_loops(const Dynamics *dynamics);
 // looked at.
 ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
                               const double *y);
+
+// Writes the coordinates of a Dynamics that this depends on. Returns how many there are; 0 where it
+// depends on all.
+size_t dynamics_contact_needs(const System *system, size_t contact, size_t *coordinates);

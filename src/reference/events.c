@@ -75,9 +75,7 @@ static double rounding_of(const System *system, const SystemState *state, size_t
 // The contact at a time in the step.
 static Press press_at(const Margin *margin, double time)
 {
-    Dop853 *integrator = margin->integrator;
-    const double *y = time == integrator->time ? integrator->y : dop853_dense(integrator, time);
-    return margin->system->kind->press(margin->system, margin->contact, time, y);
+    return system_press(margin->system, margin->integrator, margin->contact, time);
 }
 
 static double margin_at(double time, void *context)

@@ -366,6 +366,7 @@ static const SystemKind PLANE = {
     .rates = dynamics_rates,
     .slopes = dynamics_slopes,
     .press = plane_press,
+    .needs = dynamics_contact_needs,
     .sizes = plane_sizes,
     .crossing = plane_crossing,
     .fastest = plane_fastest,

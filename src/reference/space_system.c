@@ -52,6 +52,13 @@ static Press space_press(const System *system, size_t contact, double since_s, c
     return space_dynamics_press(dynamics_of(system), contact, since_s, y);
 }
 
+static size_t space_needs(const System *system, size_t contact, size_t *coordinates)
+{
+    const PinSpace *place = &dynamics_of(system)->contacts[contact].place;
+    return space_tree_pair_coordinates(&dynamics_of(system)->tree, place->hole.body,
+                                       place->pin.body, coordinates);
+}
+
 static void space_sizes(const System *system, const SystemState *state, size_t contact,
                         double *length, double *speed)
 {
@@ -313,6 +320,7 @@ static const SystemKind SPACE = {
     .rates = space_dynamics_rates,
     .slopes = space_slopes,
     .press = space_press,
+    .needs = space_needs,
     .sizes = space_sizes,
     .crossing = space_crossing,
     .fastest = space_fastest,

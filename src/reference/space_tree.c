@@ -137,10 +137,16 @@ static size_t depth_of(const SpaceTree *tree, int body)
     return node >= 0 ? tree->nodes[node].depth : 0;
 }
 
+// Whether all nodes are evaluated at least as soon as those of two bodies.
+static bool needs_all(const SpaceTree *tree, int body_a, int body_b)
+{
+    return depth_of(tree, body_a) + depth_of(tree, body_b) >= tree->node_count;
+}
+
 void space_tree_evaluate_pair(const SpaceTree *tree, int body_a, int body_b, double since_s,
                               const double *q, const double *u, SpaceTreeState *state)
 {
-    if (depth_of(tree, body_a) + depth_of(tree, body_b) >= tree->node_count) {
+    if (needs_all(tree, body_a, body_b)) {
         space_tree_evaluate(tree, since_s, q, u, state);
         return;
     }
@@ -149,6 +155,28 @@ void space_tree_evaluate_pair(const SpaceTree *tree, int body_a, int body_b, dou
     }
     evaluate_up_to(tree, body_a, q, u, state);
     evaluate_up_to(tree, body_b, q, u, state);
+}
+
+// Writes the coordinates that move a body.
+static size_t coordinates_of(const SpaceTree *tree, int body, size_t *columns)
+{
+    size_t count = 0;
+    for (int at = space_tree_node_of(tree, body); at >= 0; at = tree->nodes[at].parent_node) {
+        const SpaceNode *node = &tree->nodes[at];
+        for (size_t k = 0; k < (node->joint < 0 ? 6 : 1); k++) {
+            columns[count++] = node->first + k;
+        }
+    }
+    return count;
+}
+
+size_t space_tree_pair_coordinates(const SpaceTree *tree, int body_a, int body_b, size_t *columns)
+{
+    if (needs_all(tree, body_a, body_b)) {
+        return 0;
+    }
+    const size_t count = coordinates_of(tree, body_a, columns);
+    return count + coordinates_of(tree, body_b, columns + count);
 }
 
 static void accelerate_floating(const SpaceNode *node, const double *rates, const Vec3 *turning,

@@ -119,6 +119,10 @@ void space_tree_evaluate(const SpaceTree *tree, double since_s, const double *q,
 void space_tree_evaluate_pair(const SpaceTree *tree, int body_a, int body_b, double since_s,
                               const double *q, const double *u, SpaceTreeState *state);
 
+// Writes the coordinates that this depends on. Returns how many there are; 0 where it depends on
+// all.
+size_t space_tree_pair_coordinates(const SpaceTree *tree, int body_a, int body_b, size_t *columns);
+
 // Fills in the accelerations from the coordinates' second rates.
 void space_tree_accelerate(const SpaceTree *tree, const double *rates, SpaceTreeState *state);
 

@@ -132,6 +132,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     }
     System *system = stepper->system;
     Dop853 *integrator = &stepper->integrator;
+    system_find_needs(system);
     dop853_init(integrator, system_size(system), system_sum_index(system, 0));
     stepper->events.events = calloc(system->contact_count + 1, sizeof(Event));
     stepper->found.events = calloc(system->contact_count + 1, sizeof(Event));
@@ -168,6 +169,7 @@ void stepper_finish(Stepper *stepper)
     free(stepper->found.events);
     dop853_finish(&stepper->integrator);
     if (stepper->system != NULL) {
+        system_free_needs(stepper->system);
         stepper->system->kind->destroy(stepper->system);
     }
 }

@@ -1,6 +1,7 @@
 // What do all equations of motion with contacts share?
 #include "reference/system.h"
 
+#include "base/zeroed.h"
 #include "contact/law.h"
 
 SystemState *system_state_create(const System *system)
@@ -18,4 +19,44 @@ bool system_check_depth(const System *system, const SystemState *state, double s
         }
     }
     return true;
+}
+
+// A contact that hangs on more coordinates takes them all: lists of long chains would fill a
+// square.
+enum { NEEDS_MOST = 32 };
+
+void system_find_needs(System *system)
+{
+    const size_t n = system->coordinate_count;
+    size_t *found = zeroed(2 * n, sizeof *found);
+    system->need_firsts = zeroed(system->contact_count + 1, sizeof *system->need_firsts);
+    system->needs = zeroed(2 * NEEDS_MOST * system->contact_count, sizeof *system->needs);
+    size_t used = 0;
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const size_t count = system->kind->needs(system, i, found);
+        for (size_t k = 0; k < count && count <= NEEDS_MOST; k++) {
+            system->needs[used++] = found[k];
+            system->needs[used++] = n + found[k];
+        }
+        system->need_firsts[i + 1] = used;
+    }
+    free(found);
+}
+
+void system_free_needs(System *system)
+{
+    free(system->need_firsts);
+    free(system->needs);
+}
+
+Press system_press(const System *system, Dop853 *integrator, size_t contact, double time)
+{
+    const size_t first = system->need_firsts[contact];
+    const size_t count = system->need_firsts[contact + 1] - first;
+    const double *y = integrator->y;
+    if (time != integrator->time) {
+        y = count > 0 ? dop853_dense_some(integrator, time, system->needs + first, count)
+                      : dop853_dense(integrator, time);
+    }
+    return system->kind->press(system, contact, time, y);
 }

@@ -49,6 +49,9 @@ typedef struct SystemKind {
     Dop853Slopes slopes; // or NULL
     // One contact at a time, for events: cheaper than the whole state.
     Press (*press)(const System *system, size_t contact, double since_s, const double *y);
+    // Writes the coordinates that this depends on. Returns how many there are; 0 where it
+    // depends on all.
+    size_t (*needs)(const System *system, size_t contact, size_t *coordinates);
     // Sums of the lengths and speeds that the position and velocity of a contact come from.
     void (*sizes)(const System *system, const SystemState *state, size_t contact, double *length,
                   double *speed);
@@ -88,6 +91,10 @@ struct System {
     int torn;       // the number of an ideal joint that its loop could not keep closed; -1: none
     size_t contact_count;
     Contact *contacts;
+    // Of the integrator's vector, those that the press of a contact depends on: from its first in
+    // the list to the next one's. One with none in the list depends on all.
+    size_t *need_firsts; // by contact, and one more; owned, like the list
+    size_t *needs;
 };
 
 // Where a sum is in the integrator's vector, and how long that is.
@@ -103,6 +110,13 @@ static inline size_t system_size(const System *system)
 
 // Room for a state of these equations; the caller frees it.
 SystemState *system_state_create(const System *system);
+
+// Fills in what contacts need, once these are there, and frees it.
+void system_find_needs(System *system);
+void system_free_needs(System *system);
+
+// One contact at a time in the tried step.
+Press system_press(const System *system, Dop853 *integrator, size_t contact, double time);
 
 // Fails with ERR_SOLVER where a pin is deeper in its wall than a share of what its law knows.
 bool system_check_depth(const System *system, const SystemState *state, double share, Err *err);

@@ -134,20 +134,48 @@ static size_t depth_of(const Tree *tree, int body)
     return node >= 0 ? tree->nodes[node].depth : 0;
 }
 
+// Whether all nodes are evaluated at least as soon as those of a pair.
+static bool needs_all(const Tree *tree, int pair)
+{
+    return depth_of(tree, tree->end_bodies[2 * pair]) +
+               depth_of(tree, tree->end_bodies[2 * pair + 1]) >=
+           tree->node_count;
+}
+
 void tree_evaluate_pair(const Tree *tree, int pair, double since_s, const double *q,
                         const double *u, TreeState *state)
 {
-    const int a = tree->end_bodies[2 * pair];
-    const int b = tree->end_bodies[2 * pair + 1];
-    if (depth_of(tree, a) + depth_of(tree, b) >= tree->node_count) {
+    if (needs_all(tree, pair)) {
         tree_evaluate(tree, since_s, q, u, state);
         return;
     }
     if (tree->driven >= 0) {
         set_driven(tree, since_s, state);
     }
-    evaluate_up_to(tree, a, q, u, state);
-    evaluate_up_to(tree, b, q, u, state);
+    evaluate_up_to(tree, tree->end_bodies[2 * pair], q, u, state);
+    evaluate_up_to(tree, tree->end_bodies[2 * pair + 1], q, u, state);
+}
+
+// Writes the coordinates that move a body.
+static size_t coordinates_of(const Tree *tree, int body, size_t *columns)
+{
+    size_t count = 0;
+    for (int at = tree_node_of(tree, body); at >= 0; at = tree->nodes[at].parent_node) {
+        const TreeNode *node = &tree->nodes[at];
+        for (size_t k = node->joint < 0 ? 3 : 1; k-- > 0;) {
+            columns[count++] = node->column - k;
+        }
+    }
+    return count;
+}
+
+size_t tree_pair_coordinates(const Tree *tree, int pair, size_t *columns)
+{
+    if (needs_all(tree, pair)) {
+        return 0;
+    }
+    const size_t count = coordinates_of(tree, tree->end_bodies[2 * pair], columns);
+    return count + coordinates_of(tree, tree->end_bodies[2 * pair + 1], columns + count);
 }
 
 void tree_accelerate(const Tree *tree, const double *rates, TreeState *state)

@@ -32,6 +32,10 @@ void tree_evaluate(const Tree *tree, double since_s, const double *q, const doub
 void tree_evaluate_pair(const Tree *tree, int pair, double since_s, const double *q,
                         const double *u, TreeState *state);
 
+// Writes the coordinates that this depends on. Returns how many there are; 0 where it depends on
+// all.
+size_t tree_pair_coordinates(const Tree *tree, int pair, size_t *columns);
+
 // Fills in the accelerations from the coordinates' second rates.
 void tree_accelerate(const Tree *tree, const double *rates, TreeState *state);
 
