@@ -8,10 +8,13 @@
 
 #include "model/trajectory.h"
 
-// The largest force, N, and depth, m, in a joint.
+// The largest force, N, and depth, m, in a joint, and when they were reached, s; 0 where that is
+// not known more exactly than by the step.
 typedef struct JointTop {
     double force;
     double depth;
+    double force_s;
+    double depth_s;
 } JointTop;
 
 // Bodies and joints of a linkage that share nothing but the ground with the others, by their

@@ -28,6 +28,12 @@ typedef struct JointState {
     bool is_touching;   // pin and hole overlap (an ideal joint without limits always touches)
 } JointState;
 
+// How deep a joint is pressed, m.
+static inline double joint_state_depth(const JointState *state)
+{
+    return state->is_touching && state->gap < 0.0 ? -state->gap : 0.0;
+}
+
 // What a joint with play has in space beside that. There `eccentricity` is that of the pin's middle
 // in the world's x and y, `gap` the smaller of those at the hole's two ends, `force` the sum of
 // what presses there, friction included, and `is_touching` whether an end does.

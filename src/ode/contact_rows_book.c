@@ -152,7 +152,7 @@ ContactEnergy contact_rows_energy(const ContactRows *rows)
 void contact_rows_tops(const ContactRows *rows, JointTop *tops)
 {
     for (size_t i = 0; i < rows->scenario->linkage.joint_count; i++) {
-        tops[i] = (JointTop){0.0, 0.0};
+        tops[i] = (JointTop){.force = 0.0};
     }
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         const ContactRow *row = &rows->rows[i];

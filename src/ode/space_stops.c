@@ -245,7 +245,7 @@ void space_stops_tops(const SpaceStops *stops, JointTop *tops)
         const SpaceStop *stop = &stops->stops[i];
         JointTop *top = &tops[stop->joint];
         if (i == 0 || stops->stops[i - 1].joint != stop->joint) {
-            *top = (JointTop){0.0, 0.0};
+            *top = (JointTop){.force = 0.0};
         }
         if (stop->is_touching) {
             top->force = fmax(top->force, stop->tops.force);

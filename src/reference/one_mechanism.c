@@ -139,6 +139,7 @@ static bool show_onset(Reference *reference, Err *err)
         return pace_undetermined(err);
     }
     reference->start_s = reference->end_s;
+    reference->peaks.has_tops = false;
     fill_record(reference, reference->scratch);
     return true;
 }
@@ -244,6 +245,7 @@ static StepRecord reference_record(const void *state)
         .alpha = reference->alpha,
         .joints = reference->joints,
         .space_joints = is_spatial ? reference->space_joints : NULL,
+        .tops = reference->peaks.has_tops ? reference->peaks.crowd.tops : NULL,
         .impulse = reference->impulse,
         .approach = reference->approach,
         .drive_work = now[SYSTEM_DRIVE_WORK] - then[SYSTEM_DRIVE_WORK],

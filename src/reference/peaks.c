@@ -7,9 +7,7 @@
 #include "reference/peaks.h"
 
 #include "base/root.h"
-
-#include <assert.h>
-#include <stdlib.h>
+#include "base/zeroed.h"
 
 // of a step: a maximum missed by so much is too low by half the square of it, 1e-10 of itself
 static const double NARROW = 1e-5;
@@ -20,6 +18,9 @@ static const double OVERSHOOT = 1.5;
 // Which of the quantities of a contact.
 enum { PEAK_FORCE, PEAK_DEPTH, PEAK_COUNT };
 
+// Maxima that a step is handed on in parts for; more are found together.
+enum { SOUGHT_MOST = 8 };
+
 typedef struct Search {
     Stepper *stepper;
     SystemState *scratch;
@@ -29,14 +30,17 @@ typedef struct Search {
 
 Peaks peaks_create(const System *system, SystemState *scratch)
 {
-    Peaks peaks = {scratch, calloc(PEAK_COUNT * system->contact_count + 1, sizeof *peaks.peaks)};
-    assert(peaks.peaks != NULL);
-    return peaks;
+    return (Peaks){
+        .scratch = scratch,
+        .peaks = zeroed(PEAK_COUNT * system->contact_count, sizeof(Peak)),
+        .crowd = peaks_crowd_create(system, scratch),
+    };
 }
 
 void peaks_finish(Peaks *peaks)
 {
     free(peaks->peaks);
+    peaks_crowd_finish(&peaks->crowd);
 }
 
 static double peak_rate(double time, void *context)
@@ -117,27 +121,50 @@ static void look_at(Peak pair[PEAK_COUNT], const System *system, const SystemSta
     }
 }
 
-double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
-                  const SystemState *state)
+// Looks at all contacts. Returns how many maxima may lie behind where they were left.
+static size_t look_at_all(Peaks *peaks, const System *system, const SystemState *state)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < system->contact_count; i++) {
+        Peak *pair = &peaks->peaks[PEAK_COUNT * i];
+        if (system->contacts[i].mode == CONTACT_PRESSING) {
+            look_at(pair, system, state, i);
+            count += (has_peak(&pair[PEAK_FORCE]) ? 1 : 0) + (has_peak(&pair[PEAK_DEPTH]) ? 1 : 0);
+        }
+    }
+    return count;
+}
+
+// The first maximum between two times, or the later of them.
+static double seek_first(Peaks *peaks, Stepper *stepper, double start_s, double end_s)
 {
     const System *system = stepper->system;
     double earliest = end_s;
     for (size_t i = 0; i < system->contact_count; i++) {
-        Peak *pair = &peaks->peaks[PEAK_COUNT * i];
-        if (system->contacts[i].mode != CONTACT_PRESSING) {
-            continue;
-        }
-        look_at(pair, system, state, i);
         for (int which = PEAK_FORCE; which < PEAK_COUNT; which++) {
             const Search search = {stepper, peaks->scratch, i, which};
-            if (has_peak(&pair[which])) {
-                earliest = fmin(earliest, seek(&pair[which], search, start_s, end_s));
+            Peak *peak = &peaks->peaks[PEAK_COUNT * i + (size_t)which];
+            if (system->contacts[i].mode == CONTACT_PRESSING && has_peak(peak)) {
+                earliest = fmin(earliest, seek(peak, search, start_s, end_s));
             }
         }
     }
-    if (earliest < end_s) {
-        pass(peaks, system, earliest);
-        return earliest;
+    return earliest;
+}
+
+double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
+                  const SystemState *state)
+{
+    const System *system = stepper->system;
+    const size_t count = look_at_all(peaks, system, state);
+    peaks->has_tops =
+        count > SOUGHT_MOST && peaks_crowd_find(&peaks->crowd, stepper, start_s, end_s, state);
+    if (count > 0 && !peaks->has_tops) {
+        const double earliest = seek_first(peaks, stepper, start_s, end_s);
+        if (earliest < end_s) {
+            pass(peaks, system, earliest);
+            return earliest;
+        }
     }
     for (size_t i = 0; i < PEAK_COUNT * system->contact_count; i++) {
         leave(&peaks->peaks[i], system->contacts[i / PEAK_COUNT].mode == CONTACT_PRESSING);

@@ -1,7 +1,7 @@
 // Where do the force and the depth of a contact have their maxima?
 #pragma once
 
-#include "reference/stepper.h"
+#include "reference/peaks_crowd.h"
 
 // One quantity of a contact where it was left, and where it is now.
 typedef struct Peak {
@@ -18,12 +18,15 @@ typedef struct Peak {
 typedef struct Peaks {
     SystemState *scratch; // of the stepper's system, owned by whoever has the peaks
     Peak *peaks;          // owned: two a contact, of its force and of its depth
+    PeaksCrowd crowd;     // for more of them than are worth a part of the step each
+    bool has_tops;        // whether the last part is one that the crowd has looked into
 } Peaks;
 
 Peaks peaks_create(const System *system, SystemState *scratch);
 void peaks_finish(Peaks *peaks);
 
 // The earliest maximum of a pressing contact's force or depth between two times of the present
-// step, or the later of them. The state is that at the later time.
+// step, or the later of them. The state is that at the later time. Where many contacts have one, it
+// is the later time, and the crowd's tops tell of them.
 double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
                   const SystemState *state);

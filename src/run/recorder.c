@@ -65,21 +65,29 @@ static void end_contact(Recorder *recorder, size_t number)
     }
 }
 
-static double depth_of(const JointState *state)
+// The force and depth of a joint at a time.
+static JointTop top_at(const JointState *state, double time_s)
 {
-    return state->is_touching && state->gap < 0.0 ? -state->gap : 0.0;
+    return (JointTop){state->force, joint_state_depth(state), time_s, time_s};
 }
 
 // The largest force and depth of a joint in a step, as far as it knows.
 static JointTop top_of(const StepRecord *step, size_t index)
 {
-    const JointState *state = &step->joints[index];
-    const JointTop top = {.force = state->force, .depth = depth_of(state)};
+    JointTop top = top_at(&step->joints[index], step->joint_s);
     if (step->tops == NULL) {
         return top;
     }
     const JointTop *between = &step->tops[index];
-    return (JointTop){fmax(top.force, between->force), fmax(top.depth, between->depth)};
+    if (between->force > top.force) {
+        top.force = between->force;
+        top.force_s = between->force_s > 0.0 ? between->force_s : step->joint_s;
+    }
+    if (between->depth > top.depth) {
+        top.depth = between->depth;
+        top.depth_s = between->depth_s > 0.0 ? between->depth_s : step->joint_s;
+    }
+    return top;
 }
 
 // Of a joint in a step, by its place there.
@@ -128,8 +136,8 @@ static inline void raise_body(BodyExtremes *body, bool is_first, double omega, d
 static inline void raise_joint(JointExtremes *extremes, bool is_first, const Joint *joint,
                                const JointTop *top, double tilt, double time_s)
 {
-    raise_to(&extremes->force_max, is_first, top->force, time_s);
-    raise_to(&extremes->penetration_max, is_first, top->depth, time_s);
+    raise_to(&extremes->force_max, is_first, top->force, top->force_s);
+    raise_to(&extremes->penetration_max, is_first, top->depth, top->depth_s);
     if (joint->kind == JOINT_GUIDE) {
         raise_to(&extremes->tilt_max, is_first, fabs(tilt), time_s);
     }
@@ -218,7 +226,7 @@ void recorder_see(Recorder *recorder, const SolverPart *part, const Sample *samp
             continue;
         }
         const JointState *state = &sample->joints[i];
-        const JointTop top = {.force = state->force, .depth = depth_of(state)};
+        const JointTop top = top_at(state, time_s);
         raise_joint(&trajectory->joints[i], false, &linkage->joints[i], &top, state->tilt, time_s);
         if (linkage->is_spatial) {
             raise_joint_space(&trajectory->joints[i], false, &sample->space_joints[i], time_s);
