@@ -25,16 +25,22 @@ static const double ALIKE = 1e-12;
 
 enum { POINTS_MAX = LOOK_PARTS_MAX + 4 };
 
+// Signals that are climbed to the top of one by one; to look at a crowd takes as much as for two.
+enum { SOUGHT_MOST = 12 };
+
 enum { CLIMBS_MAX = 12 }; // a parabola gains half as many digits again each time
 
 Looker looker_start(const Scenario *scenario, const Solver *solver, const void *state,
                     Recorder *recorder)
 {
+    const Linkage *linkage = &scenario->linkage;
     return (Looker){.scenario = scenario,
                     .solver = solver,
                     .state = state,
                     .recorder = recorder,
-                    .sample = sample_create(&scenario->linkage)};
+                    .sample = sample_create(linkage),
+                    .alpha_tops = zeroed(linkage->body_count, sizeof(LookTop[LOOK_SIGNS])),
+                    .force_tops = zeroed(linkage->joint_count, sizeof(LookTop[LOOK_SIGNS]))};
 }
 
 void looker_finish(Looker *looker)
@@ -43,6 +49,8 @@ void looker_finish(Looker *looker)
         free(looker->blocks[i]);
     }
     free(looker->blocks);
+    free(looker->alpha_tops);
+    free(looker->force_tops);
     sample_free(&looker->sample);
 }
 
@@ -88,6 +96,7 @@ void looker_keep(Looker *looker, Look *first, const Look *look)
         first->force[i] = look->force[i];
     }
     looker->look_count = 1;
+    looker->has_tops = false;
 }
 
 Look look_inside(Looker *looker, double time_s)
@@ -186,8 +195,10 @@ static bool next_aim(Looker *looker, size_t *number, Aim *aim)
     return true;
 }
 
-static bool any_is_near(Looker *looker, const Look *before, int parts, const Look *looks)
+// How many signals come near the run's extremes.
+static size_t count_near(Looker *looker, const Look *before, int parts, const Look *looks)
 {
+    size_t count = 0;
     Aim aim;
     for (size_t number = 0; next_aim(looker, &number, &aim);) {
         double most = aim_value(&aim, before);
@@ -197,11 +208,9 @@ static bool any_is_near(Looker *looker, const Look *before, int parts, const Loo
             least = fmin(least, aim_value(&aim, &looks[k]));
         }
         // what stays as it is has no maximum
-        if (is_near(&aim, most, NEAR) && most - least > ALIKE * fabs(most)) {
-            return true;
-        }
+        count += is_near(&aim, most, NEAR) && most - least > ALIKE * fabs(most) ? 1 : 0;
     }
-    return false;
+    return count;
 }
 
 // The time at which a parabola through three looks, of which the middle one is largest, is largest,
@@ -293,28 +302,50 @@ static double turn_rate(double time_s, void *context)
     return alpha;
 }
 
+// Whether that may be beyond the run's extremes.
+static bool may_turn(const Looker *looker, size_t body, const Look *first, const Look *last)
+{
+    if (!(first->alpha[body] * last->alpha[body] < 0.0)) {
+        return false;
+    }
+    // omega rises above its ends by no more than a parabola of their slopes would
+    const double room = 0.5 * (last->time_s - first->time_s) *
+                        fmax(fabs(first->alpha[body]), fabs(last->alpha[body]));
+    const BodyExtremes *extremes = &looker->recorder->trajectory->bodies[body];
+    return fmax(first->omega[body], last->omega[body]) + room > extremes->omega_max.value ||
+           fmin(first->omega[body], last->omega[body]) - room < extremes->omega_min.value;
+}
+
 static void look_for_turns(Looker *looker, const Look *first, const Look *last)
 {
-    const Trajectory *trajectory = looker->recorder->trajectory;
     const size_t body_count = solver_body_count(looker->part, &looker->scenario->linkage);
     for (size_t k = 0; k < body_count; k++) {
         const size_t i = solver_body(looker->part, k);
-        if (!(first->alpha[i] * last->alpha[i] < 0.0)) {
-            continue;
-        }
-        // omega rises above its ends by no more than a parabola of their slopes would
-        const double room = 0.5 * (last->time_s - first->time_s) *
-                            fmax(fabs(first->alpha[i]), fabs(last->alpha[i]));
-        const BodyExtremes *body = &trajectory->bodies[i];
         Turn turn = {looker, i};
         double time_s;
-        if ((fmax(first->omega[i], last->omega[i]) + room > body->omega_max.value ||
-             fmin(first->omega[i], last->omega[i]) - room < body->omega_min.value) &&
+        if (may_turn(looker, i, first, last) &&
             root_find(turn_rate, &turn, first->time_s, last->time_s,
                       NEXT_TO_END * (last->time_s - first->time_s), &time_s)) {
             turn_rate(time_s, &turn); // for the recorder
         }
     }
+}
+
+bool look_is_crowd(Looker *looker, const Look *before, int parts, const Look *looks)
+{
+    if (!(looks[parts - 1].time_s > before->time_s)) {
+        return false;
+    }
+    const size_t body_count = solver_body_count(looker->part, &looker->scenario->linkage);
+    size_t count = count_near(looker, before, parts, looks);
+    for (int k = 0; k < parts && count <= SOUGHT_MOST; k++) {
+        const Look *first = k > 0 ? &looks[k - 1] : before;
+        for (size_t i = 0; i < body_count; i++) {
+            const size_t body = solver_body(looker->part, i);
+            count += may_turn(looker, body, first, &looks[k]) ? 1 : 0;
+        }
+    }
+    return count > SOUGHT_MOST;
 }
 
 int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[LOOK_MAX])
@@ -326,7 +357,7 @@ int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[
         look_for_turns(looker, first, &looks[k]);
         first = &looks[k];
     }
-    if (!(width_s > 0.0) || !any_is_near(looker, before, parts, looks)) {
+    if (!(width_s > 0.0) || count_near(looker, before, parts, looks) == 0) {
         return parts;
     }
     Look points[POINTS_MAX];

@@ -14,6 +14,17 @@ typedef struct Look {
     double *force; // by joint
 } Look;
 
+// The largest and the smallest value of a signal in a step.
+enum { LOOK_SIGNS = 2 };
+
+// Where a signal in a step has one of them.
+typedef struct LookTop {
+    double time_s;
+    double value;
+    double omega; // rad/s, of a body
+    bool is_known;
+} LookTop;
+
 // Whom to ask. What it says the recorder sees, too. Looks are in its room until that is emptied.
 typedef struct Looker {
     const Scenario *scenario;
@@ -25,6 +36,9 @@ typedef struct Looker {
     size_t look_count;      // looks that are in the room
     size_t block_count;     // of them there is room for
     double **blocks;        // of one look each
+    bool has_tops;          // whether the last step was one in which a crowd was looked at
+    LookTop (*alpha_tops)[LOOK_SIGNS]; // of it, by body; owned, like the next
+    LookTop (*force_tops)[LOOK_SIGNS]; // by joint
 } Looker;
 
 Looker looker_start(const Scenario *scenario, const Solver *solver, const void *state,
@@ -41,6 +55,10 @@ Look look_inside(Looker *looker, double time_s);
 
 // The end of a step as its record has it.
 Look look_at_end(Looker *looker, const StepRecord *step);
+
+// Whether so many signals of a step may come near the run's extremes that these are found together
+// (run/look_crowd.h) for less than one by one. Arguments as below.
+bool look_is_crowd(Looker *looker, const Look *before, int parts, const Look *looks);
 
 // Looks in a step for maxima and minima of the signals that come near the run's extremes, down to
 // rounding. `before` is the start of the step, the looks the ends of its parts, LOOK_PARTS_MAX at

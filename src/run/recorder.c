@@ -234,6 +234,45 @@ void recorder_see(Recorder *recorder, const SolverPart *part, const Sample *samp
     }
 }
 
+// The same, to be changed.
+static Extreme *find_extreme(Trajectory *trajectory, RecorderSignal signal, size_t number,
+                             double sign)
+{
+    BodyExtremes *body = &trajectory->bodies[number];
+    switch (signal) {
+    case RECORDER_OMEGA:
+        return sign > 0.0 ? &body->omega_max : &body->omega_min;
+    case RECORDER_ALPHA:
+        return sign > 0.0 ? &body->alpha_max : &body->alpha_min;
+    default:
+        return &trajectory->joints[number].force_max;
+    }
+}
+
+const Extreme *recorder_extreme(const Recorder *recorder, RecorderSignal signal, size_t number,
+                                double sign)
+{
+    return find_extreme(recorder->trajectory, signal, number, sign);
+}
+
+void recorder_raise(Recorder *recorder, RecorderSignal signal, size_t number, double sign,
+                    Extreme extreme)
+{
+    Trajectory *trajectory = recorder->trajectory;
+    const bool is_force = signal == RECORDER_FORCE;
+    const RangesOfBody of_body = signal == RECORDER_OMEGA ? RANGES_OMEGA : RANGES_ALPHA;
+    if (trajectory->ranges.count > 0) {
+        ranges_add(&trajectory->ranges,
+                   is_force ? ranges_of_joint(&trajectory->ranges, number, RANGES_FORCE)
+                            : ranges_of_body(number, of_body),
+                   extreme.time_s, extreme.value);
+    }
+    if (extreme.time_s >= trajectory->report_from_s &&
+        (is_force ? recorder->has_joint : recorder->has_body)[number]) {
+        *find_extreme(trajectory, signal, number, sign) = extreme;
+    }
+}
+
 static void set_crank(const Linkage *linkage, Extreme *extreme)
 {
     extreme->crank_rad = linkage_crank_angle(linkage, extreme->time_s);

@@ -22,5 +22,17 @@ void recorder_add(Recorder *recorder, const StepRecord *step);
 // (NULL): extremes and ranges hold it.
 void recorder_see(Recorder *recorder, const SolverPart *part, const Sample *sample);
 
+// A signal of which extremes are kept: a body's omega or alpha, a joint's force.
+typedef enum RecorderSignal { RECORDER_OMEGA, RECORDER_ALPHA, RECORDER_FORCE } RecorderSignal;
+
+// The largest value so far of the signal of a body or joint, or the smallest where the sign is
+// negative; of a force the largest alone.
+const Extreme *recorder_extreme(const Recorder *recorder, RecorderSignal signal, size_t number,
+                                double sign);
+
+// Takes in one value that lies beyond that, at a time in the last step.
+void recorder_raise(Recorder *recorder, RecorderSignal signal, size_t number, double sign,
+                    Extreme extreme);
+
 // Closes contacts that are still under way at the end of the run, and frees what the recorder has.
 void recorder_finish(Recorder *recorder);

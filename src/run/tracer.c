@@ -11,7 +11,7 @@
 
 #include "base/sorted.h"
 #include "base/zeroed.h"
-#include "run/look.h"
+#include "run/look_crowd.h"
 #include "run/spike_scale.h"
 #include "run/spikes.h"
 #include "run/trace.h"
@@ -145,31 +145,38 @@ static int count_parts(const Tracer *tracer, const StepRecord *step)
 // line holds; the impulse of a contact in the whole step, N s, is the solver's.
 static void add_forces(Tracer *tracer, size_t joint, double impulse, int count, const Look *looks)
 {
-    double sums[LOOK_MAX];
+    LookPoint path[LOOK_PATH_MAX];
+    double sums[LOOK_PATH_MAX];
     double sum = 0.0;
-    const Look *before = &tracer->last;
-    for (int k = 0; k < count; k++) {
-        const double width_s = looks[k].time_s - before->time_s;
-        sum += 0.5 * width_s * (before->force[joint] + looks[k].force[joint]);
+    LookPoint before = {.time_s = tracer->last.time_s, .value = tracer->last.force[joint]};
+    const size_t points =
+        look_path(&tracer->looker, RECORDER_FORCE, joint, before.time_s, count, looks, path);
+    for (size_t k = 0; k < points; k++) {
+        sum += 0.5 * (path[k].time_s - before.time_s) * (before.value + path[k].value);
         sums[k] = sum;
-        before = &looks[k];
+        before = path[k];
     }
     const double factor = has_play(tracer, joint) && sum > 0.0 ? impulse / sum : 1.0;
-    for (int k = 0; k < count; k++) {
-        trace_add(&tracer->force[joint], looks[k].time_s, looks[k].force[joint],
+    for (size_t k = 0; k < points; k++) {
+        trace_add(&tracer->force[joint], path[k].time_s, path[k].value,
                   tracer->impulse[joint] + factor * sums[k]);
     }
     tracer->impulse[joint] += factor * sum;
 }
 
-// Adds a look at bodies to their traces.
-static void add_bodies(Tracer *tracer, const SolverPart *part, const Look *look)
+// Adds looks at bodies to their traces.
+static void add_bodies(Tracer *tracer, const SolverPart *part, int count, const Look *looks)
 {
     const size_t body_count = solver_body_count(part, &tracer->scenario->linkage);
     for (size_t k = 0; k < body_count; k++) {
         const size_t i = solver_body(part, k);
-        if (is_traced(tracer, i)) {
-            trace_add(&tracer->alpha[i], look->time_s, look->alpha[i], look->omega[i]);
+        LookPoint path[LOOK_PATH_MAX];
+        const size_t points = is_traced(tracer, i)
+                                  ? look_path(&tracer->looker, RECORDER_ALPHA, i,
+                                              tracer->last.time_s, count, looks, path)
+                                  : 0;
+        for (size_t at = 0; at < points; at++) {
+            trace_add(&tracer->alpha[i], path[at].time_s, path[at].value, path[at].omega);
         }
     }
 }
@@ -186,7 +193,7 @@ static void look_at_start(Tracer *tracer, const StepRecord *step)
         tracer->part_of[solver_body(step->part, k)] = step->part;
     }
     const Look look = look_inside(&tracer->looker, step->start_s);
-    add_bodies(tracer, step->part, &look);
+    add_bodies(tracer, step->part, 1, &look);
     for (size_t k = 0; k < joint_count; k++) {
         const size_t i = solver_joint(step->part, k);
         trace_add(&tracer->force[i], look.time_s, look.force[i], 0.0);
@@ -212,10 +219,13 @@ static void add_instants(Tracer *tracer, const StepRecord *step)
         looks[k] = look_inside(&tracer->looker, step->start_s + (k + 1) * part_s);
     }
     looks[parts - 1] = look_at_end(&tracer->looker, step);
-    const int count = look_for_extremes(&tracer->looker, &tracer->last, parts, looks);
-    for (int k = 0; k < count; k++) {
-        add_bodies(tracer, step->part, &looks[k]);
+    int count = parts;
+    if (look_is_crowd(&tracer->looker, &tracer->last, parts, looks)) {
+        look_at_crowd(&tracer->looker, &tracer->last, &looks[parts - 1]);
+    } else {
+        count = look_for_extremes(&tracer->looker, &tracer->last, parts, looks);
     }
+    add_bodies(tracer, step->part, count, looks);
     const size_t joint_count = solver_joint_count(step->part, &tracer->scenario->linkage);
     for (size_t k = 0; k < joint_count; k++) {
         add_forces(tracer, solver_joint(step->part, k), step->impulse[k], count, looks);

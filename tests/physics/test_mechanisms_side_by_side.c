@@ -339,6 +339,64 @@ static void many_pins_that_meet_their_walls_at_once_follow_the_reference(void **
     check_chain(make_meeting(150), 1);
 }
 
+// The largest force of a joint, and the largest angular acceleration of a body, at any sample.
+static double sampled_force(const Trajectory *run, size_t joint)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        largest = fmax(largest, trajectory_state(run, i, joint)->force);
+    }
+    return largest;
+}
+
+static double sampled_alpha(const Trajectory *run, size_t body)
+{
+    double largest = -INFINITY;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        largest = fmax(largest, trajectory_motion(run, i, body)->alpha);
+    }
+    return largest;
+}
+
+// Whether an extreme is what samples say that may have missed it by so much, and nothing more.
+static void check_top(double extreme, double sampled, double missed)
+{
+    assert_true(extreme >= sampled - 1e-12 * fabs(sampled));
+    assert_true(extreme <= sampled + missed);
+}
+
+static void extremes_of_many_pins_are_found_between_two_samples(void **state)
+{
+    (void)state;
+    enum { COUNT = 40 };
+    Scenario scenario = make_meeting(COUNT);
+    scenario.run.samples = 2;
+    Trajectory *coarse = trace(&scenario, &REFERENCE_SOLVER);
+    // a tenth of a microsecond
+    scenario.run.samples = 3201;
+    Trajectory *fine = trace(&scenario, &REFERENCE_SOLVER);
+    double hidden = 0.0;
+    for (size_t k = 0; k < COUNT; k++) {
+        const double force = coarse->joints[k].force_max.value;
+        const double alpha = coarse->bodies[k].alpha_max.value;
+        const double next = k + 1 < COUNT ? coarse->joints[k + 1].force_max.value : 0.0;
+        const Body *body = &scenario.linkage.bodies[k];
+        // swings of 50 us and more: (0.05 us * 2 pi / 50 us)^2 / 2 = 2e-5 of forces, and of what
+        // they do to a body, on whose ends they may pull against each other
+        check_top(force, sampled_force(fine, k), 2e-5 * force);
+        check_top(alpha, sampled_alpha(fine, k), 2e-5 * (force + next) * 0.05 / body->inertia);
+        assert_close(force, fine->joints[k].force_max.value, 1e-9);
+        assert_close(alpha, fine->bodies[k].alpha_max.value, 1e-9);
+        assert_true(coarse->joints[k].impacts >= 1);
+        hidden = fmax(hidden, 1.0 - sampled_force(coarse, k) / force);
+    }
+    // control: the samples of the first run alone do not know
+    assert_true(hidden > 0.5);
+    trajectory_destroy(coarse);
+    trajectory_destroy(fine);
+    linkage_free(&scenario.linkage);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -346,6 +404,7 @@ int main(void)
         cmocka_unit_test(each_moves_as_alone_in_the_reference),
         cmocka_unit_test(each_moves_as_alone_where_motions_alone_are_asked_for),
         cmocka_unit_test(many_pins_that_meet_their_walls_at_once_follow_the_reference),
+        cmocka_unit_test(extremes_of_many_pins_are_found_between_two_samples),
         cmocka_unit_test(a_chain_with_play_in_all_pins_follows_the_reference),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
