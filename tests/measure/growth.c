@@ -8,7 +8,9 @@
 //           scissor     N crossed pairs of bars
 //   PLAY    ideal, or loose: every joint a pin with 50 um of play in its hole; space and
 //           space-loose: likewise in space, every second axis of a chain tilted; meeting, of a
-//           chain: loose, and all pins come to their walls within a step
+//           chain: loose, and all pins come to their walls within a step; damped and
+//           space-damped, of a chain, which hangs, or a row: all pins lie on their walls, damped
+//           so strongly that the reference's steps are implicit
 //   INTERVAL  steps from one sample to the next, 16: mechanisms side by side take as many as that
 //   one
 //           before the next one goes on
@@ -31,7 +33,15 @@
 #include <string.h>
 #include <time.h>
 
-enum { STEPS = 200, SETTLING = 5, LOOSE_SETTLING = 400, MEETING = 2, INTERVAL = 16, COPIES = 256 };
+enum {
+    STEPS = 200,
+    SETTLING = 5,
+    LOOSE_SETTLING = 400,
+    MEETING = 2,
+    DAMPED_SETTLING = 40, // the implicit method takes over at the first look, after 32
+    INTERVAL = 16,
+    COPIES = 256,
+};
 
 static const double STEP_S = 2e-5;
 static const double MASS = 0.1;   // kg, of each bar
@@ -40,10 +50,13 @@ static const double PIN_RADIUS = 5e-3;
 static const double PLAY = 5e-5; // m, radial
 static const double WIDTH = 0.01;
 static const double MEETING_SPEED = 0.05; // m/s
+static const double DAMPER = 1e5;         // N s/m
+static const double SUNK = 1e-8;          // m, of pins that are damped: all press at once
 
 typedef struct Build {
     Linkage linkage;
     bool is_loose;
+    bool is_damped;
     size_t first; // number of its first bar, of all copies
 } Build;
 
@@ -85,6 +98,9 @@ static void add_pin(Build *build, int a, int b, Vec2 at)
     // no two alike, so that few contacts begin at once
     const double play =
         PLAY * (1.0 + 0.2 * sin(2.3 * (double)(build->first + linkage->joint_count)));
+    if (build->is_damped) {
+        joint->anchor_a = local(linkage, a, vec2_add(at, (Vec2){0.0, play + SUNK}));
+    }
     joint->clearance =
         (Clearance){.hole_radius = PIN_RADIUS + play, .pin_radius = PIN_RADIUS, .width = WIDTH};
 }
@@ -92,11 +108,16 @@ static void add_pin(Build *build, int a, int b, Vec2 at)
 static void build_chain(Build *build, size_t count)
 {
     int before = LINKAGE_GROUND;
+    Vec2 from = {0.0, 0.0};
     for (size_t i = 0; i < count; i++) {
-        const Vec2 from = {LENGTH * (double)i, 0.0};
-        const int bar = add_bar(build, from, (Vec2){from.x + LENGTH, 0.0});
+        // level, or hanging at an angle that keeps all pins under load
+        const double aside = 0.1 * sin(0.7 * (double)i + 0.5);
+        const Vec2 along = build->is_damped ? (Vec2){aside * LENGTH, -LENGTH} : (Vec2){LENGTH, 0.0};
+        const Vec2 to = vec2_add(from, along);
+        const int bar = add_bar(build, from, to);
         add_pin(build, before, bar, from);
         before = bar;
+        from = to;
     }
 }
 
@@ -136,7 +157,9 @@ static void build_row(Build *build, size_t count)
         if (i > 0) {
             const int coupler = add_bar(build, vec2_sub(head, (Vec2){LENGTH, 0.0}), head);
             add_pin(build, before, coupler, vec2_sub(head, (Vec2){LENGTH, 0.0}));
-            add_pin(build, coupler, upright, head);
+            // what is damped lies on the upright's hole
+            const int hole = build->is_damped ? upright : coupler;
+            add_pin(build, hole, hole == upright ? coupler : upright, head);
         }
         before = upright;
     }
@@ -323,9 +346,10 @@ static bool run_copy(const Task *task, const Solver *solver, Scenario *scenario,
                      Totals *totals)
 {
     const bool is_meeting = strcmp(task->play, "meeting") == 0;
+    const bool is_damped = strstr(task->play, "damped") != NULL;
     Build build = {
-        .is_loose = is_meeting || strcmp(task->play, "loose") == 0 ||
-                    strcmp(task->play, "space-loose") == 0,
+        .is_loose = is_meeting || is_damped || strstr(task->play, "loose") != NULL,
+        .is_damped = is_damped,
         .linkage = linkage_create((LinkageRoom){3 * task->count + 1, 4 * task->count + 1, 0, 0}),
         .first = *first,
     };
@@ -338,9 +362,17 @@ static bool run_copy(const Task *task, const Solver *solver, Scenario *scenario,
     }
     *first += build.linkage.body_count;
     scenario->linkage = build.linkage;
+    if (is_damped) {
+        scenario->run.duration = 1e3; // steps are long
+        scenario->contact.damping = DAMPING_VISCOUS;
+        scenario->contact.viscous_coefficient = DAMPER;
+    }
     // pins fall through their play in 160 steps
     const bool has_contacts = build.is_loose && scenario->ode.map == ODE_MAP_IMPULSE;
-    const size_t settling = is_meeting ? MEETING : has_contacts ? LOOSE_SETTLING : SETTLING;
+    const size_t settling = is_meeting     ? MEETING
+                            : has_contacts ? LOOSE_SETTLING
+                            : is_damped    ? DAMPED_SETTLING
+                                           : SETTLING;
     const bool is_done = measure(task, scenario, solver, settling, totals);
     if (is_done && totals->copies * task->count >= COPIES) {
         print_totals(&build.linkage, totals);

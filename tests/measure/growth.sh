@@ -10,7 +10,11 @@ most=${2:-1024}
 
 for solver in "$@"; do
     for kind in chain pendula four-bars row scissor; do
-        for play in ideal loose space space-loose; do
+        plays="ideal loose space space-loose"
+        case "$solver-$kind" in
+        reference-chain | reference-row) plays="$plays damped space-damped" ;;
+        esac
+        for play in $plays; do
             echo "$solver, $kind, $play"
             echo "       N     us/step  evaluations      KiB   time^  memory^"
             count=1
