@@ -68,7 +68,8 @@ static void set_links(Articulated *articulated)
     }
 }
 
-static void make_plan(const Tree *tree, size_t loop_count, const int *loops, Plan *plan)
+static void make_plan(const Tree *tree, size_t loop_count, const int *loops, Plan *plan,
+                      ArticulatedParts *parts)
 {
     int *parents = malloc((tree->node_count + 1) * sizeof *parents);
     int(*ends)[2] = malloc((loop_count + 1) * sizeof *ends);
@@ -83,6 +84,7 @@ static void make_plan(const Tree *tree, size_t loop_count, const int *loops, Pla
     }
     const PlanShape shape = {tree->node_count, parents, loop_count, (const int(*)[2])ends, 2};
     articulated_plan_make(&shape, plan);
+    articulated_parts_find(&shape, plan, parts);
     free(parents);
     free(ends);
 }
@@ -90,7 +92,7 @@ static void make_plan(const Tree *tree, size_t loop_count, const int *loops, Pla
 Articulated *articulated_create(const Tree *tree, size_t loop_count, const int *loops)
 {
     Articulated made = {.tree = tree, .loop_count = loop_count};
-    make_plan(tree, loop_count, loops, &made.plan);
+    make_plan(tree, loop_count, loops, &made.plan, &made.parts);
     Layout layout = {NULL, 0};
     layout_take(&layout, 1, sizeof made);
     lay(&made, &layout);
@@ -111,6 +113,7 @@ void articulated_destroy(Articulated *articulated)
 {
     if (articulated != NULL) {
         articulated_plan_finish(&articulated->plan);
+        articulated_parts_finish(&articulated->parts);
         free(articulated);
     }
 }
@@ -253,12 +256,14 @@ static inline void write_rates(const ArticulatedLink *link, double *rates)
 }
 
 // From the leaves inwards: eliminates where a state is given, and takes the forces along where they
-// are wanted.
-static inline bool sweep_inwards(Articulated *articulated, const TreeState *state, bool has_forces,
-                                 const double *sides)
+// are wanted; of a part alone, these.
+static inline bool sweep_inwards(Articulated *articulated, const ArticulatedPart *part,
+                                 const TreeState *state, bool has_forces, const double *sides)
 {
     ArticulatedLink *links = articulated->links;
-    for (size_t i = articulated->tree->node_count; i-- > 0;) {
+    for (size_t number = articulated_part_count(part, articulated->tree->node_count);
+         number-- > 0;) {
+        const size_t i = articulated_part_node(part, number);
         ArticulatedLink *link = &links[i];
         ArticulatedLink *parent = link->parent >= 0 ? &links[link->parent] : NULL;
         if (link->has_fronts) {
@@ -291,18 +296,20 @@ static inline bool sweep_inwards(Articulated *articulated, const TreeState *stat
         return false;
     }
     if (has_forces) {
-        articulated_gather_sides(articulated, -1, sides);
+        articulated_gather_ground_sides(articulated, part, sides);
     }
     return true;
 }
 
-static inline void sweep_outwards(Articulated *articulated, double *rates)
+static inline void sweep_outwards(Articulated *articulated, const ArticulatedPart *part,
+                                  double *rates)
 {
     ArticulatedLink *links = articulated->links;
-    const size_t count = articulated->tree->node_count;
+    const size_t count = articulated_part_count(part, articulated->tree->node_count);
     double *multipliers = rates + articulated->tree->coordinate_count;
-    articulated_find_multipliers(articulated, -1, multipliers);
-    for (size_t i = 0; i < count; i++) {
+    articulated_find_ground_multipliers(articulated, part, multipliers);
+    for (size_t number = 0; number < count; number++) {
+        const size_t i = articulated_part_node(part, number);
         ArticulatedLink *link = &links[i];
         if (link->has_own_front) {
             articulated_add_multipliers(articulated, (int)i, multipliers);
@@ -320,21 +327,35 @@ bool articulated_factor(Articulated *articulated, const TreeState *state)
     for (size_t i = 0; i < articulated->tree->node_count; i++) {
         start_link(articulated, i, state, &articulated->links[i]);
     }
-    articulated->is_factored = sweep_inwards(articulated, state, false, NULL);
+    articulated->is_factored = sweep_inwards(articulated, NULL, state, false, NULL);
     return articulated->is_factored;
+}
+
+static inline void solve(Articulated *articulated, const ArticulatedPart *part,
+                         const ArticulatedPush *pushes, const double *sides, double *rates)
+{
+    const size_t count = articulated_part_count(part, articulated->tree->node_count);
+    for (size_t number = 0; number < count; number++) {
+        ArticulatedLink *link = &articulated->links[articulated_part_node(part, number)];
+        const ArticulatedPush *push = &pushes[link->body];
+        link->force = push->force;
+        link->moment = push->moment + vec2_dot(link->centre, push->force);
+    }
+    sweep_inwards(articulated, part, NULL, true, sides);
+    sweep_outwards(articulated, part, rates);
 }
 
 void articulated_solve(Articulated *articulated, const ArticulatedPush *pushes, const double *sides,
                        double *rates)
 {
-    for (size_t i = 0; i < articulated->tree->node_count; i++) {
-        ArticulatedLink *link = &articulated->links[i];
-        const ArticulatedPush *push = &pushes[link->body];
-        link->force = push->force;
-        link->moment = push->moment + vec2_dot(link->centre, push->force);
-    }
-    sweep_inwards(articulated, NULL, true, sides);
-    sweep_outwards(articulated, rates);
+    solve(articulated, NULL, pushes, sides, rates);
+}
+
+void articulated_solve_part(Articulated *articulated, size_t part, const ArticulatedPush *pushes,
+                            double *rates)
+{
+    const ArticulatedPart own = articulated_part(&articulated->parts, part);
+    solve(articulated, &own, pushes, NULL, rates);
 }
 
 // The force on a body less what its bias takes of it.
@@ -356,11 +377,11 @@ bool articulated_accelerate(Articulated *articulated, const TreeState *state,
         start_link(articulated, i, state, &articulated->links[i]);
         push_link(state, pushes, &articulated->links[i]);
     }
-    articulated->is_factored = sweep_inwards(articulated, state, true, sides);
+    articulated->is_factored = sweep_inwards(articulated, NULL, state, true, sides);
     if (!articulated->is_factored) {
         return false;
     }
-    sweep_outwards(articulated, rates);
+    sweep_outwards(articulated, NULL, rates);
     return true;
 }
 
@@ -373,7 +394,7 @@ bool articulated_accelerate_again(Articulated *articulated, const TreeState *sta
     for (size_t i = 0; i < articulated->tree->node_count; i++) {
         push_link(state, pushes, &articulated->links[i]);
     }
-    sweep_inwards(articulated, NULL, true, sides);
-    sweep_outwards(articulated, rates);
+    sweep_inwards(articulated, NULL, NULL, true, sides);
+    sweep_outwards(articulated, NULL, rates);
     return true;
 }

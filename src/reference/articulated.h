@@ -26,6 +26,11 @@ bool articulated_factor(Articulated *articulated, const TreeState *state);
 void articulated_solve(Articulated *articulated, const ArticulatedPush *pushes, const double *sides,
                        double *rates);
 
+// The same of a part of the tree (Articulated.parts) and sides of zeros: reads the pushes and
+// writes the rates of its bodies and loops alone.
+void articulated_solve_part(Articulated *articulated, size_t part, const ArticulatedPush *pushes,
+                            double *rates);
+
 // Both at once, of pushes less what the bodies' bias takes of them (TreeState.bias): writes the
 // second rates.
 bool articulated_accelerate(Articulated *articulated, const TreeState *state,

@@ -205,39 +205,57 @@ void articulated_take_out(Articulated *articulated, int node)
     }
 }
 
-void articulated_gather_sides(Articulated *articulated, int node, const double *sides)
+static void gather_sides(Articulated *articulated, size_t i, ArticulatedLink *link,
+                         const double *sides)
 {
     const Plan *plan = &articulated->plan;
+    const PlanFront *front = &plan->fronts[i];
+    const FrontRows *at = &articulated->fronts[i];
+    const size_t count = rows_of(front);
+    for (size_t k = 0; k < count; k++) {
+        const bool is_own = k < left_of(front) && sides != NULL;
+        at->vector[k] = is_own ? sides[LOOP_ROWS * plan->loops[front->first_loop] + k] : 0.0;
+    }
+    for (size_t k = 0; k < front->child_count; k++) {
+        const PlanChild *entry = &plan->children[front->first_child + k];
+        const PlanFront *child = &plan->fronts[entry->front];
+        const size_t *places = plan->places + entry->first_place;
+        const size_t left = left_of(child);
+        for (size_t row = left; row < rows_of(child); row++) {
+            at->vector[places[(row - left) / LOOP_ROWS] + row % LOOP_ROWS] +=
+                articulated->fronts[entry->front].vector[row];
+        }
+    }
+    for (size_t pivot = 0; pivot < left_of(front); pivot++) {
+        const double solved = at->vector[pivot] * at->inverse[pivot];
+        for (size_t k = pivot + 1; k < count; k++) {
+            at->vector[k] -= at->square[pivot * count + k] * solved;
+        }
+        if (link != NULL) {
+            const LoopRow *row = &at->rows[pivot];
+            link->force = vec2_sub(link->force, vec2_scale(solved, row->motion));
+            link->moment -= solved * row->spin;
+        }
+    }
+}
+
+void articulated_gather_sides(Articulated *articulated, int node, const double *sides)
+{
     ArticulatedLink *link = node >= 0 ? &articulated->links[node] : NULL;
     for (size_t i = first_of(articulated, node); i < last_of(articulated, node); i++) {
-        const PlanFront *front = &plan->fronts[i];
-        const FrontRows *at = &articulated->fronts[i];
-        const size_t count = rows_of(front);
-        for (size_t k = 0; k < count; k++) {
-            const bool is_own = k < left_of(front) && sides != NULL;
-            at->vector[k] = is_own ? sides[LOOP_ROWS * plan->loops[front->first_loop] + k] : 0.0;
-        }
-        for (size_t k = 0; k < front->child_count; k++) {
-            const PlanChild *entry = &plan->children[front->first_child + k];
-            const PlanFront *child = &plan->fronts[entry->front];
-            const size_t *places = plan->places + entry->first_place;
-            const size_t left = left_of(child);
-            for (size_t row = left; row < rows_of(child); row++) {
-                at->vector[places[(row - left) / LOOP_ROWS] + row % LOOP_ROWS] +=
-                    articulated->fronts[entry->front].vector[row];
-            }
-        }
-        for (size_t pivot = 0; pivot < left_of(front); pivot++) {
-            const double solved = at->vector[pivot] * at->inverse[pivot];
-            for (size_t k = pivot + 1; k < count; k++) {
-                at->vector[k] -= at->square[pivot * count + k] * solved;
-            }
-            if (link != NULL) {
-                const LoopRow *row = &at->rows[pivot];
-                link->force = vec2_sub(link->force, vec2_scale(solved, row->motion));
-                link->moment -= solved * row->spin;
-            }
-        }
+        gather_sides(articulated, i, link, sides);
+    }
+}
+
+void articulated_gather_ground_sides(Articulated *articulated, const ArticulatedPart *part,
+                                     const double *sides)
+{
+    if (part == NULL) {
+        articulated_gather_sides(articulated, -1, sides);
+        return;
+    }
+    for (size_t i = 0; i < part->front_count; i++) {
+        gather_sides(articulated, part->fronts[i], NULL, sides);
     }
 }
 
@@ -276,25 +294,43 @@ void articulated_add_multipliers(Articulated *articulated, int node, const doubl
     }
 }
 
-void articulated_find_multipliers(Articulated *articulated, int node, double *multipliers)
+static void find_multipliers(const Articulated *articulated, size_t i, const ArticulatedLink *link,
+                             double *multipliers)
 {
     const Plan *plan = &articulated->plan;
+    const PlanFront *front = &plan->fronts[i];
+    const FrontRows *at = &articulated->fronts[i];
+    const size_t count = rows_of(front);
+    const int *loops = plan->loops + front->first_loop;
+    for (size_t pivot = left_of(front); pivot-- > 0;) {
+        double sum = at->vector[pivot];
+        if (link != NULL) {
+            sum -= felt(&at->rows[pivot], link->motion, link->spin);
+        }
+        for (size_t k = pivot + 1; k < count; k++) {
+            sum -= at->square[pivot * count + k] *
+                   multipliers[LOOP_ROWS * loops[k / LOOP_ROWS] + k % LOOP_ROWS];
+        }
+        multipliers[LOOP_ROWS * loops[0] + (int)pivot] = sum * at->inverse[pivot];
+    }
+}
+
+void articulated_find_multipliers(Articulated *articulated, int node, double *multipliers)
+{
     const ArticulatedLink *link = node >= 0 ? &articulated->links[node] : NULL;
     for (size_t i = last_of(articulated, node); i-- > first_of(articulated, node);) {
-        const PlanFront *front = &plan->fronts[i];
-        const FrontRows *at = &articulated->fronts[i];
-        const size_t count = rows_of(front);
-        const int *loops = plan->loops + front->first_loop;
-        for (size_t pivot = left_of(front); pivot-- > 0;) {
-            double sum = at->vector[pivot];
-            if (link != NULL) {
-                sum -= felt(&at->rows[pivot], link->motion, link->spin);
-            }
-            for (size_t k = pivot + 1; k < count; k++) {
-                sum -= at->square[pivot * count + k] *
-                       multipliers[LOOP_ROWS * loops[k / LOOP_ROWS] + k % LOOP_ROWS];
-            }
-            multipliers[LOOP_ROWS * loops[0] + (int)pivot] = sum * at->inverse[pivot];
-        }
+        find_multipliers(articulated, i, link, multipliers);
+    }
+}
+
+void articulated_find_ground_multipliers(Articulated *articulated, const ArticulatedPart *part,
+                                         double *multipliers)
+{
+    if (part == NULL) {
+        articulated_find_multipliers(articulated, -1, multipliers);
+        return;
+    }
+    for (size_t i = part->front_count; i-- > 0;) {
+        find_multipliers(articulated, part->fronts[i], NULL, multipliers);
     }
 }

@@ -2,7 +2,7 @@
 // the rows of loops that feel it.
 #pragma once
 
-#include "reference/articulated_plan.h"
+#include "reference/articulated_parts.h"
 #include "reference/tree.h"
 
 typedef enum LinkKind {
@@ -86,6 +86,7 @@ typedef struct FrontRows {
 typedef struct Articulated {
     const Tree *tree;
     Plan plan;
+    ArticulatedParts parts;
     size_t loop_count;
     int *loops; // joints
     ArticulatedLink *links;

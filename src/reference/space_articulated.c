@@ -53,7 +53,8 @@ static void set_links(SpaceArticulated *articulated)
     }
 }
 
-static void make_plan(const SpaceTree *tree, size_t loop_count, const int *loops, Plan *plan)
+static void make_plan(const SpaceTree *tree, size_t loop_count, const int *loops, Plan *plan,
+                      ArticulatedParts *parts)
 {
     int *parents = zeroed(tree->node_count, sizeof *parents);
     int(*ends)[2] = zeroed(loop_count, sizeof *ends);
@@ -68,6 +69,7 @@ static void make_plan(const SpaceTree *tree, size_t loop_count, const int *loops
     const PlanShape shape = {tree->node_count, parents, loop_count, (const int(*)[2])ends,
                              SPACE_JOINT_ROWS};
     articulated_plan_make(&shape, plan);
+    articulated_parts_find(&shape, plan, parts);
     free(parents);
     free(ends);
 }
@@ -76,7 +78,7 @@ SpaceArticulated *space_articulated_create(const SpaceTree *tree, size_t loop_co
                                            const int *loops)
 {
     SpaceArticulated made = {.tree = tree};
-    make_plan(tree, loop_count, loops, &made.plan);
+    make_plan(tree, loop_count, loops, &made.plan, &made.parts);
     Layout layout = {NULL, 0};
     layout_take(&layout, 1, sizeof made);
     lay(&made, loop_count, &layout);
@@ -96,6 +98,7 @@ void space_articulated_destroy(SpaceArticulated *articulated)
 {
     if (articulated != NULL) {
         articulated_plan_finish(&articulated->plan);
+        articulated_parts_finish(&articulated->parts);
         free(articulated);
     }
 }
@@ -295,27 +298,29 @@ bool space_articulated_factor(SpaceArticulated *articulated, const SpaceTreeStat
     return space_fronts_gather(articulated, -1, state, rows);
 }
 
-static void start_forces(SpaceArticulated *articulated, const SpacePush *pushes)
+static void start_forces(SpaceLink *link, const SpacePush *pushes)
 {
-    const Vec3 none = {0.0, 0.0, 0.0};
-    for (size_t i = 0; i < articulated->tree->node_count; i++) {
-        SpaceLink *link = &articulated->links[i];
-        link->force = link->moment = none;
-        if (pushes != NULL) {
-            const SpacePush *push = &pushes[link->body];
-            link->force = push->force;
-            link->moment = vec3_add(push->moment, vec3_cross(link->centre, push->force));
-        }
+    link->force = link->moment = (Vec3){0.0, 0.0, 0.0};
+    if (pushes != NULL) {
+        const SpacePush *push = &pushes[link->body];
+        link->force = push->force;
+        link->moment = vec3_add(push->moment, vec3_cross(link->centre, push->force));
     }
 }
 
-void space_articulated_solve(SpaceArticulated *articulated, const SpaceTreeState *state,
-                             const SpacePush *pushes, const double *sides, double *rates)
+// Of a part, or of the whole tree (NULL).
+static inline void solve(SpaceArticulated *articulated, const ArticulatedPart *part,
+                         const SpaceTreeState *state, const SpacePush *pushes, const double *sides,
+                         double *rates)
 {
     SpaceLink *links = articulated->links;
     double *multipliers = rates + articulated->tree->coordinate_count;
-    start_forces(articulated, pushes);
-    for (size_t i = articulated->tree->node_count; i-- > 0;) {
+    const size_t count = articulated_part_count(part, articulated->tree->node_count);
+    for (size_t number = 0; number < count; number++) {
+        start_forces(&links[articulated_part_node(part, number)], pushes);
+    }
+    for (size_t number = count; number-- > 0;) {
+        const size_t i = articulated_part_node(part, number);
         SpaceLink *link = &links[i];
         if (link->has_fronts) {
             space_fronts_gather_sides(articulated, (int)i, sides);
@@ -325,9 +330,10 @@ void space_articulated_solve(SpaceArticulated *articulated, const SpaceTreeState
             space_fronts_take_out_sides(articulated, (int)i);
         }
     }
-    space_fronts_gather_sides(articulated, -1, sides);
-    space_fronts_find_multipliers(articulated, -1, multipliers);
-    for (size_t i = 0; i < articulated->tree->node_count; i++) {
+    space_fronts_gather_ground_sides(articulated, part, sides);
+    space_fronts_find_ground_multipliers(articulated, part, multipliers);
+    for (size_t number = 0; number < count; number++) {
+        const size_t i = articulated_part_node(part, number);
         SpaceLink *link = &links[i];
         if (link->has_own_front) {
             space_fronts_add_multipliers(articulated, (int)i, multipliers);
@@ -341,4 +347,18 @@ void space_articulated_solve(SpaceArticulated *articulated, const SpaceTreeState
             space_fronts_find_multipliers(articulated, (int)i, multipliers);
         }
     }
+}
+
+void space_articulated_solve(SpaceArticulated *articulated, const SpaceTreeState *state,
+                             const SpacePush *pushes, const double *sides, double *rates)
+{
+    solve(articulated, NULL, state, pushes, sides, rates);
+}
+
+void space_articulated_solve_part(SpaceArticulated *articulated, size_t part,
+                                  const SpaceTreeState *state, const SpacePush *pushes,
+                                  double *rates)
+{
+    const ArticulatedPart own = articulated_part(&articulated->parts, part);
+    solve(articulated, &own, state, pushes, NULL, rates);
 }

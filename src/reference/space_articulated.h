@@ -20,3 +20,9 @@ bool space_articulated_factor(SpaceArticulated *articulated, const SpaceTreeStat
 // the rows: 0 of one that is not held.
 void space_articulated_solve(SpaceArticulated *articulated, const SpaceTreeState *state,
                              const SpacePush *pushes, const double *sides, double *rates);
+
+// The same of a part of the tree (SpaceArticulated.parts) and sides of zeros: reads the pushes and
+// writes the rates of its bodies and loops alone.
+void space_articulated_solve_part(SpaceArticulated *articulated, size_t part,
+                                  const SpaceTreeState *state, const SpacePush *pushes,
+                                  double *rates);

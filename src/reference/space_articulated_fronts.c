@@ -208,38 +208,56 @@ void space_fronts_take_out(SpaceArticulated *articulated, int node)
     }
 }
 
-void space_fronts_gather_sides(SpaceArticulated *articulated, int node, const double *sides)
+static void gather_sides(SpaceArticulated *articulated, size_t i, SpaceLink *link,
+                         const double *sides)
 {
     const Plan *plan = &articulated->plan;
+    const PlanFront *front = &plan->fronts[i];
+    const SpaceFront *at = &articulated->fronts[i];
+    const size_t count = rows_of(front);
+    for (size_t k = 0; k < count; k++) {
+        const bool is_own = k < left_of(front) && sides != NULL;
+        at->vector[k] = is_own ? sides[ROWS * plan->loops[front->first_loop] + (int)k] : 0.0;
+    }
+    for (size_t k = 0; k < front->child_count; k++) {
+        const PlanChild *entry = &plan->children[front->first_child + k];
+        const PlanFront *child = &plan->fronts[entry->front];
+        const size_t left = left_of(child);
+        for (size_t row = left; row < rows_of(child); row++) {
+            at->vector[place_of(plan, entry, row - left)] +=
+                articulated->fronts[entry->front].vector[row];
+        }
+    }
+    for (size_t pivot = 0; pivot < left_of(front); pivot++) {
+        const double solved = at->vector[pivot] * at->inverse[pivot];
+        for (size_t k = pivot + 1; k < count && solved != 0.0; k++) {
+            at->vector[k] -= at->square[pivot * count + k] * solved;
+        }
+        if (link != NULL) {
+            const SpaceFeel *row = &at->rows[pivot];
+            link->force = vec3_sub(link->force, vec3_scale(solved, row->motion));
+            link->moment = vec3_sub(link->moment, vec3_scale(solved, row->turning));
+        }
+    }
+}
+
+void space_fronts_gather_sides(SpaceArticulated *articulated, int node, const double *sides)
+{
     SpaceLink *link = node >= 0 ? &articulated->links[node] : NULL;
     for (size_t i = first_of(articulated, node); i < last_of(articulated, node); i++) {
-        const PlanFront *front = &plan->fronts[i];
-        const SpaceFront *at = &articulated->fronts[i];
-        const size_t count = rows_of(front);
-        for (size_t k = 0; k < count; k++) {
-            const bool is_own = k < left_of(front) && sides != NULL;
-            at->vector[k] = is_own ? sides[ROWS * plan->loops[front->first_loop] + (int)k] : 0.0;
-        }
-        for (size_t k = 0; k < front->child_count; k++) {
-            const PlanChild *entry = &plan->children[front->first_child + k];
-            const PlanFront *child = &plan->fronts[entry->front];
-            const size_t left = left_of(child);
-            for (size_t row = left; row < rows_of(child); row++) {
-                at->vector[place_of(plan, entry, row - left)] +=
-                    articulated->fronts[entry->front].vector[row];
-            }
-        }
-        for (size_t pivot = 0; pivot < left_of(front); pivot++) {
-            const double solved = at->vector[pivot] * at->inverse[pivot];
-            for (size_t k = pivot + 1; k < count && solved != 0.0; k++) {
-                at->vector[k] -= at->square[pivot * count + k] * solved;
-            }
-            if (link != NULL) {
-                const SpaceFeel *row = &at->rows[pivot];
-                link->force = vec3_sub(link->force, vec3_scale(solved, row->motion));
-                link->moment = vec3_sub(link->moment, vec3_scale(solved, row->turning));
-            }
-        }
+        gather_sides(articulated, i, link, sides);
+    }
+}
+
+void space_fronts_gather_ground_sides(SpaceArticulated *articulated, const ArticulatedPart *part,
+                                      const double *sides)
+{
+    if (part == NULL) {
+        space_fronts_gather_sides(articulated, -1, sides);
+        return;
+    }
+    for (size_t i = 0; i < part->front_count; i++) {
+        gather_sides(articulated, part->fronts[i], NULL, sides);
     }
 }
 
@@ -272,26 +290,44 @@ void space_fronts_add_multipliers(SpaceArticulated *articulated, int node,
     }
 }
 
-void space_fronts_find_multipliers(SpaceArticulated *articulated, int node, double *multipliers)
+static void find_multipliers(const SpaceArticulated *articulated, size_t i, const SpaceLink *link,
+                             double *multipliers)
 {
     const Plan *plan = &articulated->plan;
+    const PlanFront *front = &plan->fronts[i];
+    const SpaceFront *at = &articulated->fronts[i];
+    const size_t count = rows_of(front);
+    const int *loops = plan->loops + front->first_loop;
+    for (size_t pivot = left_of(front); pivot-- > 0;) {
+        double sum = at->vector[pivot];
+        if (link != NULL) {
+            sum -= vec3_dot(at->rows[pivot].motion, link->motion) +
+                   vec3_dot(at->rows[pivot].turning, link->turning);
+        }
+        for (size_t k = pivot + 1; k < count; k++) {
+            sum -= at->square[pivot * count + k] *
+                   multipliers[ROWS * loops[k / ROWS] + (int)(k % ROWS)];
+        }
+        multipliers[ROWS * loops[0] + (int)pivot] = sum * at->inverse[pivot];
+    }
+}
+
+void space_fronts_find_multipliers(SpaceArticulated *articulated, int node, double *multipliers)
+{
     const SpaceLink *link = node >= 0 ? &articulated->links[node] : NULL;
     for (size_t i = last_of(articulated, node); i-- > first_of(articulated, node);) {
-        const PlanFront *front = &plan->fronts[i];
-        const SpaceFront *at = &articulated->fronts[i];
-        const size_t count = rows_of(front);
-        const int *loops = plan->loops + front->first_loop;
-        for (size_t pivot = left_of(front); pivot-- > 0;) {
-            double sum = at->vector[pivot];
-            if (link != NULL) {
-                sum -= vec3_dot(at->rows[pivot].motion, link->motion) +
-                       vec3_dot(at->rows[pivot].turning, link->turning);
-            }
-            for (size_t k = pivot + 1; k < count; k++) {
-                sum -= at->square[pivot * count + k] *
-                       multipliers[ROWS * loops[k / ROWS] + (int)(k % ROWS)];
-            }
-            multipliers[ROWS * loops[0] + (int)pivot] = sum * at->inverse[pivot];
-        }
+        find_multipliers(articulated, i, link, multipliers);
+    }
+}
+
+void space_fronts_find_ground_multipliers(SpaceArticulated *articulated,
+                                          const ArticulatedPart *part, double *multipliers)
+{
+    if (part == NULL) {
+        space_fronts_find_multipliers(articulated, -1, multipliers);
+        return;
+    }
+    for (size_t i = part->front_count; i-- > 0;) {
+        find_multipliers(articulated, part->fronts[i], NULL, multipliers);
     }
 }

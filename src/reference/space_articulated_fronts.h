@@ -17,8 +17,16 @@ void space_fronts_take_out(SpaceArticulated *articulated, int node);
 void space_fronts_gather_sides(SpaceArticulated *articulated, int node, const double *sides);
 void space_fronts_take_out_sides(SpaceArticulated *articulated, int node);
 
+// Those at the ground, of a part or of all (NULL).
+void space_fronts_gather_ground_sides(SpaceArticulated *articulated, const ArticulatedPart *part,
+                                      const double *sides);
+
 // On the way outwards: gives a body what multipliers that are known push it with; finds those that
 // are eliminated at a body whose motion is known.
 void space_fronts_add_multipliers(SpaceArticulated *articulated, int node,
                                   const double *multipliers);
 void space_fronts_find_multipliers(SpaceArticulated *articulated, int node, double *multipliers);
+
+// Finds those that are eliminated at the ground, of a part or of all (NULL).
+void space_fronts_find_ground_multipliers(SpaceArticulated *articulated,
+                                          const ArticulatedPart *part, double *multipliers);

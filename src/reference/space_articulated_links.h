@@ -2,7 +2,7 @@
 // each body, and the rows of loops that feel it.
 #pragma once
 
-#include "reference/articulated_plan.h"
+#include "reference/articulated_parts.h"
 #include "reference/space_tree.h"
 
 enum { SPACE_LINK_FREEDOMS = 6 };
@@ -71,6 +71,7 @@ typedef struct SpaceFront {
 typedef struct SpaceArticulated {
     const SpaceTree *tree;
     Plan plan;
+    ArticulatedParts parts;
     int *loops; // joints
     SpaceLink *links;
     SpaceFront *fronts;

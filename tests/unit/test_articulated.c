@@ -193,8 +193,8 @@ static void solve_whole(Solved *solved, const ArticulatedPush *pushes, const dou
     test_free(matrix);
 }
 
-// Solves in both ways at a state away from the start; the push is on one body more than the other.
-static Solved *solve(const Linkage *linkage, double other)
+// A tree at a state away from the start.
+static Solved *stand(const Linkage *linkage, uint64_t *seed)
 {
     Solved *solved = test_calloc(1, sizeof *solved);
     Tree *tree = &solved->tree;
@@ -210,11 +210,29 @@ static Solved *solve(const Linkage *linkage, double other)
     double q[EQUATIONS] = {0.0};
     double u[EQUATIONS] = {0.0};
     tree_start(tree, motions, u);
-    uint64_t seed = 3;
     for (size_t i = 0; i < tree->coordinate_count; i++) {
-        q[i] = 0.3 * lcg_draw(&seed);
+        q[i] = 0.3 * lcg_draw(seed);
     }
     tree_evaluate(tree, 0.0, q, u, solved->state);
+    return solved;
+}
+
+static void finish(Solved *solved, Made made)
+{
+    tree_finish(&solved->tree);
+    test_free(solved->state);
+    test_free(solved->memory);
+    test_free(solved);
+    linkage_free(made.linkage);
+    test_free(made.linkage);
+}
+
+// Solves in both ways; the push is on one body more than the other.
+static Solved *solve(const Linkage *linkage, double other)
+{
+    uint64_t seed = 3;
+    Solved *solved = stand(linkage, &seed);
+    const Tree *tree = &solved->tree;
     ArticulatedPush pushes[BODIES];
     for (size_t i = 0; i < linkage->body_count; i++) {
         pushes[i] = (ArticulatedPush){{lcg_draw(&seed), lcg_draw(&seed)}, lcg_draw(&seed)};
@@ -249,12 +267,7 @@ static double apart(Made made, double other)
         largest = fmax(largest, fabs(solved->whole[i]));
         error = fmax(error, fabs(solved->whole[i] - solved->rates[i]));
     }
-    tree_finish(&solved->tree);
-    test_free(solved->state);
-    test_free(solved->memory);
-    test_free(solved);
-    linkage_free(made.linkage);
-    test_free(made.linkage);
+    finish(solved, made);
     return error / largest;
 }
 
@@ -291,6 +304,54 @@ static void another_push_moves_otherwise(void **state)
 {
     (void)state;
     assert_true(apart(scissor(4), 1e-3) > 100.0 * ROUNDED);
+}
+
+// Two rows of four-bars on the ground, a chain that floats and a body alone.
+static Made four_parts(void)
+{
+    Made made = row(2, false);
+    const int left = add_body(&made);
+    const int coupler = add_body(&made);
+    const int right = add_body(&made);
+    join(&made, JOINT_REVOLUTE, LINKAGE_GROUND, left);
+    join(&made, JOINT_REVOLUTE, LINKAGE_GROUND, right);
+    join(&made, JOINT_REVOLUTE, left, coupler);
+    join(&made, JOINT_REVOLUTE, coupler, right);
+    const int first = add_body(&made);
+    join(&made, JOINT_REVOLUTE, first, add_body(&made));
+    add_body(&made);
+    return made;
+}
+
+static void each_part_moves_as_in_the_whole_to_the_last_bit(void **state)
+{
+    (void)state;
+    Made made = four_parts();
+    uint64_t seed = 3;
+    Solved *solved = stand(made.linkage, &seed);
+    const Tree *tree = &solved->tree;
+    ArticulatedPush pushes[BODIES];
+    for (size_t i = 0; i < BODIES; i++) {
+        pushes[i] = (ArticulatedPush){{lcg_draw(&seed), lcg_draw(&seed)}, lcg_draw(&seed)};
+    }
+    Articulated *articulated = articulated_create(tree, tree->loop_count, tree->loops);
+    assert_int_equal(articulated->parts.count, 4);
+    assert_true(articulated_factor(articulated, solved->state));
+    articulated_solve(articulated, pushes, NULL, solved->whole);
+    const size_t count = tree->coordinate_count + 2 * tree->loop_count;
+    for (size_t i = 0; i < count; i++) {
+        solved->rates[i] = NAN;
+    }
+    for (size_t i = 0; i < 4; i++) {
+        // control: what belongs to other parts is not written
+        assert_true(isnan(solved->rates[tree->coordinate_count - 1]));
+        articulated_solve_part(articulated, i, pushes, solved->rates);
+    }
+    for (size_t i = 0; i < count; i++) {
+        assert_true(solved->rates[i] == solved->whole[i]);
+    }
+    articulated_destroy(articulated);
+    finish(solved, made);
 }
 
 enum { IN_A_ROW = 64 };
@@ -385,6 +446,7 @@ int main(void)
         cmocka_unit_test(loops_in_a_row_move_as_their_whole_matrix_says),
         cmocka_unit_test(slides_move_as_their_whole_matrix_says),
         cmocka_unit_test(another_push_moves_otherwise),
+        cmocka_unit_test(each_part_moves_as_in_the_whole_to_the_last_bit),
         cmocka_unit_test(loops_stay_with_their_neighbours_whatever_the_order_of_the_joints),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
