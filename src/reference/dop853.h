@@ -3,6 +3,8 @@
 // taken. The polynomial through a step is worked out when the first state inside it is asked for.
 #pragma once
 
+#include "reference/coupling.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -23,8 +25,8 @@ extern const double DOP853_DENSE[DOP853_DENSE_ROWS][DOP853_STAGES];
 // Writes dy/dt at a time and state.
 typedef void (*Dop853Rates)(double time, const double *y, double *rates, void *context);
 
-// Writes how the second rates of n coordinates change with these and their rates, n by n each in
-// rows; see radau.h.
+// Writes how the second rates of the coordinates change with these and their rates, as matrices of
+// the coupling; see radau.h.
 typedef void (*Dop853Slopes)(double time, const double *y, double *by_position, double *by_rate,
                              void *context);
 
@@ -55,7 +57,8 @@ struct Dop853 {
     // by themselves.
     size_t motion_size;
     Dop853Rates rates;
-    Dop853Slopes slopes; // for a method that needs them; NULL: from differences of the rates
+    Dop853Slopes slopes;      // for a method that needs them; NULL: from differences of the rates
+    const Coupling *coupling; // of the coordinates; NULL: any may depend on any
     void *context;
     // Error allowed in each component of one step: fixed[i] + grown[i] times the step. A component
     // with both 0 is not controlled.

@@ -6,6 +6,7 @@
 // reference/dynamics_contact.c; those of springs, dampers and torques: model/forces.c.
 #include "reference/dynamics.h"
 
+#include "base/zeroed.h"
 #include "model/forces.h"
 #include "reference/dynamics_places.h"
 #include "reference/dynamics_reactions.h"
@@ -83,6 +84,22 @@ static void make_room(Dynamics *dynamics)
     lay(dynamics, contact_most, &(Layout){dynamics->memory, 0});
 }
 
+static Coupling *couple(const Dynamics *dynamics)
+{
+    const Tree *tree = &dynamics->tree;
+    const ArticulatedParts *parts = &dynamics->articulated->parts;
+    CouplingBody *bodies = zeroed(tree->node_count, sizeof *bodies);
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const TreeNode *node = &tree->nodes[i];
+        const size_t before = node->joint < 0 ? 2 : 0; // a floating body's x and y
+        bodies[i] =
+            (CouplingBody){node->body, parts->of_node[i], node->column - before, 1 + before};
+    }
+    Coupling *coupling = coupling_create(tree->linkage, parts->count, tree->node_count, bodies);
+    free(bodies);
+    return coupling;
+}
+
 bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
 {
     *dynamics = (Dynamics){.system = {.scenario = scenario, .torn = -1}};
@@ -102,6 +119,7 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
         return false;
     }
     dynamics->articulated = articulated_create(tree, tree->loop_count, tree->loops);
+    dynamics->system.coupling = couple(dynamics);
     dynamics->hinged = hinged_create(dynamics);
     dynamics->room.state = dynamics_state_create(dynamics);
     return true;
@@ -111,6 +129,7 @@ void dynamics_finish(Dynamics *dynamics)
 {
     free(dynamics->room.state);
     hinged_destroy(dynamics->hinged);
+    coupling_destroy(dynamics->system.coupling);
     articulated_destroy(dynamics->articulated);
     free(dynamics->memory);
     tree_finish(&dynamics->tree);

@@ -19,7 +19,6 @@
 #include "reference/tree_line.h"
 
 #include <math.h>
-#include <string.h>
 
 // A pressing contact and what its force changes with.
 typedef struct Pressing {
@@ -31,9 +30,10 @@ typedef struct Pressing {
     double stiffness; // N/m, dN by depth
     double damping;   // N s/m, dN by closing speed
     double grip;      // 1, g / (mu N)
-    Vec2 *centre;     // G
+    Vec2 *centre;     // G, by coordinate: of the parts that the contact couples, like all
     double *arms;     // m, s; 0 without friction
     int pair;         // of the tree
+    const CouplingJoint *parts;
 } Pressing;
 
 // What small changes make of it.
@@ -81,7 +81,7 @@ static Pressing look_at(const Dynamics *dynamics, const TreeState *state, size_t
     const Contact *contact = &dynamics->system.contacts[number];
     const PlanePlace *place = &dynamics->places[number];
     const ContactOptions *options = &dynamics->system.scenario->contact;
-    const size_t n = dynamics->tree.coordinate_count;
+    const Coupling *coupling = dynamics->system.coupling;
     Pressing pressing = {
         .touch = &place->touch,
         .options = options,
@@ -89,10 +89,14 @@ static Pressing look_at(const Dynamics *dynamics, const TreeState *state, size_t
         .centre = dynamics->room.row,
         .arms = dynamics->room.arms,
         .pair = place->pair,
+        .parts = &coupling->joints[contact->joint],
     };
-    for (size_t i = 0; i < n; i++) {
-        pressing.centre[i] = (Vec2){0.0, 0.0};
-        pressing.arms[i] = 0.0;
+    for (size_t i = 0; i < pressing.parts->count; i++) {
+        const size_t part = pressing.parts->parts[i];
+        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
+            pressing.centre[coupling->members[k]] = (Vec2){0.0, 0.0};
+            pressing.arms[coupling->members[k]] = 0.0;
+        }
     }
     dynamics_contact_find(dynamics, number, state, &pressing.force);
     const TouchPose *pose = &pressing.force.pose;
@@ -142,11 +146,28 @@ static Change change_force(const Pressing *pressing, Vec2 moved, Vec2 faster, do
     return (Change){vec2_add(vec2_scale(across, normal), vec2_scale(along, tangent)), friction};
 }
 
-static void add_column(size_t n, double *const *pushed, Change change, double *column)
+// Adds to a column of the rows of the parts what the change does to their accelerations.
+static void add_column(const Coupling *coupling, const CouplingJoint *parts, double *const *pushed,
+                       Change change, size_t column, double *values)
 {
-    for (size_t i = 0; i < n; i++) {
-        column[i * n] += pushed[0][i] * change.force.x + pushed[1][i] * change.force.y +
-                         pushed[2][i] * change.friction;
+    for (size_t k = 0; k < parts->count; k++) {
+        const size_t part = parts->parts[k];
+        const size_t place = coupling_place(coupling, part, column);
+        for (size_t m = coupling->first_member[part]; m < coupling->first_member[part + 1]; m++) {
+            const size_t i = coupling->members[m];
+            values[coupling->first_value[i] + place] += pushed[0][i] * change.force.x +
+                                                        pushed[1][i] * change.force.y +
+                                                        pushed[2][i] * change.friction;
+        }
+    }
+}
+
+// Solves for what the loads push of some parts.
+static void solve_parts(const Dynamics *dynamics, const CouplingJoint *parts, const Loads *loads,
+                        double *pushed)
+{
+    for (size_t i = 0; i < parts->count; i++) {
+        articulated_solve_part(dynamics->articulated, parts->parts[i], loads->pushes, pushed);
     }
 }
 
@@ -163,7 +184,7 @@ static void find_pushed(const Dynamics *dynamics, const TreeState *state, const 
     const bool is_line = tree->measures[pressing->pair] == TREE_LINE;
     const Vec2 under = is_line ? tree_pair_gap(tree, state, pressing->pair) : none;
     const bool has_friction = pressing->options->friction > 0.0;
-    memset(room->pushed[2], 0, tree->coordinate_count * sizeof *room->pushed[2]);
+    // without friction what its arms push stays zero
     for (int way = 0; way < (has_friction ? DYNAMICS_PUSHED : 2); way++) {
         const Vec2 force = {way == 0 ? 1.0 : 0.0, way == 1 ? 1.0 : 0.0};
         if (way < 2) {
@@ -175,7 +196,7 @@ static void find_pushed(const Dynamics *dynamics, const TreeState *state, const 
                 dynamics_load_couple(tree, state, tree->end_bodies[end + side], arm, &loads);
             }
         }
-        articulated_solve(dynamics->articulated, loads.pushes, NULL, room->pushed[way]);
+        solve_parts(dynamics, pressing->parts, &loads, room->pushed[way]);
         for (int side = 0; side < 2; side++) {
             const int body = tree->end_bodies[end + side];
             if (body != LINKAGE_GROUND) {
@@ -185,21 +206,58 @@ static void find_pushed(const Dynamics *dynamics, const TreeState *state, const 
     }
 }
 
+// What the coordinate does to a contact.
+static void add_columns(const Dynamics *dynamics, const Pressing *pressing, size_t coordinate,
+                        double *by_position, double *by_rate)
+{
+    static const Vec2 NONE = {0.0, 0.0};
+    const Coupling *coupling = dynamics->system.coupling;
+    double *const *pushed = dynamics->room.pushed;
+    const Vec2 centre = pressing->centre[coordinate];
+    const double arm = pressing->arms[coordinate];
+    const bool moves = centre.x != 0.0 || centre.y != 0.0;
+    if (moves) {
+        add_column(coupling, pressing->parts, pushed, change_force(pressing, centre, NONE, 0.0),
+                   coordinate, by_position);
+    }
+    if (moves || arm != 0.0) {
+        add_column(coupling, pressing->parts, pushed, change_force(pressing, NONE, centre, arm),
+                   coordinate, by_rate);
+    }
+}
+
 static void add_slopes(const Dynamics *dynamics, const Pressing *pressing, double *by_position,
                        double *by_rate)
 {
-    static const Vec2 NONE = {0.0, 0.0};
-    const size_t n = dynamics->tree.coordinate_count;
-    double *const *pushed = dynamics->room.pushed;
-    for (size_t k = 0; k < n; k++) {
-        const Vec2 centre = pressing->centre[k];
-        const bool moves = centre.x != 0.0 || centre.y != 0.0;
-        if (moves) {
-            add_column(n, pushed, change_force(pressing, centre, NONE, 0.0), by_position + k);
+    const Coupling *coupling = dynamics->system.coupling;
+    for (size_t i = 0; i < pressing->parts->count; i++) {
+        const size_t part = pressing->parts->parts[i];
+        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
+            add_columns(dynamics, pressing, coupling->members[k], by_position, by_rate);
         }
-        if (moves || pressing->arms[k] != 0.0) {
-            add_column(n, pushed, change_force(pressing, NONE, centre, pressing->arms[k]),
-                       by_rate + k);
+    }
+}
+
+// A coordinate that turns a body, its share in what presses, and what that changes with.
+typedef struct TurnColumn {
+    size_t column;
+    double share;
+    double stiffness;
+    double damping;
+} TurnColumn;
+
+static void add_turn_column(const Dynamics *dynamics, const CouplingJoint *parts,
+                            const TurnColumn *of, double *by_position, double *by_rate)
+{
+    const Coupling *coupling = dynamics->system.coupling;
+    for (size_t k = 0; k < parts->count; k++) {
+        const size_t part = parts->parts[k];
+        const size_t place = coupling_place(coupling, part, of->column);
+        for (size_t m = coupling->first_member[part]; m < coupling->first_member[part + 1]; m++) {
+            const size_t i = coupling->members[m];
+            const double share = of->share * dynamics->room.pushed[0][i];
+            by_position[coupling->first_value[i] + place] -= share * of->stiffness;
+            by_rate[coupling->first_value[i] + place] -= share * of->damping;
         }
     }
 }
@@ -210,8 +268,8 @@ static void add_turn_slopes(const Dynamics *dynamics, const TreeState *state, si
 {
     const Tree *tree = &dynamics->tree;
     const Contact *contact = &dynamics->system.contacts[number];
-    const size_t n = tree->coordinate_count;
-    double *pushed = dynamics->room.pushed[0];
+    const Coupling *coupling = dynamics->system.coupling;
+    const CouplingJoint *coupled = &coupling->joints[contact->joint];
     TreeCoordinatePart parts[TREE_COORDINATE_PARTS];
     ContactForce force;
     Loads loads = {.pushes = dynamics->room.zeros};
@@ -220,7 +278,7 @@ static void add_turn_slopes(const Dynamics *dynamics, const TreeState *state, si
     for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
         dynamics_load_couple(tree, state, parts[i].body, parts[i].share, &loads);
     }
-    articulated_solve(dynamics->articulated, loads.pushes, NULL, pushed);
+    solve_parts(dynamics, coupled, &loads, dynamics->room.pushed[0]);
     const double stiffness = (1.0 + contact->damping_rate * force.pose.approach_speed) *
                              force_law_tangent(&contact->law, fabs(force.pose.gap));
     const double damping = press_damping(contact, &force.press);
@@ -231,10 +289,9 @@ static void add_turn_slopes(const Dynamics *dynamics, const TreeState *state, si
         }
         loads.pushes[body] = (ArticulatedPush){{0.0, 0.0}, 0.0};
         const int column = tree->angle_column[body];
-        for (size_t i = 0; column >= 0 && i < n; i++) {
-            const double share = parts[part].share * pushed[i];
-            by_position[i * n + (size_t)column] -= share * stiffness;
-            by_rate[i * n + (size_t)column] -= share * damping;
+        if (column >= 0) {
+            const TurnColumn of = {(size_t)column, parts[part].share, stiffness, damping};
+            add_turn_column(dynamics, coupled, &of, by_position, by_rate);
         }
     }
 }
@@ -248,7 +305,7 @@ void dynamics_slopes(double since_s, const double *y, double *by_position, doubl
     TreeState *state = &dynamics->room.state->tree;
     tree_evaluate(tree, since_s, y, y + n, state);
     const double start = articulated_factor(dynamics->articulated, state) ? 0.0 : NAN;
-    for (size_t i = 0; i < n * n; i++) {
+    for (size_t i = 0; i < coupling_value_count(dynamics->system.coupling); i++) {
         by_position[i] = by_rate[i] = start;
     }
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {

@@ -45,6 +45,7 @@ void radau_destroy(Radau *radau)
 {
     if (radau != NULL) {
         radau_newton_finish(&radau->newton);
+        coupling_destroy(radau->own_coupling);
         free(radau->memory);
         free(radau);
     }
@@ -53,23 +54,23 @@ void radau_destroy(Radau *radau)
 // The largest rate of decay: the largest eigenvalue of minus the derivatives by the rates, by
 // powers of these. All are real and not negative, as far as dampers go, so that it lies between the
 // mean of all and their sum.
-static double largest_decay(const Radau *radau, size_t n, const double *by_rate)
+static double largest_decay(const Radau *radau, const double *by_rate)
 {
+    const Coupling *coupling = radau->newton.coupling;
+    const size_t n = coupling->count;
     double *from = radau->change;
     double *to = radau->change + n;
     double sum = 0.0;
     double grown = 0.0;
     for (size_t i = 0; i < n; i++) {
-        sum -= by_rate[i * n + i];
+        sum -= coupling_entry(coupling, by_rate, i, i);
         from[i] = 1.0;
     }
     for (int power = 0; power < POWERS && sum > 0.0; power++) {
         double square = 0.0;
+        coupling_multiply(coupling, by_rate, from, to);
         for (size_t i = 0; i < n; i++) {
-            to[i] = 0.0;
-            for (size_t k = 0; k < n; k++) {
-                to[i] -= by_rate[i * n + k] * from[k];
-            }
+            to[i] = -to[i];
             square += to[i] * to[i];
         }
         grown = sqrt(square);
@@ -80,23 +81,64 @@ static double largest_decay(const Radau *radau, size_t n, const double *by_rate)
     return fmin(sum, fmax(grown, sum / (double)n));
 }
 
-// Derivatives of the accelerations at a state whose rates are known, by the coordinates too where
-// they are asked for.
-static void differentiate(const Radau *radau, Dop853 *integrator, double time, double *y,
-                          const double *rates, double *by_position, double *by_rate)
+// Moves a coordinate or rate of each part of a colour that has so many, and keeps where it was.
+// Returns whether one has.
+static bool nudge(const Radau *radau, size_t colour, size_t number, size_t behind, double *y)
 {
-    const size_t n = freedoms_of(integrator);
-    double *changed = radau->changed;
-    for (size_t k = by_position != NULL ? 0 : n; k < 2 * n; k++) {
-        const double kept = y[k];
-        y[k] += radau->nudge[k];
-        const double moved = y[k] - kept;
-        integrator->rates(time, y, changed, integrator->context);
-        integrator->evaluations++;
-        y[k] = kept;
-        double *column = k < n ? by_position + k : by_rate + (k - n);
-        for (size_t i = 0; i < n; i++) {
-            column[i * n] = (changed[n + i] - rates[n + i]) / moved;
+    const Coupling *coupling = radau->newton.coupling;
+    bool has_any = false;
+    for (size_t i = coupling->first_coloured[colour]; i < coupling->first_coloured[colour + 1];
+         i++) {
+        const size_t part = coupling->coloured[i];
+        const size_t member = coupling->first_member[part] + number;
+        if (member < coupling->first_member[part + 1]) {
+            const size_t k = coupling->members[member] + behind;
+            radau->kept[k] = y[k];
+            y[k] += radau->nudge[k];
+            has_any = true;
+        }
+    }
+    return has_any;
+}
+
+// Takes these back, and writes how they changed the accelerations.
+static void take_differences(const Radau *radau, size_t colour, size_t number, size_t behind,
+                             const double *rates, double *y, double *by)
+{
+    const Coupling *coupling = radau->newton.coupling;
+    const double *changed = radau->changed + coupling->count;
+    const double *before = rates + coupling->count;
+    for (size_t i = coupling->first_coloured[colour]; i < coupling->first_coloured[colour + 1];
+         i++) {
+        const size_t part = coupling->coloured[i];
+        const size_t member = coupling->first_member[part] + number;
+        if (member >= coupling->first_member[part + 1]) {
+            continue;
+        }
+        const size_t column = coupling->members[member];
+        const double moved = y[column + behind] - radau->kept[column + behind];
+        y[column + behind] = radau->kept[column + behind];
+        // those that it depends on depend on it
+        const size_t *rows = coupling_columns(coupling, part);
+        for (size_t k = 0; k < coupling_width(coupling, part); k++) {
+            const size_t row = rows[k];
+            const size_t place = coupling_place(coupling, coupling->part_of[row], column);
+            by[coupling->first_value[row] + place] = (changed[row] - before[row]) / moved;
+        }
+    }
+}
+
+// Derivatives of the accelerations by the coordinates, or by their rates, which are so far behind
+// them, at a state whose rates are known.
+static void differentiate(const Radau *radau, Dop853 *integrator, double time, double *y,
+                          const double *rates, size_t behind, double *by)
+{
+    const Coupling *coupling = radau->newton.coupling;
+    for (size_t colour = 0; colour < coupling->colour_count; colour++) {
+        for (size_t number = 0; nudge(radau, colour, number, behind, y); number++) {
+            integrator->rates(time, y, radau->changed, integrator->context);
+            integrator->evaluations++;
+            take_differences(radau, colour, number, behind, rates, y, by);
         }
     }
 }
@@ -104,9 +146,9 @@ static void differentiate(const Radau *radau, Dop853 *integrator, double time, d
 double radau_look(Radau *radau, Dop853 *integrator)
 {
     memcpy(radau->y, integrator->y, integrator->size * sizeof *radau->y);
-    differentiate(radau, integrator, integrator->time, radau->y, integrator->stages[0], NULL,
-                  radau->newton.by_rate[0]);
-    radau->decay = largest_decay(radau, freedoms_of(integrator), radau->newton.by_rate[0]);
+    differentiate(radau, integrator, integrator->time, radau->y, integrator->stages[0],
+                  freedoms_of(integrator), radau->newton.by_rate[0]);
+    radau->decay = largest_decay(radau, radau->newton.by_rate[0]);
     radau->before_s = 0.0;
     return radau->decay;
 }
@@ -134,7 +176,9 @@ static void find_slopes(Radau *radau, Dop853 *integrator, double time, double *y
     double *by_position = radau->newton.by_position[stage];
     double *by_rate = radau->newton.by_rate[stage];
     if (integrator->slopes == NULL) {
-        differentiate(radau, integrator, time, y, radau->rates[stage], by_position, by_rate);
+        const double *rates = radau->rates[stage];
+        differentiate(radau, integrator, time, y, rates, 0, by_position);
+        differentiate(radau, integrator, time, y, rates, freedoms_of(integrator), by_rate);
         return;
     }
     integrator->slopes(time, y, by_position, by_rate, integrator->context);
@@ -155,8 +199,7 @@ static void evaluate_stages(Radau *radau, Dop853 *integrator, double step, bool 
         }
     }
     if (with_derivatives) {
-        radau->decay =
-            largest_decay(radau, freedoms_of(integrator), radau->newton.by_rate[RADAU_STAGES - 1]);
+        radau->decay = largest_decay(radau, radau->newton.by_rate[RADAU_STAGES - 1]);
     }
 }
 
@@ -298,6 +341,7 @@ static void take_vectors(Radau *radau, size_t size, size_t n, double *left)
     radau->nudge = take(&left, size);
     radau->y = take(&left, size);
     radau->changed = take(&left, size);
+    radau->kept = take(&left, size);
     radau->start = take(&left, size);
     radau->change = take(&left, RADAU_STAGES * n);
     for (size_t i = 0; i < RADAU_STAGES; i++) {
@@ -310,13 +354,15 @@ Radau *radau_create(const Dop853 *integrator)
 {
     const size_t n = freedoms_of(integrator);
     const size_t size = integrator->size;
-    const size_t count = 4 * size + RADAU_STAGES * (n + 2 * size);
+    const size_t count = 5 * size + RADAU_STAGES * (n + 2 * size);
     Radau *radau = calloc(1, sizeof *radau);
     assert(radau != NULL);
     radau->method = (Dop853Method){.try_step = try_step, .fill = fill};
     radau->memory = calloc(count, sizeof *radau->memory);
     assert(radau->memory != NULL);
-    radau_newton_init(&radau->newton, n);
+    const Coupling *coupling = integrator->coupling;
+    radau->own_coupling = coupling == NULL ? coupling_create_full(n) : NULL;
+    radau_newton_init(&radau->newton, coupling == NULL ? radau->own_coupling : coupling);
     take_vectors(radau, size, n, radau->memory);
     return radau;
 }

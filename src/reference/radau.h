@@ -13,6 +13,7 @@ typedef struct Radau {
     // Changes of the coordinates and their rates by which accelerations are differentiated: small
     // against what they depend on, large against rounding.
     double *nudge;
+    Coupling *own_coupling; // owned, of an integrator without one
     RadauNewton newton;
     double decay;                // 1/s, the largest rate of decay, where it was last looked at
     double *moved[RADAU_STAGES]; // of the stages since the start of the step
@@ -22,6 +23,7 @@ typedef struct Radau {
     // room to work in
     double *y;
     double *changed;
+    double *kept;
     double *start;
     double *change; // of all stages' rates
     double *memory; // owned: all vectors above

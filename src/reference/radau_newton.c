@@ -11,10 +11,12 @@
 
 #include <string.h>
 
-void radau_newton_init(RadauNewton *newton, size_t count)
+void radau_newton_init(RadauNewton *newton, const Coupling *coupling)
 {
-    *newton = (RadauNewton){.count = count};
-    newton->by_position[0] = zeroed(2 * RADAU_STAGES * count * count, sizeof(double));
+    const size_t count = coupling->count;
+    const size_t values = coupling_value_count(coupling);
+    *newton = (RadauNewton){.coupling = coupling, .count = count};
+    newton->by_position[0] = zeroed(2 * RADAU_STAGES * values, sizeof(double));
     newton->own = zeroed(RADAU_STAGES * count, sizeof *newton->own);
     newton->blocks = zeroed(count, sizeof *newton->blocks);
     newton->members = zeroed(count, sizeof *newton->members);
@@ -22,8 +24,8 @@ void radau_newton_init(RadauNewton *newton, size_t count)
     newton->is_taken = zeroed(count, sizeof *newton->is_taken);
     newton->pivots = zeroed(RADAU_STAGES * count, sizeof *newton->pivots);
     for (size_t i = 0; i < RADAU_STAGES; i++) {
-        newton->by_position[i] = newton->by_position[0] + i * count * count;
-        newton->by_rate[i] = newton->by_position[0] + (RADAU_STAGES + i) * count * count;
+        newton->by_position[i] = newton->by_position[0] + i * values;
+        newton->by_rate[i] = newton->by_position[0] + (RADAU_STAGES + i) * values;
     }
 }
 
@@ -42,24 +44,33 @@ void radau_newton_finish(RadauNewton *newton)
     free(newton->pivots);
 }
 
-// Whether one of two coordinates feels the other at any stage.
-static bool are_coupled(const RadauNewton *newton, size_t n, size_t a, size_t b)
+// Whether an entry of the derivatives is other than zero at any stage.
+static bool is_felt(const RadauNewton *newton, size_t value)
 {
     for (size_t i = 0; i < RADAU_STAGES; i++) {
-        const double *place = newton->by_position[i];
-        const double *rate = newton->by_rate[i];
-        if (place[a * n + b] != 0.0 || place[b * n + a] != 0.0 || rate[a * n + b] != 0.0 ||
-            rate[b * n + a] != 0.0) {
+        if (newton->by_position[i][value] != 0.0 || newton->by_rate[i][value] != 0.0) {
             return true;
         }
     }
     return false;
 }
 
+// Whether one of two coordinates feels the other, of which `b` is the column at a place of the rows
+// of the part of `a`.
+static bool are_coupled(const RadauNewton *newton, size_t a, size_t place, size_t b)
+{
+    const Coupling *coupling = newton->coupling;
+    return is_felt(newton, coupling->first_value[a] + place) ||
+           is_felt(newton,
+                   coupling->first_value[b] + coupling_place(coupling, coupling->part_of[b], a));
+}
+
 // Sorts the coordinates into blocks: each takes in, one after the other, all that its members feel,
 // so that those which feel each other are near to each other.
-static void find_blocks(RadauNewton *newton, size_t n)
+static void find_blocks(RadauNewton *newton)
 {
+    const Coupling *coupling = newton->coupling;
+    const size_t n = coupling->count;
     bool *is_taken = newton->is_taken;
     memset(is_taken, 0, n * sizeof *is_taken);
     size_t count = 0;
@@ -75,11 +86,14 @@ static void find_blocks(RadauNewton *newton, size_t n)
         newton->place[first] = 0;
         newton->members[count++] = first;
         for (size_t at = start; at < count; at++) {
-            for (size_t k = 0; k < n; k++) {
+            const size_t part = coupling->part_of[newton->members[at]];
+            const size_t *columns = coupling_columns(coupling, part);
+            for (size_t i = 0; i < coupling_width(coupling, part); i++) {
+                const size_t k = columns[i];
                 if (is_taken[k] && newton->place[k] + start <= at) {
                     continue;
                 }
-                if (!are_coupled(newton, n, newton->members[at], k)) {
+                if (!are_coupled(newton, newton->members[at], i, k)) {
                     continue;
                 }
                 if (!is_taken[k]) {
@@ -122,42 +136,68 @@ static double entry(const RadauNewton *newton, size_t at, const Weights *weights
     return (is_own ? 1.0 : 0.0) - weights->rate * newton->by_rate[other][at] - step * step * twice;
 }
 
-// Newton's matrix of a block, the unknowns stage by stage.
-static void fill_dense(const RadauNewton *newton, const size_t *members, size_t m, double step,
-                       double *matrix)
+// A matrix of a block, dense, the unknowns stage by stage; or banded, coordinate by coordinate.
+typedef struct Matrix {
+    double *dense; // NULL: banded
+    const Banded *banded;
+    size_t size; // of the block
+} Matrix;
+
+static double *matrix_entry(const Matrix *matrix, size_t stage, size_t row, size_t other,
+                            size_t column)
 {
-    const size_t width = RADAU_STAGES * m;
+    if (matrix->dense == NULL) {
+        return banded_entry(matrix->banded, RADAU_STAGES * row + stage,
+                            RADAU_STAGES * column + other);
+    }
+    const size_t m = matrix->size;
+    return &matrix->dense[(stage * m + row) * RADAU_STAGES * m + other * m + column];
+}
+
+// What fills a matrix: of each stage by each other.
+typedef struct Filling {
+    double step;
+    Weights weights[RADAU_STAGES][RADAU_STAGES];
+} Filling;
+
+static Filling filling_of(double step)
+{
+    Filling filling = {.step = step};
     for (size_t stage = 0; stage < RADAU_STAGES; stage++) {
         for (size_t other = 0; other < RADAU_STAGES; other++) {
-            const Weights weights = weights_of(step, stage, other);
-            for (size_t row = 0; row < m; row++) {
-                for (size_t column = 0; column < m; column++) {
-                    const size_t at = members[row] * newton->count + members[column];
-                    matrix[(stage * m + row) * width + other * m + column] =
-                        entry(newton, at, &weights, step, other, stage == other && row == column);
-                }
-            }
+            filling.weights[stage][other] = weights_of(step, stage, other);
+        }
+    }
+    return filling;
+}
+
+// What a row of a block has of one of its columns, by the value of the derivatives there.
+static void fill_entries(const RadauNewton *newton, const Filling *filling, size_t row,
+                         size_t column, size_t value, const Matrix *matrix)
+{
+    for (size_t stage = 0; stage < RADAU_STAGES; stage++) {
+        for (size_t other = 0; other < RADAU_STAGES; other++) {
+            *matrix_entry(matrix, stage, row, other, column) =
+                entry(newton, value, &filling->weights[stage][other], filling->step, other,
+                      stage == other && row == column);
         }
     }
 }
 
-// The same banded, the unknowns coordinate by coordinate.
-static void fill_banded(const RadauNewton *newton, const size_t *members, RadauBlock *block,
-                        double step)
+// Fills Newton's matrix of a block, which is all zeros.
+static void fill(const RadauNewton *newton, const size_t *members, const Filling *filling,
+                 const Matrix *matrix)
 {
-    const size_t m = block->size;
-    banded_shape(&block->banded, RADAU_STAGES * m, RADAU_STAGES * (block->reach + 1));
-    for (size_t stage = 0; stage < RADAU_STAGES; stage++) {
-        for (size_t other = 0; other < RADAU_STAGES; other++) {
-            const Weights weights = weights_of(step, stage, other);
-            for (size_t row = 0; row < m; row++) {
-                const size_t first = row > block->reach ? row - block->reach : 0;
-                for (size_t column = first; column < m && column <= row + block->reach; column++) {
-                    const size_t at = members[row] * newton->count + members[column];
-                    *banded_entry(&block->banded, RADAU_STAGES * row + stage,
-                                  RADAU_STAGES * column + other) =
-                        entry(newton, at, &weights, step, other, stage == other && row == column);
-                }
+    const Coupling *coupling = newton->coupling;
+    for (size_t row = 0; row < matrix->size; row++) {
+        const size_t part = coupling->part_of[members[row]];
+        const size_t *columns = coupling_columns(coupling, part);
+        const size_t first = coupling->first_value[members[row]];
+        for (size_t i = 0; i < coupling_width(coupling, part); i++) {
+            const size_t column = newton->place[columns[i]];
+            // others are those of other blocks, zeros
+            if (column < matrix->size && members[column] == columns[i]) {
+                fill_entries(newton, filling, row, column, first + i, matrix);
             }
         }
     }
@@ -176,7 +216,8 @@ static void make_room(RadauNewton *newton)
 
 bool radau_newton_factor(RadauNewton *newton, double step)
 {
-    find_blocks(newton, newton->count);
+    const Filling filling = filling_of(step);
+    find_blocks(newton);
     make_room(newton);
     const size_t *members = newton->members;
     double *matrix = newton->matrix;
@@ -185,12 +226,14 @@ bool radau_newton_factor(RadauNewton *newton, double step)
         RadauBlock *block = &newton->blocks[i];
         const size_t width = RADAU_STAGES * block->size;
         if (block->is_banded) {
-            fill_banded(newton, members, block, step);
+            banded_shape(&block->banded, width, RADAU_STAGES * (block->reach + 1));
+            fill(newton, members, &filling, &(Matrix){NULL, &block->banded, block->size});
             if (!banded_factor(&block->banded)) {
                 return false;
             }
         } else {
-            fill_dense(newton, members, block->size, step, matrix);
+            memset(matrix, 0, width * width * sizeof *matrix);
+            fill(newton, members, &filling, &(Matrix){matrix, NULL, block->size});
             if (!dense_factor(width, matrix, pivots)) {
                 return false;
             }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/banded.h"
+#include "reference/coupling.h"
 #include "reference/radau_table.h"
 
 #include <stdbool.h>
@@ -19,8 +20,10 @@ typedef struct RadauBlock {
 } RadauBlock;
 
 typedef struct RadauNewton {
+    const Coupling *coupling;
     size_t count; // of coordinates
-    // derivatives of the accelerations at the stages, 1/s^2 and 1/s, for the caller to fill in
+    // derivatives of the accelerations at the stages, 1/s^2 and 1/s, for the caller to fill in, as
+    // matrices of the coupling
     double *by_position[RADAU_STAGES];
     double *by_rate[RADAU_STAGES];
     size_t block_count;
@@ -36,7 +39,8 @@ typedef struct RadauNewton {
     size_t *pivots;
 } RadauNewton;
 
-void radau_newton_init(RadauNewton *newton, size_t count);
+// The coupling must outlive it.
+void radau_newton_init(RadauNewton *newton, const Coupling *coupling);
 void radau_newton_finish(RadauNewton *newton);
 
 // Sorts the coordinates into blocks by the derivatives and factors the matrix of each, for a step

@@ -71,6 +71,21 @@ static bool add_turns(SpaceDynamics *dynamics, Err *err)
     return true;
 }
 
+static Coupling *couple(const SpaceDynamics *dynamics)
+{
+    const SpaceTree *tree = &dynamics->tree;
+    const ArticulatedParts *parts = &dynamics->loops->articulated->parts;
+    CouplingBody *bodies = zeroed(tree->node_count, sizeof *bodies);
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const SpaceNode *node = &tree->nodes[i];
+        bodies[i] = (CouplingBody){node->body, parts->of_node[i], node->first,
+                                   space_loop_groups_freedoms(node)};
+    }
+    Coupling *coupling = coupling_create(tree->linkage, parts->count, tree->node_count, bodies);
+    free(bodies);
+    return coupling;
+}
+
 bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
@@ -86,6 +101,7 @@ bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err 
     dynamics->loops = space_loops_create(tree, tree->loop_count, tree->loops);
     system->coordinates = zeroed(tree->coordinate_count, sizeof *system->coordinates);
     list_coordinates(dynamics);
+    system->coupling = couple(dynamics);
     const size_t most = count + 2 * linkage->joint_count;
     system->contacts = zeroed(most, sizeof *system->contacts);
     dynamics->contacts = zeroed(most, sizeof *dynamics->contacts);
@@ -108,6 +124,7 @@ void space_dynamics_finish(SpaceDynamics *dynamics)
 {
     space_tree_finish(&dynamics->tree);
     space_loops_destroy(dynamics->loops);
+    coupling_destroy(dynamics->system.coupling);
     free(dynamics->system.coordinates);
     free(dynamics->system.contacts);
     free(dynamics->contacts);

@@ -25,18 +25,24 @@ typedef struct Pressing {
     Vec3 sliding;       // m/s, s
     double share;       // s/m, h
     double share_slope; // s^2/m^2, dh by |s|
-    Vec3 *centre;       // G_P, by coordinate
+    Vec3 *centre;       // G_P, by coordinate: of the parts that the contact couples, like all
     Vec3 *wall;         // G_W
+    const CouplingJoint *parts;
 } Pressing;
 
-static void find_points(const SpaceTree *tree, const SpaceTreeState *state, const PinSpace *place,
-                        Vec3 arm_a, Vec3 arm_b, Vec3 *row)
+static void find_points(const SpaceDynamics *dynamics, const SpaceTreeState *state,
+                        const PinSpace *place, Vec3 arm_a, Vec3 arm_b, Vec3 *row)
 {
-    for (size_t i = 0; i < tree->coordinate_count; i++) {
-        row[i] = (Vec3){0.0, 0.0, 0.0};
+    const Coupling *coupling = dynamics->system.coupling;
+    const CouplingJoint *parts = &coupling->joints[place->joint];
+    for (size_t i = 0; i < parts->count; i++) {
+        const size_t part = parts->parts[i];
+        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
+            row[coupling->members[k]] = (Vec3){0.0, 0.0, 0.0};
+        }
     }
-    space_tree_point_row(tree, state, place->hole.body, arm_a, -1.0, row);
-    space_tree_point_row(tree, state, place->pin.body, arm_b, 1.0, row);
+    space_tree_point_row(&dynamics->tree, state, place->hole.body, arm_a, -1.0, row);
+    space_tree_point_row(&dynamics->tree, state, place->pin.body, arm_b, 1.0, row);
 }
 
 static void look_at(const SpaceDynamics *dynamics, const SpaceState *state, size_t number,
@@ -51,10 +57,9 @@ static void look_at(const SpaceDynamics *dynamics, const SpaceState *state, size
     pressing->stiffness = (1.0 + contact->damping_rate * force->press.closing) *
                           force_law_tangent(&contact->law, fabs(force->press.depth));
     pressing->damping = press_damping(contact, &force->press);
-    find_points(&dynamics->tree, &state->tree, place, force->from_a, force->from_b,
-                pressing->centre);
-    find_points(&dynamics->tree, &state->tree, place, force->force_a, force->force_b,
-                pressing->wall);
+    pressing->parts = &dynamics->system.coupling->joints[place->joint];
+    find_points(dynamics, &state->tree, place, force->from_a, force->from_b, pressing->centre);
+    find_points(dynamics, &state->tree, place, force->force_a, force->force_b, pressing->wall);
     pressing->share = pressing->share_slope = 0.0;
     if (pressing->options->friction > 0.0 && !contact->is_collar) {
         const double scale = pressing->options->friction_speed;
@@ -117,14 +122,31 @@ typedef struct Pushed {
     double *by[PUSHES];
 } Pushed;
 
-static void add_column(size_t n, const Pushed *pushed, Change change, double *column)
+// Adds to a column of the rows of the parts what the change does to their accelerations.
+static void add_column(const Coupling *coupling, const CouplingJoint *parts, const Pushed *pushed,
+                       Change change, size_t column, double *values)
 {
     const double forces[PUSHES] = {change.normal.x,   change.normal.y,   change.normal.z,
                                    change.friction.x, change.friction.y, change.friction.z};
-    for (size_t i = 0; i < n; i++) {
-        for (size_t k = 0; k < pushed->count; k++) {
-            column[i * n] += pushed->by[k][i] * forces[k];
+    for (size_t p = 0; p < parts->count; p++) {
+        const size_t part = parts->parts[p];
+        const size_t place = coupling_place(coupling, part, column);
+        for (size_t m = coupling->first_member[part]; m < coupling->first_member[part + 1]; m++) {
+            const size_t i = coupling->members[m];
+            for (size_t k = 0; k < pushed->count; k++) {
+                values[coupling->first_value[i] + place] += pushed->by[k][i] * forces[k];
+            }
         }
+    }
+}
+
+// Solves for what bodies of some parts are pushed by.
+static void solve_parts(const SpaceDynamics *dynamics, const CouplingJoint *parts,
+                        const SpaceState *state, double *pushed)
+{
+    for (size_t i = 0; i < parts->count; i++) {
+        space_articulated_solve_part(dynamics->loops->articulated, parts->parts[i], &state->tree,
+                                     dynamics->pushes, pushed);
     }
 }
 
@@ -148,24 +170,60 @@ static void find_pushed(const SpaceDynamics *dynamics, const SpaceState *state, 
         set_push(dynamics, place->pin.body, k < 3 ? force->from_b : force->force_b, along);
         set_push(dynamics, place->hole.body, k < 3 ? force->from_a : force->force_a,
                  vec3_scale(-1.0, along));
-        space_articulated_solve(dynamics->loops->articulated, &state->tree, dynamics->pushes, NULL,
-                                pushed->by[k]);
+        solve_parts(dynamics, pressing->parts, state, pushed->by[k]);
     }
     set_push(dynamics, place->pin.body, NONE, NONE);
     set_push(dynamics, place->hole.body, NONE, NONE);
 }
 
+// What a coordinate does to a contact.
+static void add_columns(const Coupling *coupling, const Pressing *pressing, const Pushed *pushed,
+                        size_t coordinate, double *by_position, double *by_rate)
+{
+    static const Vec3 NONE = {0.0, 0.0, 0.0};
+    const Vec3 centre = pressing->centre[coordinate];
+    const Vec3 wall = pressing->wall[coordinate];
+    if (vec3_dot(centre, centre) + vec3_dot(wall, wall) > 0.0) {
+        add_column(coupling, pressing->parts, pushed, change_force(pressing, centre, NONE, NONE),
+                   coordinate, by_position);
+        add_column(coupling, pressing->parts, pushed, change_force(pressing, NONE, centre, wall),
+                   coordinate, by_rate);
+    }
+}
+
 static void add_slopes(const SpaceDynamics *dynamics, const Pressing *pressing,
                        const Pushed *pushed, double *by_position, double *by_rate)
 {
-    static const Vec3 NONE = {0.0, 0.0, 0.0};
-    const size_t n = dynamics->tree.coordinate_count;
-    for (size_t k = 0; k < n; k++) {
-        const Vec3 centre = pressing->centre[k];
-        const Vec3 wall = pressing->wall[k];
-        if (vec3_dot(centre, centre) + vec3_dot(wall, wall) > 0.0) {
-            add_column(n, pushed, change_force(pressing, centre, NONE, NONE), by_position + k);
-            add_column(n, pushed, change_force(pressing, NONE, centre, wall), by_rate + k);
+    const Coupling *coupling = dynamics->system.coupling;
+    for (size_t i = 0; i < pressing->parts->count; i++) {
+        const size_t part = pressing->parts->parts[i];
+        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
+            add_columns(coupling, pressing, pushed, coupling->members[k], by_position, by_rate);
+        }
+    }
+}
+
+// What an end of a limited angle feels, and does.
+typedef struct TurnColumns {
+    const CouplingJoint *parts;
+    const double *row;    // by coordinate: how its rate changes the angle's
+    const double *pushed; // by coordinate: what a torque accelerates
+    double stiffness;
+    double damping;
+} TurnColumns;
+
+static void add_turn_column(const Coupling *coupling, const TurnColumns *of, size_t column,
+                            double *by_position, double *by_rate)
+{
+    const double felt = of->row[column];
+    for (size_t p = 0; felt != 0.0 && p < of->parts->count; p++) {
+        const size_t part = of->parts->parts[p];
+        const size_t place = coupling_place(coupling, part, column);
+        for (size_t m = coupling->first_member[part]; m < coupling->first_member[part + 1]; m++) {
+            const size_t i = coupling->members[m];
+            const size_t value = coupling->first_value[i] + place;
+            by_position[value] -= of->stiffness * felt * of->pushed[i];
+            by_rate[value] -= of->damping * felt * of->pushed[i];
         }
     }
 }
@@ -175,13 +233,19 @@ static void add_turn_slopes(const SpaceDynamics *dynamics, const SpaceState *sta
                             double *row, double *pushed, double *by_position, double *by_rate)
 {
     const SpaceTree *tree = &dynamics->tree;
-    const size_t n = tree->coordinate_count;
+    const Coupling *coupling = dynamics->system.coupling;
     const SpaceContact *at = &dynamics->contacts[number];
     const Contact *contact = &dynamics->system.contacts[number];
     const Press *press = &state->forces[number].press;
     const Vec3 axis = space_tree_axis(tree, &state->tree, 2 * at->place.joint);
     const int bodies[2] = {at->place.hole.body, at->place.pin.body};
-    memset(row, 0, n * sizeof *row);
+    const CouplingJoint *parts = &coupling->joints[at->place.joint];
+    for (size_t i = 0; i < parts->count; i++) {
+        const size_t part = parts->parts[i];
+        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
+            row[coupling->members[k]] = 0.0;
+        }
+    }
     for (int side = 0; side < 2; side++) {
         const Vec3 along = vec3_scale(side == 0 ? -1.0 : 1.0, axis);
         space_tree_turn_row(tree, &state->tree, bodies[side], along, row);
@@ -189,15 +253,15 @@ static void add_turn_slopes(const SpaceDynamics *dynamics, const SpaceState *sta
             dynamics->pushes[bodies[side]].moment = along;
         }
     }
-    space_articulated_solve(dynamics->loops->articulated, &state->tree, dynamics->pushes, NULL,
-                            pushed);
+    solve_parts(dynamics, parts, state, pushed);
     const double stiffness = (1.0 + contact->damping_rate * press->closing) *
                              force_law_tangent(&contact->law, fabs(press->depth));
     const double damping = press_damping(contact, press);
-    for (size_t k = 0; k < n; k++) {
-        for (size_t i = 0; row[k] != 0.0 && i < n; i++) {
-            by_position[i * n + k] -= stiffness * row[k] * pushed[i];
-            by_rate[i * n + k] -= damping * row[k] * pushed[i];
+    const TurnColumns of = {parts, row, pushed, stiffness, damping};
+    for (size_t i = 0; i < parts->count; i++) {
+        const size_t part = parts->parts[i];
+        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
+            add_turn_column(coupling, &of, coupling->members[k], by_position, by_rate);
         }
     }
     for (int side = 0; side < 2; side++) {
@@ -222,7 +286,7 @@ void space_slopes(double since_s, const double *y, double *by_position, double *
         pushed.by[i] = room + i * width;
     }
     const double start = space_dynamics_factor(dynamics, since_s, y, state) ? 0.0 : NAN;
-    for (size_t i = 0; i < n * n; i++) {
+    for (size_t i = 0; i < coupling_value_count(dynamics->system.coupling); i++) {
         by_position[i] = by_rate[i] = start;
     }
     memset(dynamics->pushes, 0, dynamics->tree.linkage->body_count * sizeof *dynamics->pushes);

@@ -140,6 +140,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     system->kind->start(system, integrator->y);
     integrator->rates = system->kind->rates;
     integrator->slopes = system->kind->slopes;
+    integrator->coupling = system->coupling;
     integrator->context = system;
     stepper->scale = scale_speeds(scenario);
     set_tolerances(stepper);

@@ -9,6 +9,7 @@
 
 #include "contact/pin_space.h"
 #include "model/trajectory.h"
+#include "reference/coupling.h"
 #include "reference/dop853.h"
 #include "reference/press.h"
 
@@ -87,8 +88,9 @@ struct System {
     const Scenario *scenario;
     size_t coordinate_count;
     SystemCoordinate *coordinates;
-    bool is_astray; // whether the loops' energy has jumped, as it does at a change point
-    int torn;       // the number of an ideal joint that its loop could not keep closed; -1: none
+    Coupling *coupling; // owned by the equations
+    bool is_astray;     // whether the loops' energy has jumped, as it does at a change point
+    int torn; // the number of an ideal joint that its loop could not keep closed; -1: none
     size_t contact_count;
     Contact *contacts;
     // Of the integrator's vector, those that the press of a contact depends on: from its first in

@@ -10,18 +10,36 @@ enum { CHAIN = 30, PAIR = 2, COUNT = CHAIN + PAIR, UNKNOWNS = RADAU_STAGES * COU
 
 static const double STEP = 0.3; // s
 
-// A chain of coordinates that feel their neighbours, listed in no order, and a pair beside it.
-static void couple(RadauNewton *newton, uint64_t *seed)
+// Bodies of one coordinate each: a chain listed in no order, and a pair beside it. A joint between
+// the two couples them as well, but for the moment nothing presses there.
+static Coupling *make_coupling(void)
 {
+    Linkage linkage = linkage_create((LinkageRoom){COUNT, COUNT, 0, 0});
+    CouplingBody bodies[COUNT];
+    linkage.body_count = linkage.joint_count = COUNT;
+    for (size_t i = 0; i < COUNT; i++) {
+        // 7 and 30 have no common divisor: neighbours are all over the list
+        const bool is_within = i + 1 < CHAIN;
+        linkage.joints[i].body_a = (int)(is_within ? i * 7 % CHAIN : CHAIN);
+        linkage.joints[i].body_b = (int)(is_within ? (i + 1) * 7 % CHAIN : CHAIN + 1);
+        bodies[i] = (CouplingBody){(int)i, i, i, 1};
+    }
+    linkage.joints[COUNT - 1].body_a = 0;
+    Coupling *coupling = coupling_create(&linkage, COUNT, COUNT, bodies);
+    linkage_free(&linkage);
+    return coupling;
+}
+
+static void fill(RadauNewton *newton, uint64_t *seed)
+{
+    const Coupling *coupling = newton->coupling;
     for (size_t a = 0; a < COUNT; a++) {
-        for (size_t b = 0; b < COUNT; b++) {
-            // 7 and 30 have no common divisor: neighbours are all over the list
-            const size_t places[2] = {a * 7 % CHAIN, b * 7 % CHAIN};
-            const bool are_near = places[0] <= places[1] + 1 && places[1] <= places[0] + 1;
-            const bool are_coupled = (a < CHAIN && b < CHAIN) ? are_near : a >= CHAIN && b >= CHAIN;
-            for (size_t k = 0; are_coupled && k < RADAU_STAGES; k++) {
-                newton->by_position[k][a * COUNT + b] = lcg_draw(seed);
-                newton->by_rate[k][a * COUNT + b] = lcg_draw(seed);
+        const size_t *columns = coupling_columns(coupling, coupling->part_of[a]);
+        for (size_t i = 0; i < coupling_width(coupling, coupling->part_of[a]); i++) {
+            const bool is_own = (a < CHAIN) == (columns[i] < CHAIN);
+            for (size_t k = 0; is_own && k < RADAU_STAGES; k++) {
+                newton->by_position[k][coupling->first_value[a] + i] = lcg_draw(seed);
+                newton->by_rate[k][coupling->first_value[a] + i] = lcg_draw(seed);
             }
         }
     }
@@ -41,8 +59,10 @@ static double residual(const RadauNewton *newton, const double *x, const double 
                     for (size_t j = 0; j < RADAU_STAGES; j++) {
                         moved += RADAU_COUPLING[k][j] * x[j * COUNT + b];
                     }
-                    pushed += newton->by_rate[k][a * COUNT + b] * x[k * COUNT + b] +
-                              STEP * newton->by_position[k][a * COUNT + b] * moved;
+                    const Coupling *coupling = newton->coupling;
+                    pushed +=
+                        coupling_entry(coupling, newton->by_rate[k], a, b) * x[k * COUNT + b] +
+                        STEP * coupling_entry(coupling, newton->by_position[k], a, b) * moved;
                 }
                 sum -= STEP * RADAU_COUPLING[i][k] * pushed;
             }
@@ -57,8 +77,9 @@ static void blocks_are_solved_dense_or_banded(void **state)
     (void)state;
     uint64_t seed = lcg_stirred(5);
     RadauNewton newton;
-    radau_newton_init(&newton, COUNT);
-    couple(&newton, &seed);
+    Coupling *coupling = make_coupling();
+    radau_newton_init(&newton, coupling);
+    fill(&newton, &seed);
     double right[UNKNOWNS];
     double x[UNKNOWNS];
     for (size_t i = 0; i < UNKNOWNS; i++) {
@@ -72,9 +93,15 @@ static void blocks_are_solved_dense_or_banded(void **state)
     radau_newton_solve(&newton, x);
     assert_near(residual(&newton, x, right), 0.0, 1e-11);
     // control: another derivative, far from where the chain was begun
-    newton.by_rate[3][(CHAIN - 1) * COUNT + CHAIN - 1] += 0.1;
+    newton.by_rate[3][coupling->first_value[CHAIN - 1] +
+                      coupling_place(coupling, coupling->part_of[CHAIN - 1], CHAIN - 1)] += 0.1;
     assert_true(residual(&newton, x, right) > 1e-5);
+    // where they press on one another all are one block
+    newton.by_rate[0][coupling->first_value[0] + coupling_place(coupling, 0, COUNT - 1)] = 0.1;
+    assert_true(radau_newton_factor(&newton, STEP));
+    assert_int_equal(newton.block_count, 1);
     radau_newton_finish(&newton);
+    coupling_destroy(coupling);
 }
 
 int main(void)

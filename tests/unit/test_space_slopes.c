@@ -100,7 +100,8 @@ static double worst(Pressed *pressed, bool is_rate, double factor)
         double largest = 0.0;
         differences(pressed, k, k < n ? 1e-4 * DEPTH : 1e-4 * RATE, column);
         for (size_t i = 0; i < n; i++) {
-            const double slope = slopes[k < n ? 0 : 1][i * n + k % n];
+            const double slope =
+                coupling_entry(pressed->dynamics.system.coupling, slopes[k < n ? 0 : 1], i, k % n);
             error = fmax(error, fabs(slope - column[i]));
             largest = fmax(largest, fabs(column[i]));
         }
