@@ -121,8 +121,8 @@ TrialWindow trial_window(const Scenario *scenario, const Truth *truth, double mo
     const double own = options_reference_tolerance(&scenario->reference);
     other.reference.tolerance = own < OPTIONS_REFERENCE_LOOSEST / OTHER ? OTHER * own : own / OTHER;
     Trajectory *run = run_scenario(&other, registry_solver(BACKEND_REFERENCE), watch);
-    const TrialWindow window =
-        run->is_complete ? shorten(truth->trajectory, run, whole, most) : (TrialWindow){.is_uncertain = true};
+    const TrialWindow window = run->is_complete ? shorten(truth->trajectory, run, whole, most)
+                                                : (TrialWindow){.is_uncertain = true};
     trajectory_destroy(run);
     return window;
 }
