@@ -71,8 +71,8 @@ static void rows_are_exported_and_drawn(void **state)
     Program *program = *state;
     run_well(program, "study s.yaml");
     run_well(program, "study export s.sqlite");
-    assert_int_equal(strncmp(program->output, "run,drive_speed_rad_s,run_step_s,fate,reason,", 45),
-                     0);
+    assert_int_equal(
+        strncmp(program->output, "run,drive_speed_rad_s,run_step_s,outcome,reason,", 45), 0);
     run_well(program, "study export s.yaml --csv a.csv --jsonl a.jsonl");
     assert_string_equal(program->output, "");
     assert_says(program->errors, "wrote a.csv");

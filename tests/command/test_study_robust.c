@@ -191,7 +191,8 @@ static void a_killed_child_is_one_row_and_is_made_again_when_asked_for(void **st
     run_well(program, "study s.yaml --retry-failed --json");
     json_t *root = program_json(program);
     assert_int_equal(json_integer_value(json_object_get(json_object_get(root, "now"), "made")), 1);
-    assert_int_equal(json_integer_value(json_object_get(json_object_get(root, "fates"), "ok")), 9);
+    assert_int_equal(json_integer_value(json_object_get(json_object_get(root, "outcomes"), "ok")),
+                     9);
     json_decref(root);
     run_well(program, "study s.yaml --store once.sqlite");
     check_same_rows(program, "s.sqlite", "once.sqlite");

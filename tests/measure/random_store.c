@@ -11,9 +11,9 @@ enum { PATH_SIZE = 4096, JOURNAL_SIZE = 1024 };
 // What changes a store so that SQLite finds nothing wrong with it.
 static const char *const STATEMENTS[] = {
     "UPDATE run SET step_s = 7.7e8",
-    "UPDATE run SET fate = 99",
-    "UPDATE run SET fate = 'ok', reason = char(27, 91, 51, 49, 109)",
-    "UPDATE run SET reason = randomblob(300), fate = 3",
+    "UPDATE run SET outcome = 99",
+    "UPDATE run SET outcome = 'ok', reason = char(27, 91, 51, 49, 109)",
+    "UPDATE run SET reason = randomblob(300), outcome = 3",
     "UPDATE run SET run = -run",
     "UPDATE run SET run = 9223372036854775807 - run",
     "UPDATE run SET hash = NULL, checksum = NULL",
@@ -41,7 +41,7 @@ static const char *const STATEMENTS[] = {
     "ALTER TABLE run ADD COLUMN g AS (1 / 0)",
     "ALTER TABLE study ADD COLUMN g AS (randomblob(9))",
     "CREATE TABLE strange(a, b)",
-    "PRAGMA user_version = 2",
+    "PRAGMA user_version = 3",
     "PRAGMA application_id = 0",
     "PRAGMA journal_mode = WAL",
     "PRAGMA encoding = 'UTF-16'; VACUUM",

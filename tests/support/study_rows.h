@@ -89,7 +89,7 @@ static inline Record study_record(const Layout *layout, uint64_t run)
     }
     // one in fifty goes wrong, and has no results
     if (run % 50 == 7) {
-        record.fate = run % 100 == 7 ? FATE_FAILED : FATE_TIMED_OUT;
+        record.outcome = run % 100 == 7 ? RUN_OUTCOME_FAILED : RUN_OUTCOME_TIMED_OUT;
         strcpy(record.reason, run % 100 == 7 ? "a number is not finite at 0.0125 s"
                                              : "took longer than its limit of 60 s");
         record.hash = 0;
@@ -97,9 +97,9 @@ static inline Record study_record(const Layout *layout, uint64_t run)
     for (size_t i = 0; i < layout->result_count; i++) {
         const double value = exp(10.0 * study_noise(run, i) - 5.0);
         const bool is_whole = layout->results[i].kind == COLUMN_WHOLE;
-        record.results[i] = record.fate != FATE_OK ? (double)NAN
-                            : is_whole             ? floor(1e4 * study_noise(run, i))
-                                                   : value;
+        record.results[i] = record.outcome != RUN_OUTCOME_OK ? (double)NAN
+                            : is_whole                       ? floor(1e4 * study_noise(run, i))
+                                                             : value;
     }
     record.wall_s = 0.01 + 0.1 * study_noise(run, 1000);
     return record;

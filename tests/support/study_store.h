@@ -71,7 +71,7 @@ static inline bool check_row(const Layout *layout, const Record *record, void *c
     (void)err;
     const Record truth = study_record(layout, record->run);
     (*(uint64_t *)context)++;
-    assert_int_equal(record->fate, truth.fate);
+    assert_int_equal(record->outcome, truth.outcome);
     assert_string_equal(record->reason, truth.reason);
     assert_true(record->hash == truth.hash);
     assert_near(record->wall_s, truth.wall_s, 0.0);

@@ -128,7 +128,7 @@ static void only_a_file_of_its_own_kind_is_replaced(void **state)
          "is a result of jointplay (JSON)"},
         {"<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\"><style>text{}</style>",
          "is a picture of jointplay (SVG)"},
-        {"run,drive.speed,fate,reason,alpha\n", "is a table of jointplay (CSV)"},
+        {"run,drive.speed,outcome,reason,alpha\n", "is a table of jointplay (CSV)"},
         {"{\"compare\":{}}\n", "is a store of a comparison"},
         {"{\n  \"format\": \"jointplay baseline 0\"", "is a baseline of jointplay check"},
     };

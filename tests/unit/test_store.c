@@ -321,7 +321,7 @@ static void another_study_is_refused_with_what_differs(void **state)
 static void columns_of_one_name_are_a_mistake_of_the_case(void **state)
 {
     (void)state;
-    static const char *const NAMES[] = {"Steps", "fate", "DRIVE_SPEED_RAD_S", "wall_s"};
+    static const char *const NAMES[] = {"Steps", "outcome", "DRIVE_SPEED_RAD_S", "wall_s"};
     for (int i = 0; i < 4; i++) {
         Err err;
         Layout layout = study_layout();

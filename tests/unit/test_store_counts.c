@@ -21,10 +21,10 @@ static void counts_are_those_of_the_rows(void **state)
     assert_int_equal(count.run_count, RUNS);
     assert_int_equal(count.rows, 110);
     // 7 and 107 failed, 57 took too long
-    assert_int_equal(count.fates[FATE_OK], 107);
-    assert_int_equal(count.fates[FATE_FAILED], 2);
-    assert_int_equal(count.fates[FATE_TIMED_OUT], 1);
-    assert_int_equal(count.fates[FATE_REFUSED] + count.fates[FATE_ENDED], 0);
+    assert_int_equal(count.outcomes[RUN_OUTCOME_OK], 107);
+    assert_int_equal(count.outcomes[RUN_OUTCOME_FAILED], 2);
+    assert_int_equal(count.outcomes[RUN_OUTCOME_TIMED_OUT], 1);
+    assert_int_equal(count.outcomes[RUN_OUTCOME_REFUSED] + count.outcomes[RUN_OUTCOME_ENDED], 0);
     // sums of one sign differ by rounding alone
     assert_close(count.wall_s, wall_s, 1e-13);
     store_close(store, &err);
@@ -62,7 +62,7 @@ static void an_empty_store_counts_nothing(void **state)
     make_store(0);
     Store *store = store_view(path, &err);
     assert_true(store_count(store, &count, &err));
-    assert_int_equal(count.rows + count.fates[FATE_OK], 0);
+    assert_int_equal(count.rows + count.outcomes[RUN_OUTCOME_OK], 0);
     assert_near(count.wall_s, 0.0, 0.0);
     assert_true(store_reasons(store, 2, reasons, &reason_count, &err));
     assert_int_equal(reason_count, 0);
@@ -82,11 +82,11 @@ static void reasons_come_with_the_most_frequent_first(void **state)
     Store *store = store_view(path, &err);
     assert_true(store_reasons(store, 3, reasons, &count, &err));
     assert_int_equal(count, 2);
-    assert_int_equal(reasons[0].fate, FATE_FAILED);
+    assert_int_equal(reasons[0].outcome, RUN_OUTCOME_FAILED);
     assert_string_equal(reasons[0].reason, "a number is not finite at 0.0125 s");
     assert_int_equal(reasons[0].count, 2);
     assert_int_equal(reasons[0].example, 7);
-    assert_int_equal(reasons[1].fate, FATE_TIMED_OUT);
+    assert_int_equal(reasons[1].outcome, RUN_OUTCOME_TIMED_OUT);
     assert_int_equal(reasons[1].example, 57);
     assert_true(store_reasons(store, 1, reasons, &count, &err));
     assert_int_equal(count, 1);
@@ -130,7 +130,8 @@ static size_t list_values(size_t result, bool is_one_speed, double speed, double
     size_t count = 0;
     for (uint64_t run = 0; run < RUNS; run++) {
         const Record record = study_record(&layout, run);
-        if (record.fate == FATE_OK && (!is_one_speed || record.settings[0].number == speed)) {
+        if (record.outcome == RUN_OUTCOME_OK &&
+            (!is_one_speed || record.settings[0].number == speed)) {
             values[count++] = record.results[result];
         }
     }

@@ -37,7 +37,7 @@ static bool hold_row(const Layout *layout, const Record *record, void *context, 
     (void)err;
     Record truth = study_record(layout, record->run);
     (*(uint64_t *)context)++;
-    assert_int_equal(record->fate, truth.fate);
+    assert_int_equal(record->outcome, truth.outcome);
     assert_string_equal(record->reason, truth.reason);
     assert_true(record->hash == truth.hash);
     assert_near(record->wall_s, truth.wall_s, 0.0);
@@ -130,7 +130,7 @@ static void every_reader_names_the_row_that_is_damaged(void **state)
     static const char *const CHANGES[] = {
         "UPDATE run SET coupler_omega_max_rad_s = 7.7e8 WHERE run = 3",
         "UPDATE run SET drive_speed_rad_s = 1 WHERE run = 3",
-        "UPDATE run SET fate = 2 WHERE run = 3",
+        "UPDATE run SET outcome = 2 WHERE run = 3",
         "UPDATE run SET hash = 1 WHERE run = 3",
         "UPDATE effort SET wall_s = 1e9 WHERE run = 3",
         "DELETE FROM effort WHERE run = 3",

@@ -199,7 +199,7 @@ static void make_one(const char *name, uint64_t run, bool is_cut_off)
     Store *store = store_open(name, &head, true, &err);
     Record record = study_record(&layout, run);
     if (is_cut_off) {
-        record.fate = FATE_TIMED_OUT;
+        record.outcome = RUN_OUTCOME_TIMED_OUT;
         record.hash = 0;
         strcpy(record.reason, "took longer than its limit of 2 s");
         for (size_t i = 0; i < layout.result_count; i++) {
@@ -350,7 +350,7 @@ static int die_in_a_first_write(void)
     // as a merge that is killed while it makes its tables
     sqlite3_exec(base,
                  "PRAGMA cache_size = 1; PRAGMA application_id = 1246778196; "
-                 "PRAGMA user_version = 2; BEGIN IMMEDIATE; CREATE TABLE study(name); "
+                 "PRAGMA user_version = 3; BEGIN IMMEDIATE; CREATE TABLE study(name); "
                  "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 2000) "
                  "INSERT INTO study SELECT hex(randomblob(500)) FROM n",
                  NULL, NULL, NULL);

@@ -250,7 +250,7 @@ static void a_schema_that_is_not_word_for_word_a_store_s_is_refused(void **state
         {"CREATE TRIGGER t AFTER INSERT ON run BEGIN DELETE FROM run; END",
          "it contains a trigger that no store has"},
         {"CREATE TABLE other(x)", "it contains a table that no store has"},
-        {"CREATE INDEX i ON run(fate)", "it contains an index that no store has"},
+        {"CREATE INDEX i ON run(outcome)", "it contains an index that no store has"},
         {"DROP TABLE effort", "it has no table effort"},
         {"ALTER TABLE run ADD COLUMN more", "the columns of its runs are not those of a store"},
         {"ALTER TABLE run ADD COLUMN more GENERATED ALWAYS AS (zeroblob(1e9)) VIRTUAL",

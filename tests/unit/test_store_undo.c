@@ -70,7 +70,7 @@ static int die_in_mid_change(void)
     sqlite3_exec(
         base,
         "PRAGMA cache_size = 3; BEGIN IMMEDIATE; "
-        "UPDATE run SET fate = 5 WHERE run < 60; "
+        "UPDATE run SET outcome = 5 WHERE run < 60; "
         "WITH RECURSIVE n(i) AS (SELECT 1000 UNION ALL SELECT i + 1 FROM n WHERE i < 1500) "
         "INSERT INTO effort SELECT i, i, i FROM n; "
         "DELETE FROM run WHERE run > 150; "

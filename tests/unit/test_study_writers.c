@@ -63,7 +63,7 @@ static void csv_brings_back_every_number(void **state)
     store_close(store, &err);
     read_whole(out, content, sizeof content);
     static const char HEAD[] =
-        "run,drive_speed_rad_s,contact_damping,scheme,run_step_s,fate,reason,coupler_omega_max";
+        "run,drive_speed_rad_s,contact_damping,scheme,run_step_s,outcome,reason,coupler_omega_max";
     assert_int_equal(strncmp(content, HEAD, sizeof HEAD - 1), 0);
     char *rest = strchr(content, '\n') + 1;
     for (uint64_t run = 0; run < 60; run++) {
@@ -77,7 +77,7 @@ static void csv_brings_back_every_number(void **state)
         assert_string_equal(next_cell(&rest), truth.settings[1].word);
         assert_string_equal(next_cell(&rest), truth.settings[2].word);
         expect_number(next_cell(&rest), truth.settings[3].number);
-        assert_string_equal(next_cell(&rest), FATE_WORDS[truth.fate]);
+        assert_string_equal(next_cell(&rest), RUN_OUTCOME_WORDS[truth.outcome]);
         assert_string_equal(next_cell(&rest), truth.reason);
         for (size_t i = 0; i < layout.result_count; i++) {
             expect_number(next_cell(&rest), truth.results[i]);
@@ -106,9 +106,10 @@ static void json_lines_bring_back_every_number(void **state)
         assert_int_equal(json_integer_value(json_object_get(row, "run")), run);
         assert_string_equal(json_string_value(json_object_get(row, "scheme")),
                             truth.settings[2].word);
-        assert_string_equal(json_string_value(json_object_get(row, "fate")),
-                            FATE_WORDS[truth.fate]);
-        assert_int_equal(json_is_null(json_object_get(row, "reason")), truth.fate == FATE_OK);
+        assert_string_equal(json_string_value(json_object_get(row, "outcome")),
+                            RUN_OUTCOME_WORDS[truth.outcome]);
+        assert_int_equal(json_is_null(json_object_get(row, "reason")),
+                         truth.outcome == RUN_OUTCOME_OK);
         for (size_t i = 0; i < layout.result_count; i++) {
             const json_t *value = json_object_get(row, layout.results[i].name);
             assert_int_equal(json_is_null(value), isnan(truth.results[i]));
@@ -172,7 +173,7 @@ static void an_export_never_writes_over_its_store(void **state)
 
 #define assert_has(text, words) assert_non_null(strstr((text).data, (words)))
 
-static void status_counts_fates_and_reasons(void **state)
+static void status_counts_outcomes_and_reasons(void **state)
 {
     (void)state;
     Err err = {0};
@@ -311,7 +312,7 @@ int main(void)
         WRITER_TEST(an_infinity_is_an_empty_cell_and_null),
         WRITER_TEST(json_lines_bring_back_every_number),
         WRITER_TEST(an_export_never_writes_over_its_store),
-        WRITER_TEST(status_counts_fates_and_reasons),
+        WRITER_TEST(status_counts_outcomes_and_reasons),
         WRITER_TEST(the_summary_has_a_row_a_result),
         WRITER_TEST(a_picture_has_lines_on_a_grid_and_dots_elsewhere),
         WRITER_TEST(a_picture_of_one_column_is_its_distribution),

@@ -236,7 +236,7 @@ static void misbehave(const SweepRun *task, Record *record)
     }
     be_well(task, record);
     if (task->run == NOT_FINITE) {
-        record->fate = FATE_FAILED;
+        record->outcome = RUN_OUTCOME_FAILED;
         strcpy(record->reason, "not finite at 1 ms");
     }
 }
@@ -301,14 +301,14 @@ static const SweepWork COUNTED = {be_counted, certify_well};
 static const SweepWork SPOILT = {be_spoilt, certify_well};
 static const SweepWork AT_LAST = {be_well, certify_at_last};
 
-static void check_row(const Study *study, uint64_t run, Fate fate, const char *reason)
+static void check_row(const Study *study, uint64_t run, RunOutcome outcome, const char *reason)
 {
     assert_true(run < study->row_count);
     const Record *row = &study->rows[run];
     assert_int_equal(row->run, run);
-    if (row->fate != fate || strcmp(row->reason, reason) != 0) {
-        fail_msg("run %d: %s '%s', not %s '%s'", (int)run, FATE_WORDS[row->fate], row->reason,
-                 FATE_WORDS[fate], reason);
+    if (row->outcome != outcome || strcmp(row->reason, reason) != 0) {
+        fail_msg("run %d: %s '%s', not %s '%s'", (int)run, RUN_OUTCOME_WORDS[row->outcome],
+                 row->reason, RUN_OUTCOME_WORDS[outcome], reason);
     }
     // its settings are there whatever became of it
     Cell values[RECORD_SETTING_MAX];
@@ -323,26 +323,26 @@ static void what_goes_wrong_is_one_row_with_its_reason(void **state)
     open_study(study, 4, false, "{time: 600 s, memory: 200 MB}");
     assert_int_equal(sweep(study, &BADLY, 2, ALL), SWEEP_COMPLETE);
     assert_int_equal(study->row_count, 12);
-    check_row(study, 0, FATE_OK, "");
-    check_row(study, ABORTS, FATE_ENDED,
+    check_row(study, 0, RUN_OUTCOME_OK, "");
+    check_row(study, ABORTS, RUN_OUTCOME_ENDED,
               "ended by signal 6 (Aborted): ODE INTERNAL ERROR 1: it broke");
-    check_row(study, CRASHES, FATE_ENDED, "ended by signal 11 (Segmentation fault)");
-    check_row(study, EXITS, FATE_ENDED, "ended with status 0 and no result");
-    check_row(study, CLOSES, FATE_ENDED, "closed its pipe without a result and went on");
-    check_row(study, NOT_FINITE, FATE_FAILED, "not finite at 1 ms");
-    check_row(study, NOISY, FATE_OK, "");
-    check_row(study, 10, FATE_OK, "");
-    check_row(study, 11, FATE_OK, "");
+    check_row(study, CRASHES, RUN_OUTCOME_ENDED, "ended by signal 11 (Segmentation fault)");
+    check_row(study, EXITS, RUN_OUTCOME_ENDED, "ended with status 0 and no result");
+    check_row(study, CLOSES, RUN_OUTCOME_ENDED, "closed its pipe without a result and went on");
+    check_row(study, NOT_FINITE, RUN_OUTCOME_FAILED, "not finite at 1 ms");
+    check_row(study, NOISY, RUN_OUTCOME_OK, "");
+    check_row(study, 10, RUN_OUTCOME_OK, "");
+    check_row(study, 11, RUN_OUTCOME_OK, "");
     assert_int_equal(study->state.failed, 7);
     assert_int_equal(study->state.done, 12);
     if (!CHILD_CAN_LIMIT_MEMORY) {
         print_message("# address space cannot be limited under this sanitizer\n");
         return;
     }
-    assert_int_equal(study->rows[EATS].fate, FATE_NO_MEMORY);
+    assert_int_equal(study->rows[EATS].outcome, RUN_OUTCOME_NO_MEMORY);
     assert_non_null(strstr(study->rows[EATS].reason, "limit of 200 MB of memory: "));
     assert_non_null(strstr(study->rows[EATS].reason, "Assertion"));
-    check_row(study, EATS_AT_ONCE, FATE_NO_MEMORY,
+    check_row(study, EATS_AT_ONCE, RUN_OUTCOME_NO_MEMORY,
               "wanted more than its limit of 200 MB of memory");
 }
 
@@ -365,7 +365,7 @@ static void a_run_is_judged_by_what_it_does_in_a_process_of_its_own(void **state
     assert_int_equal(sweep(study, &SPOILT, 2, ALL), SWEEP_COMPLETE);
     assert_int_equal(study->row_count, 12);
     for (uint64_t run = 0; run < 12; run++) {
-        check_row(study, run, FATE_OK, "");
+        check_row(study, run, RUN_OUTCOME_OK, "");
         assert_int_equal(board->started[run], 1);
     }
     // control: there were processes that had to be replaced
@@ -381,7 +381,7 @@ static void a_run_that_hangs_is_ended_at_its_limit(void **state)
     assert_int_equal(sweep(study, &HANGING, 2, ALL), SWEEP_COMPLETE);
     assert_int_equal(study->row_count, 3);
     for (uint64_t run = 0; run < 3; run++) {
-        check_row(study, run, FATE_TIMED_OUT, "took longer than its limit of 0.2 s");
+        check_row(study, run, RUN_OUTCOME_TIMED_OUT, "took longer than its limit of 0.2 s");
     }
     assert_int_equal(study->state.failed, 3);
 }
@@ -428,7 +428,7 @@ static void a_truth_that_cannot_be_had_stops_no_run_and_is_told(void **state)
     sweep(study, &WITHOUT_TRUTH, 2, ALL);
     assert_int_equal(study->row_count, 6);
     for (uint64_t i = 0; i < 6; i++) {
-        check_row(study, i, FATE_OK, "");
+        check_row(study, i, RUN_OUTCOME_OK, "");
     }
     assert_int_equal(board->with_truth, 0);
     assert_int_equal(study->state.without_truth, 6);
@@ -519,7 +519,7 @@ static void the_usual_work_makes_what_one_run_makes_by_itself(void **state)
     sweep(study, NULL, 2, ALL);
     assert_int_equal(study->row_count, 6);
     for (uint64_t i = 0; i < 6; i++) {
-        check_row(study, i, FATE_OK, "");
+        check_row(study, i, RUN_OUTCOME_OK, "");
         BackendKind backend;
         Err err = {0};
         Scenario *scenario = calloc(1, sizeof *scenario);

@@ -1,14 +1,18 @@
 // Which columns does a row have, in which order?
 #include "commands/study/record.h"
 
-const char *const FATE_WORDS[FATE_COUNT] = {
-    [FATE_OK] = "ok",       [FATE_REFUSED] = "refused",     [FATE_FAILED] = "failed",
-    [FATE_ENDED] = "ended", [FATE_TIMED_OUT] = "timed out", [FATE_NO_MEMORY] = "no memory",
+const char *const RUN_OUTCOME_WORDS[RUN_OUTCOME_COUNT] = {
+    [RUN_OUTCOME_OK] = "ok",
+    [RUN_OUTCOME_REFUSED] = "refused",
+    [RUN_OUTCOME_FAILED] = "failed",
+    [RUN_OUTCOME_ENDED] = "ended",
+    [RUN_OUTCOME_TIMED_OUT] = "timed out",
+    [RUN_OUTCOME_NO_MEMORY] = "no memory",
 };
 
 static const RecordField RUN = {"run", COLUMN_RUN, offsetof(Record, run)};
 static const RecordField OUTCOME[] = {
-    {"fate", COLUMN_FATE, offsetof(Record, fate)},
+    {"outcome", COLUMN_FATE, offsetof(Record, outcome)},
     {"reason", COLUMN_REASON, offsetof(Record, reason)},
 };
 static const RecordField LAST[] = {

@@ -37,18 +37,18 @@ typedef struct Layout {
 } Layout;
 
 // What became of a run. Stores hold the number: members are only ever added at the end.
-typedef enum Fate {
-    FATE_OK,
-    FATE_REFUSED,   // these values make no valid case
-    FATE_FAILED,    // the solver gave up: a number that is not finite, a step too long
-    FATE_ENDED,     // its process ended by a signal or by itself, without a result
-    FATE_TIMED_OUT, // it took longer than its limit
-    FATE_NO_MEMORY, // it needed more than its limit
-    FATE_COUNT,
-} Fate;
+typedef enum RunOutcome {
+    RUN_OUTCOME_OK,
+    RUN_OUTCOME_REFUSED,   // these values make no valid case
+    RUN_OUTCOME_FAILED,    // the solver gave up: a number that is not finite, a step too long
+    RUN_OUTCOME_ENDED,     // its process ended by a signal or by itself, without a result
+    RUN_OUTCOME_TIMED_OUT, // it took longer than its limit
+    RUN_OUTCOME_NO_MEMORY, // it needed more than its limit
+    RUN_OUTCOME_COUNT,
+} RunOutcome;
 
 // The word of each, as people and files see it.
-extern const char *const FATE_WORDS[FATE_COUNT];
+extern const char *const RUN_OUTCOME_WORDS[RUN_OUTCOME_COUNT];
 
 typedef union Cell {
     double number; // NAN where there is none
@@ -58,8 +58,8 @@ typedef union Cell {
 // One run that is over. It holds no pointers, so that it can cross a pipe.
 typedef struct Record {
     uint64_t run; // number in the study, from 0
-    Fate fate;
-    char reason[RECORD_REASON_SIZE]; // empty for FATE_OK
+    RunOutcome outcome;
+    char reason[RECORD_REASON_SIZE]; // empty for RUN_OUTCOME_OK
     Cell settings[RECORD_SETTING_MAX];
     double results[RECORD_RESULT_MAX]; // NAN where there is none
     uint64_t hash;                     // of the trajectory; 0 where there is none
@@ -74,7 +74,7 @@ typedef struct RecordField {
     size_t offset;
 } RecordField;
 
-// The field of a number in the order of the store and of all files: run, the settings, fate,
+// The field of a number in the order of the store and of all files: run, the settings, outcome,
 // reason, the results, hash, wall_s. False behind the last.
 bool record_field(const Layout *layout, size_t number, RecordField *field);
 

@@ -54,10 +54,10 @@ bool store_commit(Store *store, Err *err);
 
 // What is in a store.
 typedef struct StoreCount {
-    uint64_t run_count;         // of the whole study
-    uint64_t rows;              // runs that are over
-    uint64_t fates[FATE_COUNT]; // of them
-    double wall_s;              // all their processes took
+    uint64_t run_count;                   // of the whole study
+    uint64_t rows;                        // runs that are over
+    uint64_t outcomes[RUN_OUTCOME_COUNT]; // of them
+    double wall_s;                        // all their processes took
 } StoreCount;
 
 // Reads every row, and fails with ERR_FILE at one that does not match its checksum; so do
@@ -72,9 +72,9 @@ const char *store_key(const Store *store, const char *name);
 size_t store_column(const Layout *layout, const char *name);
 const Column *store_column_at(const Layout *layout, size_t column);
 
-// Why runs ended other than with FATE_OK: the most frequent reasons first.
+// Why runs ended other than with RUN_OUTCOME_OK: the most frequent reasons first.
 typedef struct StoreReason {
-    Fate fate;
+    RunOutcome outcome;
     char reason[RECORD_REASON_SIZE];
     uint64_t count;
     uint64_t example; // the first run of them

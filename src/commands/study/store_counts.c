@@ -16,7 +16,7 @@ static bool count_row(const Layout *layout, const Record *record, void *context,
     (void)err;
     StoreCount *count = context;
     count->rows++;
-    count->fates[record->fate]++;
+    count->outcomes[record->outcome]++;
     count->wall_s += record->wall_s;
     return true;
 }
@@ -40,16 +40,17 @@ bool store_reasons(Store *store, size_t most, StoreReason *reasons, size_t *coun
     sqlite3_stmt *row = NULL;
     bool is_read =
         verify(store, err) &&
-        store_prepare(store,
-                      "SELECT fate, reason, count(*) AS runs, min(run) FROM run WHERE fate <> 0 "
-                      "GROUP BY fate, reason ORDER BY runs DESC, min(run)",
-                      &row, err);
+        store_prepare(
+            store,
+            "SELECT outcome, reason, count(*) AS runs, min(run) FROM run WHERE outcome <> 0 "
+            "GROUP BY outcome, reason ORDER BY runs DESC, min(run)",
+            &row, err);
     *count = 0;
     while (store_step(store, &row, &is_read, err)) {
-        const int fate = sqlite3_column_int(row, 0);
-        if (fate > FATE_OK && fate < FATE_COUNT && *count < most) {
+        const int outcome = sqlite3_column_int(row, 0);
+        if (outcome > RUN_OUTCOME_OK && outcome < RUN_OUTCOME_COUNT && *count < most) {
             StoreReason *reason = &reasons[(*count)++];
-            *reason = (StoreReason){.fate = (Fate)fate,
+            *reason = (StoreReason){.outcome = (RunOutcome)outcome,
                                     .count = (uint64_t)sqlite3_column_int64(row, 2),
                                     .example = (uint64_t)sqlite3_column_int64(row, 3)};
             store_take_words(row, 1, reason->reason, sizeof reason->reason);
@@ -102,11 +103,11 @@ static bool prepare_values(Store *store, const Column *column, bool is_count,
 {
     Text sql;
     text_init(&sql);
-    text_append(&sql, is_count ? "SELECT count(*) FROM run WHERE fate = 0 AND "
+    text_append(&sql, is_count ? "SELECT count(*) FROM run WHERE outcome = 0 AND "
                                : "SELECT * FROM (SELECT ");
     store_shape_quote(&sql, column->name);
     text_append(&sql, is_count ? " IS NOT NULL"
-                               : " AS value FROM run WHERE fate = 0) WHERE value IS NOT NULL "
+                               : " AS value FROM run WHERE outcome = 0) WHERE value IS NOT NULL "
                                  "ORDER BY value");
     const bool is_ready = store_prepare(store, sql.data, statement, err);
     text_finish(&sql);

@@ -8,7 +8,7 @@ struct sqlite3;
 struct sqlite3_stmt;
 
 enum {
-    STORE_VERSION = 2,              // of the tables; stands in the file as user_version
+    STORE_VERSION = 3,              // of the tables; stands in the file as user_version
     STORE_APPLICATION = 0x4a505354, // "JPST"; stands in the file as application_id
     STORE_WORDS_SIZE = 256,
 };

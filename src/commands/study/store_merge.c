@@ -157,8 +157,8 @@ static bool open_target(Merge *merge, const char *path, Err *err)
 // A run that was cut off may be the machine's fault, and is no result.
 static bool is_cut_off(const Record *record)
 {
-    return record->fate == FATE_ENDED || record->fate == FATE_TIMED_OUT ||
-           record->fate == FATE_NO_MEMORY;
+    return record->outcome == RUN_OUTCOME_ENDED || record->outcome == RUN_OUTCOME_TIMED_OUT ||
+           record->outcome == RUN_OUTCOME_NO_MEMORY;
 }
 
 // Whether a row lacks errors, because its truth could not be computed.
@@ -176,7 +176,8 @@ static bool compare(const Merge *merge, const Record *record, const char *path, 
 {
     const Layout *layout = merge->target->layout;
     *is_better = is_cut_off(other) && !is_cut_off(record);
-    if (record->fate == FATE_OK && other->fate == FATE_OK && record->hash == other->hash &&
+    if (record->outcome == RUN_OUTCOME_OK && other->outcome == RUN_OUTCOME_OK &&
+        record->hash == other->hash &&
         lacks_errors(layout, record) != lacks_errors(layout, other)) {
         *is_better = lacks_errors(layout, other);
         return true;

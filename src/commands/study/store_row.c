@@ -31,7 +31,7 @@ static uint64_t hash_value(uint64_t hash, double value)
 static int32_t make_checksum(const Layout *layout, const Record *record)
 {
     uint64_t hash = hash_number(HASH_START, (double)record->run);
-    hash = hash_number(hash, record->fate);
+    hash = hash_number(hash, record->outcome);
     hash = hash_bytes(hash, record->reason, strlen(record->reason));
     for (size_t i = 0; i < layout->setting_count; i++) {
         const Cell *cell = &record->settings[i];
@@ -59,7 +59,7 @@ static bool is_same_number(double a, double b)
 
 bool store_row_is_same(const Layout *layout, const Record *a, const Record *b)
 {
-    bool is_same = a->run == b->run && a->fate == b->fate && a->hash == b->hash;
+    bool is_same = a->run == b->run && a->outcome == b->outcome && a->hash == b->hash;
     RecordField field;
     for (size_t i = 0; record_field(layout, i, &field) && field.kind != COLUMN_HASH; i++) {
         const bool is_text = field.kind == COLUMN_WORD || field.kind == COLUMN_REASON;
@@ -91,7 +91,7 @@ void store_row_bind(const Layout *layout, sqlite3_stmt *statement, const Record 
             sqlite3_bind_int64(statement, parameter, (sqlite3_int64)record->run);
             break;
         case COLUMN_FATE:
-            sqlite3_bind_int(statement, parameter, (int)record->fate);
+            sqlite3_bind_int(statement, parameter, (int)record->outcome);
             break;
         case COLUMN_WORD:
             sqlite3_bind_text(statement, parameter, record_text(record, &field), -1, SQLITE_STATIC);
@@ -130,7 +130,7 @@ static double column_number(sqlite3_stmt *statement, int column)
 bool store_row_take(const Store *store, sqlite3_stmt *statement, Record *record, Err *err)
 {
     int column = 0;
-    int fate = 0;
+    int outcome = 0;
     RecordField field = {.kind = COLUMN_RUN};
     for (size_t i = 0; field.kind != COLUMN_HASH; i++, column++) {
         record_field(store->layout, i, &field);
@@ -141,8 +141,8 @@ bool store_row_take(const Store *store, sqlite3_stmt *statement, Record *record,
             *(uint64_t *)target = (uint64_t)sqlite3_column_int64(statement, column);
             break;
         case COLUMN_FATE:
-            fate = sqlite3_column_int(statement, column);
-            record->fate = (Fate)fate;
+            outcome = sqlite3_column_int(statement, column);
+            record->outcome = (RunOutcome)outcome;
             break;
         case COLUMN_WORD:
             store_take_words(statement, column, target, RECORD_WORD_SIZE);
@@ -161,7 +161,7 @@ bool store_row_take(const Store *store, sqlite3_stmt *statement, Record *record,
     const bool is_effort = sqlite3_column_type(statement, column) != SQLITE_NULL &&
                            sqlite3_column_int64(statement, column) ==
                                store_row_effort_checksum(record->run, record->wall_s);
-    if (fate >= 0 && fate < FATE_COUNT && is_effort &&
+    if (outcome >= 0 && outcome < RUN_OUTCOME_COUNT && is_effort &&
         checksum == make_checksum(store->layout, record)) {
         return true;
     }

@@ -1,10 +1,10 @@
 // Which tables does a store have, and has it nothing else?
 //
 //     study    name, value, words: the key, `runs`, `checksum` of this table and of the columns
-//     run      run (the number), the settings, fate, reason, the results, hash, checksum
+//     run      run (the number), the settings, outcome, reason, the results, hash, checksum
 //     effort   run, wall_s, checksum
 //
-// The columns of `run` are the layout: their names, their types, and the position of `fate`.
+// The columns of `run` are the layout: their names, their types, and the position of `outcome`.
 //
 // The file may come from anyone, and SQL in its schema is run when it is read: a view instead of a
 // table may have endless rows. So no query comes before its schema is known to be word for word the
@@ -59,7 +59,7 @@ static void append_run(const Layout *layout, Text *sql)
 {
     text_append(sql, "CREATE TABLE run(run INTEGER PRIMARY KEY, ");
     append_columns(sql, layout->settings, layout->setting_count);
-    text_append(sql, "fate INTEGER, reason TEXT, ");
+    text_append(sql, "outcome INTEGER, reason TEXT, ");
     append_columns(sql, layout->results, layout->result_count);
     text_append(sql, "hash INTEGER, checksum INTEGER)");
 }
@@ -164,7 +164,7 @@ static void add_column(Column *columns, size_t *count, size_t most, sqlite3_stmt
     }
 }
 
-// The settings stand before `fate`, the results behind it.
+// The settings stand before `outcome`, the results behind it.
 static bool read_columns(Store *store, Layout *layout, Err *err)
 {
     sqlite3_stmt *row = NULL;
@@ -172,7 +172,7 @@ static bool read_columns(Store *store, Layout *layout, Err *err)
         store, "SELECT name, type FROM pragma_table_info('run') ORDER BY cid", &row, err);
     bool is_result = false;
     while (store_step(store, &row, &is_read, err)) {
-        if (is_word(row, 0, "fate")) {
+        if (is_word(row, 0, "outcome")) {
             is_result = true;
         } else if (is_word(row, 0, RUN) || is_word(row, 0, "reason") || is_word(row, 0, "hash") ||
                    is_word(row, 0, "checksum")) {

@@ -30,9 +30,9 @@ static json_t *whole(uint64_t count)
 
 json_t *study_json_build(const StudyReport *report)
 {
-    json_t *fates = json_object();
-    for (int i = 0; i < FATE_COUNT; i++) {
-        json_object_set_new(fates, FATE_WORDS[i], whole(report->count.fates[i]));
+    json_t *outcomes = json_object();
+    for (int i = 0; i < RUN_OUTCOME_COUNT; i++) {
+        json_object_set_new(outcomes, RUN_OUTCOME_WORDS[i], whole(report->count.outcomes[i]));
     }
     json_t *object = json_object();
     json_object_set_new(object, "tool", settings_json_tool());
@@ -45,7 +45,7 @@ json_t *study_json_build(const StudyReport *report)
                                   whole(report->shard.count)));
     json_object_set_new(object, "runs", whole(report->state.total));
     json_object_set_new(object, "done", whole(report->state.done));
-    json_object_set_new(object, "fates", fates);
+    json_object_set_new(object, "outcomes", outcomes);
     json_value_set(object, "wall_s", report->count.wall_s);
     json_object_set_new(object, "now", fields_json(EFFORT_FIELDS, FIELD_JSON, report));
     return object;

@@ -50,8 +50,8 @@ static bool take_row(const Layout *layout, const Record *record, void *context, 
         .y = gathering->has_y ? number_of(layout, record, gathering->y) : 0.0,
         .group = gathering->has_by ? group_of(points, layout, record) : 0,
     };
-    const bool is_point = record->fate == FATE_OK && isfinite(point.x) && isfinite(point.y) &&
-                          point.group < points->group_count;
+    const bool is_point = record->outcome == RUN_OUTCOME_OK && isfinite(point.x) &&
+                          isfinite(point.y) && point.group < points->group_count;
     if (!is_point) {
         points->left_out++;
         return true;

@@ -31,7 +31,7 @@ static void write_cell(FILE *stream, const RecordField *field, const Record *rec
         fprintf(stream, "%" PRIu64, record->run);
         break;
     case COLUMN_FATE:
-        fputs(FATE_WORDS[record->fate], stream);
+        fputs(RUN_OUTCOME_WORDS[record->outcome], stream);
         break;
     case COLUMN_WORD:
     case COLUMN_REASON:
@@ -85,7 +85,7 @@ static json_t *build_value(const RecordField *field, const Record *record)
     case COLUMN_RUN:
         return json_integer((json_int_t)record->run);
     case COLUMN_FATE:
-        return json_string(FATE_WORDS[record->fate]);
+        return json_string(RUN_OUTCOME_WORDS[record->outcome]);
     case COLUMN_WORD:
         return json_value_text(record_text(record, field));
     case COLUMN_REASON:

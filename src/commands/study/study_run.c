@@ -125,7 +125,7 @@ static bool print_report(StudyReport *report, const CommonOptions *options, Err 
 
 static bool check_runs(const StudyReport *report, Err *err)
 {
-    return report->count.rows == 0 || report->count.fates[FATE_OK] > 0 ||
+    return report->count.rows == 0 || report->count.outcomes[RUN_OUTCOME_OK] > 0 ||
            err_set(err, ERR_SOLVER, "every run of %s failed",
                    report->shard.count > 1 ? "this part" : "the study");
 }

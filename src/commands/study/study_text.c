@@ -24,7 +24,7 @@ static void add_reason(Progress *progress, const StoreReason *reason)
 {
     for (size_t i = 0; i < progress->reason_count; i++) {
         StoreReason *known = &progress->reasons[i];
-        if (known->fate == reason->fate && strcmp(known->reason, reason->reason) == 0) {
+        if (known->outcome == reason->outcome && strcmp(known->reason, reason->reason) == 0) {
             known->count += reason->count;
             known->example = known->example < reason->example ? known->example : reason->example;
             return;
@@ -51,8 +51,8 @@ static bool add_part(Progress *progress, const StudyPart *part, StoreCount *coun
     progress->count.run_count = count->run_count;
     progress->count.rows += count->rows;
     progress->count.wall_s += count->wall_s;
-    for (int fate = 0; fate < FATE_COUNT; fate++) {
-        progress->count.fates[fate] += count->fates[fate];
+    for (int outcome = 0; outcome < RUN_OUTCOME_COUNT; outcome++) {
+        progress->count.outcomes[outcome] += count->outcomes[outcome];
     }
     for (size_t i = 0; i < reason_count; i++) {
         add_reason(progress, &reasons[i]);
@@ -96,7 +96,7 @@ static double percent(uint64_t part, uint64_t whole)
 
 static uint64_t count_failed(const StoreCount *count)
 {
-    return count->rows - count->fates[FATE_OK];
+    return count->rows - count->outcomes[RUN_OUTCOME_OK];
 }
 
 static void part_row(Table *table, const StudyPart *part, const StoreCount *count)
@@ -109,16 +109,17 @@ static void part_row(Table *table, const StudyPart *part, const StoreCount *coun
     table_cell(table, part->store == NULL ? "not begun" : "");
 }
 
-static void write_fates(const Progress *progress, const Style *style, Text *text)
+static void write_outcomes(const Progress *progress, const Style *style, Text *text)
 {
     static const SectionHead HEADS[] = {
-        {"fate", "", TABLE_LEFT}, {"runs", "", TABLE_RIGHT}, {"share", "%", TABLE_RIGHT}};
+        {"outcome", "", TABLE_LEFT}, {"runs", "", TABLE_RIGHT}, {"share", "%", TABLE_RIGHT}};
     Table *table = section_begin("How they ended", 3, HEADS, style, text);
-    for (int fate = 0; fate < FATE_COUNT; fate++) {
-        if (progress->count.fates[fate] > 0) {
-            table_cell(table, "%s", FATE_WORDS[fate]);
-            table_cell(table, "%" PRIu64, progress->count.fates[fate]);
-            table_cell(table, "%.2f", percent(progress->count.fates[fate], progress->count.rows));
+    for (int outcome = 0; outcome < RUN_OUTCOME_COUNT; outcome++) {
+        if (progress->count.outcomes[outcome] > 0) {
+            table_cell(table, "%s", RUN_OUTCOME_WORDS[outcome]);
+            table_cell(table, "%" PRIu64, progress->count.outcomes[outcome]);
+            table_cell(table, "%.2f",
+                       percent(progress->count.outcomes[outcome], progress->count.rows));
         }
     }
     section_end(table, text);
@@ -127,7 +128,7 @@ static void write_fates(const Progress *progress, const Style *style, Text *text
 static void write_reasons(const Progress *progress, const Style *style, Text *text)
 {
     static const SectionHead HEADS[] = {{"runs", "", TABLE_RIGHT},
-                                        {"fate", "", TABLE_LEFT},
+                                        {"outcome", "", TABLE_LEFT},
                                         {"reason", "", TABLE_WRAP},
                                         {"such as run", "", TABLE_RIGHT}};
     if (progress->reason_count == 0) {
@@ -141,7 +142,7 @@ static void write_reasons(const Progress *progress, const Style *style, Text *te
         const StoreReason *reason = &progress->reasons[i];
         told += reason->count;
         table_cell(table, "%" PRIu64, reason->count);
-        table_cell(table, "%s", FATE_WORDS[reason->fate]);
+        table_cell(table, "%s", RUN_OUTCOME_WORDS[reason->outcome]);
         table_cell(table, "%s", reason->reason);
         table_cell(table, "%" PRIu64, reason->example);
     }
@@ -199,7 +200,7 @@ bool study_text_status(const StudyPart *parts, size_t part_count, const Style *s
                     percent(progress.count.rows, progress.wanted), style->end);
         text_append(text, "%s", part_count > 1 ? stores.data : "");
         if (progress.count.rows > 0) {
-            write_fates(&progress, style, text);
+            write_outcomes(&progress, style, text);
         }
         write_reasons(&progress, style, text);
         write_times(&progress, text);

@@ -257,8 +257,8 @@ static bool take_run(SweepPool *pool, SweepJob *job, const Child *child, double 
     state->inside_s += record->wall_s;
     state->made++;
     state->done++;
-    state->failed += record->fate != FATE_OK ? 1 : 0;
-    state->without_truth += record->fate == FATE_OK && job->group->lacks_truth ? 1 : 0;
+    state->failed += record->outcome != RUN_OUTCOME_OK ? 1 : 0;
+    state->without_truth += record->outcome == RUN_OUTCOME_OK && job->group->lacks_truth ? 1 : 0;
     job->group->busy--;
     pool->has_news = true;
     return store_add(pool->sweep->store, record, err);
@@ -278,7 +278,8 @@ static void take_truth(SweepPool *pool, SweepGroup *group, const Child *child, d
 static bool is_in_doubt(const SweepJob *job, const Child *child)
 {
     const bool is_lost = child->end != CHILD_DONE && child->end != CHILD_TIMED_OUT;
-    const bool is_starved = child->end == CHILD_DONE && job->record.fate == FATE_NO_MEMORY;
+    const bool is_starved =
+        child->end == CHILD_DONE && job->record.outcome == RUN_OUTCOME_NO_MEMORY;
     return !job->is_truth && job->made > 1 && (is_lost || is_starved);
 }
 

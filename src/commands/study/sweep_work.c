@@ -19,18 +19,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void give_reason(Record *record, Fate fate, const char *reason)
+static void give_reason(Record *record, RunOutcome outcome, const char *reason)
 {
-    record->fate = fate;
+    record->outcome = outcome;
     shorten_copy(record->reason, sizeof record->reason, reason);
 }
 
 // No number that is not finite becomes a data point; NAN alone says that there is none.
 static void check_results(const Layout *layout, Record *record)
 {
-    for (size_t i = 0; i < layout->result_count && record->fate == FATE_OK; i++) {
+    for (size_t i = 0; i < layout->result_count && record->outcome == RUN_OUTCOME_OK; i++) {
         if (isinf(record->results[i])) {
-            record->fate = FATE_FAILED;
+            record->outcome = RUN_OUTCOME_FAILED;
             snprintf(record->reason, sizeof record->reason, "%.*s is not finite",
                      RECORD_NAME_SIZE - 1, layout->results[i].name);
         }
@@ -55,9 +55,10 @@ static void measure(const SweepRun *task, const Scenario *scenario, BackendKind 
         check_results(task->layout, record);
     } else {
         const bool is_starved = child_lacks_memory();
-        give_reason(record, is_starved ? FATE_NO_MEMORY : FATE_FAILED, trajectory->message);
+        give_reason(record, is_starved ? RUN_OUTCOME_NO_MEMORY : RUN_OUTCOME_FAILED,
+                    trajectory->message);
     }
-    if (record->fate != FATE_OK) {
+    if (record->outcome != RUN_OUTCOME_OK) {
         forget_results(record);
         record->hash = 0;
     }
@@ -76,7 +77,7 @@ static void run(const SweepRun *task, Record *record)
     if (design_scenario(task->spec, record->settings, scenario, &backend, &err)) {
         measure(task, scenario, backend, record);
     } else {
-        give_reason(record, FATE_REFUSED, err.text);
+        give_reason(record, RUN_OUTCOME_REFUSED, err.text);
     }
     scenario_destroy(scenario);
 }
@@ -122,15 +123,15 @@ void sweep_work_mark_timeout(const SweepSlot *slot, Child *child)
     }
 }
 
-static Fate fate_of(ChildEnd end)
+static RunOutcome outcome_of(ChildEnd end)
 {
     switch (end) {
     case CHILD_TIMED_OUT:
-        return FATE_TIMED_OUT;
+        return RUN_OUTCOME_TIMED_OUT;
     case CHILD_NO_MEMORY:
-        return FATE_NO_MEMORY;
+        return RUN_OUTCOME_NO_MEMORY;
     default:
-        return FATE_ENDED;
+        return RUN_OUTCOME_ENDED;
     }
 }
 
@@ -145,7 +146,7 @@ void sweep_work_lost(const SweepRun *task, const Child *child, double wall_s, Re
     design_values(task->spec, task->run, record->settings);
     child_describe(child, words);
     last_words_read(task->slot.words, said, sizeof said);
-    record->fate = fate_of(child->end);
+    record->outcome = outcome_of(child->end);
     snprintf(record->reason, sizeof record->reason, "%s%s%s", words, said[0] != '\0' ? ": " : "",
              said);
 }
