@@ -9,6 +9,7 @@
 #include "base/zeroed.h"
 #include "casefile/keys.h"
 #include "casefile/limits.h"
+#include "casefile/speeds.h"
 #include "model/forces.h"
 #include "model/joint_rows.h"
 #include "model/kinematics.h"
@@ -18,8 +19,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-enum { REASON_SIZE = 192 };
 
 enum {
     BODY_COUNT = 3,
@@ -221,63 +220,6 @@ static bool check_redundancy(const Entries *entries, const Linkage *linkage, con
                                 linkage->driver.is_present ? " and drive" : "", rank, rows);
 }
 
-// The driven body moves as the drive says, unless the case says how it moves.
-static void turn_driven_body(const Entries *entries, const Linkage *linkage, Motion *motions)
-{
-    const int body = linkage_driven_body(linkage);
-    if (body != LINKAGE_GROUND &&
-        entries_find(entries, "bodies.*.velocity", (size_t)body) == NULL &&
-        entries_find(entries, "bodies.*.spin", (size_t)body) == NULL) {
-        const Vec2 pivot = linkage->joints[linkage->driver.joint].anchor_a;
-        const Vec2 arm = vec2_sub(motions[body].position, pivot);
-        const double speed = drive_at(&linkage->driver, 0.0).omega;
-        motions[body].omega = speed;
-        motions[body].velocity = vec2_scale(speed, vec2_perp(arm));
-    }
-}
-
-static bool refuse_speeds(const Entry *entry, const Linkage *linkage, int joint, double distance,
-                          const Motion *nearest, Err *err)
-{
-    char reason[REASON_SIZE] = "the driven body does not turn as the drive does";
-    const Motion *motion = &nearest[entry->index];
-    if (joint >= 0) {
-        snprintf(reason, sizeof reason,
-                 "the speeds at the start pull the ideal joint '%s' apart by %.4g m/s",
-                 linkage->joints[joint].name, distance);
-    }
-    return entries_refuse(entry, err,
-                          "%s\nallowed: speeds that keep the joints closed, for %s next to these "
-                          "velocity: [%.12g m/s, %.12g m/s], spin: %.12g rad/s",
-                          reason, linkage->bodies[entry->index].name, motion->velocity.x,
-                          motion->velocity.y, motion->omega);
-}
-
-// Speeds that the case gives must agree with ideal joints and drive. Where it gives none, a drive
-// takes the bodies with it, as slow as the joints leave them, play or not.
-static bool find_speeds(const Entries *entries, const Linkage *linkage, Motion *motions, Err *err)
-{
-    const Entry *given = entries_speed(entries, linkage->body_count);
-    turn_driven_body(entries, linkage, motions);
-    Motion *nearest = zeroed(linkage->body_count, sizeof *nearest);
-    memcpy(nearest, motions, linkage->body_count * sizeof *motions);
-    if (given == NULL && linkage->driver.is_present) {
-        nearest_speeds(linkage, true, nearest);
-    }
-    nearest_speeds(linkage, false, nearest);
-    nearest_speeds(linkage, false, nearest); // what rounding has left
-    int joint;
-    double distance;
-    const bool is_right = given == NULL || nearest_check(linkage, motions, &joint, &distance);
-    if (is_right) {
-        memcpy(motions, nearest, linkage->body_count * sizeof *motions);
-    } else {
-        refuse_speeds(given, linkage, joint, distance, nearest, err);
-    }
-    free(nearest);
-    return is_right;
-}
-
 // Where the bodies cannot be moved so that every joint is as it is to start: an eccentricity that a
 // joint is given is to blame, and where there is none the positions themselves.
 static bool refuse_positions(const Entries *entries, const Linkage *linkage, Err *err)
@@ -331,7 +273,7 @@ static bool start_linkage(const Entries *entries, Linkage *linkage, Motion *moti
     if (!nearest_positions(linkage, motions)) {
         return refuse_positions(entries, linkage, err);
     }
-    if (!find_speeds(entries, linkage, motions, err)) {
+    if (!speeds_find(entries, linkage, motions, err)) {
         return false;
     }
     for (size_t i = 0; i < linkage->body_count; i++) {

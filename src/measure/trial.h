@@ -7,8 +7,7 @@
 typedef struct TrialWindow {
     double until_s;     // the end of the run, the truth's horizon, or before it
     double uncertainty; // 1, of the truth up to there
-    bool
-        is_uncertain; // it ends where the uncertainty grows too large, not where it could not go on
+    bool is_uncertain;  // it ends where the uncertainty grows too large
 } TrialWindow;
 
 // What a trial is held against, and when it is not worth running on.

@@ -261,14 +261,20 @@ static void speeds_that_agree_are_taken_as_they_are(void **state)
            "apart by 1.2 m/s\n"
            "    --set bodies.rod.spin=2 rad/s\n"
            "                          ^~~~~~~\n"
-           "allowed: speeds that keep the joints closed, for rod next to these velocity: [0 m/s, "
-           "0.311111111111 m/s], spin: -6.88888888889 rad/s");
+           "allowed: speeds that keep the joints closed, such as the nearest: rod: {velocity: [0 "
+           "m/s, 0.311111111111 m/s], spin: -6.88888888889 rad/s}");
+    // and so it is
+    static const char *const NEAREST[] = {"bodies.rod.velocity=[0 m/s, 0.311111111111 m/s]",
+                                          "bodies.rod.spin=-6.88888888889 rad/s"};
+    const Scenario nearest = load(CHAIN, NEAREST, 2);
+    assert_near(vec2_length(parting(&nearest.linkage, 1)), 0.0, 1e-15);
     refuse(CHAIN, "bodies.crank.spin=0 rad/s",
            "--set bodies.crank.spin=0 rad/s: the driven body does not turn as the drive does\n"
            "    --set bodies.crank.spin=0 rad/s\n"
            "                            ^~~~~~~\n"
-           "allowed: speeds that keep the joints closed, for crank next to these velocity: [0 "
-           "m/s, 0.5 m/s], spin: 10 rad/s");
+           "allowed: speeds that keep the joints closed, such as the nearest: crank: {velocity: [0 "
+           "m/s, 0.5 m/s], spin: 10 rad/s}, rod: {velocity: [0 m/s, 0.259259259259 m/s], spin: "
+           "-7.40740740741 rad/s}");
 }
 
 static void points_stand_on_any_body(void **state)
