@@ -344,6 +344,9 @@ static void a_run_that_fails_is_an_error_and_blesses_nothing(void **state)
     program_run(program, "check --bless --baselines b fails.yaml");
     assert_int_equal(program->status, 4);
     assert_says(program->errors, "fails.yaml: no baseline of a run that fails: ode failed");
+    // and what to do about it
+    assert_says(program->errors, "; change the case until jointplay run completes it; one that is "
+                                 "meant to end so states it under expect: and needs no baseline");
     char path[PROGRAM_PATH_SIZE];
     program_path(program, "b/fails.json", path);
     assert_int_equal(access(path, F_OK), -1);

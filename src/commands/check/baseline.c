@@ -126,7 +126,8 @@ static bool check_same(const CheckMeasure *run, const CheckMeasure *members, siz
             if (!is_there || members[i].count != run->count) {
                 return err_set(
                     err, ERR_SOLVER,
-                    "a perturbed start does not measure the same numbers as the case's own: %s",
+                    "a perturbed start does not measure the same numbers as the case's own: %s; "
+                    "change the start or the length of the run a little",
                     run->metrics[k].name);
             }
         }
@@ -277,7 +278,11 @@ static bool fill_sample(BaselineMetric *metric, size_t number, const CheckMeasur
     for (size_t k = 0; k < member_count; k++) {
         const size_t index = baseline_find(&members[k], metric->name, number);
         if (index == members[k].count) {
-            return err_set(err, ERR_SOLVER, "a perturbed start does not measure %s", metric->name);
+            return err_set(
+                err, ERR_SOLVER,
+                "a perturbed start does not measure %s; change the start or the length of "
+                "the run a little",
+                metric->name);
         }
         metric->sample[k] = members[k].metrics[index].value;
     }

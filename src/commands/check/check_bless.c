@@ -76,14 +76,18 @@ static bool make_plan(Making *making, Err *err)
     }
     truth_finish(&truth);
     if (should_stop(making)) {
-        return err_set(err, ERR_SOLVER, "stopped before its first start; nothing is kept");
+        return err_set(err, ERR_SOLVER,
+                       "stopped before its first start; nothing is kept, and the same "
+                       "command begins anew");
     }
     const CheckItem *item = making->item;
     const bool had_truth = item->baseline_err.kind == ERR_NONE && item->baseline.plan.has_truth;
     if (!making->plan.has_truth && had_truth) {
         return err_set(err, ERR_SOLVER,
-                       "the old baseline has errors, and now there is no reference: %s",
-                       making->no_truth);
+                       "the old baseline has numbers of errors, and now there is no reference for "
+                       "them: %s; mend that (jointplay run shows it), or delete %s, and the new "
+                       "one is made without errors",
+                       making->no_truth, item->baseline_path);
     }
     return check_store_keep_plan(&making->store, &making->plan, making->no_truth, err);
 }
@@ -106,7 +110,10 @@ static bool check_measures(const Making *making, const CheckWork *works, size_t 
                            check_store_count(&making->store), making->store.journal.path);
         }
         if (!works[i].measure->is_complete) {
-            return err_set(err, ERR_SOLVER, "no baseline of a run that fails: %s",
+            return err_set(err, ERR_SOLVER,
+                           "no baseline of a run that fails: %s; change the case until jointplay "
+                           "run completes it; one that is meant to end so states it under "
+                           "expect: and needs no baseline",
                            works[i].measure->message);
         }
     }
