@@ -129,6 +129,12 @@ bool limits_store_teeth(const Target *target, Gear *gear)
         if (!target_number(target, pair[i], &teeth[i])) {
             return false;
         }
+        if (teeth[i].value != trunc(teeth[i].value)) {
+            return source_error(target->entry->source, pair[i]->span,
+                                "a whole number; for a ratio alone two whole numbers in it, such "
+                                "as [41, 80] for 20.5 to 40",
+                                target->err, "%.12g is no number of teeth", teeth[i].value);
+        }
     }
     const bool is_internal = teeth[0].value < 0.0 || teeth[1].value < 0.0;
     const double sum = teeth[0].value + teeth[1].value;

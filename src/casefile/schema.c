@@ -110,7 +110,7 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         [SCHEMA_COORDINATE] = {"an angle, or a length", "an angle such as 0.6 deg, or a length "
                                                         "such as 0.2 mm"},
         [SCHEMA_PIVOTS] = {"[joint, joint]", "two pivots such as [pinion, wheel]"},
-        [SCHEMA_TEETH] = {"[number, number]", "two numbers such as [20, 60]"},
+        [SCHEMA_TEETH] = {"[whole number, whole number]", "two whole numbers such as [20, 60]"},
         [SCHEMA_DISCS] = {"[length, length]", "two diameters such as [20 mm, 20 mm]"},
         [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},
         [SCHEMA_BODY_NAME] = {"a body", "a body"},
