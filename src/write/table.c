@@ -64,12 +64,24 @@ void table_fit(Table *table, size_t width)
     table->fit = width;
 }
 
+// A negative number that is rounded to 0 is shown as 0: "-0.00" as "0.00".
+static void drop_sign_of_zero(char *text)
+{
+    const size_t length = strlen(text);
+    const bool is_zero = text[0] == '-' && length > 1 && strspn(text + 1, "0.") == length - 1 &&
+                         strchr(text, '0') != NULL;
+    if (is_zero) {
+        memmove(text, text + 1, length);
+    }
+}
+
 void table_cell(Table *table, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
     char *text = printable_format(format, arguments);
     va_end(arguments);
+    drop_sign_of_zero(text);
     if (table->cell_count == table->cell_capacity) {
         const size_t grown = 2 * table->cell_capacity;
         table->cell_capacity = grown > 0 ? grown : TABLE_FIRST_CAPACITY;

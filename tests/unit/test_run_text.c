@@ -72,6 +72,30 @@ static void a_chosen_step_says_why_its_error_is_not_known_further(void **state)
     }
 }
 
+static void what_is_rounding_is_shown_as_nothing_and_kept_in_json(void **state)
+{
+    Fixture *fixture = *state;
+    Trajectory *run = fixture->runs[1];
+    run->bodies[1].omega_max.value = 100.0;
+    // the control: what is small and no rounding
+    static const double SMALL[] = {1e-12, 1.23e-29};
+    for (int is_rounding = 0; is_rounding < 2; is_rounding++) {
+        run->bodies[2].omega_min.value = -SMALL[is_rounding];
+        Text text;
+        text_init(&text);
+        run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+        assert_int_equal(strstr(text.data, "-1e-12") != NULL, is_rounding == 0);
+        assert_null(strstr(text.data, "1.23e-29"));
+        text_finish(&text);
+        json_t *root = run_json_build(&fixture->report);
+        const json_t *object = json_array_get(json_object_get(root, "runs"), 1);
+        object = json_object_get(json_object_get(object, "bodies"), "follower");
+        assert_near(json_real_value(json_object_get(object, "omega_min_rad_s")),
+                    -SMALL[is_rounding], 0.0);
+        json_decref(root);
+    }
+}
+
 static void at_most_five_contacts_of_a_joint_are_listed(void **state)
 {
     Fixture *fixture = *state;
@@ -379,6 +403,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_text_says_what_was_modelled_and_what_came_out,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(what_is_rounding_is_shown_as_nothing_and_kept_in_json,
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_chosen_step_says_why_its_error_is_not_known_further,
                                         fixture_set_up, fixture_tear_down),

@@ -37,6 +37,20 @@ static void numbers_stand_to_the_right_and_words_to_the_left(void **state)
     table_destroy(table);
 }
 
+static void zero_has_no_sign(void **state)
+{
+    (void)state;
+    Table *table = table_create(1);
+    table_head(table, 0, "x", "", TABLE_RIGHT);
+    table_cell(table, "%.4g", -0.0);
+    table_cell(table, "%.2f", -0.001);
+    // the control: what is not zero, or no number
+    table_cell(table, "%.2f", -0.01);
+    table_cell(table, "-");
+    expect_table(table, "      x\n  -----\n      0\n   0.00\n  -0.01\n      -\n");
+    table_destroy(table);
+}
+
 static void a_line_without_units_is_left_out(void **state)
 {
     (void)state;
@@ -284,6 +298,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers_stand_to_the_right_and_words_to_the_left),
+        cmocka_unit_test(zero_has_no_sign),
         cmocka_unit_test(a_line_without_units_is_left_out),
         cmocka_unit_test(a_table_without_heads_has_rows_alone),
         cmocka_unit_test(no_line_ends_in_spaces),

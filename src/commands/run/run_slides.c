@@ -1,22 +1,24 @@
 // How did sliders move along their lines, and how did blocks tilt between their guides?
+#include "commands/run/run_floor.h"
 #include "commands/run/run_report.h"
 #include "commands/run/slide_range.h"
 #include "write/units.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 static void slider_row(Table *table, const RunReport *report, const Trajectory *run, size_t joint,
-                       const char *word, int end)
+                       const RunFloor *floor, int end)
 {
     const Linkage *linkage = &report->scenario->linkage;
     const SlideRange range = slide_range_find(linkage, run, joint);
     table_cell(table, "%s", linkage->joints[joint].name);
     table_cell(table, "%s", run->backend);
-    table_cell(table, "%s", word);
-    table_cell(table, "%.6g", range.position[end].value * UNITS_MM);
-    table_cell(table, "%.6g", range.velocity[end].value);
+    table_cell(table, end == 1 ? "max" : "min");
+    table_cell(table, "%.6g", run_floor_cut(range.position[end].value, floor->length) * UNITS_MM);
+    table_cell(table, "%.6g", run_floor_cut(range.velocity[end].value, floor->speed));
     run_when_cell(table, report, range.velocity[end].time_s, range.velocity[end].crank_rad);
-    table_cell(table, "%.6g", range.acceleration[end].value);
+    table_cell(table, "%.6g", run_floor_cut(range.acceleration[end].value, floor->acceleration));
     run_when_cell(table, report, range.acceleration[end].time_s, range.acceleration[end].crank_rad);
 }
 
@@ -33,6 +35,7 @@ void run_slides_motion(const RunReport *report, const Style *style, Text *text)
         {"", "", TABLE_RIGHT},
     };
     const Linkage *linkage = &report->scenario->linkage;
+    RunFloor *floors = run_floor_list(report);
     Table *table = NULL;
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         for (size_t i = 0; i < report->run_count; i++) {
@@ -46,10 +49,11 @@ void run_slides_motion(const RunReport *report, const Style *style, Text *text)
                 run_when_head(table, 5, report);
                 run_when_head(table, 7, report);
             }
-            slider_row(table, report, run, joint, "max", 1);
-            slider_row(table, report, run, joint, "min", 0);
+            slider_row(table, report, run, joint, &floors[i], 1);
+            slider_row(table, report, run, joint, &floors[i], 0);
         }
     }
+    free(floors);
     if (table != NULL) {
         section_end(table, text);
     }

@@ -1,4 +1,5 @@
 // What did the bodies do, what did the joints feel, how far off is it, and at what cost?
+#include "commands/run/run_floor.h"
 #include "commands/run/run_report.h"
 #include "write/alike.h"
 #include "write/joint_units.h"
@@ -7,6 +8,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 // Of the clearance: a pin that moves less is at rest in its hole.
 static const double UNTOUCHED_STILL = 1e-3;
@@ -15,6 +17,7 @@ void run_tables_extremes(const RunReport *report, const Style *style, Text *text
 {
     const Linkage *linkage = &report->scenario->linkage;
     const unsigned where = run_report_columns(report);
+    RunFloor *floors = run_floor_list(report);
     Table *table = NULL;
     for (size_t body = 0; body < linkage->body_count; body++) {
         for (size_t i = 0; i < report->run_count; i++) {
@@ -27,9 +30,11 @@ void run_tables_extremes(const RunReport *report, const Style *style, Text *text
             }
             table_cell(table, "%s", linkage->bodies[body].name);
             table_cell(table, "%s", run->backend);
-            fields_table_row(RUN_BODY_FIELDS, where, &run->bodies[body], table);
+            const BodyExtremes shown = run_floor_body(&run->bodies[body], &floors[i]);
+            fields_table_row(RUN_BODY_FIELDS, where, &shown, table);
         }
     }
+    free(floors);
     if (table != NULL) {
         section_end(table, text);
     }
@@ -99,6 +104,7 @@ static void write_contacts(const RunReport *report, bool is_torsional, const Sty
 {
     const unsigned where = run_report_columns(report) | (is_torsional ? RUN_TURNED : RUN_PUSHED);
     const Linkage *linkage = &report->scenario->linkage;
+    RunFloor *floors = run_floor_list(report);
     Table *table = NULL;
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         for (size_t i = 0; i < report->run_count; i++) {
@@ -115,9 +121,11 @@ static void write_contacts(const RunReport *report, bool is_torsional, const Sty
             const RunJoint numbers = run_fields_joint(linkage, run, joint);
             table_cell(table, "%s", linkage->joints[joint].name);
             table_cell(table, "%s", run->backend);
-            fields_table_row(RUN_JOINT_FIELDS, where, &numbers, table);
+            const RunJoint shown = run_floor_joint(&numbers, is_torsional, &floors[i]);
+            fields_table_row(RUN_JOINT_FIELDS, where, &shown, table);
         }
     }
+    free(floors);
     if (table != NULL) {
         section_end(table, text);
         write_untouched(report, is_torsional, style->width, text);

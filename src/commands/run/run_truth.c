@@ -1,4 +1,5 @@
 // How far are the runs from the truth, how sure is the truth, and where does it end?
+#include "commands/run/run_floor.h"
 #include "commands/run/run_report.h"
 #include "model/linkage.h"
 #include "write/measured_fields.h"
@@ -6,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // of the largest kinetic energy: what rounding leaves of a work that is none is a million times
@@ -162,6 +164,7 @@ static bool has_drive_work(const Linkage *linkage, const Trajectory *run)
 void run_truth_energy(const RunReport *report, const Style *style, Text *text)
 {
     Table *table = NULL;
+    RunFloor *floors = run_floor_list(report);
     for (size_t i = 0; i < report->run_count; i++) {
         const Energy *energy = &report->runs[i]->energy;
         if (!report->runs[i]->is_complete) {
@@ -171,10 +174,12 @@ void run_truth_energy(const RunReport *report, const Style *style, Text *text)
             table = fields_table("Energy", RUN_ENERGY_FIELDS, FIELD_TABLE, style, text);
         }
         table_cell(table, "%s", report->runs[i]->backend);
-        fields_table_row(RUN_ENERGY_FIELDS, FIELD_TABLE, energy, table);
+        const Energy shown = run_floor_energy(energy, &floors[i]);
+        fields_table_row(RUN_ENERGY_FIELDS, FIELD_TABLE, &shown, table);
         section_number_or_dash(table, has_drive_work(&report->scenario->linkage, report->runs[i]),
                                fabs(energy->residual / energy->drive_work));
     }
+    free(floors);
     if (table != NULL) {
         section_end(table, text);
     }
