@@ -11,6 +11,7 @@
 
 #include "base/sorted.h"
 #include "base/zeroed.h"
+#include "run/causes.h"
 #include "run/look_crowd.h"
 #include "run/spike_scale.h"
 #include "run/spikes.h"
@@ -39,12 +40,12 @@ typedef struct Tracer {
     const Scenario *scenario;
     Looker looker;
     SpikeScale scale;
-    Trace *alpha;               // by body; owned, like the next two
-    Trace *force;               // by joint
-    double *impulse;            // N s, so far
-    Look last;                  // at the end of the last step, of each part its own
-    bool *has_begun;            // by part; owned, like the next
-    const SolverPart **part_of; // by body; NULL of one that is in no part
+    Trace *alpha;    // by body; owned, like the next two
+    Trace *force;    // by joint
+    double *impulse; // N s, so far
+    Look last;       // at the end of the last step, of each part its own
+    bool *has_begun; // by part; owned
+    Causes causes;
 } Tracer;
 
 static bool is_traced(const Tracer *tracer, size_t body)
@@ -66,7 +67,7 @@ static void *tracer_begin(const Scenario *scenario, const Solver *solver, const 
     tracer->force = zeroed(scenario->linkage.joint_count, sizeof *tracer->force);
     tracer->impulse = zeroed(scenario->linkage.joint_count, sizeof *tracer->impulse);
     tracer->has_begun = zeroed(scenario->linkage.body_count, sizeof *tracer->has_begun);
-    tracer->part_of = zeroed(scenario->linkage.body_count, sizeof *tracer->part_of);
+    tracer->causes = causes_find(&scenario->linkage);
     tracer->scale = spike_scale(scenario);
     const double fine = tracer->scale.is_known ? FINENESS * scenario->run.spike_threshold : 0.0;
     for (size_t i = 0; i < scenario->linkage.body_count; i++) {
@@ -184,13 +185,9 @@ static void add_bodies(Tracer *tracer, const SolverPart *part, int count, const 
 // Where the run begins nothing has been looked at before.
 static void look_at_start(Tracer *tracer, const StepRecord *step)
 {
-    const size_t body_count = solver_body_count(step->part, &tracer->scenario->linkage);
     const size_t joint_count = solver_joint_count(step->part, &tracer->scenario->linkage);
     if (tracer->last.omega == NULL) {
         tracer->last = looker_first(&tracer->looker);
-    }
-    for (size_t k = 0; k < body_count; k++) {
-        tracer->part_of[solver_body(step->part, k)] = step->part;
     }
     const Look look = look_inside(&tracer->looker, step->start_s);
     add_bodies(tracer, step->part, 1, &look);
@@ -265,20 +262,17 @@ static double range_within(const Trace *trace, double from_s, double to_s)
     return most - least;
 }
 
-// The joint with play whose force changes most within a spike of a body.
+// The joint with play whose force changes most within a spike of a body, of those that reach it.
 static int find_joint(const Tracer *tracer, size_t body, const SignalSpike *spike)
 {
-    const SolverPart *part = tracer->part_of[body];
-    const size_t count = solver_joint_count(part, &tracer->scenario->linkage);
+    const Causes *causes = &tracer->causes;
     int found = -1;
     double most = 0.0;
-    for (size_t k = 0; k < count; k++) {
-        const size_t i = solver_joint(part, k);
-        if (has_play(tracer, i)) {
-            const double range = range_within(&tracer->force[i], spike->onset_s, spike->end_s);
-            found = range > most ? (int)i : found;
-            most = fmax(most, range);
-        }
+    for (size_t k = 0; k < causes->counts[body]; k++) {
+        const int joint = causes->joints[causes->firsts[body] + k];
+        const double range = range_within(&tracer->force[joint], spike->onset_s, spike->end_s);
+        found = range > most ? joint : found;
+        most = fmax(most, range);
     }
     return found;
 }
@@ -380,7 +374,7 @@ static void tracer_end(void *own, Trajectory *trajectory)
     free(tracer->force);
     free(tracer->impulse);
     free(tracer->has_begun);
-    free(tracer->part_of);
+    causes_finish(&tracer->causes);
     looker_finish(&tracer->looker);
     free(tracer);
 }
