@@ -235,7 +235,7 @@ const Field RUN_ENERGY_FIELDS[] = {
     {"friction_J", FIELD_NUMBER, FIELD_JSON | FIELD_TABLE, "friction", "J", ENERGY(friction)},
     {"change_J", FIELD_NUMBER, FIELD_JSON, ENERGY(change)},
     {"residual_J", FIELD_NUMBER, FIELD_JSON | FIELD_TABLE, "residual", "J", ENERGY(residual)},
-    {NULL, FIELD_LABEL, FIELD_TABLE, "residual", "of drive", .align = TABLE_RIGHT},
+    {NULL, FIELD_LABEL, FIELD_TABLE, "residual", "of energy", .align = TABLE_RIGHT},
     {0},
 };
 // clang-format on

@@ -246,7 +246,8 @@ static void write_chosen(const RunReport *report, const Trajectory *run, Text *t
                     run->duration_s * UNITS_MS);
     }
     // without the reference's doubts what is not whole ends at the horizon, at a sample
-    const bool is_whole = run->is_short || run->estimate_s >= run->times[run->sample_count - 1];
+    const double *last_s = &run->times[run->sample_count - 1];
+    const bool is_whole = run->is_short || run->estimate_s > 0.5 * (last_s[-1] + last_s[0]);
     text_append(text, "  Its error is at most %.2g up to %.4g ms%s.\n", run->error_estimate,
                 run->estimate_s * UNITS_MS,
                 run->estimate_is_cut ? "; after that the reference is too uncertain to say"

@@ -10,10 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// of the largest kinetic energy: what rounding leaves of a work that is none is a million times
-// less
-static const double WORK_ROUNDING = 1e-9;
-
 // of omega: a reference that is less sure than this holds nowhere
 static const double HOLDS = 1e-3;
 
@@ -150,15 +146,21 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
     }
 }
 
-// Whether the drive's work is more than the rounding of the energy it exchanges: over whole turns
-// of ideal joints it is zero, and nothing can be related to it.
-static bool has_drive_work(const Linkage *linkage, const Trajectory *run)
+// The largest energy that the balance is about, J: the work of the drive, what was lost, or the
+// largest kinetic energy. Over whole turns the work may be next to nothing, and what goes to and
+// fro is what a solver has to get right.
+static double energy_scale(const Linkage *linkage, const Trajectory *run)
 {
-    double kinetic = 0.0;
+    double scale = fmax(fabs(run->energy.drive_work), fabs(run->energy.change));
+    scale = fmax(scale, fabs(run->energy.dissipated) + fabs(run->energy.friction));
     for (size_t i = 0; i < run->sample_count; i++) {
-        kinetic = fmax(kinetic, linkage_kinetic_energy(linkage, trajectory_motion(run, i, 0)));
+        const double kinetic =
+            run->space_motions != NULL
+                ? space_kinetic_energy(linkage, trajectory_space_motion(run, i, 0))
+                : linkage_kinetic_energy(linkage, trajectory_motion(run, i, 0));
+        scale = fmax(scale, kinetic);
     }
-    return fabs(run->energy.drive_work) > WORK_ROUNDING * kinetic;
+    return scale;
 }
 
 void run_truth_energy(const RunReport *report, const Style *style, Text *text)
@@ -176,8 +178,8 @@ void run_truth_energy(const RunReport *report, const Style *style, Text *text)
         table_cell(table, "%s", report->runs[i]->backend);
         const Energy shown = run_floor_energy(energy, &floors[i]);
         fields_table_row(RUN_ENERGY_FIELDS, FIELD_TABLE, &shown, table);
-        section_number_or_dash(table, has_drive_work(&report->scenario->linkage, report->runs[i]),
-                               fabs(energy->residual / energy->drive_work));
+        const double scale = energy_scale(&report->scenario->linkage, report->runs[i]);
+        section_number_or_dash(table, scale > 0.0, fabs(shown.residual / scale));
     }
     free(floors);
     if (table != NULL) {
