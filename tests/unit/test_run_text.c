@@ -223,7 +223,7 @@ static void an_error_is_told_with_what_limits_it(void **state)
         "crank-coupler  deepest, um    ode        250000  500000  750000  562500    31250",
         "reference: 16 starts\n",
         "ode: 14 starts, and 2 that failed: a member broke\n",
-        "ode                 2    1.25         0.5     0.125    0.0625   0.03125",
+        "ode                 2    1.25         0.5     0.125    0.0625    0.03125",
         "54321",
         NULL,
     };
@@ -240,13 +240,15 @@ static void a_truth_that_holds_is_told_in_one_line(void **state)
     TruthFixture *own = *state;
     static const char *const WORDS[] = {
         "holds through the whole run, 62.83 ms",
-        "reference       4e-14       0           0         0     1e-14         -\n",
+        "reference       4e-14       0           0         0     1e-14  1.274e-11\n",
+        "ode                 0    1.25         0.5     0.125    0.0625       0.05\n",
         NULL,
     };
     own->truth.is_limited = false;
     own->fixture->report.ensembles = NULL;
     own->fixture->errors[1].omega_max_in_horizon = 4.1e-9;
-    // without a drive there is no work to divide by, and rounding is none either
+    // without a drive, or where its work is rounding, the largest energy is another one: kinetic
+    // 0.785 mJ, change 1.25 J
     own->fixture->runs[1]->energy.drive_work = 0.0;
     own->fixture->runs[0]->energy = (Energy){.drive_work = 4e-14, .residual = 1e-14};
     Text text;
