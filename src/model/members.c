@@ -151,6 +151,7 @@ Member *members_make(const Scenario *scenario, size_t *count)
         Member *member = &members[i];
         member->scenario = zeroed(1, sizeof *member->scenario);
         *member->scenario = scenario_around(scenario, linkage_create(rooms[i]));
+        member->scenario->linkage.is_spatial = whole->is_spatial;
         // one without the driver has no revolutions
         member->scenario->run.duration = scenario_duration(scenario);
         member->bodies = zeroed(rooms[i].bodies, sizeof *member->bodies);
