@@ -10,16 +10,38 @@
 #include <stdlib.h>
 #include <string.h>
 
+static bool is_dense(size_t count, size_t reach)
+{
+    return 2 * reach + 1 >= count;
+}
+
+size_t banded_size(size_t count, size_t reach)
+{
+    return count * (is_dense(count, reach) ? count : 3 * reach + 1);
+}
+
+static void set_shape(Banded *banded, size_t count, size_t reach)
+{
+    const bool is_whole = is_dense(count, reach);
+    banded->count = count;
+    banded->reach = is_whole ? count : reach;
+    banded->pitch = is_whole ? count : 3 * reach;
+    banded->origin = is_whole ? 0 : reach;
+}
+
+void banded_shape_in(Banded *banded, size_t count, size_t reach, double *values, size_t *pivots)
+{
+    *banded = (Banded){.values = values, .pivots = pivots};
+    set_shape(banded, count, reach);
+    memset(values, 0, banded_size(count, reach) * sizeof *values);
+}
+
 void banded_shape(Banded *banded, size_t count, size_t reach)
 {
-    const bool is_dense = 2 * reach + 1 >= count;
-    const size_t width = is_dense ? count : 3 * reach + 1;
-    banded->count = count;
-    banded->reach = is_dense ? count : reach;
-    banded->pitch = is_dense ? count : 3 * reach;
-    banded->origin = is_dense ? 0 : reach;
-    if (count * width > banded->room || banded->values == NULL) {
-        banded->room = count * width;
+    const size_t size = banded_size(count, reach);
+    set_shape(banded, count, reach);
+    if (size > banded->room || banded->values == NULL) {
+        banded->room = size;
         free(banded->values);
         banded->values = malloc((banded->room + 1) * sizeof *banded->values);
     }
@@ -29,7 +51,7 @@ void banded_shape(Banded *banded, size_t count, size_t reach)
         banded->pivots = malloc((count + 1) * sizeof *banded->pivots);
     }
     assert(banded->values != NULL && banded->pivots != NULL);
-    memset(banded->values, 0, count * width * sizeof *banded->values);
+    memset(banded->values, 0, size * sizeof *banded->values);
 }
 
 void banded_finish(Banded *banded)

@@ -21,6 +21,13 @@ typedef struct Banded {
 void banded_shape(Banded *banded, size_t count, size_t reach);
 void banded_finish(Banded *banded);
 
+// The number of values that a matrix of a shape holds.
+size_t banded_size(size_t count, size_t reach);
+
+// Gives a matrix its shape in memory that the caller owns, for so many values and as many pivots as
+// rows, all entries zero. Not to be finished.
+void banded_shape_in(Banded *banded, size_t count, size_t reach, double *values, size_t *pivots);
+
 // An entry in reach of the diagonal.
 static inline double *banded_entry(const Banded *banded, size_t row, size_t column)
 {

@@ -31,9 +31,6 @@ void radau_newton_init(RadauNewton *newton, const Coupling *coupling)
 
 void radau_newton_finish(RadauNewton *newton)
 {
-    for (size_t i = 0; newton->blocks != NULL && i < newton->count; i++) {
-        banded_finish(&newton->blocks[i].banded);
-    }
     free(newton->by_position[0]);
     free(newton->own);
     free(newton->blocks);
@@ -63,6 +60,24 @@ static bool are_coupled(const RadauNewton *newton, size_t a, size_t place, size_
     return is_felt(newton, coupling->first_value[a] + place) ||
            is_felt(newton,
                    coupling->first_value[b] + coupling_place(coupling, coupling->part_of[b], a));
+}
+
+// The unknowns of a block, how far from the diagonal these equations reach, and how many values
+// its matrix has.
+static size_t width_of(const RadauBlock *block)
+{
+    return RADAU_STAGES * block->size;
+}
+
+static size_t reach_of(const RadauBlock *block)
+{
+    return RADAU_STAGES * (block->reach + 1);
+}
+
+static size_t size_of(const RadauBlock *block)
+{
+    const size_t width = width_of(block);
+    return block->is_banded ? banded_size(width, reach_of(block)) : width * width;
 }
 
 // Sorts the coordinates into blocks: each takes in, one after the other, all that its members feel,
@@ -106,8 +121,7 @@ static void find_blocks(RadauNewton *newton)
             }
         }
         block->size = count - start;
-        const size_t reach = RADAU_STAGES * (block->reach + 1);
-        block->is_banded = 2 * reach + 1 < RADAU_STAGES * block->size;
+        block->is_banded = 2 * reach_of(block) + 1 < width_of(block);
     }
 }
 
@@ -203,13 +217,12 @@ static void fill(const RadauNewton *newton, const size_t *members, const Filling
     }
 }
 
-// Makes room for the blocks that are not banded.
+// Makes room for the blocks: one for all, because which blocks there are differs from step to step.
 static void make_room(RadauNewton *newton)
 {
     size_t room = 0;
     for (size_t i = 0; i < newton->block_count; i++) {
-        const size_t width = RADAU_STAGES * newton->blocks[i].size;
-        room += newton->blocks[i].is_banded ? 0 : width * width;
+        room += size_of(&newton->blocks[i]);
     }
     newton->matrix = room_grow(newton->matrix, &newton->room, room, sizeof *newton->matrix);
 }
@@ -224,9 +237,9 @@ bool radau_newton_factor(RadauNewton *newton, double step)
     size_t *pivots = newton->pivots;
     for (size_t i = 0; i < newton->block_count; i++) {
         RadauBlock *block = &newton->blocks[i];
-        const size_t width = RADAU_STAGES * block->size;
+        const size_t width = width_of(block);
         if (block->is_banded) {
-            banded_shape(&block->banded, width, RADAU_STAGES * (block->reach + 1));
+            banded_shape_in(&block->banded, width, reach_of(block), matrix, pivots);
             fill(newton, members, &filling, &(Matrix){NULL, &block->banded, block->size});
             if (!banded_factor(&block->banded)) {
                 return false;
@@ -237,9 +250,9 @@ bool radau_newton_factor(RadauNewton *newton, double step)
             if (!dense_factor(width, matrix, pivots)) {
                 return false;
             }
-            matrix += width * width;
-            pivots += width;
         }
+        matrix += size_of(block);
+        pivots += width;
         members += block->size;
     }
     return true;
@@ -255,7 +268,7 @@ void radau_newton_solve(const RadauNewton *newton, double *change)
     for (size_t i = 0; i < newton->block_count; i++) {
         const RadauBlock *block = &newton->blocks[i];
         const size_t m = block->size;
-        const size_t width = RADAU_STAGES * m;
+        const size_t width = width_of(block);
         // strides of stages and of coordinates
         const size_t by_stage = block->is_banded ? 1 : m;
         const size_t by_member = block->is_banded ? RADAU_STAGES : 1;
@@ -266,9 +279,9 @@ void radau_newton_solve(const RadauNewton *newton, double *change)
             banded_substitute(&block->banded, own);
         } else {
             dense_substitute(width, matrix, pivots, own);
-            matrix += width * width;
-            pivots += width;
         }
+        matrix += size_of(block);
+        pivots += width;
         for (size_t k = 0; k < width; k++) {
             change[k / m * n + members[k % m]] = own[k / m * by_stage + k % m * by_member];
         }

@@ -16,7 +16,7 @@ typedef struct RadauBlock {
     size_t
         reach; // how far apart two are at most, in the block's order, of which one feels the other
     bool is_banded;
-    Banded banded; // owned
+    Banded banded;
 } RadauBlock;
 
 typedef struct RadauNewton {
@@ -32,10 +32,9 @@ typedef struct RadauNewton {
     // room to work in, owned like all of the above
     bool *is_taken;
     double *own;
-    size_t *place; // of a coordinate in its block
-    double
-        *matrix; // of the blocks that are not banded, one behind the other; NULL before the first
-    size_t room; // of it
+    size_t *place;  // of a coordinate in its block
+    double *matrix; // of the blocks, one behind the other; NULL before the first
+    size_t room;    // of it
     size_t *pivots;
 } RadauNewton;
 

@@ -38,7 +38,7 @@ enum {
     SETTLING = 5,
     LOOSE_SETTLING = 400,
     MEETING = 2,
-    DAMPED_SETTLING = 40, // the implicit method takes over at the first look, after 32
+    DAMPED_SETTLING = 100, // the implicit method takes over at the first look, after 32 steps
     INTERVAL = 16,
     COPIES = 256,
 };
