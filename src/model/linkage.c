@@ -87,19 +87,44 @@ static double size_beyond(const Joint *joint, int side)
     return 0.0;
 }
 
+static double radius_of_gyration(const Body *body)
+{
+    return sqrt(body->inertia / body->mass);
+}
+
+// How far the body at one side of a joint goes there from its centre, m.
+static double reach_at(const Linkage *linkage, const Joint *joint, int side)
+{
+    const JointEnd end = linkage_end(joint, side);
+    const double above =
+        linkage->is_spatial ? joint->space.height - linkage->bodies[end.body].space.height : 0.0;
+    return hypot(vec2_length(end.anchor), above) + size_beyond(joint, side);
+}
+
 double linkage_reach(const Linkage *linkage, int body)
 {
-    const Body *own = &linkage->bodies[body];
-    double reach = sqrt(own->inertia / own->mass);
+    double reach = radius_of_gyration(&linkage->bodies[body]);
     for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
-        const JointEnd end = linkage_end(&linkage->joints[i / 2], i % 2);
-        const double above =
-            linkage->is_spatial ? linkage->joints[i / 2].space.height - own->space.height : 0.0;
-        const double length = hypot(vec2_length(end.anchor), above);
-        const double beyond = size_beyond(&linkage->joints[i / 2], i % 2);
-        reach = end.body == body ? fmax(reach, length + beyond) : reach;
+        const Joint *joint = &linkage->joints[i / 2];
+        if (linkage_end(joint, i % 2).body == body) {
+            reach = fmax(reach, reach_at(linkage, joint, i % 2));
+        }
     }
     return reach;
+}
+
+void linkage_reaches(const Linkage *linkage, double *reaches)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        reaches[i] = radius_of_gyration(&linkage->bodies[i]);
+    }
+    for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i / 2];
+        const int body = linkage_end(joint, i % 2).body;
+        if (body != LINKAGE_GROUND) {
+            reaches[body] = fmax(reaches[body], reach_at(linkage, joint, i % 2));
+        }
+    }
 }
 
 static bool has_limits(const Linkage *linkage)
@@ -112,20 +137,20 @@ static bool has_limits(const Linkage *linkage)
     return false;
 }
 
-bool linkage_slides(const Linkage *linkage, int body)
+void linkage_find_sliding(const Linkage *linkage, bool *slides)
 {
-    if (!linkage->driver.is_present && has_limits(linkage)) {
-        return true;
+    const bool is_any = !linkage->driver.is_present && has_limits(linkage);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        slides[i] = is_any;
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        const bool is_its = joint->body_a == body || joint->body_b == body;
-        const bool is_pivot = joint->kind == JOINT_REVOLUTE || joint->kind == JOINT_CLEARANCE;
-        if (is_its && !is_pivot && joint->kind != JOINT_GEAR) {
-            return true;
+    for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
+        const JointKind kind = linkage->joints[i / 2].kind;
+        const int body = linkage_end(&linkage->joints[i / 2], i % 2).body;
+        const bool is_pivot = kind == JOINT_REVOLUTE || kind == JOINT_CLEARANCE;
+        if (body != LINKAGE_GROUND && !is_pivot && kind != JOINT_GEAR) {
+            slides[body] = true;
         }
     }
-    return false;
 }
 
 int linkage_find_body(const Linkage *linkage, const char *name)

@@ -25,8 +25,8 @@ static double driven_span(const Linkage *linkage)
     return span > 0.0 ? span : linkage_reach(linkage, driven);
 }
 
-// The speed that springs and torque alone give the bodies from rest, m/s.
-static double pushed_speed(const Linkage *linkage)
+// The speed that springs and torque alone give the bodies from rest, m/s; with the largest reach.
+static double pushed_speed(const Linkage *linkage, double reach)
 {
     Motion *motions = zeroed(linkage->body_count, sizeof *motions);
     linkage_start(linkage, motions);
@@ -34,10 +34,8 @@ static double pushed_speed(const Linkage *linkage)
     free(motions);
     double mass = 0.0;
     double largest = fabs(time_table_largest(&linkage->torque.table));
-    double reach = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         mass += linkage->bodies[i].mass;
-        reach = fmax(reach, linkage_reach(linkage, (int)i));
     }
     // a force works along a line
     const Torque *torque = &linkage->torque;
@@ -50,7 +48,7 @@ static double pushed_speed(const Linkage *linkage)
 static void set_bodies(const Linkage *linkage, SpeedScale *scale)
 {
     for (size_t i = 0; i < linkage->body_count; i++) {
-        const double reach = linkage_reach(linkage, (int)i);
+        const double reach = scale->reaches[i];
         scale->turning[i] = scale->moving / reach;
         scale->speeding[i] = scale->changing / reach;
     }
@@ -63,13 +61,15 @@ SpeedScale scale_speeds(const Scenario *scenario)
     SpeedScale scale = {
         .turning = zeroed(linkage->body_count, sizeof *scale.turning),
         .speeding = zeroed(linkage->body_count, sizeof *scale.speeding),
+        .reaches = zeroed(linkage->body_count, sizeof *scale.reaches),
     };
+    linkage_reaches(linkage, scale.reaches);
     double largest = 0.0;
     double turning = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Motion *start = &linkage->bodies[i].start;
         const BodySpace *space = &linkage->bodies[i].space; // 0 in the plane
-        const double reach = linkage_reach(linkage, (int)i);
+        const double reach = scale.reaches[i];
         const double omega = hypot(start->omega, hypot(space->omega_x, space->omega_y));
         const double speed = hypot(vec2_length(start->velocity), space->velocity_z);
         largest = fmax(largest, reach);
@@ -84,7 +84,7 @@ SpeedScale scale_speeds(const Scenario *scenario)
         fall = fmin(fall, gravity * (2.0 * M_PI / speed));
     }
     scale.moving = fmax(scale.moving, fall);
-    scale.moving = fmax(scale.moving, forces_any(linkage) ? pushed_speed(linkage) : 0.0);
+    scale.moving = fmax(scale.moving, forces_any(linkage) ? pushed_speed(linkage, largest) : 0.0);
     scale.moving = scale.moving > 0.0 ? scale.moving : 1.0;
     scale.changing = fmax(scale.moving * turning, gravity);
     scale.changing = scale.changing > 0.0 ? scale.changing : scale.moving * scale.moving / largest;
@@ -96,6 +96,7 @@ void scale_free(SpeedScale *scale)
 {
     free(scale->turning);
     free(scale->speeding);
+    free(scale->reaches);
     *scale = (SpeedScale){.turning = NULL};
 }
 

@@ -10,6 +10,7 @@ typedef struct SpeedScale {
     // that hangs on a pivot far away these are small, as its own are.
     double *turning; // owned, like the next
     double *speeding;
+    double *reaches; // m, by body: linkage_reach
 } SpeedScale;
 
 // The largest of the speeds at the start, of the driven body's, and of a fall under gravity as long

@@ -96,10 +96,13 @@ double space_row_speed(const SpaceRow *row, const SpaceMotion *motions)
 
 static double mean_reach(const Linkage *linkage)
 {
+    double *reaches = zeroed(linkage->body_count, sizeof *reaches);
     double sum = 0.0;
+    linkage_reaches(linkage, reaches);
     for (size_t i = 0; i < linkage->body_count; i++) {
-        sum += linkage_reach(linkage, (int)i);
+        sum += reaches[i];
     }
+    free(reaches);
     return sum / (double)linkage->body_count;
 }
 

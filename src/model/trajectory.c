@@ -82,10 +82,8 @@ static Trajectory *create(const Scenario *scenario, const char *backend, bool ha
     trajectory->alpha_spikes = zeroed(trajectory->body_count, sizeof(SignalSpikes));
     trajectory->force_spikes = zeroed(trajectory->joint_count, sizeof(SignalSpikes));
     trajectory->driven_body = linkage_driven_body(&scenario->linkage);
-    for (size_t i = 0; i < trajectory->body_count; i++) {
-        trajectory->reach[i] = linkage_reach(&scenario->linkage, (int)i);
-        trajectory->slides[i] = linkage_slides(&scenario->linkage, (int)i);
-    }
+    linkage_reaches(&scenario->linkage, trajectory->reach);
+    linkage_find_sliding(&scenario->linkage, trajectory->slides);
     trajectory->sample_count = samples;
     trajectory->times = calloc(samples, sizeof *trajectory->times);
     trajectory->motions = calloc(samples * trajectory->body_count + 1, sizeof *trajectory->motions);

@@ -121,7 +121,7 @@ typedef struct Trajectory {
     size_t joint_count;
     int driven_body; // whose motion is prescribed, or LINKAGE_GROUND
     double *reach;   // m, of each body's points from its centre: linkage_reach; owned, as the next
-    bool *slides;    // linkage_slides
+    bool *slides;    // linkage_find_sliding
     size_t sample_count;
     double *times;              // s, by sample; owned, like the three below
     double *crank_angles;       // rad, by sample, not wrapped

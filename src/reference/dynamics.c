@@ -108,8 +108,8 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
     dynamics->has_forces = forces_any(linkage);
     tree_build(linkage, tree);
     make_room(dynamics);
+    linkage_reaches(linkage, dynamics->reach);
     for (size_t i = 0; i < linkage->body_count; i++) {
-        dynamics->reach[i] = linkage_reach(linkage, (int)i);
         dynamics->weights[i] = linkage->bodies[i].mass * scenario->gravity;
     }
     list_coordinates(dynamics);

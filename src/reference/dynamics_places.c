@@ -12,15 +12,14 @@
 // m: a place that is apart is looked at before its bodies have come so much nearer. Of a stop that
 // is no play, but how far the body that touches reaches from where it does; of an angle with one
 // stop, rad.
-static double flight_of(const Linkage *linkage, const Touch *touch)
+static double flight_of(const Linkage *linkage, const double *reaches, const Touch *touch)
 {
     const Joint *joint = &linkage->joints[touch->joint];
     if (joint->limits.kind != LIMIT_NONE) {
         const double half = coordinate_play(joint);
         const double beyond =
             joint->kind == JOINT_PRISMATIC
-                ? linkage_reach(linkage,
-                                joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b)
+                ? reaches[joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b]
                 : 1.0;
         return isfinite(half) ? half : beyond;
     }
@@ -28,16 +27,16 @@ static double flight_of(const Linkage *linkage, const Touch *touch)
         return linkage_radial_clearance(joint);
     }
     const int body = joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b;
-    return touch->shape == TOUCH_DISC ? touch->clearance : linkage_reach(linkage, body);
+    return touch->shape == TOUCH_DISC ? touch->clearance : reaches[body];
 }
 
 // m: the lever of an angle, the shorter of how far its bodies reach; 1 of a length.
-static double arm_of(const Linkage *linkage, const Touch *touch)
+static double arm_of(const Linkage *linkage, const double *reaches, const Touch *touch)
 {
     double arm = INFINITY;
     for (int side = 0; touch->shape == TOUCH_TURN && side < 2; side++) {
         const int body = linkage_end(&linkage->joints[touch->joint], side).body;
-        arm = body == LINKAGE_GROUND ? arm : fmin(arm, linkage_reach(linkage, body));
+        arm = body == LINKAGE_GROUND ? arm : fmin(arm, reaches[body]);
     }
     return touch->shape == TOUCH_TURN ? arm : 1.0;
 }
@@ -84,8 +83,8 @@ bool dynamics_places_list(const Scenario *scenario, Dynamics *dynamics, Err *err
             .partner = find_partner(scenario, touches, system->contact_count, i),
             .law = touch->law,
             .clearance = linkage_radial_clearance(&scenario->linkage.joints[touch->joint]),
-            .arm = arm_of(&scenario->linkage, touch),
-            .flight = flight_of(&scenario->linkage, touch),
+            .arm = arm_of(&scenario->linkage, dynamics->reach, touch),
+            .flight = flight_of(&scenario->linkage, dynamics->reach, touch),
         };
         dynamics->places[i] = place_of(dynamics, touch, of_joint);
     }

@@ -100,9 +100,7 @@ void space_tree_build(const Linkage *linkage, SpaceTree *tree)
     tree->memory = zeroed(layout.used, 1);
     lay(tree, &(Layout){tree->memory, 0});
     list_ends(tree);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        tree->reaches[i] = linkage_reach(linkage, (int)i);
-    }
+    linkage_reaches(linkage, tree->reaches);
     if (tree->driven >= 0) {
         tree->node_of[tree->driven] = -1;
         tree->is_carried[tree->driven] = true;
