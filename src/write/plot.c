@@ -20,12 +20,13 @@ static const char STYLE_SHEET[] =
     ".note{fill:#555}.grid{stroke:#e4e4e4}.zero{stroke:#b0b0b0}.frame{stroke:#444;fill:none}"
     ".line{fill:none;stroke-linejoin:round}";
 
-enum { PALETTE_SIZE = 6, LINE_KINDS = 3 };
+enum { PALETTE_SIZE = 10, LINE_KINDS = 3 };
 
 // Okabe and Ito's palette, distinguishable for the colour-blind too (its yellow is too pale for
-// lines)
-static const char *const PALETTE[PALETTE_SIZE] = {"#0072b2", "#d55e00", "#009e73",
-                                                  "#cc79a7", "#56b4e9", "#e69f00"};
+// lines), and behind it four darker colours for what more there is
+static const char *const PALETTE[PALETTE_SIZE] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                  "#56b4e9", "#e69f00", "#5e3c99", "#8c510a",
+                                                  "#b2182b", "#4d6b1e"};
 
 PlotStyle plot_style(size_t kind, size_t colour)
 {

@@ -137,10 +137,10 @@ void plot_limits_angles(const PlotView *view, PlotPanel panel)
 void plot_limits_lengths(const PlotView *view, PlotPanel panel)
 {
     const LimitPanel lengths = {
-        .title = "Way of slider or teeth; dashed: flanks and stops",
-        .axis = "way, mm",
+        .title = "Travel of slider or teeth; dashed: flanks and stops",
+        .axis = "travel, mm",
         .unit = UNITS_MM,
-        .quantity = {"way, mm", true, -1, length_of},
+        .quantity = {"travel, mm", true, -1, length_of},
     };
     draw(&lengths, view, panel);
 }
@@ -182,9 +182,9 @@ void plot_limits_loop(const PlotView *view, PlotPanel panel)
     };
     const PlotPath path = {.joint = joint, .at = loop_at};
     panel.title = is_angle ? "Angle over torque; dashed: flanks and stops"
-                           : "Way over force; dashed: flanks and stops";
+                           : "Travel over force; dashed: flanks and stops";
     panel.x = torque_axis(report, is_angle);
-    panel.y.title = is_angle ? "angle, deg" : "way, mm";
+    panel.y.title = is_angle ? "angle, deg" : "travel, mm";
     widen(&limits, view, &panel.y);
     plot_enter(&panel);
     for (size_t run = 0; run < report->run_count; run++) {

@@ -128,6 +128,7 @@ static void choose_scale(const PlotView *view, PlotQuantity quantity, Axis *axis
         axis->high = fmax(axis->high, reach.high);
     }
     const double most = fmax(-axis->low, axis->high);
+    const bool is_size = axis->low == 0.0;
     if (most > SPIKY * least) {
         axis->scale = AXIS_SYMLOG;
         axis->threshold = pow(10.0, floor(log10(least)));
@@ -136,6 +137,8 @@ static void choose_scale(const PlotView *view, PlotQuantity quantity, Axis *axis
     } else {
         axis_round(&axis->low, &axis->high);
     }
+    // what is never below 0 needs no room there
+    axis->low = is_size ? 0.0 : axis->low;
 }
 
 static void draw_motion(const PlotView *view, PlotPanel panel, PlotQuantity quantity,
@@ -266,12 +269,17 @@ static void draw_motions(const PlotView *view, Sheet sheet)
     static const PlotQuantity ACCELERATION = {"acceleration", false, RANGES_ACCELERATION,
                                               acceleration_of};
     const bool turns = view->turns;
-    PlotPanel panel =
-        place_panel(view, sheet, 0, 0, turns ? "Angular velocity" : "Speed of the centre of mass");
+    const bool is_spatial = view->report->scenario->linkage.is_spatial;
+    PlotPanel panel = place_panel(view, sheet, 0, 0,
+                                  !turns       ? "Speed of the centre of mass"
+                                  : is_spatial ? "Angular velocity about z"
+                                               : "Angular velocity");
     panel.y.title = turns ? "omega, rad/s" : "speed, m/s";
     draw_motion(view, panel, turns ? OMEGA : SPEED, false);
     panel = place_panel(view, sheet, 0, 1,
-                        turns ? "Angular acceleration" : "Acceleration of the centre of mass");
+                        !turns       ? "Acceleration of the centre of mass"
+                        : is_spatial ? "Angular acceleration about z"
+                                     : "Angular acceleration");
     panel.y.title = turns ? "alpha, rad/s^2" : "acceleration, m/s^2";
     draw_motion(view, panel, turns ? ALPHA : ACCELERATION, turns);
 }

@@ -165,7 +165,7 @@ void plot_slides_tilts(const PlotView *view, PlotPanel panel)
 void plot_slides_accelerations(const PlotView *view, PlotPanel panel)
 {
     static const SlidePanel ACCELERATION = {
-        .title = "Acceleration of the slider along its line",
+        .title = "Acceleration of the slider, at the samples",
         .axis = "acceleration, m/s^2",
         .quantity = {"acceleration", true, -1, acceleration_of},
         .shows = shows_acceleration,
