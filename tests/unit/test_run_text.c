@@ -73,6 +73,43 @@ static void a_chosen_step_says_why_its_error_is_not_known_further(void **state)
     }
 }
 
+static void springs_and_torques_are_named(void **state)
+{
+    Fixture *fixture = *state;
+    Linkage *linkage = &fixture->scenario.linkage;
+    static Spring springs[] = {
+        {.name = "return", .stiffness = 2e4, .length = 0.08, .damping = 20.0},
+        {.name = "damper", .damping = 5.0},
+        {.name = "idle"}};
+    static TorsionSpring torsions[] = {{.name = "brake", .joint = 1, .damping = 0.05}};
+    static const char *const WORDS[] = {
+        "springs     return: 2e+04 N/m, relaxed at 80 mm, damping 20 N s/m\n",
+        "damper: damping 5 N s/m\n",
+        "idle: neither stiffness nor damping\n",
+        "brake: damping 0.05 N m s/rad at crank-coupler\n",
+        "drive       torque -0.3 to 0.5 N m by 2 points over time at ground-crank\n",
+        NULL,
+    };
+    Text text;
+    text_init(&text);
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    assert_null(strstr(text.data, "  springs "));
+    assert_null(strstr(text.data, "torque -0.3"));
+    text_finish(&text);
+    const Linkage kept = *linkage;
+    linkage->springs = springs;
+    linkage->spring_count = 3;
+    linkage->torsions = torsions;
+    linkage->torsion_count = 1;
+    linkage->driver.is_present = false;
+    linkage->torque = (Torque){0, {.count = 2, .times = {0.0, 1.0}, .values = {0.5, -0.3}}};
+    text_init(&text);
+    run_text_write(&fixture->report, &STYLE_PLAIN, &text);
+    expect_words(text.data, WORDS);
+    text_finish(&text);
+    *linkage = kept;
+}
+
 static void what_is_rounding_is_shown_as_nothing_and_kept_in_json(void **state)
 {
     Fixture *fixture = *state;
@@ -407,6 +444,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_text_says_what_was_modelled_and_what_came_out,
                                         fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(springs_and_torques_are_named, fixture_set_up,
+                                        fixture_tear_down),
         cmocka_unit_test_setup_teardown(what_is_rounding_is_shown_as_nothing_and_kept_in_json,
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_chosen_step_says_why_its_error_is_not_known_further,

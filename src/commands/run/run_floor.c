@@ -101,13 +101,22 @@ double run_floor_cut(double value, double floor)
     return fabs(value) < floor ? 0.0 : value;
 }
 
+// What is 0 in both directions stands at no time.
+static void cut_extremes(Extreme *most, Extreme *least, double floor)
+{
+    most->value = run_floor_cut(most->value, floor);
+    least->value = run_floor_cut(least->value, floor);
+    if (most->value == 0.0 && least->value == 0.0) {
+        most->time_s = most->crank_rad = NAN;
+        least->time_s = least->crank_rad = NAN;
+    }
+}
+
 BodyExtremes run_floor_body(const BodyExtremes *body, const RunFloor *floor)
 {
     BodyExtremes shown = *body;
-    shown.omega_max.value = run_floor_cut(body->omega_max.value, floor->turning);
-    shown.omega_min.value = run_floor_cut(body->omega_min.value, floor->turning);
-    shown.alpha_max.value = run_floor_cut(body->alpha_max.value, floor->spinning_up);
-    shown.alpha_min.value = run_floor_cut(body->alpha_min.value, floor->spinning_up);
+    cut_extremes(&shown.omega_max, &shown.omega_min, floor->turning);
+    cut_extremes(&shown.alpha_max, &shown.alpha_min, floor->spinning_up);
     return shown;
 }
 
@@ -118,6 +127,7 @@ RunJoint run_floor_joint(const RunJoint *joint, bool is_torsional, const RunFloo
         run_floor_cut(joint->force_max.value, is_torsional ? floor->energy : floor->force);
     if (shown.force_max.value == 0.0) {
         // what follows from it
+        shown.force_max.time_s = shown.force_max.crank_rad = NAN;
         shown.impulse *= 0.0;
         shown.penetration_max *= 0.0;
     }

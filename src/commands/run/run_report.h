@@ -142,6 +142,10 @@ void plot_run_write(const void *report, Text *svg);
 void run_when_head(Table *table, size_t column, const RunReport *report);
 void run_when_cell(Table *table, const RunReport *report, double time_s, double crank_rad);
 
+// What pushes the mechanism beside its joints: springs, dampers, a torque or force that drives it.
+// Nothing where there is none.
+void run_loads_write(const RunReport *report, size_t width, Text *text);
+
 // The parts of the text, each of which appends nothing where it has nothing to say. Extremes of
 // each body that is not driven; how sliders move along their lines; the contacts of each joint
 // with play, how its pin tilts and slides in space, how its block tilts, and at most `limit` of the

@@ -26,7 +26,9 @@ void run_tables_extremes(const RunReport *report, const Style *style, Text *text
                 continue;
             }
             if (table == NULL) {
-                table = fields_table("Extremes of the motion", RUN_BODY_FIELDS, where, style, text);
+                table = fields_table(linkage->is_spatial ? "Extremes of the motion about z"
+                                                         : "Extremes of the motion",
+                                     RUN_BODY_FIELDS, where, style, text);
             }
             table_cell(table, "%s", linkage->bodies[body].name);
             table_cell(table, "%s", run->backend);

@@ -30,12 +30,14 @@ static size_t mobility(const Linkage *linkage, bool ideal_only)
 
 static void write_freedoms(const Linkage *linkage, bool has_play, Text *text)
 {
+    const size_t closed = mobility(linkage, false);
+    const size_t open = has_play ? mobility(linkage, true) : closed;
     text_append(text, "  mechanism   %zu %s%s, %zu joint%s, mobility %zu", linkage->body_count,
                 linkage->body_count == 1 ? "body" : "bodies",
                 linkage->is_spatial ? " in space" : "", linkage->joint_count,
-                linkage->joint_count == 1 ? "" : "s", mobility(linkage, false));
-    if (has_play) {
-        text_append(text, " (%zu with the play open)", mobility(linkage, true));
+                linkage->joint_count == 1 ? "" : "s", closed);
+    if (open != closed) {
+        text_append(text, " (%zu with the play open)", open);
     }
 }
 
@@ -318,6 +320,7 @@ void run_text_write(const void *of, const Style *style, Text *text)
     const Scenario *scenario = report->scenario;
     section_title(scenario->title, scenario_path(scenario), style, text);
     write_mechanism(report, style->width, text);
+    run_loads_write(report, style->width, text);
     write_drive(scenario, text);
     write_contact(scenario, style->width, text);
     write_models(report, style, text);
