@@ -5,19 +5,21 @@
 #include "run/run.h"
 
 #include "base/clock.h"
-#include "base/zeroed.h"
 #include "contact/law.h"
 #include "contact/pin_space.h"
 #include "contact/touch.h"
 #include "model/forces.h"
 #include "model/lock.h"
+#include "run/part_samples.h"
+#include "run/sample_check.h"
 
 #include <stdio.h>
 
 // steps between two looks at the clock: some 0.1 ms of ODE, up to a second of a large reference
 enum { PROGRESS_EVERY = 64 };
 
-static const double SAME_TURN = 3.0; // rad, less than half a turn
+// Samples that one mechanism may be ahead of others.
+enum { AHEAD_MOST = 16 };
 
 typedef struct Loop {
     const Scenario *scenario;
@@ -31,42 +33,16 @@ typedef struct Loop {
     bool is_stopped;       // by the guard
     double started_s;      // by the clock
     size_t steps;
-    double reached_s;    // simulated
-    double width_s;      // length of the last step
-    double *told_s;      // by body, the end of its last record; owned, like the next three
-    double *angle;       // rad, there, by adding up omega
-    double *omega;       // rad/s, there
-    Sample sample;       // the last one
+    double reached_s; // simulated
+    double width_s;   // length of the last step
+    Turning turning;
+    Sample sample;       // the last one; owned
+    bool has_parts;      // whether records tell of one mechanism at a time
+    PartSamples ahead;   // samples of these
+    bool is_ahead;       // whether they are taken so
     double elastic;      // J, stored in the contacts there
     double start_energy; // J, kinetic, potential and elastic, at time zero
 } Loop;
-
-// Room for the bodies, where they are at time zero.
-static void make_room(Loop *loop)
-{
-    const Linkage *linkage = &loop->scenario->linkage;
-    loop->told_s = zeroed(linkage->body_count, sizeof *loop->told_s);
-    loop->angle = zeroed(linkage->body_count, sizeof *loop->angle);
-    loop->omega = zeroed(linkage->body_count, sizeof *loop->omega);
-    loop->sample = sample_create(linkage);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        loop->angle[i] = linkage->bodies[i].start.angle;
-        loop->omega[i] = linkage->bodies[i].start.omega;
-    }
-}
-
-// Adds what each body has turned in a step: enough to know which turn an angle is in.
-static void add_turning(Loop *loop, const StepRecord *record)
-{
-    const size_t count = solver_body_count(record->part, &loop->scenario->linkage);
-    for (size_t k = 0; k < count; k++) {
-        const size_t i = solver_body(record->part, k);
-        const double width_s = record->end_s - loop->told_s[i];
-        loop->angle[i] += 0.5 * width_s * (loop->omega[i] + record->omega[k]);
-        loop->omega[i] = record->omega[k];
-        loop->told_s[i] = record->end_s;
-    }
-}
 
 // Takes in what comes next of a step.
 static bool take_record(Loop *loop, double stop_s, StepRecord *record, Err *err)
@@ -79,7 +55,11 @@ static bool take_record(Loop *loop, double stop_s, StepRecord *record, Err *err)
     if (loop->probe_own != NULL) {
         loop->probe->look(loop->probe_own, record);
     }
-    add_turning(loop, record);
+    turning_add(&loop->turning, record);
+    loop->has_parts = record->part != NULL;
+    if (loop->is_ahead && !part_samples_take(&loop->ahead, record, err)) {
+        return false;
+    }
     loop->steps++;
     if (loop->watch.progress != NULL && loop->steps % PROGRESS_EVERY == 0) {
         loop->watch.progress(loop->reached_s / scenario_duration(loop->scenario),
@@ -101,25 +81,6 @@ static bool take_step(Loop *loop, double stop_s, Err *err)
     loop->reached_s = reached_s;
     loop->elastic = record.elastic;
     return true;
-}
-
-// Puts the angles of a sample, known but for whole turns, into the turn that the bodies are in.
-static void unwrap_angles(const Loop *loop, Sample *sample)
-{
-    const Linkage *linkage = &loop->scenario->linkage;
-    const int driven = linkage_driven_body(linkage);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        if ((int)i == driven) {
-            continue;
-        }
-        const double ahead = loop->omega[i] * (loop->told_s[i] - sample->time_s);
-        double *angle = &sample->bodies[i].angle;
-        const double apart = loop->angle[i] - ahead - *angle;
-        // hardly ever is it another turn than that of the solver
-        if (!(fabs(apart) < SAME_TURN)) {
-            *angle += 2.0 * M_PI * round(apart / (2.0 * M_PI));
-        }
-    }
 }
 
 static double mechanical_energy(const Scenario *scenario, const Sample *sample)
@@ -181,19 +142,44 @@ static bool may_go_on(Loop *loop, const Trajectory *trajectory, size_t sample, E
     return !loop->is_stopped;
 }
 
-bool run_check_sample(const Linkage *linkage, const Sample *sample, Err *err)
+// Takes one sample of all bodies, to which all have been stepped.
+static bool take_sample(Loop *loop, Trajectory *trajectory, size_t k, Err *err)
 {
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        if (!isfinite(sample->bodies[i].omega)) {
-            char where[LINKAGE_INSTANT_SIZE];
-            linkage_describe_instant(linkage, sample->time_s, where);
-            return err_set(err, ERR_SOLVER,
-                           "%s: the motion of %s is not determined: the ideal joints stand at a "
-                           "change point, or are redundant; give one of them play",
-                           where, linkage->bodies[i].name);
+    Sample sample = loop->sample;
+    loop->solver->observe(loop->state, scenario_sample_time(loop->scenario, k), &sample);
+    if (!run_check_sample(&loop->scenario->linkage, NULL, &sample, err)) {
+        return false;
+    }
+    turning_unwrap(&loop->turning, NULL, &sample);
+    if (k == 0) {
+        loop->start_energy =
+            mechanical_energy(loop->scenario, &sample) + stored_energy(loop->scenario, &sample);
+    }
+    recorder_see(&loop->recorder, NULL, &sample);
+    trajectory_store(trajectory, k, &sample);
+    return may_go_on(loop, trajectory, k, err);
+}
+
+// Takes the samples from one on, of each mechanism while its steps come.
+static bool take_ahead(Loop *loop, Trajectory *trajectory, size_t first, Err *err)
+{
+    size_t k = first;
+    bool is_right = true;
+    loop->ahead = part_samples_start(loop->scenario, loop->solver, loop->state, &loop->recorder,
+                                     &loop->turning, first);
+    loop->is_ahead = true;
+    while (is_right && k < trajectory->sample_count) {
+        const size_t left = trajectory->sample_count - k;
+        const size_t behind = k + (left < AHEAD_MOST ? left : AHEAD_MOST);
+        is_right = reach(loop, scenario_sample_time(loop->scenario, behind - 1), err) &&
+                   part_samples_complete(&loop->ahead, behind, err);
+        for (; is_right && k < behind; k++) {
+            is_right = may_go_on(loop, trajectory, k, err);
         }
     }
-    return true;
+    loop->is_ahead = false;
+    part_samples_finish(&loop->ahead);
+    return is_right;
 }
 
 static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
@@ -204,22 +190,13 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
     }
     for (size_t k = 0; k < trajectory->sample_count; k++) {
         const double time_s = scenario_sample_time(loop->scenario, k);
-        if (!reach(loop, time_s, err)) {
-            return false;
+        if (loop->has_parts && time_s > loop->reached_s) {
+            if (!take_ahead(loop, trajectory, k, err)) {
+                return false;
+            }
+            break;
         }
-        Sample sample = loop->sample;
-        loop->solver->observe(loop->state, time_s, &sample);
-        if (!run_check_sample(&loop->scenario->linkage, &sample, err)) {
-            return false;
-        }
-        unwrap_angles(loop, &sample);
-        if (k == 0) {
-            loop->start_energy =
-                mechanical_energy(loop->scenario, &sample) + stored_energy(loop->scenario, &sample);
-        }
-        recorder_see(&loop->recorder, NULL, &sample);
-        trajectory_store(trajectory, k, &sample);
-        if (!may_go_on(loop, trajectory, k, err)) {
+        if (!reach(loop, time_s, err) || !take_sample(loop, trajectory, k, err)) {
             return false;
         }
     }
@@ -233,7 +210,7 @@ static void close_energy(const Loop *loop, Trajectory *trajectory)
     Sample last = loop->sample;
     last.time_s = loop->reached_s;
     loop->solver->observe(loop->state, loop->reached_s, &last);
-    unwrap_angles(loop, &last);
+    turning_unwrap(&loop->turning, NULL, &last);
     Energy *energy = &trajectory->energy;
     energy->change = mechanical_energy(loop->scenario, &last) - loop->start_energy + loop->elastic;
     energy->residual = energy->drive_work - energy->change - energy->dissipated - energy->friction;
@@ -298,7 +275,8 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
         snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
         return trajectory;
     }
-    make_room(&loop);
+    loop.turning = turning_start(&scenario->linkage);
+    loop.sample = sample_create(&scenario->linkage);
     loop.recorder = recorder_start(scenario, trajectory);
     loop.probe_own =
         probe == NULL ? NULL : probe->begin(scenario, solver, loop.state, &loop.recorder);
@@ -324,9 +302,7 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     }
     snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
     solver->close(loop.state);
-    free(loop.told_s);
-    free(loop.angle);
-    free(loop.omega);
+    turning_finish(&loop.turning);
     sample_free(&loop.sample);
     return trajectory;
 }

@@ -3,9 +3,6 @@
 
 #include "run/recorder.h"
 
-// Of a step: one that ends so little before a sample has reached it.
-static const double RUN_ROUNDING = 1e-9;
-
 // Called now and then with the share of the run that is done, 0 to 1, and the wall time so far, s.
 typedef void (*RunProgress)(double share, double wall_s, void *context);
 
@@ -45,7 +42,3 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
 // Runs the scenario for the bodies' positions and velocities at the samples alone (run_motion.c):
 // nothing else in the trajectory is for use but whether it is complete, or why not.
 Trajectory *run_motion(const Scenario *scenario, const Solver *solver, RunWatch watch);
-
-// A solver marks a state that the joints do not determine by omegas that are no numbers: whether
-// there are none.
-bool run_check_sample(const Linkage *linkage, const Sample *sample, Err *err);

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "model/lock.h"
 #include "run/run.h"
+#include "run/sample_check.h"
 
 #include <stdio.h>
 
@@ -59,7 +60,7 @@ static bool go(Way *way, Sample *sample, Trajectory *trajectory, Err *err)
             return false;
         }
         solver_glance(way->solver, way->state, sample->time_s, sample);
-        if (!run_check_sample(&way->scenario->linkage, sample, err)) {
+        if (!run_check_sample(&way->scenario->linkage, NULL, sample, err)) {
             return false;
         }
         trajectory_store_motion(trajectory, k, sample);
