@@ -7,67 +7,12 @@
 // Source: W. F. Tinney and J. W. Walker, Proc. IEEE 55 (1967) 1801.
 #include "base/sparse_order.h"
 
+#include "base/heap.h"
+
 #include <assert.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-
-// Nodes that wait, the one with the fewest neighbours on top; a node stands in it again whenever it
-// has fewer or more of them.
-typedef struct Waiting {
-    size_t degree;
-    size_t node;
-} Waiting;
-
-typedef struct Heap {
-    size_t count;
-    size_t room;
-    Waiting *items;
-} Heap;
-
-static bool comes_before(const Waiting *a, const Waiting *b)
-{
-    return a->degree < b->degree || (a->degree == b->degree && a->node < b->node);
-}
-
-static void swap_items(Waiting *a, Waiting *b)
-{
-    const Waiting kept = *a;
-    *a = *b;
-    *b = kept;
-}
-
-static void heap_push(Heap *heap, size_t degree, size_t node)
-{
-    if (heap->count == heap->room) {
-        heap->room = 2 * heap->room + 16;
-        heap->items = realloc(heap->items, heap->room * sizeof *heap->items);
-        assert(heap->items != NULL);
-    }
-    size_t i = heap->count++;
-    heap->items[i] = (Waiting){degree, node};
-    while (i > 0 && comes_before(&heap->items[i], &heap->items[(i - 1) / 2])) {
-        swap_items(&heap->items[i], &heap->items[(i - 1) / 2]);
-        i = (i - 1) / 2;
-    }
-}
-
-static Waiting heap_pop(Heap *heap)
-{
-    const Waiting top = heap->items[0];
-    heap->items[0] = heap->items[--heap->count];
-    for (size_t i = 0;;) {
-        size_t least = i;
-        for (size_t k = 2 * i + 1; k <= 2 * i + 2 && k < heap->count; k++) {
-            least = comes_before(&heap->items[k], &heap->items[least]) ? k : least;
-        }
-        if (least == i) {
-            return top;
-        }
-        swap_items(&heap->items[i], &heap->items[least]);
-        i = least;
-    }
-}
 
 // Writes the nodes that are in either of two lists, but for two.
 static void join_lists(const SparseList *a, const SparseList *b, size_t but, size_t and_but,
@@ -151,6 +96,7 @@ static void link_neighbours(const SparseList *later, size_t node, SparseList *li
 void sparse_order_find(size_t count, size_t eliminated, size_t link_count, const SparseLink *links,
                        size_t *node_at, SparseList *later)
 {
+    // by its number of neighbours; a node stands in it again whenever it has fewer or more of them
     Heap heap = {0};
     SparseList spare = {0};
     bool *is_out = calloc(count + 1, sizeof *is_out);
@@ -161,15 +107,15 @@ void sparse_order_find(size_t count, size_t eliminated, size_t link_count, const
     }
     size_t next = 0;
     while (next < eliminated) {
-        const Waiting top = heap_pop(&heap);
-        if (is_out[top.node] || top.degree != later[top.node].count) {
+        const HeapItem top = heap_pop(&heap);
+        if (is_out[top.second] || top.first != later[top.second].count) {
             continue;
         }
-        is_out[top.node] = true;
-        node_at[next++] = top.node;
-        link_neighbours(&later[top.node], top.node, later, &spare);
-        for (size_t i = 0; i < later[top.node].count; i++) {
-            const size_t node = later[top.node].nodes[i];
+        is_out[top.second] = true;
+        node_at[next++] = top.second;
+        link_neighbours(&later[top.second], top.second, later, &spare);
+        for (size_t i = 0; i < later[top.second].count; i++) {
+            const size_t node = later[top.second].nodes[i];
             if (node < eliminated) {
                 heap_push(&heap, later[node].count, node);
             }
@@ -186,7 +132,7 @@ void sparse_order_find(size_t count, size_t eliminated, size_t link_count, const
         }
         later[i].count = kept;
     }
-    free(heap.items);
+    heap_finish(&heap);
     free(spare.nodes);
     free(is_out);
 }

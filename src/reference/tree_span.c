@@ -9,6 +9,7 @@
 // is taken, and of equal ones the first.
 #include "reference/tree_span.h"
 
+#include "base/heap.h"
 #include "base/zeroed.h"
 
 #include <string.h>
@@ -65,28 +66,6 @@ static void hang(Span *span, int body, int joint, int parent)
 static int other_end(const Joint *joint, int body)
 {
     return joint->body_a == body ? joint->body_b : joint->body_a;
-}
-
-// Hangs on every body that an unused ideal joint connects with a known one, joint by joint, until
-// none is left.
-static void grow_in_order(Span *span)
-{
-    const Linkage *linkage = span->linkage;
-    bool has_grown = true;
-    while (has_grown) {
-        has_grown = false;
-        for (size_t i = 0; i < linkage->joint_count; i++) {
-            const Joint *joint = &linkage->joints[i];
-            const bool is_taken = span->is_used[i] || !linkage_kind_is_ideal(joint->kind);
-            const bool a_known = is_known(span, joint->body_a);
-            if (is_taken || a_known == is_known(span, joint->body_b)) {
-                continue;
-            }
-            const int child = a_known ? joint->body_b : joint->body_a;
-            hang(span, child, (int)i, other_end(joint, child));
-            has_grown = true;
-        }
-    }
 }
 
 // The ideal joints of each body, and the bodies that wait to be hung up.
@@ -164,6 +143,32 @@ static void take(Span *span, Waiting *waiting, int body)
     }
 }
 
+// The ideal joints of a body that has become known can be used: those that come later than the one
+// at hand in the same pass over all joints, the others in the next.
+static void open_joints(const Waiting *waiting, int body, HeapItem at, Heap *open)
+{
+    for (size_t i = waiting->firsts[body + 1]; i < waiting->firsts[body + 2]; i++) {
+        const size_t joint = (size_t)waiting->joints[i];
+        heap_push(open, joint >= at.second ? at.first : at.first + 1, joint);
+    }
+}
+
+// Hangs on every body that an unused ideal joint connects with a known one, in passes over the
+// joints until none is left. The joints of what is known are open.
+static void grow_in_order(Span *span, const Waiting *waiting, Heap *open)
+{
+    while (open->count > 0) {
+        const HeapItem at = heap_pop(open);
+        const Joint *joint = &span->linkage->joints[at.second];
+        const bool a_known = is_known(span, joint->body_a);
+        if (!span->is_used[at.second] && a_known != is_known(span, joint->body_b)) {
+            const int child = a_known ? joint->body_b : joint->body_a;
+            hang(span, child, (int)at.second, other_end(joint, child));
+            open_joints(waiting, child, at, open);
+        }
+    }
+}
+
 static void grow_nearby(Span *span, Waiting *waiting, int root)
 {
     wait_for(waiting, root);
@@ -174,14 +179,25 @@ static void grow_nearby(Span *span, Waiting *waiting, int root)
 
 static Span span_in_order(const Linkage *linkage)
 {
+    static const HeapItem START = {0, 0};
     Span span = span_begin(linkage);
-    grow_in_order(&span);
+    Waiting waiting = waiting_create(linkage);
+    Heap open = {0};
+    const int driven = linkage_driven_body(linkage);
+    open_joints(&waiting, LINKAGE_GROUND, START, &open);
+    if (driven >= 0) {
+        open_joints(&waiting, driven, START, &open);
+    }
+    grow_in_order(&span, &waiting, &open);
     for (int body = 0; body < (int)linkage->body_count; body++) {
         if (!is_known(&span, body)) {
             hang(&span, body, -1, LINKAGE_GROUND);
-            grow_in_order(&span);
+            open_joints(&waiting, body, START, &open);
+            grow_in_order(&span, &waiting, &open);
         }
     }
+    heap_finish(&open);
+    waiting_free(&waiting);
     return span;
 }
 

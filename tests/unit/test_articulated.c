@@ -7,6 +7,7 @@
 #include "reference/articulated_plan.h"
 #include "reference/loops.h"
 #include "reference/tree_line.h"
+#include "reference/tree_span.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -354,6 +355,74 @@ static void each_part_moves_as_in_the_whole_to_the_last_bit(void **state)
     finish(solved, made);
 }
 
+// Bodies and ideal joints between them without a loop, some bodies on the ground, listed in no
+// order.
+static Made forest(uint64_t seed)
+{
+    Made made = start();
+    made.seed = seed;
+    int order[BODIES];
+    for (int i = 0; i < BODIES; i++) {
+        order[i] = add_body(&made);
+        const int at = (int)(0.5 * (1.0 + lcg_draw(&made.seed)) * (i + 1));
+        order[i] = order[at < i ? at : i];
+        order[at < i ? at : i] = i;
+    }
+    for (int i = 0; i < BODIES; i++) {
+        const int other = (int)(0.5 * (1.0 + lcg_draw(&made.seed)) * (i + 2)) - 2;
+        if (other >= LINKAGE_GROUND) {
+            join(&made, JOINT_REVOLUTE, other >= 0 ? order[other] : LINKAGE_GROUND, order[i]);
+        }
+    }
+    Joint *joints = made.linkage->joints;
+    for (size_t i = made.linkage->joint_count; i-- > 1;) {
+        const size_t at = (size_t)(0.5 * (1.0 + lcg_draw(&made.seed)) * (double)(i + 1)) % (i + 1);
+        const Joint kept = joints[i];
+        joints[i] = joints[at];
+        joints[at] = kept;
+    }
+    return made;
+}
+
+// The joint that a pass over all joints uses next; -1: the passes have come to an end.
+static int next_of_passes(const Linkage *linkage, const bool *is_known, size_t *at)
+{
+    for (size_t tried = 0; tried < linkage->joint_count; tried++) {
+        const size_t i = (*at + tried) % linkage->joint_count;
+        const Joint *joint = &linkage->joints[i];
+        if (is_known[joint->body_a + 1] != is_known[joint->body_b + 1]) {
+            *at = i + 1;
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+static void bodies_are_hung_up_in_passes_over_the_joints(void **state)
+{
+    (void)state;
+    size_t hung = 0;
+    for (unsigned seed = 1; seed <= 200; seed++) {
+        Made made = forest(lcg_stirred(seed));
+        bool is_known[BODIES + 1] = {true};
+        Span span = span_find(made.linkage);
+        assert_int_equal(span.count, BODIES);
+        size_t at = 0;
+        for (size_t i = 0; i < span.count; i++) {
+            const int joint = next_of_passes(made.linkage, is_known, &at);
+            assert_int_equal(span.steps[i].joint, joint);
+            at = joint < 0 ? 0 : at; // a body that floats begins anew
+            hung += joint >= 0 ? 1 : 0;
+            is_known[span.steps[i].body + 1] = true;
+        }
+        // control: neither all float nor all hang
+        assert_true(hung > 0 && hung < (size_t)seed * BODIES);
+        span_finish(&span);
+        linkage_free(made.linkage);
+        test_free(made.linkage);
+    }
+}
+
 enum { IN_A_ROW = 64 };
 
 // Four-bars in a row that share their uprights, and crossed bars in a row. A foot is on the ground,
@@ -447,6 +516,7 @@ int main(void)
         cmocka_unit_test(slides_move_as_their_whole_matrix_says),
         cmocka_unit_test(another_push_moves_otherwise),
         cmocka_unit_test(each_part_moves_as_in_the_whole_to_the_last_bit),
+        cmocka_unit_test(bodies_are_hung_up_in_passes_over_the_joints),
         cmocka_unit_test(loops_stay_with_their_neighbours_whatever_the_order_of_the_joints),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
