@@ -26,7 +26,7 @@ static const double ALIKE = 1e-12;
 enum { POINTS_MAX = LOOK_PARTS_MAX + 4 };
 
 // Signals that are climbed to the top of one by one; to look at a crowd takes as much as for two.
-enum { SOUGHT_MOST = 12 };
+enum { SOUGHT_MOST = 16 };
 
 enum { CLIMBS_MAX = 12 }; // a parabola gains half as many digits again each time
 
@@ -195,12 +195,13 @@ static bool next_aim(Looker *looker, size_t *number, Aim *aim)
     return true;
 }
 
-// How many signals come near the run's extremes.
-static size_t count_near(Looker *looker, const Look *before, int parts, const Look *looks)
+// How many signals come near the run's extremes; at most so many are counted.
+static size_t count_near(Looker *looker, const Look *before, int parts, const Look *looks,
+                         size_t enough)
 {
     size_t count = 0;
     Aim aim;
-    for (size_t number = 0; next_aim(looker, &number, &aim);) {
+    for (size_t number = 0; count < enough && next_aim(looker, &number, &aim);) {
         double most = aim_value(&aim, before);
         double least = most;
         for (int k = 0; k < parts; k++) {
@@ -333,11 +334,14 @@ static void look_for_turns(Looker *looker, const Look *first, const Look *last)
 
 bool look_is_crowd(Looker *looker, const Look *before, int parts, const Look *looks)
 {
-    if (!(looks[parts - 1].time_s > before->time_s)) {
+    const size_t body_count = solver_body_count(looker->part, &looker->scenario->linkage);
+    const size_t joint_count = solver_joint_count(looker->part, &looker->scenario->linkage);
+    // a body has an extreme of omega and two of alpha in a step, a joint one
+    if (!(looks[parts - 1].time_s > before->time_s) ||
+        3 * body_count + joint_count <= SOUGHT_MOST) {
         return false;
     }
-    const size_t body_count = solver_body_count(looker->part, &looker->scenario->linkage);
-    size_t count = count_near(looker, before, parts, looks);
+    size_t count = count_near(looker, before, parts, looks, SOUGHT_MOST + 1);
     for (int k = 0; k < parts && count <= SOUGHT_MOST; k++) {
         const Look *first = k > 0 ? &looks[k - 1] : before;
         for (size_t i = 0; i < body_count; i++) {
@@ -357,7 +361,7 @@ int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[
         look_for_turns(looker, first, &looks[k]);
         first = &looks[k];
     }
-    if (!(width_s > 0.0) || count_near(looker, before, parts, looks) == 0) {
+    if (!(width_s > 0.0) || count_near(looker, before, parts, looks, 1) == 0) {
         return parts;
     }
     Look points[POINTS_MAX];
