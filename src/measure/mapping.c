@@ -37,13 +37,25 @@ static double choose(MappingSource source, double given, double median, double m
                                                               : median;
 }
 
+// Makes a contact of a joint whose pin closes in at some speed.
+static bool make_contact(const Scenario *scenario, const MappingJoint *joint, double mass,
+                         double speed, MappingContact *contact, Err *lack)
+{
+    const bool is_torsional = linkage_is_torsional(&scenario->linkage.joints[joint->joint]);
+    return speed > 0.0 ? mapping_contact_make(scenario, joint, mass, speed, contact, lack)
+                       : err_set(lack, ERR_USAGE,
+                                 "no contact of the case's run begins with a closing speed; give "
+                                 "one, such as --speed '0.1 %s'",
+                                 is_torsional ? "rad/s" : "m/s");
+}
+
 // The contact of a joint under a law, or why there is none.
 static void add_contact(Mapping *mapping, const Scenario *scenario, const MappingJoint *joint,
                         double mass, double speed, MappingSource speed_source)
 {
     MappingContact *contact = &mapping->contacts[mapping->contact_count++];
     Err lack = {ERR_NONE, ""};
-    if (!mapping_contact_make(scenario, joint, mass, speed, contact, &lack)) {
+    if (!make_contact(scenario, joint, mass, speed, contact, &lack)) {
         *contact = (MappingContact){
             .joint = *joint,
             .law_name = mapping_law_name(scenario, &scenario->linkage.joints[joint->joint]),
@@ -69,7 +81,7 @@ static size_t law_count(const Mapping *mapping)
 }
 
 // The contacts of one joint, a law each.
-static bool add_joint(Mapping *mapping, const MappingJoint *joint, Err *err)
+static void add_joint(Mapping *mapping, const MappingJoint *joint)
 {
     const MappingSettings *settings = &mapping->settings;
     const double mass =
@@ -84,15 +96,6 @@ static bool add_joint(Mapping *mapping, const MappingJoint *joint, Err *err)
         speed = floor;
         speed_source = MAPPING_FLOOR;
     }
-    if (!(speed > 0.0)) {
-        return err_set(err, ERR_USAGE,
-                       "%s: no contact of the case's run begins with a closing speed; give one, "
-                       "such as --speed '0.1 %s'",
-                       mapping->scenario->linkage.joints[joint->joint].name,
-                       linkage_is_torsional(&mapping->scenario->linkage.joints[joint->joint])
-                           ? "rad/s"
-                           : "m/s");
-    }
     for (size_t i = 0; i < law_count(mapping); i++) {
         Scenario scenario = *mapping->scenario;
         if (has_laws(mapping)) {
@@ -101,7 +104,6 @@ static bool add_joint(Mapping *mapping, const MappingJoint *joint, Err *err)
         }
         add_contact(mapping, &scenario, joint, mass, speed, speed_source);
     }
-    return true;
 }
 
 static bool needs_run(const MappingSettings *settings)
@@ -137,18 +139,20 @@ static bool make_contacts(Mapping *mapping, MappingWatch watch, Err *err)
     const size_t room = count * law_count(mapping);
     mapping->contacts = calloc(room + 1, sizeof *mapping->contacts);
     assert(mapping->contacts != NULL);
-    bool is_right = true;
-    for (size_t i = 0; is_right && i < count; i++) {
-        is_right = add_joint(mapping, &joints[i], err);
+    for (size_t i = 0; i < count; i++) {
+        add_joint(mapping, &joints[i]);
     }
     free(joints);
-    for (size_t i = 0; is_right && i < mapping->contact_count; i++) {
+    for (size_t i = 0; i < mapping->contact_count; i++) {
         if (mapping->contacts[i].lack[0] == '\0') {
             return true;
         }
     }
-    return is_right &&
-           err_set(err, mapping->contacts[0].lack_kind, "%s", mapping->contacts[0].lack);
+    const MappingContact *first = &mapping->contacts[0];
+    return first->lack_kind == ERR_USAGE
+               ? err_set(err, ERR_USAGE, "%s: %s",
+                         mapping->scenario->linkage.joints[first->joint.joint].name, first->lack)
+               : err_set(err, first->lack_kind, "%s", first->lack);
 }
 
 static void fill_soft(const MappingContact *contact, MappingRow *row)

@@ -43,8 +43,8 @@ typedef struct MappingWatch {
 
 // Works it all out. Fails with ERR_CASE where no joint has play, with ERR_USAGE where mass or speed
 // are neither given nor to be had from a run, with ERR_SOLVER where the reference fails or where no
-// law has such an impact: one of several that has none says so and hides no other. A row that could
-// not be run says so too and is no failure. mapping_finish accepts a zeroed mapping.
+// law has such an impact: one joint or law of several that has none says so and hides no other. A
+// row that could not be run says so too and is no failure. mapping_finish accepts a zeroed mapping.
 bool mapping_make(const Scenario *scenario, const MappingSettings *settings, MappingWatch watch,
                   Mapping *mapping, Err *err);
 void mapping_finish(Mapping *mapping);

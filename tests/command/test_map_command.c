@@ -275,6 +275,37 @@ static void every_one_of_many_joints_is_mapped(void **state)
     json_decref(root);
 }
 
+// A floor that is met, and a ceiling that never is.
+static void a_joint_that_never_touches_hides_no_other(void **state)
+{
+    Program *program = *state;
+    static const char CASE[] =
+        "bodies:\n  ball: {mass: 1 kg, inertia: 100 kg mm^2, at: [0 mm, 10 mm]}\n"
+        "joints:\n"
+        "  floor: {between: [ground, ball], at-a: [0 mm, 0 mm], at-b: [0 mm, 10 mm], normal: 90 "
+        "deg}\n"
+        "  roof: {between: [ground, ball], at-a: [0 mm, 90 mm], at-b: [0 mm, 10 mm], normal: -90 "
+        "deg}\n"
+        "contact: {stiffness: 1e7 N/m, damping: exact, restitution: 0.5}\n"
+        "run: {duration: 80 ms, samples: 100}\n";
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "ball.yaml", path);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(CASE, file);
+    fclose(file);
+    program_run(program, "map ball.yaml -q --steps '10 us' --maps midpoint");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "floor, K = 1e+07 N/m\n");
+    assert_says(program->output, "roof, given stiffness\n");
+    assert_says(program->output, "not mapped  no contact of the case's run begins with a closing");
+    assert_says(program->output, "midpoint    10");
+    // the control: where none touches there is nothing to map
+    program_run(program, "map ball.yaml -q --set run.duration='10 ms'");
+    assert_int_equal(program->status, 2);
+    assert_says(program->errors, "floor: no contact of the case's run begins with a closing speed");
+}
+
 static void the_velocity_level_model_has_rows_of_its_own(void **state)
 {
     Program *program = *state;
@@ -425,6 +456,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(mass_speed_and_law_can_be_given, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(every_one_of_many_joints_is_mapped, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(a_joint_that_never_touches_hides_no_other, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(an_unstable_setting_says_where, program_set_up,
                                         program_tear_down),

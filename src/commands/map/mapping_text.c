@@ -12,9 +12,14 @@ enum { LAW_DAMPING_SIZE = 64, STABLE_SIZE = 96 };
 void mapping_report_law(const MappingContact *contact, char law[MAPPING_REPORT_LAW_SIZE])
 {
     const ForceLaw *built = &contact->impact.law;
-    if (strcmp(contact->law_name, "stiffness") == 0) {
-        snprintf(law, MAPPING_REPORT_LAW_SIZE, "K = %.4g %s^%.3g", built->stiffness,
-                 mapping_report_units(contact)->stiffness, built->exponent);
+    const char *unit = mapping_report_units(contact)->stiffness;
+    if (strcmp(contact->law_name, "stiffness") == 0 && !(built->stiffness > 0.0)) {
+        snprintf(law, MAPPING_REPORT_LAW_SIZE, "given stiffness");
+    } else if (strcmp(contact->law_name, "stiffness") == 0 && built->exponent == 1.0) {
+        snprintf(law, MAPPING_REPORT_LAW_SIZE, "K = %.4g %s", built->stiffness, unit);
+    } else if (strcmp(contact->law_name, "stiffness") == 0) {
+        snprintf(law, MAPPING_REPORT_LAW_SIZE, "K = %.4g %s^%.3g", built->stiffness, unit,
+                 built->exponent);
     } else {
         snprintf(law, MAPPING_REPORT_LAW_SIZE, "%s", contact->law_name);
     }
@@ -214,7 +219,9 @@ void mapping_text_write(const void *of, const Style *style, Text *text)
         mapping_report_law(contact, law);
         text_append(text, "\n%s%s, %s%s\n\n", style->heading, mapping_report_joint(contact)->name,
                     law, style->end);
-        write_sources(report, contact, text);
+        if (contact->impact.speed > 0.0) {
+            write_sources(report, contact, text);
+        }
         if (contact->lack[0] != '\0') {
             text_append(text, "  not mapped  %s\n", contact->lack);
             continue;
