@@ -407,11 +407,38 @@ static void the_same_command_twice_prints_the_same_hash(void **state)
     assert_string_equal(hashes[0], hashes[1]);
 }
 
+// Bennett's follower turns about an axis that leans: about z alone it is slower.
+static void rotation_in_space_is_that_of_the_whole_vector(void **state)
+{
+    Program *program = *state;
+    static const char RUN[] = "run -q --uncertified --backend reference ";
+    char words[PROGRAM_PATH_SIZE];
+    snprintf(words, sizeof words, "%s$cases/space/bennett.yaml --plot b.svg", RUN);
+    program_run(program, words);
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "Extremes of the motion about z");
+    const char *about_z = strstr(program->output, "follower  reference");
+    const char *whole = strstr(program->output, "Rotation in space, at the samples");
+    assert_non_null(about_z);
+    assert_non_null(whole);
+    whole = strstr(whole, "follower  reference");
+    assert_non_null(whole);
+    about_z += strlen("follower  reference");
+    whole += strlen("follower  reference");
+    assert_true(strtod(whole, NULL) > 1.01 * strtod(about_z, NULL));
+    // the control: with all axes along z there is nothing more to say
+    snprintf(words, sizeof words, "%s$cases/space/offset-coupler.yaml", RUN);
+    program_run(program, words);
+    assert_int_equal(program->status, 0);
+    assert_null(strstr(program->output, "Rotation in space"));
+}
+
 #define COMMAND_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        COMMAND_TEST(rotation_in_space_is_that_of_the_whole_vector),
         COMMAND_TEST(a_bad_case_ends_with_status_3_before_anything_runs),
         COMMAND_TEST(a_missing_case_ends_with_status_5),
         COMMAND_TEST(a_run_prints_extremes_error_and_cost),

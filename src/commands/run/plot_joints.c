@@ -179,20 +179,10 @@ static double farthest(const PlotView *view, bool is_one)
     return most;
 }
 
-// The directions of a panel are the world's where every hole's axis is z.
-static bool has_tilted_hole(const Linkage *linkage)
-{
-    bool is_tilted = false;
-    for (size_t i = 0; linkage->is_spatial && i < linkage->joint_count; i++) {
-        const Vec3 axis = linkage->joints[i].space.axis;
-        is_tilted |= linkage->joints[i].kind == JOINT_CLEARANCE && (axis.x != 0.0 || axis.y != 0.0);
-    }
-    return is_tilted;
-}
-
+// The directions of a panel are the world's where every axis is z.
 static void name_directions(const Linkage *linkage, bool is_one, PlotPanel *panel)
 {
-    if (has_tilted_hole(linkage)) {
+    if (!space_has_plane(linkage)) {
         panel->x.title = is_one ? "across the hole's axis, um" : "across / radial clearance";
         panel->y.title = is_one ? "at right angles to that, um" : "at right angles to that";
     } else {
@@ -253,6 +243,10 @@ static double omega_error(const RunReport *report, const Trajectory *run, size_t
                           size_t body)
 {
     const Trajectory *truth = find_truth(report);
+    if (run->space_motions != NULL && truth->space_motions != NULL) {
+        return vec3_length(vec3_sub(trajectory_space_motion(run, sample, body)->omega,
+                                    trajectory_space_motion(truth, sample, body)->omega));
+    }
     return fabs(trajectory_motion(run, sample, body)->omega -
                 trajectory_motion(truth, sample, body)->omega);
 }

@@ -66,6 +66,11 @@ typedef struct PlotPath {
 // Draws the path of one joint of one run.
 void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, const PlotPath *path);
 
+// How the bodies move: which 0 a rate, 1 how that changes. They are the angular velocity and
+// acceleration, or speed and acceleration of the centres where nothing turns. The panel gets its
+// titles.
+void plot_motions_draw(const PlotView *view, int which, PlotPanel panel);
+
 // Joint forces over the crank angle, every step of them, with a dot for the strongest contacts and
 // marks for the spikes of the table.
 void plot_joints_forces(const PlotView *view, PlotPanel panel);

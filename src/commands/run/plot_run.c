@@ -19,38 +19,6 @@ static const double LEGEND_TOP = 62.0;
 static const double LEGEND_ROW = 22.0;
 static const double LEGEND_END = 106.0; // the last row that leaves the panels where they are
 
-// a symmetric logarithmic scale is used where one backend exceeds another by this factor, or
-// exceeds what it stays below for most of its run
-static const double SPIKY = 8.0;
-static const double USUAL = 0.9;
-
-static double omega_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
-{
-    (void)report;
-    return trajectory_motion(run, sample, body)->omega;
-}
-
-static double alpha_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
-{
-    (void)report;
-    return trajectory_motion(run, sample, body)->alpha;
-}
-
-static double speed_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
-{
-    (void)report;
-    const Vec2 velocity = trajectory_motion(run, sample, body)->velocity;
-    return hypot(velocity.x, velocity.y);
-}
-
-static double acceleration_of(const RunReport *report, const Trajectory *run, size_t sample,
-                              size_t body)
-{
-    (void)report;
-    const Vec2 acceleration = trajectory_motion(run, sample, body)->acceleration;
-    return hypot(acceleration.x, acceleration.y);
-}
-
 // The part of a picture that is drawn below its legend.
 typedef struct Sheet {
     Text *svg;
@@ -69,100 +37,6 @@ static PlotPanel place_panel(const PlotView *view, Sheet sheet, int row, int col
         .height = PANEL_HEIGHT,
         .x = plot_look_x_axis(view),
     };
-}
-
-// How far a quantity goes in one run, over all bodies that are shown.
-typedef struct Reach {
-    double low;
-    double high;
-    double usual; // what most of the run stays below on either side of zero
-} Reach;
-
-static int by_size(const void *a, const void *b)
-{
-    const double first = *(const double *)a;
-    const double second = *(const double *)b;
-    return (first > second) - (first < second);
-}
-
-static Reach find_reach(const PlotView *view, const Trajectory *run, PlotQuantity quantity)
-{
-    const PlotSet *bodies = &view->bodies;
-    Reach reach = {0};
-    const size_t count = plot_look_stretch_count(run, quantity);
-    double *sizes = calloc(count, sizeof *sizes);
-    assert(sizes != NULL);
-    for (size_t i = 0; i < count; i++) {
-        for (size_t body = 0; body < run->body_count; body++) {
-            if (!bodies->is_shown[body] && !bodies->is_other[body]) {
-                continue;
-            }
-            const Range range = plot_look_stretch(view->report, run, quantity, i, body).range;
-            if (range.least <= range.most) {
-                reach.low = fmin(reach.low, range.least);
-                reach.high = fmax(reach.high, range.most);
-                sizes[i] = fmax(sizes[i], fmax(-range.least, range.most));
-            }
-        }
-    }
-    qsort(sizes, count, sizeof *sizes, by_size);
-    reach.usual = sizes[(size_t)(USUAL * (double)(count - 1))];
-    free(sizes);
-    return reach;
-}
-
-// A linear scale, unless one backend dwarfs another, or spikes dwarf the rest of a run.
-static void choose_scale(const PlotView *view, PlotQuantity quantity, Axis *axis)
-{
-    const RunReport *report = view->report;
-    double least = INFINITY;
-    for (size_t i = 0; i < report->run_count; i++) {
-        if (!report->runs[i]->is_complete) {
-            continue;
-        }
-        const Reach reach = find_reach(view, report->runs[i], quantity);
-        const double size = fmax(-reach.low, reach.high);
-        least = size > 0.0 ? fmin(least, size) : least;
-        least = reach.usual > 0.0 ? fmin(least, reach.usual) : least;
-        axis->low = fmin(axis->low, reach.low);
-        axis->high = fmax(axis->high, reach.high);
-    }
-    const double most = fmax(-axis->low, axis->high);
-    const bool is_size = axis->low == 0.0;
-    if (most > SPIKY * least) {
-        axis->scale = AXIS_SYMLOG;
-        axis->threshold = pow(10.0, floor(log10(least)));
-        axis->high = pow(10.0, ceil(log10(most)));
-        axis->low = -axis->high;
-    } else {
-        axis_round(&axis->low, &axis->high);
-    }
-    // what is never below 0 needs no room there
-    axis->low = is_size ? 0.0 : axis->low;
-}
-
-static void draw_motion(const PlotView *view, PlotPanel panel, PlotQuantity quantity,
-                        bool has_spikes)
-{
-    const RunReport *report = view->report;
-    choose_scale(view, quantity, &panel.y);
-    plot_enter(&panel);
-    plot_look_shade(view, &panel);
-    plot_look_others(view, &panel, quantity);
-    for (size_t run = 0; run < report->run_count; run++) {
-        for (size_t body = 0; body < report->scenario->linkage.body_count; body++) {
-            if (plot_look_shows(view, false, body) && report->runs[run]->is_complete) {
-                plot_look_draw(view, &panel, run, quantity, body);
-            }
-        }
-    }
-    const Trajectory *spiky = has_spikes ? plot_look_spike_run(view) : NULL;
-    for (size_t body = 0; spiky != NULL && body < spiky->body_count; body++) {
-        if (plot_look_shows(view, false, body)) {
-            plot_look_marks(view, &panel, &spiky->alpha_spikes[body], quantity, body, "rad/s^2");
-        }
-    }
-    plot_leave(&panel);
 }
 
 // Where the next entry of the legend begins.
@@ -260,30 +134,6 @@ static double draw_legend(const PlotView *view, Text *svg)
     return legend.y;
 }
 
-// The rotation of the bodies, or the motion of their centres where nothing turns.
-static void draw_motions(const PlotView *view, Sheet sheet)
-{
-    static const PlotQuantity OMEGA = {"omega", false, RANGES_OMEGA, omega_of};
-    static const PlotQuantity ALPHA = {"alpha", false, RANGES_ALPHA, alpha_of};
-    static const PlotQuantity SPEED = {"speed", false, -1, speed_of};
-    static const PlotQuantity ACCELERATION = {"acceleration", false, RANGES_ACCELERATION,
-                                              acceleration_of};
-    const bool turns = view->turns;
-    const bool is_spatial = view->report->scenario->linkage.is_spatial;
-    PlotPanel panel = place_panel(view, sheet, 0, 0,
-                                  !turns       ? "Speed of the centre of mass"
-                                  : is_spatial ? "Angular velocity about z"
-                                               : "Angular velocity");
-    panel.y.title = turns ? "omega, rad/s" : "speed, m/s";
-    draw_motion(view, panel, turns ? OMEGA : SPEED, false);
-    panel = place_panel(view, sheet, 0, 1,
-                        !turns       ? "Acceleration of the centre of mass"
-                        : is_spatial ? "Angular acceleration about z"
-                                     : "Angular acceleration");
-    panel.y.title = turns ? "alpha, rad/s^2" : "acceleration, m/s^2";
-    draw_motion(view, panel, turns ? ALPHA : ACCELERATION, turns);
-}
-
 // What is drawn from the second panel of the second row on.
 typedef void (*DrawPanel)(const PlotView *view, PlotPanel panel);
 
@@ -360,7 +210,9 @@ void plot_run_write(const void *of, Text *svg)
     plot_text(svg, PANEL_LEFT[0], 34.0, "start", "title", title);
     text_append(svg, "%s", legend.data);
     text_finish(&legend);
-    draw_motions(&view, sheet);
+    for (int i = 0; i < 2; i++) {
+        plot_motions_draw(&view, i, place_panel(&view, sheet, 0, i, ""));
+    }
     plot_joints_forces(&view, place_panel(&view, sheet, 1, 0, "Force in the joint"));
     for (size_t i = 0; i < count; i++) {
         // the first stands beside the forces

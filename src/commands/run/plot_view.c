@@ -180,7 +180,7 @@ PlotView plot_view_begin(const RunReport *report)
     const Linkage *linkage = &report->scenario->linkage;
     PlotView view = {
         .report = report,
-        .turns = linkage->driver.is_present || any_turns(report),
+        .turns = linkage->driver.is_present || !space_has_plane(linkage) || any_turns(report),
         .bodies = set_create(linkage->body_count),
         .joints = set_create(linkage->joint_count),
     };

@@ -153,6 +153,9 @@ void run_loads_write(const RunReport *report, size_t width, Text *text);
 void run_tables_extremes(const RunReport *report, const Style *style, Text *text);
 void run_tables_contacts(const RunReport *report, const Style *style, Text *text);
 void run_tables_pins(const RunReport *report, const Style *style, Text *text);
+// Where joints have axes that are not z, the largest angular velocity and acceleration of each body
+// as vectors.
+void run_turns_write(const RunReport *report, const Style *style, Text *text);
 void run_slides_motion(const RunReport *report, const Style *style, Text *text);
 void run_slides_blocks(const RunReport *report, const Style *style, Text *text);
 void run_tables_spikes(const RunReport *report, size_t limit, const Style *style, Text *text);

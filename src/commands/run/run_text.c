@@ -327,6 +327,7 @@ void run_text_write(const void *of, const Style *style, Text *text)
     // what was asked comes first, how far it can be believed beside it, and theory last
     run_truth_errors(report, style, text);
     run_tables_extremes(report, style, text);
+    run_turns_write(report, style, text);
     run_slides_motion(report, style, text);
     run_tables_contacts(report, style, text);
     run_tables_pins(report, style, text);
