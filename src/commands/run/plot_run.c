@@ -1,11 +1,9 @@
 // What does a run look like?
 #include "commands/run/plot_look.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double PICTURE_WIDTH = 1000.0; // pixels, as all that follow
