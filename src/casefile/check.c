@@ -20,17 +20,6 @@ static const double STEPS_MAX = 1e9;
 // 1e7 samples of a four-bar fill some 4 GB.
 static const double SAMPLES_MAX = 1e7;
 
-static bool has_rival(const Entries *entries, const SchemaRow *row, size_t index)
-{
-    for (size_t i = 0; i < entries->count; i++) {
-        const Entry *other = &entries->entries[i];
-        if (other->index == index && schema_are_rivals(row, other->row)) {
-            return true;
-        }
-    }
-    return false;
-}
-
 // The innermost group above the row that the case gives; the document itself is the outermost.
 static const EntryGroup *group_above(const Entries *entries, const SchemaRow *row, size_t index)
 {
@@ -91,7 +80,7 @@ bool check_required(const Entries *entries, Err *err)
             // most keys that are required are given
             if (entries_at(entries, row, index) == NULL && is_wanted(entries, row, index) &&
                 entries_find(entries, row->path, index) == NULL &&
-                !has_rival(entries, row, index)) {
+                !entries_have_rival(entries, row, index)) {
                 return refuse_missing(entries, row, index, err);
             }
         }

@@ -7,6 +7,8 @@
 // these is a cosine, its angle is a dead centre. Play in the joints widens both ends of the range.
 #include "casefile/closure.h"
 
+#include "base/grouped.h"
+#include "base/zeroed.h"
 #include "model/joint_rows.h"
 #include "model/lock.h"
 
@@ -234,20 +236,34 @@ bool closure_check_ideal(const Entries *entries, const Scenario *scenario, Err *
                           driver->start / DEGREE, lock.crank_angle / DEGREE, less);
 }
 
-static bool has_joint(const Linkage *linkage, int body)
+// The ends of joints on each body: 2 i + side of joint i.
+typedef struct BodyEnds {
+    size_t *firsts; // by body and one more: where its ends begin; owned, like the ends
+    size_t *ends;
+} BodyEnds;
+
+static BodyEnds list_ends(const Linkage *linkage)
 {
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].body_a == body || linkage->joints[i].body_b == body) {
-            return true;
-        }
+    const size_t count = 2 * linkage->joint_count;
+    size_t *bodies = zeroed(count, sizeof *bodies);
+    for (size_t i = 0; i < count; i++) {
+        const int body = linkage_end(&linkage->joints[i / 2], i % 2).body;
+        bodies[i] = body == LINKAGE_GROUND ? GROUPED_NONE : (size_t)body;
     }
-    return false;
+    const BodyEnds ends = {
+        .firsts = zeroed(linkage->body_count + 1, sizeof *ends.firsts),
+        .ends = zeroed(count, sizeof *ends.ends),
+    };
+    grouped_list(linkage->body_count, count, bodies, ends.firsts, ends.ends);
+    free(bodies);
+    return ends;
 }
 
-static bool check_bodies(const Entries *entries, const Linkage *linkage, Err *err)
+static bool check_bodies(const Entries *entries, const Linkage *linkage, const BodyEnds *ends,
+                         Err *err)
 {
     for (size_t i = 0; i < linkage->body_count; i++) {
-        if (!has_joint(linkage, (int)i)) {
+        if (ends->firsts[i] == ends->firsts[i + 1]) {
             const EntryGroup *group = entries_group(entries, "bodies.*", i);
             return entries_refuse_group(group, err,
                                         "the body '%s' has no joint: nothing holds it\nallowed: a "
@@ -258,17 +274,10 @@ static bool check_bodies(const Entries *entries, const Linkage *linkage, Err *er
     return true;
 }
 
-static bool share_a_body(const Joint *joint, const Joint *other)
-{
-    return (joint->body_a != LINKAGE_GROUND &&
-            (joint->body_a == other->body_a || joint->body_a == other->body_b)) ||
-           (joint->body_b != LINKAGE_GROUND &&
-            (joint->body_b == other->body_a || joint->body_b == other->body_b));
-}
-
 // The least distance from a joint to the next on one of its bodies, m; infinite without a next.
 // Joints at one place are one hinge of several bodies.
-static double shortest_link(const Entries *entries, const Scenario *scenario, size_t number)
+static double shortest_link(const Entries *entries, const Scenario *scenario, const BodyEnds *ends,
+                            size_t number)
 {
     const FourBar *fourbar = &scenario->fourbar;
     const Linkage *linkage = &scenario->linkage;
@@ -282,25 +291,28 @@ static double shortest_link(const Entries *entries, const Scenario *scenario, si
                                 fourbar->coupler.nominal, fourbar->follower.nominal};
         return fmin(links[number], links[(number + 1) % 4]);
     }
+    const Joint *joint = &linkage->joints[number];
     double shortest = INFINITY;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (joint_rows_count(linkage->joints[i].kind) == 0) {
-            continue;
-        }
-        // in a case with bodies every joint still stands at its place in the world
-        const double distance =
-            vec2_length(vec2_sub(linkage->joints[i].anchor_a, linkage->joints[number].anchor_a));
-        if (distance > 0.0 && share_a_body(&linkage->joints[number], &linkage->joints[i])) {
-            shortest = fmin(shortest, distance);
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(joint, side).body;
+        const size_t end = body == LINKAGE_GROUND ? 0 : ends->firsts[body + 1];
+        for (size_t i = body == LINKAGE_GROUND ? 0 : ends->firsts[body]; i < end; i++) {
+            const Joint *other = &linkage->joints[ends->ends[i] / 2];
+            // in a case with bodies every joint still stands at its place in the world
+            const double distance = vec2_length(vec2_sub(other->anchor_a, joint->anchor_a));
+            if (joint_rows_count(other->kind) > 0 && distance > 0.0) {
+                shortest = fmin(shortest, distance);
+            }
         }
     }
     return shortest;
 }
 
-static bool check_play(const Entries *entries, const Scenario *scenario, size_t number, Err *err)
+static bool check_play(const Entries *entries, const Scenario *scenario, const BodyEnds *ends,
+                       size_t number, Err *err)
 {
     const Joint *joint = &scenario->linkage.joints[number];
-    const double shortest = shortest_link(entries, scenario, number);
+    const double shortest = shortest_link(entries, scenario, ends, number);
     const double radial = linkage_radial_clearance(joint);
     if (joint->kind != JOINT_CLEARANCE || radial < shortest) {
         return true;
@@ -315,14 +327,14 @@ static bool check_play(const Entries *entries, const Scenario *scenario, size_t 
 
 bool closure_check_members(const Entries *entries, const Scenario *scenario, Err *err)
 {
+    BodyEnds ends = list_ends(&scenario->linkage);
     // the links of a short form are joined by definition
-    if (entries->form == SCHEMA_LONG && !check_bodies(entries, &scenario->linkage, err)) {
-        return false;
+    bool is_good =
+        entries->form != SCHEMA_LONG || check_bodies(entries, &scenario->linkage, &ends, err);
+    for (size_t i = 0; is_good && i < scenario->linkage.joint_count; i++) {
+        is_good = check_play(entries, scenario, &ends, i, err);
     }
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        if (!check_play(entries, scenario, i, err)) {
-            return false;
-        }
-    }
-    return true;
+    free(ends.firsts);
+    free(ends.ends);
+    return is_good;
 }

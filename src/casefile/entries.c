@@ -51,6 +51,17 @@ const Entry *entries_find(const Entries *entries, const char *path, size_t index
     return find_entry(entries, path, strlen(path), index);
 }
 
+bool entries_have_rival(const Entries *entries, const SchemaRow *row, size_t index)
+{
+    for (size_t i = 0; row->rivalry != SCHEMA_NO_RIVAL && i < SCHEMA_ROW_COUNT; i++) {
+        if (schema_are_rivals(row, &SCHEMA_ROWS[i]) &&
+            entries_at(entries, &SCHEMA_ROWS[i], index) != NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
 const Entry *entries_blame(const Entries *entries, const char *paths, size_t index)
 {
     const Entry *blamed = NULL;
@@ -211,7 +222,7 @@ static bool descend(const Walk *walk, const Position *here, const char *name, Sp
 static bool settle_rivals(const Walk *walk, const Entry *entry)
 {
     Entries *entries = walk->entries;
-    if (entry->row->rivalry == SCHEMA_NO_RIVAL) {
+    if (!entries_have_rival(entries, entry->row, entry->index)) {
         return true;
     }
     for (size_t i = 0; i < entries->count;) {
@@ -254,6 +265,24 @@ static void add_group(const Walk *walk, const Position *position, const Node *no
     entries_add_group(walk->entries, &group);
 }
 
+static bool is_alike(size_t number, const void *sought)
+{
+    (void)number;
+    (void)sought;
+    return true;
+}
+
+// Refuses a key that stands in its map already: only one whose hash does is compared with all.
+static bool check_single(const Walk *walk, const Node *map, const Node *node, Lookup *seen)
+{
+    const uint64_t hash = lookup_hash(node->key->text);
+    if (lookup_find(seen, hash, is_alike, NULL) != LOOKUP_NONE) {
+        return keys_check_single(walk->source, map, node, walk->err);
+    }
+    lookup_add(seen, hash, 0);
+    return true;
+}
+
 // Takes what stands at a position: a value, or the keys below a group.
 static bool walk_node(const Walk *walk, const Position *here, const Node *node)
 {
@@ -265,15 +294,15 @@ static bool walk_node(const Walk *walk, const Position *here, const Node *node)
         return false;
     }
     add_group(walk, here, node);
-    for (const Node *child = node->first; child != NULL; child = child->next) {
+    Lookup seen = {.count = 0};
+    bool is_good = true;
+    for (const Node *child = node->first; is_good && child != NULL; child = child->next) {
         Position below;
-        if (!descend(walk, here, child->key->text, child->key->span, &below) ||
-            !keys_check_single(walk->source, node, child, walk->err) ||
-            !walk_node(walk, &below, child)) {
-            return false;
-        }
+        is_good = descend(walk, here, child->key->text, child->key->span, &below) &&
+                  check_single(walk, node, child, &seen) && walk_node(walk, &below, child);
     }
-    return true;
+    lookup_finish(&seen);
+    return is_good;
 }
 
 // The form whose key stands first in the document: without any it is that of a four-bar.

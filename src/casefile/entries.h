@@ -86,6 +86,9 @@ bool entries_key(Entries *entries, const char *key, size_t key_start, const Sour
 // The entry of a row's path (with `*`), or NULL where the key was not given.
 const Entry *entries_find(const Entries *entries, const char *path, size_t index);
 
+// Whether a rival of a row's key is given.
+bool entries_have_rival(const Entries *entries, const SchemaRow *row, size_t index);
+
 // The entry to point at where several keys, their paths separated by blanks, do not fit together:
 // of those given, the first that overrides the case, else the first. NULL where none is given.
 const Entry *entries_blame(const Entries *entries, const char *paths, size_t index);

@@ -23,8 +23,8 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
         {JOINT_CLEARANCE, "joints.*.hole joints.*.pin joints.*.radial-clearance joints.*.width "
                           "joints.*.start"},
     };
-    const bool is_named = entries_group(entries, "joints.*", joint) != NULL;
     if (entries->form != SCHEMA_LONG) {
+        const bool is_named = entries_group(entries, "joints.*", joint) != NULL;
         const bool slides = entries->form == SCHEMA_SLIDER_CRANK && joint == SLIDER_GUIDE;
         return slides ? (is_named ? JOINT_GUIDE : JOINT_PRISMATIC)
                       : (is_named ? JOINT_CLEARANCE : JOINT_REVOLUTE);
