@@ -71,7 +71,8 @@ static void judge(const Ladder *ladder, LadderPoint *point)
                !isfinite(error_of(ladder, point))) {
         explain(point, why_without_error(ladder, point));
     } else if (!(error_of(ladder, point) < UNSTABLE)) {
-        fail(point, "unstable: the speeds are off by their own size and more");
+        fail(point,
+             "the speeds are off by their own size and more: unstable, or impacts at other times");
     } else {
         point->error = error_of(ladder, point);
     }

@@ -156,7 +156,7 @@ double tune_error(const Tune *tune, const LadderRun *run, char reason[LADDER_MES
     } else if (!run->error.is_known || !isfinite(error)) {
         why = "has no error: its numbers are not finite";
     } else if (!(error < UNSTABLE)) {
-        why = "unstable: the speeds are off by their own size and more";
+        why = "the speeds are off by their own size and more: unstable, or impacts at other times";
     }
     snprintf(reason, LADDER_MESSAGE_SIZE, "%s", why != NULL ? why : "");
     return why != NULL ? NAN : error;
