@@ -73,7 +73,7 @@ static void a_chosen_step_says_why_its_error_is_not_known_further(void **state)
     }
 }
 
-static void springs_and_torques_are_named(void **state)
+static void springs_torques_and_friction_are_named(void **state)
 {
     Fixture *fixture = *state;
     Linkage *linkage = &fixture->scenario.linkage;
@@ -88,6 +88,7 @@ static void springs_and_torques_are_named(void **state)
         "idle: neither stiffness nor damping\n",
         "brake: damping 0.05 N m s/rad at crank-coupler\n",
         "drive       torque -0.3 to 0.5 N m by 2 points over time at ground-crank\n",
+        "friction    coefficient 0.08\n",
         NULL,
     };
     Text text;
@@ -95,8 +96,10 @@ static void springs_and_torques_are_named(void **state)
     run_text_write(&fixture->report, &STYLE_PLAIN, &text);
     assert_null(strstr(text.data, "  springs "));
     assert_null(strstr(text.data, "torque -0.3"));
+    assert_null(strstr(text.data, "friction    coefficient"));
     text_finish(&text);
     const Linkage kept = *linkage;
+    fixture->scenario.contact.friction = 0.08;
     linkage->springs = springs;
     linkage->spring_count = 3;
     linkage->torsions = torsions;
@@ -444,7 +447,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_text_says_what_was_modelled_and_what_came_out,
                                         fixture_set_up, fixture_tear_down),
-        cmocka_unit_test_setup_teardown(springs_and_torques_are_named, fixture_set_up,
+        cmocka_unit_test_setup_teardown(springs_torques_and_friction_are_named, fixture_set_up,
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(what_is_rounding_is_shown_as_nothing_and_kept_in_json,
                                         fixture_set_up, fixture_tear_down),

@@ -290,6 +290,9 @@ static void write_contact(const Scenario *scenario, size_t width, Text *text)
         text_finish(&said);
     }
     alike_end(alike, "  contact     ", ": ", width, text);
+    if (scenario->contact.friction > 0.0 && scenario_has_clearance(scenario)) {
+        text_append(text, "  friction    coefficient %.4g\n", scenario->contact.friction);
+    }
 }
 
 static void write_models(const RunReport *report, const Style *style, Text *text)
