@@ -68,6 +68,19 @@ static double expected_best(const Tune *tune, const TuneLeft *left)
     return best;
 }
 
+// How much longer than the processor's time runs take by the clock, where other work goes on beside
+// them: 1 on an idle machine.
+static double slowness(const Tune *tune)
+{
+    double wall_s = 0.0;
+    double processor_s = 0.0;
+    for (size_t i = 0; i < tune->trial_count; i++) {
+        wall_s += tune->trials[i].run.wall_s;
+        processor_s += tune->trials[i].run.processor_s;
+    }
+    return processor_s > 0.0 ? fmax(1.0, wall_s / processor_s) : 1.0;
+}
+
 double tune_left(const Tune *tune, const TuneLeft *left)
 {
     const double most = left->margin * expected_best(tune, left);
@@ -83,5 +96,5 @@ double tune_left(const Tune *tune, const TuneLeft *left)
             left_s += time_s;
         }
     }
-    return left_s;
+    return slowness(tune) * left_s;
 }

@@ -12,7 +12,7 @@ typedef struct TuneLeft {
     bool is_reopened; // schemes that were ended because they cost more go on
 } TuneLeft;
 
-// The time, s, of the runs that are to be expected one after another. Errors are taken to go on
-// falling as between the last two settings of a scheme; schemes that have not been run are left
-// out.
+// The time by the clock, s, of the runs that are to be expected one after another. Errors are taken
+// to go on falling as between the last two settings of a scheme; schemes that have not been run are
+// left out.
 double tune_left(const Tune *tune, const TuneLeft *left);
