@@ -15,9 +15,9 @@
 //   one
 //           before the next one goes on
 //   SOLVER  direct, quick: plain steps of ODE; staggered; impulse; reference
-// Prints bodies, joints, us and evaluations a step, and the memory that the solver takes, KiB; of
-// loose mechanisms under impulse once pins touch. A
-// step is one of 20 us of ODE's world, or one of the reference's own. Nobody looks at the states in
+// Prints bodies, joints, us and evaluations a step, the memory that the solver takes, KiB, and how
+// many steps these are, refused ones too; of loose mechanisms under impulse once pins touch. A step
+// is one of 20 us of ODE's world, or one of the reference's own. Nobody looks at the states in
 // between. tests/measure/growth.sh makes tables of it.
 //
 // Whatever N is, steps are those of the same stretch of time, and small ones are run one after the
@@ -335,10 +335,11 @@ static bool measure(const Task *task, const Scenario *scenario, const Solver *so
 
 static void print_totals(const Linkage *linkage, const Totals *totals)
 {
-    printf("%zu bodies %zu joints %.3f us a step %.1f evaluations a step %zu KiB %.3f ms to open\n",
+    printf("%zu bodies %zu joints %.3f us a step %.1f evaluations a step %zu KiB %.3f ms to open, "
+           "%.0f steps in all\n",
            linkage->body_count, linkage->joint_count, 1e6 * totals->taken_s / totals->steps,
            totals->evaluations / totals->steps, totals->bytes / totals->copies / 1024,
-           1e3 * totals->opening_s / (double)totals->copies);
+           1e3 * totals->opening_s / (double)totals->copies, totals->steps);
 }
 
 // Builds and runs the number asked for, of bars from a number on, and moves that on.
