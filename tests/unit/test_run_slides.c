@@ -135,6 +135,27 @@ static void a_picture_shows_where_limited_coordinates_are(void **state)
     }
 }
 
+// A gap is a small part of the way between stops: each kind has its own panel.
+static void backlash_and_stops_have_panels_of_their_own(void **state)
+{
+    Fixture *fixture = *state;
+    static const char GAP[] = "Angle of the joint in its backlash; dashed: flanks";
+    static const char STOPS[] = "Angle of the joint; dashed: stops";
+    Joint *joints = fixture->scenario.linkage.joints;
+    for (int which = 1; which <= 3; which++) {
+        joints[2].limits =
+            (Limits){.kind = (which & 1) != 0 ? LIMIT_BACKLASH : LIMIT_NONE, .backlash = 0.01};
+        joints[3].limits =
+            (Limits){.kind = (which & 2) != 0 ? LIMIT_STOPS : LIMIT_NONE, .low = -2.0, .high = 2.0};
+        Text svg;
+        text_init(&svg);
+        plot_run_write(&fixture->report, &svg);
+        assert_int_equal(strstr(svg.data, GAP) != NULL, (which & 1) != 0);
+        assert_int_equal(strstr(svg.data, STOPS) != NULL, (which & 2) != 0);
+        text_finish(&svg);
+    }
+}
+
 static void a_stop_says_what_touches_what(void **state)
 {
     Fixture *fixture = *state;
@@ -171,6 +192,8 @@ int main(void)
                                         fixture_set_up, fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_picture_shows_where_limited_coordinates_are,
                                         fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(backlash_and_stops_have_panels_of_their_own, fixture_set_up,
+                                        fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_stop_says_what_touches_what, fixture_set_up,
                                         fixture_tear_down),
     };

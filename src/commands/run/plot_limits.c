@@ -1,7 +1,8 @@
 // Where were coordinates between their flanks or stops?
 //
-// Of a backlash the coordinate is shown from the middle of the gap, of stops as it is. Over a
-// torque that changes and drives it, it is the loop that a test of a servo or a gear shows.
+// Of a backlash the coordinate is shown from the middle of the gap, of stops as it is: by
+// themselves, for a gap is a small part of the way between stops. Over a torque that changes and
+// drives it, it is the loop that a test of a servo or a gear shows.
 #include "commands/run/plot_look.h"
 #include "model/coordinate.h"
 #include "write/units.h"
@@ -35,11 +36,12 @@ static double length_of(const RunReport *report, const Trajectory *run, size_t s
     return (length - (of->kind == JOINT_GEAR ? 0.0 : origin_of(of))) * UNITS_MM;
 }
 
-// A panel of all limited coordinates that are angles, or that are lengths.
+// A panel of all coordinates with backlash or with stops that are angles, or that are lengths.
 typedef struct LimitPanel {
     const char *title;
     const char *axis;
     bool is_angle;
+    LimitKind kind;
     double unit;
     PlotQuantity quantity;
 } LimitPanel;
@@ -47,7 +49,7 @@ typedef struct LimitPanel {
 static bool shows(const LimitPanel *limits, const PlotView *view, size_t run, size_t joint)
 {
     const Joint *of = joint_of(view->report, joint);
-    return of->limits.kind != LIMIT_NONE && linkage_is_torsional(of) == limits->is_angle &&
+    return of->limits.kind == limits->kind && linkage_is_torsional(of) == limits->is_angle &&
            !view->joints.is_left_out[joint] && trajectory_feels_play(view->report->runs[run], of);
 }
 
@@ -122,27 +124,45 @@ static void draw(const LimitPanel *limits, const PlotView *view, PlotPanel panel
     plot_leave(&panel);
 }
 
+static LimitPanel panel_of(bool is_angle, LimitKind kind)
+{
+    static const char *const TITLES[2][2] = {
+        {"Travel of the slider; dashed: stops", "Angle of the joint; dashed: stops"},
+        {"Teeth or slider in the backlash; dashed: flanks",
+         "Angle of the joint in its backlash; dashed: flanks"}};
+    return (LimitPanel){
+        .title = TITLES[kind == LIMIT_BACKLASH ? 1 : 0][is_angle ? 1 : 0],
+        .axis = is_angle ? "angle, deg" : "travel, mm",
+        .is_angle = is_angle,
+        .kind = kind,
+        .unit = is_angle ? UNITS_DEG : UNITS_MM,
+        .quantity = {is_angle ? "angle, deg" : "travel, mm", true, -1,
+                     is_angle ? angle_of : length_of},
+    };
+}
+
 void plot_limits_angles(const PlotView *view, PlotPanel panel)
 {
-    const LimitPanel angles = {
-        .title = "Angle of the joint; dashed: flanks and stops",
-        .axis = "angle, deg",
-        .is_angle = true,
-        .unit = UNITS_DEG,
-        .quantity = {"angle, deg", true, -1, angle_of},
-    };
-    draw(&angles, view, panel);
+    const LimitPanel limits = panel_of(true, LIMIT_STOPS);
+    draw(&limits, view, panel);
 }
 
 void plot_limits_lengths(const PlotView *view, PlotPanel panel)
 {
-    const LimitPanel lengths = {
-        .title = "Travel of slider or teeth; dashed: flanks and stops",
-        .axis = "travel, mm",
-        .unit = UNITS_MM,
-        .quantity = {"travel, mm", true, -1, length_of},
-    };
-    draw(&lengths, view, panel);
+    const LimitPanel limits = panel_of(false, LIMIT_STOPS);
+    draw(&limits, view, panel);
+}
+
+void plot_limits_angle_gaps(const PlotView *view, PlotPanel panel)
+{
+    const LimitPanel limits = panel_of(true, LIMIT_BACKLASH);
+    draw(&limits, view, panel);
+}
+
+void plot_limits_length_gaps(const PlotView *view, PlotPanel panel)
+{
+    const LimitPanel limits = panel_of(false, LIMIT_BACKLASH);
+    draw(&limits, view, panel);
 }
 
 // The coordinate over what drives it at the same time.
@@ -175,11 +195,7 @@ void plot_limits_loop(const PlotView *view, PlotPanel panel)
     const RunReport *report = view->report;
     const size_t joint = (size_t)report->scenario->linkage.torque.joint;
     const bool is_angle = linkage_is_torsional(joint_of(report, joint));
-    const LimitPanel limits = {
-        .is_angle = is_angle,
-        .unit = is_angle ? UNITS_DEG : UNITS_MM,
-        .quantity = {"", true, -1, is_angle ? angle_of : length_of},
-    };
+    const LimitPanel limits = panel_of(is_angle, joint_of(report, joint)->limits.kind);
     const PlotPath path = {.joint = joint, .at = loop_at};
     panel.title = is_angle ? "Angle over torque; dashed: flanks and stops"
                            : "Travel over force; dashed: flanks and stops";
@@ -206,11 +222,11 @@ bool plot_limits_has_loop(const Linkage *linkage)
     return is_changing && linkage->joints[linkage->torque.joint].limits.kind != LIMIT_NONE;
 }
 
-bool plot_limits_any(const Linkage *linkage, bool is_angle)
+bool plot_limits_any(const Linkage *linkage, bool is_angle, LimitKind kind)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (joint->limits.kind != LIMIT_NONE && linkage_is_torsional(joint) == is_angle) {
+        if (joint->limits.kind == kind && linkage_is_torsional(joint) == is_angle) {
             return true;
         }
     }

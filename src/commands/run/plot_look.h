@@ -98,11 +98,13 @@ void plot_slides_offsets(const PlotView *view, PlotPanel panel);
 void plot_slides_tilts(const PlotView *view, PlotPanel panel);
 void plot_slides_stops(const PlotView *view, PlotPanel panel);
 
-// Of limited coordinates: where they are between their flanks or stops; and whether a linkage has
-// any that are angles, or lengths.
+// Of limited coordinates: where they are between their stops, or in their backlash; and whether a
+// linkage has any of a kind that are angles, or lengths.
 void plot_limits_angles(const PlotView *view, PlotPanel panel);
 void plot_limits_lengths(const PlotView *view, PlotPanel panel);
-bool plot_limits_any(const Linkage *linkage, bool is_angle);
+void plot_limits_angle_gaps(const PlotView *view, PlotPanel panel);
+void plot_limits_length_gaps(const PlotView *view, PlotPanel panel);
+bool plot_limits_any(const Linkage *linkage, bool is_angle, LimitKind kind);
 
 // Of the one that a torque drives that changes over time: where it is over that torque; and whether
 // a linkage has that.

@@ -135,7 +135,7 @@ static double draw_legend(const PlotView *view, Text *svg)
 // What is drawn from the second panel of the second row on.
 typedef void (*DrawPanel)(const PlotView *view, PlotPanel panel);
 
-enum { PANEL_MAX = 15 };
+enum { PANEL_MAX = 17 };
 
 static bool has_joint(const RunReport *report, JointKind kind)
 {
@@ -174,11 +174,20 @@ static size_t choose_panels(const PlotView *view, DrawPanel panels[PANEL_MAX])
     if (has_joint(report, JOINT_STOP)) {
         panels[count++] = plot_slides_stops;
     }
-    if (plot_limits_any(&report->scenario->linkage, true)) {
-        panels[count++] = plot_limits_angles;
-    }
-    if (plot_limits_any(&report->scenario->linkage, false)) {
-        panels[count++] = plot_limits_lengths;
+    static const struct {
+        bool is_angle;
+        LimitKind kind;
+        DrawPanel draw;
+    } LIMITED[] = {
+        {true, LIMIT_BACKLASH, plot_limits_angle_gaps},
+        {true, LIMIT_STOPS, plot_limits_angles},
+        {false, LIMIT_BACKLASH, plot_limits_length_gaps},
+        {false, LIMIT_STOPS, plot_limits_lengths},
+    };
+    for (size_t i = 0; i < sizeof LIMITED / sizeof *LIMITED; i++) {
+        if (plot_limits_any(&report->scenario->linkage, LIMITED[i].is_angle, LIMITED[i].kind)) {
+            panels[count++] = LIMITED[i].draw;
+        }
     }
     if (plot_limits_has_loop(&report->scenario->linkage)) {
         panels[count++] = plot_limits_loop;
