@@ -88,6 +88,15 @@ double plot_y(const PlotPanel *panel, double y)
     return panel->top + panel->height * (1.0 - axis_share(&panel->y, y));
 }
 
+// Of a linear axis of very small or large numbers the power of ten that all of its labels have; else
+// 0.
+static int power_of(const Axis *axis)
+{
+    const double largest = fmax(fabs(axis->low), fabs(axis->high));
+    const bool is_plain = axis->scale != AXIS_LINEAR || (largest >= 1e-3 && largest < 1e6);
+    return is_plain || !(largest > 0.0) ? 0 : (int)floor(log10(largest));
+}
+
 // An axis of many decades is labelled in powers of ten, any other in plain numbers.
 static void append_tick_label(Text *svg, double value, const Axis *axis)
 {
@@ -96,6 +105,8 @@ static void append_tick_label(Text *svg, double value, const Axis *axis)
     if (has_powers && value != 0.0) {
         text_append(svg, "%s10<tspan dy=\"-5\" font-size=\"9\">%.0f</tspan>",
                     value < 0.0 ? "-" : "", round(log10(fabs(value))));
+    } else if (power_of(axis) != 0 && value != 0.0) {
+        text_append(svg, "%.6ge%d", value / pow(10.0, power_of(axis)), power_of(axis));
     } else {
         text_append(svg, fabs(value) < 1e6 ? "%.6g" : "%.3g", value);
     }
