@@ -88,8 +88,8 @@ double plot_y(const PlotPanel *panel, double y)
     return panel->top + panel->height * (1.0 - axis_share(&panel->y, y));
 }
 
-// Of a linear axis of very small or large numbers the power of ten that all of its labels have; else
-// 0.
+// Of a linear axis of very small or large numbers the power of ten that all of its labels have;
+// else 0.
 static int power_of(const Axis *axis)
 {
     const double largest = fmax(fabs(axis->low), fabs(axis->high));
