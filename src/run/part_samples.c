@@ -7,25 +7,21 @@
 #include "base/zeroed.h"
 #include "run/sample_check.h"
 
-PartSamples part_samples_start(const Scenario *scenario, const Solver *solver, const void *state,
-                               Recorder *recorder, const Turning *turning, size_t first)
+PartSamples part_samples_start(Recorder *recorder, const Turning *turning, const Solver *solver,
+                               const void *state)
 {
-    const size_t most = scenario->linkage.body_count;
-    PartSamples samples = {
-        .scenario = scenario,
+    const Linkage *linkage = &recorder->scenario->linkage;
+    return (PartSamples){
+        .scenario = recorder->scenario,
         .solver = solver,
         .state = state,
         .recorder = recorder,
         .turning = turning,
         .trajectory = recorder->trajectory,
-        .sample = sample_create(&scenario->linkage),
-        .parts = zeroed(most, sizeof(const SolverPart *)),
-        .next = zeroed(most, sizeof(size_t)),
+        .sample = sample_create(linkage),
+        .parts = zeroed(linkage->body_count, sizeof(const SolverPart *)),
+        .next = zeroed(linkage->body_count, sizeof(size_t)),
     };
-    for (size_t i = 0; i < most; i++) {
-        samples.next[i] = first;
-    }
-    return samples;
 }
 
 void part_samples_finish(PartSamples *samples)

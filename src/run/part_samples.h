@@ -14,13 +14,13 @@ typedef struct PartSamples {
     Trajectory *trajectory;   // receives the samples
     Sample sample;            // owned, as are the arrays
     const SolverPart **parts; // by number, as they are met; NULL: not yet
-    size_t *next;             // by number, its next sample
+    size_t *next;             // by number, the sample that is its next
     size_t part_count;        // numbers so far
 } PartSamples;
 
-// Beginning with one sample.
-PartSamples part_samples_start(const Scenario *scenario, const Solver *solver, const void *state,
-                               Recorder *recorder, const Turning *turning, size_t first);
+// The samples go into the recorder's trajectory. All arguments must outlive the result.
+PartSamples part_samples_start(Recorder *recorder, const Turning *turning, const Solver *solver,
+                               const void *state);
 void part_samples_finish(PartSamples *samples);
 
 // Takes the samples of a part that its last record has reached. Fails with ERR_SOLVER where one is

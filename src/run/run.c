@@ -57,7 +57,7 @@ static bool take_record(Loop *loop, double stop_s, StepRecord *record, Err *err)
     }
     turning_add(&loop->turning, record);
     loop->has_parts = record->part != NULL;
-    if (loop->is_ahead && !part_samples_take(&loop->ahead, record, err)) {
+    if (loop->has_parts && !part_samples_take(&loop->ahead, record, err)) {
         return false;
     }
     loop->steps++;
@@ -142,6 +142,15 @@ static bool may_go_on(Loop *loop, const Trajectory *trajectory, size_t sample, E
     return !loop->is_stopped;
 }
 
+// Looks where the run begins, which the first step has to tell.
+static void note_start(Loop *loop)
+{
+    Sample sample = loop->sample;
+    loop->solver->observe(loop->state, 0.0, &sample);
+    loop->start_energy =
+        mechanical_energy(loop->scenario, &sample) + stored_energy(loop->scenario, &sample);
+}
+
 // Takes one sample of all bodies, to which all have been stepped.
 static bool take_sample(Loop *loop, Trajectory *trajectory, size_t k, Err *err)
 {
@@ -151,35 +160,39 @@ static bool take_sample(Loop *loop, Trajectory *trajectory, size_t k, Err *err)
         return false;
     }
     turning_unwrap(&loop->turning, NULL, &sample);
-    if (k == 0) {
-        loop->start_energy =
-            mechanical_energy(loop->scenario, &sample) + stored_energy(loop->scenario, &sample);
-    }
     recorder_see(&loop->recorder, NULL, &sample);
     trajectory_store(trajectory, k, &sample);
     return may_go_on(loop, trajectory, k, err);
 }
 
-// Takes the samples from one on, of each mechanism while its steps come.
-static bool take_ahead(Loop *loop, Trajectory *trajectory, size_t first, Err *err)
+// Takes all samples, of each mechanism while its steps come: the first step may hold several.
+static bool take_ahead(Loop *loop, Trajectory *trajectory, Err *err)
 {
-    size_t k = first;
-    bool is_right = true;
-    loop->ahead = part_samples_start(loop->scenario, loop->solver, loop->state, &loop->recorder,
-                                     &loop->turning, first);
-    loop->is_ahead = true;
-    while (is_right && k < trajectory->sample_count) {
+    for (size_t k = 0; k < trajectory->sample_count;) {
         const size_t left = trajectory->sample_count - k;
         const size_t behind = k + (left < AHEAD_MOST ? left : AHEAD_MOST);
-        is_right = reach(loop, scenario_sample_time(loop->scenario, behind - 1), err) &&
-                   part_samples_complete(&loop->ahead, behind, err);
-        for (; is_right && k < behind; k++) {
-            is_right = may_go_on(loop, trajectory, k, err);
+        if (!reach(loop, scenario_sample_time(loop->scenario, behind - 1), err) ||
+            !part_samples_complete(&loop->ahead, behind, err)) {
+            return false;
+        }
+        for (; k < behind; k++) {
+            if (!may_go_on(loop, trajectory, k, err)) {
+                return false;
+            }
         }
     }
-    loop->is_ahead = false;
-    part_samples_finish(&loop->ahead);
-    return is_right;
+    return true;
+}
+
+static bool take_samples(Loop *loop, Trajectory *trajectory, Err *err)
+{
+    for (size_t k = 0; k < trajectory->sample_count; k++) {
+        if (!reach(loop, scenario_sample_time(loop->scenario, k), err) ||
+            !take_sample(loop, trajectory, k, err)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
@@ -188,17 +201,9 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
     if (!take_step(loop, scenario_sample_time(loop->scenario, 1), err)) {
         return false;
     }
-    for (size_t k = 0; k < trajectory->sample_count; k++) {
-        const double time_s = scenario_sample_time(loop->scenario, k);
-        if (loop->has_parts && time_s > loop->reached_s) {
-            if (!take_ahead(loop, trajectory, k, err)) {
-                return false;
-            }
-            break;
-        }
-        if (!reach(loop, time_s, err) || !take_sample(loop, trajectory, k, err)) {
-            return false;
-        }
+    note_start(loop);
+    if (!(loop->has_parts ? take_ahead : take_samples)(loop, trajectory, err)) {
+        return false;
     }
     // what is left after the last whole sample interval
     return reach(loop, scenario_duration(loop->scenario), err);
@@ -278,6 +283,7 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     loop.turning = turning_start(&scenario->linkage);
     loop.sample = sample_create(&scenario->linkage);
     loop.recorder = recorder_start(scenario, trajectory);
+    loop.ahead = part_samples_start(&loop.recorder, &loop.turning, solver, loop.state);
     loop.probe_own =
         probe == NULL ? NULL : probe->begin(scenario, solver, loop.state, &loop.recorder);
     loop.started_s = clock_now_s();
@@ -302,6 +308,7 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     }
     snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
     solver->close(loop.state);
+    part_samples_finish(&loop.ahead);
     turning_finish(&loop.turning);
     sample_free(&loop.sample);
     return trajectory;
