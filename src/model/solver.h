@@ -38,6 +38,7 @@ typedef struct StepRecord {
     double end_s;
     double joint_s;           // the instant that the joints' states belong to
     const double *omega;      // rad/s, of each body at end_s
+    bool is_smooth;           // no event lies within it: between its ends a polynomial follows
     bool is_mean;             // alpha and forces are means over the step, not those at its end
     const double *alpha;      // rad/s^2, of each body
     const JointState *joints; // force and gap as the force arose

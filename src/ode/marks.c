@@ -8,7 +8,14 @@
 #include <assert.h>
 #include <stdlib.h>
 
-static void add_mark(Marks *marks, double time_s, size_t node)
+// Marks of a step that each have a part of it.
+enum { MARKS_FEW = 16 };
+
+// Of the step: the maxima of one swing, of which a step holds a few at most, are too low by the
+// square of this where they are seen so much too early or too late.
+static const double ALIKE = 1e-4;
+
+static void add_mark(Marks *marks, double time_s, size_t node, bool is_top)
 {
     if (marks->count == marks->room) {
         marks->room = 2 * marks->room + 16;
@@ -21,7 +28,7 @@ static void add_mark(Marks *marks, double time_s, size_t node)
         marks->marks[at] = marks->marks[at - 1];
         at--;
     }
-    marks->marks[at] = (Mark){time_s, node};
+    marks->marks[at] = (Mark){time_s, node, is_top};
 }
 
 // The square of a joint's force at a node.
@@ -66,13 +73,13 @@ static void mark_maxima(Marks *marks, const Encounter *encounter, size_t joint, 
     const double before = encounter->closings[node * count + joint];
     const double behind = encounter->closings[(node + 1) * count + joint];
     if (before > 0.0 && behind <= 0.0) {
-        add_mark(marks, start_s + (end_s - start_s) * before / (before - behind), node);
+        add_mark(marks, start_s + (end_s - start_s) * before / (before - behind), node, true);
     }
     const double peaks[2] = {force_peak(encounter, joint, node),
                              force_peak(encounter, joint, node + 1)};
     for (int i = 0; i < 2; i++) {
         if (peaks[i] >= start_s && peaks[i] < end_s) {
-            add_mark(marks, peaks[i], node);
+            add_mark(marks, peaks[i], node, true);
         }
     }
 }
@@ -111,6 +118,22 @@ static size_t last_at_once(const Encounter *encounter, size_t node)
     return node;
 }
 
+// Leaves out the maxima that come so soon behind another one.
+static void thin(Marks *marks, double alike_s)
+{
+    size_t kept = 0;
+    double top_s = -INFINITY;
+    for (size_t i = 0; i < marks->count; i++) {
+        const Mark mark = marks->marks[i];
+        if (mark.is_top && mark.time_s - top_s < alike_s) {
+            continue;
+        }
+        top_s = mark.is_top ? mark.time_s : top_s;
+        marks->marks[kept++] = mark;
+    }
+    marks->count = kept;
+}
+
 void marks_find(Marks *marks, const Encounter *encounter)
 {
     marks->count = 0;
@@ -121,9 +144,9 @@ void marks_find(Marks *marks, const Encounter *encounter)
         if (behind > node) {
             // contacts end or begin, maybe several: the part before them ends here, and at an onset
             // a damper may press hardest
-            add_mark(marks, encounter->times[node], node > 0 ? node - 1 : node);
+            add_mark(marks, encounter->times[node], node > 0 ? node - 1 : node, false);
             if (is_any_new(encounter, behind, node)) {
-                add_mark(marks, encounter->times[node], behind);
+                add_mark(marks, encounter->times[node], behind, false);
             }
             if (behind == last) {
                 break;
@@ -134,7 +157,10 @@ void marks_find(Marks *marks, const Encounter *encounter)
     }
     // what begins or ends at the very end has done so
     const bool is_inside = last > 0 && encounter->times[last - 1] < encounter->times[last];
-    add_mark(marks, encounter->times[last], is_inside ? last - 1 : last);
+    add_mark(marks, encounter->times[last], is_inside ? last - 1 : last, false);
+    if (marks->count > MARKS_FEW) {
+        thin(marks, ALIKE * (encounter->times[last] - encounter->times[0]));
+    }
 }
 
 void marks_finish(Marks *marks)

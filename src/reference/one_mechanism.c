@@ -241,6 +241,7 @@ static StepRecord reference_record(const void *state)
         .start_s = reference->start_s,
         .end_s = reference->end_s,
         .joint_s = reference->end_s,
+        .is_smooth = true,
         .omega = reference->omega,
         .alpha = reference->alpha,
         .joints = reference->joints,

@@ -25,7 +25,8 @@ static const double ALIKE = 1e-12;
 
 enum { POINTS_MAX = LOOK_PARTS_MAX + 4 };
 
-// Signals that are climbed to the top of one by one; to look at a crowd takes as much as for two.
+// Signals that are climbed to the top of one by one in a step: the others are seen at the same
+// looks, which for signals of one impact are near their tops. A crowd takes as many looks as two.
 enum { SOUGHT_MOST = 16 };
 
 enum { CLIMBS_MAX = 12 }; // a parabola gains half as many digits again each time
@@ -317,19 +318,25 @@ static bool may_turn(const Looker *looker, size_t body, const Look *first, const
            fmin(first->omega[body], last->omega[body]) - room < extremes->omega_min.value;
 }
 
-static void look_for_turns(Looker *looker, const Look *first, const Look *last)
+// Looks for them; at most so many are sought. Returns how many were.
+static size_t look_for_turns(Looker *looker, const Look *first, const Look *last, size_t most)
 {
     const size_t body_count = solver_body_count(looker->part, &looker->scenario->linkage);
-    for (size_t k = 0; k < body_count; k++) {
+    size_t sought = 0;
+    for (size_t k = 0; k < body_count && sought < most; k++) {
         const size_t i = solver_body(looker->part, k);
         Turn turn = {looker, i};
         double time_s;
-        if (may_turn(looker, i, first, last) &&
-            root_find(turn_rate, &turn, first->time_s, last->time_s,
+        if (!may_turn(looker, i, first, last)) {
+            continue;
+        }
+        sought++;
+        if (root_find(turn_rate, &turn, first->time_s, last->time_s,
                       NEXT_TO_END * (last->time_s - first->time_s), &time_s)) {
             turn_rate(time_s, &turn); // for the recorder
         }
     }
+    return sought;
 }
 
 bool look_is_crowd(Looker *looker, const Look *before, int parts, const Look *looks)
@@ -357,8 +364,9 @@ int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[
     const double end_s = looks[parts - 1].time_s;
     const double width_s = end_s - before->time_s;
     const Look *first = before;
+    size_t sought = 0;
     for (int k = 0; k < parts; k++) {
-        look_for_turns(looker, first, &looks[k]);
+        sought += look_for_turns(looker, first, &looks[k], SOUGHT_MOST - sought);
         first = &looks[k];
     }
     if (!(width_s > 0.0) || count_near(looker, before, parts, looks, 1) == 0) {
@@ -378,10 +386,12 @@ int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[
     points[count++] = looks[parts - 1];
     int look_count = parts;
     Aim aim;
-    for (size_t number = 0; next_aim(looker, &number, &aim);) {
+    sought = 0;
+    for (size_t number = 0; sought < SOUGHT_MOST && next_aim(looker, &number, &aim);) {
         Look top;
         if (find_top(&aim, count, points, &top)) {
             look_count = insert(looks, look_count, &top);
+            sought++;
         }
     }
     return look_count;

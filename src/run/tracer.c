@@ -217,7 +217,7 @@ static void add_instants(Tracer *tracer, const StepRecord *step)
     }
     looks[parts - 1] = look_at_end(&tracer->looker, step);
     int count = parts;
-    if (look_is_crowd(&tracer->looker, &tracer->last, parts, looks)) {
+    if (step->is_smooth && look_is_crowd(&tracer->looker, &tracer->last, parts, looks)) {
         look_at_crowd(&tracer->looker, &tracer->last, &looks[parts - 1]);
     } else {
         count = look_for_extremes(&tracer->looker, &tracer->last, parts, looks);

@@ -41,7 +41,7 @@ static void the_greatest_force_and_depth_are_marked(void **state)
         // control: no node need stand where the force is greatest
         double at_nodes = 0.0;
         for (size_t node = 0; node < pin.node_count; node++) {
-            const Mark mark = {pin.times[node], node};
+            const Mark mark = {.time_s = pin.times[node], .node = node};
             at_nodes = fmax(at_nodes, vec2_length(pose_at(&pin, &mark).force));
         }
         worst_node = fmax(worst_node, 1.0 - at_nodes / true_force);
