@@ -165,12 +165,6 @@ static bool impulse_step(void *state, double stop_s, Err *err)
            stepping_fail(step->scenario, impulse->part.end_s, step->count, step->width_s, err);
 }
 
-bool impulse_is_at_end(const void *state)
-{
-    const Impulse *impulse = state;
-    return impulse->part.is_last;
-}
-
 dWorldID impulse_world(const void *state)
 {
     const Impulse *impulse = state;

@@ -26,7 +26,8 @@ static const Solver *choose(const Scenario *scenario)
     };
     const bool is_spatial = scenario->linkage.is_spatial;
     if (scenario_integrates_contacts(scenario)) {
-        const bool has_parts = impulse_parts_count(scenario) > 1;
+        const Linkage *linkage = &scenario->linkage;
+        const bool has_parts = linkage->body_count > 0 && members_count(linkage) > 1;
         return is_spatial ? (has_parts ? &SPACE_IMPULSE_PARTS : &SPACE_IMPULSE)
                           : (has_parts ? &STEPPING_IMPULSE_PARTS : &STEPPING_IMPULSE);
     }

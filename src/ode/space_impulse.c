@@ -242,12 +242,6 @@ static SolverModel space_impulse_model(const void *state)
     return model;
 }
 
-static bool space_impulse_is_at_end(const void *state)
-{
-    const SpaceImpulse *impulse = state;
-    return impulse->part.is_last;
-}
-
 static dWorldID space_impulse_world(const void *state)
 {
     const SpaceImpulse *impulse = state;
@@ -256,20 +250,18 @@ static dWorldID space_impulse_world(const void *state)
 
 static bool open_parts(const Scenario *scenario, void **state, Err *err)
 {
-    static const ImpulsePartsOf SPACE = {&SPACE_IMPULSE, space_impulse_is_at_end,
-                                         space_impulse_world};
-    return impulse_parts_open(scenario, &SPACE, state, err);
+    return impulse_parts_open(scenario, &SPACE_IMPULSE, space_impulse_world, state, err);
 }
 
 const Solver SPACE_IMPULSE_PARTS = {
     .name = "impulse",
     .open = open_parts,
-    .step = impulse_parts_step,
-    .record = impulse_parts_record,
-    .observe = impulse_parts_observe,
-    .observe_part = impulse_parts_observe_part,
-    .model = impulse_parts_model,
-    .close = impulse_parts_close,
+    .step = several_step,
+    .record = several_record,
+    .observe = several_observe,
+    .observe_part = several_observe_part,
+    .model = several_model,
+    .close = several_close,
 };
 
 const Solver SPACE_IMPULSE = {
