@@ -258,6 +258,14 @@ static void show_extremes(const Scenario *scenario, Trajectory *trajectory)
     }
 }
 
+// Up to where the driven mechanism has been stepped, which may be ahead of others, or all where
+// none is driven.
+static double driven_until(const Loop *loop)
+{
+    const int driven = linkage_driven_body(&loop->scenario->linkage);
+    return driven != LINKAGE_GROUND ? loop->turning.told_s[driven] : loop->reached_s;
+}
+
 Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatch watch)
 {
     return run_guarded(scenario, solver, watch, NULL, NULL);
@@ -301,7 +309,7 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     }
     trajectory->is_complete = is_done;
     if (!loop.is_stopped) {
-        lock_explain(scenario, loop.reached_s, &err);
+        lock_explain(scenario, driven_until(&loop), &err);
     }
     if (loop.probe_own != NULL) {
         probe->end(loop.probe_own, trajectory);

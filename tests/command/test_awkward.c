@@ -4,6 +4,10 @@
 
 #include "random_case.h"
 
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
 // Writes a case of a kind and runs it on a solver with options.
 static void run_case(Program *program, const CaseKind *kind, uint64_t seed, const char *options)
 {
@@ -96,6 +100,43 @@ static void a_lock_is_called_a_lock_on_every_solver(void **state)
     assert_int_equal(program->status, 0);
 }
 
+// Writes a case that locks, with a pendulum beside the mechanism.
+static void write_with_pendulum(Program *program, uint64_t seed)
+{
+    char path[PROGRAM_PATH_SIZE];
+    char *text = NULL;
+    size_t size = 0;
+    FILE *memory = open_memstream(&text, &size);
+    assert_non_null(memory);
+    CASE_LOCK.write(seed, memory);
+    fclose(memory);
+    program_path(program, "case.yaml", path);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    for (char *line = strtok(text, "\n"); line != NULL; line = strtok(NULL, "\n")) {
+        fprintf(stream, "%s\n", line);
+        if (strcmp(line, "bodies:") == 0) {
+            fputs("  bob: {mass: 1 kg, inertia: 0.1 kg m^2, at: [9.5 m, 0 m]}\n", stream);
+        } else if (strcmp(line, "joints:") == 0) {
+            fputs("  hook: {between: [ground, bob], at: [9 m, 0 m]}\n", stream);
+        }
+    }
+    fclose(stream);
+    free(text);
+}
+
+// The pendulum is ahead of the mechanism by up to half a turn of the crank, or behind it.
+static void a_lock_is_called_a_lock_beside_another_mechanism(void **state)
+{
+    Program *program = *state;
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        write_with_pendulum(program, seed);
+        program_run(program, "run case.yaml --quiet --backend reference --set run.samples=36");
+        assert_int_equal(program->status, 4);
+        assert_says(program->errors, "with ideal joints the mechanism locks at a crank angle");
+    }
+}
+
 // Without a drive there is no crank angle to speak of.
 static void a_pin_through_its_wall_is_told_with_joint_and_time(void **state)
 {
@@ -137,6 +178,7 @@ int main(void)
         COMMAND_TEST(pins_that_start_on_the_wall_run_to_their_end),
         COMMAND_TEST(change_points_are_passed),
         COMMAND_TEST(a_lock_is_called_a_lock_on_every_solver),
+        COMMAND_TEST(a_lock_is_called_a_lock_beside_another_mechanism),
         COMMAND_TEST(a_pin_through_its_wall_is_told_with_joint_and_time),
         COMMAND_TEST(masses_far_apart_are_followed),
     };
