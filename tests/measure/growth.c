@@ -12,13 +12,13 @@
 //           space-damped, of a chain, which hangs, or a row: all pins lie on their walls, damped
 //           so strongly that the reference's steps are implicit
 //   INTERVAL  steps from one sample to the next, 16: mechanisms side by side take as many as that
-//   one
 //           before the next one goes on
 //   SOLVER  direct, quick: plain steps of ODE; staggered; impulse; reference
 // Prints bodies, joints, us and evaluations a step, the memory that the solver takes, KiB, and how
 // many steps these are, refused ones too; of loose mechanisms under impulse once pins touch. A step
-// is one of 20 us of ODE's world, or one of the reference's own. Nobody looks at the states in
-// between. tests/measure/growth.sh makes tables of it.
+// is one of 20 us of ODE's world, or one of the reference's own; of mechanisms side by side, each
+// of which has its own there, what takes all of them INTERVAL times 20 us on. Nobody looks at the
+// states in between. tests/measure/growth.sh makes tables of it.
 //
 // Whatever N is, steps are those of the same stretch of time, and small ones are run one after the
 // other until they are COPIES, no two of which are alike: how often pins bounce depends on both.
@@ -262,18 +262,21 @@ static bool take_steps(Going *going, size_t steps, Err *err)
 {
     const double end_s = ((double)steps - 0.5) * STEP_S;
     bool is_partial = false; // a step may be handed on in several records
-    for (size_t i = 0; is_partial || (going->is_fixed ? going->reached_s < end_s : i < steps);
-         i++) {
+    for (size_t i = 0; is_partial || (going->is_fixed ? going->reached_s < end_s : i < steps);) {
         if (!is_partial && going->reached_s > going->sample_s - 0.5 * STEP_S) {
             going->sample_s = going->reached_s + (double)going->interval * STEP_S;
         }
-        const double stop_s = going->is_fixed ? fmin(going->sample_s, end_s) : INFINITY;
+        // mechanisms side by side are each stepped to there, one by itself by a step of its own
+        const double stop_s = going->is_fixed ? fmin(going->sample_s, end_s) : going->sample_s;
         if (!going->solver->step(going->state, stop_s, err)) {
             return false;
         }
         const StepRecord record = going->solver->record(going->state);
         is_partial = record.is_partial;
-        going->reached_s = record.end_s;
+        if (!is_partial) {
+            going->reached_s = solver_reached(&record);
+            i++;
+        }
     }
     return true;
 }
