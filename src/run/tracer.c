@@ -325,11 +325,9 @@ static double own_threshold(const Tracer *tracer, const Trace *trace, double lea
            fmax(range_within(trace, from_s, INFINITY), least);
 }
 
-// What a force at its furthest joint makes of a body that hangs at the other end, rad/s^2.
-static double alpha_of_force(const Linkage *linkage, int number, double force)
+// What a force on an arm makes of a body that hangs at the other end, rad/s^2.
+static double alpha_of_force(const Body *body, double arm, double force)
 {
-    const Body *body = &linkage->bodies[number];
-    const double arm = linkage_reach(linkage, number);
     return force * arm / (body->inertia + body->mass * arm * arm);
 }
 
@@ -343,7 +341,8 @@ static void tell_all(Tracer *tracer, Trajectory *trajectory)
         largest = fmax(largest, tracer->force[i].largest);
     }
     for (size_t i = 0; i < linkage->body_count; i++) {
-        const double least = ROUNDING * alpha_of_force(linkage, (int)i, largest);
+        const double least =
+            ROUNDING * alpha_of_force(&linkage->bodies[i], trajectory->reach[i], largest);
         trace_close(&tracer->alpha[i]);
         tell_signal(tracer, &tracer->alpha[i],
                     tracer->scale.is_known ? scenario->run.spike_threshold * tracer->scale.alpha
