@@ -1,6 +1,7 @@
 // From which joints with play does a force reach a body?
 #include "run/causes.h"
 
+#include "base/grouped.h"
 #include "base/leaders.h"
 #include "base/zeroed.h"
 
@@ -28,58 +29,39 @@ static size_t *connect(const Linkage *linkage)
     return leaders;
 }
 
-// The sets whose bodies a joint acts on, two at most; returns how many.
-static size_t sets_of(const Linkage *linkage, const size_t *leaders, const Joint *joint,
-                      size_t sets[2])
+// The set that one end of a joint with play acts on; none where its other end does already.
+static size_t set_of(const Linkage *linkage, const size_t *leaders, size_t end)
 {
-    const int bodies[2] = {joint->body_a, joint->body_b};
-    size_t count = 0;
-    for (size_t end = 0; linkage_has_play(joint) && end < 2; end++) {
-        if (hands_on(linkage, bodies[end])) {
-            const size_t set = leaders[bodies[end]];
-            count += count == 0 || sets[0] != set ? 1 : 0;
-            sets[count - 1] = set;
-        }
+    const Joint *joint = &linkage->joints[end / 2];
+    const bool is_a = end % 2 == 0;
+    const int body = is_a ? joint->body_a : joint->body_b;
+    if (!linkage_has_play(joint) || !hands_on(linkage, body)) {
+        return GROUPED_NONE;
     }
-    return count;
+    const size_t set = leaders[body];
+    return !is_a && set_of(linkage, leaders, end - 1) == set ? GROUPED_NONE : set;
 }
 
 Causes causes_find(const Linkage *linkage)
 {
-    size_t *leaders = connect(linkage);
+    const size_t ends = 2 * linkage->joint_count;
     Causes causes = {
-        .firsts = zeroed(linkage->body_count, sizeof *causes.firsts),
-        .counts = zeroed(linkage->body_count, sizeof *causes.counts),
-        .joints = zeroed(2 * linkage->joint_count, sizeof *causes.joints),
+        .set_of = connect(linkage),
+        .firsts = zeroed(linkage->body_count + 1, sizeof *causes.firsts),
+        .ends = zeroed(ends, sizeof *causes.ends),
     };
-    size_t sets[2];
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        for (size_t k = sets_of(linkage, leaders, &linkage->joints[i], sets); k-- > 0;) {
-            causes.counts[sets[k]]++;
-        }
+    size_t *sets = zeroed(ends, sizeof *sets);
+    for (size_t i = 0; i < ends; i++) {
+        sets[i] = set_of(linkage, causes.set_of, i);
     }
-    for (size_t i = 1; i < linkage->body_count; i++) {
-        causes.firsts[i] = causes.firsts[i - 1] + causes.counts[i - 1];
-        causes.counts[i - 1] = 0;
-    }
-    causes.counts[linkage->body_count - 1] = 0;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        for (size_t k = sets_of(linkage, leaders, &linkage->joints[i], sets); k-- > 0;) {
-            causes.joints[causes.firsts[sets[k]] + causes.counts[sets[k]]++] = (int)i;
-        }
-    }
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        // the first of a set comes before the others
-        causes.firsts[i] = causes.firsts[leaders[i]];
-        causes.counts[i] = causes.counts[leaders[i]];
-    }
-    free(leaders);
+    grouped_list(linkage->body_count, ends, sets, causes.firsts, causes.ends);
+    free(sets);
     return causes;
 }
 
 void causes_finish(Causes *causes)
 {
+    free(causes->set_of);
     free(causes->firsts);
-    free(causes->counts);
-    free(causes->joints);
+    free(causes->ends);
 }

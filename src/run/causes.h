@@ -5,10 +5,22 @@
 #include "model/linkage.h"
 
 typedef struct Causes {
-    size_t *firsts; // by body, where its joints begin in the list; owned, like the next two
-    size_t *counts; // by body
-    int *joints;    // bodies that ideal joints connect share theirs
+    size_t *set_of; // by body, that of the bodies that ideal joints connect it with; owned, as all
+    size_t *firsts; // by set, and one more: where its joints begin in the list
+    size_t *ends;   // each joint as 2 i or 2 i + 1
 } Causes;
+
+// How many joints can make a spike of a body, and one of them.
+static inline size_t causes_count(const Causes *causes, size_t body)
+{
+    const size_t set = causes->set_of[body];
+    return causes->firsts[set + 1] - causes->firsts[set];
+}
+
+static inline size_t causes_joint(const Causes *causes, size_t body, size_t index)
+{
+    return causes->ends[causes->firsts[causes->set_of[body]] + index] / 2;
+}
 
 Causes causes_find(const Linkage *linkage);
 void causes_finish(Causes *causes);

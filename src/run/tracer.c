@@ -268,8 +268,8 @@ static int find_joint(const Tracer *tracer, size_t body, const SignalSpike *spik
     const Causes *causes = &tracer->causes;
     int found = -1;
     double most = 0.0;
-    for (size_t k = 0; k < causes->counts[body]; k++) {
-        const int joint = causes->joints[causes->firsts[body] + k];
+    for (size_t k = 0; k < causes_count(causes, body); k++) {
+        const int joint = (int)causes_joint(causes, body, k);
         const double range = range_within(&tracer->force[joint], spike->onset_s, spike->end_s);
         found = range > most ? joint : found;
         most = fmax(most, range);

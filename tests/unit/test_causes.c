@@ -16,9 +16,9 @@ enum { CRANK_PIN = 1, COUPLER_PIN, FOOT };
 
 static void assert_joints(const Causes *causes, size_t body, size_t count, const int *joints)
 {
-    assert_int_equal(causes->counts[body], count);
+    assert_int_equal(causes_count(causes, body), count);
     for (size_t i = 0; i < count; i++) {
-        assert_int_equal(causes->joints[causes->firsts[body] + i], joints[i]);
+        assert_int_equal(causes_joint(causes, body, i), joints[i]);
     }
 }
 
