@@ -158,13 +158,11 @@ static double aim_value(const Aim *aim, const Look *look)
 
 static double extreme_so_far(const Looker *looker, size_t signal, double sign)
 {
-    const Trajectory *trajectory = looker->recorder->trajectory;
-    const size_t bodies = trajectory->body_count;
-    if (signal >= bodies) {
-        return trajectory->joints[signal - bodies].force_max.value;
-    }
-    const BodyExtremes *body = &trajectory->bodies[signal];
-    return sign * (sign > 0.0 ? body->alpha_max.value : body->alpha_min.value);
+    const size_t bodies = looker->scenario->linkage.body_count;
+    const Extreme *extreme =
+        signal < bodies ? recorder_extreme(looker->recorder, RECORDER_ALPHA, signal, sign)
+                        : recorder_extreme(looker->recorder, RECORDER_FORCE, signal - bodies, sign);
+    return sign * extreme->value;
 }
 
 static bool is_near(const Aim *aim, double value, double share)

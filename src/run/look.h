@@ -61,6 +61,7 @@ Look look_at_end(Looker *looker, const StepRecord *step);
 bool look_is_crowd(Looker *looker, const Look *before, int parts, const Look *looks);
 
 // Looks in a step for maxima and minima of the signals that come near the run's extremes, down to
-// rounding. `before` is the start of the step, the looks the ends of its parts, LOOK_PARTS_MAX at
-// most. Those at maxima are put in between; returns how many looks there are then.
+// rounding; of many signals some are, and the others are seen at the looks that these take.
+// `before` is the start of the step, the looks the ends of its parts, LOOK_PARTS_MAX at most. Those
+// at maxima are put in between; returns how many looks there are then.
 int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[LOOK_MAX]);

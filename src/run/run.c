@@ -39,7 +39,6 @@ typedef struct Loop {
     Sample sample;       // the last one; owned
     bool has_parts;      // whether records tell of one mechanism at a time
     PartSamples ahead;   // samples of these
-    bool is_ahead;       // whether they are taken so
     double elastic;      // J, stored in the contacts there
     double start_energy; // J, kinetic, potential and elastic, at time zero
 } Loop;
