@@ -29,11 +29,11 @@ static const double PHASE_ERROR = 1.0 / 120.0;
 
 // what is allowed where it is not given: of the error that comes of a response that is taken as
 // constant
-static const double ERROR_SHARE = 0.008;
+static const double ERROR_SHARE = 0.004;
 
 // the same where it changes in the step, which leaves a tenth of that error, and of its square,
 // which is left beside that
-static const double DRIFT_SHARE = 0.004;
+static const double DRIFT_SHARE = 0.002;
 static const double DRIFT_SQUARE = 0.5;
 static const double TOLERANCE_LEAST = 1e-10;
 static const double TOLERANCE_MOST = 1e-3;

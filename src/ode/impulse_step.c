@@ -174,6 +174,29 @@ void impulse_step_change_motions(const ImpulseStep *step, const double *position
     }
 }
 
+// Puts the end back onto the ideal joints. The rows are those of mid-step: one pass leaves speeds
+// across the joints that fall as h^2, and with them an error that comes and goes with the length of
+// the step; a second one leaves h^3.
+static void put_back(ImpulseStep *step)
+{
+    double *openings = step->work->rows[0];
+    double *rates = step->work->rows[1];
+    double *positions = step->work->changes[0];
+    double *speeds = step->work->changes[1];
+    response_openings(&step->response, step->after, openings, rates);
+    // the impulses that close the positions are of no interest
+    response_close(&step->response, openings, openings, positions);
+    response_close(&step->response, rates, step->closing, speeds);
+    impulse_step_change_motions(step, positions, speeds, step->after);
+    response_openings(&step->response, step->after, openings, rates);
+    response_close(&step->response, rates, rates, speeds);
+    memset(positions, 0, 3 * body_count(step) * sizeof *positions);
+    impulse_step_change_motions(step, positions, speeds, step->after);
+    for (size_t i = 0; i < step->response.ideal_rows; i++) {
+        step->closing[i] += rates[i];
+    }
+}
+
 // Places and speeds at the end of the step.
 static void find_end(ImpulseStep *step)
 {
@@ -206,14 +229,7 @@ static void find_end(ImpulseStep *step)
         }
     }
     impulse_step_change_motions(step, positions, speeds, step->after);
-    // back onto the ideal joints
-    double *openings = step->work->rows[0];
-    double *rates = step->work->rows[1];
-    response_openings(&step->response, step->after, openings, rates);
-    // the impulses that close the positions are of no interest
-    response_close(&step->response, openings, step->closing, positions);
-    response_close(&step->response, rates, step->closing, speeds);
-    impulse_step_change_motions(step, positions, speeds, step->after);
+    put_back(step);
 }
 
 // What the state inside the step is worked out from.

@@ -231,7 +231,27 @@ static void change_motions(SpaceImpulseStep *step, const SpaceChange *positions,
     }
 }
 
-// Positions and speeds at the end of the step.
+// Puts the end back onto the ideal joints, in passes as in the plane (ode/impulse_step.c).
+static void put_back(SpaceImpulseStep *step)
+{
+    double *openings = step->ideal[0];
+    double *rates = step->ideal[1];
+    SpaceChange *positions = step->changes[1];
+    SpaceChange *speeds = step->changes[2];
+    space_response_openings(step->response, step->after, openings, rates);
+    // the impulses that close the positions are of no interest
+    space_response_close(step->response, openings, openings, positions);
+    space_response_close(step->response, rates, step->closing, speeds);
+    change_motions(step, positions, speeds);
+    space_response_openings(step->response, step->after, openings, rates);
+    space_response_close(step->response, rates, rates, speeds);
+    memset(positions, 0, body_count(step) * sizeof *positions);
+    change_motions(step, positions, speeds);
+    for (size_t i = 0; i < step->response->ideal_rows; i++) {
+        step->closing[i] += rates[i];
+    }
+}
+
 static void find_end(SpaceImpulseStep *step, const SpaceMotion *middle)
 {
     const double half_s = 0.5 * step->width_s;
@@ -246,7 +266,6 @@ static void find_end(SpaceImpulseStep *step, const SpaceMotion *middle)
         }
     }
     SpaceChange *positions = step->changes[1];
-    SpaceChange *speeds = step->changes[2];
     // when in the step the impulse came
     double *late = step->play[0];
     for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
@@ -254,14 +273,7 @@ static void find_end(SpaceImpulseStep *step, const SpaceMotion *middle)
     }
     space_response_apply(step->response, late, positions);
     change_motions(step, positions, NULL);
-    // back onto the ideal joints
-    double *openings = step->ideal[0];
-    double *rates = step->ideal[1];
-    space_response_openings(step->response, step->after, openings, rates);
-    // the impulses that close the positions are of no interest
-    space_response_close(step->response, openings, step->closing, positions);
-    space_response_close(step->response, rates, step->closing, speeds);
-    change_motions(step, positions, speeds);
+    put_back(step);
 }
 
 // The mean acceleration of one part of a body's motion beside the contacts', and how it changes.
