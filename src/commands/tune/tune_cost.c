@@ -61,7 +61,9 @@ static double time_of(const Tune *tune, const TuneTrial *trial)
     if (is_timed(tune, trial)) {
         return tune->schemes[trial->scheme].processor_least_s;
     }
-    return trial->run.is_complete
+    // one that chooses its step makes a reference first, which is no work of world steps
+    const bool has_step = scheme_has_step(&tune->schemes[trial->scheme].scheme);
+    return has_step && trial->run.is_complete
                ? rate_of(tune, trial->scheme) *
                      work_of(tune, (double)trial->run.steps, (double)trial->run.evaluations)
                : trial->run.processor_s;
@@ -74,13 +76,14 @@ double tune_trial_cost(const Tune *tune, const TuneTrial *trial)
                                       : time_of(tune, trial);
 }
 
-// The finest trial of a scheme that ended whole, or NULL.
+// The finest trial of a scheme that ended whole, or NULL. What is unstable, and so has no error,
+// costs what it likes: many a finer step costs less.
 static const TuneTrial *find_finest(const Tune *tune, size_t scheme)
 {
     const TuneTrial *finest = NULL;
     for (size_t i = 0; i < tune->trial_count; i++) {
         const TuneTrial *trial = &tune->trials[i];
-        if (trial->scheme == scheme && trial->run.is_complete &&
+        if (trial->scheme == scheme && trial->run.is_complete && isfinite(trial->error) &&
             (finest == NULL || trial->index > finest->index)) {
             finest = trial;
         }
@@ -98,6 +101,9 @@ static double steps_at(const Tune *tune, const TuneTrial *finest, int index)
 double tune_time(const Tune *tune, size_t scheme, int index)
 {
     const TuneTrial *finest = find_finest(tune, scheme);
+    if (finest != NULL && !scheme_has_step(&tune->schemes[scheme].scheme)) {
+        return finest->run.processor_s;
+    }
     return finest == NULL ? 0.0
                           : rate_of(tune, scheme) * work_of(tune, steps_at(tune, finest, index),
                                                             (double)finest->run.evaluations);
